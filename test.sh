@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Everything that can be checked, in one command; needs cargo (with rustfmt and clippy), python3 >= 3.11 with venv, and Chromium.
+# Runs all checks. Needs cargo (with rustfmt and clippy), python3 >= 3.11 with venv, and Chromium.
 # The Python packages of the reference are installed into target/reference-venv, those of python/ into target/python-venv.
-# The tests of distributed/ run if Debian's python3-petsc4py and openmpi-bin are there; DISTRIBUTED=required makes that a condition.
+# The tests of distributed/ run if Debian's python3-petsc4py and openmpi-bin are installed; DISTRIBUTED=required makes their
+# absence an error.
 #
-# One profile (dev: the crate with overflow checks, dependencies as in release) serves all steps, and every test runs once.
+# All steps use one profile (dev: the crate with overflow checks, dependencies as in release), and every test runs once.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -14,7 +15,7 @@ need "${CHROMIUM:-chromium}" "a headless browser, in which the pages are opened;
 
 out=$(mktemp -d)
 name="" began=0 times=""
-# Ends the step under way, if there is one, and begins another.
+# Ends the current step, if there is one, and begins another.
 step() {
     local now=$SECONDS
     [ -z "$name" ] || times+=$(printf '%6d s  %s' $((now - began)) "$name")$'\n'
@@ -40,7 +41,7 @@ for features in "" pictures faer nalgebra; do
 done
 step "build";                       cargo test --quiet --no-run --all-features
 step "tests";                       cargo test --quiet --all-features
-step "examples, in short"
+step "examples and short forms of tools"
 for lesson in two_springs one_scene find_the_contact_set many_gaps judge_an_answer bouncing_mass; do example $lesson; done
 example verification --short
 example extremes --most 100
@@ -52,18 +53,18 @@ example dynamic_cost --short
 for scene in examples/*.json; do program compare "$scene" --out "$out/$(basename "$scene" .json)"; done
 for scene in tools/impact/*.json; do program solve "$scene" --out "$out/$(basename "$scene" .json)"; done
 program sweep examples/indentation.json --gaps -0.01:-0.10:10 --out "$out/sweep"
-step "answers, the same twice";     python3 reference/same_reports.py "$built/signorini" "$built/signorini" examples tests/corpus
+step "identical answers in two runs";     python3 reference/same_reports.py "$built/signorini" "$built/signorini" examples tests/corpus
 
 step "Python package";              python/test.sh
 step "reference, its own tests";    reference/environment.sh
 target/reference-venv/bin/python -m unittest discover --start-directory reference
-step "schema, scenes right and wrong"; target/reference-venv/bin/python reference/schema.py "$built/signorini"
+step "schema, valid and invalid scenes"; target/reference-venv/bin/python reference/schema.py "$built/signorini"
 step "reference, live validation";  target/reference-venv/bin/python reference/validate.py --signorini "$built/signorini"
 step "pages, in a real browser";    (cd reference && SIGNORINI="../$built/signorini" ../target/reference-venv/bin/python -m unittest pages)
 
 step "distributed, on PETSc"
 if (cd distributed && /usr/bin/python3 -B -c "import ranks") 2>/dev/null && command -v mpirun >/dev/null; then
-    # The options of PETSc belong to a process: each file of tests has its own.
+    # The options of PETSc are global to a process, so that each test file runs in a process of its own.
     for tests in distributed/tests/test_*.py; do
         SIGNORINI="$PWD/$built/signorini" /usr/bin/python3 -B -m unittest discover --start-directory distributed/tests --pattern "${tests##*/}"
     done
@@ -71,7 +72,7 @@ elif [ "${DISTRIBUTED:-}" = required ]; then
     echo "the distributed tests need PETSc and MPI: apt-get install python3-petsc4py openmpi-bin" >&2
     exit 1
 else
-    echo "skipped: there is no PETSc for /usr/bin/python3, or no mpirun; on Debian apt-get install python3-petsc4py openmpi-bin"
+    echo "skipped: /usr/bin/python3 has no PETSc, or mpirun is missing; on Debian apt-get install python3-petsc4py openmpi-bin"
 fi
 
 step ""

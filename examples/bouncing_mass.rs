@@ -1,7 +1,8 @@
-//! Contact in time: a mass of 1 on a spring of 1 swings between a wall and its own amplitude.
+//! Contact in time: a mass of 1 on a spring of stiffness 1 bounces against a wall.
 //!
-//! It is let go at u = -1; the wall stands at u = 0.5. Without the wall u = -cos t: it arrives at t = 2 pi / 3 with the velocity
-//! sin t, is thrown back as fast, and is where it started at twice that time.
+//! The mass is released at u = -1; the wall is at u = 0.5. Before the impact u = -cos t, so that the mass reaches the
+//! wall at t = 2 pi / 3 with the velocity sin t. It rebounds with the same speed, and is back at u = -1 after twice
+//! that time.
 
 use std::f64::consts::PI;
 
@@ -31,7 +32,7 @@ fn main() -> Result<(), Error> {
             );
         }
     }
-    // It never passed the wall, and it is back where it began.
+    // The mass never passed the wall, and it is back at its starting point.
     assert!(largest <= 0.5 + 1e-12, "{largest}");
     assert!((integrator.state().displacement[0] + 1.0).abs() < 1e-2);
     Ok(())

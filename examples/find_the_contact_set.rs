@@ -1,7 +1,7 @@
-//! How the contact set is found: the active-set loop from no closed row, step by step.
+//! Shows how the active-set method finds the contact set, step by step, beginning without a closed row.
 //!
-//! A string of 40 springs hangs over a bench; each line shows the rows that the loop took to be closed in one of its steps. A row
-//! closes where the string would pass the bench, and opens where the bench would have to pull.
+//! A string of 40 springs hangs above a bench. Each line shows the closed rows of one step. A row closes if the string
+//! would pass the bench there, and opens if the bench would have to pull.
 
 use signorini::{ContactProblem, Error, Method, Settings, SparseMatrix, SymmetricMatrix, solve};
 
@@ -12,7 +12,7 @@ fn main() -> Result<(), Error> {
     let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries)?)?;
     let identity: Vec<_> = (0..dofs).map(|i| (i, i, 1.0)).collect();
     let contact = SparseMatrix::from_triplets(dofs, dofs, &identity)?;
-    // Downwards is positive: every node weighs 1, and the bench stands 50 below the ends.
+    // Downwards is positive. Every node weighs 1, and the bench is 50 below the ends.
     let problem = ContactProblem::new(stiffness, vec![1.0; dofs], contact, vec![50.0; dofs])?;
 
     let solution = solve(&problem, &Settings::with_method(Method::ActiveSet))?;
@@ -21,11 +21,12 @@ fn main() -> Result<(), Error> {
         println!("{number:2}  {}", (0..dofs).map(row).collect::<String>());
     }
 
-    // The free string falls in a parabola, and leaves the bench where it is level with it: d nodes from its end, d^2 / 2 = 50.
+    // The free part of the string is a parabola that meets the bench tangentially, d nodes from its end, with d^2 / 2 =
+    // 50.
     let closed: Vec<usize> = solution.contact_set.iter().collect();
     assert_eq!(closed, (9..=29).collect::<Vec<_>>());
     assert!(closed.iter().all(|&row| solution.multiplier[row] <= 0.0));
-    // All the weight is carried by the two ends and the bench.
+    // The two ends and the bench carry the whole weight.
     let ends = solution.displacement[0] + solution.displacement[dofs - 1];
     let bench: f64 = solution.multiplier.iter().map(|lambda| -lambda).sum();
     assert!((ends + bench - dofs as f64).abs() < 1e-12);

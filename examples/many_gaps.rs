@@ -1,4 +1,4 @@
-//! Factor once, contact many: one body under a series of gaps, and every gap at which a node touches.
+//! Factorises a body once, solves it for many gaps, and finds every gap at which a node touches.
 
 use signorini::{Error, Prepared, Scene, Settings};
 
@@ -8,7 +8,8 @@ fn main() -> Result<(), Error> {
     // The only factorisation of the body.
     let prepared = Prepared::new(model.problem(), &Settings::default())?;
 
-    // The parabola goes down from the first touch by 0.01 m; each gap starts from the contact set of the one before.
+    // The parabola is lowered by 0.01 m after the first touch. Each solve starts from the contact set of the previous
+    // gap.
     let at = |depth: f64| model.problem().gap().iter().map(|gap| gap + 0.01 - depth).collect::<Vec<f64>>();
     let mut next = prepared.clone();
     for step in 1..=5 {
@@ -18,7 +19,7 @@ fn main() -> Result<(), Error> {
         next = next.starting_from(boundary.contact_set);
     }
 
-    // Between two gaps the answer is a polyline; its corners are the gaps at which a row closes or opens.
+    // Between two gaps the answer is piecewise linear; its corners are the gaps at which a row closes or opens.
     let touching = prepared.path(&at(0.0), &at(0.01))?;
     for event in touching.events() {
         println!("node row {:2} changes at a depth of {:.6} m", event.row, 0.01 * event.at.max(0.0));

@@ -1,6 +1,6 @@
-//! A scene from a file: body, supports and obstacle in JSON, the answer in forces and pressures.
+//! Reads a scene with body, supports and obstacle from a JSON file, and prints its contact pressures and contact force.
 //!
-//! A block of 1 m x 0.5 m is clamped below; a parabola is pressed 0.01 m into its top.
+//! A block of 1 m x 0.5 m is clamped at its bottom, and a parabola is pressed 0.01 m into its top.
 
 use signorini::{Error, Scene, Settings, solve};
 
@@ -22,7 +22,7 @@ fn main() -> Result<(), Error> {
     assert_eq!(closed, (17..24).collect::<Vec<_>>());
     assert!((pressure[17] - pressure[23]).abs() < 1e-9 * pressure[20]);
     assert!(model.force_balance(&solution.displacement, &solution.multiplier)? < 1e-12);
-    // Every row is proven closed or open in the exact answer of this mesh.
+    // Every row is proven closed or open in the exact solution on this mesh.
     assert!(solution.proven.is_some_and(|proven| proven.undecided().count() == 0));
     Ok(())
 }

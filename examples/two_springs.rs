@@ -1,11 +1,11 @@
-//! Two springs in a row before a wall, without any scene: K, f, B and g by hand.
+//! Solves two springs in front of a wall without a scene: K, f, B and g are written by hand.
 //!
 //! ```text
 //! |--/\/\/--o--/\/\/--o  F ->   | wall at distance g
 //!     k1    u0   k2   u1
 //! ```
 //!
-//! Closed form: the wall is reached, u1 = g, u0 = k2 g / (k1 + k2), lambda = k2 (u1 - u0) - F.
+//! In closed form, if the wall is reached: u1 = g, u0 = k2 g / (k1 + k2), lambda = k2 (u1 - u0) - F.
 
 use signorini::{ContactProblem, Error, SparseMatrix, SymmetricMatrix, solve_qp};
 

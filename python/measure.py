@@ -1,7 +1,8 @@
-"""Measures what the way through Python costs: `python python/measure.py`, with the package installed.
+"""Measures the cost of calling the library from Python: `python python/measure.py`, with the package installed.
 
-Four numbers: reading a stiffness of 8 million entries beside the solve by its factor; a solve of two springs beside what the library takes
-itself; the next gap of a block of 131,584 dofs beside the same; the answer to an interrupt.
+Four figures are printed: the time to read a stiffness of 8 million entries, compared with the solve by its factor; the time of a solve
+of two springs, compared with the time inside the library; the same for the next gap of a block of 131,584 dofs; and the time until an
+interrupt is answered.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from scipy import sparse
 
 
 def fastest(work: Callable[[], object], runs: int) -> float:
-    """Processor seconds of the fastest run, in which other programs of the machine do not count."""
+    """Returns the processor seconds of the fastest run. Time of other programs is not counted."""
     seconds = []
     for _ in range(runs):
         gc.collect()
@@ -31,7 +32,7 @@ def fastest(work: Callable[[], object], runs: int) -> float:
 
 
 def block(cells: int) -> sg.Scene:
-    """An elastic block of `cells` x `cells` Q4 under a parabola, held at its bottom."""
+    """Returns an elastic block of `cells` x `cells` Q4 elements under a parabola, fixed at its bottom."""
     side = {"points": [0, 1], "divisions": [cells]}
     parabola = {"parabola": {"apex": [0.5, 1], "radius": 1}}
     return sg.Scene(
@@ -46,7 +47,7 @@ def block(cells: int) -> sg.Scene:
 
 
 def transfer(cells: int) -> None:
-    """Reading the arrays of a stiffness, beside the solve by the factor."""
+    """Measures the reading of a stiffness, compared with the solve by its factor."""
     problem = block(cells).problem
     K, f, B, g = problem.K, problem.f, problem.B, problem.g
     forms = {"csc, 64-bit indices": K, "csc, 32-bit indices": sparse.csc_array(K), "csr, 32-bit indices": sparse.csr_array(K)}
@@ -61,7 +62,7 @@ def transfer(cells: int) -> None:
 
 
 def two_springs(calls: int) -> None:
-    """Microseconds of a call above those of the library."""
+    """Measures how many microseconds a call takes in addition to those of the library."""
     problem = sg.Problem(np.array([[3.0, -1.0], [-1.0, 1.0]]), [0.0, 3.0], np.array([[0.0, 1.0]]), [1.0])
     for name, solve in (
         ("solve", lambda: sg.solve(problem)),
@@ -79,7 +80,7 @@ def two_springs(calls: int) -> None:
 
 
 def next_gap(cells: int, gaps: int) -> None:
-    """The next gap through Python, beside what the library takes for it."""
+    """Measures the solve for the next gap from Python, compared with the time inside the library."""
     problem = block(cells).problem
     prepared = sg.prepare(problem, gaps=gaps, method="active-set", proof=False)
     answer = prepared.solve()
@@ -95,7 +96,7 @@ def next_gap(cells: int, gaps: int) -> None:
 
 
 def interrupt(cells: int) -> None:
-    """The answer to an interrupt, at several moments of a solve."""
+    """Measures the time until an interrupt is answered, at several moments of a solve."""
     problem = block(cells).problem
     for method, after in (("active-set", 0.1), ("active-set", 0.5), ("mprgp", 0.3), ("qp", 0.5)):
         sent: list[float] = []
@@ -115,7 +116,7 @@ def interrupt(cells: int) -> None:
             print(f"interrupt after {after} s of {method}: {waited:.0f} ms, {carries}")
         except KeyboardInterrupt:
             print(f"interrupt after {after} s of {method}: it came too late")
-        # What was left behind ends first.
+        # Work that was left behind by an interrupt must end before the next measurement.
         time.sleep(3.0)
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The Python package: builds its wheel into target/wheels with the profile of the tests, installs it into environments below target/,
-# and checks it. Needs cargo and python3 >= 3.11 with venv.
+# Builds the wheel of the Python package into target/wheels with the profile of the tests, installs it into environments
+# below target/, and runs all checks. Needs cargo and python3 >= 3.11 with venv.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -11,7 +11,7 @@ stamp=$environment/requirements.stamp
 if ! cmp -s requirements.txt "$stamp"; then
     python3 -m venv --clear "$environment"
     "$environment/bin/python" -m pip install --quiet --disable-pip-version-check --requirement requirements.txt
-    # Last, so that an installation that was cut short is made again.
+    # This is the last step, so that an interrupted installation is repeated.
     cp requirements.txt "$stamp"
 fi
 
@@ -25,7 +25,7 @@ install "$environment" --no-deps
 "$environment/bin/python" -m mypy.stubtest --concise --mypy-config-file pyproject.toml signorini
 "$environment/bin/python" -m mypy --no-error-summary --cache-dir "$CARGO_TARGET_DIR/mypy" -p signorini
 
-# The lines of the README, where there is nothing but the wheel and numpy.
+# The Python lines of the README, in an environment with only the wheel and numpy.
 empty=$CARGO_TARGET_DIR/empty-venv
 python3 -m venv --clear "$empty"
 install "$empty"

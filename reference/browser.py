@@ -1,4 +1,4 @@
-"""A headless Chromium that opens files and is asked what it sees, over the DevTools protocol and two pipes."""
+"""Controls a headless Chromium, which opens files and evaluates expressions, by the DevTools protocol over two pipes."""
 
 import base64
 import json
@@ -12,15 +12,15 @@ from typing import Any
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 PATIENCE = 60.0
-"""Seconds after which an answer is given up."""
+"""Seconds to wait for an answer of the browser."""
 
 
 class NoBrowser(RuntimeError):
-    """There is no Chromium, or it does not answer."""
+    """Chromium is not installed, or it does not answer."""
 
 
 def found() -> str:
-    """The program, by the variable CHROMIUM or by its usual names."""
+    """Returns the path of Chromium: the environment variable CHROMIUM, or one of its usual names."""
     names = (os.environ["CHROMIUM"],) if "CHROMIUM" in os.environ else NAMES
     for name in names:
         if shutil.which(name):
@@ -29,10 +29,10 @@ def found() -> str:
 
 
 class Browser:
-    """One page at a time."""
+    """A browser with one page."""
 
     def __init__(self) -> None:
-        # Processes of the browser may still write there when it ends.
+        # Processes of the browser may still write into the folder while it ends.
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         ours_in, theirs_out = os.pipe()
         theirs_in, ours_out = os.pipe()
@@ -72,7 +72,7 @@ class Browser:
         self.close()
 
     def send(self, method: str, **params: Any) -> dict:
-        """The result of a command; events that come meanwhile are kept."""
+        """Sends a command and returns its result. Events that arrive in the meantime are kept."""
         self.number += 1
         message = {"id": self.number, "method": method, "params": params}
         if self.session:
@@ -101,7 +101,7 @@ class Browser:
         return json.loads(text)
 
     def open(self, page: Path, size: tuple[int, int] = (1280, 900), scheme: str = "light", fragment: str = "") -> float:
-        """Opens a page that sets `data-ready` when it stands; the seconds that it took from the call to there."""
+        """Opens a page and waits until it sets `data-ready`. Returns the seconds that this took."""
         self.send("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1, mobile=size[0] < 600)
         self.send("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
         self.send("Page.navigate", url="about:blank")
@@ -115,25 +115,25 @@ class Browser:
         return time.monotonic() - began
 
     def ask(self, expression: str) -> Any:
-        """The value of an expression in the page, a promise waited for."""
+        """Evaluates an expression in the page, waits for a promise, and returns the value."""
         result = self.send("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in result:
             raise RuntimeError(result["exceptionDetails"]["exception"].get("description", "exception"))
         return result["result"].get("value")
 
     def frame(self) -> None:
-        """Waits until what was changed is drawn."""
+        """Waits until all changes are drawn."""
         self.ask("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
 
     def picture(self, selector: str | None = None) -> bytes:
-        """A picture of the part that a selector names, or of the whole page, as PNG."""
+        """Returns a picture of the element that a selector names, or of the whole page, as PNG."""
         of = f"document.querySelector({json.dumps(selector)})" if selector else "document.documentElement"
         box = self.ask(f"(() => {{ const b = {of}.getBoundingClientRect(); return [b.x + scrollX, b.y + scrollY, b.width, b.height]; }})()")
         clip = dict(zip(("x", "y", "width", "height"), box, strict=True), scale=1)
         return base64.b64decode(self.send("Page.captureScreenshot", format="png", clip=clip, captureBeyondViewport=True)["data"])
 
     def faults(self) -> list[str]:
-        """What went wrong since the page was opened: exceptions, errors on the console, requests to anywhere."""
+        """Returns all faults since the page was opened: exceptions, errors on the console, network requests."""
         self.ask("0")
         found = []
         for event in self.events:

@@ -1,16 +1,17 @@
-"""Holds displacements without contact, and contact forces, against those of CalculiX on the same meshes.
+"""Compares displacements without contact, and contact forces, with those of CalculiX on the same meshes.
 
     python reference/parts.py FOLDER
     python reference/calculix.py target/release/signorini FOLDER NAME [NAME ...]
     python reference/calculix.py --contact target/release/signorini FOLDER NAME [NAME ...]
 
-With `--contact` a part whose obstacle is one plane is solved as it stands. In CalculiX the plane is a face of one element whose nodes
-are held, and contact is a linear relation of pressure and overclosure between the faces. Its stiffness is driven up: CONTACT_STIFFNESS
-times the modulus of the body over the length of a facet. What is compared is the total contact force.
+With `--contact`, parts whose only obstacle is one plane are solved with contact, and the total contact forces are compared. In
+CalculiX the plane is a face of one element whose nodes are fixed, and the contact pressure is a linear function of the overclosure.
+The contact stiffness takes increasing values: CONTACT_STIFFNESS times the modulus of the body over the length of a facet.
 
-Without contact: for each part the obstacles are left out, supports hold at zero and a body force pulls; the program's own fields give CalculiX
-nodes, elements and loads. CalculiX is the Debian package calculix-ccx; its command is ccx. Its ten-node tetrahedra have four quadrature
-points, ours eight: on straight edges both are exact, on curved ones they differ (by 3e-4 on `bracket`). Its plane elements are wedges.
+Without `--contact`, the obstacles are left out, all supports are zero, and a body force acts on the part. CalculiX gets its nodes,
+elements and loads from the files that the program writes. CalculiX is the Debian package calculix-ccx; its command is ccx. Its
+ten-node tetrahedra have four quadrature points, ours have eight: both are exact for straight edges, but they differ for curved edges
+(by 3e-4 on `bracket`). Its plane elements are wedges.
 """
 
 import csv
@@ -25,10 +26,10 @@ import numpy as np
 import scipy.io
 
 CONTACT_STIFFNESS = (10.0, 30.0, 100.0)
-"""Contact stiffnesses of CalculiX, in moduli of the body over the length of a facet."""
+"""Contact stiffnesses of CalculiX, as multiples of the modulus of the body over the length of a facet."""
 
 WEDGES = 180
-"""About an axis CalculiX computes a wedge of two degrees, and prints its forces."""
+"""For an axisymmetric body CalculiX computes a wedge of two degrees, and prints the forces of this wedge."""
 
 FACES = {
     "tetra": [(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)],
@@ -38,7 +39,7 @@ FACES = {
 """Corners of the faces of an element, in the order in which CalculiX numbers them."""
 
 FORCES = {1: [3.0], 2: [3.0, -5.0], 3: [3.0, -5.0, 2.0]}
-"""Force per volume, in no direction of its own; about an axis there is none along the radius."""
+"""Force per volume, in a direction along no axis. For an axisymmetric body its radial component is left out."""
 
 ELEMENTS = {
     ("tetra", "space"): "C3D4",
@@ -52,7 +53,7 @@ ELEMENTS = {
 
 
 def held_scene(path: pathlib.Path) -> dict:
-    """The scene of a part without obstacles, held at zero and pulled by a body force."""
+    """Returns the scene of a part without obstacles, with all supports at zero and a body force."""
     scene = json.loads(path.read_text())
     dimension = 3 if scene.get("model") == "space" else 2
     for support in scene["supports"]:
@@ -64,7 +65,7 @@ def held_scene(path: pathlib.Path) -> dict:
 
 
 def number(value: float) -> str:
-    """A number in at most 20 characters: what follows would be cut off."""
+    """Formats a number in at most 20 characters, because CalculiX ignores all further characters."""
     return f"{float(value):.12e}"
 
 
@@ -73,7 +74,7 @@ def numbers(values) -> str:
 
 
 def body_of(scene: dict, mesh: meshio.Mesh) -> list[str]:
-    """Nodes, elements and material of the body."""
+    """Returns the lines of the nodes, elements and material of the body."""
     block = mesh.cells[0]
     kind = ELEMENTS[block.type, scene.get("model", "plane-strain")]
     lines = ["*NODE, NSET=ALL"] + [f"{node + 1}, {numbers(at)}" for node, at in enumerate(mesh.points)]
@@ -91,7 +92,7 @@ def body_of(scene: dict, mesh: meshio.Mesh) -> list[str]:
 
 
 def input_of(scene: dict, mesh: meshio.Mesh, load: np.ndarray, free: list[tuple[int, int]]) -> str:
-    """The input file of CalculiX: everything that is no free dof is held."""
+    """Returns the input file of CalculiX, in which all dofs except the free ones are fixed."""
     dimension = 3 if scene.get("model") == "space" else 2
     lines = body_of(scene, mesh)
     lines.append("*BOUNDARY")
@@ -103,7 +104,7 @@ def input_of(scene: dict, mesh: meshio.Mesh, load: np.ndarray, free: list[tuple[
 
 
 def free_dofs(path: pathlib.Path) -> list[tuple[int, int]]:
-    """Node and axis of each unknown, from dofs.csv."""
+    """Reads the node and the axis of each unknown from dofs.csv."""
     with path.open() as text:
         rows = list(csv.DictReader(text))
     axis = lambda row: int(np.argmax([abs(float(row[f"direction_{name}"])) for name in "xyz"]))
@@ -111,7 +112,7 @@ def free_dofs(path: pathlib.Path) -> list[tuple[int, int]]:
 
 
 def compared(program: str, path: pathlib.Path) -> tuple[int, float]:
-    """Unknowns of a part, and the largest difference of displacements over the largest displacement."""
+    """Returns the number of unknowns of a part, and the largest difference of displacements relative to the largest displacement."""
     scene = held_scene(path)
     held = path.with_name(f"{path.stem}-held.json")
     held.write_text(json.dumps(scene))
@@ -122,7 +123,7 @@ def compared(program: str, path: pathlib.Path) -> tuple[int, float]:
 
 
 def difference(program: str, held: pathlib.Path, scene: dict) -> tuple[int, float]:
-    """The same for a scene that is written."""
+    """Returns the same numbers for a scene in a file."""
     dimension = 3 if scene.get("model") == "space" else 2
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -146,7 +147,7 @@ def difference(program: str, held: pathlib.Path, scene: dict) -> tuple[int, floa
 
 
 def contact_input(scene: dict, mesh: meshio.Mesh, load: dict, held: dict, candidates: set[int], stiffness: float) -> str:
-    """The input file of CalculiX with the obstacle: `load` and `held` are values by node and axis."""
+    """Returns the input file of CalculiX with the obstacle; `load` and `held` are values by node and axis."""
     dimension = 3 if scene.get("model") == "space" else 2
     block = mesh.cells[0]
     faces = [
@@ -165,7 +166,7 @@ def contact_input(scene: dict, mesh: meshio.Mesh, load: dict, held: dict, candid
     approach = np.zeros(3)
     approach["xyz".index(obstacle["approach"][1])] = 1.0 if obstacle["approach"][0] == "+" else -1.0
     at = np.array(plane["point"] + [0.0] * (3 - dimension), dtype=float) + scene.get("gap", 0.0) * approach
-    # The face of the obstacle reaches beyond the candidates.
+    # The face of the obstacle extends beyond the candidates.
     middle = points.mean(axis=0)
     middle -= ((middle - at) @ inward) * inward
     reach = 1.5 * float(np.ptp(points, axis=0).max())
@@ -201,7 +202,7 @@ def contact_input(scene: dict, mesh: meshio.Mesh, load: dict, held: dict, candid
 
 
 def contact_forces(program: str, path: pathlib.Path) -> tuple[int, float, list[float]]:
-    """Unknowns of a part, our total contact force, and those of CalculiX for each contact stiffness."""
+    """Returns the number of unknowns of a part, our total contact force, and that of CalculiX for each contact stiffness."""
     scene = json.loads(path.read_text())
     dimension = 3 if scene.get("model") == "space" else 2
     held_at_zero = json.loads(path.read_text())
@@ -240,7 +241,7 @@ def contact_forces(program: str, path: pathlib.Path) -> tuple[int, float, list[f
 
 
 def contact_table(program: str, folder: pathlib.Path, names: list[str]) -> int:
-    """Prints the contact forces of parts; the stiffness that comes closest counts, since beyond some stiffness CalculiX fails."""
+    """Prints the contact forces of parts. The closest force of CalculiX counts, because CalculiX fails above some contact stiffness."""
     print(f"{'part':18} {'unknowns':>9} {'force':>12}" + "".join(f"  ccx at {stiffness:5g}" for stiffness in CONTACT_STIFFNESS))
     worst = 0.0
     for name in names:

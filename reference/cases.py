@@ -1,4 +1,4 @@
-"""The cases: problems made here and scenes from examples/, with the closed-form results that are known of them."""
+"""The cases: problems made here and scenes from examples/, with their known results in closed form."""
 
 import json
 from collections.abc import Callable
@@ -12,12 +12,12 @@ import raw_problems
 from problem import Answer, Problem, problem_of
 
 CLOSED_FORM_TOLERANCE = 1e-9
-"""Relative; nodal values of these problems are exact, so that only rounding is left."""
+"""Relative tolerance. The nodal values of these problems are exact, so that only rounding errors remain."""
 
 
 @dataclass(frozen=True)
 class Expected:
-    """A number known in closed form and how to read it off a solution."""
+    """A number known in closed form, and the function that computes it from a solution."""
 
     quantity: str
     value: float
@@ -26,7 +26,7 @@ class Expected:
 
 @dataclass(frozen=True)
 class Case:
-    """A problem by a generator, or a scene file with its gap replaced; what is known of its solution."""
+    """A problem from a generator, or a scene file, possibly with another gap; and the known results."""
 
     name: str
     generate: Callable[[], Problem] | None = None
@@ -34,26 +34,26 @@ class Case:
     gap: float | None = None
     expected: tuple[Expected, ...] = field(default=())
     twin: Callable[[], Problem] | None = None
-    """The same problem assembled here, in whatever order of the dofs; its rows in the same order."""
+    """The same problem assembled here. Its rows have the same order; its dofs may have another order."""
 
 
 def force(value: float) -> Expected:
-    """The total contact force -sum(lambda), in N."""
+    """Expects this total contact force -sum(lambda), in N."""
     return Expected("total force", value, lambda problem, answer: answer.force)
 
 
 def displacement(dof: int, value: float) -> Expected:
-    """One entry of u, in m."""
+    """Expects this value of one entry of u, in m."""
     return Expected(f"u[{dof}]", value, lambda problem, answer: answer.displacement[dof])
 
 
 def pressed_from(row: int) -> Expected:
-    """The first row that carries a force."""
+    """Expects that this row is the first one with a force."""
     return Expected("first closed row", row, lambda problem, answer: np.flatnonzero(answer.multiplier < -1e-9)[0])
 
 
 def without_obstacle_on_one_half() -> Problem:
-    """The string with infinite gaps on the right half of its rows."""
+    """Returns the string with infinite gaps on the right half of its rows."""
     string = raw_problems.string_over_obstacle()
     gap = string.gap.copy()
     gap[string.rows // 2 :] = np.inf
@@ -64,7 +64,7 @@ RAW_CASES = (
     Case(
         "two springs", raw_problems.two_springs, expected=(force(6.25), displacement(0, 0.0125), displacement(1, 0.05))
     ),
-    # b = 0.4 is node 80 of 200, which carries the first, half reaction.
+    # The contact begins at b = 0.4, node 80 of 200, which carries half a reaction.
     Case("string", raw_problems.string_over_obstacle, expected=(force(0.2), pressed_from(79), displacement(99, -0.08))),
     Case("string, weak rows", raw_problems.string_with_weak_nodes, expected=(force(55 / 256), pressed_from(100))),
     Case("string, half obstacle", without_obstacle_on_one_half),
@@ -110,7 +110,7 @@ SCENE_CASES = (
 
 
 def scene_file(case: Case, examples: Path, folder: Path) -> Path:
-    """The scene of a case: the file itself or, with another gap, a changed copy in `folder`."""
+    """Returns the scene file of a case: the file itself or, with another gap, a changed copy in `folder`."""
     source = examples / case.scene
     if case.gap is None:
         return source

@@ -1,15 +1,17 @@
-"""Does `--total-error` choose well? Its time over that of the best point of a measured grid of meshes and methods.
+"""Compares the time of `--total-error` with that of the best point of a measured grid of meshes and methods.
 
     python3 reference/choice.py target/release/signorini [--runs 3] [--short]
 
-Eight scenes, two goals each. A point of the grid is a first mesh, its cells cut into 1, 2, 4, ... along each edge, and a method:
+There are eight scenes with two goals each. A point of the grid is a method and a first mesh, whose cells are divided into 1, 2, 4, ...
+parts along each edge:
 
-* guaranteed scenes: the same command on that first mesh. It ends there if the mesh suffices, and refines it otherwise.
-* estimated scenes: one solve on that mesh, to a tenth of the goal; it counts if its estimate meets the goal. Tetrahedra are refined
-  from that mesh, too.
+* For scenes with a guaranteed error, the same command runs on that first mesh. It ends there if the mesh suffices, and refines the
+  mesh otherwise.
+* For scenes with an estimated error, one solve runs on that mesh, to a tenth of the goal. It counts if its estimate meets the goal.
+  For tetrahedra, the refinement from that mesh is measured as well.
 
-A time is the least of the runs of the whole command, its start and the reading of the scene included. The runs of all points of a
-scene alternate.
+The time of a point is the smallest over all runs of the whole command, including its start and the reading of the scene. The runs of
+all points of a scene alternate.
 """
 
 import argparse
@@ -38,7 +40,7 @@ def box(cells, k, element):
 
 
 def wedge(k):
-    """A corner of a wedge in a block of plane stress."""
+    """The corner of a wedge pressed into a block in plane stress."""
     return {
         "model": "plane-stress",
         "body": rectangle(1, 1, (6, 6), k, "t3"),
@@ -49,7 +51,7 @@ def wedge(k):
 
 
 def pulled(k):
-    """A block that a traction presses sideways against a circle."""
+    """A block that a traction presses against a circle at its side."""
     return {
         "body": rectangle(2, 1, (8, 4), k, "q8"),
         "material": {"young": 1000, "poisson": 0.3},
@@ -60,7 +62,7 @@ def pulled(k):
 
 
 def rubber(k):
-    """Nearly incompressible, under its weight, between a clamped bottom and a parabola."""
+    """A nearly incompressible block with its weight, clamped at its bottom, under a parabola."""
     return {
         "body": rectangle(1, 0.5, (8, 4), k),
         "material": {"young": 10, "poisson": 0.4999},
@@ -71,7 +73,7 @@ def rubber(k):
 
 
 def disc(k):
-    """Half a disc on a plane."""
+    """Half a disc that is pressed onto a plane."""
     return {
         "body": {"half-disc": {"centre": [0, 1], "radius": 1, "element": "t3",
                                "zone": {"width": 0.2, "divisions": 2 * k, "growth": 2 ** (1 / k)}}},
@@ -95,7 +97,7 @@ def solid(element, obstacle, cells=(4, 4, 2)):
 
 
 def punch(k):
-    """A cylinder under a ball, as a body of revolution."""
+    """A cylinder under a ball, as an axisymmetric body."""
     return {
         "model": "axisymmetric",
         "body": rectangle(1, 0.5, (8, 4), k),
@@ -108,7 +110,7 @@ def punch(k):
 SPHERE = {"sphere": {"apex": [0.4, 0.5, 0.49], "radius": 0.7}}
 CYLINDER = {"cylinder": {"apex": [0.5, 0.5, 0.49], "radius": 1, "axis": [0, 1, 0]}}
 
-# Scene, goals, how often cells are cut, whether the error is guaranteed, whether it is refined by bisection.
+# Scene, goals, numbers of divisions of each edge, True if the error is guaranteed, True if the mesh is refined by bisection.
 SCENES = {
     "wedge, plane stress, T3": (wedge, (0.05, 0.02), (1, 2, 4, 8), True, True),
     "pressed on a circle, Q8": (pulled, (0.05, 0.01), (1, 2, 4, 8), True, True),
@@ -122,14 +124,14 @@ SCENES = {
 
 
 class Point:
-    """A command of the grid, its least seconds, and whether it meets the goal."""
+    """A command of the grid, its smallest time, and the test of its goal."""
 
     def __init__(self, name, command, is_enough):
         self.name, self.command, self.is_enough = name, command, is_enough
         self.seconds = float("inf")
 
     def run(self):
-        """One run; returns False if this point is of no use."""
+        """Runs the command once. Returns False if the point does not meet its goal."""
         began = time.perf_counter()
         try:
             run = subprocess.run(self.command, capture_output=True, text=True, timeout=MOST_SECONDS)
@@ -143,7 +145,7 @@ class Point:
 
 
 def grid(program, folder, scene, goal, cuts, guaranteed, bisected):
-    """The chosen point, then all others."""
+    """Returns the chosen point, followed by all others."""
     points = []
     for k in cuts:
         file = folder / f"{k}.json"
@@ -151,10 +153,10 @@ def grid(program, folder, scene, goal, cuts, guaranteed, bisected):
         for method in METHODS:
             command = [program, "solve", str(file), "--format", "json", "--method", method]
             if guaranteed or bisected or k == 1 and method == "auto":
-                # Multigrid does not settle a contact set to the last digit, which a stress in balance needs.
+                # A stress in balance needs the exact contact set, which multigrid does not give.
                 if not (guaranteed and method in ("mprgp", "auto") and (k, method) != (1, "auto")):
                     points.append(Point(f"from cells / {k}, {method}", [*command, "--total-error", str(goal)], lambda _: True))
-            # A grid of tetrahedra on fine meshes is far from the best, and takes minutes.
+            # Uniform tetrahedra on fine meshes take minutes and are far from the best.
             if not guaranteed and (not bisected or k < 8):
                 once = [*command, "--accuracy", str(goal / 10)]
                 points.append(Point(f"cells / {k}, {method}", once, lambda report: 0 < report["discretisation_error"] <= goal))

@@ -1,4 +1,4 @@
-"""Distances between answers, and the tolerances they are held to."""
+"""Distances between answers, and their tolerances."""
 
 from dataclasses import dataclass
 
@@ -10,40 +10,40 @@ from scaling import largest
 from settle import contact_set
 
 DISPLACEMENT_TOLERANCE = 1e-8
-"""max|du| / max|u| between two exact answers: two linear solves with a condition number up to 1e6 are a hundred times
-nearer."""
+"""Tolerance of max|du| / max|u| between two exact answers. Two linear solves with a condition number up to 1e6 differ by a
+hundredth of this."""
 
 MULTIPLIER_TOLERANCE = 1e-7
-"""max|dlambda| / max|lambda| between two exact answers: reactions are differences of large elastic forces."""
+"""Tolerance of max|dlambda| / max|lambda| between two exact answers. Reactions are differences of large elastic forces."""
 
 RAW_DISPLACEMENT_TOLERANCE = 1e-6
-"""The same for the unpolished answer of an iterative solver. A row that touches without force leaves an interior-point
-method at the square root of its tolerance: 6e-7 was measured, and 1e-9 or better elsewhere."""
+"""Tolerance of u for the unpolished answer of an iterative solver. At a row that touches without force, the error of an
+interior-point method is the square root of its tolerance: 6e-7 was measured there, and 1e-9 or better elsewhere."""
 
 RAW_MULTIPLIER_TOLERANCE = 1e-3
-"""Measured: 4e-4 at such rows, 3e-8 or better elsewhere."""
+"""Tolerance of lambda for the same answer. Measured: 4e-4 at such rows, 3e-8 or better elsewhere."""
 
 WEAK = 1e-9
-"""A row is weakly active when its slack and its multiplier are both below this part of the largest. Whether it counts
-as closed is a matter of rounding, so that contact sets may differ there."""
+"""A row is weakly active if its slack and its multiplier are both below this share of the largest. Rounding decides whether it
+counts as closed, so that contact sets may differ there."""
 
 ENERGY_ALLOWANCE = 1e-12
-"""What rounding adds to a distance in the energy norm before it is held against its bound."""
+"""Allowance for rounding when a distance in the energy norm is compared with its bound."""
 
 
 @dataclass(frozen=True)
 class Distance:
-    """How far an answer is from a reference answer of the same problem."""
+    """The distance of an answer from a reference answer of the same problem."""
 
     displacement: float
     """max|du| / max|u|"""
     multiplier: float
     """max|dlambda| / max|lambda|"""
     differing: np.ndarray
-    """Indices of rows that one has closed and the other open, without the weakly active ones."""
+    """Indices of the rows that are closed in one answer and open in the other, without the weakly active ones."""
 
     def failures(self, displacement: float, multiplier: float, same_contact: bool = True) -> list[str]:
-        """What is beyond the given tolerances, in words."""
+        """Returns one sentence for each difference that exceeds its tolerance."""
         found = []
         if not self.displacement <= displacement:
             found.append(f"u differs by {self.displacement:.1e} > {displacement:.0e}")
@@ -55,7 +55,7 @@ class Distance:
 
 
 def distance(problem: Problem, answer: Answer, reference: Answer) -> Distance:
-    """The distance of `answer` from `reference`, relative to the largest values of `reference`."""
+    """Returns the distance of `answer` from `reference`, relative to the largest values of `reference`."""
     closed, expected = contact_set(problem, answer), contact_set(problem, reference)
     return Distance(
         ratio(largest(answer.displacement - reference.displacement), largest(reference.displacement)),
@@ -65,7 +65,7 @@ def distance(problem: Problem, answer: Answer, reference: Answer) -> Distance:
 
 
 def farthest(problem: Problem, answer: Answer, references: list[Answer]) -> Distance:
-    """The largest of the distances from several references, number by number."""
+    """Returns, for each number, the largest of the distances from several references."""
     distances = [distance(problem, answer, reference) for reference in references]
     return Distance(
         max(d.displacement for d in distances),
@@ -75,13 +75,13 @@ def farthest(problem: Problem, answer: Answer, references: list[Answer]) -> Dist
 
 
 def weak_rows(problem: Problem, answer: Answer) -> np.ndarray:
-    """The rows that touch without a force; boolean, length rows."""
+    """Returns the rows that touch without force, as a boolean array of length rows."""
     touching = np.abs(problem.slack(answer.displacement)) < WEAK * length_scale(problem, answer)
     return touching & (np.abs(answer.multiplier) < WEAK * multiplier_scale(problem, answer))
 
 
 def energy_distance(problem: Problem, answer: Answer, reference: Answer) -> float:
-    """norm_K(u - u_reference) / norm_K(u), the quantity that an energy error bound is about."""
+    """Returns norm_K(u - u_reference) / norm_K(u), which the energy error bound must not be below."""
     apart = answer.displacement - reference.displacement
     u = answer.displacement
     return ratio(np.sqrt(max(apart @ (problem.stiffness @ apart), 0.0)), np.sqrt(max(u @ (problem.stiffness @ u), 0.0)))
@@ -89,7 +89,7 @@ def energy_distance(problem: Problem, answer: Answer, reference: Answer) -> floa
 
 @dataclass(frozen=True)
 class Verdict:
-    """One answer of one case, all that the table shows of it, and what is wrong with it."""
+    """One answer of one case, with all numbers of its line in the table and its faults."""
 
     case: str
     solver: str
@@ -107,9 +107,9 @@ class Verdict:
 
 
 def judge(case, solver, problem, answer, references, tolerances, exact=True, failures=(), note="") -> Verdict:
-    """The verdict on an answer: `tolerances` for u and lambda, and, where it is to be `exact`, contact set and KKT.
+    """Compares an answer with the `tolerances` of u and lambda; if it must be `exact`, checks contact set and KKT as well.
 
-    `failures` are faults found elsewhere, as a report that contradicts the files.
+    `failures` are faults that were found elsewhere, for example a report that contradicts the files.
     """
     apart, numbers = farthest(problem, answer, references), kkt(problem, answer)
     wrong = list(failures) + apart.failures(*tolerances, same_contact=exact)
@@ -125,5 +125,5 @@ RAW = (RAW_DISPLACEMENT_TOLERANCE, RAW_MULTIPLIER_TOLERANCE)
 
 
 def broken(case: str, solver: str, reason: str) -> Verdict:
-    """The verdict where there is no answer to judge."""
+    """Returns the verdict for a case without an answer."""
     return Verdict(case, solver, 0, 0, np.nan, None, None, [reason])

@@ -1,8 +1,9 @@
-"""The indentation of a clamped elastic block, assembled here a second time.
+"""The indentation of a clamped elastic block, assembled independently of the program.
 
-Body [0, width] x [0, height], four-node quadrilaterals, plane strain, bottom clamped, a candidate at every top node in
-+y, and above it a parabola of radius R whose apex stands over the middle: u_y <= gap + (x - width/2)^2 / (2 R).
-Shares no code with the program, so that a wrong factor in its stiffness shows.
+The body [0, width] x [0, height] consists of four-node quadrilaterals in plane strain and is clamped at its bottom. Every top
+node is a contact candidate in +y. The obstacle is a parabola of radius R with its apex above the middle:
+u_y <= gap + (x - width/2)^2 / (2 R). The code is not shared with the program, so that a wrong factor in its stiffness is
+detected.
 """
 
 import numpy as np
@@ -15,13 +16,13 @@ CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
 
 
 def plane_strain(young: float, poisson: float) -> np.ndarray:
-    """Elasticity matrix, 3 x 3, for (eps_xx, eps_yy, gamma_xy), in Pa."""
+    """Returns the elasticity matrix, 3 x 3, for (eps_xx, eps_yy, gamma_xy), in Pa."""
     factor = young / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
     return factor * np.array([[1.0 - poisson, poisson, 0.0], [poisson, 1.0 - poisson, 0.0], [0.0, 0.0, 0.5 - poisson]])
 
 
 def rectangle_stiffness(a: float, b: float, elasticity: np.ndarray) -> np.ndarray:
-    """Stiffness of a rectangle a x b (m), 8 x 8, per metre of thickness, order [x0, y0, x1, ...] counter-clockwise."""
+    """Returns the stiffness of a rectangle a x b (m), 8 x 8, per metre of thickness; order [x0, y0, x1, ...], counter-clockwise."""
     stiffness = np.zeros((8, 8))
     for xi in GAUSS:
         for eta in GAUSS:
@@ -35,7 +36,7 @@ def rectangle_stiffness(a: float, b: float, elasticity: np.ndarray) -> np.ndarra
 
 
 def indentation(gap=-0.01, columns=40, layers=20, width=1.0, height=0.5, young=1e7, poisson=0.3, radius=1.0) -> Problem:
-    """The problem over the free dofs, ordered node by node, nodes row by row from the bottom, x before y."""
+    """Returns the problem in the free dofs. The order is node by node, row by row from the bottom, x before y."""
     local = rectangle_stiffness(width / columns, height / layers, plane_strain(young, poisson))
     node = np.arange((columns + 1) * (layers + 1)).reshape(layers + 1, columns + 1)
     corners = np.stack([node[:-1, :-1], node[:-1, 1:], node[1:, 1:], node[1:, :-1]], axis=-1).reshape(-1, 4)

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Creates target/reference-venv with the pinned packages and the wheel of the Python package, which python/test.sh builds; does
-# nothing for what is there already. Needs python3 >= 3.11.
+# Creates target/reference-venv with the pinned packages and the wheel of the Python package, which python/test.sh builds.
+# Parts that are already up to date are not installed again. Needs python3 >= 3.11.
 set -eu
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -16,7 +16,7 @@ fi
 for wheel in "${CARGO_TARGET_DIR:-$root/target}"/wheels/signorini-*.whl; do
     [ -e "$wheel" ] || { echo "the reference validation needs the Python package: python/test.sh builds it" >&2; exit 1; }
 done
-# Stamps come last, so that an installation that was cut short is made again.
+# Stamps are written last, so that an interrupted installation is repeated.
 if ! cmp -s "$requirements" "$stamp"; then
     mkdir -p "$root/target"
     python3 -m venv --clear "$environment"

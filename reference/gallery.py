@@ -1,8 +1,8 @@
-"""Runs the scenes of the gallery and writes docs/gallery.md and its pictures; the pictures of docs/slides.md too.
+"""Runs the scenes of the gallery, and writes docs/gallery.md with its pictures and the pictures of docs/slides.md.
 
     python3 reference/gallery.py target/release/signorini
 
-Needs nothing but Python and the program. Every run writes the same pages.
+The script needs only Python and the program. Every run writes the same pages.
 """
 
 import pathlib
@@ -18,7 +18,7 @@ PICTURES = DOCS / "gallery"
 
 
 class Entry(NamedTuple):
-    """A scene of the gallery: the command without `--out`, and which of the files that it writes is shown."""
+    """An entry of the gallery: its texts, its command without `--out`, and the file that is shown."""
 
     name: str
     title: str
@@ -60,7 +60,7 @@ GAPS = 10
 
 
 def run(program, command, folder):
-    """Runs the program from the root of the repository; its files go to a folder."""
+    """Runs the program in the root of the repository; its files are written into a folder."""
     words = [program, *command.split(), "--out", str(folder)]
     ended = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
     if ended.returncode:
@@ -81,7 +81,7 @@ def gallery(program):
 
 
 def slides(program):
-    """Writes the pictures of docs/slides.md: the set-up, three sets of the search, ten gaps."""
+    """Writes the pictures of docs/slides.md: the scene, three iterations of the contact set, and ten gaps."""
     run(program, "draw examples/indentation.json", PICTURES / "set-up.png")
     with tempfile.TemporaryDirectory() as folder:
         run(program, "compare examples/indentation.json", folder)

@@ -1,6 +1,6 @@
-"""Every condition of the solution, recomputed from the original data.
+"""Recomputes every condition of the solution from the original data.
 
-A status that a solver reports is never believed. Each number is relative, and 0 for nothing over nothing.
+The status that a solver reports is not used. Each number is relative; 0 divided by 0 counts as 0.
 """
 
 from dataclasses import astuple, dataclass, fields
@@ -11,11 +11,10 @@ from problem import Answer, Problem
 from scaling import largest
 
 NO_FORCE = 1e-9
-"""Multipliers below this part of the load are rounding, and are measured by the load: the obstacle is only touched."""
+"""Multipliers below this share of the load are rounding errors of a contact without force; their scale is then the load."""
 
 KKT_TOLERANCE = 1e-9
-"""What an answer that claims to be exact must satisfy: the tolerance to which the program certifies by default.
-Linear solves leave 1e-13 to 1e-11 here."""
+"""Tolerance of an exact answer. It is the default tolerance of the program; linear solves reach 1e-13 to 1e-11 here."""
 
 
 @dataclass(frozen=True)
@@ -27,19 +26,19 @@ class Kkt:
     penetration: float
     """max(B u - g, 0) / length scale"""
     adhesion: float
-    """max(lambda, 0) / multiplier scale: a multiplier that pulls"""
+    """max(lambda, 0) / multiplier scale; a positive multiplier pulls"""
     complementarity: float
     """max|lambda_i (B u - g)_i| / (multiplier scale times length scale)"""
     duality_gap: float
     """|u'K u - f'u - g'lambda| / largest of the three energies"""
 
     def worst(self) -> float:
-        """The largest of the five; infinite if one is not a number."""
+        """Returns the largest of the five; infinite if one is not a number."""
         values = astuple(self)
         return max(values) if np.all(np.isfinite(values)) else np.inf
 
     def violated(self, tolerance: float = KKT_TOLERANCE) -> list[str]:
-        """Names of the conditions that do not hold to `tolerance`."""
+        """Returns the names of the conditions that do not hold to `tolerance`."""
         return [field.name for field in fields(self) if not getattr(self, field.name) <= tolerance]
 
 
@@ -48,7 +47,7 @@ class Rejected(Exception):
 
 
 def kkt(problem: Problem, answer: Answer) -> Kkt:
-    """The relative violations of an answer."""
+    """Returns the relative violations of an answer."""
     u, multiplier = answer.displacement, answer.multiplier
     if u.shape != (problem.dofs,) or multiplier.shape != (problem.rows,):
         raise ValueError(
@@ -56,7 +55,7 @@ def kkt(problem: Problem, answer: Answer) -> Kkt:
         )
     elastic, reaction = problem.stiffness @ u, problem.contact.T @ multiplier
     violation = -problem.slack(u)
-    # A row without obstacle has an infinite gap: it enters only if it carries a multiplier.
+    # A row without obstacle has an infinite gap. It counts only if it carries a multiplier.
     carrying = np.flatnonzero(multiplier)
     products = multiplier[carrying] * violation[carrying]
     work = u @ elastic, problem.load @ u, multiplier[carrying] @ problem.gap[carrying]
@@ -73,20 +72,20 @@ def kkt(problem: Problem, answer: Answer) -> Kkt:
 
 
 def length_scale(problem: Problem, answer: Answer) -> float:
-    """The largest displacement, of a dof or along a contact row, or, where none moves, the largest finite gap; in m."""
+    """Returns the largest displacement of a dof or along a contact row or, if nothing moves, the largest finite gap, in m."""
     displacement = answer.displacement
     moved = max(largest(displacement), largest(problem.contact @ displacement))
     return moved or largest(problem.gap[problem.bound])
 
 
 def multiplier_scale(problem: Problem, answer: Answer) -> float:
-    """The largest multiplier or, where there is none to speak of, the largest load; in N."""
+    """Returns the largest multiplier or, if all multipliers are rounding errors, the largest load, in N."""
     multiplier, load = largest(answer.multiplier), largest(problem.load)
     return multiplier if multiplier > NO_FORCE * load else load
 
 
 def reject(problem: Problem, answer: Answer, tolerance: float = KKT_TOLERANCE) -> Kkt:
-    """The violations of an answer that satisfies all conditions; raises `Rejected` naming those that fail."""
+    """Returns the violations of an answer that satisfies all conditions; otherwise raises `Rejected` with the names of the others."""
     numbers = kkt(problem, answer)
     names = numbers.violated(tolerance)
     if names:
@@ -95,7 +94,7 @@ def reject(problem: Problem, answer: Answer, tolerance: float = KKT_TOLERANCE) -
 
 
 def ratio(value: float, scale: float) -> float:
-    """value / scale, where nothing over nothing is nothing and something over nothing is infinite."""
+    """Returns value / scale, with 0 / 0 = 0 and any other value / 0 = infinity."""
     if value == 0.0:
         return 0.0
     return float(value / scale) if scale > 0.0 else np.inf

@@ -1,13 +1,12 @@
 """Writes the meshes of tests/meshes with the real Gmsh.
 
-The files are kept, so that no test needs Gmsh; run this to write them anew:
+The files are kept in the repository, so that no test needs Gmsh. This command writes them again:
 
     target/reference-venv/bin/python reference/meshes.py
 
 Gmsh needs libraries of a graphical system (on Debian libglu1-mesa, libxcursor1, libxft2, libxinerama1).
-Every file has a node that belongs to no element of the body. Those of version 4.1 have node tags with gaps and out of
-order; Gmsh itself numbers the nodes anew when it writes version 2.2. The cube is one mesh in four forms, with coordinates
-that ASCII holds to the last bit.
+Every file has a node that belongs to no element of the body. The files of version 4.1 have unsorted node tags with gaps; in
+version 2.2 Gmsh numbers the nodes itself. The cube is one mesh in four forms, with coordinates that ASCII represents exactly.
 """
 
 import math
@@ -58,7 +57,7 @@ def block():
 
 
 def two_parts():
-    """The blocks 1 x 1 side by side, with a line between them."""
+    """Two blocks 1 x 1 side by side, with a line between them."""
     geo = gmsh.model.geo
     points = [geo.addPoint(x, y, 0, 0.3) for x in (0, 1, 2) for y in (0, 1)]
     line = lambda a, b: geo.addLine(points[a], points[b])
@@ -103,7 +102,7 @@ def box(divisions, recombined, size=0.6):
 
 
 def half_ball():
-    """The lower half of the unit ball about (0, 0, 1), finer towards its lowest point."""
+    """The lower half of the unit ball about (0, 0, 1), with smaller elements towards its lowest point."""
     occ = gmsh.model.occ
     ball = occ.addSphere(0, 0, 1, 1)
     half = occ.intersect([(3, ball)], [(3, occ.addBox(-1, -1, -0.5, 2, 2, 1.5))])[0][0][1]
@@ -120,7 +119,7 @@ def half_ball():
 
 
 def quarter_ball():
-    """A quarter of the lower half of the unit ball about (0, 0, 1), much finer where its lowest point will touch."""
+    """A quarter of the lower half of the unit ball about (0, 0, 1), with much smaller elements around its lowest point."""
     occ = gmsh.model.occ
     occ.intersect([(3, occ.addSphere(0, 0, 1, 1))], [(3, occ.addBox(0, 0, -0.5, 2, 2, 1.5))])
     occ.synchronize()
@@ -154,7 +153,7 @@ def write(name, version, dimension, build, **options):
 
 
 def write_forms(name, dimension, build, **options):
-    """One mesh in both versions, each as ASCII and binary."""
+    """Writes one mesh in both versions, each as ASCII and as binary."""
     generate(name, dimension, build, **options)
     for version in (4.1, 2.2):
         for binary, form in enumerate(("ascii", "binary")):

@@ -1,9 +1,9 @@
-"""The linear solve of the block of tools/multigrid by pyamg, as a yardstick: hierarchy, cycles, seconds.
+"""Solves the block of tools/multigrid without contact by pyamg, for comparison: hierarchy, cycles, seconds.
 
     pip install pyamg && OMP_NUM_THREADS=1 python reference/multigrid.py 16 32 64
 
-Each number is the cells of Hex8 along a side of the unit block, clamped below; the load is one on every node of the top,
-along -z. Nothing of the crate is used: the stiffness is assembled here.
+Each argument is a number of Hex8 cells along a side of the unit block, which is clamped at its bottom. A unit load along -z acts on
+every node of the top. The script uses nothing of the crate; it assembles the stiffness itself.
 """
 
 import sys
@@ -19,7 +19,7 @@ CHUNK = 40_000  # elements assembled at once: a bound on memory
 
 
 def element_stiffness(size):
-    """The stiffness (24 x 24, N/m) of a cube of side `size`, by 2 x 2 x 2 Gauss points."""
+    """Returns the stiffness (24 x 24, N/m) of a cube of side `size`, by 2 x 2 x 2 Gauss points."""
     lame = YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON))
     shear = YOUNG / (2 * (1 + POISSON))
     elastic = np.diag([2 * shear] * 3 + [shear] * 3)
@@ -43,7 +43,7 @@ def element_stiffness(size):
 
 
 def block(cells):
-    """Stiffness (CSR) of the free dofs, load, and rigid-body modes of the block."""
+    """Returns the stiffness (CSR) of the free dofs, the load, and the rigid-body modes of the block."""
     nodes = cells + 1
     index = np.arange(nodes**3).reshape(nodes, nodes, nodes)
     corner = index[:-1, :-1, :-1].ravel()

@@ -1,11 +1,11 @@
-"""Do the tests see a fault in the certificate? `python reference/mutants.py [--count N] [--seed S]`.
+"""Measures how many faults in the certificate the tests detect: `python reference/mutants.py [--count N] [--seed S]`.
 
-cargo-mutants (`cargo install cargo-mutants --locked`) lists the mutants of certificate, bound, proof, infeasibility and
-claims: an operator exchanged, a condition negated, a function that returns a constant. This command draws some of them,
-by a digest of the seed and of what the mutant changes, so that an edit moves no other mutant in or out of the draw. It
-puts one at a time into a copy of the repository in `target/mutants`, builds it, and runs stages of fast tests until one
-fails. Survivors that are no faults stand in `tests/mutants.toml`, each with its reason. Exits with 1 if more than 2 %
-of the mutants that build survive without a reason. `--again` takes the killed ones of earlier runs as killed.
+cargo-mutants (`cargo install cargo-mutants --locked`) lists the mutants of certificate, bound, proof, infeasibility and claims: an
+exchanged operator, a negated condition, a function that returns a constant. This command draws some of them, by a digest of the seed
+and of the change, so that an edit of the code does not move other mutants into or out of the draw. It puts one mutant at a time into
+a copy of the repository in `target/mutants`, builds it, and runs stages of fast tests until one fails. Survivors that are not faults
+are listed in `tests/mutants.toml`, each with its reason. The exit code is 1 if more than 2 % of the mutants that build survive without
+a reason. With `--again`, mutants that earlier runs killed count as killed.
 """
 
 import argparse
@@ -29,22 +29,23 @@ OWN = ROOT / "target" / "mutants"
 REASONS = ROOT / "tests" / "mutants.toml"
 
 FILES = ("src/qp/certificate/**", "src/qp/claims/**")
-"""What is mutated: conditions, bound, proof, infeasible rows, claims."""
+"""The mutated files: conditions, bound, proof, infeasible rows, claims."""
 
 SEED = 20
 COUNT = 60
-"""On two cores that have other work too a mutant takes 10 to 20 s if the first stage kills it, a minute if a later one
-does, and two to three if it survives."""
+"""Number of mutants of a draw. On two busy cores a mutant takes 10 to 20 s if the first stage kills it, a minute if a later stage
+does, and two to three minutes if it survives."""
 
 ALLOWED = 0.02
-"""The share of the mutants that build which may survive without a reason."""
+"""Largest share of the mutants that build which may survive without a reason."""
 
 BUILD_SECONDS = 300
 TEST_SECONDS = 120
-"""A stage takes at most 20 s: a mutant that takes six times as long is in a loop, and counts as seen."""
+"""Time limit of a stage. A stage takes at most 20 s; a mutant that takes six times as long is in an endless loop and counts as
+detected."""
 
 MEMORY = 6 << 30
-"""Address space of a test program in bytes: a loop that fills a vector ends there."""
+"""Limit of the address space of a test program in bytes, which ends a loop that fills a vector."""
 
 SLOW = (
     "contact_sets_of_three_hundred_rows",
@@ -52,12 +53,12 @@ SLOW = (
     "plain_loop_meets_cycles",
     "every_example_scene_has_the_same_answer",
 )
-"""Tests of the modules below that take 4 s or more, and hold methods rather than the certificate."""
+"""Tests of the modules below that are left out: they take 4 s or more, and check methods rather than the certificate."""
 
 
 @dataclass(frozen=True)
 class Stage:
-    """Test programs by the arguments that build them, and the tests that run."""
+    """The test programs of a stage, given by the arguments that build them, and the tests that run."""
 
     name: str
     programs: tuple[str, ...]
@@ -80,11 +81,10 @@ STAGES = (
     ),
     Stage("multigrid", ("--test", "multigrid"), ("cycle_bound::", "mprgp::")),
 )
-"""Fast tests first; the rest runs only for what they leave alive."""
+"""The stages. Fast tests run first; the others run only for mutants that survive them."""
 
 WRAPPER = '#!/bin/sh\nexec "$@" -C lto=off\n'
-"""What calls the compiler for the crate itself: functions of other units are not inlined again, so that a build takes
-a sixth of the time."""
+"""The wrapper of the compiler for the crate itself. Without link-time optimisation a build takes a sixth of the time."""
 
 MARK = re.compile(r" ?/\* ~ changed by cargo-mutants ~ \*/")
 PLACE = re.compile(r":\d+:\d+: ")
@@ -92,7 +92,7 @@ PLACE = re.compile(r":\d+:\d+: ")
 
 @dataclass(frozen=True)
 class Mutant:
-    """A change of one file: its name, with line and column, and the lines that it takes away and adds."""
+    """A change of one file: its name, with line and column, and the lines that it removes and adds."""
 
     name: str
     file: str
@@ -100,12 +100,12 @@ class Mutant:
 
     @property
     def key(self) -> tuple[str, str]:
-        """What tells it from others wherever it stands: its name without the place, and its first new line."""
+        """Identifies the mutant independently of its line number: its name without the place, and its first new line."""
         added = [line[1:] for line in self.diff.splitlines()[2:] if line.startswith("+")]
         return PLACE.sub(": ", self.name, count=1), MARK.sub("", added[0]).strip() if added else ""
 
     def applied(self, text: str) -> str:
-        """The text of the file with the change."""
+        """Returns the text of the file with the change."""
         lines, changed, at = text.splitlines(), [], 0
         for line in self.diff.splitlines()[2:]:
             if line.startswith("@@"):
@@ -123,7 +123,7 @@ class Mutant:
 
 
 def listed(root: Path) -> list[Mutant]:
-    """All mutants of the stated files, in the order of the tool."""
+    """Returns all mutants of `FILES`, in the order of cargo-mutants."""
     chosen = [part for file in FILES for part in ("--file", file)]
     command = ["cargo", "mutants", "--no-config", "--list", "--json", *chosen]
     done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
@@ -133,7 +133,7 @@ def listed(root: Path) -> list[Mutant]:
 
 
 def numbered(mutants: list[Mutant]) -> list[str]:
-    """What each mutant is remembered by: its key, and its number among those of the same key, in one text."""
+    """Returns the identifier of each mutant: its key, and its number among the mutants of the same key, in one text."""
     seen = Counter()
     names = []
     for mutant in mutants:
@@ -143,16 +143,18 @@ def numbered(mutants: list[Mutant]) -> list[str]:
 
 
 def drawn(mutants: list[Mutant], count: int, seed: int) -> list[tuple[str, Mutant]]:
-    """`count` of the mutants, each with what it is remembered by: those with the least digests of the seed and that
-    text, in the order of the list. Others count only by how many of them have a lesser digest, so that an edited line
-    moves its own mutants; a larger draw of the same seed has the smaller one in it."""
+    """Draws `count` mutants with their identifiers, in the order of the list.
+
+    The mutants with the smallest digests of seed and identifier are drawn. An edited line therefore affects only its own mutants, and
+    a larger draw of the same seed contains the smaller one.
+    """
     named = list(zip(numbered(mutants), mutants))
     digest = lambda place: hashlib.sha256(f"{seed}\n{named[place][0]}".encode()).digest()
     return [named[place] for place in sorted(sorted(range(len(named)), key=digest)[:count])]
 
 
 def reasons(file: Path) -> dict[tuple[str, str], str]:
-    """Why a mutant is no fault, by its key."""
+    """Reads the reasons why mutants are not faults, by their keys."""
     entries = tomllib.loads(file.read_text())["survivor"] if file.exists() else []
     for entry in entries:
         if not entry["reason"].strip():
@@ -161,7 +163,7 @@ def reasons(file: Path) -> dict[tuple[str, str], str]:
 
 
 def copied(root: Path, tree: Path) -> None:
-    """Makes `tree` a copy of the tracked files; those that are the same keep their times, so that little is built."""
+    """Copies the tracked files into `tree`. Unchanged files keep their modification times, so that little is built again."""
     tracked = subprocess.run(["git", "ls-files", "-z"], cwd=root, capture_output=True, check=True).stdout
     names = [name for name in tracked.decode().split("\0") if name and (root / name).exists()]
     for name in names:
@@ -174,12 +176,12 @@ def copied(root: Path, tree: Path) -> None:
 
 
 def limited() -> None:
-    """Gives a test program its own limit of memory."""
+    """Limits the memory of a test program."""
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
 
 
 def ended(command: list[str], tree: Path, seconds: float, limit=None) -> tuple[int | None, str]:
-    """Exit code and standard output of a command; no code if it takes longer. Its children end with it."""
+    """Runs a command. Returns its exit code (None if it exceeds the time) and its standard output. Its children end with it."""
     environment = os.environ | {
         "CARGO_TARGET_DIR": str(OWN / "build"),
         "CARGO_PROFILE_DEV_DEBUG": "0",
@@ -205,7 +207,7 @@ def ended(command: list[str], tree: Path, seconds: float, limit=None) -> tuple[i
 
 
 def programs(tree: Path, stage: Stage) -> list[str] | None:
-    """The built test programs of a stage; None if the tree does not build."""
+    """Builds and returns the test programs of a stage; None if the tree does not build."""
     command = ["cargo", "test", "--quiet", "--offline", "--no-run", "--message-format=json", *stage.programs]
     code, output = ended(command, tree, BUILD_SECONDS)
     if code != 0:
@@ -216,7 +218,7 @@ def programs(tree: Path, stage: Stage) -> list[str] | None:
 
 
 def judged(tree: Path) -> tuple[str, str]:
-    """What becomes of the tree, and in which stage: unbuildable, timed out, killed or survived."""
+    """Builds and tests the tree. Returns `unbuildable`, `timed out`, `killed` or `survived`, and the stage."""
     for stage in STAGES:
         found = programs(tree, stage)
         if found is None:
@@ -232,7 +234,7 @@ def judged(tree: Path) -> tuple[str, str]:
 
 
 def tried(mutant: Mutant, tree: Path) -> tuple[str, str]:
-    """What becomes of a mutant in the copy, which is as before afterwards."""
+    """Returns the outcome of a mutant. The copy of the repository is restored afterwards."""
     file = tree / mutant.file
     text = file.read_text()
     try:
@@ -243,7 +245,7 @@ def tried(mutant: Mutant, tree: Path) -> tuple[str, str]:
 
 
 def summary(outcomes: list[tuple[Mutant, str]], known: dict[tuple[str, str], str]) -> tuple[str, bool]:
-    """The table of a run, with every survivor by name; and whether few enough survive without a reason."""
+    """Returns the table of a run, with the name of every survivor, and `True` if few enough survive without a reason."""
     count = Counter(outcome for _, outcome in outcomes)
     survivors = [mutant for mutant, outcome in outcomes if outcome == "survived"]
     open_ones = [mutant for mutant in survivors if mutant.key not in known]
@@ -267,8 +269,8 @@ def summary(outcomes: list[tuple[Mutant, str]], known: dict[tuple[str, str], str
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
-    parser.add_argument("--count", type=int, default=COUNT, metavar="N", help=f"mutants to draw; {COUNT} without it")
-    parser.add_argument("--seed", type=int, default=SEED, metavar="S", help=f"of the draw; {SEED} without it")
+    parser.add_argument("--count", type=int, default=COUNT, metavar="N", help=f"number of mutants to draw (default {COUNT})")
+    parser.add_argument("--seed", type=int, default=SEED, metavar="S", help=f"seed of the draw (default {SEED})")
     parser.add_argument("--again", action="store_true", help="try only what the last run did not kill")
     options = parser.parse_args()
     began, tree, kept = time.monotonic(), OWN / "tree", OWN / "outcomes.json"

@@ -1,4 +1,4 @@
-"""Slow and obvious answers for small problems, in dense numpy; they share no code with the solvers or with `settle`."""
+"""Slow and simple methods for small problems in dense numpy. They share no code with the solvers or with `settle`."""
 
 from itertools import combinations
 
@@ -7,21 +7,21 @@ import numpy as np
 from problem import Answer, Problem
 
 SIGN_TOLERANCE = 1e-12
-"""Relative to the largest entry: below it a slack or a multiplier counts as zero."""
+"""A slack or a multiplier below this share of the largest entry counts as zero."""
 
 ENUMERATED_ROWS = 10
-"""2^10 contact sets are solved in a moment."""
+"""Largest number of rows for the enumeration, which solves 2^10 contact sets."""
 
 LOOP_DOFS = 500
-"""Dense solves up to this size take milliseconds."""
+"""Largest number of dofs for dense solves, which then take milliseconds."""
 
 
 class Cycled(Exception):
-    """The active-set loop met a contact set for the second time."""
+    """The active-set loop reached a contact set for the second time."""
 
 
 def enumerate_contact_sets(problem: Problem) -> Answer:
-    """The solution among the points of all 2^rows contact sets: the one that violates its signs least."""
+    """Returns the solution among the points of all 2^rows contact sets: the one with the smallest violation of signs."""
     if problem.rows > ENUMERATED_ROWS:
         raise ValueError(
             f"{problem.rows} rows have too many contact sets; at most {ENUMERATED_ROWS} rows are enumerated"
@@ -38,9 +38,9 @@ def enumerate_contact_sets(problem: Problem) -> Answer:
 
 
 def active_set_loop(problem: Problem) -> Answer:
-    """The classical loop C <- heaviside((I-C)(B u - g) - lambda) from C = 0; on a floating body from all rows closed.
+    """The classical loop C <- heaviside((I-C)(B u - g) - lambda), beginning with C = 0, or with all rows closed for a floating body.
 
-    Raises `Cycled` where the plain loop does not end: it has no safeguard.
+    The loop has no safeguard against cycles. Raises `Cycled` if it does not end.
     """
     closed = np.zeros(problem.rows, bool)
     if dense_point(problem, []) is None:
@@ -53,7 +53,7 @@ def active_set_loop(problem: Problem) -> Answer:
             raise Cycled(f"singular matrix with {closed.sum()} closed rows")
         penetration = -problem.slack(answer.displacement)
         length = np.max(np.abs(answer.displacement), initial=0.0)
-        # Beside the load: where the only multiplier is zero, rounding of it must not count as a force.
+        # The load is part of the scale: if the only multiplier is zero, its rounding error must not count as a force.
         force = max(np.max(np.abs(answer.multiplier), initial=0.0), np.max(np.abs(problem.load), initial=0.0))
         pressing = answer.multiplier < -SIGN_TOLERANCE * force
         following = np.where(closed, pressing, penetration > SIGN_TOLERANCE * length)
@@ -64,12 +64,12 @@ def active_set_loop(problem: Problem) -> Answer:
 
 
 def dense_point(problem: Problem, rows) -> Answer | None:
-    """The point of a contact set given by its row indices; `None` where its matrix is singular."""
+    """Returns the point of a contact set, which is given by its row indices, or `None` if its matrix is singular."""
     traces = problem.contact.toarray()[rows]
     count, n = len(traces), problem.dofs
     matrix = np.block([[problem.stiffness.toarray(), -traces.T], [traces, np.zeros((count, count))]])
     right = np.concatenate([problem.load, problem.gap[rows]])
-    # Rows and columns to a unit size, so that the condition number sees dependence and not units.
+    # Rows and columns are scaled to unit size, so that the condition number does not depend on units.
     scale = 1.0 / np.sqrt(np.maximum(np.abs(matrix).max(axis=0, initial=0.0), np.finfo(float).tiny))
     balanced = matrix * np.outer(scale, scale)
     if not np.all(np.isfinite(right)) or np.linalg.cond(balanced, 1) > 1e14:
@@ -81,7 +81,7 @@ def dense_point(problem: Problem, rows) -> Answer | None:
 
 
 def sign_violation(problem: Problem, answer: Answer) -> float:
-    """The largest penetration or pull, each relative to the largest entry of its kind."""
+    """Returns the largest penetration or pull, each relative to the largest entry of its kind."""
     traces = problem.contact @ answer.displacement
     length = np.max(np.abs(traces), initial=0.0) or 1.0
     force = max(np.max(np.abs(answer.multiplier), initial=0.0), np.max(np.abs(problem.load), initial=0.0)) or 1.0

@@ -1,7 +1,7 @@
-"""Sizes of pages and the time until they stand: `python reference/page_times.py PROGRAM`.
+"""Measures the sizes of pages and the time until they are ready: `python reference/page_times.py PROGRAM`.
 
-Each page is opened three times in a headless Chromium, which draws in software; the fastest counts. A body of nearly 100,000 nodes on its
-surface is solved to 1e-2.
+Each page is opened three times in a headless Chromium, which draws in software; the fastest time counts. One body, with nearly 100,000
+nodes on its surface, is solved to 1e-2.
 """
 
 import json

@@ -1,7 +1,7 @@
-"""Opens `report.html` in a real browser: `SIGNORINI=target/debug/signorini python -m unittest reference/pages.py`.
+"""Tests `report.html` in a real browser: `SIGNORINI=target/debug/signorini python -m unittest reference/pages.py`.
 
-Every kind of page is made by the program and opened in a headless Chromium: no error, no request to anywhere, sliders that change what
-is shown, numbers that are those of the report, and a body that looks like the picture that the program draws itself.
+The program writes a page of every kind, and a headless Chromium opens it. A page must cause no error and no network request; its
+sliders must change the view; its numbers must be those of the report; and its body must look like the picture that the program draws.
 """
 
 import base64
@@ -22,7 +22,7 @@ PHONE = (390, 844)
 
 
 def run(*arguments: object) -> dict:
-    """The JSON report of the program; it must end well, or with an answer that is not certified."""
+    """Runs the program and returns its JSON report. An answer that is not certified is allowed; any other error is not."""
     done = subprocess.run([PROGRAM, *map(str, arguments), "--format", "json"], capture_output=True, text=True, check=False)
     if done.returncode not in (0, 4):
         raise AssertionError(f"exit code {done.returncode}: {done.stderr}")
@@ -73,7 +73,7 @@ class Pages(unittest.TestCase):
         cls.made = {}
 
     def page(self, command: str, scene: Path, *options: object) -> tuple[Path, dict]:
-        """The page that a command leaves, and its report."""
+        """Runs a command, and returns its page and its report."""
         key = (command, str(scene), options)
         if key not in self.made:
             out = self.folder / f"out-{len(self.made)}"
@@ -94,7 +94,7 @@ class Pages(unittest.TestCase):
         self.browser.frame()
 
     def drawn(self, view: str) -> str:
-        """The surface in a view, without what is drawn over it."""
+        """Returns the drawn surface of a view, without its overlay."""
         self.browser.frame()
         return self.browser.ask(f"View.all.find(view => view.host.matches({json.dumps(view)})).under.toDataURL()")
 
@@ -102,14 +102,14 @@ class Pages(unittest.TestCase):
         return self.browser.ask(f"document.querySelector({json.dumps(selector)}).textContent")
 
     def look(self, png: bytes, share: float, height: float = 1.0) -> dict:
-        """Where the coloured body stands in a picture, and its colours."""
-        # On a page without rules of its own.
+        """Returns the size of the coloured body in a picture, and its colours."""
+        # An empty page, so that no script or style of another page interferes.
         self.browser.send("Page.navigate", url="about:blank")
         return self.browser.ask(LOOK % (base64.b64encode(png).decode(), share, height))
 
 
 class Answers(Pages):
-    def test_the_page_of_an_answer_says_what_the_report_says(self) -> None:
+    def test_the_page_of_an_answer_has_the_numbers_of_the_report(self) -> None:
         scene = EXAMPLES / "indentation.json"
         page, report = self.page("solve", scene)
         browser = self.opened(page)
@@ -124,7 +124,7 @@ class Answers(Pages):
         peak = browser.ask("Math.max(...signorini.data.contact.pressure)")
         self.assertEqual(peak, report["contact"]["pressure_max"])
 
-    def test_sliders_change_what_is_drawn(self) -> None:
+    def test_sliders_change_the_picture(self) -> None:
         page, _ = self.page("solve", EXAMPLES / "indentation.json", "--method", "active-set")
         browser = self.opened(page)
         before = self.drawn("#answer .view")
@@ -137,7 +137,7 @@ class Answers(Pages):
         self.assertNotEqual(self.drawn("#search .view"), picture)
         self.assertEqual(browser.faults(), [])
 
-    def test_keys_turn_a_body_in_space_and_the_pointer_asks_it(self) -> None:
+    def test_keys_turn_a_body_in_space_and_the_pointer_shows_values(self) -> None:
         page, _ = self.page("solve", EXAMPLES / "ball.json")
         browser = self.opened(page)
         before = self.drawn("#answer .view")
@@ -168,10 +168,10 @@ class Answers(Pages):
                 ratio = seen["width"] / seen["height"] * still["height"] / still["width"]
                 self.assertAlmostEqual(ratio, 1.0, delta=0.04)
                 off = [max(abs(a - b) for a, b in zip(*pair, strict=True)) for pair in zip(seen["colours"], still["colours"], strict=True)]
-                # Under the obstacle and its shade a point or two may differ.
+                # A few points may differ under the obstacle and its shade.
                 self.assertLess(sorted(off)[len(off) * 3 // 4], 24, off)
 
-    def test_titles_and_names_are_text(self) -> None:
+    def test_titles_and_names_are_shown_as_text(self) -> None:
         scene = json.loads((EXAMPLES / "indentation.json").read_text())
         scene["title"] = "</script><img src=x onerror=alert(1)> {{arrays}} & \"quoted\" <!--"
         scene["units"] = {"length": "<b>m</b>", "force": "</style>"}
@@ -189,7 +189,7 @@ class Answers(Pages):
             self.assertLessEqual(browser.ask("document.documentElement.scrollWidth"), PHONE[0])
         self.assertIn("penalty", self.text("#methods"))
 
-    def test_paper_is_light_and_shows_the_surfaces(self) -> None:
+    def test_a_printed_page_is_light_and_shows_the_surfaces(self) -> None:
         page, _ = self.page("solve", EXAMPLES / "ball.json")
         browser = self.opened(page, scheme="dark")
         paper = "getComputedStyle(document.documentElement).getPropertyValue('--paper')"
@@ -214,7 +214,7 @@ class Answers(Pages):
 
 class Questions(Pages):
     def pixels(self, ink: str) -> int:
-        """Pixels over the body of the question in a colour of the page."""
+        """Counts the pixels of a colour of the page in the overlay of the question's body."""
         return self.browser.ask(
             """(() => { const view = View.all.find(view => view.host.matches("#question .view")), { over } = view;
             const wanted = channels(view.ink(%s)).map(part => Math.round(255 * part));
@@ -252,7 +252,7 @@ class Questions(Pages):
             self.assertEqual(self.pixels("spring") > 100, springs)
             self.assertEqual(self.pixels("rigid") > 20, faces)
 
-    def test_a_body_in_space_is_seen_from_the_side_of_its_obstacle(self) -> None:
+    def test_a_body_in_space_is_shown_from_the_side_of_its_obstacle(self) -> None:
         page, _ = self.page("solve", EXAMPLES / "ball.json")
         self.opened(page)
         self.assertGreater(self.browser.ask("View.all.at(-1).axes[2][2]"), 0.4)
@@ -282,7 +282,7 @@ class TotalErrors(Pages):
 class Sweeps(Pages):
     GAPS = "-0.01:-0.10:4"
 
-    def test_the_slider_is_exact_at_every_position(self) -> None:
+    def test_every_position_of_the_slider_shows_the_exact_answer(self) -> None:
         scene = json.loads((EXAMPLES / "indentation.json").read_text())
         page, report = self.page("sweep", EXAMPLES / "indentation.json", "--gaps=" + self.GAPS)
         browser = self.opened(page)
@@ -290,7 +290,7 @@ class Sweeps(Pages):
         for point in report["points"]:
             force = browser.ask(f"exactFrame(signorini.data, {point['gap']!r}).facts.force")
             self.assertAlmostEqual(force / point["contact"]["force"], 1.0, delta=1e-11)
-        # Between the gaps of the sweep the page agrees with a solve of its own.
+        # Between the gaps of the sweep, the page agrees with a separate solve.
         for gap in (-0.01234567, -0.0471, -0.0913579):
             path = self.folder / "between.json"
             path.write_text(json.dumps({**scene, "gap": gap}))
@@ -329,7 +329,7 @@ class Motions(Pages):
 
 
 class Tradeoffs(Pages):
-    def test_a_point_of_a_trade_off_tells_its_values(self) -> None:
+    def test_a_point_of_a_trade_off_shows_its_values(self) -> None:
         page, report = self.page("tradeoff", EXAMPLES / "bar.json", "--runs", "1", "--refinements", "0")
         browser = self.opened(page)
         count = browser.ask("document.querySelectorAll('#tradeoff circle[tabindex]').length")

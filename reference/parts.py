@@ -1,12 +1,12 @@
-"""Writes twenty parts with the real Gmsh: for each a mesh NAME.msh and a scene NAME.json that uses it.
+"""Writes twenty parts with the real Gmsh: for each part a mesh NAME.msh and a scene NAME.json.
 
     target/reference-venv/bin/python reference/parts.py [--coarser FACTOR] FOLDER [NAME ...]
     cargo run --release --example kinds -- --scenes FOLDER
 
-The second line times the methods on them. Fourteen are of tetrahedra in space, seven of these of ten nodes, six of quadratic
-triangles in the plane or about an axis; ten are graded towards the contact. They have 3,000 to 150,000 dofs. Lengths are in mm, forces
-in N.
-`--coarser 2` makes all edges twice as long. Every run writes the same files. meshes.py says which libraries Gmsh needs.
+The second command measures the times of the methods on them. Fourteen parts are meshed with tetrahedra in space, seven of them with
+ten nodes; six are meshed with quadratic triangles, plane or axisymmetric. Ten meshes are graded towards the contact. The parts have
+3,000 to 150,000 dofs. Lengths are in mm, forces in N. `--coarser 2` makes all edges twice as long. Every run writes the same files.
+meshes.py names the libraries that Gmsh needs.
 """
 
 import json
@@ -24,11 +24,11 @@ POLYMER, RUBBER = {"young": 3e3, "poisson": 0.4}, {"young": 10.0, "poisson": 0.4
 CLAMPED, AXIS, NORMAL = ("x", "y", "z"), "approach", "closest-point"
 occ = gmsh.model.occ
 COARSER = 1.0
-"""All edges are so many times as long; set by the command."""
+"""Factor of the lengths of all edges, set by `--coarser`."""
 
 
 def about(radius, angle):
-    """The point at an angle in degrees, counterclockwise from x."""
+    """Returns the point on a circle about the origin, at an angle in degrees, counterclockwise from x."""
     return radius * math.cos(math.radians(angle)), radius * math.sin(math.radians(angle))
 
 
@@ -38,7 +38,7 @@ def polygon(*points):
 
 
 def sector(inner, outer, start, end, thickness=0.0):
-    """A ring between two angles; with a thickness along z it is a body in space."""
+    """Makes a sector of a ring between two angles; with a thickness along z it is a body in space."""
     line = occ.addLine(*[occ.addPoint(*about(radius, start), 0) for radius in (inner, outer)])
     flat = occ.revolve([(1, line)], 0, 0, 0, 0, 0, 1, math.radians(end - start))[1]
     if thickness:
@@ -50,7 +50,7 @@ def value(formula, x, y, z):
 
 
 def named(**boundaries):
-    """Names the body and its boundaries; a boundary is where its formula is zero."""
+    """Names the body and its boundaries. A boundary consists of the points at which its formula is zero."""
     occ.synchronize()
     dimension = gmsh.model.getDimension()
     for name, formula in boundaries.items():
@@ -61,14 +61,14 @@ def named(**boundaries):
 
 
 def samples(dimension, tag):
-    """Three points of a curve, or of the surface that a face is part of."""
+    """Returns three points of a curve, or of the surface of a face."""
     low, high = gmsh.model.getParametrizationBounds(dimension, tag)
     for share in (0.2, 0.55, 0.8):
         yield gmsh.model.getValue(dimension, tag, [a + share * (b - a) for a, b in zip(low, high)])
 
 
 def graded(fine, coarse, near, far, distance):
-    """Edges have the length `fine` up to the distance `near`, and `coarse` from `far` on; a formula is the distance."""
+    """Sets the edge length to `fine` up to the distance `near`, and to `coarse` beyond `far`; `distance` is a formula."""
     fine, coarse = COARSER * fine, COARSER * coarse
     share = lambda *point: min(1, max(0, (value(distance, *point) - near) / (far - near)))
     gmsh.model.mesh.setSizeCallback(lambda _, tag, x, y, z, size: fine + (coarse - fine) * share(x, y, z))
@@ -79,7 +79,7 @@ def even(size):
 
 
 def held(*directions, on, **others):
-    """A support: zero in these directions, and what else is written."""
+    """Returns a support that is zero in these directions, with further entries."""
     return {"on": {"boundary": on}, **dict.fromkeys(directions, 0), **others}
 
 
@@ -92,7 +92,7 @@ def obstacle(rule, boundary, approach, **shape):
 
 
 def bore(radius, length):
-    """The wall of a bore along z from 0 to a length, above y = 0, as heights over x and z."""
+    """Returns the upper wall (y > 0) of a bore along z from 0 to a length, as heights over x and z."""
     wall = [about(radius, 180 - 1.5 * step) for step in range(121)]
     return {"x": [x for x, _ in wall], "y": [0, length], "heights": [[abs(y)] * 2 for _, y in wall]}
 
@@ -102,7 +102,7 @@ def scene(material, supports, obstacles, loads=(), model="space", **others):
 
 
 def seal():
-    """A lip seal that a shaft widens."""
+    """A lip seal that is widened by a shaft."""
     occ.fuse([(2, occ.addRectangle(21, 0, 0, 5, 5))], [(2, occ.addDisk(21, 2.5, 0, 1.5, 1.5))])
     named(outside="x - 26", lip="hypot(x - 21, y - 2.5) - 1.5")
     graded(0.04, 0.6, 0.25, 3, "hypot(x - 19.5, y - 2.5)")
@@ -111,7 +111,7 @@ def seal():
 
 
 def bracket():
-    """A shelf whose hole comes down on a pin."""
+    """A bracket whose hole is pressed down on a pin."""
     plate, shelf = occ.addBox(0, 0, 0, 8, 40, 50), occ.addBox(8, 0, 20, 52, 40, 12)
     occ.cut(occ.fuse([(3, plate)], [(3, shelf)])[0], [(3, occ.addCylinder(45, 0, 26, 0, 40, 0, 4))])
     named(wall="x", shelf="z - 32", hole="hypot(x - 45, z - 26) - 4")
@@ -121,7 +121,7 @@ def bracket():
 
 
 def loose_liner():
-    """Half a ring whose pressure does not widen it as far as the bore."""
+    """Half a ring that its internal pressure widens, but not enough to reach the bore."""
     sector(17, 20, 0, 180, 12)
     named(cuts="y", front="z", inside="hypot(x, y) - 17", outside="hypot(x, y) - 20")
     even(1.3)
@@ -130,7 +130,7 @@ def loose_liner():
 
 
 def clip():
-    """Half a clip on a pin that is too thick for it."""
+    """Half a clip that is widened by a thick pin."""
     sector(10, 12, -50, 90)
     named(middle="x", inside="hypot(x, y) - 10")
     even(0.345)
@@ -140,7 +140,7 @@ def clip():
 
 
 def foundation():
-    """A heavy block that only rollers and a plane that leans hold."""
+    """A heavy block that is supported only by rollers and by an inclined plane."""
     occ.addBox(0, 0, 0, 4000, 3000, 1500)
     named(left="x", front="y", bottom="z", top="z - 1500")
     even(220)
@@ -150,7 +150,7 @@ def foundation():
 
 
 def dovetail():
-    """Half the root of a blade, pulled out; only a plane of symmetry and the flank of the groove hold it."""
+    """Half the root of a blade under a pulling force, supported only by a plane of symmetry and the flank of the groove."""
     polygon((0, 0), (8, 0), (8, 2), (4.5, 8), (4.5, 14), (0, 14))
     named(middle="x", top="y - 14", flank="6 * (x - 8) + 3.5 * (y - 2)")
     even(0.34)
@@ -159,7 +159,7 @@ def dovetail():
 
 
 def lug():
-    """A quarter of a lug, pulled; only planes of symmetry and the pin hold it."""
+    """A quarter of a lug under a pulling force, supported only by planes of symmetry and the pin."""
     round_end = [(3, occ.addCylinder(0, 0, 0, 0, 0, 6, 20)), (3, occ.addCylinder(0, 0, 0, 0, 0, 6, 10))]
     whole = occ.fuse([(3, occ.addBox(0, -20, 0, 70, 40, 6))], round_end[:1])[0]
     occ.intersect(occ.cut(whole, round_end[1:])[0], [(3, occ.addBox(-30, 0, 0, 100, 20, 6))])
@@ -171,7 +171,7 @@ def lug():
 
 
 def liner():
-    """Half a ring, clamped at one end, that its pressure presses into the bore."""
+    """Half a ring, clamped at one end, that its internal pressure presses against the bore."""
     sector(17, 20, 0, 180, 15)
     named(cuts="y", end="z", inside="hypot(x, y) - 17", outside="hypot(x, y) - 20")
     even(1.07)
@@ -180,7 +180,7 @@ def liner():
 
 
 def bearing():
-    """A piece of the outer ring of a bearing, pressed onto three rollers; its ends are planes of symmetry."""
+    """A sector of the outer ring of a bearing, pressed onto three rollers. Its ends are planes of symmetry."""
     sector(40, 50, 60, 120, 8)
     ends = {"start": "x - tan(pi / 6) * y", "end": "x + tan(pi / 6) * y"}
     named(**ends, front="z", inside="hypot(x, y) - 40", outside="hypot(x, y) - 50")
@@ -193,7 +193,7 @@ def bearing():
 
 
 def gear_tooth():
-    """A tooth with the flank of another one pressed against it."""
+    """A gear tooth against which the flank of another tooth is pressed."""
     discs = [[(2, occ.addDisk(x, 0, 0, 22, 22))] for x in (-17, 17)]
     tooth = occ.intersect(occ.intersect(*discs)[0], [(2, occ.addRectangle(-9, -1, 0, 18, 11))])[0]
     occ.fuse(tooth, [(2, occ.addRectangle(-10, -6, 0, 20, 6))])
@@ -205,7 +205,7 @@ def gear_tooth():
 
 
 def cantilever_stop():
-    """A beam whose end just comes down on a stop."""
+    """A beam whose end is bent down onto a stop."""
     occ.addBox(0, 0, 0, 100, 10, 8)
     named(wall="x", top="z - 8", bottom="z")
     graded(0.27, 3.2, 1, 40, "100 - x + z")
@@ -214,7 +214,7 @@ def cantilever_stop():
 
 
 def stiffened_plate():
-    """A plate that its pressure brings down, with its two ribs, on a round floor."""
+    """A plate with two ribs that a pressure bends down onto a round floor."""
     ribs = [(3, occ.addBox(0, y, -20, 200, 4, 20)) for y in (38, 78)]
     occ.fuse([(3, occ.addBox(0, 0, 0, 200, 120, 4))], ribs)
     named(edges="x * (x - 200) * y * (y - 120)", top="z - 4", ribs="z + 20")
@@ -224,7 +224,7 @@ def stiffened_plate():
 
 
 def layered_strip():
-    """Half a strip on a soft layer, pressed in the middle; its end rises."""
+    """Half a strip on a soft layer, pressed at its centre, so that its end lifts off."""
     layers = [polygon((0, 0), (60, 0), (60, 2), (5, 2), (0, 2)), polygon((0, -4), (60, -4), (60, 0), (0, 0))]
     occ.fragment(layers[:1], layers[1:])
     named(middle="x if y > 0 else 1", pressed="y - 2 if x < 5 else 1", joint="y", bottom="y + 4")
@@ -239,7 +239,7 @@ def layered_strip():
 
 
 def beam():
-    """Half a heavy beam of rubber that sags over a round support in its middle."""
+    """Half a heavy rubber beam that sags over a round support at its centre."""
     occ.addBox(0, 0, 0, 80, 14, 10)
     named(middle="x", end="x - 80", front="y", bottom="z")
     graded(0.3, 3, 2, 30, "hypot(x, z)")
@@ -249,7 +249,7 @@ def beam():
 
 
 def rail():
-    """A quarter of a piece of rail, its head round, under a wheel."""
+    """A quarter of a piece of rail with a round head under a wheel."""
     occ.intersect([(3, occ.addBox(0, 0, -30, 40, 30, 31))], [(3, occ.addCylinder(0, 0, -80, 40, 0, 0, 80))])
     named(left="x", front="y", bottom="z + 30", head="hypot(y, z + 80) - 80")
     graded(0.15, 3.6, 3, 30, "hypot(x, y, z)")
@@ -258,7 +258,7 @@ def rail():
 
 
 def cup():
-    """A quarter of a cup that a ball is pressed into."""
+    """A quarter of a cup into which a ball is pressed."""
     whole = occ.cut([(3, occ.addCylinder(0, 0, 0, 0, 0, 15, 20))], [(3, occ.addSphere(0, 0, 18, 12))])[0]
     occ.intersect(whole, [(3, occ.addBox(0, 0, 0, 20, 20, 15))])
     named(left="x", front="y", bottom="z", bowl="hypot(x, y, z - 18) - 12")
@@ -268,7 +268,7 @@ def cup():
 
 
 def fine_liner():
-    """A quarter of a thin ring that its pressure presses into the bore; only planes of symmetry hold it."""
+    """A quarter of a thin ring that its internal pressure presses against the bore, supported only by planes of symmetry."""
     sector(18.5, 20, 45, 135, 20)
     named(start="x - y", end="x + y", front="z", inside="hypot(x, y) - 18.5", outside="hypot(x, y) - 20")
     even(0.445)
@@ -278,7 +278,7 @@ def fine_liner():
 
 
 def thin_plate():
-    """A thin plate, clamped all round, under a ball."""
+    """A thin plate under a ball, clamped at all edges."""
     occ.addBox(0, 0, 0, 160, 160, 2)
     named(edges="x * (x - 160) * y * (y - 160)", top="z - 2")
     even(2)
@@ -287,7 +287,7 @@ def thin_plate():
 
 
 def half_space():
-    """A piece of the half space, its edges a hundred times shorter where the indenter touches."""
+    """A piece of the half space, with a hundred times shorter edges below the indenter."""
     occ.addRectangle(0, -50, 0, 50, 50)
     named(bottom="y + 50", side="x - 50", top="y")
     graded(0.03, 3, 2, 30, "hypot(x, y)")
@@ -311,11 +311,11 @@ PARTS = {part.__name__.replace("_", "-"): part for part in (
 
 
 QUADRATIC = {"bracket", "loose-liner", "lug", "bearing", "cantilever-stop", "beam", "stiffened-plate"}
-"""Parts in space of ten-node tetrahedra; parts in the plane and about an axis are quadratic always."""
+"""The parts in space with ten-node tetrahedra. Plane and axisymmetric parts always have quadratic elements."""
 
 
 def write(name, folder):
-    """Writes one part; Gmsh starts anew, so that it does not depend on the parts before it."""
+    """Writes one part. Gmsh is started for each part, so that a part does not depend on those before it."""
     gmsh.initialize([], readConfigFiles=False, interruptible=False)
     for option, setting in OPTIONS.items():
         gmsh.option.setNumber(option, setting)

@@ -1,12 +1,11 @@
-"""Seconds of PETSc on a problem with bounds: `python3 reference/petsc_bounds.py DIRECTORY`.
+"""Measures the seconds of PETSc on a problem with bounds: `python3 reference/petsc_bounds.py DIRECTORY`.
 
-The directory holds K.mtx, f.mtx, B.mtx and g.mtx, each row of B with one entry. Prints a line for each solver that
-solves it: the name, seconds with all set-up, iterations and the number of dofs at a bound; `linear` solves K u = f
-without bounds.
-Exits with 2 if there is no petsc4py (Debian: python3-petsc4py), with 1 for rows that are no bounds.
+The directory holds K.mtx, f.mtx, B.mtx and g.mtx; each row of B has one entry. The script prints a line for each solver that solves the
+problem: its name, the seconds including all set-up, the iterations, and the number of dofs at a bound. `linear` solves K u = f without
+bounds. The exit code is 2 if petsc4py is not installed (Debian: python3-petsc4py), and 1 if the rows are not bounds.
 
-TAO's TRON runs as in PETSc's own obstacle problem (`jbearing2`): conjugate gradients with an incomplete Cholesky
-factor. All solvers end at 1e-9 of the first residual.
+TAO's TRON runs as in PETSc's own obstacle problem (`jbearing2`): conjugate gradients with an incomplete Cholesky factor. All solvers
+end at 1e-9 of the first residual.
 """
 
 import signal
@@ -25,11 +24,11 @@ except ImportError:
 TOLERANCE = 1e-9
 
 MOST_SECONDS = 60
-"""Of one solver. TAO's GPCG is left out: its line search did not end on a membrane of 65,025 dofs."""
+"""Time limit of one solver. TAO's GPCG is left out, because its line search did not end on a membrane of 65,025 dofs."""
 
 
 def numbers(file: Path) -> tuple[list[int], np.ndarray]:
-    """The sizes and the lines of numbers of a Matrix Market file."""
+    """Reads the sizes and the rows of numbers of a Matrix Market file."""
     with file.open() as stream:
         line = stream.readline()
         while line.startswith("%"):
@@ -38,12 +37,12 @@ def numbers(file: Path) -> tuple[list[int], np.ndarray]:
 
 
 def vector(file: Path) -> np.ndarray:
-    """The values of a Matrix Market array."""
+    """Reads the values of a Matrix Market array."""
     return numbers(file)[1][:, 0]
 
 
 def problem(directory: Path):
-    """K as a PETSc matrix, f, and the bounds on each dof."""
+    """Reads K as a PETSc matrix, f, and the bounds on each dof."""
     (n, _, _), entries = numbers(directory / "K.mtx")
     rows, columns, values = entries[:, 0].astype(np.int32) - 1, entries[:, 1].astype(np.int32) - 1, entries[:, 2]
     off = rows != columns
@@ -68,7 +67,7 @@ def petsc_vector(values: np.ndarray) -> PETSc.Vec:
 
 
 def at_bounds(u: PETSc.Vec, lower: np.ndarray, upper: np.ndarray) -> int:
-    """How many dofs stand at a bound, to rounding of the displacement."""
+    """Counts the dofs that are at a bound, up to rounding of the displacement."""
     near = 1e-9 * np.abs(u.array).max()
     return int(np.sum((u.array - lower <= near) | (upper - u.array <= near)))
 
@@ -112,7 +111,7 @@ def main() -> None:
     options["tao_ksp_type"] = "cg"
     options["tao_pc_type"] = "icc"
     for name, solve in (("tron", tron), ("linear", linear)):
-        # What takes longer ends here, with the lines that are printed.
+        # A solver that takes longer ends the script; the lines printed before remain.
         signal.alarm(MOST_SECONDS)
         begin = time.perf_counter()
         try:

@@ -24,7 +24,7 @@ class Problem:
     contact: sparse.csr_matrix
     """B, rows x dofs, dimensionless, + towards the obstacle."""
     gap: np.ndarray
-    """g, length rows, in m; negative: the obstacle starts inside the body; +inf: no obstacle."""
+    """g, length rows, in m; negative if the obstacle starts inside the body, +inf if there is no obstacle."""
 
     def __post_init__(self):
         n, m = self.load.size, self.gap.size
@@ -45,11 +45,11 @@ class Problem:
 
     @property
     def bound(self) -> np.ndarray:
-        """Indices of the rows that have an obstacle (finite gap)."""
+        """Returns the indices of the rows with an obstacle (a finite gap)."""
         return np.flatnonzero(np.isfinite(self.gap))
 
     def slack(self, displacement: np.ndarray) -> np.ndarray:
-        """The deformed gap g - B u, length rows, in m; negative where the body penetrates."""
+        """Returns the deformed gaps g - B u, length rows, in m; a negative value is a penetration."""
         return self.gap - self.contact @ displacement
 
 
@@ -62,12 +62,12 @@ class Answer:
 
     @property
     def force(self) -> float:
-        """Total contact force -sum(lambda), in N, >= 0."""
+        """Returns the total contact force -sum(lambda), in N, >= 0."""
         return 0.0 - float(self.multiplier.sum())
 
 
 def problem_of(stiffness, load, contact, gap) -> Problem:
-    """A problem from anything that scipy and numpy take as matrices and vectors."""
+    """Makes a problem from matrices and vectors in any form that scipy and numpy accept."""
     stiffness = sparse.csc_matrix(stiffness, dtype=float)
     contact = sparse.csr_matrix(contact, dtype=float)
     stiffness.sort_indices()
@@ -76,7 +76,7 @@ def problem_of(stiffness, load, contact, gap) -> Problem:
 
 
 def write_problem(problem: Problem, directory) -> None:
-    """Writes a problem directory: K as its lower triangle, vectors as n x 1 arrays, every double exactly."""
+    """Writes a problem directory: K as its lower triangle, vectors as n x 1 arrays, all doubles with all digits."""
     folder = Path(directory)
     folder.mkdir(parents=True, exist_ok=True)
     io.mmwrite(folder / "K.mtx", problem.stiffness.tocoo(), symmetry="symmetric", precision=17)
@@ -86,5 +86,5 @@ def write_problem(problem: Problem, directory) -> None:
 
 
 def write_vector(path, vector: np.ndarray) -> None:
-    """A Matrix Market array n x 1."""
+    """Writes a vector as a Matrix Market array n x 1."""
     io.mmwrite(path, np.asarray(vector, float).reshape(-1, 1), symmetry="general", precision=17)

@@ -1,4 +1,4 @@
-"""What is under test: the answers of the package, with what it says of them, and the files of the program."""
+"""The tested results: the answers of the package, its statements about them, and the files of the program."""
 
 import math
 import subprocess
@@ -16,14 +16,14 @@ from settle import contact_set
 METHODS = ("qp", "active-set", "penalty")
 
 SECONDS = 3600
-"""A run that hangs ends after this; none takes as long on a slow machine that is busy, too."""
+"""Time limit of a run. No run takes this long, even on a slow and busy machine."""
 
 FORCE_TOLERANCE = 1e-9
-"""Between the total force that is told and the sum of the multipliers, relative."""
+"""Relative tolerance between the reported total force and the sum of the multipliers."""
 
 
 CONDENSATION_TOLERANCE = 1e-11
-"""Between answers on the contact dofs and on all dofs, relative: rounding times the condition of the stiffness."""
+"""Relative tolerance between answers on the contact dofs and on all dofs: rounding times the condition of the stiffness."""
 
 
 class ProgramFailed(Exception):
@@ -32,31 +32,31 @@ class ProgramFailed(Exception):
 
 @dataclass(frozen=True)
 class Run:
-    """One solve: its answer, what the package says of it, and whether it is certified."""
+    """One solve: its answer, the solution that the package reports, and `True` if it is certified."""
 
     answer: Answer
-    told: sg.Solution
+    reported: sg.Solution
     certified: bool
 
 
 def problem_of_scene(file: Path) -> Problem:
-    """K, f, B and g of a scene, as the package makes them."""
+    """Returns K, f, B and g of a scene, assembled by the package."""
     problem = sg.Scene(file).problem
     return problem_of(problem.K, problem.f, problem.B, problem.g)
 
 
 def solve(problem: Problem, method: str, condense: bool = True) -> Run:
-    """The answer of the package by a method, certified or not."""
+    """Solves a problem by a method of the package, and returns the answer, certified or not."""
     given = sg.Problem(problem.stiffness, problem.load, problem.contact, problem.gap)
     try:
-        told, certified = sg.solve(given, method=method, condense=condense, proof=False), True
+        reported, certified = sg.solve(given, method=method, condense=condense, proof=False), True
     except sg.NotCertified as fell_short:
-        told, certified = fell_short.solution, False
-    return Run(Answer(told.u, told.multiplier), told, certified)
+        reported, certified = fell_short.solution, False
+    return Run(Answer(reported.u, reported.multiplier), reported, certified)
 
 
 def write_files(program: Path, scene: Path, out: Path) -> None:
-    """`signorini solve SCENE --method qp --out OUT`; any exit code but 0 is an error with the first line it wrote."""
+    """Runs `signorini solve SCENE --method qp --out OUT`. An exit code other than 0 is an error with the first line of its output."""
     command = [str(program), "solve", str(scene), "--method", "qp", "--out", str(out)]
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS)
@@ -67,25 +67,28 @@ def write_files(program: Path, scene: Path, out: Path) -> None:
         raise ProgramFailed(f"exit code {done.returncode}: {words}")
 
 
-def told_faults(problem: Problem, method: str, result: Run) -> list[str]:
-    """Where what is told of an answer contradicts it, in words."""
-    told, answer, faults = result.told, result.answer, []
+def report_faults(problem: Problem, method: str, result: Run) -> list[str]:
+    """Returns one sentence for each statement of the package that contradicts its answer."""
+    reported, answer, faults = result.reported, result.answer, []
     if method != "penalty" and not result.certified:
         faults.append("not certified")
-    if not told.method.startswith(method):
-        faults.append(f"method {told.method}")
+    if not reported.method.startswith(method):
+        faults.append(f"method {reported.method}")
     weak = weak_rows(problem, answer)
     closed = int((contact_set(problem, answer) & ~weak).sum())
-    if method != "penalty" and not closed <= len(told.contact_set) <= closed + weak.sum():
-        faults.append(f"tells {len(told.contact_set)} closed rows, the answer has {closed}")
+    if method != "penalty" and not closed <= len(reported.contact_set) <= closed + weak.sum():
+        faults.append(f"reports {len(reported.contact_set)} closed rows, the answer has {closed}")
     scale = largest(answer.multiplier) * np.sqrt(problem.rows) + WEAK * largest(problem.load)
-    if not abs(told.contact_force - answer.force) <= FORCE_TOLERANCE * scale:
-        faults.append(f"tells a force of {told.contact_force}, the answer has {answer.force:.10g}")
+    if not abs(reported.contact_force - answer.force) <= FORCE_TOLERANCE * scale:
+        faults.append(f"reports a force of {reported.contact_force}, the answer has {answer.force:.10g}")
     return faults
 
 
 def condensation_faults(problem: Problem, condensed: Run, full: Run) -> list[str]:
-    """Where an answer on the contact dofs differs from the one on all dofs; forces, for rows may share theirs anyhow."""
+    """Returns one sentence for each difference between the answers on the contact dofs and on all dofs.
+
+    The forces B' lambda are compared, because dependent rows may share their multipliers in any way.
+    """
     faults = []
     forces = [problem.contact.T @ run.answer.multiplier for run in (condensed, full)]
     pairs = {"u": (condensed.answer.displacement, full.answer.displacement), "B' lambda": tuple(forces)}
@@ -94,16 +97,16 @@ def condensation_faults(problem: Problem, condensed: Run, full: Run) -> list[str
         difference = largest(one - other)
         if difference > CONDENSATION_TOLERANCE * scale:
             faults.append(f"{name} differs by {difference / scale:.1e} from that on all dofs")
-    if math.isfinite(full.told.energy_error_bound) and condensed.told.method == full.told.method == "active-set":
-        sets = [[len(closed) for closed, _ in run.told.history] for run in (condensed, full)]
+    if math.isfinite(full.reported.energy_error_bound) and condensed.reported.method == full.reported.method == "active-set":
+        sets = [[len(closed) for closed, _ in run.reported.history] for run in (condensed, full)]
         if sets[0] != sets[1]:
             faults.append(f"closed rows on the way {sets[0]}, on all dofs {sets[1]}")
     return faults
 
 
 def bound_faults(problem: Problem, result: Run, references: list[Answer]) -> list[str]:
-    """Where an answer is farther from a reference, in the energy norm, than its certificate says."""
-    bound = result.told.energy_error_bound
+    """Returns a sentence if the distance of an answer from a reference, in the energy norm, exceeds its certified bound."""
+    bound = result.reported.energy_error_bound
     farthest = max(energy_distance(problem, result.answer, reference) for reference in references)
     if farthest <= bound + ENERGY_ALLOWANCE:
         return []

@@ -1,4 +1,4 @@
-"""Contact problems that need no scene, with their closed-form results where there are any."""
+"""Contact problems without a scene, with their results in closed form if known."""
 
 import numpy as np
 from scipy import sparse
@@ -7,7 +7,7 @@ from problem import Problem, problem_of
 
 
 def two_springs(first=300.0, second=100.0, force=10.0, gap=0.05) -> Problem:
-    """Two springs in series (N/m), the first held, a force (N) on the free end, an obstacle there at `gap` (m).
+    """Two springs in series (N/m). The first is fixed; a force (N) acts on the free end, in front of an obstacle at `gap` (m).
 
     Without obstacle the end moves by F (1/k1 + 1/k2); with it the reaction is F - g / (1/k1 + 1/k2).
     """
@@ -16,9 +16,10 @@ def two_springs(first=300.0, second=100.0, force=10.0, gap=0.05) -> Problem:
 
 
 def string_over_obstacle(elements=200, load=1.0, gap=0.08) -> Problem:
-    """-u'' = -q on (0, 1), ends fixed, u >= -g: contact [b, 1-b] with b = sqrt(2g/q), reaction q (1 - 2b).
+    """The string -u'' = -q on (0, 1) with fixed ends and u >= -g.
 
-    Linear elements are exact at the nodes when b is a node, and then so is the reaction.
+    The contact is [b, 1-b] with b = sqrt(2g/q); the reaction is q (1 - 2b). Linear elements give the exact nodal values and the exact
+    reaction if b is a node.
     """
     nodes, h = elements - 1, 1.0 / elements
     return problem_of(
@@ -27,7 +28,7 @@ def string_over_obstacle(elements=200, load=1.0, gap=0.08) -> Problem:
 
 
 def string_with_weak_nodes(elements=256, load=1.0, node=100) -> Problem:
-    """The same string with the one gap for which nodes `node` and `elements - node` touch without force.
+    """The same string with the gap for which the nodes `node` and `elements - node` touch without force.
 
     With y the distance to that node, u = -g + q (y^2 + y h)/2 satisfies the nodal equations there without a reaction.
     """
@@ -36,7 +37,7 @@ def string_with_weak_nodes(elements=256, load=1.0, node=100) -> Problem:
 
 
 def membrane_over_obstacle(side=60, load=1.0, gap=0.03) -> Problem:
-    """-Laplace u = -q on the unit square, u = 0 on its edge, u >= -g; five-point stencil, side x side inner nodes."""
+    """The membrane -Laplace u = -q on the unit square, u = 0 on its edge, u >= -g; five-point stencil, side x side inner nodes."""
     h, line = 1.0 / (side + 1), second_difference(side)
     one = sparse.identity(side)
     nodes = side * side
@@ -45,7 +46,7 @@ def membrane_over_obstacle(side=60, load=1.0, gap=0.03) -> Problem:
 
 
 def bounded_quadratic(dofs=400, seed=20240229) -> Problem:
-    """A random sparse positive definite K between two-sided bounds: rows u <= upper, then rows -u <= -lower."""
+    """A random sparse positive definite K with two-sided bounds: first the rows u <= upper, then the rows -u <= -lower."""
     random = np.random.default_rng(seed)
     factor = sparse.random(dofs, dofs, density=4.0 / dofs, rng=random, data_rvs=random.standard_normal)
     product = sparse.csc_matrix(factor.T @ factor + 0.1 * sparse.identity(dofs))
@@ -57,9 +58,9 @@ def bounded_quadratic(dofs=400, seed=20240229) -> Problem:
 
 
 def floating_rod(elements=20, axial_stiffness=2.0e3, length=2.0, force=5.0, gap=0.01) -> Problem:
-    """A rod (EA in N) that nothing but the wall at its right end holds, pushed there by a force at its left end.
+    """A rod (EA in N) that is supported only by the wall at its right end, against which a force at its left end pushes it.
 
-    K is singular. The reaction equals the force, the end stands at the gap and the rod shortens by F L / EA.
+    K is singular. The reaction equals the force, the displacement of the right end is the gap, and the rod shortens by F L / EA.
     """
     spring = axial_stiffness * elements / length
     stiffness = spring * second_difference(elements + 1).tolil()
@@ -70,26 +71,26 @@ def floating_rod(elements=20, axial_stiffness=2.0e3, length=2.0, force=5.0, gap=
 
 
 def non_negative(stiffness, linear) -> Problem:
-    """minimise 1/2 x'K x + c'x subject to x >= 0: rows -x <= 0, load -c."""
+    """Returns the problem: minimise 1/2 x'K x + c'x subject to x >= 0, with the rows -x <= 0 and the load -c."""
     size = len(linear)
     return problem_of(stiffness, -np.asarray(linear, float), -np.identity(size), np.zeros(size))
 
 
 def cycling_from_any_start() -> Problem:
-    """Symmetric positive definite of order 3, on which the plain active-set loop cycles; x = (0, 4/19, 11/19)."""
+    """A positive definite problem of order 3 on which the basic active-set loop cycles from any start; x = (0, 4/19, 11/19)."""
     return non_negative([[4, 5, -5], [5, 9, -5], [-5, -5, 7]], [2, 1, -3])
 
 
 def cycling_from_all_open() -> Problem:
-    """Another one: {} -> {2,3} -> {1,3} -> {} in the complementary sets; x = (0, 0, 0.6)."""
+    """Another such problem, with the cycle {} -> {2,3} -> {1,3} -> {} of the complementary sets; x = (0, 0, 0.6)."""
     return non_negative([[5, -2, -4], [-2, 2, 3], [-4, 3, 5]], [4, -1, -3])
 
 
 def weakly_active() -> Problem:
-    """Touches in one row without a force, and carries none in the others; x = (1, 6, 0)."""
+    """A problem that touches in one row without force, and is open in the others; x = (1, 6, 0)."""
     return non_negative([[12, -2, -2], [-2, 1, 1], [-2, 1, 3]], [0, -4, -4])
 
 
 def second_difference(size: int) -> sparse.csr_matrix:
-    """The matrix [-1 2 -1], size x size."""
+    """Returns the tridiagonal matrix [-1 2 -1], size x size."""
     return sparse.diags([-1.0, 2.0, -1.0], [-1, 0, 1], shape=(size, size), format="csr")

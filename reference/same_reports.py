@@ -1,9 +1,9 @@
-"""Do two programs leave the same answers? `python reference/same_reports.py PROGRAM OTHER [TARGET ...]`.
+"""Compares the results of two programs: `python reference/same_reports.py PROGRAM OTHER [TARGET ...]`.
 
-Both programs run `solve TARGET --format json --out FOLDER` for every target: a scene, a problem directory, or a folder
-with any number of them; by default all that stand in this repository, and the raw problems of `cases.py` if numpy and
-scipy are there. Exit code, messages, report and every file of the folder are compared byte by byte, without what depends
-on the clock: numbers of seconds in reports. Exits with 1 on any difference.
+Both programs run `solve TARGET --format json --out FOLDER` for every target. A target is a scene, a problem directory, or a folder
+that contains them. The default is all scenes and problems of this repository, and the raw problems of `cases.py` if numpy and scipy are
+installed. Exit code, messages, report and every file of the folder are compared byte by byte; only the seconds in reports are
+ignored. The exit code is 1 if anything differs.
 """
 
 import argparse
@@ -18,14 +18,14 @@ ROOT = Path(__file__).resolve().parent.parent
 FOLDERS = ("examples", "tools/impact", "tests/corpus", "tests/faults")
 
 SECONDS = re.compile(r"[0-9.e+-]+ s\b")
-"""A duration inside a sentence, as in the reason of an attempt."""
+"""A duration inside a sentence, for example in the reason of an attempt."""
 
 DATA = re.compile(rb'(?<=id="data">)[^<]*')
 """The JSON of a page."""
 
 
 def targets(path: Path) -> list[Path]:
-    """The scenes and problem directories at or below a path, in order."""
+    """Returns the scenes and problem directories at or below a path, sorted."""
     if path.is_file() or (path / "K.mtx").exists():
         return [path]
     found = [directory.parent for directory in path.rglob("K.mtx")]
@@ -34,7 +34,7 @@ def targets(path: Path) -> list[Path]:
 
 
 def is_scene(file: Path) -> bool:
-    """Returns True for a JSON object with a body."""
+    """Returns `True` for a file with a JSON object that has a body."""
     try:
         scene = json.loads(file.read_text())
     except ValueError:
@@ -43,7 +43,7 @@ def is_scene(file: Path) -> bool:
 
 
 def raw_problems(folder: Path) -> list[Path]:
-    """The raw problems of the reference, written into a folder; none without numpy and scipy."""
+    """Writes the raw problems of the reference into a folder. Returns an empty list without numpy and scipy."""
     try:
         from cases import RAW_CASES
         from problem import write_problem
@@ -55,7 +55,7 @@ def raw_problems(folder: Path) -> list[Path]:
 
 
 def timeless(value):
-    """A report without what depends on the clock."""
+    """Returns a report without its times."""
     if isinstance(value, dict):
         return {key: timeless(inner) for key, inner in value.items() if key != "seconds"}
     if isinstance(value, list):
@@ -64,7 +64,7 @@ def timeless(value):
 
 
 def stripped(name: str, content: bytes) -> bytes:
-    """A file or an output without what depends on the clock; the order of its fields stays."""
+    """Returns a file or an output without its times; the order of its fields is kept."""
     if name.endswith(".json"):
         try:
             return json.dumps(timeless(json.loads(content))).encode()
@@ -76,7 +76,7 @@ def stripped(name: str, content: bytes) -> bytes:
 
 
 def left_by(program: Path, target: Path) -> dict[str, bytes]:
-    """All that a run leaves, by name: exit code, messages, report, files."""
+    """Runs a program and returns all its results by name: exit code, messages, report, files."""
     with tempfile.TemporaryDirectory() as folder:
         command = [program, "solve", target, "--format", "json", "--out", folder]
         done = subprocess.run(command, capture_output=True, check=False)
@@ -89,7 +89,7 @@ def left_by(program: Path, target: Path) -> dict[str, bytes]:
 
 
 def differences(programs: list[Path], target: Path) -> tuple[int, list[str]]:
-    """How many things were compared, and the names of those that differ."""
+    """Returns the number of compared results, and the names of those that differ."""
     one, other = (left_by(program, target) for program in programs)
     names = one.keys() | other.keys()
     return len(names), sorted(name for name in names if one.get(name) != other.get(name))

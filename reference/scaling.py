@@ -1,6 +1,6 @@
-"""Dimensionless data: the tolerances of QP solvers are absolute below 1.
+"""Scales problems to dimensionless data, because the tolerances of QP solvers are absolute for values below 1.
 
-u = u0 v,  K = k0 P,  f = f0 c,  lambda = f0 mu,  f0 = k0 u0,  all three powers of two, so that scaling rounds nothing.
+u = u0 v,  K = k0 P,  f = f0 c,  lambda = f0 mu,  f0 = k0 u0. All three are powers of two, so that scaling is exact.
 """
 
 from dataclasses import dataclass
@@ -24,7 +24,8 @@ class Scales:
 
 
 def scales_of(problem: Problem) -> Scales:
-    """u0 is the largest finite gap or, where all gaps are zero, the free displacement; k0 the largest diagonal of K."""
+    """Returns the scales. k0 is the largest diagonal entry of K; u0 is the largest finite gap or, if all gaps are zero, the largest free
+    displacement."""
     stiffness = power_of_two(largest(problem.stiffness.diagonal()))
     displacement = largest(problem.gap[problem.bound])
     if displacement == 0.0:
@@ -33,7 +34,7 @@ def scales_of(problem: Problem) -> Scales:
 
 
 def scaled(problem: Problem, scales: Scales) -> Problem:
-    """The same problem in dimensionless data."""
+    """Returns the same problem with dimensionless data."""
     return problem_of(
         problem.stiffness / scales.stiffness,
         problem.load / scales.force,
@@ -43,12 +44,12 @@ def scaled(problem: Problem, scales: Scales) -> Problem:
 
 
 def unscaled(answer: Answer, scales: Scales) -> Answer:
-    """A dimensionless answer in the units of the problem."""
+    """Converts a dimensionless answer into the units of the problem."""
     return Answer(answer.displacement * scales.displacement, answer.multiplier * scales.force)
 
 
 def free_displacement(problem: Problem) -> np.ndarray:
-    """K^-1 f, or f over the largest stiffness where K is singular to working precision."""
+    """Returns K^-1 f, or f divided by the largest stiffness if K is singular to working precision."""
     rough = problem.load / largest(problem.stiffness.diagonal())
     try:
         free = splu(problem.stiffness).solve(problem.load)
@@ -59,10 +60,10 @@ def free_displacement(problem: Problem) -> np.ndarray:
 
 
 def largest(values: np.ndarray) -> float:
-    """The largest magnitude, 0 for nothing."""
+    """Returns the largest magnitude; 0 for an empty array."""
     return float(np.max(np.abs(values), initial=0.0))
 
 
 def power_of_two(value: float) -> float:
-    """The power of two next to a positive value; 1 for zero."""
+    """Returns the power of two nearest to a positive value; 1 for zero."""
     return 2.0 ** np.round(np.log2(value)) if value > 0.0 else 1.0

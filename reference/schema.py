@@ -1,5 +1,6 @@
-"""Holds scenes against the JSON Schema that the program prints, by check-jsonschema: every scene of the project conforms, and
-what is wrong in `tests/wrong_scenes.json` is refused by the schema and by the program.
+"""Validates scenes by check-jsonschema with the JSON Schema that the program prints.
+
+Every scene of the project must conform. Every scene of `tests/wrong_scenes.json` must be refused by the schema and by the program.
 
     python reference/schema.py target/debug/signorini
 """
@@ -15,7 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
 def scenes():
-    """All scenes that the project has; lines that begin with `//` are comments, which JSON has not."""
+    """Returns all scenes of the project. Lines that begin with `//` are comments and are removed, because JSON has no comments."""
     for folder in ["examples", "examples/first-part", "tools/guarantee", "tools/impact"]:
         for file in sorted((ROOT / folder).glob("*.json")):
             lines = file.read_text().splitlines()
@@ -23,7 +24,7 @@ def scenes():
 
 
 def wrong_scenes():
-    """What is wrong, and the scene: a change of the base for each."""
+    """Returns the fault and the scene for each entry; a scene is the base with one change."""
     kept = json.loads((ROOT / "tests/wrong_scenes.json").read_text())
     for change in kept["changes"]:
         scene = copy.deepcopy(kept["base"])
@@ -39,7 +40,7 @@ def wrong_scenes():
 
 
 def conforms(schema, scene):
-    """Whether check-jsonschema takes a file for a scene."""
+    """Returns `True` if check-jsonschema accepts a file as a scene."""
     command = [sys.executable, "-m", "check_jsonschema", "--schemafile", schema, scene]
     run = subprocess.run(command, capture_output=True, text=True, check=False)
     if run.returncode == 0:

@@ -1,10 +1,10 @@
-"""From an approximate answer to the exact one: the linear system of a contact set.
+"""Computes the exact answer from an approximate one, by the linear system of a contact set.
 
     [ K   -B_C' ] [ u        ]   [ f   ]
     [ B_C   0   ] [ lambda_C ] = [ g_C ]      lambda = 0 elsewhere
 
-The set C is read off a solver's answer. A point of this system is the solution only if no open row is penetrated and
-no closed row pulls; rows that fail are exchanged, and how many were is part of the result.
+The set C is that of a solver's answer. A point of this system is the solution only if no open row is penetrated and no closed row
+pulls. Rows that fail are exchanged; their number is part of the result.
 """
 
 from dataclasses import dataclass
@@ -18,40 +18,41 @@ from problem import Answer, Problem
 from scaling import scaled, scales_of, unscaled
 
 SIGN_TOLERANCE = 1e-11
-"""Relative size below which a slack or a multiplier has no sign: weakly active rows cycle by rounding otherwise."""
+"""Relative size below which a slack or a multiplier counts as zero. Otherwise rounding would make weakly active rows cycle."""
 
 PATIENCE = 10
-"""Exchanges of all failing rows at once without a new lowest number of them, before single exchanges take over."""
+"""Number of exchanges of all failing rows at once that may pass without a new minimum of their number. After that, rows are exchanged
+one by one."""
 
 EXCHANGES = 2000
-"""Linear solves before giving up; ten are usual."""
+"""Largest number of linear solves; ten are usual."""
 
 
 @dataclass(frozen=True)
 class Settled:
-    """A true solution: its answer, its closed rows, and the rows that had to change to get there."""
+    """An exact solution: its answer, its closed rows, and the number of exchanged rows."""
 
     answer: Answer
     closed: np.ndarray
-    """Boolean, length rows."""
+    """The closed rows, as a boolean array of length rows."""
     exchanged: int
 
 
 class Unsettled(Exception):
-    """A contact set from which no solution was reached."""
+    """No solution was reached from a contact set."""
 
 
 def contact_set(problem: Problem, answer: Answer) -> np.ndarray:
-    """Closed rows of an approximate answer: -lambda / max|lambda| > slack / max|B u|; boolean, length rows.
+    """Returns the closed rows of an approximate answer, -lambda / max|lambda| > slack / max|B u|, as a boolean array of length rows.
 
-    An absolute threshold on lambda closes far too many rows of an interior-point answer.
+    An absolute threshold on lambda would close far too many rows of an interior-point answer.
     """
     slack = problem.slack(answer.displacement)
     return -answer.multiplier * length_scale(problem, answer) > slack * multiplier_scale(problem, answer)
 
 
 def solve_on(problem: Problem, closed: np.ndarray) -> Answer:
-    """The linear saddle-point system of a contact set, by sparse LU with one step of refinement."""
+    """Solves the linear saddle-point system of a contact set by sparse LU with one step of refinement."""
     rows = np.flatnonzero(closed)
     traces = problem.contact[rows]
     system = sparse.block_array([[problem.stiffness, -traces.T], [traces, None]], format="csc")
@@ -68,7 +69,7 @@ def solve_on(problem: Problem, closed: np.ndarray) -> Answer:
 
 
 def failing_rows(problem: Problem, answer: Answer, closed: np.ndarray) -> np.ndarray:
-    """Indices of open rows that are penetrated and closed rows that pull, beyond rounding."""
+    """Returns the indices of the open rows that are penetrated and of the closed rows that pull, beyond rounding."""
     slack = problem.slack(answer.displacement)
     penetrated = ~closed & (slack < -SIGN_TOLERANCE * length_scale(problem, answer))
     pulling = closed & (answer.multiplier > SIGN_TOLERANCE * multiplier_scale(problem, answer))
@@ -76,7 +77,7 @@ def failing_rows(problem: Problem, answer: Answer, closed: np.ndarray) -> np.nda
 
 
 def settle(problem: Problem, start: np.ndarray) -> Settled:
-    """The solution reached from a contact set (boolean, rows), checked against the original problem."""
+    """Returns the solution reached from a contact set (boolean, length rows), verified with the original problem."""
     scales = scales_of(problem)
     data = scaled(problem, scales)
     closed = start & np.isfinite(problem.gap)
@@ -90,7 +91,8 @@ def settle(problem: Problem, start: np.ndarray) -> Settled:
             fewest, patience = failing.size, PATIENCE
         else:
             patience -= 1
-        # All at once while that helps, otherwise one by one, the last first: finite for positive definite problems.
+        # Exchange all rows at once while that helps, otherwise one by one, the last row first. This is finite for positive definite
+        # problems.
         change = failing if patience > 0 else failing[-1:]
         closed = closed.copy()
         closed[change] ^= True

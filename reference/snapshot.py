@@ -1,6 +1,6 @@
 """Reference results in results.json, for tests that run without Python.
 
-They come from the independent solvers alone, never from the program under test.
+They come only from the independent solvers, never from the tested program.
 """
 
 import datetime
@@ -22,17 +22,17 @@ WHOLE = 100
 """Vectors up to this length are stored whole."""
 
 SAMPLES = 11
-"""Of longer vectors so many evenly spaced entries are stored, and the largest one."""
+"""Number of evenly spaced entries that are stored of longer vectors, in addition to the largest one."""
 
 SMALL = 4
-"""Problems up to so many dofs are stored with their data."""
+"""Problems with at most this number of dofs are stored with their data."""
 
 STORED_TOLERANCE = 1e-8
-"""Between a stored result and today's, relative to the largest value: other machines round differently."""
+"""Tolerance between a stored result and a new one, relative to the largest value, because other machines round differently."""
 
 
 def record(problem: Problem, settled: Settled, solver: str) -> dict:
-    """What is stored of one case."""
+    """Returns the stored data of one case."""
     answer = settled.answer
     weak = weak_rows(problem, answer)
     entry = {
@@ -58,23 +58,23 @@ def record(problem: Problem, settled: Settled, solver: str) -> dict:
 
 
 def runs(indices: np.ndarray) -> list[list[int]]:
-    """Sorted indices as [first, last] of each run of neighbours."""
+    """Returns sorted indices as [first, last] of each run of consecutive indices."""
     breaks = np.flatnonzero(np.diff(indices) != 1) + 1
     return [[int(run[0]), int(run[-1])] for run in np.split(indices, breaks) if run.size]
 
 
 def selected(vector: np.ndarray) -> dict:
-    """Length, indices and values of the stored entries of a vector; exact doubles."""
+    """Returns the length of a vector, and the indices and values of its stored entries as exact doubles."""
     if vector.size <= WHOLE:
         index = np.arange(vector.size)
     else:
         index = np.union1d(np.linspace(0, vector.size - 1, SAMPLES).astype(int), np.argmax(np.abs(vector)))
-    # + 0.0 turns a negative zero into a zero.
+    # Adding 0.0 turns a negative zero into a positive one.
     return {"length": vector.size, "index": index.tolist(), "value": (vector[index] + 0.0).tolist()}
 
 
 def stored_faults(entry: dict, problem: Problem, settled: Settled) -> list[str]:
-    """Where today's result differs from a stored one, in words."""
+    """Returns one sentence for each difference between a new result and the stored one."""
     today, answer, faults = record(problem, settled, ""), settled.answer, []
     for key in ("dofs", "rows", "closed_rows"):
         if entry[key] != today[key]:
@@ -92,7 +92,7 @@ def stored_faults(entry: dict, problem: Problem, settled: Settled) -> list[str]:
 
 
 def read() -> dict:
-    """The stored results by the name of the case; empty where none are stored."""
+    """Returns the stored results by the name of the case; empty if there is no file."""
     return json.loads(RESULTS.read_text())["cases"] if RESULTS.exists() else {}
 
 
@@ -105,12 +105,12 @@ def write(cases: dict) -> None:
         "signs": "lambda <= 0 in compression; indices from 0; closed_rows are [first, last] runs",
         "cases": cases,
     }
-    # Numbers of one list on one line: the file is read by eye too.
+    # All numbers of a list are on one line, so that people can read the file as well.
     RESULTS.write_text(compact(document) + "\n")
 
 
 def compact(value, indent: str = "") -> str:
-    """JSON with nested objects on lines of their own and every list on one line."""
+    """Returns JSON text with each entry of an object on a line of its own and every list on one line."""
     if not isinstance(value, dict):
         return json.dumps(value)
     inner = indent + "  "

@@ -1,6 +1,6 @@
-"""Independent solvers, one function each: from a dimensionless problem to an answer and the status they claim.
+"""Independent solvers, one function each. Each solves a dimensionless problem and returns its answer and its status.
 
-Only here a solver's sign is known: its multiplier z >= 0 of B u <= g is z = -lambda.
+The sign convention of the solvers is used only here: their multiplier z >= 0 of B u <= g is z = -lambda.
 """
 
 import warnings
@@ -16,20 +16,20 @@ from problem import Answer, Problem
 from scaling import scaled, scales_of, unscaled
 
 INTERIOR_POINT_TOLERANCES = (1e-13, 1e-12, 1e-10, 1e-8)
-"""Tried in this order until Clarabel says it is solved. Asked for more than rounding allows, it goes back to an early
-iterate: measured on the indented block, 1e-12 leaves 3e-10 in u, 1e-13 leaves 3e-3."""
+"""Tolerances that are tried in this order until Clarabel reports `Solved`. For a tolerance below rounding it returns an early iterate:
+on the indented block the error in u is 3e-10 with 1e-12, and 3e-3 with 1e-13."""
 
 FIRST_ORDER_TOLERANCE = 1e-12
-"""Absolute and relative, on dimensionless data. Multipliers of a fine mesh are small there: 1e-9 leaves 3e-5 off."""
+"""Absolute and relative tolerance for dimensionless data. Multipliers of a fine mesh are small: 1e-9 would leave an error of 3e-5."""
 
 FIRST_ORDER_ITERATIONS = 20_000
-"""The problems here need up to 2,200; at the limit the last iterate is judged as any other."""
+"""Limit of iterations. The problems here need up to 2,200; at the limit, the last iterate is judged like any other answer."""
 
 OSQP_SETTINGS = dict(
     eps_abs=FIRST_ORDER_TOLERANCE,
     eps_rel=FIRST_ORDER_TOLERANCE,
     max_iter=FIRST_ORDER_ITERATIONS,
-    # Polishing can report success with a wrong x (osqp#790); the answers are settled here instead.
+    # Polishing can report success for a wrong x (osqp#790), so that the answers are settled here instead.
     polishing=False,
     verbose=False,
 )
@@ -37,18 +37,18 @@ OSQP_SETTINGS = dict(
 
 @dataclass(frozen=True)
 class Raw:
-    """What a solver returned, in the units of the problem, with its own word for how it ended."""
+    """The answer of a solver in the units of the problem, and the status that the solver reports."""
 
     answer: Answer
     status: str
 
 
 class NoAnswer(Exception):
-    """A solver that returned no vector of finite numbers."""
+    """A solver returned no vector of finite numbers."""
 
 
 def cvxpy_clarabel(problem: Problem) -> Raw:
-    """cvxpy with Clarabel: interior point."""
+    """Solves by cvxpy with Clarabel, an interior-point method."""
     for tolerance in INTERIOR_POINT_TOLERANCES:
         tolerances = dict.fromkeys(("tol_gap_abs", "tol_gap_rel", "tol_feas"), tolerance)
         raw = dimensionless(problem, partial(by_cvxpy, solver="CLARABEL", accept_unknown=True, **tolerances))
@@ -58,12 +58,12 @@ def cvxpy_clarabel(problem: Problem) -> Raw:
 
 
 def cvxpy_osqp(problem: Problem) -> Raw:
-    """cvxpy with OSQP: alternating directions."""
+    """Solves by cvxpy with OSQP, an alternating direction method."""
     return dimensionless(problem, partial(by_cvxpy, solver="OSQP", **OSQP_SETTINGS))
 
 
 def osqp_direct(problem: Problem) -> Raw:
-    """OSQP without a layer between; it reads the upper triangle of K."""
+    """Solves by OSQP directly, which reads the upper triangle of K."""
     return dimensionless(problem, by_osqp)
 
 
@@ -71,13 +71,13 @@ SOLVERS = {"cvxpy+Clarabel": cvxpy_clarabel, "cvxpy+OSQP": cvxpy_osqp, "osqp": o
 
 
 def by_cvxpy(data: Problem, solver: str, **settings) -> Raw:
-    """The quadratic program in cvxpy's words; the whole K, which is taken to be positive semidefinite."""
+    """Solves the quadratic program in the form of cvxpy, with the whole K, which is declared to be positive semidefinite."""
     u = cvxpy.Variable(data.dofs)
     energy = 0.5 * cvxpy.quad_form(u, cvxpy.psd_wrap(data.stiffness)) - data.load @ u
     apart = data.contact @ u <= data.gap
     program = cvxpy.Problem(cvxpy.Minimize(energy), [apart])
     with warnings.catch_warnings():
-        # "Solution may be inaccurate": every answer is judged by its own numbers.
+        # Warnings such as "Solution may be inaccurate" are not needed: every answer is judged by its own numbers.
         warnings.simplefilter("ignore")
         try:
             program.solve(solver=solver, **settings)
@@ -89,7 +89,7 @@ def by_cvxpy(data: Problem, solver: str, **settings) -> Raw:
 
 
 def by_osqp(data: Problem) -> Raw:
-    """The quadratic program -inf <= B u <= g."""
+    """Solves the quadratic program with the constraints -inf <= B u <= g."""
     solver = osqp.OSQP()
     solver.setup(
         P=sparse.triu(data.stiffness, format="csc"),
@@ -104,7 +104,7 @@ def by_osqp(data: Problem) -> Raw:
 
 
 def dimensionless(problem: Problem, solve) -> Raw:
-    """Scales, leaves out the rows without obstacle, solves and scales back."""
+    """Scales a problem, leaves out the rows without obstacle, solves it, and scales the answer back."""
     bound, scales = problem.bound, scales_of(problem)
     data = scaled(problem, scales)
     raw = solve(Problem(data.stiffness, data.load, data.contact[bound], data.gap[bound]))

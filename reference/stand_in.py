@@ -1,4 +1,4 @@
-"""A stand-in for the package and the program, to test the validation itself: dense solves inside, wrong in one of the ways below."""
+"""A stand-in for the package and the program, which tests the validation itself. It uses dense solves and can plant each fault below."""
 
 import subprocess
 from pathlib import Path
@@ -18,24 +18,24 @@ BLOCK = dict(columns=8, layers=4)
 
 
 def flipped_sign(answer: Answer) -> Answer:
-    """The multiplier of the other sign convention."""
+    """Returns the answer with the multiplier in the other sign convention."""
     return Answer(answer.displacement, -answer.multiplier)
 
 
 def lost_factor(answer: Answer) -> Answer:
-    """Half the multiplier, as from an energy without its 1/2."""
+    """Returns the answer with half the multiplier, as from an energy without its factor 1/2."""
     return Answer(answer.displacement, 0.5 * answer.multiplier)
 
 
 def swapped_dofs(answer: Answer) -> Answer:
-    """Two neighbouring displacements exchanged in the middle."""
+    """Returns the answer with two neighbouring displacements exchanged."""
     u, middle = answer.displacement.copy(), answer.displacement.size // 4
     u[[middle, middle + 1]] = u[[middle + 1, middle]]
     return Answer(u, answer.multiplier)
 
 
 def slightly_off(answer: Answer) -> Answer:
-    """A displacement beyond the tolerance by a factor of ten."""
+    """Returns the answer with a displacement error of ten tolerances."""
     return Answer(answer.displacement * (1.0 + 1e-7), answer.multiplier)
 
 
@@ -48,10 +48,10 @@ WRONG_WORDS = {
 
 
 def penalty(problem: Problem) -> Answer:
-    """The answer with springs of 1e8 times the stiffness in the closed rows instead of constraints."""
+    """Returns the answer with springs of 1e8 times the stiffness in the closed rows instead of constraints."""
     closed = settled(problem).closed
     traces, eps = problem.contact[np.flatnonzero(closed)].toarray(), 1e8 * problem.stiffness.max()
-    # With v = u - B'g, which for rows of single entries shifts the closed ones to zero, nothing large cancels.
+    # The unknown v = u - B'g avoids cancellation: for rows of single entries it shifts the closed gaps to zero.
     shift = traces.T @ problem.gap[closed]
     matrix = problem.stiffness.toarray() + eps * traces.T @ traces
     v = np.linalg.solve(matrix, problem.load - problem.stiffness @ shift)
@@ -61,13 +61,13 @@ def penalty(problem: Problem) -> Answer:
 
 
 def settled(problem: Problem):
-    """The solution from all rows closed where K is singular, else from none."""
+    """Returns the solution, beginning with all rows closed if K is singular, and otherwise with no closed row."""
     start = np.full(problem.rows, np.linalg.matrix_rank(problem.stiffness.toarray()) < problem.dofs)
     return settle(problem, start)
 
 
 def solve(given: sg.Problem, *, method: str, condense: bool, proof: bool, fault: str = "") -> SimpleNamespace:
-    """What `signorini.solve` would return or raise."""
+    """Returns or raises the same as `signorini.solve`."""
     if fault == "refused":
         raise sg.UnderHeld("the body is not held")
     problem = problem_of(given.K, given.f, given.B, given.g)
@@ -78,7 +78,7 @@ def solve(given: sg.Problem, *, method: str, condense: bool, proof: bool, fault:
     if fault == "full_differs" and not condense:
         answer = Answer(answer.displacement * (1.0 + 1e-10), answer.multiplier)
     closed = np.flatnonzero(contact_set(problem, answer))
-    told = {
+    reported = {
         "u": answer.displacement,
         "multiplier": answer.multiplier,
         "method": method,
@@ -88,7 +88,7 @@ def solve(given: sg.Problem, *, method: str, condense: bool, proof: bool, fault:
         "contact_force": answer.force,
         "energy_error_bound": 2.0 * energy_distance(problem, answer, exact) + 1e-14,
     }
-    solution = SimpleNamespace(**told | WRONG_WORDS.get(fault, {}))
+    solution = SimpleNamespace(**reported | WRONG_WORDS.get(fault, {}))
     if fault == "not_certified" or (method == "penalty" and kkt(problem, answer).worst() > 1e-9):
         fell_short = sg.NotCertified("not certified")
         fell_short.solution = solution
@@ -97,7 +97,7 @@ def solve(given: sg.Problem, *, method: str, condense: bool, proof: bool, fault:
 
 
 def run(arguments: list[str], **_) -> subprocess.CompletedProcess:
-    """`signorini solve SCENE ... --out OUT` as `subprocess.run` would run it."""
+    """Replaces `subprocess.run` for `signorini solve SCENE ... --out OUT`."""
     problem, out = problem_of_scene(Path(arguments[2])), Path(arguments[-1])
     out.mkdir()
     write_vtu(settled(problem).answer, problem, out)
@@ -105,7 +105,7 @@ def run(arguments: list[str], **_) -> subprocess.CompletedProcess:
 
 
 def write_vtu(answer: Answer, problem: Problem, out: Path) -> None:
-    """The arrays that a scene's file has, of which only u and the contact flag mean something here."""
+    """Writes the arrays of a scene's file; only u and the contact flag have meaningful values here."""
     x, y = np.meshgrid(np.linspace(0, 1, BLOCK["columns"] + 1), np.linspace(0, 0.5, BLOCK["layers"] + 1))
     points = np.column_stack([x.ravel(), y.ravel(), 0.0 * x.ravel()])
     u = np.zeros_like(points)

@@ -1,4 +1,4 @@
-"""The printed table: one line for every answer that was judged."""
+"""The printed table: one line for every judged answer."""
 
 import sys
 
@@ -10,15 +10,15 @@ HEADING = (
 )
 
 LEGEND = """\
-closed    rows in contact; weak: rows that touch without force, where closed or open is a matter of rounding
+closed    rows in contact; weak: rows that touch without force, for which rounding decides if they are closed
 force     -sum(lambda), in the unit of the problem
-|du|/|u|  largest difference to any settled answer of the independent solvers, relative to the largest value
-|dl|/|l|  the same of lambda
+|du|/|u|  largest difference from any settled answer of the independent solvers, relative to the largest value
+|dl|/|l|  the same for lambda
 station. to dual gap: violations recomputed from K, f, B and g, relative"""
 
 
 def line(verdict: Verdict) -> str:
-    """One row of the table."""
+    """Returns one row of the table."""
     apart, numbers = verdict.distance, verdict.numbers
     if numbers is None:
         figures = " " * 84
@@ -39,7 +39,7 @@ def line(verdict: Verdict) -> str:
 
 
 def show(verdicts: list[Verdict]) -> None:
-    """Prints lines as soon as a case is done."""
+    """Prints the lines of a case as soon as it is done."""
     for verdict in verdicts:
         print(line(verdict))
     sys.stdout.flush()

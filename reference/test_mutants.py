@@ -1,4 +1,4 @@
-"""Tests of the mutants' command without cargo: a change put in and out again, the draw, the stages, the table."""
+"""Tests of `mutants.py` without cargo: applying and reverting a change, the draw, the stages, the table."""
 
 import sys
 import tempfile
@@ -29,11 +29,11 @@ BODY = Mutant(
 
 
 class Change(unittest.TestCase):
-    def test_a_mutant_changes_its_lines_and_no_other(self):
+    def test_a_mutant_changes_only_its_own_lines(self):
         self.assertEqual(LESS.applied(TEXT).replace(f" {MARK}", ""), TEXT.replace("<", ">"))
         self.assertEqual(BODY.applied(TEXT), f"fn least(a: f64, b: f64) -> f64 {{\n    0.0 {MARK}\n}}\n")
 
-    def test_a_change_of_another_text_is_refused(self):
+    def test_a_change_that_does_not_fit_the_text_is_refused(self):
         with self.assertRaisesRegex(ValueError, "line 2"):
             LESS.applied(TEXT.replace("less", "more"))
 
@@ -43,7 +43,7 @@ class Change(unittest.TestCase):
         self.assertEqual(lower.key, LESS.key)
         self.assertNotEqual(BODY.key, LESS.key)
 
-    def test_the_file_is_as_before_however_the_tests_end(self):
+    def test_the_file_is_restored_however_the_tests_end(self):
         for ending in (None, KeyboardInterrupt):
             with tempfile.TemporaryDirectory() as folder, mock.patch.object(mutants, "judged") as judged:
                 file = Path(folder) / LESS.file
@@ -61,14 +61,14 @@ class Change(unittest.TestCase):
 
 class Draw(unittest.TestCase):
     def every(self, count: int, places: int = 1) -> list[Mutant]:
-        """Changes of so many functions, each at so many places with the same new line."""
+        """Returns changes of `count` functions, each at `places` places with the same new line."""
         both = [(number, place) for number in range(count) for place in range(places)]
         return [Mutant(f"f.rs:{place}:1: change {number}", "f.rs", f"-\n+\n+x{number}") for number, place in both]
 
     def drawn(self, *arguments) -> list[Mutant]:
         return [mutant for _, mutant in mutants.drawn(*arguments)]
 
-    def test_a_draw_depends_on_its_seed_alone_and_keeps_the_order(self):
+    def test_a_draw_depends_only_on_its_seed_and_keeps_the_order(self):
         for every in (self.every(500), self.every(100, places=5), self.every(1, places=500)):
             first = self.drawn(every, 100, 1)
             self.assertEqual(first, self.drawn(every, 100, 1))
@@ -77,24 +77,24 @@ class Draw(unittest.TestCase):
             self.assertEqual(len(set(first)), 100)
             self.assertEqual(self.drawn(every, 1000, 1), every)
 
-    def test_a_larger_draw_has_the_smaller_one_in_it(self):
+    def test_a_larger_draw_contains_the_smaller_one(self):
         for every in (self.every(1737), self.every(579, places=3)):
             self.assertLess(set(self.drawn(every, 60, 20)), set(self.drawn(every, 1000, 20)))
 
-    def test_without_some_mutants_the_others_stay_drawn(self):
+    def test_the_other_mutants_stay_drawn_if_some_are_removed(self):
         every = self.every(1737)
         draw = self.drawn(every, 60, 20)
-        # A line edited: its three mutants are gone, whether drawn or not.
+        # An edited line loses its three mutants, drawn or not.
         for gone in (every[100:103], draw[:3], draw[-3:]):
             rest = [mutant for mutant in every if mutant not in gone]
             left = [mutant for mutant in draw if mutant not in gone]
             after = self.drawn(rest, 60, 20)
             self.assertLessEqual(set(left), set(after))
-            # As many come in as have gone, the same that a larger draw has.
+            # The removed mutants are replaced by the next ones of a larger draw.
             larger = self.drawn(every, 60 + len(draw) - len(left), 20)
             self.assertEqual(after, [mutant for mutant in larger if mutant not in gone])
 
-    def test_other_mutants_take_no_more_places_than_they_are_and_their_places_do_not_matter(self):
+    def test_new_mutants_displace_at_most_their_own_number_and_line_numbers_do_not_matter(self):
         every = self.every(1737)
         draw = self.drawn(every, 60, 20)
         added = [Mutant(f"new.rs:{place}:1: change", "new.rs", f"-\n+\n+y{place}") for place in range(40)]
@@ -102,11 +102,11 @@ class Draw(unittest.TestCase):
         self.assertEqual(len(set(draw) - set(after)), len(set(after) & set(added)))
         self.assertLessEqual(set(after), set(draw) | set(added))
         self.assertEqual(set(after), set(self.drawn(every + added, 60, 20)))
-        # Lines above that are longer or fewer change no key.
+        # Changes of the lines above a mutant do not change its key.
         lower = [Mutant(mutant.name.replace(":0:", ":70:"), mutant.file, mutant.diff) for mutant in every]
         self.assertEqual([one.key for one in self.drawn(lower, 60, 20)], [one.key for one in draw])
 
-    def test_a_mutant_is_remembered_by_its_key_and_its_number_among_equal_ones(self):
+    def test_a_mutant_is_identified_by_its_key_and_its_number_among_equal_ones(self):
         other = Mutant(LESS.name.replace(":2:18:", ":7:3:"), LESS.file, LESS.diff)
         names = mutants.numbered([LESS, BODY, other])
         self.assertEqual(len(set(names)), 3)
@@ -114,7 +114,7 @@ class Draw(unittest.TestCase):
 
 
 class Stages(unittest.TestCase):
-    """`judged` with a program of one stage that passes, fails, or does not end."""
+    """Tests of `judged` with one stage whose program passes, fails, or does not end."""
 
     def verdict(self, script: str, builds: bool = True) -> tuple[str, str]:
         program = [sys.executable, "-c", script] if builds else None
@@ -140,10 +140,10 @@ class Table(unittest.TestCase):
         kinds = ["killed"] * killed + ["survived"] * survived + ["unbuildable"] * unbuildable
         return [(Mutant(f"f.rs:{at}:1: change {at}", "f.rs", f"a\nb\n+x{at}"), kind) for at, kind in enumerate(kinds)]
 
-    def test_two_of_a_hundred_may_survive_without_a_reason_and_no_more(self):
+    def test_at_most_two_of_a_hundred_may_survive_without_a_reason(self):
         self.assertTrue(mutants.summary(self.outcomes(98, 2), {})[1])
         self.assertFalse(mutants.summary(self.outcomes(97, 3), {})[1])
-        # Those that do not build are not among the hundred.
+        # Mutants that do not build are not counted.
         self.assertFalse(mutants.summary(self.outcomes(48, 2, 50), {})[1])
 
     def test_a_reason_counts_for_its_own_mutant_only(self):

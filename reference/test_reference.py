@@ -16,16 +16,16 @@ from solvers import SOLVERS, osqp_direct
 from stand_in import WRONG_ANSWERS
 
 ROUNDING = 1e-12
-"""Relative; small well-conditioned problems in double precision."""
+"""Relative tolerance for small well-conditioned problems in double precision."""
 
 
 def solution(problem) -> Answer:
-    """The settled answer of OSQP."""
+    """Returns the settled answer of OSQP."""
     return settle(problem, contact_set(problem, osqp_direct(problem).answer)).answer
 
 
 def random_problem(random, dofs: int, rows: int):
-    """A dense positive definite problem with general rows, feasible because all gaps are positive at some point."""
+    """Returns a dense positive definite problem with general rows. It is feasible, because one point satisfies all rows strictly."""
     factor = random.standard_normal((dofs, dofs))
     contact = random.standard_normal((rows, dofs))
     inside = random.standard_normal(dofs)
@@ -41,7 +41,7 @@ class Generators(unittest.TestCase):
         answer = solution(raw_problems.two_springs(first=300.0, second=100.0, force=10.0, gap=0.05))
         self.assertAlmostEqual(answer.force, 10.0 - 0.05 / (1 / 300 + 1 / 100), delta=ROUNDING * 10)
 
-    def test_two_springs_out_of_reach_are_a_linear_solve(self):
+    def test_two_springs_out_of_reach_have_the_answer_of_a_linear_solve(self):
         answer = solution(raw_problems.two_springs(gap=0.2))
         self.assertAlmostEqual(answer.displacement[1], 10.0 * (1 / 300 + 1 / 100), delta=ROUNDING)
         self.assertEqual(answer.force, 0.0)
@@ -55,7 +55,7 @@ class Generators(unittest.TestCase):
         x = np.arange(1, 80) / 200
         self.assertLess(largest(answer.displacement[:79] - (0.5 * (0.4 - x) ** 2 - 0.08)), 1e-13)
 
-    def test_string_has_two_weak_nodes_where_it_was_built_to(self):
+    def test_string_has_two_weak_nodes_at_the_intended_places(self):
         problem = raw_problems.string_with_weak_nodes(elements=256, node=100)
         self.assertEqual(list(np.flatnonzero(weak_rows(problem, solution(problem))) + 1), [100, 156])
 
@@ -84,7 +84,7 @@ class Generators(unittest.TestCase):
             self.assertLess(largest(stiffness @ motion), 1e-14 * largest(stiffness))
 
     def test_rectangle_stretched_between_rollers_stores_half_m_eps_squared(self):
-        # eps_xx = 1 alone: energy = M/2 per volume with M = E (1-nu) / ((1+nu)(1-2nu)).
+        # For eps_xx = 1 only, the energy per volume is M/2 with M = E (1-nu) / ((1+nu)(1-2nu)).
         stiffness = elastic_block.rectangle_stiffness(0.3, 0.2, elastic_block.plane_strain(1e7, 0.3))
         stretch = np.array([0, 0, 0.3, 0, 0.3, 0, 0, 0])
         modulus = 1e7 * 0.7 / (1.3 * 0.4)
@@ -104,7 +104,7 @@ class Conditions(unittest.TestCase):
             with self.subTest(name), self.assertRaises(Rejected):
                 reject(self.problem, fault(self.answer))
 
-    def test_each_condition_sees_its_own_fault(self):
+    def test_each_condition_detects_its_own_fault(self):
         u, multiplier = self.answer.displacement, self.answer.multiplier
         open_row = int(np.flatnonzero(multiplier == 0.0)[0])
         pulled, shifted = multiplier.copy(), u.copy()
@@ -154,12 +154,12 @@ class Oracles(unittest.TestCase):
                 start = np.array([bits & 1, bits & 2, bits & 4], bool)
                 self.agree(problem, settle(problem, start).answer, expected)
 
-    def test_the_plain_loop_cycles_where_it_is_known_to(self):
+    def test_the_basic_loop_cycles_on_the_problems_made_for_it(self):
         for problem in (raw_problems.cycling_from_any_start(), raw_problems.cycling_from_all_open()):
             with self.assertRaises(oracles.Cycled):
                 oracles.active_set_loop(problem)
 
-    def test_the_plain_loop_equals_the_settled_answer_on_a_block(self):
+    def test_the_basic_loop_finds_the_settled_answer_on_a_block(self):
         problem = elastic_block.indentation(-0.05, columns=8, layers=4)
         self.agree(problem, oracles.active_set_loop(problem), solution(problem))
 
@@ -172,7 +172,7 @@ class Oracles(unittest.TestCase):
                 self.assertLess(apart.displacement, 1e-6)
                 self.assertLess(apart.multiplier, 1e-6)
 
-    def test_solvers_do_not_see_units(self):
+    def test_answers_of_solvers_do_not_depend_on_units(self):
         problem = raw_problems.two_springs()
         tiny = problem_of(problem.stiffness * 2.0**30, problem.load * 2.0**-10, problem.contact, problem.gap * 2.0**-40)
         for name, solver in SOLVERS.items():
@@ -181,7 +181,7 @@ class Oracles(unittest.TestCase):
                 np.testing.assert_array_equal(scaled.displacement * 2.0**40, plain.displacement)
                 np.testing.assert_array_equal(scaled.multiplier * 2.0**10, plain.multiplier)
 
-    def test_a_body_that_nothing_holds_is_not_settled(self):
+    def test_a_body_without_any_support_is_not_settled(self):
         rod = raw_problems.floating_rod()
         with self.assertRaises(Unsettled):
             settle(rod, np.zeros(1, bool))

@@ -1,4 +1,4 @@
-"""Tests of the validation as a command, with a stand-in for the package that can be told to be wrong."""
+"""Tests of the command `validate.py`, with a stand-in for the package that can return wrong answers."""
 
 import contextlib
 import dataclasses
@@ -51,14 +51,14 @@ class WithStandIn(unittest.TestCase):
         (self.folder / "indentation.json").write_text(json.dumps(scene))
 
     def standing_in(self, fault: str):
-        """The stand-in in place of the package and of the program."""
+        """Replaces the package and the program by the stand-in."""
         stack = contextlib.ExitStack()
         stack.enter_context(mock.patch("program.sg.solve", partial(stand_in.solve, fault=fault)))
         stack.enter_context(mock.patch("program.subprocess.run", stand_in.run))
         return stack
 
     def verdicts(self, case: Case, fault: str = "") -> dict:
-        """Verdicts of a case by the name of the answer."""
+        """Returns the verdicts of a case by the name of the answer."""
         folder = Path(tempfile.mkdtemp(dir=self.folder))
         with self.standing_in(fault):
             found, _ = validate.run_case(case, self.program, self.folder, folder, None)
@@ -87,7 +87,7 @@ class WrongAnswers(WithStandIn):
                 self.assertFalse(verdicts["signorini active-set"].passed)
                 self.assertTrue(verdicts["signorini penalty"].passed)
 
-    def test_every_wrong_word_fails(self):
+    def test_every_wrong_statement_fails(self):
         for fault in (*stand_in.WRONG_WORDS, "not_certified"):
             with self.subTest(fault):
                 verdicts = self.verdicts(BLOCK, fault)
@@ -107,7 +107,7 @@ class WrongAnswers(WithStandIn):
         with self.assertRaisesRegex(ProgramFailed, "^exit code 1: the disk is full$"):
             write_files(self.program, self.folder / "indentation.json", self.folder)
 
-    def test_another_stiffness_is_seen_by_the_twin(self):
+    def test_another_stiffness_is_detected_by_the_twin(self):
         softer = dataclasses.replace(BLOCK, twin=lambda: elastic_block.indentation(-0.05, young=5e6, **stand_in.BLOCK))
         self.assertFalse(self.verdicts(softer)["assembled again"].passed)
 
@@ -118,7 +118,7 @@ class WrongAnswers(WithStandIn):
 
 class Command(WithStandIn):
     def run_main(self, *arguments: str) -> tuple[int, str]:
-        """Exit code and output of the command."""
+        """Returns the exit code and the output of the command."""
         arguments = mock.patch.object(sys, "argv", ["validate.py", *arguments])
         with arguments, contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(out):
             return validate.main(), out.getvalue()
@@ -144,7 +144,7 @@ class Parts(unittest.TestCase):
     def setUp(self):
         self.problem = elastic_block.indentation(-0.05, **stand_in.BLOCK)
         self.settled = settle(self.problem, contact_set(self.problem, osqp_direct(self.problem).answer))
-        self.told = SimpleNamespace(contact_set=np.flatnonzero(self.settled.closed))
+        self.reported = SimpleNamespace(contact_set=np.flatnonzero(self.settled.closed))
 
     def test_a_stored_result_is_recognised_and_a_changed_one_is_not(self):
         entry = json.loads(json.dumps(snapshot.record(self.problem, self.settled, "osqp")))
@@ -160,7 +160,7 @@ class Parts(unittest.TestCase):
         answer = self.settled.answer
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
-            run = Run(answer, self.told, True)
+            run = Run(answer, self.reported, True)
             self.assertEqual(vtu_faults(folder, run), ["0 .vtu files instead of one"])
             stand_in.write_vtu(answer, self.problem, folder)
             self.assertEqual(vtu_faults(folder, run), [])
@@ -171,16 +171,16 @@ class Parts(unittest.TestCase):
             faults = vtu_faults(folder, run)
         self.assertEqual([fault.split(":")[0] for fault in faults], ["sigma_1", "pressure"])
 
-    def test_a_vtu_of_another_displacement_is_seen(self):
+    def test_a_vtu_with_another_displacement_is_detected(self):
         with tempfile.TemporaryDirectory() as name:
             stand_in.write_vtu(self.settled.answer, self.problem, Path(name))
             doubled = Answer(2.0 * self.settled.answer.displacement, self.settled.answer.multiplier)
-            self.assertEqual(len(vtu_faults(Path(name), Run(doubled, self.told, True))), 1)
+            self.assertEqual(len(vtu_faults(Path(name), Run(doubled, self.reported, True))), 1)
 
-    def test_a_vtu_of_another_contact_set_is_seen(self):
+    def test_a_vtu_with_another_contact_set_is_detected(self):
         with tempfile.TemporaryDirectory() as name:
             stand_in.write_vtu(self.settled.answer, self.problem, Path(name))
-            fewer = SimpleNamespace(contact_set=self.told.contact_set[1:])
+            fewer = SimpleNamespace(contact_set=self.reported.contact_set[1:])
             faults = vtu_faults(Path(name), Run(self.settled.answer, fewer, True))
         self.assertRegex(faults[0], "^contact is set at 5 points, the answer has 4$")
 

@@ -1,4 +1,4 @@
-"""A problem against the same problem assembled here, whatever the order of the dofs."""
+"""Compares a problem with the same problem assembled here, for any order of the dofs."""
 
 import numpy as np
 
@@ -8,11 +8,11 @@ from scaling import largest
 from settle import settle
 
 TWIN_TOLERANCE = 1e-9
-"""Relative; two assemblies round differently, by 1e-13 or so in u."""
+"""Relative tolerance. Two assemblies round differently, by about 1e-13 in u."""
 
 
 def twin_faults(problem: Problem, answer: Answer, twin: Problem) -> list[str]:
-    """Where the solution of a problem differs from that of its twin, whose rows stand in the same order."""
+    """Returns one sentence for each difference between a problem and its twin, whose rows have the same order."""
     if (problem.dofs, problem.rows) != (twin.dofs, twin.rows):
         return [f"{problem.dofs} dofs and {problem.rows} rows, assembled here {twin.dofs} and {twin.rows}"]
     own = settle(twin, answer.multiplier < 0.0).answer

@@ -1,8 +1,8 @@
 """Checks the program against independent solvers: `python reference/validate.py [--signorini PATH]`.
 
-For every case: solve with cvxpy and OSQP, settle each answer on its own contact set, hold them against each other,
-closed forms and dense oracles; solve with the package by its three methods and hold its answers, and the files that
-the program writes, against all of them. Exits with 1 on any disagreement, with 2 when there is nothing to run.
+Every case is solved by cvxpy and OSQP. Each answer is settled on its own contact set, and compared with the others, with closed forms
+and with dense oracles. The package solves the case by its three methods; its answers, and the files that the program writes, are
+compared with all of these. The exit code is 1 on any disagreement, and 2 if there is nothing to run.
 """
 
 import argparse
@@ -21,7 +21,7 @@ from cases import CLOSED_FORM_TOLERANCE, RAW_CASES, SCENE_CASES, Case, scene_fil
 from compare import EXACT, RAW, Verdict, broken, judge
 from kkt import Rejected
 from problem import Answer, Problem
-from program import METHODS, ProgramFailed, bound_faults, condensation_faults, problem_of_scene, solve, told_faults, write_files
+from program import METHODS, ProgramFailed, bound_faults, condensation_faults, problem_of_scene, report_faults, solve, write_files
 from settle import Settled, Unsettled, contact_set, settle
 from solvers import SOLVERS, NoAnswer
 from twin import twin_faults
@@ -31,7 +31,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 
 def independent(case: Case, problem: Problem) -> tuple[dict[str, Settled], list[Verdict]]:
-    """The settled answer of each solver by its name, and the verdicts on raw and settled answers."""
+    """Returns the settled answer of each solver by its name, and the verdicts on raw and settled answers."""
     raw, settled, verdicts = {}, {}, []
     for name, solver in SOLVERS.items():
         try:
@@ -50,7 +50,7 @@ def independent(case: Case, problem: Problem) -> tuple[dict[str, Settled], list[
 
 
 def known(case: Case, problem: Problem, settled: dict[str, Settled]) -> list[Verdict]:
-    """The verdicts of closed forms, of a twin assembled here and of a dense oracle on the settled answers."""
+    """Compares the settled answers with closed forms, with a twin assembled here and with a dense oracle."""
     references = [result.answer for result in settled.values()]
     verdicts = []
     if case.expected:
@@ -77,16 +77,16 @@ def known(case: Case, problem: Problem, settled: dict[str, Settled]) -> list[Ver
 
 
 def tested(case: Case, problem: Problem, references: list[Answer], method: str) -> Verdict:
-    """The verdict on the package's answer by a method, condensed and, where that is exact, on all dofs."""
+    """Judges the answer of the package by a method: condensed, and for an exact method on all dofs as well."""
     name = f"signorini {method}"
     try:
         result = solve(problem, method)
-        faults = told_faults(problem, method, result) + bound_faults(problem, result, references)
-        # The penalty answer is near and says how near; the other two are exact.
+        faults = report_faults(problem, method, result) + bound_faults(problem, result, references)
+        # The penalty answer is approximate with a stated bound; the other two are exact.
         exact = method != "penalty"
         if exact:
             faults += condensation_faults(problem, result, solve(problem, method, condense=False))
-        note = f"{result.told.seconds:.2f} s" + ("" if exact else f", bound {result.told.energy_error_bound:.1e}")
+        note = f"{result.reported.seconds:.2f} s" + ("" if exact else f", bound {result.reported.energy_error_bound:.1e}")
         tolerances = EXACT if exact else RAW
         return judge(case.name, name, problem, result.answer, references, tolerances, exact, faults, note)
     except (sg.SignoriniError, ValueError) as error:
@@ -94,7 +94,7 @@ def tested(case: Case, problem: Problem, references: list[Answer], method: str) 
 
 
 def pictured(case: Case, scene: Path, program: Path, folder: Path, problem: Problem, references) -> Verdict:
-    """The verdict on the .vtu file that the program writes of a scene."""
+    """Judges the .vtu file that the program writes for a scene."""
     try:
         write_files(program, scene, folder)
         result = solve(problem, "qp")
@@ -107,7 +107,7 @@ def pictured(case: Case, scene: Path, program: Path, folder: Path, problem: Prob
 def run_case(
     case: Case, program: Path | None, examples: Path, folder: Path, stored: dict
 ) -> tuple[list[Verdict], dict]:
-    """All verdicts on a case, and what is to be stored of it."""
+    """Returns all verdicts on a case, and the data to be stored."""
     try:
         scene = scene_file(case, examples, folder) if case.scene else None
         problem = problem_of_scene(scene) if scene else case.generate()
@@ -140,7 +140,7 @@ def main() -> int:
     parser.add_argument(
         "--cases", nargs="+", metavar="NAME", default=["*"], help="names or patterns of the cases to run"
     )
-    parser.add_argument("--without-program", action="store_true", help="only the problems made here, only the solvers")
+    parser.add_argument("--without-program", action="store_true", help="run only the problems made here and the independent solvers")
     parser.add_argument("--write-snapshot", action="store_true", help="write reference/results.json if all cases pass")
     options = parser.parse_args()
     if not options.without_program and not options.signorini.is_file():

@@ -1,4 +1,4 @@
-"""The .vtu file of a scene, read back with meshio and held against the answer of the package."""
+"""Reads the .vtu file of a scene with meshio, and compares it with the answer of the package."""
 
 from pathlib import Path
 
@@ -22,14 +22,14 @@ ARRAYS = {
     "pressure": (1,),
     "contact": (1,),
 }
-"""Names of the arrays and the numbers of components they may have."""
+"""Names of the arrays, and the numbers of components that they may have."""
 
 TEXT_TOLERANCE = 1e-6
-"""Of displacements read back: single precision or seven written digits would still pass."""
+"""Relative tolerance of the displacements in the file. Single precision or seven digits would still pass."""
 
 
 def vtu_faults(folder: Path, run: Run) -> list[str]:
-    """What is missing or wrong in the one .vtu file of `folder`, in words."""
+    """Returns one sentence for each fault of the .vtu file in `folder`."""
     files = sorted(folder.glob("*.vtu"))
     if len(files) != 1:
         return [f"{len(files)} .vtu files instead of one"]
@@ -42,8 +42,8 @@ def vtu_faults(folder: Path, run: Run) -> list[str]:
         return faults
 
     points = {name: np.asarray(values, float) for name, values in mesh.point_data.items()}
-    count = len(run.told.contact_set)
-    # 1 marks a closed candidate, 0 an open one, -1 a node that is no candidate.
+    count = len(run.reported.contact_set)
+    # 1 marks a closed candidate, 0 an open one, -1 a node that is not a candidate.
     closed = int(np.count_nonzero(points["contact"] == 1)) if "contact" in points else count
     if closed != count:
         faults.append(f"contact is set at {closed} points, the answer has {count}")
@@ -57,15 +57,15 @@ def vtu_faults(folder: Path, run: Run) -> list[str]:
 
 
 def farthest_from(written: np.ndarray, solved: np.ndarray) -> float:
-    """The largest distance of an entry of `solved` to the nearest entry of `written`, whatever their order."""
-    # The file has the supported dofs too, and its nodes in an order of its own.
+    """Returns the largest distance of an entry of `solved` from the nearest entry of `written`, in any order."""
+    # The file contains the supported dofs as well, and orders its nodes differently.
     ordered = np.sort(written)
     right = np.clip(np.searchsorted(ordered, solved), 1, ordered.size - 1)
     return largest(np.minimum(np.abs(solved - ordered[right - 1]), np.abs(solved - ordered[right])))
 
 
 def array_fault(mesh: meshio.Mesh, name: str) -> str:
-    """What is wrong with an array over the points or the cells, or nothing."""
+    """Returns the fault of an array over the points or the cells; an empty text if there is none."""
     if name in mesh.point_data:
         values, length = np.asarray(mesh.point_data[name], float), len(mesh.points)
     elif name in mesh.cell_data:

@@ -1,6 +1,7 @@
-//! What an accuracy costs with each method: the scene of the README and a block of 131,584 dofs.
+//! Measures the time that each method needs for an accuracy, on the scene of the README and on a block of 131,584 dofs.
 //!
-//! `cargo run --release --example accuracy_cost -- --out DIR` prints the table and writes it with pictures and values.
+//! `cargo run --release --example accuracy_cost -- --out DIR` prints the table and writes it, with pictures and values,
+//! into a folder.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -10,7 +11,7 @@ use signorini::output::{tradeoff_csv, tradeoff_plot, tradeoff_text, write_files,
 use signorini::study::{Tradeoff, TradeoffGrid, TradeoffPoint, tradeoff};
 use signorini::{Error, Scene, Watch};
 
-/// Energy errors, relative, that are asked for; the last is that of an answer exact but for rounding.
+/// Required relative errors in energy. The last one stands for an answer that is exact up to rounding.
 const ACCURACIES: [(&str, f64); 4] = [("1e-2", 1e-2), ("1e-4", 1e-4), ("1e-8", 1e-8), ("exact", 1e-11)];
 
 /// Method, precision and unknowns, in the order of the table.
@@ -75,7 +76,7 @@ fn run() -> Result<(), Error> {
     Ok(())
 }
 
-/// A unit block, clamped below, a parabola of radius 1 pressed into its top by a hundredth.
+/// A unit block that is clamped at its bottom, with a parabola of radius 1 pressed 0.01 into its top.
 fn block(cells: usize) -> Result<Scene, Error> {
     let axis = json!({ "points": [0, 1], "divisions": [cells] });
     let scene = json!({
@@ -94,7 +95,7 @@ fn block(cells: usize) -> Result<Scene, Error> {
     Scene::from_json(&scene.to_string(), "block")
 }
 
-/// Milliseconds of the cheapest point of each way that is at least so accurate.
+/// Rows of the table: for each method and accuracy, the milliseconds of the fastest point that reaches the accuracy.
 fn rows(title: &str, measured: &Tradeoff) -> String {
     let mesh = &measured.meshes[0];
     let of_mesh = mesh.discretisation_error.unwrap_or(f64::NAN);

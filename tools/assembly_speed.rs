@@ -1,8 +1,8 @@
-//! Seconds and bytes of the assembly of 1,000,000 dofs in Q4 and 300,000 dofs in Hex8, on one core:
+//! Measures seconds and bytes of the assembly of 1,000,000 dofs in Q4 and 300,000 dofs in Hex8, on one core:
 //! `cargo run --release --example assembly_speed`.
 //!
-//! Each case runs in a process of its own, so that its peak of memory is its own. The peak holds everything: mesh,
-//! numbers of the dofs, the program itself, and the finished matrix.
+//! Each case runs in a process of its own, so that its peak memory can be measured. The peak includes the mesh, the
+//! numbers of the dofs, the program itself and the finished matrix.
 
 use std::process::{Command, ExitCode};
 use std::time::Instant;
@@ -15,10 +15,10 @@ use signorini::fem::{DofMap, stiffness};
 use signorini::fem::{ElementKind, Mesh};
 use signorini::scene::{cuboid, rectangle};
 
-/// What assembly must not exceed: name, seconds.
+/// Name of each case, and the seconds that its assembly must not exceed.
 const CASES: [(&str, f64); 2] = [("Q4", 2.0), ("Hex8", 3.0)];
 
-/// Peak memory over the bytes of the finished matrix must not exceed this.
+/// Largest allowed ratio of the peak memory to the bytes of the finished matrix.
 const MOST_MEMORY: f64 = 1.5;
 
 fn lines(cells: usize) -> Vec<f64> {
@@ -35,7 +35,7 @@ fn mesh(name: &str) -> Result<(Mesh, Formulation), Error> {
     Ok((mesh, Formulation::Space))
 }
 
-/// A line of this process's status, in bytes; nothing where the system has no such file.
+/// Returns an entry of `/proc/self/status` in bytes, or `None` if the system has no such file.
 fn status(key: &str) -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = text.lines().find(|line| line.starts_with(key))?;

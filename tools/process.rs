@@ -1,4 +1,5 @@
-//! A program that measures: it runs itself for every case, so that no case has the memory of another.
+//! Helpers of the measuring programs: a program runs itself once for every case, so that the memory of each case is
+//! measured alone.
 
 use std::process::{Command, ExitCode, Stdio};
 
@@ -6,7 +7,7 @@ use serde_json::Value;
 
 pub type Failure = Box<dyn std::error::Error>;
 
-/// Runs the program on its arguments; an error is one line of standard error.
+/// Runs the program with its arguments, and prints an error as one line on standard error.
 pub fn ended(run: impl FnOnce(&[&str]) -> Result<(), Failure>) -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match run(&arguments.iter().map(String::as_str).collect::<Vec<_>>()) {
@@ -18,12 +19,12 @@ pub fn ended(run: impl FnOnce(&[&str]) -> Result<(), Failure>) -> ExitCode {
     }
 }
 
-/// The word behind `name`.
+/// Returns the argument that follows `name`.
 pub fn option<'a>(words: &[&'a str], name: &str) -> Option<&'a str> {
     words.iter().position(|word| *word == name).and_then(|place| words.get(place + 1)).copied()
 }
 
-/// What this program prints when it is run with `arguments`.
+/// Runs this program with `arguments` in a new process, and returns the JSON that it prints.
 pub fn child(arguments: &[&str]) -> Result<Value, Failure> {
     let output = Command::new(std::env::current_exe()?).args(arguments).stderr(Stdio::inherit()).output()?;
     if !output.status.success() {
@@ -32,7 +33,7 @@ pub fn child(arguments: &[&str]) -> Result<Value, Failure> {
     Ok(serde_json::from_slice(&output.stdout)?)
 }
 
-/// Bytes of the greatest memory that this process ever had; nothing where the system has no such file.
+/// Returns the peak memory of this process in bytes, or `None` if the system does not report it.
 pub fn peak_bytes() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = text.lines().find(|line| line.starts_with("VmHWM"))?;

@@ -1,4 +1,5 @@
-//! Seconds from a surface of a million triangles in a binary STL to the closest points of 50,000 places near it.
+//! Measures the seconds to read a surface of a million triangles from a binary STL, and to find the closest points of
+//! 50,000 places.
 //!
 //! `cargo run --release --example surface_speed`
 
@@ -7,10 +8,11 @@ use std::time::Instant;
 
 use signorini::internals::ClosedSurface;
 
-/// Cells around a torus and across its tube: two triangles each.
+/// Number of cells around the torus and around its tube; each cell has two triangles.
 const CELLS: [usize; 2] = [1000, 500];
 
-/// Places whose closest points are sought, as candidates of a contact: near the tube, on both sides of it.
+/// Number of places, near the tube on both sides of its surface, whose closest points are searched as for contact
+/// candidates.
 const PLACES: usize = 50_000;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -58,7 +60,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let sought = start.elapsed().as_secs_f64();
     println!("{} triangles read, checked and sorted into boxes: {read:.2} s", 2 * CELLS[0] * CELLS[1]);
-    println!("{PLACES} closest points, {inside} of them inside: {sought:.2} s");
-    println!("whole: {:.2} s; off the distance to the smooth torus by at most {off:.1e}", read + sought);
+    println!("{PLACES} closest points, {inside} inside: {sought:.2} s");
+    println!("total: {:.2} s; largest difference from the distance to the smooth torus: {off:.1e}", read + sought);
     Ok(())
 }

@@ -45,13 +45,13 @@ def on_an_inclined_support():
 
 
 def held_by_contact():
-    """No support at all: three walls and a load into their corner."""
+    """A box without supports, which a load pushes into the corner of three walls."""
     walls = [plane("bottom", "-z", [0, 0, -1]), plane("left", "-x", [-1, 0, 0]), plane("front", "-y", [0, -1, 0])]
     return scene(box(5), [], walls, loads=PRESSED)
 
 
 def sheared_under_a_plane():
-    """One edge of the top goes up, to a plane, the other one down."""
+    """A box under a plane, one edge of whose top moves up towards the plane while the other moves down."""
     loads = [{"traction": {"boundary": "top", "value": [-2e5, 0, 0]}}]
     return scene(box(5), CLAMPED, [plane("top", "+z", [0, 0, 1], (0, 0, 1.002))], loads=loads)
 

@@ -1,6 +1,8 @@
-"""The distributed programs against the direct path of signorini, on 1 to 8 ranks: python3 -m unittest discover distributed/tests
+"""Compares the distributed programs with a direct solve by signorini, on 1 to 8 ranks.
 
-Needs mpirun and petsc4py; the environment variable SIGNORINI names the program, `signorini` where it is not set.
+    python3 -m unittest discover distributed/tests
+
+The tests need mpirun and petsc4py. The environment variable SIGNORINI names the program; the default is `signorini`.
 """
 
 import csv
@@ -32,28 +34,28 @@ from problem import in_rows
 
 SIGNORINI = os.environ.get("SIGNORINI", "signorini")
 ENVIRONMENT = dict(os.environ)
-"""Without what MPI, which this process has begun for itself, would tell a run of its own."""
+"""The environment without the variables that MPI has set for this process, which would disturb the runs of mpirun."""
 
 MPIRUN = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--quiet"]
 
 APART = 1e-7
-"""Largest entries of two answers certified to 1e-9, relative: a hundred times that is what the norm of energy leaves open."""
+"""Relative tolerance of the largest entries of two answers certified to 1e-9. A bound in the energy norm leaves a factor of 100 open."""
 
 SUMMED = 1e-6
-"""A residual is a small difference of large sums: two programs agree on these digits of it."""
+"""Relative tolerance between the residuals of two programs. A residual is a small difference of large sums."""
 
 ROUNDING = 1e-10
-"""Of a small linear solve."""
+"""Rounding error of a small linear solve."""
 
 LAST = 1e-17
-"""Of a number that is itself rounding: what the order of a sum leaves beside terms of order one."""
+"""Absolute tolerance of a residual that is itself a rounding error, in sums of terms of order one."""
 
 MORE = 1.2
-"""Times the memory of a short run: what a rank keeps of its iterations would be as much again and more."""
+"""Largest ratio of the memory of a long run to that of a short one. Objects kept from each iteration would double it."""
 
 MEASURED = 1.2
-"""The bound takes no more than a tenth of the square of the dual norm from its Ritz value, and the repaired witness of
-`signorini verify` is another one."""
+"""Largest ratio of the error bounds of both programs. At most a tenth of the square of the dual norm depends on the Ritz value, and
+`signorini verify` repairs its multiplier in another way."""
 
 
 def mpi(ranks, program, *arguments, check=True):
@@ -111,7 +113,7 @@ class Case(unittest.TestCase):
         return folder
 
     def direct(self, scene):
-        """The answer of signorini's direct path."""
+        """Solves a scene by a factorisation with signorini, and returns the folder of the answer."""
         file, folder = self.folder / "scene.json", self.folder / "direct"
         file.write_text(json.dumps(scene))
         signorini("solve", file, "--method", "active-set", "--pictures", "none", "--out", folder)
@@ -131,7 +133,7 @@ class Case(unittest.TestCase):
             self.assertLess(np.abs(a - b).max(), APART * np.abs(a).max())
 
     def refused(self, ranks, problem, sentence, code, *options, program="solve.py"):
-        """Ends with this code and sentence, without a trace of Python and without a file of an answer."""
+        """Checks that a run ends with this code and sentence, without a Python traceback and without a file of an answer."""
         out = self.folder / "refused"
         done = mpi(ranks, program, problem, "--out", out, *options, check=False)
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
@@ -175,7 +177,7 @@ class AnswersOfTheDirectPath(Case):
         self.assertTrue(closed[:rows].any() and closed[rows:].any())
 
     def test_a_quarter_of_a_half_ball(self):
-        # Its cells are stretched up to a hundredfold, which costs any multigrid with point smoothers cycles.
+        # The aspect ratio of its cells is up to 100, for which every multigrid with point smoothers needs more cycles.
         self.check(scenes.quarter_ball(), (2,), most_cycles=100)
 
     def test_linear_tetrahedra(self):
@@ -201,7 +203,7 @@ class AnswersOfTheDirectPath(Case):
 
 class Cycles(Case):
     def cycled(self, divisions):
-        """A hierarchy in the face of one closed row, its stiffness, and the cycle as a function of arrays."""
+        """Returns a hierarchy in the face of one closed row, and its cycle as a function of arrays."""
         ranks = Ranks()
         problem = problems.read(ranks, str(self.exported(scenes.pressed_by_sphere(divisions))))
         hierarchy = Hierarchy(Bounds(problem))
@@ -215,7 +217,7 @@ class Cycles(Case):
 
         return hierarchy, cycle
 
-    def test_one_level_is_inverted_in_its_face(self):
+    def test_a_cycle_of_one_level_solves_exactly_in_its_face(self):
         with mock.patch.object(hierarchies, "built", one_level):
             hierarchy, cycle = self.cycled(1)
         self.assertEqual(hierarchy.levels, [])
@@ -228,7 +230,7 @@ class Cycles(Case):
         rest[held] = 0.0
         self.assertLess(np.abs(rest).max(), ROUNDING)
 
-    def test_a_cycle_is_symmetric_and_moves_nothing_that_is_held(self):
+    def test_a_cycle_is_symmetric_and_does_not_move_closed_rows(self):
         hierarchy, cycle = self.cycled(4)
         self.assertGreater(len(hierarchy.levels), 0)
         size = hierarchy.stiffness.getSize()[0]
@@ -276,11 +278,11 @@ class Memory(Case):
 
 
 class Certificates(Case):
-    def test_the_numbers_of_signorini_verify(self):
+    def test_the_certificate_has_the_numbers_of_signorini_verify(self):
         problem = self.exported(scenes.pressed_by_sphere(6))
         out = self.solved(2, problem)
         u, forces = array(out / "u.mtx"), array(out / "lambda.mtx")
-        # An answer that is off in every way: forces out of balance, one that pulls, rows behind their obstacle.
+        # An answer with every fault: unbalanced forces, a force that pulls, rows that penetrate.
         forces[np.argmax(forces == 0.0)] = 1e-6 * np.abs(forces).max()
         written(self.folder / "u.mtx", (u * (1.0 + 1e-6)).tolist())
         written(self.folder / "lambda.mtx", forces.tolist())
@@ -315,7 +317,7 @@ class Certificates(Case):
 
 
 class Starts(Case):
-    def test_an_answer_is_found_at_once_from_itself_and_sooner_from_a_near_one(self):
+    def test_a_start_from_the_answer_needs_no_cycle_and_one_nearby_needs_fewer(self):
         problem = self.exported(scenes.pressed_by_sphere(10))
         out = self.solved(2, problem)
         cycles = [json.loads((self.solved(3, problem, "--start", start) / "log.json").read_text())["iterations"]
@@ -332,26 +334,26 @@ class Starts(Case):
 
 
 class Refusals(Case):
-    def test_rows_between_two_bodies(self):
+    def test_rows_between_two_bodies_are_refused(self):
         self.refused(2, self.exported(scenes.between_two_bodies()), "couples nodes", 1)
 
-    def test_rows_of_one_node_that_are_neither_parallel_nor_at_right_angles(self):
+    def test_rows_of_one_node_that_are_neither_parallel_nor_perpendicular_are_refused(self):
         self.refused(2, self.exported(scenes.under_two_inclined_planes()), "neither parallel nor perpendicular", 1)
 
-    def test_a_motion_that_nothing_holds(self):
+    def test_a_motion_that_nothing_prevents_is_refused(self):
         problem = self.exported(scenes.held_by_contact())
         gap = problem / "g.petsc"
         content = bytearray(gap.read_bytes())
         with (problem / "rows.csv").open() as stream:
             walls = [line for line, row in enumerate(csv.DictReader(stream)) if abs(float(row["normal_x"])) > 0.5]
         self.assertTrue(walls)
-        # Without the wall at the left the load pushes the body along -x, for ever.
+        # Without the wall at the left, the load pushes the body along -x without end.
         for row in walls:
             content[8 + 8 * row : 16 + 8 * row] = struct.pack(">d", 1e20)
         gap.write_bytes(content)
         self.refused(2, problem, "not enough supports", 3)
 
-    def test_files_that_are_missing_cut_off_or_do_not_fit(self):
+    def test_files_that_are_missing_truncated_or_do_not_fit_are_refused(self):
         problem = self.exported(scenes.pressed_by_sphere(4))
         self.refused(2, self.folder / "nothing", "neither K.petsc nor K.mtx", 1)
         stiffness = (problem / "K.petsc").read_bytes()
@@ -370,7 +372,7 @@ class Refusals(Case):
         (problem / "f.petsc").write_bytes(load)
         self.refused(2, problem, "No such file", 1, "--start", self.folder / "nothing")
 
-    def test_a_near_null_space_that_is_wrong(self):
+    def test_an_invalid_near_null_space_is_refused_and_a_bad_one_does_not_change_the_answer(self):
         problem = self.exported(scenes.pressed_by_sphere(6), "matrix-market")
         dofs = len(array(problem / "f.mtx"))
         right = self.solved(1, problem)
@@ -379,17 +381,17 @@ class Refusals(Case):
         self.refused(2, problem, "near-null space is zero", 1)
         written(near_null, [0.0] * (dofs - 1))
         self.refused(2, problem, "near_null.mtx must have", 1)
-        # Noise costs cycles, and changes nothing about the answer.
+        # Noise costs cycles, but does not change the answer.
         written(near_null, np.random.default_rng(1).standard_normal(dofs).tolist())
         self.assert_same(right, self.solved(2, problem))
 
-    def test_options_that_are_none(self):
+    def test_an_option_out_of_range_is_refused(self):
         problem = self.exported(scenes.pressed_by_sphere(2))
         self.refused(1, problem, "--tolerance must be", 2, "--tolerance", "0")
 
 
 class Ends(Case):
-    def test_a_full_disk_leaves_nothing(self):
+    def test_a_full_disk_leaves_no_file(self):
         problem, out = self.exported(scenes.pressed_by_sphere(4)), self.folder / "out"
         out.mkdir()
         (out / ".lambda.mtx.partial").symlink_to("/dev/full")
@@ -398,7 +400,7 @@ class Ends(Case):
         self.assertIn("No space left", done.stderr)
         self.assertEqual(list(out.iterdir()), [])
 
-    def test_a_killed_rank_ends_all_and_leaves_no_answer(self):
+    def test_a_killed_rank_ends_all_ranks_and_leaves_no_answer(self):
         problem, out = self.exported(scenes.pressed_by_sphere(12)), self.folder / "out"
         command = [*MPIRUN, "-n", "2", sys.executable, str(PROGRAMS / "solve.py"), str(problem), "--out", str(out), "--progress"]
         running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)

@@ -1,6 +1,6 @@
-"""What `signorini export --format petsc` writes, read by PETSc itself and held against the Matrix Market files of the same scene.
+"""Reads the files of `signorini export --format petsc` with PETSc, and compares them with the Matrix Market files of the same scene.
 
-SIGNORINI=target/release/signorini /usr/bin/python3 -m unittest discover -s distributed/tests -p test_export.py
+    SIGNORINI=target/release/signorini /usr/bin/python3 -m unittest discover -s distributed/tests -p test_export.py
 
 The program is $SIGNORINI, or target/release/signorini of this repository. petsc4py is Debian's `python3-petsc4py`.
 """
@@ -21,7 +21,7 @@ PROGRAM = Path(os.environ.get("SIGNORINI", ROOT / "target/release/signorini")).r
 try:
     import petsc4py
 except ImportError:
-    # Debian keeps it beside PETSc.
+    # Debian installs petsc4py in the folder of PETSc.
     beside = sorted(Path("/usr/lib/petscdir").glob("petsc*/*real*/lib/python3/dist-packages"))
     sys.path.extend(map(str, beside[-1:]))
     import petsc4py
@@ -35,7 +35,7 @@ def axis(cells):
 
 
 def block():
-    """A block on rollers along three axes, an edge of it inclined, on springs."""
+    """A block on rollers along three axes and on springs, with an inclined support at one corner."""
     return {
         "model": "space",
         "body": {"box": {"x": axis(4), "y": axis(3), "z": axis(4), "element": "hex8"}},
@@ -72,7 +72,7 @@ def scenes():
 
 
 def matrix_market(file):
-    """A file of coordinates or an array, as a dense array; a symmetric one with both triangles."""
+    """Reads a Matrix Market file as a dense array; a symmetric matrix gets both triangles."""
     header, sizes, *lines = [line for line in file.read_text().splitlines() if line and not line.startswith("% ")]
     sizes = [int(word) for word in sizes.split()]
     if "array" in header:
@@ -90,7 +90,7 @@ def load(made, file):
     viewer = PETSc.Viewer().createBinary(str(file), "r", comm=PETSc.COMM_SELF)
     made.load(viewer)
     viewer.destroy()
-    # K.petsc.info sets it for all matrices that follow.
+    # K.petsc.info sets this option for all matrices that are read afterwards.
     PETSc.Options().delValue("matload_block_size")
     return made
 
@@ -106,7 +106,7 @@ def vec(file):
 
 
 def dense(matrix):
-    """The values of a sparse matrix, and which of them it stores."""
+    """Returns the values of a sparse matrix, and a mask of the stored entries."""
     starts, columns, values = matrix.getValuesCSR()
     found, stored = numpy.zeros(matrix.getSize()), numpy.zeros(matrix.getSize(), dtype=bool)
     for row, (start, end) in enumerate(zip(starts, starts[1:])):
@@ -139,7 +139,7 @@ class Export(unittest.TestCase):
         expected = matrix_market(text / "K.mtx")
         self.assertTrue((values[numpy.ix_(free, free)] == expected).all())
         supported = numpy.setdiff1d(numpy.arange(len(values)), free)
-        # A supported component has the mean of the diagonal, and nothing beside it.
+        # The row of a supported component has only a diagonal entry, the mean of the diagonal of K.
         mean = numpy.abs(numpy.diag(expected)).mean()
         self.assertTrue(numpy.allclose(values[supported, supported], mean, rtol=1e-13, atol=0))
         own = numpy.zeros_like(stored)
@@ -155,7 +155,7 @@ class Export(unittest.TestCase):
         self.at_their_nodes(petsc, free, dimension)
 
     def at_their_nodes(self, petsc, free, dimension):
-        """dofs.csv tells the coordinates of the node of each free dof."""
+        """Checks that the coordinates of the nodes are those of the free dofs in dofs.csv."""
         coordinates = vec(petsc / "coordinates.petsc").reshape(-1, dimension)
         lines = [line.split(",") for line in (petsc / "dofs.csv").read_text().splitlines()[1:]]
         at = numpy.array([[float(word) for word in line[3 : 3 + dimension]] for line in lines])

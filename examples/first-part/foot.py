@@ -1,9 +1,9 @@
-"""A machine foot: a disc of 40 mm with a domed top, meshed with ten-node tetrahedra. Writes foot.msh.
+"""Meshes a machine foot, a disc of 40 mm with a domed top, with ten-node tetrahedra, and writes foot.msh.
 
     pip install gmsh
     python foot.py [SIZE]
 
-SIZE is the length of the edges where the dome may touch, in mm; 3 if it is left out.
+SIZE is the edge length around the expected contact at the top of the dome, in mm; the default is 3.
 """
 
 import sys
@@ -21,7 +21,7 @@ sphere = occ.addSphere(0, 0, 16 - 80, 80)
 occ.intersect([(3, cylinder)], [(3, sphere)])
 occ.synchronize()
 
-# Names for what is held and what may touch: the faces by the heights of their centres.
+# Name the supported face and the contact face, which are found by the heights of their centres.
 height = {tag: occ.getCenterOfMass(2, tag)[2] for _, tag in gmsh.model.getEntities(2)}
 lowest, highest = min(height, key=height.get), max(height, key=height.get)
 gmsh.model.addPhysicalGroup(2, [lowest], name="base")

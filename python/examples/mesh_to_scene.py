@@ -1,7 +1,7 @@
-"""From a mesh of Gmsh, made by pygmsh or by anything that meshio reads, to a scene and its press force.
+"""Turns a mesh in the format of Gmsh, made by pygmsh or meshio, into a scene, and computes its press force.
 
-pygmsh makes the mesh where Gmsh is installed; `mesh` below makes a like one by hand, with meshio alone, and writes it as Gmsh does:
-physical groups are the names of body and boundaries.
+`by_pygmsh` needs Gmsh. Without it, `by_meshio` makes a similar mesh with meshio alone and writes it in the same format: the names of
+the physical groups are the names of the body and its boundaries.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ WIDTH, HEIGHT = 2.0, 1.0
 
 
 def by_pygmsh(file: Path) -> None:
-    """The block by pygmsh, with its groups `steel`, `base` and `crown`."""
+    """Writes the mesh of the block by pygmsh, with the groups `steel`, `base` and `crown`."""
     import pygmsh
 
     with pygmsh.geo.Geometry() as geometry:
@@ -30,7 +30,7 @@ def by_pygmsh(file: Path) -> None:
 
 
 def by_meshio(file: Path, cells: int = 16) -> None:
-    """The same block of triangles, by meshio."""
+    """Writes a triangular mesh of the same block by meshio."""
     x, y = np.meshgrid(np.linspace(0, WIDTH, 2 * cells + 1), np.linspace(0, HEIGHT, cells + 1))
     points = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
     across = 2 * cells + 1
@@ -51,7 +51,7 @@ def by_meshio(file: Path, cells: int = 16) -> None:
 
 
 def scene(file: Path) -> sg.Scene:
-    """A punch with a round face of radius 1 pressed 0.01 into the crown of the block."""
+    """Returns the scene: a punch with a round face of radius 1 mm is pressed 0.01 mm into the crown of the block."""
     return sg.Scene(
         {
             "title": "A punch on a block from Gmsh",

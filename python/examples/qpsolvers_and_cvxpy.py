@@ -1,7 +1,7 @@
-"""A quadratic program by signorini, by the solvers of qpsolvers, and by cvxpy.
+"""Solves a quadratic program by signorini, by the solvers of qpsolvers, and by cvxpy.
 
-`register` makes signorini one of the solvers of qpsolvers, as its own modules do it: then `qpsolvers.solve_qp(..., solver="signorini")`
-calls it, and so does everything that is built on qpsolvers.
+`register` adds signorini to the solvers of qpsolvers, in the same way as the modules of qpsolvers do it. Then
+`qpsolvers.solve_qp(..., solver="signorini")`, and every program that is built on qpsolvers, can use it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import signorini as sg
 
 
 def solve_problem(problem: Any, initvals: Any = None, verbose: bool = False, **options: Any) -> Any:
-    """Solves a `qpsolvers.Problem` by signorini; the form that qpsolvers asks of a solver."""
+    """Solves a `qpsolvers.Problem` by signorini. The signature is the one that qpsolvers requires of a solver."""
     data = (problem.P, problem.q, problem.G, problem.h, problem.A, problem.b, problem.lb, problem.ub)
     answer = sg.qp.solve_problem(*data, initvals=initvals, **options)
     found = qpsolvers.Solution(problem)
@@ -26,7 +26,7 @@ def solve_problem(problem: Any, initvals: Any = None, verbose: bool = False, **o
 
 
 def register() -> None:
-    """Makes "signorini" a solver of qpsolvers."""
+    """Adds "signorini" to the solvers of qpsolvers."""
     from qpsolvers import solvers
 
     if "signorini" not in solvers.available_solvers:
@@ -37,7 +37,7 @@ def register() -> None:
 
 
 def program(unknowns: int = 40) -> tuple[Any, ...]:
-    """A chain of springs between two walls, its ends held together: P, q, G, h, A, b, lb, ub."""
+    """Returns P, q, G, h, A, b, lb, ub of a chain of springs between two walls, whose ends have the same displacement."""
     P = 2 * np.eye(unknowns) - np.eye(unknowns, k=1) - np.eye(unknowns, k=-1)
     q = -0.05 * np.sin(np.linspace(0.0, 3 * np.pi, unknowns))
     G = np.eye(unknowns, k=1)[:-1] - np.eye(unknowns)[:-1]
@@ -48,7 +48,7 @@ def program(unknowns: int = 40) -> tuple[Any, ...]:
 
 
 def main() -> dict[str, float]:
-    """The objective by each of the three."""
+    """Returns the objective found by each solver."""
     register()
     data = program()
     objectives = {}

@@ -1,12 +1,12 @@
-"""A stiffness in compressed rows with the coordinates of its nodes, as dolfinx keeps it: multigrid with rigid-body modes.
+"""Multigrid with rigid-body modes for a stiffness in compressed rows with the coordinates of its nodes, as in dolfinx.
 
-In dolfinx the arrays come without a copy, after `A = fem.assemble_matrix(form, bcs)`:
+In dolfinx these arrays are available without a copy, after `A = fem.assemble_matrix(form, bcs)`:
 
     K = A.to_scipy()                                # signorini.Problem also takes A itself
-    x = V.tabulate_dof_coordinates()                # a row for each node
+    x = V.tabulate_dof_coordinates()                # one row per node
 
-Dofs that are held stay in K with a unit diagonal, so that all dofs of a node follow each other and `coordinates` gives the modes.
-This example makes such arrays of an elastic cube without dolfinx, by scikit-fem.
+Fixed dofs stay in K with a diagonal entry of their own. All dofs of a node therefore follow each other, and the modes can be computed
+from `coordinates`. This example assembles such arrays of an elastic cube by scikit-fem, so that it does not need dolfinx.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 
 def cube(cells: int) -> tuple[sparse.csr_matrix, np.ndarray, np.ndarray, np.ndarray]:
-    """Stiffness (held dofs with a unit diagonal), coordinates, the dofs held, and the nodes of the top."""
+    """Returns the stiffness (fixed dofs have only a diagonal entry), the coordinates, the fixed dofs, and the nodes of the top."""
     line = np.linspace(0.0, 1.0, cells + 1)
     basis = Basis(MeshHex.init_tensor(line, line, line), ElementVector(ElementHex1()))
     stiffness = linear_elasticity(*lame_parameters(1e7, 0.3)).assemble(basis)
     nodes = basis.mesh.p.T
-    # Node by node, [x_0, y_0, z_0, x_1, ...].
+    # Order the dofs node by node: [x_0, y_0, z_0, x_1, ...].
     order = basis.nodal_dofs.T.reshape(-1)
     stiffness = sparse.csr_matrix(stiffness[order][:, order])
     held = np.flatnonzero(np.repeat(np.isclose(nodes[:, 2], 0.0), 3))
@@ -36,9 +36,9 @@ def cube(cells: int) -> tuple[sparse.csr_matrix, np.ndarray, np.ndarray, np.ndar
 
 
 def main(cells: int = 10) -> float:
-    """The largest difference of the answers by multigrid and by the factor, relative."""
+    """Returns the largest relative difference between the displacements by multigrid and by a factorisation."""
     stiffness, nodes, _, top = cube(cells)
-    # A plate comes down by 0.02 onto a dome of the top: gaps of its nodes.
+    # A rigid dome is lowered by 0.02 into the top of the cube; these are the gaps of its nodes.
     gap = 0.1 * ((nodes[top, 0] - 0.5) ** 2 + (nodes[top, 1] - 0.5) ** 2) - 0.02
     rows = sparse.csr_array((np.ones(len(top)), (np.arange(len(top)), 3 * top + 2)), shape=(len(top), stiffness.shape[0]))
     problem = sg.Problem(stiffness, np.zeros(stiffness.shape[0]), rows, gap, coordinates=nodes)

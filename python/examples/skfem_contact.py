@@ -1,8 +1,8 @@
-"""An elastic block pressed onto a rigid parabola: assembled by scikit-fem, contact by signorini, compared with a scene.
+"""Contact of an elastic block, assembled by scikit-fem, with a rigid parabola; the result is compared with a scene.
 
-The unit block in plane strain, held at its bottom, is the one of `examples/indentation.json`. Its obstacle reaches down to
-y = 1 - d + x'^2 / (2 R) at the top; rows are u_y <= gap at the nodes there. The scene assembles the same block by itself, so that the
-forces have to agree.
+The unit block in plane strain is fixed at its bottom, as in `examples/indentation.json`. The obstacle above it is the parabola
+y = 1 - d + (x - 1/2)^2 / (2 R); the contact rows are u_y <= gap at the nodes of the top. The scene assembles the same block by
+itself, so that the two forces must agree.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ YOUNG, POISSON, RADIUS, DEPTH, CELLS = 1e7, 0.3, 0.5, 0.03, 24
 
 
 def assembled() -> tuple[sg.Problem, np.ndarray, Basis]:
-    """The problem, its unknowns among all dofs, and the basis."""
+    """Returns the problem, the positions of its unknowns among all dofs, and the basis."""
     line = np.linspace(0.0, 1.0, CELLS + 1)
     mesh = MeshQuad.init_tensor(line, line)
     basis = Basis(mesh, ElementVector(ElementQuad1()), intorder=2)
@@ -25,21 +25,22 @@ def assembled() -> tuple[sg.Problem, np.ndarray, Basis]:
     held = basis.get_dofs(lambda x: np.isclose(x[1], 0.0)).all()
     stiffness, load, _, free = condense(stiffness, np.zeros(basis.N), D=held)
 
-    # A row for each node of the top: + towards the obstacle, which is above.
+    # One row per node of the top, positive towards the obstacle, which is above.
     top = mesh.nodes_satisfying(lambda x: np.isclose(x[1], 1.0))
     upward = basis.nodal_dofs[1, top]
     place = np.searchsorted(free, upward)
     rows = sparse.csr_array((np.ones(len(top)), (np.arange(len(top)), place)), shape=(len(top), len(free)))
     gap = (mesh.p[0, top] - 0.5) ** 2 / (2 * RADIUS) - DEPTH
     nodes = basis.doflocs[:, free]
-    # Rigid-body modes of the free dofs, for multigrid: they are not all dofs of their nodes, so that near_null says them.
+    # Rigid-body modes of the free dofs, for multigrid. The fixed dofs are missing, so that `coordinates` could not be
+    # used.
     is_y = np.isin(free, basis.nodal_dofs[1])
     modes = np.stack([~is_y, is_y, np.where(is_y, nodes[0], -nodes[1])], axis=1).astype(float)
     return sg.Problem(stiffness, load, rows, gap, near_null=modes), free, basis
 
 
 def scene() -> sg.Scene:
-    """The same block and obstacle as a scene."""
+    """Returns the same block and obstacle as a scene."""
     side = {"points": [0, 1], "divisions": [CELLS]}
     return sg.Scene(
         {
@@ -68,7 +69,7 @@ def main() -> tuple[float, float]:
     by_scene = scene().solve()
     print(f"the scene:                {by_scene.contact_force:.9g} N, {len(by_scene.contact_set)} nodes in contact")
 
-    # One factor for many depths: what a press force needs.
+    # One factor serves many depths, which give the press force as a function of the depth.
     prepared = sg.prepare(problem, gaps=8)
     known = None
     for deeper in np.linspace(-0.02, 0.01, 4):

@@ -1,7 +1,7 @@
-"""A membrane over an obstacle: assembled by scikit-fem, contact by signorini.
+"""Contact of a membrane, assembled by scikit-fem, with a plane obstacle.
 
-A circular membrane of unit tension, held at its rim, is pressed by p = 4 onto a plane at the depth c = 0.5. Without the plane it would
-sag to u = (1 - r^2) p / 4, by 1 at its middle. In touch it lies flat up to a radius a and hangs from there to the rim:
+A circular membrane of unit tension, fixed at its rim, is pressed by p = 4 onto a plane at the depth c = 0.5. Without the plane its sag
+would be u = (1 - r^2) p / 4, with u = 1 at the centre. With the plane it is flat up to a radius a and sags freely from there to the rim:
 
     u = c for r <= a,    u = p/4 (1 - r^2) + p a^2/2 log r beyond,    with  p/4 (1 - a^2) + p a^2/2 log a = c
 """
@@ -19,7 +19,7 @@ PRESSURE, DEPTH = 4.0, 0.5
 
 
 def exact(radius: np.ndarray) -> tuple[np.ndarray, float]:
-    """The exact sag, and the radius of the contact."""
+    """Returns the exact sag at each radius, and the radius of the contact zone."""
     free = lambda a: PRESSURE / 4 * (1 - a * a) + PRESSURE * a * a / 2 * np.log(a) - DEPTH  # noqa: E731
     edge = brentq(free, 1e-6, 1 - 1e-6)
     beyond = np.maximum(radius, edge)
@@ -30,9 +30,9 @@ def exact(radius: np.ndarray) -> tuple[np.ndarray, float]:
 def main(refinements: int = 5) -> float:
     basis = Basis(MeshTri.init_circle(refinements), ElementTriP1())
     stiffness, load = laplace.assemble(basis), PRESSURE * unit_load.assemble(basis)
-    # What scikit-fem solves with `solve(*condense(...))` is the body without the obstacle.
+    # Without the obstacle, scikit-fem would solve the membrane by `solve(*condense(...))`.
     stiffness, load, sag, inside = condense(stiffness, load, D=basis.get_dofs())
-    # A bound on every unknown: B is the identity.
+    # Every unknown has a bound, so that B is the identity.
     rows = sparse.eye_array(len(inside), format="csr")
     answer = sg.solve(sg.Problem(stiffness, load, rows, np.full(len(inside), DEPTH)))
     sag[inside] = answer.u

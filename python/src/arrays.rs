@@ -1,4 +1,5 @@
-//! Numbers from and to Python: anything with the buffer of a numpy array is read in place, everything else by way of one.
+//! Arrays from and to Python. Arrays of numpy are read in place; other objects are converted into arrays of numpy
+//! first.
 
 use pyo3::buffer::{Element, PyBuffer};
 use pyo3::prelude::*;
@@ -7,7 +8,7 @@ use pyo3::types::PyBytes;
 
 use crate::errors::{bad_input, bad_type, no_memory};
 
-/// A function or class of a Python module, imported once.
+/// Returns a function or class of a Python module, which is imported only once.
 pub fn imported<'py>(
     py: Python<'py>,
     cell: &'static PyOnceLock<Py<PyAny>>,
@@ -18,7 +19,7 @@ pub fn imported<'py>(
     Ok(found.bind(py).clone())
 }
 
-/// A function of numpy.
+/// Returns a function of numpy.
 macro_rules! numpy {
     ($py:expr, $name:literal) => {{
         static FOUND: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
@@ -26,24 +27,26 @@ macro_rules! numpy {
     }};
 }
 
-/// The values of a contiguous buffer, in place.
+/// Returns the values of a contiguous buffer, in place.
 ///
-/// The caller is attached to the interpreter as long as the slice lives, so that no Python code changes it meanwhile.
+/// The caller stays attached to the interpreter while the slice lives, so that no Python code can change it.
 pub fn slice<'a, T: Element>(buffer: &'a PyBuffer<T>, _attached: Python<'_>) -> Option<&'a [T]> {
     if buffer.item_count() == 0 {
         return Some(&[]);
     }
-    // SAFETY: the buffer holds `item_count` aligned values of this type, which `PyBuffer::get` has checked, and stays alive and in
-    // place as long as it is borrowed. Nobody writes to it: only code of the interpreter could, and that waits for this thread.
+    // SAFETY: the buffer holds `item_count` aligned values of this type, which `PyBuffer::get` has checked, and it
+    // stays alive and in place while it is borrowed. Nothing writes to it: only code of the interpreter could, and that
+    // waits for this thread.
     buffer.as_slice_ptr().map(|values| unsafe { &*values.as_ptr() })
 }
 
-/// The class of a Python object, for sentences.
+/// Returns the class name of a Python object, for messages.
 pub fn kind_of(object: &Bound<'_, PyAny>) -> String {
     object.get_type().name().map_or_else(|_| "object".into(), |name| name.to_string())
 }
 
-/// What `name` is as an array, if its entries are of one of the `kinds` of numpy; others are refused with a sentence.
+/// Converts the argument `name` into an array of numpy whose dtype has one of the `kinds`; other objects are refused
+/// with a message.
 fn array_of<'py>(name: &str, object: &Bound<'py, PyAny>, kinds: &str, wanted: &str) -> PyResult<Bound<'py, PyAny>> {
     let py = object.py();
     if object.is_none() {
@@ -66,17 +69,17 @@ fn array_of<'py>(name: &str, object: &Bound<'py, PyAny>, kinds: &str, wanted: &s
     Ok(array)
 }
 
-/// The array as one of this type, contiguous in the order of C and aligned.
+/// Converts an array to this dtype, contiguous in C order and aligned.
 fn required<'py>(array: &Bound<'py, PyAny>, dtype: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     numpy!(array.py(), "require")?.call1((array, dtype, "CA"))
 }
 
-/// The array as one of `f64`, contiguous in the order of C.
+/// Converts an array to `f64`, contiguous in C order.
 fn doubles<'py>(array: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     required(array, numpy!(array.py(), "float64")?)
 }
 
-/// The buffer of an array of this type in the byte order of the machine; none of any other.
+/// Returns the buffer of an array of this type in the byte order of the machine, and `None` for any other array.
 fn native<T: Element>(array: &Bound<'_, PyAny>) -> Option<PyBuffer<T>> {
     let buffer = PyBuffer::<T>::get(array).ok()?;
     let swapped: &[u8] = if cfg!(target_endian = "little") { b">!" } else { b"<" };
@@ -84,7 +87,7 @@ fn native<T: Element>(array: &Bound<'_, PyAny>) -> Option<PyBuffer<T>> {
     (!is_swapped).then_some(buffer)
 }
 
-/// Real numbers in one dimension, which `take` reads in place if they are contiguous doubles.
+/// Passes a one-dimensional array of real numbers to `take`, in place if it consists of contiguous doubles.
 pub fn with_reals<T>(name: &str, object: &Bound<'_, PyAny>, take: impl FnOnce(&[f64]) -> PyResult<T>) -> PyResult<T> {
     let py = object.py();
     let is_array = object.is_instance(&numpy!(py, "ndarray")?)?;
@@ -95,7 +98,7 @@ pub fn with_reals<T>(name: &str, object: &Bound<'_, PyAny>, take: impl FnOnce(&[
     {
         return take(values);
     }
-    let array = array_of(name, object, "fiub", "an array of real numbers in one dimension, float64 for the best")?;
+    let array = array_of(name, object, "fiub", "an array of real numbers in one dimension, preferably float64")?;
     let shape: Vec<usize> = array.getattr("shape")?.extract()?;
     if shape.len() != 1 {
         let shape = array.getattr("shape")?;
@@ -106,12 +109,12 @@ pub fn with_reals<T>(name: &str, object: &Bound<'_, PyAny>, take: impl FnOnce(&[
     take(slice(&buffer, py).unwrap_or(&[]))
 }
 
-/// Real numbers in one dimension, copied once.
+/// Copies a one-dimensional array of real numbers.
 pub fn reals(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     with_reals(name, object, |values| copied(object.py(), values))
 }
 
-/// Real numbers in two dimensions, row by row, with their shape; `take` reads them in place if they are contiguous doubles.
+/// Passes a two-dimensional array, row by row, and its shape to `take`, in place if it consists of contiguous doubles.
 pub fn with_table<T>(
     name: &str,
     object: &Bound<'_, PyAny>,
@@ -128,14 +131,14 @@ pub fn with_table<T>(
     take(slice(&buffer, py).unwrap_or(&[]), [rows, columns])
 }
 
-/// The columns of a table, each as long as the table has rows.
+/// Returns the columns of a two-dimensional array.
 pub fn columns(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<f64>>> {
     with_table(name, object, |values, [_, columns]| {
         Ok((0..columns).map(|column| values.iter().skip(column).step_by(columns).copied().collect()).collect())
     })
 }
 
-/// Indices as scipy keeps them: in place if they are of 32 or 64 bits.
+/// Index arrays of scipy. They are read in place if they have 32 or 64 bits.
 pub enum Indices {
     Short(PyBuffer<i32>),
     Long(PyBuffer<i64>),
@@ -163,7 +166,7 @@ impl Indices {
         }
     }
 
-    /// Copies them; an index that is negative becomes the largest there is, which lies in no matrix.
+    /// Copies the indices. A negative index becomes `usize::MAX`, which lies outside every matrix.
     pub fn to_usize(&self, py: Python<'_>) -> PyResult<Vec<usize>> {
         fn each<I: Copy + TryInto<usize>>(py: Python<'_>, indices: &[I]) -> PyResult<Vec<usize>> {
             let mut copy = room(py, indices.len())?;
@@ -177,14 +180,14 @@ impl Indices {
     }
 }
 
-/// A copy, or an exception where there is no memory for it.
+/// Copies the values; raises an exception if there is no memory for the copy.
 pub fn copied(py: Python<'_>, values: &[f64]) -> PyResult<Vec<f64>> {
     let mut copy = room(py, values.len())?;
     copy.extend_from_slice(values);
     Ok(copy)
 }
 
-/// An empty vector with room for this number of entries.
+/// Returns an empty vector with room for this number of entries; raises an exception if there is no memory for it.
 pub fn room<T>(py: Python<'_>, entries: usize) -> PyResult<Vec<T>> {
     let mut room = Vec::new();
     match room.try_reserve_exact(entries) {
@@ -193,7 +196,7 @@ pub fn room<T>(py: Python<'_>, entries: usize) -> PyResult<Vec<T>> {
     }
 }
 
-/// A read-only array of numpy with these values.
+/// Makes a read-only array of numpy from these values.
 pub fn array<'py, const N: usize>(
     py: Python<'py>,
     dtype: &str,
@@ -206,17 +209,17 @@ pub fn array<'py, const N: usize>(
     numpy!(py, "frombuffer")?.call1((bytes, dtype))
 }
 
-/// A read-only array of doubles.
+/// Makes a read-only array of doubles.
 pub fn of_reals<'py>(py: Python<'py>, values: &[f64]) -> PyResult<Bound<'py, PyAny>> {
     array(py, "f8", values.iter().map(|value| value.to_ne_bytes()))
 }
 
-/// A read-only array of doubles in two dimensions, given row by row.
+/// Makes a read-only two-dimensional array of doubles from values given row by row.
 pub fn of_table<'py>(py: Python<'py>, values: &[f64], columns: usize) -> PyResult<Bound<'py, PyAny>> {
     of_reals(py, values)?.call_method1("reshape", (values.len() / columns.max(1), columns))
 }
 
-/// A read-only array of indices.
+/// Makes a read-only array of indices.
 pub fn of_indices<'py>(py: Python<'py>, indices: impl IntoIterator<Item = usize>) -> PyResult<Bound<'py, PyAny>> {
     let indices: Vec<i64> = indices.into_iter().map(|index| index as i64).collect();
     array(py, "i8", indices.iter().map(|index| index.to_ne_bytes()))

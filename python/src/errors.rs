@@ -1,4 +1,4 @@
-//! Endings as exceptions: the classes stand in `package/signorini/_errors.py`.
+//! Errors of the library as exceptions. Their classes are defined in `package/signorini/_errors.py`.
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -7,7 +7,7 @@ use signorini::Error;
 use crate::arrays::{of_indices, of_reals};
 use crate::solution::Solution;
 
-/// An exception of the class of this name, with a sentence and its attributes.
+/// Makes an exception of the class of this name, with a message and attributes.
 fn raised(py: Python<'_>, class: &str, sentence: &str, attributes: &Bound<'_, PyDict>) -> PyErr {
     let make = || -> PyResult<PyErr> {
         let exception = py.import("signorini._errors")?.getattr(class)?.call1((sentence,))?;
@@ -23,32 +23,32 @@ fn plain(py: Python<'_>, class: &str, sentence: &str) -> PyErr {
     raised(py, class, sentence, &PyDict::new(py))
 }
 
-/// An argument of the right kind with a wrong value.
+/// Makes the exception for an argument of the right type with a wrong value.
 pub fn bad_input(py: Python<'_>, sentence: impl AsRef<str>) -> PyErr {
     plain(py, "BadInput", sentence.as_ref())
 }
 
-/// An argument of a wrong kind.
+/// Makes the exception for an argument of a wrong type.
 pub fn bad_type(py: Python<'_>, sentence: impl AsRef<str>) -> PyErr {
     plain(py, "BadType", sentence.as_ref())
 }
 
-/// Memory that there is not.
+/// Makes the exception for a lack of memory.
 pub fn no_memory(py: Python<'_>, sentence: impl AsRef<str>) -> PyErr {
     plain(py, "TooLarge", sentence.as_ref())
 }
 
-/// A panic that did not get further.
+/// Makes the exception for a panic that was caught.
 pub fn panicked(py: Python<'_>, message: &str) -> PyErr {
-    let sentence = format!("the library failed where it must not: {message}; please report this with the problem");
+    let sentence = format!("the library failed unexpectedly: {message}; please report this with the problem");
     plain(py, "InternalError", &sentence)
 }
 
-/// An interrupt, with the best answer until then.
+/// Makes the exception for an interrupt, with the best answer so far.
 pub fn interrupted(py: Python<'_>, best: Option<Py<PyAny>>) -> PyErr {
     let attributes = PyDict::new(py);
     let sentence = match &best {
-        Some(_) => "interrupted; the best answer until then is in `solution`",
+        Some(_) => "interrupted; the best answer so far is in `solution`",
         None => "interrupted before there was an answer",
     };
     match attributes.set_item("solution", best) {
@@ -57,7 +57,8 @@ pub fn interrupted(py: Python<'_>, best: Option<Py<PyAny>>) -> PyErr {
     }
 }
 
-/// The exception of an error; `with_answer` makes the object of the best answer that it carries.
+/// Makes the exception for an error. `with_answer` converts the best answer that the error carries into a Python
+/// object.
 pub fn exception(
     py: Python<'_>,
     error: Error,
@@ -129,7 +130,7 @@ pub fn exception(
     }
 }
 
-/// The exception of an error to a problem without a scene.
+/// Makes the exception for an error of a problem without a scene.
 pub fn plain_exception(py: Python<'_>, error: Error) -> PyErr {
     exception(py, error, |solution| Solution::object(py, solution))
 }

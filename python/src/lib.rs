@@ -1,7 +1,7 @@
-//! The Python module `signorini._signorini`: what Python sees of the library.
+//! The Python module `signorini._signorini`, the interface of the library to Python.
 //!
-//! Arrays come in through `arrays` and `matrices`, with one copy at most; work runs without the interpreter, in `work`, which
-//! answers interrupts and lets no panic through; endings become exceptions in `errors`. The classes stand in a file each.
+//! `arrays` and `matrices` read arrays with at most one copy. `work` runs the library without the interpreter, answers
+//! interrupts and catches panics. `errors` turns errors into exceptions. Each class has a file of its own.
 
 mod arrays;
 mod errors;

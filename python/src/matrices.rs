@@ -1,4 +1,4 @@
-//! Matrices of scipy, numpy and dolfinx as those of the library.
+//! Converts matrices of scipy, numpy and dolfinx into matrices of the library, and back.
 
 use pyo3::prelude::*;
 use signorini::{Error, SparseMatrix, SymmetricMatrix};
@@ -6,15 +6,15 @@ use signorini::{Error, SparseMatrix, SymmetricMatrix};
 use crate::arrays::{Indices, kind_of, room, slice, with_reals, with_table};
 use crate::errors::{bad_input, bad_type, plain_exception};
 
-/// What a matrix is read from.
+/// The forms in which a matrix can be given.
 enum Source<'py> {
     /// Compressed columns.
     Columns(Compressed<'py>),
     /// Compressed rows.
     Rows(Compressed<'py>),
-    /// Entries with row and column.
+    /// Entries, each with its row and column.
     Entries { rows: Bound<'py, PyAny>, columns: Bound<'py, PyAny>, values: Bound<'py, PyAny> },
-    /// A full table.
+    /// A dense array.
     Table(Bound<'py, PyAny>),
 }
 
@@ -35,7 +35,8 @@ impl<'py> Compressed<'py> {
     }
 }
 
-/// A matrix that was looked at, with its shape; none where a full table has to tell it.
+/// The form of a matrix and its shape. The shape is `None` for a dense array, which is converted before its shape is
+/// known.
 struct Seen<'py> {
     source: Source<'py>,
     shape: Option<[usize; 2]>,
@@ -49,16 +50,17 @@ fn shape_of(name: &str, matrix: &Bound<'_, PyAny>) -> PyResult<[usize; 2]> {
         .map_err(|_| bad_input(matrix.py(), format!("{name} has the shape {shape}; it must have two dimensions")))
 }
 
-/// Rows and columns without an entry that are credible: of more the memory would be taken for nothing.
+/// Largest number of rows or columns that a matrix may have beyond its number of entries. More of them would waste
+/// memory.
 const MOST_EMPTY: usize = 1_000_000;
 
-/// Finds out what `matrix` is; it may have as many columns as there are `dofs`, however empty they are.
+/// Determines the form of `matrix`. A matrix with `dofs` columns may have any number of empty ones.
 fn look<'py>(name: &str, matrix: &Bound<'py, PyAny>, dofs: usize) -> PyResult<Seen<'py>> {
     let py = matrix.py();
     if matrix.is_none() {
         return Err(bad_type(py, format!("{name} is None; it must be a sparse matrix of scipy or an array of numpy")));
     }
-    // A matrix of dolfinx, for example, makes one of scipy, without a copy.
+    // A matrix of dolfinx, for example, converts itself into one of scipy without a copy.
     if !matrix.hasattr("format")? && matrix.hasattr("to_scipy")? {
         return look(name, &matrix.call_method0("to_scipy")?, dofs);
     }
@@ -79,9 +81,8 @@ fn look<'py>(name: &str, matrix: &Bound<'py, PyAny>, dofs: usize) -> PyResult<Se
         let entries = entries.map_err(|error| bad_input(py, format!("{name} is no matrix: {}", error.value(py))))?;
         let lines = if columns == dofs { rows } else { rows.max(columns) };
         if lines > entries.saturating_add(MOST_EMPTY) {
-            let sentence = format!(
-                "{name} is {rows} x {columns} with {entries} entries, almost empty; give it the size that it has"
-            );
+            let sentence =
+                format!("{name} is {rows} x {columns} with {entries} entries, almost empty; check its shape");
             return Err(bad_input(py, sentence));
         }
     }
@@ -95,20 +96,21 @@ fn look<'py>(name: &str, matrix: &Bound<'py, PyAny>, dofs: usize) -> PyResult<Se
         },
         _ => {
             if format == "bsr" {
-                // What scipy trusts: blocks outside the matrix would make it write outside its memory.
+                // scipy does not check this itself: for blocks outside the matrix it would write outside its memory.
                 let checked = matrix.call_method1("check_format", (true,));
                 checked.map_err(|error| bad_input(py, format!("{name} is no matrix: {}", error.value(py))))?;
             }
             let columns = matrix.call_method0("tocsc");
-            let columns = columns
-                .map_err(|error| bad_input(py, format!("{name} makes no compressed columns: {}", error.value(py))))?;
+            let columns = columns.map_err(|error| {
+                bad_input(py, format!("{name} cannot be converted to compressed columns: {}", error.value(py)))
+            })?;
             Source::Columns(Compressed::of(&columns)?)
         }
     };
     Ok(Seen { source, shape })
 }
 
-/// Compressed lines that were read in place, cut to the entries that they speak of.
+/// Compressed rows or columns ("lines") that are read in place.
 struct Lines<'a> {
     starts: Indices,
     indices: Indices,
@@ -117,7 +119,7 @@ struct Lines<'a> {
     count: usize,
 }
 
-/// Reads compressed lines, `count` of them, in place.
+/// Passes `count` compressed lines to `take`, in place.
 fn with_lines<T>(
     name: &str,
     compressed: &Compressed<'_>,
@@ -141,7 +143,8 @@ fn with_lines<T>(
 }
 
 impl Lines<'_> {
-    /// The entries `(line, index, value)`, in any order and with duplicates, of lines with increasing starts.
+    /// Returns the entries `(line, index, value)` in any order, with duplicates. The starts of the lines must not
+    /// decrease.
     fn entries(&self, py: Python<'_>, name: &str) -> PyResult<Vec<(usize, usize, f64)>> {
         let (starts, indices) = (self.starts.to_usize(py)?, self.indices.to_usize(py)?);
         if let Some(&first) = starts.first().filter(|&&first| first != 0) {
@@ -164,7 +167,7 @@ impl Lines<'_> {
     }
 }
 
-/// The stiffness: symmetric, with both triangles.
+/// Reads the stiffness: a symmetric matrix, given with both triangles.
 pub fn stiffness(name: &str, matrix: &Bound<'_, PyAny>) -> PyResult<SymmetricMatrix> {
     let py = matrix.py();
     let seen = look(name, matrix, 0)?;
@@ -180,7 +183,7 @@ pub fn stiffness(name: &str, matrix: &Bound<'_, PyAny>) -> PyResult<SymmetricMat
             Some(Err(error @ (Error::NotSymmetric { .. } | Error::NotFinite { .. }))) => {
                 return Err(plain_exception(py, error));
             }
-            // Lines that are not sorted, have duplicates, or are none: entry by entry.
+            // The lines are not sorted, have duplicates or are not valid: they are read entry by entry below.
             Some(Err(_)) | None => {}
         }
     }
@@ -188,7 +191,7 @@ pub fn stiffness(name: &str, matrix: &Bound<'_, PyAny>) -> PyResult<SymmetricMat
     SymmetricMatrix::from_full(&full).map_err(|error| plain_exception(py, error))
 }
 
-/// The lower triangle of sorted lines, in one pass; none for indices of two kinds.
+/// Reads the lower triangle of sorted lines in one pass. Returns `None` if the two index arrays have different widths.
 fn in_place(py: Python<'_>, lines: &Lines<'_>, is_columns: bool) -> Option<Result<SymmetricMatrix, Error>> {
     fn of<I: Copy + TryInto<usize>>(
         starts: &[I],
@@ -212,7 +215,7 @@ fn in_place(py: Python<'_>, lines: &Lines<'_>, is_columns: bool) -> Option<Resul
     }
 }
 
-/// A matrix of any number of rows, for this number of dofs.
+/// Reads a matrix with any number of rows and `dofs` columns.
 pub fn rows(name: &str, matrix: &Bound<'_, PyAny>, dofs: usize) -> PyResult<SparseMatrix> {
     let seen = look(name, matrix, dofs)?;
     if let Some([rows, columns]) = seen.shape.filter(|shape| shape[1] != dofs) {
@@ -259,7 +262,7 @@ fn general(name: &str, seen: Seen<'_>) -> PyResult<SparseMatrix> {
     }
 }
 
-/// Compressed columns as they stand if they are sorted, and entry by entry if not.
+/// Reads compressed columns directly if they are sorted, and entry by entry otherwise.
 fn sorted_or_not(py: Python<'_>, name: &str, lines: &Lines<'_>, shape: [usize; 2]) -> PyResult<SparseMatrix> {
     let (starts, indices) = (lines.starts.to_usize(py)?, lines.indices.to_usize(py)?);
     match SparseMatrix::from_csc(shape[0], starts, indices, crate::arrays::copied(py, lines.values)?) {
@@ -289,7 +292,7 @@ fn triplets(
     SparseMatrix::from_triplets(rows, columns, &entries).map_err(|error| plain_exception(py, error))
 }
 
-/// A full table, of which zeros are left out.
+/// Reads a dense array; zeros are left out.
 fn of_table(name: &str, table: &Bound<'_, PyAny>) -> PyResult<SparseMatrix> {
     let py = table.py();
     with_table(name, table, |values, [rows, columns]| {
@@ -302,7 +305,7 @@ fn of_table(name: &str, table: &Bound<'_, PyAny>) -> PyResult<SparseMatrix> {
     })
 }
 
-/// Columns, rows and values of compressed columns, as arrays of numpy in the order of scipy: `(data, indices, indptr)`.
+/// Returns the arrays `(data, indices, indptr)` of compressed columns, as scipy expects them.
 pub fn compressed<'py>(
     py: Python<'py>,
     matrix: &SparseMatrix,

@@ -1,4 +1,4 @@
-//! The settings of a solve from keyword arguments.
+//! Reads the settings of a solve from keyword arguments.
 
 use std::time::Duration;
 
@@ -8,10 +8,10 @@ use signorini::{Condense, ContactProblem, Method, Precision, Settings};
 use crate::arrays::kind_of;
 use crate::errors::{bad_input, bad_type};
 
-/// A stiffness of fewer entries does not come near the memory of a machine, which then need not be asked.
+/// A stiffness with fewer entries fits into any machine, so that the available memory need not be determined.
 const FEW_ENTRIES: usize = 100_000;
 
-/// What can be asked for, as it came.
+/// The keyword arguments of a solve, unchecked.
 #[derive(Default)]
 pub struct Options<'py> {
     pub method: Option<Bound<'py, PyAny>>,
@@ -25,7 +25,7 @@ pub struct Options<'py> {
     pub proof: Option<bool>,
 }
 
-/// A real number; one that is not finite is left to the library, which has a sentence for it.
+/// Reads a real number. One that is not finite is left to the library, which refuses it with its own message.
 fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
     let py = value.py();
     value
@@ -33,7 +33,7 @@ fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
         .map_err(|_| bad_type(py, format!("{name} is of the type {}; it must be a real number", kind_of(value))))
 }
 
-/// A word of a table.
+/// Returns the value of a word in a table.
 fn word<T: Copy>(name: &str, value: &Bound<'_, PyAny>, words: &[(&str, T)]) -> PyResult<T> {
     let py = value.py();
     let known: Vec<&str> = words.iter().map(|word| word.0).collect();
@@ -57,7 +57,8 @@ const PRECISIONS: [(&str, Precision); 3] =
     [("auto", Precision::Auto), ("double", Precision::Double), ("mixed", Precision::Mixed)];
 
 impl Options<'_> {
-    /// The settings, as the program has them: proofs are found, and memory is what the machine has available.
+    /// Returns the settings. The defaults are those of the program: rows are proven, and all available memory may be
+    /// used.
     pub fn settings(&self, problem: Option<&ContactProblem>) -> PyResult<Settings> {
         let mut settings = Settings::default().with_proof();
         if let Some(method) = &self.method {

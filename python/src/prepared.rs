@@ -1,4 +1,4 @@
-//! A problem factorised once for many gaps, loads and starts, and the exact path between two gaps.
+//! A problem that is factorised once for many gaps, loads and starts, and the exact path between two gap vectors.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::solution::{Solution, rows_of};
 use crate::solving::{answered, signalled, start_of};
 use crate::work::{End, Place, run};
 
-/// A contact problem prepared once.
+/// A problem that is factorised once and then solved for many gaps, loads and starts.
 #[pyclass(frozen, module = "signorini")]
 pub struct Prepared {
     problem: Arc<ContactProblem>,
@@ -30,14 +30,14 @@ impl Prepared {
     }
 }
 
-/// The same under a watch of its own.
+/// Returns the prepared problem with `watch` in its settings.
 fn watched(prepared: &signorini::Prepared, settings: Settings, watch: &Watch) -> Result<signorini::Prepared, Error> {
     prepared.with_settings(&settings.watched(watch))
 }
 
 #[pymethods]
 impl Prepared {
-    /// Solves with these gaps, or under this load, from what is known beforehand.
+    /// Solves the problem with the gaps g (length m) and the load f (length n); both default to those of the problem.
     #[pyo3(signature = (g = None, f = None, *, start = None, time = None))]
     fn solve(
         &self,
@@ -68,7 +68,7 @@ impl Prepared {
         answered(py, place, find, |solution| Solution::object(py, solution))
     }
 
-    /// The exact path of the answer between two gaps.
+    /// Computes the exact solution for all gaps on the straight line from g0 to g1 (length m each).
     fn path(&self, py: Python<'_>, g0: &Bound<'_, PyAny>, g1: &Bound<'_, PyAny>) -> PyResult<Path> {
         let (from, to) = (reals("g0", g0)?, reals("g1", g1)?);
         let (prepared, settings) = (self.inner.clone(), self.settings.clone());
@@ -86,19 +86,19 @@ impl Prepared {
         self.inner.dofs()
     }
 
-    /// Number of unknowns that the methods work on.
+    /// Number of unknowns after condensation, on which the methods work.
     #[getter]
     fn condensed_dofs(&self) -> usize {
         self.inner.condensed_dofs()
     }
 
-    /// Number of values of the factor.
+    /// Number of values in the factor of K; 0 if K was not factorised.
     #[getter]
     fn factor_entries(&self) -> usize {
         self.inner.factor_entries()
     }
 
-    /// Seconds of the preparation.
+    /// Wall-clock time of the preparation, in seconds.
     #[getter]
     fn seconds(&self) -> f64 {
         self.inner.seconds().solve
@@ -111,14 +111,14 @@ impl Prepared {
     }
 }
 
-/// A row that touches or releases on a path.
+/// A point of a path at which a row closes or opens.
 #[pyclass(frozen, module = "signorini", get_all)]
 pub struct Event {
-    /// Where on the path, from 0 to 1.
+    /// Parameter t of the event, from 0 to 1.
     at: f64,
-    /// Which row, from 0.
+    /// Index of the row, counted from 0.
     row: usize,
-    /// Whether it touches; otherwise it releases.
+    /// True if the row closes, False if it opens.
     touches: bool,
 }
 
@@ -130,14 +130,14 @@ impl Event {
     }
 }
 
-/// The answers for all gaps between two, exactly.
+/// The exact solutions for all gaps (1 - t) g0 + t g1 with t from 0 to 1. They are piecewise linear in t.
 #[pyclass(frozen, module = "signorini")]
 pub struct Path {
     problem: Arc<ContactProblem>,
     inner: Arc<signorini::Path>,
 }
 
-/// Where on a path.
+/// Returns t if it is a place on a path.
 fn place(py: Python<'_>, t: f64) -> PyResult<f64> {
     let sentence = || format!("t is {t}; it must be from 0, the first gap, to 1, the last");
     if (0.0..=1.0).contains(&t) { Ok(t) } else { Err(bad_input(py, sentence())) }
@@ -145,7 +145,7 @@ fn place(py: Python<'_>, t: f64) -> PyResult<f64> {
 
 #[pymethods]
 impl Path {
-    /// The rows that touch or release, in order.
+    /// All points at which a row closes or opens, in the order of t.
     #[getter]
     fn events<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let of_each = self.inner.events().iter();
@@ -153,28 +153,28 @@ impl Path {
         PyList::new(py, events.collect::<PyResult<Vec<_>>>()?)
     }
 
-    /// The corners of the polylines: the beginning, every event, the end.
+    /// Increasing values of t between which the solution is linear: 0, every event, 1.
     #[getter]
     fn corners<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, &self.inner.corners())
     }
 
-    /// The gaps at t.
+    /// Returns the gaps at t, length m.
     fn gap<'py>(&self, py: Python<'py>, t: f64) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, &self.inner.gap(place(py, t)?))
     }
 
-    /// The multipliers at t.
+    /// Returns the multipliers at t, length m, <= 0 in compression.
     fn multiplier<'py>(&self, py: Python<'py>, t: f64) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, &self.inner.multiplier(place(py, t)?))
     }
 
-    /// The closed rows at t.
+    /// Returns the indices of the closed rows at t; at an event, those just before it.
     fn contact_set<'py>(&self, py: Python<'py>, t: f64) -> PyResult<Bound<'py, PyAny>> {
         rows_of(py, &self.inner.contact_set(place(py, t)?))
     }
 
-    /// The whole answer at t, certified.
+    /// Returns the certified solution at t.
     fn solution(&self, py: Python<'_>, t: f64) -> PyResult<Py<PyAny>> {
         let (t, path) = (place(py, t)?, self.inner.clone());
         let find = move |_: &Watch| path.solution(t);

@@ -1,4 +1,4 @@
-//! The contact problem as Python sees it.
+//! The class `Problem` of Python.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::arrays::{columns, of_reals, of_table, reals};
 use crate::errors::{bad_input, plain_exception};
 use crate::matrices;
 
-/// minimise 1/2 u'K u - f'u  subject to  B u - g <= 0, checked once.
+/// The contact problem: minimise 1/2 u'K u - f'u  subject to  B u - g <= 0. The arrays are checked once, here.
 #[pyclass(frozen, module = "signorini")]
 pub struct Problem {
     pub inner: Arc<ContactProblem>,
@@ -61,8 +61,8 @@ impl Problem {
                 if nodes * dimension != problem.dofs() {
                     let dofs = problem.dofs();
                     let sentence = format!(
-                        "coordinates is {nodes} x {dimension}, which makes {} dofs, but there are {dofs}; where supports have taken \
-                         dofs out, give near_null",
+                        "coordinates is {nodes} x {dimension}, which makes {} dofs, but there are {dofs}; if supports have \
+                         removed dofs, give near_null instead",
                         nodes * dimension
                     );
                     return Err(bad_input(py, sentence));
@@ -74,19 +74,19 @@ impl Problem {
         problem.map(Problem::from).map_err(|error| plain_exception(py, error))
     }
 
-    /// Number of unknowns.
+    /// Number of unknowns n.
     #[getter]
     fn dofs(&self) -> usize {
         self.inner.dofs()
     }
 
-    /// Number of contact rows.
+    /// Number of contact rows m.
     #[getter]
     fn row_count(&self) -> usize {
         self.inner.rows()
     }
 
-    /// The stiffness, both triangles, as compressed columns of scipy.
+    /// Stiffness, n x n, with both triangles, as a csc_array of scipy.
     #[getter(K)]
     fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let lower = csc(py, self.inner.stiffness().lower())?;
@@ -96,25 +96,25 @@ impl Problem {
         sparse.getattr("csc_array")?.call1((both,))
     }
 
-    /// The load.
+    /// External load, length n, read-only.
     #[getter]
     fn f<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, self.inner.load())
     }
 
-    /// The contact rows, as compressed columns of scipy.
+    /// Contact rows, m x n, as a csc_array of scipy.
     #[getter(B)]
     fn contact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         csc(py, self.inner.contact())
     }
 
-    /// The gaps.
+    /// Initial gaps, length m, read-only.
     #[getter]
     fn g<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, self.inner.gap())
     }
 
-    /// The near-null space, one column a vector; None without one.
+    /// Displacements of almost zero energy, n x k, one per column; None if none were given.
     #[getter]
     fn near_null<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let Some(space) = self.inner.near_null() else { return Ok(None) };
@@ -122,7 +122,7 @@ impl Problem {
         of_table(py, &values, space.dofs())?.getattr("T").map(Some)
     }
 
-    /// The same body and rows under another load or with other gaps; the matrices are shared.
+    /// Returns a problem with the load f (length n), the gaps g (length m), or both replaced; the matrices are shared.
     #[pyo3(signature = (*, f = None, g = None))]
     fn replace(&self, py: Python<'_>, f: Option<&Bound<'_, PyAny>>, g: Option<&Bound<'_, PyAny>>) -> PyResult<Problem> {
         let load = f.map_or_else(|| Ok(self.inner.load().to_vec()), |f| reals("f", f))?;
@@ -143,7 +143,7 @@ impl Problem {
     }
 }
 
-/// A matrix as compressed columns of scipy.
+/// Converts a matrix into a csc_array of scipy.
 fn csc<'py>(py: Python<'py>, matrix: &SparseMatrix) -> PyResult<Bound<'py, PyAny>> {
     let shape = PyDict::new(py);
     shape.set_item("shape", (matrix.rows(), matrix.columns()))?;

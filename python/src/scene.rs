@@ -1,4 +1,4 @@
-//! Scenes, and their answers with stresses, pressures and resultants.
+//! Scenes, and their solutions with stresses, pressures and resultants.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -17,17 +17,17 @@ use crate::solution::{Solution, as_object};
 use crate::solving::{answered, signalled, solve_from, start_of};
 use crate::work::{End, Place, run};
 
-/// A contact scene.
+/// A contact scene: bodies, supports, loads and obstacles.
 #[pyclass(frozen, module = "signorini")]
 pub struct Scene {
     pub inner: Arc<signorini::Scene>,
-    /// Its file, for the line and column of a value at fault.
+    /// The file of the scene, for the line and column in messages.
     file: Option<PathBuf>,
     model: Mutex<Option<Arc<Model>>>,
 }
 
 impl Scene {
-    /// The model, built when it is first asked for.
+    /// Returns the model, which is built at the first call.
     pub fn model(&self, py: Python<'_>) -> PyResult<Arc<Model>> {
         let kept = || self.model.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(model) = kept().clone() {
@@ -41,16 +41,17 @@ impl Scene {
             End::Done(Err(error)) => return Err(plain_exception(py, error)),
             End::Signalled(signal, _) => return Err(signalled(py, signal, None)),
         };
-        // Another thread may have been faster: then its model is the one that all share.
+        // If another thread was faster, all threads share its model.
         Ok(kept().get_or_insert(model).clone())
     }
 
-    /// Refuses a scene whose motion is asked for.
+    /// Refuses a scene with an analysis of a motion.
     pub fn check_rest(&self, py: Python<'_>) -> PyResult<()> {
         if self.inner.analysis.is_none() {
             return Ok(());
         }
-        let message = "the scene moves; run `signorini solve` for its motion, or leave the analysis out for its rest";
+        let message =
+            "the scene moves; run `signorini solve` to compute its motion, or leave out `analysis` for a static solve";
         Err(plain_exception(py, Error::Scene { path: "analysis".into(), message: message.into() }))
     }
 }
@@ -64,7 +65,7 @@ fn built(scene: &signorini::Scene, file: Option<PathBuf>) -> Result<Model, Error
     })
 }
 
-/// The text of a scene that came as a dictionary.
+/// Returns the JSON text of a scene that is given as a dictionary.
 fn text_of(source: &Bound<'_, PyAny>) -> PyResult<String> {
     source.py().import("signorini._show")?.call_method1("scene_text", (source,))?.extract()
 }
@@ -93,13 +94,13 @@ impl Scene {
         Ok(Scene { inner, file, model: Mutex::new(None) })
     }
 
-    /// What the scene shows.
+    /// Title of the scene; empty if it has none.
     #[getter]
     fn title(&self) -> &str {
         &self.inner.title
     }
 
-    /// Names of the units: of length, force and pressure.
+    /// Names of the units of length, force and pressure; empty strings if the scene names no units.
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (named, units) = (PyDict::new(py), &self.inner.units);
@@ -115,7 +116,7 @@ impl Scene {
         Ok(self.model(py)?.problem().clone().into())
     }
 
-    /// Coordinates of the nodes, one row each.
+    /// Coordinates of the nodes, one row per node, in the unit of length.
     #[getter]
     fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let model = self.model(py)?;
@@ -124,7 +125,7 @@ impl Scene {
         of_table(py, &values, dimension)
     }
 
-    /// Nodes of the elements, one row each.
+    /// Node numbers of the elements, one row per element, counted from 0, in the order of VTK.
     #[getter]
     fn elements<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let model = self.model(py)?;
@@ -134,13 +135,13 @@ impl Scene {
         nodes.call_method1("reshape", (count, of_each))
     }
 
-    /// Name of the elements, as Q4.
+    /// Name of the element type, for example Q4.
     #[getter]
     fn element_kind(&self, py: Python<'_>) -> PyResult<&'static str> {
         Ok(self.model(py)?.mesh().kind().name())
     }
 
-    /// What the contact rows stand for: arrays with an entry for each row.
+    /// Node, obstacle, normal, gap and tributary area of each contact row, as a dictionary of arrays.
     #[getter]
     fn rows<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let model = self.model(py)?;
@@ -157,13 +158,13 @@ impl Scene {
         Ok(table)
     }
 
-    /// What a reader of the answer should know, in sentences.
+    /// Warnings about the scene, one sentence each.
     #[getter]
     fn warnings(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         Ok(self.model(py)?.warnings().iter().map(ToString::to_string).collect())
     }
 
-    /// Solves the scene.
+    /// Solves the scene. Arguments and exceptions are those of signorini.solve.
     #[pyo3(signature = (
         *, method = None, accuracy = None, time = None, start = None, threads = None, tolerance = None, memory = None,
         precision = None, condense = true, proof = true
@@ -199,7 +200,7 @@ impl Scene {
         })
     }
 
-    /// Solves the scene by three methods.
+    /// Solves the scene by interior point, active set and penalty, and compares the solutions.
     fn compare(slf: &Bound<'_, Self>) -> PyResult<crate::study::Comparison> {
         crate::study::compared_scene(slf)
     }
@@ -211,7 +212,7 @@ impl Scene {
     }
 }
 
-/// The answer to a scene.
+/// The solution of a scene, with stresses, pressures and forces. Nodal arrays have one row per node.
 #[pyclass(frozen, module = "signorini", extends = Solution)]
 pub struct SceneSolution {
     scene: Py<Scene>,
@@ -220,7 +221,7 @@ pub struct SceneSolution {
 }
 
 impl SceneSolution {
-    /// The object of an answer.
+    /// Makes the Python object of a solution.
     pub fn object(
         py: Python<'_>,
         scene: Py<Scene>,
@@ -253,43 +254,43 @@ impl SceneSolution {
 
 #[pymethods]
 impl SceneSolution {
-    /// The scene.
+    /// The scene that was solved.
     #[getter]
     fn scene(&self, py: Python<'_>) -> Py<Scene> {
         self.scene.clone_ref(py)
     }
 
-    /// Displacement of the nodes, one row each.
+    /// Displacements of all nodes, supported ones included, one row per node, in the unit of length.
     #[getter]
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_table(py, self.answer.displacement(), self.dimension())
     }
 
-    /// Contact pressure of each row, >= 0.
+    /// Contact pressure of each row, length m, >= 0, in the unit of pressure.
     #[getter]
     fn pressure<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, self.answer.pressure())
     }
 
-    /// What is left of the gap of each row.
+    /// Remaining gap of each row after deformation, length m, in the unit of length.
     #[getter]
     fn remaining_gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, &self.answer.remaining_gaps())
     }
 
-    /// Stress at the nodes: xx, yy, zz, xy, yz, zx.
+    /// Stress at the nodes, one row per node: xx, yy, zz, xy, yz, zx; tension is positive.
     #[getter]
     fn stress<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.stresses(py, |field| &field.nodes)
     }
 
-    /// Stress at the middle of the elements: xx, yy, zz, xy, yz, zx.
+    /// Stress at the centres of the elements, one row per element: xx, yy, zz, xy, yz, zx; tension is positive.
     #[getter]
     fn element_stress<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.stresses(py, |field| &field.elements)
     }
 
-    /// Von Mises stress at the nodes.
+    /// Von Mises stress at the nodes, one value per node, >= 0.
     #[getter]
     fn von_mises<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let field = self.answer.stress().map_err(|error| plain_exception(py, error))?;
@@ -297,28 +298,28 @@ impl SceneSolution {
         of_reals(py, &values)
     }
 
-    /// Contact forces on the nodes, one row each.
+    /// Contact forces on the body at the nodes, one row per node, along the axes.
     #[getter]
     fn contact_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let forces = self.answer.forces().map_err(|error| plain_exception(py, error))?;
         of_table(py, &forces.contact, self.dimension())
     }
 
-    /// Support reactions on the nodes, one row each.
+    /// Support reactions on the body at the nodes, one row per node, along the axes.
     #[getter]
     fn reactions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let forces = self.answer.forces().map_err(|error| plain_exception(py, error))?;
         of_table(py, &forces.reactions, self.dimension())
     }
 
-    /// Forces, moments and centres of obstacles, supports and loads.
+    /// Resultant force, moment and centre of each obstacle, support and load, one dictionary for each.
     #[getter]
     fn resultants<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let all = self.answer.resultants().map_err(|error| plain_exception(py, error))?;
         Ok(as_object(py, &all)?.cast_into()?)
     }
 
-    /// The report of the program.
+    /// Returns the report that `signorini solve --format json` prints; only the seconds of the assembly are left out.
     fn report<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let (py, own) = (slf.py(), slf.get());
         let solution = (*slf.as_super().get().inner).clone();
@@ -331,19 +332,19 @@ impl SceneSolution {
         slf.py().import("signorini._show")?.call_method1("scene_html", (slf,))
     }
 
-    /// Draws the moved mesh with its von Mises stress.
+    /// Draws the deformed mesh with its von Mises stress and returns the axes. Needs matplotlib.
     #[pyo3(signature = (ax = None))]
     fn plot<'py>(slf: &Bound<'py, Self>, ax: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("signorini._show")?.call_method1("scene_plot", (slf, ax))
     }
 
-    /// The mesh with displacement and stress, for pyvista.
+    /// Returns the mesh with displacement, stress and von Mises stress as a grid of pyvista. Needs pyvista.
     fn to_pyvista<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("signorini._show")?.call_method1("scene_to_pyvista", (slf,))
     }
 }
 
-/// The exception of an error to a scene, with the object of the best answer.
+/// Makes the exception for an error of a scene, with the Python object of the best solution.
 pub fn scene_exception(py: Python<'_>, scene: &Py<Scene>, model: &Arc<Model>, goal: Goal, error: Error) -> PyErr {
     exception(py, model.explain(error), |solution| {
         SceneSolution::object(py, scene.clone_ref(py), model.clone(), solution, goal)

@@ -1,4 +1,4 @@
-//! Answers and their certificates.
+//! Solutions and their certificates.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use signorini::{ContactSet, Solution as Answer};
 
 use crate::arrays::{of_indices, of_reals};
 
-/// The answer to a contact problem.
+/// The solution of a contact problem. Its arrays are read-only.
 #[pyclass(frozen, module = "signorini", subclass)]
 pub struct Solution {
     pub inner: Arc<Answer>,
@@ -28,13 +28,13 @@ impl Solution {
         }
     }
 
-    /// The object of an answer.
+    /// Makes the Python object of a solution.
     pub fn object(py: Python<'_>, answer: Answer) -> PyResult<Py<PyAny>> {
         Ok(Py::new(py, Solution::new(answer))?.into_any())
     }
 }
 
-/// The array in a cell, made if it is empty.
+/// Returns the array in a cell, which is made if the cell is empty.
 fn once(
     py: Python<'_>,
     cell: &PyOnceLock<Py<PyAny>>,
@@ -43,12 +43,12 @@ fn once(
     cell.get_or_try_init(py, make).map(|array| array.clone_ref(py))
 }
 
-/// The closed rows of a set as an array.
+/// Returns the closed rows of a set as an array.
 pub fn rows_of<'py>(py: Python<'py>, set: &ContactSet) -> PyResult<Bound<'py, PyAny>> {
     of_indices(py, set.iter())
 }
 
-/// What serialises, as dictionaries and lists of Python; a number that is not finite is None there.
+/// Converts a serialisable value into dictionaries and lists of Python; a number that is not finite becomes `None`.
 pub fn as_object<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(value).map_err(|error| crate::errors::panicked(py, &error.to_string()))?;
     py.import("json")?.getattr("loads")?.call1((text,))
@@ -56,61 +56,61 @@ pub fn as_object<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResul
 
 #[pymethods]
 impl Solution {
-    /// Displacement, one entry per dof.
+    /// Displacements, length n, in the order of the unknowns of K and in the problem's unit of length.
     #[getter]
     fn u(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         once(py, &self.displacement, || Ok(of_reals(py, &self.inner.displacement)?.unbind()))
     }
 
-    /// Contact multiplier, one entry per row, <= 0 in compression.
+    /// Contact multipliers, length m, in the unit of force: the force on the body along each row, <= 0 in compression.
     #[getter]
     fn multiplier(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         once(py, &self.multiplier, || Ok(of_reals(py, &self.inner.multiplier)?.unbind()))
     }
 
-    /// The closed rows, from 0 and increasing.
+    /// Indices of the closed rows, counted from 0, in increasing order.
     #[getter]
     fn contact_set(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         once(py, &self.closed, || Ok(rows_of(py, &self.inner.contact_set)?.unbind()))
     }
 
-    /// Total contact force.
+    /// Total contact force -sum(multiplier), >= 0, in the unit of force.
     #[getter]
     fn contact_force(&self) -> f64 {
         self.inner.contact_force()
     }
 
-    /// The method that found it.
+    /// Name of the method: qp, active-set, penalty or mprgp, with a suffix for a variant.
     #[getter]
     fn method(&self) -> &str {
         &self.inner.method
     }
 
-    /// Iterations of the method.
+    /// Number of iterations of the method: linear solves, interior-point steps, or multigrid cycles.
     #[getter]
     fn iterations(&self) -> usize {
         self.inner.iterations
     }
 
-    /// How far it can be trusted.
+    /// The residuals of all conditions and the error bound, recomputed from the original problem.
     #[getter]
     fn certificate(&self) -> Certificate {
         Certificate { inner: self.inner.certificate }
     }
 
-    /// Bound on the relative error in energy; infinite where none is known.
+    /// Upper bound on the relative error of u in the energy norm; inf if none is known.
     #[getter]
     fn energy_error_bound(&self) -> f64 {
         self.inner.certificate.energy_error_bound
     }
 
-    /// The rows that are proven open or closed; None where nothing was proven.
+    /// Rows that are proven open or closed; None if `proof=False` was given or no error bound is known.
     #[getter]
     fn proven(&self) -> Option<Proven> {
         self.inner.proven.as_ref().map(|_| Proven { of: self.inner.clone() })
     }
 
-    /// Why it was found in this way, in words.
+    /// Explanation in words: why this method was chosen, and which methods were tried before it.
     #[getter]
     fn why(&self) -> String {
         let answer = &self.inner;
@@ -119,18 +119,18 @@ impl Solution {
             answer.attempts.iter().map(|attempt| format!("{} was tried before: {}", attempt.method, attempt.reason));
         let said: Vec<String> = reason.into_iter().chain(attempts).collect();
         match said.is_empty() {
-            true => format!("{}: as its estimate of seconds and memory, or the caller, chose", answer.method),
+            true => format!("{}: chosen by the estimate of seconds and memory, or by the caller", answer.method),
             false => said.join("; "),
         }
     }
 
-    /// Wall-clock seconds, all in all.
+    /// Wall-clock time of the whole solve, in seconds.
     #[getter]
     fn seconds(&self) -> f64 {
         self.inner.seconds.solve
     }
 
-    /// Seconds by step.
+    /// Seconds of the steps `factor`, `certificate` and `proof`, and of the whole `solve`, which contains them.
     #[getter]
     fn seconds_of<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (by_step, seconds) = (PyDict::new(py), self.inner.seconds);
@@ -141,7 +141,7 @@ impl Solution {
         Ok(by_step)
     }
 
-    /// The contact sets on the way, each with its penalty.
+    /// The closed rows in each iteration, with the penalty in multiples of the local stiffness (0 without a penalty).
     #[getter]
     fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let of_each = self.inner.history.iter();
@@ -149,7 +149,7 @@ impl Solution {
         PyList::new(py, pairs.collect::<PyResult<Vec<_>>>()?)
     }
 
-    /// The numbers without the vectors, as the program reports them.
+    /// Returns all scalar results, under the names that the program uses in its reports; the vectors are left out.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         as_object(py, &*self.inner)
     }
@@ -171,14 +171,14 @@ impl Solution {
         slf.py().import("signorini._show")?.call_method1("solution_html", (slf,))
     }
 
-    /// Draws multipliers over rows.
+    /// Draws the contact force of each row and returns the axes. Needs matplotlib.
     #[pyo3(signature = (ax = None))]
     fn plot<'py>(slf: &Bound<'py, Self>, ax: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("signorini._show")?.call_method1("solution_plot", (slf, ax))
     }
 }
 
-/// How far an answer is from the conditions that define the solution.
+/// Relative residuals of the conditions that define the solution, and a bound on the error.
 #[pyclass(frozen, module = "signorini", eq)]
 #[derive(Clone, PartialEq)]
 pub struct Certificate {
@@ -187,71 +187,72 @@ pub struct Certificate {
 
 #[pymethods]
 impl Certificate {
-    /// Relative imbalance of forces.
+    /// Relative residual of equilibrium, K u - f - B' multiplier = 0.
     #[getter]
     fn stationarity(&self) -> f64 {
         self.inner.stationarity
     }
 
-    /// Relative penetration.
+    /// Relative penetration into the obstacle, a violation of B u - g <= 0.
     #[getter]
     fn penetration(&self) -> f64 {
         self.inner.penetration
     }
 
-    /// Relative wrong-signed multiplier.
+    /// Relative size of the multipliers of the wrong sign: an obstacle would pull on the body.
     #[getter]
     fn adhesion(&self) -> f64 {
         self.inner.adhesion
     }
 
-    /// Relative product of force and open distance.
+    /// Relative size of the products of contact force and open distance, which must be zero.
     #[getter]
     fn complementarity(&self) -> f64 {
         self.inner.complementarity
     }
 
-    /// Relative difference of primal and dual energy.
+    /// Relative difference of the primal and the dual energy.
     #[getter]
     fn duality_gap(&self) -> f64 {
         self.inner.duality_gap
     }
 
-    /// Bound on the relative error in energy.
+    /// Upper bound on the relative error of u in the energy norm; inf if none is known.
     #[getter]
     fn energy_error_bound(&self) -> f64 {
         self.inner.energy_error_bound
     }
 
-    /// The largest such bound over the whole and each part.
+    /// Largest error bound over the whole problem and over each of its uncoupled parts.
     #[getter]
     fn part_error_bound(&self) -> f64 {
         self.inner.part_error_bound
     }
 
-    /// Whether the bound rests on a measured eigenvalue.
+    /// True if the bound uses a measured eigenvalue, because K was not factorised.
     #[getter]
     fn bound_is_measured(&self) -> bool {
         self.inner.bound_is_measured
     }
 
-    /// The worst condition and its value.
+    /// Name and value of the condition with the largest residual.
     #[getter]
     fn worst(&self) -> (&'static str, f64) {
         self.inner.worst()
     }
 
-    /// Whether all conditions and the bound hold to a tolerance.
+    /// Returns True if all conditions hold to `tolerance` and the error bound is at most `tolerance` or explained by
+    /// rounding.
     fn meets(&self, tolerance: f64) -> bool {
         self.inner.meets(tolerance)
     }
 
-    /// Whether all conditions hold to a tolerance, whatever the bound.
+    /// Returns True if all conditions hold to `tolerance`. The error bound is not compared.
     fn conditions_hold(&self, tolerance: f64) -> bool {
         self.inner.conditions_hold(tolerance)
     }
 
-    /// The numbers, as the program reports them.
+    /// Returns all numbers, under the names that the program uses in its reports.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         as_object(py, &self.inner)
     }
@@ -263,7 +264,7 @@ impl Certificate {
     }
 }
 
-/// Rows that an answer proves open or closed in the exact answer.
+/// Rows that the error bound proves to be open or closed in the exact solution.
 #[pyclass(frozen, module = "signorini")]
 pub struct Proven {
     of: Arc<Answer>,
@@ -281,19 +282,19 @@ impl Proven {
 
 #[pymethods]
 impl Proven {
-    /// Rows that are open beyond doubt.
+    /// Indices of the rows that are proven open, counted from 0.
     #[getter]
     fn open<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.rows(py, |proven| proven.open.iter().collect())
     }
 
-    /// Rows that are closed beyond doubt.
+    /// Indices of the rows that are proven closed, counted from 0.
     #[getter]
     fn closed<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.rows(py, |proven| proven.closed.iter().collect())
     }
 
-    /// Rows of which neither is proven.
+    /// Indices of the rows that are proven neither open nor closed, counted from 0.
     #[getter]
     fn undecided<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.rows(py, |proven| proven.undecided().collect())

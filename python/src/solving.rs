@@ -1,4 +1,4 @@
-//! The calls that solve and judge a problem.
+//! The functions of Python that solve, prepare and verify a problem.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::problem::Problem;
 use crate::solution::{Certificate, Solution};
 use crate::work::{End, Place, run};
 
-/// A start from what was given: a solution, an array of closed rows (whole numbers), or a displacement (real numbers).
+/// Reads the start of a solve: a solution, an array of closed rows (integers), or a displacement (real numbers).
 pub fn start_of(start: Option<&Bound<'_, PyAny>>, problem: &ContactProblem) -> PyResult<Option<Start>> {
     let Some(start) = start else { return Ok(None) };
     let py = start.py();
@@ -55,7 +55,7 @@ pub fn start_of(start: Option<&Bound<'_, PyAny>>, problem: &ContactProblem) -> P
     Ok(Some(Start::near(displacement)))
 }
 
-/// Solves from what is known beforehand; where that does not end well, from nothing.
+/// Solves from `start`; if that fails, solves once more without a start.
 pub fn solve_from(
     problem: &ContactProblem,
     start: Option<Start>,
@@ -69,7 +69,7 @@ pub fn solve_from(
     }
 }
 
-/// Runs what finds an answer, and makes its object; an interrupt carries the best answer.
+/// Runs `find` and makes the Python object of its solution. The exception of an interrupt carries the best solution.
 pub fn answered(
     py: Python<'_>,
     place: Place,
@@ -87,7 +87,8 @@ pub fn answered(
     }
 }
 
-/// The exception of a signal: an interrupt with the best answer, or what a handler of the caller's raised.
+/// Returns the exception of a signal: an interrupt with the best solution, or the exception of the caller's own
+/// handler.
 pub fn signalled(py: Python<'_>, signal: PyErr, best: Option<Py<PyAny>>) -> PyErr {
     match signal.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py) {
         true => interrupted(py, best),
@@ -95,7 +96,7 @@ pub fn signalled(py: Python<'_>, signal: PyErr, best: Option<Py<PyAny>>) -> PyEr
     }
 }
 
-/// Solves a problem.
+/// Solves a contact problem. The returned solution is certified to `tolerance`.
 #[pyfunction]
 #[pyo3(signature = (
     problem, *, method = None, accuracy = None, time = None, start = None, threads = None, tolerance = None, memory = None,
@@ -125,14 +126,15 @@ pub fn solve<'py>(
     answered(py, place, find, |solution| Solution::object(py, solution))
 }
 
-/// Solves a problem as a QP, certified to 1e-9.
+/// Solves a contact problem by an interior-point method, certified to 1e-9; the active-set method makes the contact set
+/// exact.
 #[pyfunction]
 pub fn solve_qp(problem: &Bound<'_, Problem>) -> PyResult<Py<PyAny>> {
     let method = pyo3::types::PyString::new(problem.py(), "qp").into_any();
     solve(problem, Some(method), None, None, None, None, None, None, None, true, true)
 }
 
-/// Prepares a problem for many gaps, loads and starts.
+/// Factorises a problem once, to solve it for several gaps, loads or starts.
 #[pyfunction]
 #[pyo3(signature = (
     problem, *, gaps = 10, method = None, accuracy = None, threads = None, tolerance = None, memory = None,
@@ -164,7 +166,7 @@ pub fn prepare<'py>(
     }
 }
 
-/// The certificate of anybody's answer.
+/// Returns the certificate of any displacement u (length n) and multiplier (length m, <= 0 in compression).
 #[pyfunction]
 pub fn verify(
     problem: &Bound<'_, Problem>,

@@ -1,4 +1,4 @@
-//! What is learnt from more than one solve: comparison, trade-off, sweep.
+//! Studies with more than one solve: comparison, trade-off, sweep.
 
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -14,18 +14,18 @@ use crate::solution::{Solution, as_object};
 use crate::solving::signalled;
 use crate::work::{End, Place, run};
 
-/// One problem solved by three methods.
+/// One problem solved by interior point, active set and penalty.
 #[pyclass(frozen, module = "signorini", get_all)]
 pub struct Comparison {
-    /// The answer of the interior point.
+    /// The solution of the interior-point method.
     qp: Py<PyAny>,
-    /// The answer of the active set.
+    /// The solution of the active-set method.
     active_set: Py<PyAny>,
-    /// The answer of the penalty.
+    /// The solution of the penalty method.
     penalty: Py<PyAny>,
-    /// How far they are from each other.
+    /// Differences between the three solutions, under the names that the program uses in its reports.
     agreement: Py<PyAny>,
-    /// Whether interior point and active set are certified and agree.
+    /// True if the solutions of interior point and active set are certified and agree.
     agrees: bool,
 }
 
@@ -49,7 +49,7 @@ fn comparison(
     Ok(Comparison { qp: qp?, active_set: active_set?, penalty: penalty?, agreement, agrees })
 }
 
-/// Solves a problem by three methods.
+/// Solves a problem or a scene by interior point, active set and penalty, and compares the solutions.
 #[pyfunction]
 pub fn compare(problem: &Bound<'_, PyAny>) -> PyResult<Comparison> {
     let py = problem.py();
@@ -73,7 +73,7 @@ fn problem_of<'a, 'py>(problem: &'a Bound<'py, PyAny>) -> PyResult<&'a Bound<'py
     })
 }
 
-/// Solves a scene by three methods.
+/// Solves a scene by interior point, active set and penalty, and compares the solutions.
 pub fn compared_scene(scene: &Bound<'_, Scene>) -> PyResult<Comparison> {
     let py = scene.py();
     let model = scene.get().model(py)?;
@@ -89,7 +89,7 @@ pub fn compared_scene(scene: &Bound<'_, Scene>) -> PyResult<Comparison> {
     }
 }
 
-/// A problem or a scene by every method at every accuracy, as a dictionary.
+/// Solves a problem or a scene by every method at every accuracy, and returns the results as a dictionary.
 #[pyfunction]
 #[pyo3(name = "_measured", signature = (problem, refinements, runs, most_full_dofs, time))]
 pub fn measured<'py>(
@@ -123,7 +123,8 @@ pub fn measured<'py>(
     }
 }
 
-/// A scene over several `gaps` or `forces`: its answers, and what happens between, as dictionaries.
+/// Solves a scene for several `gaps` or `forces`, and returns its solutions and the events between them as a
+/// dictionary.
 #[pyfunction]
 #[pyo3(name = "_swept", signature = (scene, over, values, method, threads))]
 pub fn swept<'py>(
@@ -143,12 +144,11 @@ pub fn swept<'py>(
     let options = Options { method, threads, proof: Some(false), ..Options::default() };
     let settings = options.settings(Some(model.problem()))?;
     let (goal, own, of_work) = (settings.goal(), scene.clone().unbind(), model.clone());
-    let found =
-        match run(py, Place::Apart, move |watch: &Watch| sweep(&of_work, &values, &settings.watched(watch)))? {
-            End::Done(Ok(found)) => found,
-            End::Done(Err(error)) => return Err(scene_exception(py, &own, &model, goal, error)),
-            End::Signalled(signal, _) => return Err(signalled(py, signal, None)),
-        };
+    let found = match run(py, Place::Apart, move |watch: &Watch| sweep(&of_work, &values, &settings.watched(watch)))? {
+        End::Done(Ok(found)) => found,
+        End::Done(Err(error)) => return Err(scene_exception(py, &own, &model, goal, error)),
+        End::Signalled(signal, _) => return Err(signalled(py, signal, None)),
+    };
     let whole = PyDict::new(py);
     whole.set_item("events", as_object(py, &found.events)?)?;
     whole.set_item("corners", as_object(py, &found.corners)?)?;

@@ -1,8 +1,8 @@
-//! Work without the interpreter: other threads of Python run meanwhile, interrupts are answered, and no panic gets through.
+//! Runs work without the interpreter: other threads of Python go on, interrupts are answered, and panics are caught.
 //!
-//! What is soon done runs on the thread that asks for it, and looks for signals as its steps begin. What takes longer, as a
-//! factorisation that cannot be interrupted, runs on a thread of its own; if it does not end soon after an interrupt it is left
-//! alone, and its result dropped.
+//! Short work runs on the calling thread and checks for signals when a step begins. Longer work, for example a
+//! factorisation, which cannot be interrupted, runs on a thread of its own. If it does not end soon after an interrupt,
+//! the caller no longer waits for it, and its result is dropped.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,41 +16,41 @@ use signorini::{ContactProblem, Prepared, Watch};
 
 use crate::errors::{no_memory, panicked};
 
-/// Signals are looked for so often.
+/// Time between two checks for signals.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
 
-/// After an interrupt the work has so long to end with what it has.
+/// Time that the work has after an interrupt to end with its best result so far.
 const PATIENCE: Duration = Duration::from_millis(120);
 
-/// Matrices of fewer entries are soon factorised: in some milliseconds.
+/// Matrices with fewer entries are factorised within some milliseconds.
 const FEW_ENTRIES: usize = 30_000;
 
-/// A sweep through a factor of fewer values takes less than a look for signals may be away.
+/// A triangular solve with a factor of fewer values takes less than [`BETWEEN_LOOKS`].
 const SHORT_SWEEP: usize = 40_000_000;
 
-/// Contact boundaries of fewer dofs are soon solved.
+/// Condensed problems with fewer dofs are solved in short steps.
 const SMALL_BOUNDARY: usize = 1_500;
 
-/// The stack of a thread that works, in bytes: as that of a program.
+/// Stack size of a working thread in bytes, as large as that of the main thread of a program.
 const STACK: usize = 8 << 20;
 
-/// Where the work runs.
+/// The thread on which the work runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// On the thread that asks for it.
+    /// The calling thread.
     Here,
-    /// On a thread of its own.
+    /// A thread of its own.
     Apart,
 }
 
 impl Place {
-    /// The place for work on this problem.
+    /// Returns the place for work on this problem.
     pub fn for_problem(problem: &ContactProblem) -> Self {
         let entries = problem.stiffness().lower().entries() + problem.contact().entries();
         if entries < FEW_ENTRIES { Place::Here } else { Place::Apart }
     }
 
-    /// The place for another gap or load of a prepared problem: if it was condensed, all that is left is short steps.
+    /// Returns the place for another gap or load of a prepared problem. If it is condensed, only short steps remain.
     pub fn for_prepared(problem: &ContactProblem, prepared: &Prepared) -> Self {
         let (condensed, entries) = (prepared.condensed_dofs(), prepared.factor_entries());
         let is_short = condensed < prepared.dofs() && condensed < SMALL_BOUNDARY && (1..SHORT_SWEEP).contains(&entries);
@@ -58,15 +58,15 @@ impl Place {
     }
 }
 
-/// How work ended.
+/// The end of a piece of work.
 pub enum End<T> {
-    /// With a result.
+    /// It ended with a result.
     Done(T),
-    /// A signal raised this exception; with the result, if there was one in time.
+    /// A signal raised this exception; the result is included if it was ready in time.
     Signalled(PyErr, Option<T>),
 }
 
-/// Runs `work`, which ends with what it has if its watch is stopped.
+/// Runs `work`, which ends with its best result so far when its watch is stopped.
 ///
 /// # Errors
 /// `InternalError` for a panic.
@@ -81,14 +81,14 @@ pub fn run<T: Send + 'static>(
     }
 }
 
-/// The message of a panic.
+/// Returns the message of a panic.
 fn message(panic: &(dyn Any + Send)) -> String {
     let literal = panic.downcast_ref::<&str>().map(ToString::to_string);
     literal.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "without a message".into())
 }
 
 fn guarded<T>(work: impl FnOnce(&Watch) -> T, watch: &Watch) -> Result<T, String> {
-    // What the work has left half done is dropped with it.
+    // Everything that the work leaves unfinished is dropped with it, so that no broken state can be seen.
     catch_unwind(AssertUnwindSafe(|| work(watch))).map_err(|panic| message(&*panic))
 }
 
@@ -116,7 +116,7 @@ fn here<T: Send>(py: Python<'_>, work: impl FnOnce(&Watch) -> T + Send) -> PyRes
     })
 }
 
-/// The end of work that is done: a signal that came in its last moment gets the result, too.
+/// Returns the end of finished work. A signal that came at the last moment carries the result as well.
 fn ended<T>(py: Python<'_>, done: T) -> End<T> {
     match py.check_signals() {
         Ok(()) => End::Done(done),
@@ -128,12 +128,12 @@ fn apart<T: Send + 'static>(py: Python<'_>, work: impl FnOnce(&Watch) -> T + Sen
     let (watch, (sender, receiver)) = (Watch::default(), sync_channel(1));
     let watched = watch.clone();
     let worker = thread::Builder::new().name("signorini".into()).stack_size(STACK).spawn(move || {
-        // Nobody receives what comes too late.
+        // The receiver is gone if the result comes too late; that is no error.
         let _ = sender.send(guarded(work, &watched));
     });
-    worker.map_err(|error| no_memory(py, format!("no thread for the work: {error}")))?;
+    worker.map_err(|error| no_memory(py, format!("no thread could be started: {error}")))?;
     let whole = |done: Result<T, String>| done.map_err(|panic| panicked(py, &panic));
-    // A receiver is for one thread at a time: this one, with the interpreter or without.
+    // A receiver may be used by one thread at a time: by this one, attached to the interpreter or detached from it.
     let receiver = Mutex::new(receiver);
     let wait =
         |time: Duration| py.detach(|| receiver.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(time));

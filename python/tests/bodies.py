@@ -12,12 +12,12 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def two_springs() -> sg.Problem:
-    """Springs of stiffness 2 and 1 in a row; the end, pushed with force 3, meets a wall at distance 1: u = (1/3, 1)."""
+    """Springs of stiffness 2 and 1 in a row. The end is pushed with force 3 against a wall at distance 1: u = (1/3, 1)."""
     return sg.Problem(np.array([[3.0, -1.0], [-1.0, 1.0]]), [0.0, 3.0], np.array([[0.0, 1.0]]), [1.0])
 
 
 def membrane(cells: int) -> tuple[sparse.csc_matrix, np.ndarray, sparse.csc_matrix, np.ndarray]:
-    """A square membrane held at its rim, pressed on a plane: five-point stencil, a row for every dof."""
+    """K, f, B and g of a square membrane that is fixed at its rim and pressed onto a plane: five-point stencil, one row per dof."""
     n = cells - 1
     line = sparse.diags_array([-np.ones(n - 1), 2 * np.ones(n), -np.ones(n - 1)], offsets=[-1, 0, 1])
     one = sparse.eye_array(n)
@@ -27,7 +27,10 @@ def membrane(cells: int) -> tuple[sparse.csc_matrix, np.ndarray, sparse.csc_matr
 
 
 def bar(springs: int) -> tuple[sparse.csc_matrix, np.ndarray, sparse.csc_matrix, np.ndarray]:
-    """Springs of stiffness `springs` in a row, held at one end, the other pushed with force 3: u = min(3, g) at the end."""
+    """K, f, B and g of `springs` springs of stiffness `springs` in a row, fixed at one end and pushed with force 3 at the other.
+
+    The displacement of the pushed end is min(3, g).
+    """
     n = springs
     diagonal = np.full(n, 2.0 * n)
     diagonal[-1] = n

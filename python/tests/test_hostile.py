@@ -1,4 +1,4 @@
-"""Arguments that nobody should pass: each is refused with a sentence that names it, and nothing else happens."""
+"""Invalid arguments: each is refused with a message that names the argument, and nothing else happens."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def solved(**options: Any) -> Callable[[], Any]:
 
 
 def damaged(form: str, **arrays: Any) -> sparse.spmatrix:
-    """The stiffness with other arrays inside, which scipy has not looked at."""
+    """The stiffness with some of its arrays replaced, which scipy has not checked."""
     matrix = K.asformat(form).copy()
     for name, array in arrays.items():
         setattr(matrix, name, array)
@@ -153,7 +153,7 @@ HOSTILE: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "start names a row beyond": (solved(start=np.array([5])), ValueError, "start names the row 5"),
     "start names a negative row": (solved(start=np.array([-1])), ValueError, "a negative number"),
     "start too short": (solved(start=[0.5]), ValueError, "start has length 1"),
-    "an option that is none": (solved(speed=3), TypeError, "speed"),
+    "an unknown option": (solved(speed=3), TypeError, "speed"),
     "no problem": (lambda: sg.solve(K), TypeError, "Problem"),
     "verify short": (lambda: sg.verify(two_springs(), [1.0], [0.0]), ValueError, "length 1"),
     "verify nan": (lambda: sg.verify(two_springs(), [np.nan, 0.0], [0.0]), ValueError, "u has the value NaN at entry 0"),
@@ -202,21 +202,21 @@ def circle() -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("name", HOSTILE)
-def test_is_refused_with_a_sentence(name: str) -> None:
+def test_every_invalid_argument_is_refused_with_a_message(name: str) -> None:
     attempt, kind, words = HOSTILE[name]
     with pytest.raises(kind, match=words) as raised:
         attempt()
     sentence = str(raised.value)
     assert len(sentence) > 10 and "\n" not in sentence and "panick" not in sentence
-    if name != "an option that is none" and name != "no problem":
+    if name != "an unknown option" and name != "no problem":
         assert isinstance(raised.value, sg.SignoriniError) and raised.value.code
 
 
-def test_there_are_enough_of_them() -> None:
+def test_at_least_sixty_invalid_arguments_are_tested() -> None:
     assert len(HOSTILE) >= 60
 
 
-def test_a_matrix_of_a_million_rows_in_which_one_is_filled_is_a_matrix() -> None:
+def test_a_matrix_of_a_million_rows_with_one_entry_is_accepted() -> None:
     stiffness, load, _, _ = membrane(5)
     one = sparse.coo_matrix(([1.0], ([999_999], [0])), shape=(1_000_000, len(load)))
     assert sg.Problem(stiffness, load, one, np.ones(1_000_000)).row_count == 1_000_000

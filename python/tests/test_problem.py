@@ -1,4 +1,4 @@
-"""Arrays of every kind make the same problem."""
+"""Arrays of every type and format give the same problem."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_unsorted_duplicate_and_dense_entries_add_up() -> None:
         assert abs(sg.Problem(given, f, B, g).K - K).max() == 0.0
 
 
-def test_of_triangles_that_differ_by_rounding_the_lower_is_taken_whatever_the_format() -> None:
+def test_every_format_takes_the_lower_triangle_if_the_triangles_differ_by_rounding() -> None:
     K = np.array([[2.0, -1.0], [-1.0 * (1 + 1e-13), 2.0]])
     for given in (K, sparse.csc_matrix(K), sparse.csr_matrix(K), sparse.coo_matrix(K)):
         assert sg.Problem(given, [0.0, 0.0]).K.toarray()[0, 1] == -1.0 * (1 + 1e-13)
@@ -55,7 +55,7 @@ def test_of_triangles_that_differ_by_rounding_the_lower_is_taken_whatever_the_fo
             assert sg.Problem(given, [0.0, 0.0]).K.toarray()[1, 0] == kept
 
 
-def test_vectors_of_every_kind_are_the_same() -> None:
+def test_vectors_of_every_type_give_the_same_load() -> None:
     K, f, B, g = bar(4)
     strided = np.zeros(8)
     strided[::2] = f
@@ -67,7 +67,7 @@ def test_vectors_of_every_kind_are_the_same() -> None:
         assert np.array_equal(sg.Problem(K, load, B, g).f, f)
 
 
-def test_what_makes_a_matrix_of_scipy_is_one() -> None:
+def test_an_object_with_to_scipy_is_accepted_as_a_matrix() -> None:
     class Assembled:
         def __init__(self, matrix: sparse.csr_matrix) -> None:
             self.matrix = matrix
@@ -79,7 +79,7 @@ def test_what_makes_a_matrix_of_scipy_is_one() -> None:
     assert abs(sg.Problem(Assembled(K.tocsr()), f, Assembled(B.tocsr()), g).K - K).max() == 0.0
 
 
-def test_a_problem_gives_its_data_back_and_goes_to_another_process() -> None:
+def test_a_problem_returns_its_data_and_can_be_pickled() -> None:
     K, f, B, g = membrane(5)
     modes = np.ones((len(f), 1))
     problem = sg.Problem(K, f, B, g, near_null=modes)
@@ -100,7 +100,7 @@ def test_coordinates_make_the_rigid_body_modes() -> None:
     assert np.allclose(rotation, np.stack([-away[:, 1], away[:, 0]], axis=1))
 
 
-def test_replace_changes_load_and_gap_alone() -> None:
+def test_replace_changes_only_load_and_gap() -> None:
     problem = two_springs().replace(f=[0.0, 5.0], g=[2.0])
     answer = sg.solve(problem)
     assert np.allclose(answer.u, [2 / 3, 2.0], rtol=1e-15) and np.allclose(answer.multiplier, [2 - 2 / 3 - 5], rtol=1e-14)
@@ -111,7 +111,7 @@ def test_a_body_without_rows_is_solved() -> None:
     assert answer.u.tolist() == [1.5] and answer.multiplier.shape == (0,) and answer.energy_error_bound < 1e-9
 
 
-def test_short_words_for_a_console() -> None:
+def test_every_object_has_a_short_text_for_the_console() -> None:
     problem = two_springs()
     assert repr(problem) == "<signorini.Problem: 2 dofs, 1 contact rows>"
     answer = sg.solve(problem)

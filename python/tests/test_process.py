@@ -1,4 +1,4 @@
-"""The package in a process: signals, threads, memory."""
+"""Behaviour of the package in a process: signals, threads, memory."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import pytest
 import signorini as sg
 from bodies import membrane, two_springs
 
-# A body that takes seconds: a signal comes while it is solved, by the method named.
+# Solves a body for seconds by the given method, and sends a signal in the meantime.
 INTERRUPTED = """
 import os, signal, sys, threading, time
 sys.path.insert(0, sys.argv[1])
@@ -44,7 +44,10 @@ except sg.Interrupted as stopped:
 
 
 def interrupted(method: str, cells: int, after: float) -> tuple[float, bool]:
-    """Seconds that the answer to an interrupt took, and whether it carried an answer; infinite if it was solved before."""
+    """Returns the seconds until the interrupt was answered, and whether its exception carries an answer.
+
+    The seconds are infinite if the problem was solved before the interrupt came.
+    """
     program = [sys.executable, "-c", INTERRUPTED, str(Path(__file__).parent), method, str(cells), str(after)]
     ended = subprocess.run(program, capture_output=True, text=True, timeout=120, check=False)
     assert ended.returncode == 0, ended.stderr
@@ -56,25 +59,25 @@ def interrupted(method: str, cells: int, after: float) -> tuple[float, bool]:
 
 @pytest.mark.parametrize(("method", "cells"), [("active-set", 400), ("mprgp", 700), ("qp", 400)])
 def test_an_interrupt_is_answered_at_once(method: str, cells: int) -> None:
-    # On a busy machine the system may come back late; of three times one is enough.
+    # On a busy machine the system may resume the process late, so that one of three attempts must be fast.
     waited = (interrupted(method, cells, after)[0] for after in (0.3, 0.2, 0.4))
     assert any(seconds < 0.2 for seconds in waited)
 
 
 def test_an_interrupt_carries_the_best_answer_until_then() -> None:
-    # Before its first iteration a method has none. The iterations are short, so that on a busy machine, too, one ends in time: of a
-    # body that is solved on the calling thread, and of one that is solved on a thread of its own.
+    # A method has no answer before its first iteration ends. The iterations here are short, so that one ends in time
+    # even on a busy machine. The smaller body is solved on the calling thread, the larger one on a thread of its own.
     for cells in (85, 100):
         tried = [(method, cells, after) for method in ("mprgp", "penalty") for after in (0.05, 0.1, 0.15)]
         assert any(interrupted(*attempt)[1] for attempt in tried), cells
 
 
-def test_an_interrupt_is_a_keyboard_interrupt_with_an_answer_where_there_is_one() -> None:
+def test_an_interrupt_is_a_keyboard_interrupt_without_an_answer_by_default() -> None:
     error = sg.Interrupted("interrupted")
     assert isinstance(error, KeyboardInterrupt) and error.solution is None
 
 
-def test_a_handler_of_the_callers_own_raises_what_it_raises() -> None:
+def test_the_exception_of_the_callers_own_signal_handler_is_passed_on() -> None:
     class Enough(Exception):
         pass
 
@@ -130,11 +133,11 @@ def test_two_threads_solve_at_once_and_find_the_same_bits() -> None:
 
 
 def resident() -> int:
-    """Bytes of memory that the process holds."""
+    """Returns the bytes of memory that the process holds."""
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
-@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the system does not say how much memory a process holds")
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the system does not report the memory of a process")
 def test_memory_is_flat_over_ten_thousand_solves() -> None:
     problem = two_springs()
     prepared = sg.prepare(problem)
@@ -152,11 +155,12 @@ def test_memory_is_flat_over_ten_thousand_solves() -> None:
     solve(2000)
     before = resident()
     solve(10_000)
-    # A leak of one answer, of some 500 bytes, would be ten times as much.
+    # If each solve leaked one answer of some 500 bytes, the growth would be several times as large.
     assert resident() - before < 1_000_000
 
 
-# What is left of a limited address space is taken for the memory there is: a refusal, and not the end of the process.
+# The rest of a limited address space counts as available memory: a problem that needs more is refused, and the process
+# goes on.
 LIMITED = """
 import resource, sys
 sys.path.insert(0, sys.argv[1])
@@ -174,7 +178,7 @@ except sg.TooLarge as error:
 """
 
 
-@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the system does not say how much memory a process holds")
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the system does not report the memory of a process")
 @pytest.mark.parametrize(("cells", "megabytes", "said"), [(300, 150, "True, too large"), (200, 4000, "True")])
 def test_what_does_not_fit_into_a_limited_address_space_is_refused(cells: int, megabytes: int, said: str) -> None:
     program = [sys.executable, "-c", LIMITED, str(Path(__file__).parent), str(cells), str(megabytes)]

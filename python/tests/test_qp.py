@@ -1,4 +1,4 @@
-"""Quadratic programs in the form of qpsolvers: its own problems, closed forms, and the best of other solvers."""
+"""Quadratic programs in the form of qpsolvers, compared with its own problems, with closed forms and with other solvers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def of_problem(problem: Any) -> tuple[Any, ...]:
 
 
 def residuals(found: sg.qp.QPSolution, P: Any, q: Any, G: Any, h: Any, A: Any, b: Any, lb: Any, ub: Any) -> float:
-    """The largest residual of the conditions of a quadratic program, in the signs of qpsolvers."""
+    """Returns the largest residual of the optimality conditions of a quadratic program, in the signs of qpsolvers."""
     flat = lambda a: np.asarray(a, dtype=float).reshape(-1)  # noqa: E731
     rows = lambda a: a.toarray() if sparse.issparse(a) else np.atleast_2d(a)  # noqa: E731
     x = found.x
@@ -56,12 +56,12 @@ def test_a_problem_of_qpsolvers_is_solved_to_its_known_answer(name: str) -> None
     assert answer.found and answer.x is not None
     assert residuals(answer, *data) < 1e-8
     if known is not None and known.x is not None:
-        # Their answers are written to eight or nine digits.
+        # The known solutions are given to eight or nine digits.
         assert np.allclose(answer.x, known.x, rtol=1e-6, atol=2e-6)
     assert answer.unique and answer.certificate is not None and answer.certificate.meets(1e-9)
 
 
-def test_sparse_least_squares_with_an_equality_and_bounds() -> None:
+def test_sparse_least_squares_with_an_equality_and_bounds_are_solved() -> None:
     R, s, G, h, A, b, lb, ub = problems.get_sparse_least_squares(150)
     data = (sparse.csc_matrix(R.T @ R), -R.T @ s, G, h, A, b, lb, ub)
     answer = sg.qp.solve_problem(*data)
@@ -69,7 +69,7 @@ def test_sparse_least_squares_with_an_equality_and_bounds() -> None:
     assert abs(answer.x.sum() - 42.0) < 1e-9
 
 
-def test_against_the_best_of_other_solvers_with_every_kind_of_constraint() -> None:
+def test_an_answer_with_every_kind_of_constraint_is_as_good_as_the_best_of_other_solvers() -> None:
     random = np.random.default_rng(7)
     others = [solver for solver in ("clarabel", "quadprog", "highs") if solver in qpsolvers.available_solvers]
     if not others:
@@ -93,15 +93,15 @@ def test_against_the_best_of_other_solvers_with_every_kind_of_constraint() -> No
         assert answer.obj <= least + 1e-6 * (1 + abs(least)), case
 
 
-def test_an_equality_has_a_multiplier_of_its_sign() -> None:
+def test_the_multiplier_of_an_equality_has_the_sign_of_qpsolvers() -> None:
     for side in (1.0, -1.0):
         answer = sg.qp.solve_problem(np.eye(2), [0.0, 0.0], A=[[1.0, 0.0]], b=[side])
         assert np.allclose(answer.x, [side, 0.0], atol=1e-14) and np.allclose(answer.y, [-side], atol=1e-14)
         assert answer.z is None and answer.z_box is None and abs(answer.obj - 0.5) < 1e-14
 
 
-def test_a_semidefinite_objective_has_one_of_its_minima() -> None:
-    # 1/2 (x_0 + x_1 - 2)^2 in the box: every point of a line; and a linear programme, whose minimum is a corner.
+def test_one_minimum_of_a_semidefinite_objective_is_found() -> None:
+    # The minima of 1/2 (x_0 + x_1 - 2)^2 in the box form a line; the minimum of the linear program is a corner.
     P, q = np.ones((2, 2)), np.array([-2.0, -2.0])
     answer = sg.qp.solve_problem(P, q, lb=[0.0, 0.0], ub=[3.0, 3.0])
     assert abs(answer.x.sum() - 2.0) < 1e-9 and not answer.unique
@@ -121,7 +121,7 @@ def test_least_squares_without_full_rank_reach_the_least_residual(rank: int) -> 
 
 
 @pytest.mark.parametrize("seed", range(100, 140))
-def test_a_stiffness_without_full_rank_and_with_contrast_has_one_of_its_minima(seed: int) -> None:
+def test_one_minimum_of_a_singular_matrix_with_contrast_is_found(seed: int) -> None:
     random = np.random.default_rng(seed)
     n = int(random.integers(5, 40))
     rank, m = int(random.integers(1, n)), int(random.integers(1, 30))
@@ -147,20 +147,20 @@ def test_a_linear_program_has_the_minimum_of_the_simplex_method(seed: int) -> No
     assert abs(answer.obj - least) < 1e-8 * (1 + abs(least))
 
 
-def test_what_has_no_minimum_is_none() -> None:
+def test_a_program_without_a_minimum_gives_none() -> None:
     assert sg.qp.solve_qp(np.eye(1), [0.0], G=[[1.0], [-1.0]], h=[-1.0, -1.0]) is None
     assert sg.qp.solve_qp(np.eye(2), [0.0, 0.0], A=[[1.0, 0.0], [1.0, 0.0]], b=[0.0, 1.0]) is None
     assert sg.qp.solve_qp(np.zeros((1, 1)), [1.0]) is None
     assert "infeasible" in sg.qp.solve_problem(np.eye(1), [0.0], lb=[1.0], ub=[0.0]).reason
 
 
-def test_equalities_that_say_the_same_twice_do_no_harm() -> None:
+def test_redundant_equalities_do_not_change_the_answer() -> None:
     A = [[1.0, 1.0, 0.0], [2.0, 2.0, 0.0], [0.0, 0.0, 1.0]]
     answer = sg.qp.solve_problem(np.eye(3), [0.0, 0.0, 0.0], A=A, b=[1.0, 2.0, 5.0])
     assert np.allclose(answer.x, [0.5, 0.5, 5.0], atol=1e-12)
 
 
-def test_bad_programs_are_refused_with_a_sentence() -> None:
+def test_invalid_programs_are_refused_with_a_message() -> None:
     for words, data in {
         "G is given without h": (np.eye(2), [0.0, 0.0], np.eye(2)),
         "b is given without A": (np.eye(2), [0.0, 0.0], None, None, None, [1.0]),

@@ -1,4 +1,4 @@
-"""Scenes: the same bits as the program, and what follows from an answer."""
+"""Scenes: their solutions have the same bits as those of the program, and their forces and stresses are consistent."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ sys.path.append(str(ROOT / "reference"))
 import cases  # noqa: E402
 from problem import write_problem  # noqa: E402
 
-# Every scene that does not move.
+# All scenes without a motion.
 SCENES = [
     scene
     for scene in sorted([*ROOT.glob("examples/**/*.json"), *ROOT.glob("tools/*/*.json"), *ROOT.glob("tests/corpus/*.json")])
@@ -31,7 +31,7 @@ FINDINGS = sorted(folder for folder in (ROOT / "tests" / "corpus" / "findings").
 
 
 def program() -> Path:
-    """The program, as the tests of the root build it."""
+    """Returns the path of the program that the tests of the root have built."""
     built = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
     found = [built / profile / "signorini" for profile in ("debug", "release")]
     there = [path for path in found if path.exists()]
@@ -41,24 +41,24 @@ def program() -> Path:
 
 
 def column(file: Path) -> np.ndarray:
-    """A vector in Matrix Market form, every digit as it stands."""
+    """Reads a vector in Matrix Market form with all its digits."""
     lines = [line for line in file.read_text().splitlines() if not line.startswith("%")]
     return np.array([float(line) for line in lines[1:]])
 
 
-# What ends a run, by the exit code of the program.
+# The exceptions that correspond to each exit code of the program.
 ENDINGS = {1: (sg.BadInput, sg.NumericalError, sg.TooLarge), 3: (sg.Infeasible, sg.Unbounded, sg.UnderHeld)}
 
 
 def run(target: Path, out: Path, method: str = "auto") -> tuple[int, dict[str, Any]]:
-    """Exit code and report of `signorini solve`."""
+    """Returns the exit code and the report of `signorini solve`."""
     command = [program(), "solve", target, "--method", method, "--out", out, "--format", "json", "--max-memory", "8GB"]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     return ended.returncode, json.loads(ended.stdout) if ended.stdout else {}
 
 
 def agree(code: int, solve: Callable[[], sg.Solution], out: Path) -> sg.Solution | None:
-    """Holds an answer against the files of the program, bit by bit, or an exception against its exit code."""
+    """Compares a solution with the files of the program, bit by bit, or an exception with its exit code."""
     if code in ENDINGS:
         with pytest.raises(ENDINGS[code]):
             solve()
@@ -87,7 +87,7 @@ def test_an_answer_has_the_bits_of_the_program(scene: Path, tmp_path: Path) -> N
 
 
 def of_folder(folder: Path) -> sg.Problem:
-    """The problem of a directory, read by scipy."""
+    """Returns the problem of a directory, read by scipy."""
     from scipy.io import mmread
 
     near_null = None
@@ -117,7 +117,7 @@ def test_a_reference_problem_has_the_bits_of_the_program(case: cases.Case, tmp_p
 
 
 @pytest.mark.parametrize("folder", FINDINGS, ids=lambda folder: folder.name)
-def test_a_problem_on_which_a_promise_once_broke_has_the_bits_of_the_program(folder: Path, tmp_path: Path) -> None:
+def test_a_problem_that_once_revealed_a_fault_has_the_bits_of_the_program(folder: Path, tmp_path: Path) -> None:
     same_as_program(folder, tmp_path / "out")
 
 
@@ -141,18 +141,18 @@ def test_a_dictionary_is_a_scene_and_may_hold_numbers_of_numpy() -> None:
     assert repr(sg.Scene(scene)) == "<signorini.Scene: Block under a plane, about 50 dofs>"
 
 
-def test_what_follows_from_an_answer_fits_together() -> None:
+def test_forces_pressures_and_stresses_of_an_answer_are_consistent() -> None:
     scene = sg.Scene(block())
     answer = scene.solve()
     nodes, rows = scene.nodes, scene.rows
     assert nodes.shape == (25, 2) and scene.elements.shape == (16, 4) and scene.element_kind == "Q4"
     assert answer.displacement.shape == nodes.shape and answer.stress.shape == (25, 6) and answer.element_stress.shape == (16, 6)
     assert rows["node"].shape == answer.pressure.shape == (5,) and rows["normal"].shape == (5, 2)
-    # All five nodes of the top touch, and have gone down by the gap.
+    # All five nodes of the top are in contact and are displaced by the gap.
     assert np.allclose(answer.displacement[rows["node"], 1], -0.01, atol=1e-14)
     assert np.allclose(answer.remaining_gap, 0.0, atol=1e-14)
     assert np.allclose(answer.pressure * rows["area"], -answer.multiplier)
-    # Contact and support are in balance; the resultant of the obstacle is the sum of the forces.
+    # Contact forces and reactions are in balance; the resultant of the obstacle is the sum of the contact forces.
     assert np.allclose(answer.contact_forces.sum(axis=0) + answer.reactions.sum(axis=0), 0.0, atol=1e-6)
     obstacle = next(of for of in answer.resultants if of["of"] == "obstacles[0]")
     assert np.allclose(obstacle["force"], answer.contact_forces.sum(axis=0), atol=1e-6)
@@ -162,7 +162,7 @@ def test_what_follows_from_an_answer_fits_together() -> None:
     assert answer.scene.title == "Block under a plane" and "peak pressure" in answer._repr_html_()
 
 
-def test_a_scene_is_a_problem_like_any_other() -> None:
+def test_the_problem_of_a_scene_has_the_same_solution_as_the_scene() -> None:
     scene = sg.Scene(block())
     problem = scene.problem
     assert problem.dofs == 40 and problem.row_count == 5 and problem.near_null.shape == (40, 3)
@@ -177,7 +177,7 @@ def test_methods_are_compared_on_a_scene() -> None:
     assert np.allclose(comparison.qp.pressure, comparison.active_set.pressure, rtol=1e-7)
 
 
-def test_a_sweep_knows_what_happens_between_its_gaps() -> None:
+def test_a_sweep_finds_the_events_between_its_gaps() -> None:
     sweep = sg.sweep(sg.Scene(ROOT / "examples" / "indentation.json"), [-0.01, -0.05, -0.1])
     assert sweep.gaps == [-0.01, -0.05, -0.1] and len(sweep.solutions) == 3 and sweep.events
     assert (np.diff(sweep.contact_force) > 0).all()
@@ -191,7 +191,7 @@ def pressed() -> dict:
     return scene
 
 
-def test_a_sweep_over_forces_is_that_of_the_program(tmp_path: Path) -> None:
+def test_a_sweep_over_forces_has_the_bits_of_the_program(tmp_path: Path) -> None:
     file = tmp_path / "scene.json"
     file.write_text(json.dumps(pressed()))
     command = [program(), "sweep", file, "--forces", "0:2e4:5", "--format", "json"]
@@ -200,7 +200,7 @@ def test_a_sweep_over_forces_is_that_of_the_program(tmp_path: Path) -> None:
     assert sweep.forces == [point["force"] for point in reported] == [0.0, 5e3, 1e4, 1.5e4, 2e4]
     assert [answer.resultants for answer in sweep.solutions] == [point["resultants"] for point in reported]
     assert np.allclose(sweep.contact_force, sweep.forces, rtol=0, atol=1e-5) and not sweep.events
-    # Without a force the obstacle stands where it first touches.
+    # Without a force the obstacle stays at its first contact.
     assert abs(sweep.solutions[0].resultants[0]["travel"] - 0.003) < 1e-15
 
 
@@ -224,7 +224,7 @@ def test_a_sweep_to_another_end_has_the_bits_of_the_program(tmp_path: Path) -> N
             assert np.array_equal(answer.multiplier, column(tmp_path / "out" / f"point-{number:02}" / "lambda.mtx"))
 
 
-def test_pictures_of_sweeps_have_an_axis_for_what_was_swept() -> None:
+def test_pictures_of_sweeps_name_the_swept_quantity_on_their_axis() -> None:
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     scene = sg.Scene(pressed())
@@ -238,7 +238,7 @@ def test_pictures_of_sweeps_have_an_axis_for_what_was_swept() -> None:
         assert (axes.get_xlabel(), axes.get_ylabel()) == names and len(axes.lines[-1].get_xdata()) == len(sweep.solutions)
 
 
-def test_faults_are_named_with_path_line_and_column(tmp_path: Path) -> None:
+def test_errors_in_a_scene_name_path_line_and_column(tmp_path: Path) -> None:
     scene = block()
     scene["material"]["young"] = -1
     file = tmp_path / "scene.json"
@@ -260,13 +260,13 @@ def test_a_scene_without_supports_names_its_motion() -> None:
         sg.Scene(scene).solve()
 
 
-def test_a_scene_that_moves_is_refused() -> None:
+def test_a_scene_with_a_motion_is_refused() -> None:
     moving = next((ROOT / "tools" / "impact").glob("*.json"))
     with pytest.raises(sg.SceneError, match="the scene moves"):
         sg.Scene(moving).solve()
 
 
-def test_pictures_show_the_mesh() -> None:
+def test_a_picture_of_a_scene_shows_its_mesh() -> None:
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     axes = sg.Scene(block()).solve().plot()
@@ -274,21 +274,21 @@ def test_pictures_show_the_mesh() -> None:
 
 
 class Grid:
-    """What `pyvista.UnstructuredGrid` takes, which needs VTK, 600 MB: tables of nodes by the type of the cell, and points in space."""
+    """A replacement for `pyvista.UnstructuredGrid`, which needs VTK (600 MB). It takes node tables by cell type, and points in space."""
 
     def __init__(self, cells: dict[int, np.ndarray], points: np.ndarray) -> None:
         assert points.shape[1] == 3 and all(0 <= nodes.min() and nodes.max() < len(points) for nodes in cells.values())
         self.cells_dict, self.points, self.point_data = cells, points, {}
 
 
-# The names of meshio, whose numbers of cells are those of VTK.
+# The names that meshio gives to the cell types; it maps them to the numbers of VTK.
 CELLS = {
     "Line2": "line", "Line3": "line3", "T3": "triangle", "T6": "triangle6", "Q4": "quad", "Q8": "quad8",
     "Tet4": "tetra", "Tet10": "tetra10", "Hex8": "hexahedron", "Hex20": "hexahedron20",
 }  # fmt: skip
 
 
-def test_the_types_of_cells_are_those_of_vtk() -> None:
+def test_the_numbers_of_the_cell_types_are_those_of_vtk() -> None:
     from meshio._vtk_common import meshio_to_vtk_type
     from signorini import _show
 

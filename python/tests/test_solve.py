@@ -1,4 +1,4 @@
-"""Answers, what is prepared, studies: against closed forms and against each other."""
+"""Solutions, prepared problems and studies, compared with closed forms and with each other."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def test_every_method_presses_the_springs_against_the_wall(method: str) -> None:
     try:
         answer = sg.solve(two_springs(), method=method)
     except sg.NotCertified as fell_short:
-        # A penalty is never exact.
+        # Only the penalty method is inexact by design.
         assert method == "penalty"
         answer = fell_short.solution
     assert np.allclose(answer.u, [1 / 3, 1.0], rtol=1e-7) and np.allclose(answer.multiplier, [-7 / 3], rtol=1e-7)
@@ -22,7 +22,7 @@ def test_every_method_presses_the_springs_against_the_wall(method: str) -> None:
     assert answer.seconds > 0.0 and answer.why
 
 
-def test_an_answer_says_what_is_proven_and_how_far_it_is() -> None:
+def test_an_answer_has_proven_rows_and_an_error_bound() -> None:
     K, f, B, g = membrane(12)
     answer = sg.solve(sg.Problem(K, f, B, g))
     proven = answer.proven
@@ -43,7 +43,7 @@ def test_arrays_of_an_answer_are_kept_and_cannot_be_changed() -> None:
         answer.u[0] = 1.0
 
 
-def test_verify_judges_anybodys_answer() -> None:
+def test_verify_accepts_the_right_answer_and_rejects_wrong_ones() -> None:
     problem = two_springs()
     right = sg.verify(problem, [1 / 3, 1.0], [-7 / 3])
     assert right.meets(1e-9)
@@ -98,7 +98,7 @@ def test_methods_are_compared_and_agree() -> None:
     assert comparison.penalty.method.startswith("penalty")
 
 
-def test_a_tradeoff_has_points_and_advice_and_a_picture() -> None:
+def test_a_tradeoff_has_points_advice_and_a_picture() -> None:
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     K, f, B, g = membrane(8)
@@ -109,13 +109,13 @@ def test_a_tradeoff_has_points_and_advice_and_a_picture() -> None:
     assert axes.get_xlabel() == "seconds" and len(axes.lines) > 3
 
 
-def test_a_sweep_over_gaps_of_a_problem_is_a_series_of_answers() -> None:
+def test_a_sweep_over_gaps_of_a_problem_gives_one_answer_per_gap() -> None:
     K, f, B, _ = bar(4)
     sweep = sg.sweep(sg.Problem(K, f, B, [1.0]), [[0.5], [1.5], [3.5]])
     assert np.allclose(sweep.contact_force, [2.5, 1.5, 0.0], atol=1e-12)
 
 
-def test_a_sweep_to_other_gaps_finds_where_the_end_touches() -> None:
+def test_a_sweep_to_other_gaps_finds_the_gap_at_which_the_end_touches() -> None:
     K, f, B, _ = bar(4)
     problem = sg.Problem(K, f, B, [4.0])
     sweep = sg.sweep(problem, g1=[2.0], points=5)
@@ -128,7 +128,7 @@ def test_a_sweep_to_other_gaps_finds_where_the_end_touches() -> None:
     assert np.allclose(stronger.contact_force, [2.0, 3.0, 4.0], atol=1e-12) and not stronger.events
 
 
-def test_a_row_without_an_obstacle_stays_one_on_the_way() -> None:
+def test_a_sweep_keeps_rows_without_an_obstacle_and_refuses_to_change_them() -> None:
     K, f, B, _ = bar(4)
     both = sg.Problem(K, f, np.vstack([B.toarray(), -B.toarray()]), [4.0, np.inf])
     assert np.allclose(sg.sweep(both, g1=[2.0, np.inf], points=3).contact_force, [0.0, 0.0, 1.0], atol=1e-12)

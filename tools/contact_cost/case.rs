@@ -1,9 +1,10 @@
-//! The blocks that are measured: clamped below, a parabola or a sphere pressed into the top.
+//! The measured blocks: clamped at the bottom, with a parabola or a sphere pressed into the top.
 
 use serde_json::json;
 use signorini::{Error, Model, Scene};
 
-/// First gap of every case, in units of the block's side: the obstacle starts this far inside the body.
+/// First gap of every case, as a multiple of the block's side; it is negative, so that the obstacle starts inside the
+/// body.
 pub const FIRST_GAP: f64 = -0.01;
 
 /// A unit block of `cells` elements along each side.

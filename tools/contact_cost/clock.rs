@@ -3,12 +3,12 @@
 use std::sync::OnceLock;
 use std::time::Instant;
 
-/// Seconds that this thread has had a processor: other programs do not count. Wall-clock seconds where the system does
-/// not tell.
+/// Returns the processor seconds of this thread, without the time of other programs. If the system does not report
+/// them, returns wall-clock seconds.
 pub fn processor_seconds() -> f64 {
     static START: OnceLock<Instant> = OnceLock::new();
     let from_system = || -> Option<f64> {
-        // The account of a running thread is brought up to date when it gives way.
+        // The system updates the time of a running thread when the thread yields.
         std::thread::yield_now();
         let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
         Some(1e-9 * text.split_whitespace().next()?.parse::<f64>().ok()?)

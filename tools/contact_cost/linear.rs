@@ -1,4 +1,5 @@
-//! The yardstick: one plain linear solve K u = f with faer as it comes, from the stiffness to the displacement.
+//! The reference of all ratios: one linear solve K u = f with the routines of faer, from the stiffness to the
+//! displacement.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::perm::PermRef;
@@ -8,16 +9,16 @@ use faer::{Conj, MatMut, Par, Side};
 use feral_metis::{CscPattern, metis_order};
 use signorini::SymmetricMatrix;
 
-/// How the unknowns are ordered.
+/// The ordering of the unknowns.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Ordering {
     /// faer's default: approximate minimum degree on the dofs.
     Amd,
-    /// Nested dissection of the graph of nodes, which have this many dofs each.
+    /// Nested dissection of the graph of nodes; the value is the number of dofs per node.
     NestedDissection(usize),
 }
 
-/// Order, analyse, factor, solve; the displacement and the number of values of the factor.
+/// Orders, analyses, factorises and solves. Returns the displacement and the number of values in the factor.
 pub fn solve(stiffness: &SymmetricMatrix, load: &[f64], ordering: Ordering) -> Option<(Vec<f64>, usize)> {
     let lower = stiffness.lower();
     let dim = stiffness.dim();
@@ -56,7 +57,7 @@ pub fn solve(stiffness: &SymmetricMatrix, load: &[f64], ordering: Ordering) -> O
     Some((displacement, symbolic.len_val()))
 }
 
-/// The dofs in the order of the nested dissection of their nodes, which are numbered alike.
+/// Returns the dofs in the order of the nested dissection of their nodes. All nodes have `per_node` consecutive dofs.
 fn dissected(stiffness: &SymmetricMatrix, per_node: usize) -> Option<Vec<usize>> {
     let nodes = stiffness.dim() / per_node;
     let mut neighbours = vec![Vec::new(); nodes];

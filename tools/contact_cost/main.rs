@@ -1,8 +1,9 @@
-//! What a contact solve costs beside one plain linear solve of the same stiffness, on one thread:
+//! Compares the cost of a contact solve with that of one linear solve of the same stiffness, on one thread:
 //! `cargo run --release --example contact_cost [-- --out DIR] [--only "Q4 64,Hex8 6"] [--rounds N]`.
 //!
-//! Every case is timed in a process of its own, its tasks in turn, round after round; the least time of each counts. The
-//! peak of memory is that of one more process for each task, which builds the model and does the task once.
+//! Every case is timed in a process of its own. Each round runs all its tasks once; the smallest time of each task over
+//! all rounds counts. The peak memory is measured in one more process for each task, which builds the model and does
+//! the task once.
 
 mod case;
 mod clock;
@@ -22,7 +23,7 @@ use process::{Failure, child, ended, option, peak_bytes};
 use serde_json::{Map, Value, json};
 use signorini::output::write_files;
 
-/// Rounds of every case; the least time of each task counts.
+/// Number of rounds of every case. The smallest time of each task counts.
 const ROUNDS: usize = 4;
 
 fn main() -> ExitCode {

@@ -1,4 +1,4 @@
-//! What is measured.
+//! The measured tasks.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -9,15 +9,15 @@ use crate::case::{Case, FIRST_GAP};
 use crate::clock::processor_seconds;
 use crate::linear::{self, Ordering};
 
-/// The first gap is followed by this many, each a tenth further.
+/// Number of gaps after the first one; each is a tenth of the first gap further.
 const NEXT_GAPS: usize = 9;
 
-/// Something that is done with a model.
+/// A task whose time is measured.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Task {
     pub name: &'static str,
     work: Work,
-    /// The most dofs in the plane and in space that it is done with: methods on all dofs take long.
+    /// Largest numbers of dofs, in the plane and in space, for which the task is run; methods on all dofs take long.
     most_dofs: [usize; 2],
 }
 
@@ -25,17 +25,17 @@ pub struct Task {
 enum Work {
     Assembly,
     Linear(Ordering),
-    /// From the checked problem to the certified answer.
+    /// A contact solve, from the checked problem to the certified answer.
     Contact(Method, Condense),
-    /// As `Contact`, with the certificate of the condensed problem alone.
+    /// As `Contact`, but only the condensed problem is certified.
     Uncertified,
-    /// As `Contact` with so many threads, by the clock on the wall.
+    /// As `Contact` with this number of threads, in wall-clock time.
     Threads(usize),
-    /// The next gap, mean of nine: contact set and forces.
+    /// Contact set and forces for the next gap, as the mean of nine gaps.
     NextForces,
-    /// The next gap, mean of nine: displacement of the whole body, certified.
+    /// Certified displacement of the whole body for the next gap, as the mean of nine gaps.
     NextDisplacement,
-    /// Everything that happens over ten gaps, preparation included, with the contact forces at each.
+    /// A sweep over ten gaps with the contact forces at each gap, including the preparation and all events.
     Sweep,
 }
 
@@ -76,12 +76,12 @@ impl Task {
         case.dofs() <= self.most_dofs[usize::from(case.space)]
     }
 
-    /// Is it done once instead of in every round?
+    /// Returns `true` if the task is done once instead of in every round.
     pub fn is_slow(&self) -> bool {
         matches!(self.work, Work::Contact(_, Condense::Never))
     }
 
-    /// Does it, and returns the seconds that it took.
+    /// Does the task, and returns the seconds that it took.
     pub fn seconds(&self, case: &Case, bench: &Bench) -> Result<f64, Error> {
         let problem = bench.model.problem();
         let start = processor_seconds();
@@ -93,7 +93,7 @@ impl Task {
                 settings.condense = condense;
                 match signorini::solve(problem, &settings) {
                     Ok(solution) => drop(black_box(solution)),
-                    // The penalty method ends where its best accuracy is reached.
+                    // The penalty method ends at its best accuracy, which may be below the tolerance of a certificate.
                     Err(Error::NotCertified { solution, .. }) => drop(black_box(solution)),
                     Err(error) => return Err(error),
                 }
@@ -132,7 +132,7 @@ fn active_set() -> Settings {
     Settings::with_method(Method::ActiveSet)
 }
 
-/// A model with the gaps that follow its own.
+/// A model, and the gaps that follow its own gap.
 pub struct Bench {
     model: Model,
     gaps: Vec<Vec<f64>>,
@@ -150,7 +150,8 @@ impl Bench {
         Prepared::new(self.model.problem(), &active_set())
     }
 
-    /// Mean seconds of `step` over the next gaps, each from the contact set of the one before.
+    /// Returns the mean seconds of `step` over the next gaps; each step starts from the contact set of the previous
+    /// gap.
     fn walk(&self, step: impl Fn(&Prepared, &[f64]) -> Result<ContactSet, Error>) -> Result<f64, Error> {
         let prepared = self.prepared()?;
         let mut closed = prepared.solve(self.model.problem().gap())?.contact_set;
@@ -173,12 +174,12 @@ impl Bench {
         Ok(self.prepared()?.condensed_dofs())
     }
 
-    /// Bytes of the values of the factor that the contact solve makes.
+    /// Returns the bytes of the values in the factor of the contact solve.
     pub fn contact_factor_bytes(&self) -> Result<f64, Error> {
         Ok(8.0 * self.prepared()?.factor_entries() as f64)
     }
 
-    /// Bytes of the values of the factor that the linear solve makes.
+    /// Returns the bytes of the values in the factor of the linear solve.
     pub fn factor_bytes(&self, ordering: Ordering) -> Option<f64> {
         let problem = self.model.problem();
         linear::solve(problem.stiffness(), problem.load(), ordering).map(|(_, values)| 8.0 * values as f64)

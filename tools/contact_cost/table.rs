@@ -1,8 +1,8 @@
-//! The measurements as tables: seconds and memory of every task, then the ratios that matter with what they must reach.
+//! The measurements as tables: seconds and memory of every task, and the ratios of tasks with their limits.
 
 use serde_json::Value;
 
-/// A ratio of two tasks of a case: what, case, task, divided by task, must reach, strive for.
+/// A ratio of two tasks of a case: name, case, first task, second task, required value, desired value.
 const RATIOS: [(&str, &str, &str, &str, f64, f64); 11] = [
     ("contact / linear solve", "Q4 256", "active set", "linear solve", 1.15, 1.0),
     ("contact / linear solve", "Q4 512", "active set", "linear solve", 1.0, 0.8),
@@ -17,13 +17,15 @@ const RATIOS: [(&str, &str, &str, &str, f64, f64); 11] = [
     ("two threads / one", "Hex8 28", "active set, two threads", "active set, wall clock", 1.0, 0.5),
 ];
 
-/// Peak memory of a contact solve over the values of its factor: case, must reach, strive for.
+/// Ratio of the peak memory of a contact solve to the bytes of its factor: case, required value, desired value.
 const MEMORY: (&str, f64, f64) = ("Q4 512", 2.0, 1.3);
 
 const MEGABYTE: f64 = 1e6;
 
 pub fn text(cases: &[Value], rounds: &str) -> String {
-    let mut text = format!("Least of {rounds} rounds, tasks in turn, in seconds of processor; `full` tasks once.\n\n");
+    let mut text = format!(
+        "Smallest processor seconds of {rounds} rounds, in which the tasks alternate; `full` tasks run once.\n\n"
+    );
     text += "| case | dofs | rows | task | seconds | over linear solve | peak MB |\n|---|---|---|---|---|---|---|\n";
     for case in cases {
         let linear = seconds(case, "linear solve");
@@ -40,7 +42,7 @@ pub fn text(cases: &[Value], rounds: &str) -> String {
             );
         }
     }
-    text += "\n| ratio | case | measured | must reach | strive for |\n|---|---|---|---|---|\n";
+    text += "\n| ratio | case | measured | required | desired |\n|---|---|---|---|---|\n";
     let mut line = |what: &str, case: &Value, measured: Option<f64>, must: f64, strive: f64| {
         let measured = measured.map_or("not run".into(), |value| format!("{value:.4}"));
         let name = case["case"].as_str().unwrap_or_default();

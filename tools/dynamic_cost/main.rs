@@ -1,9 +1,11 @@
-//! Prints what a time step with contact, energies included, costs beside two triangular solves of the same matrix.
+//! Compares the cost of a time step with contact, including its energies, with that of two triangular solves of the
+//! same matrix.
 //!
-//! `cargo run --release --example dynamic_cost [-- --short]`: square blocks of Q4 cells, clamped below, thrown against a
-//! parabola; in the short form the smallest alone. Two triangular solves are one solution of `K_eff x = b` by its own Cholesky
-//! factor: L y = b and L' x = y, the contact dofs in no special place. Times are means over all steps, the solves measured in
-//! turn with the steps: what else the machine does meets both alike.
+//! `cargo run --release --example dynamic_cost [-- --short]` runs square blocks of Q4 cells, clamped at the bottom,
+//! that fly against a parabola; the short form runs only the smallest. The two triangular solves are one solution of
+//! `K_eff x = b` by its own Cholesky factor, L y = b and L' x = y, without a special order for the contact dofs. Times
+//! are means over all steps. Steps and solves are measured alternately, so that other work of the machine affects both
+//! in the same way.
 
 use std::time::Instant;
 
@@ -12,7 +14,7 @@ use signorini::internals::Cholesky;
 use signorini::motion::{Integrator, Scheme};
 use signorini::{Scene, Settings, SparseMatrix, SymmetricMatrix};
 
-/// Cells along a side: 8,320, 33,024 and 131,584 dofs.
+/// Cells along a side of each block; the blocks have 8,320, 33,024 and 131,584 dofs.
 const CELLS: [usize; 3] = [64, 128, 256];
 
 const STEPS: usize = 200;
@@ -59,7 +61,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The mean, not the least: on a busy machine a short piece of work is left alone now and then, a longer one never.
+/// Returns the mean. The minimum would favour short work, which on a busy machine sometimes runs undisturbed, over
+/// longer work.
 fn mean(seconds: Vec<f64>) -> f64 {
     seconds.iter().sum::<f64>() / seconds.len() as f64
 }
@@ -68,7 +71,7 @@ fn factor(matrix: &SymmetricMatrix) -> Result<Cholesky, signorini::Error> {
     Ok(Cholesky::of(matrix)?)
 }
 
-/// A block that is clamped below, its top flying towards a parabola.
+/// A block that is clamped at its bottom, with an initial velocity of its top towards a parabola.
 fn block(cells: usize) -> serde_json::Value {
     json!({
         "body": {"rectangle": {
@@ -82,7 +85,7 @@ fn block(cells: usize) -> serde_json::Value {
     })
 }
 
-/// `factor M + K`.
+/// Returns `factor M + K`.
 fn effective(
     mass: &SymmetricMatrix,
     stiffness: &SymmetricMatrix,

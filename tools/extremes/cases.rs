@@ -1,21 +1,21 @@
-//! Problems at the extremes whose answers are known in closed form.
+//! Problems with extreme data whose solutions are known in closed form.
 
 use serde_json::json;
 use signorini::{ContactProblem, Error, Scene, SparseMatrix, SymmetricMatrix};
 
 use super::entry::{Entry, Truth};
 
-/// A block between rollers, its top pressed down by `gap` of its height: uniaxial strain, whatever the mesh.
+/// A block between rollers whose top is pressed down by a share of its height. The strain is uniaxial on every mesh.
 struct Block {
     young: f64,
     poisson: f64,
     width: f64,
     height: f64,
-    /// Penetration over the height.
+    /// Penetration divided by the height.
     strain: f64,
     cells: [usize; 2],
     element: &'static str,
-    /// Width of the first column over that of the block.
+    /// Width of the first column of cells divided by that of the block.
     sliver: Option<f64>,
 }
 
@@ -59,7 +59,8 @@ impl Block {
     }
 }
 
-/// Springs in a row, the first from the ground if it is `held`, force at the end, each of `walls` a row (dof, gap).
+/// A chain of springs with `force` at its end. If `held`, the first spring is fixed to the ground. Each of `walls` is a
+/// row (dof, gap).
 fn chain(springs: &[f64], held: bool, force: f64, walls: &[(usize, f64)]) -> Result<ContactProblem, Error> {
     let dofs = springs.len();
     let mut entries = Vec::new();
@@ -79,7 +80,7 @@ fn chain(springs: &[f64], held: bool, force: f64, walls: &[(usize, f64)]) -> Res
     ContactProblem::new(stiffness, load, contact, walls.iter().map(|wall| wall.1).collect())
 }
 
-/// A node held by unit springs, under the force (3, 1), before walls of these normals and gaps.
+/// A node on unit springs under the given force, with walls of these normals and gaps.
 fn node(force: [f64; 2], walls: &[([f64; 2], f64)]) -> Result<ContactProblem, Error> {
     let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &[(0, 0, 1.0), (1, 1, 1.0)])?)?;
     let rows: Vec<_> = walls.iter().enumerate().flat_map(|(row, (n, _))| [(row, 0, n[0]), (row, 1, n[1])]).collect();
@@ -88,11 +89,11 @@ fn node(force: [f64; 2], walls: &[([f64; 2], f64)]) -> Result<ContactProblem, Er
 }
 
 fn powers(exponents: impl IntoIterator<Item = i32>) -> impl Iterator<Item = f64> {
-    // As a reader would write it: powers by multiplication are off in the last place.
+    // Parsed as a reader would write the number, because a power by multiplication is wrong in its last digit.
     exponents.into_iter().map(|exponent| format!("1e{exponent}").parse().unwrap_or(f64::NAN))
 }
 
-/// All entries; those of more than `most` dofs are left out.
+/// Returns all entries with at most `most` dofs.
 pub fn entries(most: usize) -> Result<Vec<Entry>, Error> {
     let groups = [
         units()?,
@@ -107,7 +108,7 @@ pub fn entries(most: usize) -> Result<Vec<Entry>, Error> {
     Ok(groups.into_iter().flatten().filter(|entry| entry.problem.dofs() <= most).collect())
 }
 
-/// Scales of stiffness, length and load.
+/// Problems with scaled stiffness, length and load.
 fn units() -> Result<Vec<Entry>, Error> {
     let mut entries = Vec::new();
     for scale in powers((-12..=12).step_by(4)) {
@@ -117,7 +118,7 @@ fn units() -> Result<Vec<Entry>, Error> {
         entries.push(mixed.entry("units", format!("E and length {scale:e}"))?);
         let opposed = Block { young: scale, width: inverse, height: inverse, ..BLOCK };
         entries.push(opposed.entry("units", format!("E {scale:e}, length {inverse:e}"))?);
-        // Ten springs, pressed to twice their way to the wall.
+        // Ten springs under a load that would move their end to twice the distance of the wall.
         let wall = |stiffness: f64, gap: f64| chain(&[stiffness; 10], true, stiffness * gap / 5.0, &[(9, gap)]);
         let force = |stiffness: f64, gap: f64| Truth::Force(stiffness * gap / 10.0);
         entries.push(Entry::new("units", format!("load {scale:e}"), wall(scale, 1.0)?, force(scale, 1.0)));
@@ -127,7 +128,7 @@ fn units() -> Result<Vec<Entry>, Error> {
     Ok(entries)
 }
 
-/// Blocks at the extremes of penetration, material and shape.
+/// Blocks with extreme penetration, material and shape.
 fn blocks() -> Result<Vec<Entry>, Error> {
     let mut entries = Vec::new();
     for strain in powers((-12..=0).step_by(2)) {
@@ -168,7 +169,8 @@ fn springs() -> Result<Vec<Entry>, Error> {
         entries.push(Entry { penalty: Some(penalty), ..entry });
     }
     for (label, count) in [("none", 0), ("one", 1), ("many", 5), ("all but one", 9)] {
-        // With the last spring's end at its wall the others stand at k / 10: their walls just touch.
+        // If the last node reaches its wall, node k is displaced by k / 10, so that its wall has zero gap and zero
+        // force.
         let walls: Vec<(usize, f64)> = (0..count).map(|dof| (dof, (dof + 1) as f64 / 10.0)).chain([(9, 1.0)]).collect();
         let problem = chain(&[10.0; 10], true, 2.0, &walls)?;
         entries.push(Entry::new("weakly active rows", label, problem, Truth::Force(1.0)));
@@ -176,7 +178,7 @@ fn springs() -> Result<Vec<Entry>, Error> {
     Ok(entries)
 }
 
-/// Walls that repeat each other, nearly or exactly, or leave no room between them.
+/// Walls that are nearly or exactly parallel, or that contradict each other.
 fn walls() -> Result<Vec<Entry>, Error> {
     let mut entries = Vec::new();
     for copies in [2, 10, 100] {
@@ -197,7 +199,7 @@ fn walls() -> Result<Vec<Entry>, Error> {
     Ok(entries)
 }
 
-/// Springs that no support holds.
+/// Springs without a support.
 fn held_only_by_contact() -> Result<Vec<Entry>, Error> {
     let mut entries = Vec::new();
     for dofs in [1, 2, 10, 1000] {
@@ -209,7 +211,7 @@ fn held_only_by_contact() -> Result<Vec<Entry>, Error> {
     Ok(entries)
 }
 
-/// From one dof to half a million, for at most `most` dofs.
+/// Problems from one dof to half a million dofs, limited to `most` dofs.
 fn sizes(most: usize) -> Result<Vec<Entry>, Error> {
     let mut entries = Vec::new();
     for cells in [1, 4, 16, 60, 180, 500] {
@@ -224,7 +226,7 @@ fn sizes(most: usize) -> Result<Vec<Entry>, Error> {
     Ok(entries)
 }
 
-/// Walls that nothing reaches.
+/// Problems with walls that the body does not reach.
 fn nothing_touches() -> Result<Vec<Entry>, Error> {
     let mut entries = Vec::new();
     let free = |walls: &[(usize, f64)]| chain(&[10.0; 10], true, 2.0, walls);
@@ -238,7 +240,7 @@ fn nothing_touches() -> Result<Vec<Entry>, Error> {
     Ok(entries)
 }
 
-/// Numbers at the ends of double precision.
+/// Problems with numbers at the ends of the range of double precision.
 fn ends_of_double_precision() -> Result<Vec<Entry>, Error> {
     let mut entries = Vec::new();
     for size in powers([-300, -200, -100, 100, 200, 300]) {

@@ -1,59 +1,59 @@
-//! One entry of the table: a problem whose answer is known, and how each method ends on it.
+//! One entry of the table: a problem with a known solution, and the result of each method.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use signorini::Penalty;
 use signorini::{Condense, ContactProblem, Error, Method, Settings, SparseMatrix, solve};
 
-/// Rounding of the entries of a stiffness, as a share of its diagonal.
+/// Rounding error of the entries of a stiffness, relative to its diagonal.
 const OF_ENTRIES: f64 = 512.0 * f64::EPSILON;
 
-/// A certified answer that is off by more than this times its tolerance, and by more than its own bound, is wrong.
+/// A certified answer counts as wrong if its error exceeds its own bound and this multiple of its tolerance.
 const WRONG: f64 = 1e3;
 
-/// The energy bound limits the error of the displacement; a force may miss by as much in its own measure.
+/// Allowed error of a force, as a multiple of the bound on the error of the displacement in energy.
 const OF_BOUND: f64 = 2.0;
 
-/// Beyond so many dofs only condensed problems are solved: the others would take minutes.
+/// Above this number of dofs only condensed problems are solved, because the others would take minutes.
 const LARGE: usize = 100_000;
 
-/// What a penalty answer is held to: its error is the compliance of its springs, 1e-8 of the local one.
+/// Tolerance of a penalty answer. Its error is the compliance of the penalty springs, 1e-8 of the local compliance.
 const PENALTY_TOLERANCE: f64 = 1e-6;
 
-/// What is known of the answer.
+/// The known part of the solution.
 #[derive(Clone, Copy, Debug)]
 pub enum Truth {
     /// The total contact force.
     Force(f64),
-    /// The largest displacement, where nothing touches.
+    /// The largest displacement of a problem without contact.
     Reach(f64),
-    /// There is no answer.
+    /// The problem has no solution.
     None,
 }
 
-/// A problem with what is known of its answer.
+/// A problem with the known part of its solution.
 pub struct Entry {
     pub group: &'static str,
     pub label: String,
     pub problem: ContactProblem,
     pub truth: Truth,
-    /// The penalty in multiples of the stiffness, where only that is asked.
+    /// The penalty in multiples of the stiffness, if only the penalty method is run.
     pub penalty: Option<f64>,
 }
 
 /// The columns of the table.
 pub const COLUMNS: [&str; 7] = ["QP raw", "QP", "QP full", "active set", "active set full", "penalty", "penalty full"];
 
-/// How one method ends.
+/// The result of one method.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Cell {
-    /// Certified, with so many right digits; of the raw method: called solved.
+    /// The answer is certified (by the raw method: called solved) and has this number of right digits.
     Digits(u32),
-    /// Certified, or called solved, and wrong.
+    /// The answer is certified, or called solved, and wrong.
     Wrong,
-    /// Refused, with this code.
+    /// The problem is refused with this error code.
     Refused(String),
-    /// Not run.
+    /// The method was not run.
     Absent,
 }
 
@@ -73,7 +73,7 @@ impl Entry {
         Entry { group, label: label.into(), problem, truth, penalty: None }
     }
 
-    /// One cell for each of [`COLUMNS`].
+    /// Runs all methods and returns one cell for each of [`COLUMNS`].
     pub fn row(&self) -> Vec<Cell> {
         let solved = |method, condense| {
             let mut settings = Settings::with_method(method);
@@ -88,7 +88,7 @@ impl Entry {
             match solve(&self.problem, &settings) {
                 Ok(solution) => {
                     let bound = Some(solution.certificate.energy_error_bound).filter(|bound| bound.is_finite());
-                    // The stiffness of a scene is rounded itself; what that does grows as its smallest pivot falls.
+                    // The stiffness of a scene is rounded itself; the effect grows as its smallest pivot decreases.
                     let of_entries = solution.lost_pivot.map_or(0.0, |pivot| OF_ENTRIES / pivot);
                     let tolerance = (WRONG * settings.tolerance).max(OF_BOUND * bound.unwrap_or(0.0)).max(of_entries);
                     self.judge(&solution.displacement, &solution.multiplier, tolerance)
@@ -122,7 +122,7 @@ impl Entry {
         if right { Cell::Digits((-error.max(1e-15).log10()).round() as u32) } else { Cell::Wrong }
     }
 
-    /// Clarabel with its defaults, on the data as they are: why scaling is there.
+    /// Runs Clarabel with its defaults on the unscaled data, which shows why this library scales them.
     fn raw(&self) -> Cell {
         let matrix = |matrix: &SparseMatrix| {
             let (starts, rows) = (matrix.column_starts().to_vec(), matrix.row_indices().to_vec());

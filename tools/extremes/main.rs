@@ -1,8 +1,9 @@
-//! The stability table: problems at the extremes with known answers, method by method.
+//! Prints the stability table: problems with extreme data and known solutions, one column for each method.
 //!
 //! `cargo run --release --example extremes`; `-- --most DOFS` leaves out larger bodies. A cell is the number of right
-//! digits of a certified answer (of `QP raw`, Clarabel by its defaults on the data as they are: of what it calls solved),
-//! or the error that refuses the problem, or `wrong`, which fails the command outside `QP raw`.
+//! digits of a certified answer, or the error that refuses the problem, or `wrong`. The column `QP raw` is Clarabel
+//! with its defaults on the unscaled data; there, the digits are those of the answers that Clarabel calls solved. A
+//! `wrong` in any other column makes the command fail.
 
 mod cases;
 mod entry;
@@ -11,7 +12,7 @@ use std::process::ExitCode;
 
 use entry::{COLUMNS, Cell};
 
-/// The entries of one kind, column by column.
+/// The results of all entries of one kind, column by column.
 struct Group {
     name: &'static str,
     entries: usize,
@@ -19,7 +20,7 @@ struct Group {
 }
 
 impl Group {
-    /// The digits from the least to the most, how many are refused, how many wrong.
+    /// Returns one line: the smallest and the largest number of digits, and the numbers of refused and wrong answers.
     fn line(&self) -> String {
         let texts = self.cells.iter().map(|cells| {
             let digits =

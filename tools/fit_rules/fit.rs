@@ -1,20 +1,22 @@
-//! The fit: for each class and accuracy the ways by size whose loss against the best way is least; and the cost of a factorisation by least squares.
+//! The fit. For each class and accuracy it finds the methods, by problem size, with the smallest loss against the
+//! fastest method. It fits the cost of a factorisation by least squares.
 
 use serde_json::{Value, json};
 
 use super::measure::{ACCURACIES, Point};
 
-/// The way that wins ties: exact, and without a second thought.
+/// The method that is chosen if several are equally fast: it is exact and needs no parameter.
 const FIRST: &str = "active-set";
 
-/// The way that needs an accuracy to be named.
+/// The method that is allowed only if the user names an accuracy.
 const MIXED: &str = "active-set-mixed";
 
-/// A way that is no choice on all dofs: its own order of elimination fills in so much more than ours on bodies in space with many
-/// rows that it takes twenty times as long there (`kinds -- --only slab`), and it gains a tenth at most elsewhere.
+/// The method that is never chosen on all dofs. On bodies in space with many rows, its own elimination order causes so
+/// much fill-in that it takes twenty times as long as ours (`kinds -- --only slab`); elsewhere it is at most a tenth
+/// faster.
 const INTERIOR_POINT: &str = "qp";
 
-/// Percent of loss that a step more has to save.
+/// Percent of loss that one more step must save.
 const PRICE_OF_A_STEP: f64 = 5.0;
 
 pub fn fitted(points: &[Point]) -> String {
@@ -24,7 +26,8 @@ pub fn fitted(points: &[Point]) -> String {
             let of_class: Vec<&Point> = points
                 .iter()
                 .filter(|point| point.condensed == condensed && point.accuracy == accuracy)
-                // Who names no accuracy may go on to the next gap, where a factor in double precision costs less.
+                // A user who names no accuracy may solve for further gaps, for which a factor in double precision costs
+                // less.
                 .filter(|point| accuracy > 0.0 || point.way != MIXED)
                 .filter(|point| condensed || point.way != INTERIOR_POINT)
                 .collect();
@@ -44,7 +47,7 @@ pub fn fitted(points: &[Point]) -> String {
     format!("{fitted:#}\n")
 }
 
-/// A problem in one class: its size, and the loss of each way against the best.
+/// A problem of one class: its size, and the loss of each method against the fastest.
 struct Losses<'a> {
     size: f64,
     of: Vec<(&'a str, f64)>,
@@ -56,10 +59,11 @@ impl Losses<'_> {
     }
 }
 
-/// Ways in the order of size: each from the first problem that the one before leaves out.
+/// Methods in the order of problem size. Each is used from the given size up to the size of the next one.
 type Steps<'a> = Vec<(usize, &'a str)>;
 
-/// The steps of at most three ways whose worst loss is least, then the mean, both to a percent; then the fewest.
+/// Returns the best steps of at most three methods: those with the smallest worst loss, then with the smallest mean
+/// loss, both compared to one percent, then with the fewest steps.
 fn rule(points: &[&Point], condensed: bool, accuracy: f64) -> Value {
     let mut problems: Vec<&str> = points.iter().map(|point| point.problem.as_str()).collect();
     problems.dedup();
@@ -96,7 +100,7 @@ fn rule(points: &[&Point], condensed: bool, accuracy: f64) -> Value {
         let percent = |loss: f64| (100.0 * loss).round();
         (percent(all.iter().copied().fold(0.0, f64::max)), percent(all.iter().sum::<f64>() / count.max(1) as f64))
     };
-    // A step more has to gain more than measurements differ.
+    // One more step must gain more than the scatter of the measurements.
     let price = |steps: &Steps| {
         let (worst, mean) = judged(steps);
         worst + mean + PRICE_OF_A_STEP * steps.len() as f64
@@ -108,7 +112,7 @@ fn rule(points: &[&Point], condensed: bool, accuracy: f64) -> Value {
         .map(|step| json!({ "up_to": best.get(step + 1).map(|next| between(next.0)), "way": best[step].1 }))
         .collect();
     println!(
-        "condensed {condensed}, accuracy {accuracy:.0e}, {count} problems: {}; at most {:.2}, in the mean {:.2} times the best",
+        "condensed {condensed}, accuracy {accuracy:.0e}, {count} problems: {}; at most {:.2}, on average {:.2} times the best",
         steps.iter().map(Value::to_string).collect::<Vec<_>>().join(" "),
         worst / 100.0,
         mean / 100.0
@@ -116,12 +120,12 @@ fn rule(points: &[&Point], condensed: bool, accuracy: f64) -> Value {
     json!({ "condensed": condensed, "accuracy": accuracy, "steps": steps })
 }
 
-/// Seconds as a constant and a share of multiplications and values: least squares of the relative error, no term below
-/// zero.
+/// Fits seconds as a constant plus multiples of multiplications and values, by least squares of the relative error. No
+/// coefficient is negative.
 fn cost(points: &[&Point]) -> Value {
     let terms = |point: &Point| [1.0, point.multiplications, point.values].map(|term| term / point.seconds);
     let mut cost = [0.0_f64; 3];
-    // Coordinate descent, which keeps every term at or above zero.
+    // Coordinate descent keeps every coefficient at or above zero.
     for _ in 0..10_000 {
         for term in 0..3 {
             let (mut above, mut below) = (0.0, 0.0);

@@ -1,7 +1,8 @@
-//! Fits the rules of `Method::Auto` to measured times, and checks them on scenes that they were not fitted to.
+//! Fits the rules of `Method::Auto` to measured times, and checks them on other scenes.
 //!
 //! `cargo run --release --example fit_rules` measures the training problems, writes `tools/fit_rules/measured.csv` and
-//! fits `src/qp/fitted.json` to it; `-- --fit` fits to the times that are there; `-- --check` measures the others.
+//! fits `src/qp/fitted.json` to it. With `-- --fit` it fits to the times in the existing file; with `-- --check` it
+//! measures the other scenes.
 
 #[path = "../contact_cost/clock.rs"]
 mod clock;
@@ -52,7 +53,7 @@ fn fitted() -> Result<(), Anything> {
     Ok(())
 }
 
-/// Auto against the best way that reaches the same accuracy, condensed or not.
+/// Compares `auto` with the fastest method that reaches the same accuracy, condensed or not.
 fn check() -> Result<(), Anything> {
     println!(
         "| problem | dofs | rows | accuracy | best way | seconds | auto | seconds | ratio |\n|{}",

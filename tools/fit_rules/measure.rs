@@ -1,4 +1,4 @@
-//! Ways to an answer, timed.
+//! Measures the time of every method and setting ("way") that solves a problem.
 
 use super::clock::processor_seconds;
 use signorini::{InteriorPoint, Penalty};
@@ -6,12 +6,12 @@ use signorini::{InteriorPoint, Penalty};
 use signorini::qp::{Condense, Method, Precision, Prepared, Settings};
 use signorini::{ContactProblem, Error, Solution, solve};
 
-/// The accuracies that rules are fitted for; zero is all that double precision gives.
+/// The accuracies for which rules are fitted. Zero stands for the full accuracy of double precision.
 pub const ACCURACIES: [f64; 4] = [1e-2, 1e-4, 1e-8, 0.0];
 
 pub const HEADING: &str = "problem,dofs,rows,condensed,multiplications,values,accuracy,way,seconds\n";
 
-/// Each point takes at least this long in all, and so many runs.
+/// Each measurement takes at least this total time and number of runs.
 const LEAST_SECONDS: f64 = 0.05;
 const LEAST_RUNS: usize = 5;
 const MOST_RUNS: usize = 200;
@@ -25,11 +25,11 @@ pub struct Point {
     pub values: f64,
     pub accuracy: f64,
     pub way: String,
-    /// Infinite where the way does not reach the accuracy.
+    /// Seconds of the fastest run; infinite if the accuracy is not reached.
     pub seconds: f64,
 }
 
-/// The ways that a rule can name, told an accuracy.
+/// Returns the ways that a rule can choose for an accuracy.
 pub fn ways(accuracy: f64) -> Vec<(&'static str, Settings)> {
     let base = |method, precision| {
         let mut settings = Settings::with_method(method);
@@ -51,8 +51,9 @@ pub fn ways(accuracy: f64) -> Vec<(&'static str, Settings)> {
     ways
 }
 
-/// The fastest of several runs of each way, in turn, so that what else the machine does meets them alike; infinite where
-/// it does not reach its accuracy, or where the answer came another way.
+/// Returns the seconds of the fastest run of each way. The ways are run alternately, so that other work of the machine
+/// affects all in the same way. The time is infinite if a way misses its accuracy, or if another method found the
+/// answer.
 fn timed(problem: &ContactProblem, ways: &[Settings]) -> Vec<(f64, String)> {
     let mut least: Vec<(f64, String)> = vec![(f64::INFINITY, String::new()); ways.len()];
     let mut spent = vec![0.0; ways.len()];
@@ -85,7 +86,7 @@ fn came_as_told(solution: &Solution, settings: &Settings) -> bool {
     settings.precision != Precision::Mixed || solution.refinements.is_some()
 }
 
-/// All ways of a problem, a line each.
+/// Measures all ways of a problem, and returns one line for each.
 pub fn measured(name: &str, problem: &ContactProblem) -> Result<String, Error> {
     let prepared = Prepared::new(problem, &Settings::with_method(Method::ActiveSet))?;
     let condensed = prepared.condensed_dofs() < problem.dofs();
@@ -129,8 +130,8 @@ pub fn read(table: &str) -> Result<Vec<Point>, Box<dyn std::error::Error>> {
 /// The largest problem that is solved on all dofs by every way.
 const MOST_FULL_DOFS: usize = 10_000;
 
-/// The fastest way to an accuracy, condensed or not, told an accuracy or run with the knobs of the trade-off; and what the
-/// rules choose. All are timed in turn.
+/// Returns the fastest way to an accuracy, condensed or not, with the accuracy as a setting or with the parameters of
+/// the trade-off, and the choice of the rules. All ways are run alternately.
 pub fn best_and_auto(problem: &ContactProblem, accuracy: f64) -> [(String, f64); 2] {
     let mut grid: Vec<(String, Settings)> = Vec::new();
     for condense in [Condense::Auto, Condense::Never] {
@@ -144,7 +145,7 @@ pub fn best_and_auto(problem: &ContactProblem, accuracy: f64) -> [(String, f64);
                 settings.clone(),
             ));
             if name == "penalty" {
-                // The last rung alone, where the error of the penalty is likely below the accuracy.
+                // Only the last penalty, for which the penalty error is probably below the accuracy.
                 for rung in [1.0, 10.0, 100.0] {
                     settings.method = one_rung(rung / accuracy);
                     grid.push((format!("penalty {:.0e}", rung / accuracy), settings.clone()));
@@ -166,7 +167,7 @@ pub fn best_and_auto(problem: &ContactProblem, accuracy: f64) -> [(String, f64);
     [(names[fastest].clone(), times[fastest].0), (times[auto].1.clone(), times[auto].0)]
 }
 
-/// The penalty method on one rung of its ladder.
+/// The penalty method with one penalty instead of an increasing sequence.
 fn one_rung(penalty: f64) -> Method {
     Method::Penalty(Penalty { first: penalty, last: penalty, ..Penalty::default() })
 }

@@ -1,4 +1,4 @@
-//! The problems that rules are fitted to, and the ten that they are checked on.
+//! The problems to which the rules are fitted, and the ten problems on which they are checked.
 
 use std::path::Path;
 
@@ -7,8 +7,8 @@ use signorini::{ContactProblem, Error, Scene, SparseMatrix, SymmetricMatrix};
 
 type Problems = Vec<(String, ContactProblem)>;
 
-/// Blocks, clamped below and pressed on from above, of growing size; strings and membranes over an obstacle, light and
-/// heavy.
+/// The training problems: blocks of growing size, clamped at the bottom and pressed from above, and strings and
+/// membranes over an obstacle with small and large loads.
 pub fn training() -> Result<Problems, Error> {
     let mut problems = Vec::new();
     for cells in [8, 16, 32, 64, 128, 256] {
@@ -34,7 +34,8 @@ pub fn training() -> Result<Problems, Error> {
     Ok(problems)
 }
 
-/// The scenes that come with the program, and a brick, a string and a membrane of other sizes and loads.
+/// The problems of the check: the scenes of the examples, and a brick, a string and a membrane of other sizes and
+/// loads.
 pub fn others() -> Result<Problems, Error> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
     let mut problems = Vec::new();
@@ -91,7 +92,7 @@ fn brick(cells: usize) -> Value {
     })
 }
 
-/// A string of unit length and tension, held at both ends, pressed on a hump.
+/// A string of unit length and tension, fixed at both ends, that is pressed onto a hump.
 fn string(nodes: usize, weight: f64) -> Result<ContactProblem, Error> {
     let h = 1.0 / (nodes + 1) as f64;
     let mut entries = Vec::new();
@@ -105,7 +106,7 @@ fn string(nodes: usize, weight: f64) -> Result<ContactProblem, Error> {
     over_an_obstacle(nodes, &entries, vec![weight * h * 10.0; nodes], gap)
 }
 
-/// A square membrane of `nodes` x `nodes` inner nodes, held at its edges, pressed on a hump.
+/// A square membrane with `nodes` x `nodes` inner nodes, fixed at its edges, that is pressed onto a hump.
 fn membrane(nodes: usize, weight: f64) -> Result<ContactProblem, Error> {
     let h = 1.0 / (nodes + 1) as f64;
     let mut entries = Vec::new();

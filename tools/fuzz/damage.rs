@@ -1,4 +1,4 @@
-//! Random damage of files, and what their reader says of it.
+//! Random damage of files, and the messages of their readers.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use signorini::{Error, Scene};
 
 use super::draws::Draws;
 
-/// Words that readers stumble over.
+/// Words that are likely to reveal faults of a reader.
 const WORDS: [&str; 24] = [
     "0",
     "-1",
@@ -36,10 +36,10 @@ const WORDS: [&str; 24] = [
     "$EndNodes",
 ];
 
-/// So many words tell one fault from another.
+/// Number of words at the beginning of a message that distinguish one fault from another.
 const FIRST_WORDS: usize = 4;
 
-/// A few changes of a text, most of them small.
+/// Returns the text with a few changes, most of which are small.
 pub fn damaged(draws: &mut Draws, text: &[u8]) -> Vec<u8> {
     let mut bytes = text.to_vec();
     for _ in 0..1 + draws.below(4) {
@@ -62,15 +62,16 @@ pub fn damaged(draws: &mut Draws, text: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The right files that are damaged.
+/// Returns the path of a valid file that is to be damaged.
 pub fn faults(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults").join(name)
 }
 
-/// Reads a damaged `name`, and builds what can be read, if it is small. A matrix stands beside the others of `desk`.
+/// Reads a damaged file, and builds the mesh or model if it is small. A matrix is read with the other matrices in
+/// `desk`.
 pub fn read(name: &str, bytes: &[u8], desk: &Path) -> Result<(), Error> {
     let text = String::from_utf8_lossy(bytes);
-    /// Scenes of more nodes would only take time.
+    /// Largest number of nodes of a scene that is built; larger ones would only take time.
     const FEW_NODES: f64 = 2000.0;
     match Path::new(name).extension().and_then(|extension| extension.to_str()) {
         Some("json") => {
@@ -86,14 +87,15 @@ pub fn read(name: &str, bytes: &[u8], desk: &Path) -> Result<(), Error> {
     }
 }
 
-/// The first words of a sentence, but for its place, what it quotes and counts: the same for inputs with the same fault.
+/// Returns the first words of a message, without its place, quotations and numbers. They are equal for inputs with the
+/// same fault.
 pub fn fault(error: &Error) -> String {
     wording(error.code(), &error.to_string())
 }
 
-/// The same for a code and a sentence at hand.
+/// As [`fault`], for a given code and message.
 pub fn wording(code: &str, sentence: &str) -> String {
-    // In a scene, the path stands first.
+    // The message of a scene begins with the path.
     let behind_path = sentence.split_once("at `").and_then(|parts| parts.1.split_once("`: "));
     let said = behind_path.filter(|_| code == "scene").map_or(sentence, |parts| parts.1);
     let quotes = ['`', '"'];

@@ -1,11 +1,11 @@
 //! Random numbers, the same in every run.
 
-/// splitmix64.
+/// The generator splitmix64.
 #[derive(Clone)]
 pub struct Draws(pub u64);
 
 impl Draws {
-    /// A whole number below n.
+    /// Returns an integer below n.
     pub fn below(&mut self, n: usize) -> usize {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -14,7 +14,7 @@ impl Draws {
         ((z ^ (z >> 31)) % n.max(1) as u64) as usize
     }
 
-    /// A number in [-1, 1).
+    /// Returns a number in [-1, 1).
     pub fn signed(&mut self) -> f64 {
         self.below(1 << 30) as f64 / (1 << 29) as f64 - 1.0
     }

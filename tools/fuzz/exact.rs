@@ -1,4 +1,5 @@
-//! The target `exact`: random contact problems, every answer of the program held against exact arithmetic.
+//! The target `exact`: random contact problems, for which every answer of the program is compared with exact
+//! arithmetic.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -16,7 +17,7 @@ use super::oracle::stiffness::KINDS;
 use super::oracle::table::Table;
 use super::oracle::trial::{Trial, draw};
 
-/// What the command line says.
+/// The options of the command line.
 struct Options {
     problems: u64,
     seed: u64,
@@ -48,7 +49,7 @@ fn options(arguments: &[String]) -> Option<Options> {
     (plain > 0).then_some(options)
 }
 
-/// Runs the problems, prints the table, and fails if something is that must not be.
+/// Runs the problems, prints the table, and returns a failure if an answer contradicts exact arithmetic.
 pub fn run(arguments: &[String]) -> ExitCode {
     if let [word, directory] = arguments
         && word == "--answer"
@@ -76,7 +77,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
     let (mut table, mut saved, start) = (Table::default(), BTreeSet::new(), Instant::now());
     let mut exact_seconds = 0.0;
     println!("seed {}", options.seed);
-    // A panic is counted, with the problem that it came from; its own message would only hide the table.
+    // A panic is counted together with its problem; its own message would only disturb the table.
     std::panic::set_hook(Box::new(|_| {}));
     let numbers = options.only.map_or(0..options.problems, |number| number..number + 1);
     for number in numbers {
@@ -105,7 +106,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
     if failures.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Writes a problem with a fault, its exact answer and the answer at fault as a problem directory.
+/// Writes a problem directory with the problem, its exact answer, and the faulty answer.
 fn save(folder: &Path, trial: &Trial, fault: &Fault, number: u64, seed: u64) -> std::io::Result<()> {
     fs::create_dir_all(folder)?;
     let problem = trial.case.problem().map_err(std::io::Error::other)?;

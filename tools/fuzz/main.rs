@@ -1,15 +1,17 @@
-//! Random damage: files of every reader, and contact problems, changed until something gives way.
+//! Fuzzing: random damage to the files of every reader, and random contact problems.
 //!
 //! `cargo run --release --example fuzz -- TARGET INPUTS [SEED] [--keep]` with the target `scene`, `mesh`, `matrix` or
-//! `problem`. A reader gets files of `tests/faults` with bytes changed, cut, doubled or swapped, and may refuse them, but
-//! neither panic nor take long. A problem gets damaged data, and must end with an answer whose conditions hold when they are
-//! recomputed, or with an error. Runs with the same seed are the same; the first input that fails is printed and ends the run.
+//! `problem`. A reader gets files of `tests/faults` in which bytes are changed, cut, doubled or swapped. It may refuse
+//! them, but it must neither panic nor take long. The target `problem` solves contact problems with damaged data. Each
+//! must end with an error, or with an answer whose conditions hold when they are recomputed. Runs with the same seed
+//! are identical. The first input that fails is printed and ends the run.
 //!
-//! The target `exact` holds every answer of the program against exact arithmetic: `fuzz exact PROBLEMS [SEED] [--kind NAME]
-//! [--only NUMBER] [--save FOLDER] [--all]`, or `fuzz exact --answer DIRECTORY` for the exact answer of one problem. See `exact.rs`.
+//! The target `exact` compares every answer of the program with exact arithmetic: `fuzz exact PROBLEMS [SEED] [--kind
+//! NAME] [--only NUMBER] [--save FOLDER] [--all]`, or `fuzz exact --answer DIRECTORY` for the exact answer of one
+//! problem. See `exact.rs`.
 //!
-//! With `--keep`, the first input of every ending that `tests/faults` and `tests/corpus` do not know goes into `tests/corpus`,
-//! which `tests/files/corpus.rs` replays.
+//! With `--keep`, the first input of every ending that is new to `tests/faults` and `tests/corpus` is written into
+//! `tests/corpus`, which `tests/files/corpus.rs` replays.
 
 mod damage;
 mod draws;
@@ -28,10 +30,10 @@ use std::time::Instant;
 use damage::{damaged, fault, faults, read, wording};
 use draws::Draws;
 
-/// No input takes so long, in seconds.
+/// Seconds above which an input counts as taking too long.
 const LONG: f64 = 5.0;
 
-/// The files of each target; a problem has none.
+/// The files of each target; the target `problem` has no files.
 const TARGETS: [(&str, &[&str]); 4] = [
     ("scene", &["plane.json", "space.json", "round.json"]),
     ("mesh", &["square2.msh", "square4.msh", "square2b.msh", "square4b.msh"]),
@@ -43,13 +45,13 @@ fn corpus() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus")
 }
 
-/// A folder for the files of a problem, in memory where there is such a place.
+/// Makes a folder for the files of a problem, in memory if the system has such a place.
 fn desk() -> std::io::Result<tempfile::TempDir> {
     let memory = Path::new("/dev/shm");
     if memory.is_dir() { tempfile::tempdir_in(memory) } else { tempfile::tempdir() }
 }
 
-/// The endings that are known, how many files stand for them, and how many are new.
+/// The known endings, the number of files that were kept for them, and the number of new ones.
 struct Kept {
     known: BTreeSet<String>,
     files: usize,
@@ -57,7 +59,8 @@ struct Kept {
 }
 
 impl Kept {
-    /// The endings of `tests/faults`, each line of `cases.jsonl` with code and sentence, and of `tests/corpus`.
+    /// Reads the known endings: code and message of each line of `tests/faults/cases.jsonl`, and the files of
+    /// `tests/corpus`.
     fn read(desk: &Path) -> std::io::Result<Self> {
         let (mut known, mut files) = (BTreeSet::new(), 0);
         for line in fs::read_to_string(faults("cases.jsonl"))?.lines() {
@@ -96,7 +99,7 @@ impl Kept {
     }
 }
 
-/// One input: whether it was accepted, or what is wrong.
+/// Runs one input. Returns `true` if it was accepted, `false` if it was refused, and the fault as an error.
 fn input(files: &[(&str, Vec<u8>)], draws: &mut Draws, desk: &Path, kept: &mut Option<Kept>) -> Result<bool, String> {
     if files.is_empty() {
         let at = draws.clone();
@@ -141,7 +144,7 @@ fn main() -> ExitCode {
         eprintln!("usage: fuzz scene|mesh|matrix|problem INPUTS [SEED] [--keep]");
         return ExitCode::from(2);
     };
-    // Every matrix of a problem, whatever the target, for the kept files.
+    // All matrices of a problem are needed to replay the kept files, for every target.
     TARGETS[2].1.iter().for_each(|name| drop(fs::copy(faults(name), desk.path().join(name))));
     let files: Vec<(&str, Vec<u8>)> =
         files.iter().map(|name| (*name, fs::read(faults(name)).unwrap_or_default())).collect();

@@ -1,19 +1,19 @@
-//! Contact problems of few dofs, often degenerate or hostile, and whether an answer to one is right.
+//! Random contact problems with few dofs, often degenerate or with extreme data, and a check of their answers.
 
 use signorini::{ContactProblem, Error, Solution, SparseMatrix, SymmetricMatrix, solve_qp};
 
 use super::draws::Draws;
 
-/// Conditions of an answer that is certified to 1e-9, recomputed.
+/// Tolerance of the recomputed conditions of an answer that is certified to 1e-9.
 const HOLDS: f64 = 1e-7;
 
-/// Rounding of a displacement, in the forces that it makes.
+/// Relative rounding error of the forces that follow from a displacement.
 const ROUNDING: f64 = 1e-14;
 
-/// What stands still is measured by this share of what its forces could do, as in the certificate.
+/// Share of the largest possible work of the forces that scales the energies of a body at rest, as in the certificate.
 const AT_REST: f64 = 1e-6;
 
-/// A problem: stiffness of any rank, rows that may be copies of each other, numbers of any size.
+/// Makes a problem with a stiffness of any rank, rows that may be copies of each other, and numbers of any size.
 pub fn problem(draws: &mut Draws) -> Result<ContactProblem, Error> {
     let (n, m) = (1 + draws.below(6), draws.below(7));
     let rank = 1 + draws.below(n + 1);
@@ -36,7 +36,7 @@ pub fn problem(draws: &mut Draws) -> Result<ContactProblem, Error> {
     let mut gap: Vec<f64> = Vec::new();
     for row in 0..m {
         if row > 0 && draws.below(6) == 0 {
-            // A copy, perhaps in another unit, from the other side, or slightly off.
+            // A copy of another row, possibly scaled, with the opposite sign, or slightly changed.
             let of = draws.below(row);
             let factor = [1.0, -1.0, 2.0, -1e-3][draws.below(4)];
             let off = [0.0, 0.0, 1e-15, 1e-9, 1e-3][draws.below(5)] * draws.signed();
@@ -55,8 +55,8 @@ pub fn problem(draws: &mut Draws) -> Result<ContactProblem, Error> {
     ContactProblem::new(stiffness, load, SparseMatrix::from_triplets(m, n, &contact)?, gap)
 }
 
-/// Solves the problem of these draws: how that ended (the method of an answer, the code of an error), or the condition that a
-/// certified answer fails.
+/// Solves a random problem. Returns the method of the answer or the code of the error. A certified answer that violates
+/// a condition is an error.
 pub fn ending(draws: &mut Draws) -> Result<String, String> {
     let problem = match problem(draws) {
         Ok(problem) => problem,
@@ -73,7 +73,7 @@ pub fn ending(draws: &mut Draws) -> Result<String, String> {
     }
 }
 
-/// The condition that an answer does not meet, recomputed.
+/// Recomputes the conditions of an answer, and returns the first one that does not hold.
 fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str> {
     let (u, lambda) = (&solution.displacement, &solution.multiplier);
     let largest = |values: &[f64]| values.iter().fold(0.0, |size: f64, value| size.max(value.abs()));
@@ -81,10 +81,10 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
     let pressed = problem.contact().mul_transposed(lambda);
     let force = largest(problem.load()).max(largest(&pressed));
     let within = problem.stiffness().mul(u);
-    // Multipliers are rounded too; those of opposed rows may be far larger than what is left of them.
+    // Multipliers are rounded as well; those of opposed rows may be far larger than their sum.
     let of_contact = problem.contact().mul_abs_transposed(lambda);
     let terms: Vec<f64> = problem.stiffness().mul_abs(u).iter().zip(of_contact).map(|(a, b)| a + b).collect();
-    // A force counts by what it does to its own dof, in energy.
+    // A residual force is scaled by the energy that it causes in its own dof.
     let diagonal = problem.stiffness().diagonal();
     let counts = |dof: usize, force: f64| if diagonal[dof] > 0.0 { force.abs() / diagonal[dof].sqrt() } else { 0.0 };
     let strong = (0..problem.dofs())
@@ -102,11 +102,11 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
     let still = if stiffness > 0.0 { force / stiffness } else { 0.0 };
     let strongest = largest(lambda);
     let lengths = problem.contact().mul_abs(u);
-    // How far the energy of the displacement could move a row by a single dof.
+    // The largest distance by which the energy of the displacement could move a row through a single dof.
     let energy: f64 = u.iter().zip(problem.stiffness().mul(u)).map(|(u, force)| u * force).sum::<f64>().max(0.0);
     let of_load: f64 = u.iter().zip(problem.load()).map(|(u, f)| u * f).sum();
     let of_gap: f64 = (lambda.iter().zip(problem.gap())).filter(|entry| *entry.0 != 0.0).map(|(l, g)| l * g).sum();
-    // What stands still is measured by what its forces could do.
+    // The energies of a body at rest are scaled by the work that its forces could do.
     let work = energy.max(of_load.abs()).max(of_gap.abs()).max(AT_REST * strong * strong);
     let length = energy.sqrt().max(AT_REST * strong);
     let mut soft = vec![0.0_f64; problem.rows()];

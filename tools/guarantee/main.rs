@@ -1,8 +1,9 @@
-//! Tries to catch the guaranteed bound of the total error in a lie: `cargo run --release --example guarantee [SCENES [LEVELS]]`.
+//! Searches for violations of the guaranteed bound on the total error:
+//! `cargo run --release --example guarantee [SCENES [LEVELS]]`.
 //!
-//! Random plane scenes, each on its own mesh and on finer ones: all intervals of the energy and of the force must meet, and no
-//! answer may be further from the last one than its bound says. A tenth as many columns come on top, whose energy and force are known in
-//! closed form. Exits with 1 if a guarantee is broken.
+//! Each random plane scene is solved on its own mesh and on finer ones. All intervals of the energy and of the force must
+//! overlap, and the distance of each answer to the finest one must not exceed its bound. In addition, one column for every
+//! ten scenes is solved; its energy and force are known in closed form. The exit code is 1 if a guarantee is violated.
 
 #[path = "../../tests/support/plane_scenes.rs"]
 mod plane_scenes;
@@ -48,7 +49,7 @@ fn main() -> std::process::ExitCode {
     std::process::ExitCode::from(u8::from(violations + of_columns > 0))
 }
 
-/// The median with the extremes, and how many there are.
+/// Returns the median, the extremes and the number of the values as text.
 fn median(mut values: Vec<f64>) -> String {
     values.sort_by(f64::total_cmp);
     match (values.first(), values.get(values.len() / 2), values.last()) {

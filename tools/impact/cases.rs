@@ -1,4 +1,4 @@
-//! The two bars.
+//! The two bars with known motion.
 
 use crate::exact_solutions::{BouncingBar, ImpactingBar};
 
@@ -7,7 +7,7 @@ use super::measure::Case;
 const BAR: ImpactingBar =
     ImpactingBar { length: 10.0, axial_stiffness: 900.0, line_density: 1.0, speed: 10.0, gap: 5.0 };
 
-/// The bar against a wall, and the bar of period 3.
+/// Returns the bar that hits a wall, and the bar that bounces with period 3.
 pub fn cases() -> [Case; 2] {
     [
         Case {

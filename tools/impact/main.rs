@@ -1,7 +1,7 @@
-//! Prints how every scheme of time integration does on two bars whose impact is known exactly.
+//! Prints the errors of every time integration scheme for two bars whose impact is known exactly.
 //!
-//! `cargo run --release --example impact [-- --out DIR]`; a folder gets the table and plots of pressure and energy over
-//! time.
+//! `cargo run --release --example impact [-- --out DIR]`; with a folder, the table and plots of pressure and energy
+//! over time are written into it.
 
 mod cases;
 #[path = "../../tests/support/closed_forms/mod.rs"]
@@ -17,15 +17,15 @@ use signorini::Error;
 use signorini::motion::SchemeSpec;
 use signorini::output::{write_files, write_picture};
 
-/// Time steps in the time of a wave through a cell.
+/// Time steps as multiples of the time that a wave takes through a cell.
 const COURANT: [f64; 3] = [0.5, 1.0, 1.5];
 
-/// The same of central differences, whose highest mode is no longer bounded at 1.
+/// The time steps of central differences, whose highest mode is not bounded at a factor of 1.
 const EXPLICIT_COURANT: [f64; 2] = [0.5, 0.9];
 
 const CELLS: usize = 100;
 
-/// Meshes on which the errors of the default scheme fall.
+/// Numbers of cells of the meshes for the convergence of the default scheme.
 const REFINED: [usize; 4] = [50, 100, 200, 400];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -1,4 +1,4 @@
-//! One run of one scheme, held against a closed form.
+//! One run of one scheme, compared with a closed form.
 
 use signorini::internals::{AnalysisSpec, BodySpec};
 use signorini::motion::SchemeSpec;
@@ -6,55 +6,55 @@ use signorini::motion::{Integrator, Observation, Scheme};
 use signorini::study::MotionSummary;
 use signorini::{Error, Scene, Settings};
 
-/// A bar whose motion is known.
+/// A bar with a known motion.
 pub struct Case {
     pub name: &'static str,
-    /// Its scene, a file in `tools/impact`.
+    /// Name of its scene file in `tools/impact`.
     pub scene: &'static str,
-    /// Displacement at x and t.
+    /// Exact displacement at x and t.
     pub displacement: fn(f64, f64) -> f64,
-    /// Begin and end of the first contact.
+    /// Times at which the first contact begins and ends.
     pub contact: [f64; 2],
     pub pressure: f64,
-    /// Speed after the contact, where the bar flies.
+    /// Speed after the contact, if the bar flies away.
     pub rebound: Option<f64>,
-    /// What displacements are measured by.
+    /// Reference length of the displacement error.
     pub reach: f64,
 }
 
-/// Share of the contact that is left out at its beginning and at its end, where a wave front passes.
+/// Share of the contact time that is left out at its beginning and at its end, because a wave front passes then.
 const MARGIN: f64 = 0.1;
 
-/// What a run of a scheme came to.
+/// The results of one run of a scheme.
 pub struct Run {
     pub scheme: Scheme,
     pub courant: f64,
-    /// Root of the mean square over nodes and steps, relative to the reach of the case.
+    /// Root mean square of the displacement error over nodes and steps, divided by `reach` of the case.
     pub displacement_error: f64,
-    /// Time with a contact force until half a contact after its end.
+    /// Total time with a contact force, counted until half a contact time after the exact end of the contact.
     pub duration: f64,
     /// Mean and standard deviation of the pressure between the margins.
     pub pressure: [f64; 2],
-    /// Force times time until half a contact after its end.
+    /// Impulse of the contact force until the same moment.
     pub impulse: f64,
-    /// Mean velocity then, against the direction of flight.
+    /// Mean velocity at that moment, positive against the direction of the initial flight.
     pub rebound: f64,
-    /// Energy at the end over energy at the start, and the largest on the way.
+    /// Energy at the end and the largest energy, both divided by the energy at the start.
     pub energy: [f64; 2],
     pub penetration: f64,
-    /// Largest force of a step, and the largest on the mean over the window of the motion.
+    /// Largest force of a step, and the largest mean force over a window of time.
     pub peaks: [f64; 2],
-    /// That window, in time.
+    /// Length of that window, in time.
     pub window: f64,
     pub history: Vec<Observation>,
 }
 
-/// Runs `case` on `cells` cells with time steps of `courant` times the time of a wave through a cell.
+/// Runs `case` on `cells` cells. The time step is `courant` times the time that a wave takes through a cell.
 pub fn run(case: &Case, scheme: SchemeSpec, courant: f64, cells: usize) -> Result<Run, Error> {
     with_value(case, scheme, None, courant, cells)
 }
 
-/// The same with a value of the parameter of the scheme, or its default.
+/// As [`run`], with a value of the parameter of the scheme, or its default.
 pub fn with_value(
     case: &Case,
     scheme: SchemeSpec,
@@ -102,7 +102,7 @@ pub fn with_value(
         history.push(seen);
     }
     let step = dynamics.step;
-    // The force of a step is that of its middle.
+    // The force of a step belongs to the middle of the step.
     let middle = |seen: &Observation| seen.time - step / 2.0;
     let margin = MARGIN * (end - begin);
     let inside: Vec<f64> = history[1..]

@@ -1,4 +1,4 @@
-//! Runs as a table and as plots over time.
+//! The results of the runs as a table and as plots over time.
 
 use signorini::output::{Drawing, Plot, Quantity, Series, line_plots};
 
@@ -18,7 +18,7 @@ fn row(case: &Case, name: &str, courant: &str, run: &Run) -> String {
     )
 }
 
-/// Every scheme at every step, under the closed form.
+/// Returns the table of all schemes and time steps, with the closed form in its first row.
 pub fn of_runs(case: &Case, runs: &[Run]) -> String {
     let [begin, end] = case.contact;
     let rebound = case.rebound.map_or("-".to_string(), |speed| format!("{speed:.5}"));
@@ -41,7 +41,8 @@ pub fn of_runs(case: &Case, runs: &[Run]) -> String {
     text + "\n"
 }
 
-/// The default scheme on finer and finer meshes, with the rate at which its displacement error falls.
+/// Returns the table of the default scheme on finer and finer meshes, with the convergence rate of its displacement
+/// error.
 pub fn of_meshes(case: &Case, courant: f64, cells: &[usize], runs: &[Run]) -> String {
     let mut text = format!(
         "{}, midpoint, CFL {:.1}\n\n{}",
@@ -62,7 +63,7 @@ pub fn of_meshes(case: &Case, courant: f64, cells: &[usize], runs: &[Run]) -> St
     text + "\n"
 }
 
-/// Pressure and energy over time at CFL 1, of central differences at 0.9.
+/// Draws pressure and energy over time at CFL 1; central differences run at 0.9.
 pub fn plots(case: &Case, runs: &[Run]) -> Drawing {
     let at_one = || runs.iter().filter(|run| (0.9..=1.0).contains(&run.courant));
     let [begin, end] = case.contact;
@@ -72,7 +73,7 @@ pub fn plots(case: &Case, runs: &[Run]) -> Drawing {
         let shown = run.history.iter().filter(|seen| (first..=last).contains(&seen.time));
         Series::new(run.scheme.name(), shown.map(|seen| [seen.time, value(seen)]).collect())
     };
-    // Beyond three times the pressure lines say no more than that they are wrong.
+    // Lines are cut at three times the exact pressure, because larger values show only that they are wrong.
     let cut = |value: f64| value.min(3.0 * case.pressure);
     let exact = vec![[first, 0.0], [begin, 0.0], [begin, case.pressure], [end, case.pressure], [end, 0.0], [last, 0.0]];
     let pressure = |gaining: bool| {

@@ -1,16 +1,16 @@
-//! Elastic bodies in space, as scenes: slabs and blocks of Hex8, even and graded.
+//! Elastic bodies as scenes: slabs, blocks and bars of Hex8 with uniform and graded meshes, and a layer of Q8.
 
 use super::problems::noise;
 use serde_json::{Value, json};
 use signorini::qp::NearNullSpace;
 use signorini::{ContactProblem, Error, Scene, SparseMatrix, SymmetricMatrix};
 
-/// An axis with even cells.
+/// An axis with cells of equal size.
 fn even(length: f64, cells: usize) -> Value {
     json!({"points": [0, length], "divisions": [cells]})
 }
 
-/// An axis from 0 to 1 whose cells shrink towards `towards`, the largest `ratio` times the smallest.
+/// An axis from 0 to 1 whose cells become smaller near `towards`; the largest is `ratio` times the smallest.
 fn graded(cells: usize, ratio: f64, towards: f64) -> Value {
     let sides: &[f64] = if towards == 0.5 { &[0.5, 0.5] } else { &[1.0] };
     let half = cells / sides.len();
@@ -39,17 +39,17 @@ fn built(axes: [Value; 3], held: &str, height: f64, gap: f64) -> Result<ContactP
     }))
 }
 
-/// A thin slab, clamped at its left side, under a sphere.
+/// A thin slab under a sphere, clamped at its left side.
 pub fn slab(cells: usize, gap: f64) -> Result<ContactProblem, Error> {
     built([even(1.0, cells), even(1.0, cells), even(0.05, 2)], "left", 0.05, gap)
 }
 
-/// A cube of equal cells, clamped below, under a sphere.
+/// A cube of equal cells under a sphere, clamped at its bottom.
 pub fn block(cells: usize) -> Result<ContactProblem, Error> {
     built([even(1.0, cells), even(1.0, cells), even(1.0, cells)], "bottom", 1.0, -0.01)
 }
 
-/// Copies of a cube under a sphere that touch nothing of each other, over four decades of stiffness.
+/// Uncoupled copies of a cube under a sphere, whose stiffnesses differ by up to four orders of magnitude.
 pub fn blocks_apart(count: usize, cells: usize) -> Result<ContactProblem, Error> {
     let one = block(cells)?;
     let (dofs, rows) = (one.dofs(), one.rows());
@@ -72,13 +72,13 @@ pub fn blocks_apart(count: usize, cells: usize) -> Result<ContactProblem, Error>
     problem.with_near_null(NearNullSpace::new(modes, count * dofs)?)
 }
 
-/// A cube whose cells shrink towards the place of contact, clamped below, under a sphere.
+/// A cube under a sphere, clamped at its bottom, whose cells become smaller towards the contact.
 pub fn graded_block(cells: usize, ratio: f64) -> Result<ContactProblem, Error> {
     let across = || graded(cells, ratio, 0.5);
     built([across(), across(), graded(cells, ratio, 1.0)], "bottom", 1.0, -0.01)
 }
 
-/// A slender bar of Hex8, clamped at one end, bent over a sphere at half its length.
+/// A slender bar of Hex8 that is clamped at one end and bent over a sphere at half its length.
 pub fn bar(cells: usize) -> Result<ContactProblem, Error> {
     scene(json!({
         "model": "space",
@@ -103,7 +103,7 @@ pub fn soft_layer(cells: usize) -> Result<ContactProblem, Error> {
     }))
 }
 
-/// A nearly incompressible cube of Hex8 on rollers, pressed down between two plates.
+/// A nearly incompressible cube of Hex8 on rollers that is compressed between two plates.
 pub fn jelly(cells: usize) -> Result<ContactProblem, Error> {
     scene(json!({
         "model": "space",

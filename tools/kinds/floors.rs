@@ -1,8 +1,8 @@
-//! Obstacle problems of one unknown a node, whose floor stands below every one: a membrane and a plate.
+//! Obstacle problems with one unknown per node and a floor below every node: a membrane and a plate.
 
 use signorini::{ContactProblem, Error, SparseMatrix, SymmetricMatrix};
 
-/// `-u <= -lower` for each `(unknown, lower)`, then `u <= upper` for each `(unknown, upper)`.
+/// Returns the rows `-u <= -lower` for each `(unknown, lower)`, followed by `u <= upper` for each `(unknown, upper)`.
 pub fn bounds(dofs: usize, lower: &[(usize, f64)], upper: &[(usize, f64)]) -> Result<(SparseMatrix, Vec<f64>), Error> {
     let below = lower.iter().enumerate().map(|(row, &(dof, _))| (row, dof, -1.0));
     let above = upper.iter().enumerate().map(|(row, &(dof, _))| (lower.len() + row, dof, 1.0));
@@ -22,7 +22,8 @@ pub fn problem(
     ContactProblem::new(stiffness, load, contact, gap)
 }
 
-/// The membrane of deal.II's step-41: load -10 over a staircase, bilinear cells on (-1, 1)^2, `n` unknowns along a side.
+/// The membrane of step-41 of deal.II under a load of -10 above a staircase: bilinear cells on (-1, 1)^2, `n` unknowns
+/// along a side.
 pub fn membrane(n: usize) -> Result<ContactProblem, Error> {
     let h = 2.0 / (n + 1) as f64;
     let at = |i: usize, j: usize| j * n + i;
@@ -55,7 +56,7 @@ pub fn membrane(n: usize) -> Result<ContactProblem, Error> {
     problem(n * n, &entries, vec![-10.0 * h * h; n * n], bounds(n * n, &lower, &[])?)
 }
 
-/// A clamped plate, thirteen points of the biharmonic operator, over a ball below every node.
+/// A clamped plate above a ball: the biharmonic operator by thirteen points, with an obstacle below every node.
 pub fn plate(n: usize) -> Result<ContactProblem, Error> {
     let h = 1.0 / (n + 1) as f64;
     let mut entries = Vec::new();

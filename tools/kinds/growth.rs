@@ -1,4 +1,4 @@
-//! Seconds over the number of unknowns, on meshes of one kind.
+//! A plot of seconds over the number of unknowns for problems of one kind.
 
 use signorini::output::{Drawing, Plot, Quantity, Scale, Series, line_plots};
 
@@ -7,12 +7,12 @@ pub struct Times {
     pub kind: String,
     pub unknowns: usize,
     pub rows: usize,
-    /// What `auto` chose; empty if it was not asked, or found nothing.
+    /// The choice of `auto`; empty if `auto` was not run or found no answer.
     pub way_of_auto: String,
     pub of_solvers: Vec<(String, f64)>,
 }
 
-/// The curves of all problems whose name begins with `kind`, one for each solver.
+/// Draws one curve per solver over all problems whose name begins with `kind`.
 pub fn plot(kind: &str, times: &[Times]) -> Drawing {
     let of_kind: Vec<&Times> = times.iter().filter(|times| times.kind.starts_with(kind)).collect();
     let mut names: Vec<&str> = Vec::new();

@@ -1,14 +1,14 @@
-//! Seconds and iterations of every method on problems of other fields:
-//! `cargo run --release --example kinds [-- --only NAME,NAME] [--methods auto,mprgp] [--seconds N] [--peers]`; with `--unseen` on
-//! kinds that nothing was fitted to, with `--scenes FOLDER` on the scenes of a folder, such as those of `reference/parts.py`.
+//! Measures seconds and iterations of every method on problems from other fields:
+//! `cargo run --release --example kinds [-- --only NAME,NAME] [--methods auto,mprgp] [--seconds N] [--peers]`.
 //!
-//! `--table` prints at the end what `auto` took beside the fastest method, in Markdown.
+//! `--unseen` takes problems to which nothing was fitted; `--scenes FOLDER` takes the scenes of a folder, such as those
+//! that `reference/parts.py` writes. `--table` prints at the end a table in Markdown with the times of `auto` and of
+//! the fastest method. `--plot FOLDER` draws the seconds over the unknowns of the membranes into `membrane.svg` and
+//! `membrane.png`.
 //!
-//! `--plot FOLDER` draws the seconds over the unknowns of the membranes, `membrane.svg` and `membrane.png`.
-//!
-//! A line of `ratios` follows each kind: the time of `auto` over that of our fastest method and of one linear
-//! solve by our own factor (`linear` among the methods: no rows); with `--peers` and petsc4py over that of PETSc's fastest and of one
-//! linear solve there.
+//! A line of `ratios` follows each problem: the time of `auto` divided by that of our fastest method, and by that of
+//! one linear solve by our own factor, without contact rows (`linear` among the methods). With `--peers` and petsc4py,
+//! the line also has the ratios to the fastest solver of PETSc and to one linear solve of PETSc.
 
 mod bodies;
 mod floors;
@@ -80,7 +80,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// A problem that is made when its turn comes.
+/// A problem that is made only when it is solved.
 struct Task {
     name: String,
     make: Box<dyn Fn() -> Result<ContactProblem, Error>>,
@@ -92,7 +92,7 @@ impl From<Kind> for Task {
     }
 }
 
-/// The scenes of a folder, by name.
+/// Returns the scenes of a folder, sorted by name.
 fn scenes(folder: &Path) -> std::io::Result<Vec<Task>> {
     let entries = std::fs::read_dir(folder)?.collect::<Result<Vec<_>, _>>()?;
     let mut files: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).collect();
@@ -105,7 +105,7 @@ fn scenes(folder: &Path) -> std::io::Result<Vec<Task>> {
     Ok(files.into_iter().map(task).collect())
 }
 
-/// Solves a problem by each of the methods `names`, without and with the proof, and prints what was found.
+/// Solves a problem by each of the methods `names`, without and with the proof, and prints the results.
 fn measure(task: &Task, names: &str, most: f64, interpreter: Option<&Interpreter>) -> Result<Times, String> {
     let problem = (task.make)().map_err(|error| error.to_string())?;
     let mut reference: Option<ContactSet> = None;
@@ -153,7 +153,8 @@ fn measure(task: &Task, names: &str, most: f64, interpreter: Option<&Interpreter
     Ok(Times { kind, unknowns, rows, way_of_auto, of_solvers })
 }
 
-/// Seconds of the same body without contact rows, by a factor; infinite if it does not end in time.
+/// Returns the seconds of the same problem without contact rows, solved by a factor; infinite if it does not end in
+/// time.
 fn linear_solve(problem: &ContactProblem, most: f64) -> Result<f64, Error> {
     let no_rows = SparseMatrix::from_triplets(0, problem.dofs(), &[])?;
     let free = ContactProblem::new(problem.stiffness().clone(), problem.load().to_vec(), no_rows, Vec::new())?;
@@ -164,7 +165,7 @@ fn linear_solve(problem: &ContactProblem, most: f64) -> Result<f64, Error> {
     Ok(if is_solved { clock.elapsed().as_secs_f64() } else { f64::INFINITY })
 }
 
-/// The seconds of PETSc, and the time of `auto`, certified and proven, over that of others.
+/// Prints the seconds of PETSc, and the ratios of the time of `auto`, certified and proven, to the times of the others.
 fn print_ratios(kind: &str, certified: &[(Method, f64)], own_linear: f64, peers: &[Peer]) {
     for Peer { name, seconds, iterations, closed } in peers {
         println!("{kind:16} petsc {name:7} {:>31} {seconds:>19.3} {:>19} {iterations:>7} {closed:>7}", "", "");
@@ -184,7 +185,7 @@ fn print_ratios(kind: &str, certified: &[(Method, f64)], own_linear: f64, peers:
     }
 }
 
-/// The rest of the line of an answer; its set is compared with the first one found of its problem.
+/// Prints the line of an answer. Its contact set is compared with the first one found for the same problem.
 fn print_answer(start: &str, solution: &Solution, seconds: f64, remark: &str, reference: &mut Option<ContactSet>) {
     let mut remark = remark.to_string();
     let undecided = solution.proven.as_ref().map_or(-1, |proven| proven.undecided().count() as i64);

@@ -1,4 +1,4 @@
-//! PETSc's figures beside ours, where petsc4py is there.
+//! The times of PETSc for the same problems, if petsc4py is installed.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use std::process::Command;
 use signorini::ContactProblem;
 use signorini::qp::problem_files;
 
-/// What a solver of PETSc says of a problem.
+/// The result of a solver of PETSc for a problem.
 pub struct Peer {
     pub name: String,
     pub seconds: f64,
@@ -18,18 +18,19 @@ pub struct Peer {
 /// An interpreter that has petsc4py.
 pub struct Interpreter {
     program: &'static str,
-    /// Where it looks for modules.
+    /// Search path for its modules.
     path: OsString,
 }
 
-/// Interpreters that may have petsc4py: that of the path, and that of the system, where Debian puts it.
+/// Interpreters that may have petsc4py: the first of the search path, and that of the system, for which Debian installs
+/// it.
 const PROGRAMS: [&str; 2] = ["python3", "/usr/bin/python3"];
 
 /// The folders of Debian's builds of PETSc, `/usr/lib/petscdir/VERSION/BUILD`.
 const BUILDS: &str = "/usr/lib/petscdir";
 
 impl Interpreter {
-    /// The first that has petsc4py, if there is one.
+    /// Returns the first interpreter that has petsc4py.
     pub fn find() -> Option<Self> {
         let inside = |folder: &Path| -> Vec<PathBuf> {
             std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect()
@@ -44,7 +45,7 @@ impl Interpreter {
         })
     }
 
-    /// On one thread.
+    /// Returns a command that runs the interpreter on one thread.
     fn command(&self) -> Command {
         let mut command = Command::new(self.program);
         command.env("PYTHONPATH", &self.path).env("OMP_NUM_THREADS", "1");
@@ -52,7 +53,7 @@ impl Interpreter {
     }
 }
 
-/// The solvers of PETSc that solve a problem; none for one whose rows are no bounds.
+/// Runs all suitable solvers of PETSc on a problem. The list is empty if the rows of the problem are not simple bounds.
 ///
 /// # Errors
 /// Those of writing the problem and of starting the interpreter.

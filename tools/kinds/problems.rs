@@ -1,17 +1,17 @@
-//! Problems of other fields, as matrices: many rows, two-sided bounds, separate parts, rotations.
+//! Problems from other fields as matrices: many rows, two-sided bounds, separate parts, rotations.
 
 use super::bodies::{block, blocks_apart, graded_block, slab};
 use super::floors::{bounds, membrane, plate, problem};
 use signorini::{ContactProblem, Error};
 
-/// A problem with its name.
+/// A problem and its name.
 #[derive(Clone, Copy)]
 pub struct Kind {
     pub name: &'static str,
     pub make: fn() -> Result<ContactProblem, Error>,
 }
 
-/// All kinds, small ones first within a kind.
+/// All problems; within a kind, small ones come first.
 pub const KINDS: [Kind; 19] = [
     Kind { name: "membrane 127", make: || membrane(127) },
     Kind { name: "membrane 255", make: || membrane(255) },
@@ -34,7 +34,8 @@ pub const KINDS: [Kind; 19] = [
     Kind { name: "graded block 160", make: || graded_block(38, 160.0) },
 ];
 
-/// Seven points on a cube of `n` unknowns along an edge, pressed onto a bowl below every one.
+/// A Poisson problem by seven points on a cube with `n` unknowns along an edge, pressed onto a bowl below every
+/// unknown.
 fn poisson(n: usize) -> Result<ContactProblem, Error> {
     let h = 1.0 / (n + 1) as f64;
     let at = |i: usize, j: usize, k: usize| (k * n + j) * n + i;
@@ -56,7 +57,7 @@ fn poisson(n: usize) -> Result<ContactProblem, Error> {
     problem(n.pow(3), &entries, vec![-10.0 * h.powi(3); n.pow(3)], bounds(n.pow(3), &lower, &[])?)
 }
 
-/// Elastic-plastic torsion of a square bar: |u| at most the distance to the boundary, five points.
+/// Elastic-plastic torsion of a square bar by five points: |u| is at most the distance to the boundary.
 fn torsion(n: usize) -> Result<ContactProblem, Error> {
     let h = 1.0 / (n + 1) as f64;
     let (mut entries, mut lower, mut upper) = (Vec::new(), Vec::new(), Vec::new());
@@ -79,7 +80,7 @@ fn torsion(n: usize) -> Result<ContactProblem, Error> {
     problem(n * n, &entries, vec![5.0 * h * h; n * n], bounds(n * n, &lower, &upper)?)
 }
 
-/// Numbers in [0, 1) that look random, always the same.
+/// Returns a pseudorandom number in [0, 1) that depends only on `index`.
 pub fn noise(index: usize) -> f64 {
     let mut x = (index as u64).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -87,7 +88,7 @@ pub fn noise(index: usize) -> f64 {
     ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// The graph of an image: edges with weights from 1e-3 to 1e3, a weak pull to noisy values, all within [0, 1].
+/// The graph of an image: edges with weights from 1e-3 to 1e3, weak springs to noisy values, and bounds 0 and 1.
 fn image_graph(n: usize) -> Result<ContactProblem, Error> {
     let dofs = n * n;
     let mut diagonal = vec![1e-2; dofs];
@@ -108,7 +109,8 @@ fn image_graph(n: usize) -> Result<ContactProblem, Error> {
     problem(dofs, &entries, load, bounds(dofs, &both, &ones)?)
 }
 
-/// Pressure in a journal bearing: eccentricity 0.1, length 20, u >= 0, five points of (1 + e cos x)^3.
+/// Pressure u >= 0 in a journal bearing of eccentricity 0.1 and length 20, by five points with the coefficient (1 + e
+/// cos x)^3.
 fn journal_bearing(n: usize) -> Result<ContactProblem, Error> {
     let (eccentricity, height) = (0.1, 10.0);
     let (hx, hy) = (2.0 * std::f64::consts::PI / (n + 1) as f64, 2.0 * height / (n + 1) as f64);
@@ -133,7 +135,7 @@ fn journal_bearing(n: usize) -> Result<ContactProblem, Error> {
     problem(n * n, &entries, load, bounds(n * n, &lower, &[])?)
 }
 
-/// Chains of ten dofs that touch nothing of each other, three rows each, stiffness over four decades.
+/// Uncoupled chains of ten dofs with three rows each, whose stiffnesses differ by up to four orders of magnitude.
 fn separate_bodies(count: usize) -> Result<ContactProblem, Error> {
     let (mut entries, mut load, mut lower) = (Vec::new(), Vec::new(), Vec::new());
     for body in 0..count {
@@ -153,7 +155,8 @@ fn separate_bodies(count: usize) -> Result<ContactProblem, Error> {
     problem(10 * count, &entries, load, bounds(10 * count, &lower, &[])?)
 }
 
-/// `n` beams of `n` nodes side by side, deflection and rotation at each, springs from beam to beam; a floor under every node.
+/// `n` beams of `n` nodes side by side, with a deflection and a rotation per node, springs between the beams, and a
+/// floor below every node.
 fn frame(n: usize) -> Result<ContactProblem, Error> {
     let dofs = 2 * n * n;
     let mut entries: Vec<(usize, usize, f64)> = Vec::new();

@@ -1,8 +1,8 @@
-//! The table of documents: what `auto` took and how long, beside the method that was the fastest.
+//! The table of the documents: choice and time of `auto`, compared with the fastest method.
 
 use crate::growth::Times;
 
-/// The rows of all problems that were solved by `auto`, in Markdown; seconds are certified and proven.
+/// Returns the rows of all problems that `auto` solved, in Markdown. The seconds include certificate and proof.
 pub fn markdown(times: &[Times]) -> String {
     let mut lines = vec![
         "| problem | dofs | rows | `auto`, s | by | fastest, s | by | ratio |".to_string(),

@@ -1,4 +1,4 @@
-//! Problems of kinds that the model of cost was not fitted to.
+//! Problems of kinds to which the cost model was not fitted.
 
 use super::bodies::{bar, jelly, soft_layer};
 use super::floors::{bounds, problem};
@@ -19,12 +19,13 @@ pub const UNSEEN: [Kind; 10] = [
     Kind { name: "jelly", make: || jelly(20) },
 ];
 
-/// Tiles of eight by eight cells, every other one a thousand times as stiff.
+/// A conductivity on tiles of eight by eight cells; every other tile is a thousand times as stiff.
 fn checkerboard(cell: [usize; 2]) -> [f64; 2] {
     if (cell[0] / 8 + cell[1] / 8).is_multiple_of(2) { [1.0; 2] } else { [1e3; 2] }
 }
 
-/// Five points on a square with a conductivity `of` each cell along x and y, and a share of mass; a wavy floor below.
+/// A sheet above a wavy floor, by five points on a square. `of` gives the conductivity of each cell along x and y;
+/// `mass` is added to the diagonal.
 fn sheet(n: usize, of: impl Fn([usize; 2]) -> [f64; 2], mass: f64) -> Result<ContactProblem, Error> {
     let h = 1.0 / (n + 1) as f64;
     let mut diagonal = vec![mass * h * h; n * n];
@@ -50,7 +51,8 @@ fn sheet(n: usize, of: impl Fn([usize; 2]) -> [f64; 2], mass: f64) -> Result<Con
     problem(n * n, &entries, vec![-h * h; n * n], bounds(n * n, &lower, &[])?)
 }
 
-/// A network without a plane: every knot is tied to its neighbour and to `ties` others, near and far, and held between walls.
+/// A network that cannot be drawn in a plane: every node is connected to its neighbour and to `ties` others, near and
+/// far, and lies between two walls.
 fn network(knots: usize, ties: usize) -> Result<ContactProblem, Error> {
     let mut diagonal = vec![0.01; knots];
     let mut entries = Vec::new();
@@ -72,7 +74,7 @@ fn network(knots: usize, ties: usize) -> Result<ContactProblem, Error> {
     problem(knots, &entries, load, bounds(knots, &walls(-1.0), &walls(1.0))?)
 }
 
-/// A beam with deflections and rotations on springs, lifted in places, over a floor.
+/// A beam on springs above a floor, with a deflection and a rotation per node; some loads lift it.
 fn beam_on_soil(nodes: usize) -> Result<ContactProblem, Error> {
     let dofs = 2 * nodes;
     let beam = [[12.0, 6.0, -12.0, 6.0], [6.0, 4.0, -6.0, 2.0], [-12.0, -6.0, 12.0, -6.0], [6.0, 2.0, -6.0, 4.0]];
@@ -86,7 +88,7 @@ fn beam_on_soil(nodes: usize) -> Result<ContactProblem, Error> {
     problem(dofs, &entries, (0..dofs).map(load).collect(), bounds(dofs, &lower, &[])?)
 }
 
-/// A plane truss of squares with both diagonals, held at its left side, its lower knots over a slope.
+/// A plane truss of squares with both diagonals, fixed at its left side, with a slope below its lower nodes.
 fn truss(n: usize) -> Result<ContactProblem, Error> {
     let dofs = 2 * n * n;
     let mut entries = Vec::new();
@@ -123,7 +125,8 @@ fn truss(n: usize) -> Result<ContactProblem, Error> {
     problem(dofs, &entries, load, bounds(dofs, &lower, &[])?)
 }
 
-/// Knots in space with three displacements each, tied to their neighbours along and across; a floor under every knot.
+/// A lattice of nodes in space with three displacements each; longitudinal and transverse springs connect neighbours,
+/// and a floor lies below every node.
 fn lattice(n: usize) -> Result<ContactProblem, Error> {
     let dofs = 3 * n.pow(3);
     let at = |i: usize, j: usize, k: usize| (k * n + j) * n + i;

@@ -1,4 +1,4 @@
-//! Other bodies than the block: where the number of cycles stays, and where it grows.
+//! Bodies other than the block, for some of which the number of cycles grows.
 
 use serde_json::{Value, json};
 
@@ -10,7 +10,7 @@ fn clamped(side: &str) -> Value {
     json!([{"on": {"boundary": side}, "x": 0, "y": 0, "z": 0}])
 }
 
-/// A box under a sphere of radius 2 m over the middle of its top.
+/// A box under a sphere of radius 2 m above the centre of its top.
 fn under_sphere(lengths: [f64; 3], cells: [usize; 3], element: &str, poisson: f64) -> Value {
     let [x, y, z] = [0, 1, 2].map(|i| axis(lengths[i], cells[i]));
     json!({
@@ -40,7 +40,7 @@ fn half_ball(half: Option<&str>, centre: f64) -> Value {
     ball
 }
 
-/// Names and scenes.
+/// Returns the names and scenes of all bodies.
 pub fn bodies() -> Vec<(&'static str, Value)> {
     let held = |boundary: &str, z: f64| json!({"on": {"boundary": boundary}, "x": 0, "y": 0, "z": z});
     let ball = json!({

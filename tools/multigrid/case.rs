@@ -1,13 +1,14 @@
-//! The blocks that are measured: clamped below, a sphere pressed into the top.
+//! The measured blocks: clamped at the bottom, with a sphere pressed into the top.
 
 use serde_json::{Value, json};
 use signorini::{Error, Model, Scene};
 
-/// A unit block of `cells` Hex8 along each side.
+/// A unit block with `cells` Hex8 elements along each side.
 #[derive(Clone, Copy)]
 pub struct Case {
     pub cells: usize,
-    /// Radius of the sphere: within the contact it is the paraboloid of that radius to one part in 400.
+    /// Radius of the sphere. Within the contact, the sphere equals the paraboloid of the same radius to one part in
+    /// 400.
     pub radius: f64,
     pub gap: f64,
 }
@@ -16,7 +17,7 @@ const fn block(cells: usize) -> Case {
     Case { cells, radius: 2.0, gap: -0.01 }
 }
 
-/// 13,872 and 104,544 and 811,200 dofs, and a wide contact.
+/// Blocks of 13,872, 104,544 and 811,200 dofs; the third case is a block of 104,544 dofs with a wide contact.
 pub const CASES: [Case; 4] = [block(16), block(32), Case { cells: 32, radius: 0.5, gap: -0.1 }, block(64)];
 
 impl Case {

@@ -1,4 +1,4 @@
-//! The measurements as a table and as a picture.
+//! The measurements as tables and as a picture.
 
 use std::fmt::Write;
 
@@ -9,7 +9,7 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or(f64::NAN)
 }
 
-/// A number in words, or a dash.
+/// Formats a number, or returns a dash if it was not measured.
 fn known(value: &Value, words: impl Fn(f64) -> String) -> String {
     value.as_f64().map_or("-".into(), words)
 }
@@ -18,7 +18,7 @@ fn gigabytes(value: &Value) -> f64 {
     number(value) / 1e9
 }
 
-/// One case as a row of the table.
+/// Returns one case as a row of the table.
 pub fn line(case: &Value) -> String {
     let (set_up, linear, contact) = (number(&case["set_up"]), number(&case["linear"]), number(&case["contact"]));
     let wall = |times: &Value| number(&times["set_up"]) + number(&times["contact"]);
@@ -48,7 +48,7 @@ pub fn line(case: &Value) -> String {
 pub const BODIES_HEAD: &str = "| body | dofs | linear, cycles | contact, cycles | ratio | set-up, s | linear, s | contact, s \
                                | closed | certificate | peak, GB |\n|---|---|---|---|---|---|---|---|---|---|---|";
 
-/// One body as a row of its table.
+/// Returns one body as a row of the table of bodies.
 pub fn body_line(name: &str, case: &Value) -> String {
     format!(
         "| {name} | {} | {} | {} | {} | {:.2} | {} | {:.2} | {} | {:.1e} | {:.2} |",
@@ -65,7 +65,7 @@ pub fn body_line(name: &str, case: &Value) -> String {
     )
 }
 
-/// The table of all cases, with the growth from the second to the last.
+/// Returns the table of all cases, with the growth of the time from the second case to the last.
 pub fn table(cases: &[Value]) -> String {
     let mut text = String::from(
         "| dofs | R | linear, cycles | contact, cycles | ratio | set-up, s | linear, s | contact, s | ratio with set-up \
@@ -83,7 +83,7 @@ pub fn table(cases: &[Value]) -> String {
     text
 }
 
-/// Seconds and memory over the number of unknowns.
+/// Draws seconds and memory over the number of unknowns.
 pub fn plot(cases: &[Value]) -> Drawing {
     let plain: Vec<&Value> = cases.iter().filter(|case| case["radius"] == 2.0).collect();
     let series = |name: &str, value: &dyn Fn(&Value) -> f64| {

@@ -1,12 +1,14 @@
-//! What a contact solve by multigrid costs beside one linear solve by the same hierarchy, and beside the direct path:
-//! `cargo run --release --example multigrid [-- --out DIR] [--most-dofs N]`; with `--bodies` other
-//! bodies, with `--scene SCENE.json` one's own.
+//! Compares the cost of a contact solve by multigrid with that of one linear solve by the same hierarchy, and with that
+//! of a factorisation: `cargo run --release --example multigrid [-- --out DIR] [--most-dofs N]`. With `--bodies` other
+//! bodies are measured, with `--scene SCENE.json` a given scene.
 //!
-//! `cargo run --release --example multigrid threads CASE RUNS` measures two threads against one by turns, in one process
-//! (case 1 has 104,544 dofs, case 3 has 811,200); it says something on a machine that has nothing else to do.
+//! `cargo run --release --example multigrid threads CASE RUNS` runs two threads and one thread alternately in one
+//! process (case 1 has 104,544 dofs, case 3 has 811,200). Its result is meaningful only on a machine without other
+//! work.
 //!
-//! Every case is a process of its own; seconds are those of the processor, all threads together, the column of two
-//! threads is by the clock. A folder gets the table as Markdown and JSON and the plot of the growth.
+//! Every case runs in a process of its own. Seconds are processor seconds of all threads together; only the column of
+//! two threads is wall-clock time. With a folder, the table as Markdown and JSON and the plot of the growth are written
+//! into it.
 
 mod bodies;
 mod case;
@@ -24,7 +26,7 @@ use serde_json::json;
 use signorini::Scene;
 use signorini::output::{write_files, write_picture};
 
-/// The direct path is not measured beyond: its factor would take tens of gigabytes.
+/// Largest number of dofs for which the factorisation is measured. Beyond it the factor would take tens of gigabytes.
 const MOST_DIRECT: usize = 120_000;
 
 fn main() -> ExitCode {

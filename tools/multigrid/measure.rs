@@ -1,4 +1,4 @@
-//! What is measured, each in a process of its own.
+//! The measurements, each of which runs in a process of its own.
 
 use std::time::Instant;
 
@@ -12,7 +12,8 @@ const TOLERANCE: f64 = 1e-8;
 
 const MOST_CYCLES: usize = 2000;
 
-/// Seconds that all threads of this process have had a processor; wall-clock seconds where the system does not tell.
+/// Returns the processor seconds of all threads of this process, or wall-clock seconds if the system does not report
+/// them.
 fn processor_seconds(start: Instant) -> f64 {
     let from_system = || -> Option<f64> {
         let mut sum = 0.0;
@@ -26,7 +27,7 @@ fn processor_seconds(start: Instant) -> f64 {
     from_system().unwrap_or_else(|| start.elapsed().as_secs_f64())
 }
 
-/// Hierarchy, linear solve and contact solve of a model, on so many threads.
+/// Measures hierarchy, linear solve and contact solve of a model on the given number of threads.
 pub fn iterative(model: &Model, threads: usize) -> Result<Value, Error> {
     let (problem, clock) = (model.problem(), Instant::now());
     let start = processor_seconds(clock);
@@ -37,7 +38,7 @@ pub fn iterative(model: &Model, threads: usize) -> Result<Value, Error> {
     let multigrid: &Multigrid = prepared.hierarchy().ok_or(Error::Interrupted)?;
     let load = problem.contact().mul_transposed(&vec![-1.0; problem.rows()]);
     let (from, from_clock) = (processor_seconds(clock), clock.elapsed().as_secs_f64());
-    // A body that only contact holds has no linear solve beside it.
+    // A body that is supported by contact only has a singular stiffness, so that no linear solve is measured.
     let linear = match multigrid.is_shifted() {
         true => None,
         false => Some(conjugate_gradients(problem.stiffness(), &load, multigrid, TOLERANCE, MOST_CYCLES)?.cycles),
@@ -59,8 +60,8 @@ pub fn iterative(model: &Model, threads: usize) -> Result<Value, Error> {
     }))
 }
 
-/// Set-up and contact solve on one thread and on two by turns, in this process: the least seconds by the clock of each, and
-/// whether both give the same answer bit by bit.
+/// Runs set-up and contact solve on one thread and on two threads alternately in this process. Returns the smallest
+/// wall-clock seconds of each, and whether both answers are equal bit by bit.
 pub fn threads(model: &Model, runs: usize) -> Result<Value, Error> {
     let problem = model.problem();
     let settings = Settings::with_method(Method::Mprgp).with_tolerance(TOLERANCE);
@@ -84,7 +85,7 @@ pub fn threads(model: &Model, runs: usize) -> Result<Value, Error> {
     }))
 }
 
-/// The direct path: one factorisation, contact by the active set.
+/// Measures one factorisation and the contact solve by the active-set method.
 pub fn direct(model: &Model) -> Result<Value, Error> {
     let clock = Instant::now();
     let start = processor_seconds(clock);

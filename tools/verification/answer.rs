@@ -1,11 +1,11 @@
-//! One line of the table of answers, and the tables as text.
+//! One row of the table of answers, and the tables as text.
 
 use std::time::Instant;
 
 use serde_json::Value;
 use signorini::{Error, Model, Scene, Solution, solve_qp};
 
-/// A number that the program found, beside the one that it should be.
+/// A number that the program computed, and its exact value.
 #[derive(Clone)]
 pub struct Answer {
     pub case: String,
@@ -20,7 +20,7 @@ pub struct Answer {
 impl Answer {
     pub const HEADING: &str = "case | element | unknowns | quantity | ours | exact | relative error | seconds";
 
-    /// The cells of its row. Where the exact value is zero the error is that of ours.
+    /// Returns the cells of its row. If the exact value is zero, the error is the absolute value of our number.
     pub fn row(&self) -> String {
         let Answer { case, element, unknowns, quantity, ours, exact, seconds } = self;
         let value = |value: &f64| if *value == 0.0 { "0".into() } else { format!("{value:.6e}") };
@@ -30,24 +30,24 @@ impl Answer {
     }
 }
 
-/// A table as Markdown: a heading and rows, their cells set apart by bars.
+/// Returns a table as Markdown from a heading and rows whose cells are separated by bars.
 pub fn markdown(heading: &str, rows: &[String]) -> String {
     let line = heading.split(" | ").map(|_| "---").collect::<Vec<_>>().join(" | ");
     [heading.to_owned(), line].iter().chain(rows).map(|row| format!("| {row} |\n")).collect()
 }
 
-/// The same as comma-separated values.
+/// Returns the same table as comma-separated values.
 pub fn csv(heading: &str, rows: &[String]) -> String {
     let quoted = |row: &String| row.split(" | ").map(|cell| format!("\"{cell}\"")).collect::<Vec<_>>().join(",") + "\n";
     [heading.to_owned()].iter().chain(rows).map(quoted).collect()
 }
 
-/// A scene that was built and solved.
+/// A scene with its solution.
 pub struct Solved {
     pub model: Model,
     pub solution: Solution,
     pub pressure: Vec<f64>,
-    /// Assembly and solve.
+    /// Seconds of assembly and solve.
     pub seconds: f64,
 }
 
@@ -69,19 +69,19 @@ impl Solved {
         self.pressure.iter().copied().fold(0.0, f64::max)
     }
 
-    /// The place and the pressure of every contact row.
+    /// Returns the coordinates and the pressure of every contact row.
     pub fn pressures(&self) -> impl Iterator<Item = ([f64; 3], f64)> {
         self.model.rows().iter().map(|row| self.model.mesh().nodes()[row.node]).zip(self.pressure.iter().copied())
     }
 
-    /// The node of a contact row that is nearest to `x`, and the pressure there.
+    /// Returns the coordinate x and the pressure at the contact node nearest to `x`.
     pub fn pressure_near(&self, x: f64) -> [f64; 2] {
         let away = |at: [f64; 3]| (at[0] - x).abs();
         let near = self.pressures().min_by(|a, b| away(a.0).total_cmp(&away(b.0)));
         near.map_or([f64::NAN; 2], |(at, pressure)| [at[0], pressure])
     }
 
-    /// A line of the table.
+    /// Returns a row of the table.
     pub fn answer(&self, case: &str, quantity: impl Into<String>, ours: f64, exact: f64) -> Answer {
         Answer {
             case: case.into(),

@@ -1,4 +1,4 @@
-//! Blocks whose displacement is known at every point: errors in norms, their rates, plots over the cell size.
+//! Blocks with a known displacement at every point: errors in norms, convergence rates, and plots over the cell size.
 
 use crate::exact_solutions::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
 use crate::solved_block::solve_block;
@@ -11,7 +11,7 @@ use signorini::output::{Drawing, Plot, Quantity, Scale, Series, line_plots};
 use super::answer::Answer;
 use super::reference_errors::{REFERENCE, reference_rule};
 
-/// Errors of one element on one block, from coarse to fine.
+/// Errors of one element on one block, from the coarsest mesh to the finest.
 pub struct Family {
     pub block: &'static str,
     pub kind: ElementKind,
@@ -20,20 +20,20 @@ pub struct Family {
 
 /// One mesh of a family.
 pub struct Step {
-    /// Cells along a side.
+    /// Number of cells along a side.
     cells: usize,
     unknowns: usize,
     errors: ErrorNorms,
-    /// By the quadrature of the reference.
+    /// The errors by the quadrature of the reference.
     as_reference: ErrorNorms,
-    /// Ours, exact.
+    /// Our value and the exact value.
     peak_pressure: [f64; 2],
     seconds: f64,
 }
 
 pub const BLOCKS: [&str; 3] = ["smooth", "generic edge", "Hertz"];
 
-/// Every block by every element, with so many cells along a side.
+/// Solves every block by every element, with these numbers of cells along a side.
 pub fn families(cells: &[usize]) -> Result<Vec<Family>, Error> {
     let elasticity = PlaneElasticity::plane_strain(1.0, 0.3);
     let smooth = Smooth { elasticity, opening: 1.0, pressure: 1.0, edge: 0.5, power: 3 };
@@ -102,7 +102,7 @@ pub fn reference_rows(families: &[Family]) -> Vec<String> {
     rows
 }
 
-/// Errors in energy and L2 over the cell size, and the slopes that theory expects.
+/// Draws the errors in energy and L2 over the cell size, with the slopes that theory predicts.
 pub fn error_plots(block: &str, families: &[Family]) -> Drawing {
     let smooth = block == BLOCKS[0];
     let panel = |title: &str, value: fn(&Step) -> f64, slopes: &[f64]| {
@@ -114,7 +114,7 @@ pub fn error_plots(block: &str, families: &[Family]) -> Drawing {
             series.push(Series::new(family.kind.name(), points));
         }
         for (index, slope) in slopes.iter().enumerate() {
-            // A little below the line of Q4 or Q8.
+            // The line of the expected slope is drawn slightly below that of Q4 or Q8.
             let [h, error] = ends[2 * index + 1];
             let at = |n: f64| [1.0 / n, 0.6 * error * (1.0 / n / h).powf(*slope)];
             series.push(Series::new(format!("expected slope {slope}"), vec![at(8.0), at(128.0)]));
@@ -129,7 +129,8 @@ pub fn error_plots(block: &str, families: &[Family]) -> Drawing {
     line_plots(&format!("Manufactured block: {block}"), &panels)
 }
 
-/// The peak pressure of the Hertz block at nu = 0.4999: with mean dilatation, and how the standard element locks.
+/// The peak pressure of the Hertz block at nu = 0.4999, with mean dilatation and with the standard element, which
+/// locks.
 pub fn near_incompressibility() -> Result<Vec<Answer>, Error> {
     let elasticity = PlaneElasticity::plane_strain(1.0, 0.4999);
     let hertz = HertzBlock { elasticity, half_width: 0.53, peak_pressure: 1.0 };

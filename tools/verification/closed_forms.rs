@@ -1,4 +1,4 @@
-//! Bars, raw obstacle problems, and the answers that were stored from cvxpy and OSQP.
+//! Bars, obstacle problems given as matrices, and the stored answers of cvxpy and OSQP.
 
 use std::path::Path;
 use std::time::Instant;
@@ -9,7 +9,7 @@ use signorini::{ContactProblem, Error, Scene, SparseMatrix, SymmetricMatrix, sol
 
 use super::answer::{Answer, Solved};
 
-/// A bar of length 2 and EA = 100, gap 0.03: under an end force of 4, and under 4 per length.
+/// A bar of length 2 with EA = 100 and a gap of 0.03, under an end force of 4 and under a load of 4 per length.
 pub fn bars() -> Result<Vec<Answer>, Error> {
     let closed = Bar { length: 2.0, axial_stiffness: 100.0, gap: 0.03 };
     let end = ("bar, end force", json!({"force": {"at": [2], "value": [4]}}), closed.reaction_to_end_force(4.0));
@@ -28,7 +28,7 @@ pub fn bars() -> Result<Vec<Answer>, Error> {
     [end, along].into_iter().map(bar).collect()
 }
 
-/// A string of 2000 and a membrane of 800 linear elements on flat obstacles.
+/// A string of 2000 linear elements and a membrane of 800, each on a flat obstacle.
 pub fn obstacle_problems() -> Result<Vec<Answer>, Error> {
     let (string, membrane) = (ObstacleString { load: 1.0, gap: 0.08 }, DiscMembrane { load: 8.0, gap: 0.25 });
     let answer = |case: &str, cells, problem: &dyn Fn(usize) -> Result<ContactProblem, Error>, exact| {
@@ -45,7 +45,7 @@ pub fn obstacle_problems() -> Result<Vec<Answer>, Error> {
     ])
 }
 
-/// -u'' = -q on (0, 1), fixed ends.
+/// The string: -u'' = -q on (0, 1), fixed at both ends.
 fn string_problem(string: &ObstacleString, cells: usize) -> Result<ContactProblem, Error> {
     let (n, h) = (cells - 1, 1.0 / cells as f64);
     let mut stiffness: Vec<_> = (0..n).map(|i| (i, i, 2.0 / h)).collect();
@@ -53,7 +53,7 @@ fn string_problem(string: &ObstacleString, cells: usize) -> Result<ContactProble
     pushed(&stiffness, vec![-string.load * h; n], string.gap)
 }
 
-/// -(r u')' = -q r on (0, 1), fixed at r = 1, times the full circle.
+/// The membrane: -(r u')' = -q r on (0, 1), fixed at r = 1, multiplied by 2 pi.
 fn membrane_problem(membrane: &DiscMembrane, cells: usize) -> Result<ContactProblem, Error> {
     let h = 1.0 / cells as f64;
     let (mut stiffness, mut load) = (Vec::new(), vec![0.0; cells]);
@@ -71,7 +71,7 @@ fn membrane_problem(membrane: &DiscMembrane, cells: usize) -> Result<ContactProb
     pushed(&stiffness, load, membrane.gap)
 }
 
-/// K from entries of its lower triangle, and a row -u <= gap for every dof.
+/// Makes a problem from entries of the lower triangle of K, with a row -u <= gap for every dof.
 fn pushed(stiffness: &[(usize, usize, f64)], load: Vec<f64>, gap: f64) -> Result<ContactProblem, Error> {
     let n = load.len();
     let rows: Vec<_> = (0..n).map(|i| (i, i, -1.0)).collect();
@@ -79,7 +79,7 @@ fn pushed(stiffness: &[(usize, usize, f64)], load: Vec<f64>, gap: f64) -> Result
     ContactProblem::new(stiffness, load, SparseMatrix::from_triplets(n, n, &rows)?, vec![gap; n])
 }
 
-/// The indentation at three gaps against the stored answers of cvxpy, Clarabel and OSQP.
+/// Compares the indentation at three gaps with the stored answers of cvxpy, Clarabel and OSQP.
 pub fn stored_answers() -> Result<Vec<Answer>, Box<dyn std::error::Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let stored: Value = serde_json::from_str(&std::fs::read_to_string(root.join("reference/results.json"))?)?;

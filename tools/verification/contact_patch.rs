@@ -16,7 +16,7 @@ const STRESS: Formulation = Formulation::PlaneStress { thickness: 0.5 };
 const REVOLVED: Formulation = Formulation::Axisymmetric;
 const SPACE: Formulation = Formulation::Space;
 
-/// Every element in every formulation that it serves.
+/// Every element in every formulation that it supports.
 pub const VARIANTS: [(ElementKind, Formulation, Integration); 19] = {
     use Integration::{MeanDilatation, Standard};
     [
@@ -42,7 +42,8 @@ pub const VARIANTS: [(ElementKind, Formulation, Integration); 19] = {
     ]
 };
 
-/// Relative to the exact values: of the pressure at every node, the displacement of every node, the stress everywhere.
+/// Largest errors, relative to the exact values, of the pressure and the displacement at all nodes and of the stress
+/// everywhere.
 pub struct PatchErrors {
     pub unknowns: usize,
     pub pressure: f64,
@@ -56,7 +57,7 @@ impl PatchErrors {
     }
 }
 
-/// A block of uneven cells whose inner nodes are moved.
+/// A block of cells of different sizes whose inner nodes are moved.
 fn distorted(kind: ElementKind) -> Result<Mesh, Error> {
     let lines = |size: f64, steps: &[f64]| steps.iter().map(|step| step * size).collect::<Vec<f64>>();
     let (x, y) = (lines(1.0, &[0.0, 0.2, 0.45, 0.7, 1.0]), lines(0.8, &[0.0, 0.3, 0.6, 1.0]));
@@ -64,7 +65,7 @@ fn distorted(kind: ElementKind) -> Result<Mesh, Error> {
         2 => rectangle(&x, &y, kind)?,
         _ => cuboid(&x, &y, &lines(0.6, &[0.0, 0.4, 0.7, 1.0]), kind)?,
     };
-    // In space mid-sides move for themselves, so that edges are curved.
+    // In space the midside nodes move independently, so that edges are curved.
     Ok(distort(
         &regular,
         match (kind.dimension(), kind.is_quadratic()) {
@@ -75,7 +76,7 @@ fn distorted(kind: ElementKind) -> Result<Mesh, Error> {
     ))
 }
 
-/// The largest difference from the normal stresses `exact`, without shear.
+/// Returns the largest difference from the normal stresses `exact` and zero shear stresses.
 fn stress_error(stresses: &StressField, exact: [f64; 3]) -> f64 {
     let mut worst: f64 = 0.0;
     for found in stresses.elements.iter().chain(&stresses.nodes) {
@@ -87,7 +88,8 @@ fn stress_error(stresses: &StressField, exact: [f64; 3]) -> f64 {
     worst
 }
 
-/// Solves the patch test: pressure 300 above, guided at the left (and in front), free elsewhere.
+/// Solves the patch test: a pressure of 300 acts on the top; rollers guide the left side (and in space the front); all
+/// other sides are free.
 pub fn contact_patch(
     kind: ElementKind,
     formulation: Formulation,
@@ -117,7 +119,7 @@ pub fn contact_patch(
     let problem = ContactProblem::new(stiffness(&body, &dofs)?, free_load(&body, &dofs, &load)?, contact, gap)?;
     let solution = solve_qp(&problem)?;
 
-    // Plane strain stiffens: nothing moves across the plane.
+    // Plane strain is stiffer, because the strain across the plane is zero.
     let confined = matches!(formulation, Formulation::PlaneStrain { .. });
     let [along, across] = if confined { [1.0 - nu * nu, nu * (1.0 + nu)] } else { [1.0, nu] };
     let nodal = dofs.expand(&solution.displacement)?;
@@ -130,7 +132,7 @@ pub fn contact_patch(
     }
     let total: f64 = areas.iter().map(|(_, area)| area).sum();
     let forces = areas.iter().zip(&solution.multiplier);
-    // The ends of quadratic edges on an axis have no area: forces are compared, relative to the mean one.
+    // The end of a quadratic edge on the axis has no area, so that forces are compared, relative to the mean force.
     let off = forces.map(|((_, area), lambda)| (lambda + pressure * area).abs()).fold(0.0, f64::max);
     let mut exact = [0.0, 0.0, if confined { -nu * pressure } else { 0.0 }];
     exact[down] = -pressure;

@@ -1,8 +1,9 @@
-//! Prints the tables of what is verified: answers against exact values, and errors of manufactured blocks with their rates.
+//! Prints the tables of the verification: answers compared with exact values, and errors of manufactured blocks with
+//! their rates.
 //!
-//! `cargo run --release --example verification [-- [--short] [--out DIR]]`; a folder gets the tables as Markdown and CSV, and
-//! plots of the errors over the cell size. The short form leaves out fine meshes: it says that the command runs, while the
-//! tests hold the same answers to tolerances.
+//! `cargo run --release --example verification [-- [--short] [--out DIR]]`; with a folder, the tables as Markdown and
+//! CSV and plots of the errors over the cell size are written into it. The short form leaves out fine meshes and only
+//! shows that the command runs; the tests compare the same answers with tolerances.
 
 mod answer;
 mod blocks;
@@ -28,7 +29,7 @@ use signorini::Error;
 use signorini::fem::Integration;
 use signorini::output::{write_files, write_picture};
 
-/// Cells along the sides of the manufactured blocks.
+/// Numbers of cells along a side of the manufactured blocks.
 const CELLS: [usize; 5] = [8, 16, 32, 64, 128];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -77,7 +78,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// A row for every element and formulation, with the worst of its errors.
+/// Returns one row for every element and formulation, with its largest error.
 fn patches() -> Result<Vec<Answer>, Error> {
     let row = |(kind, formulation, integration)| {
         let clock = Instant::now();

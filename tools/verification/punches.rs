@@ -1,7 +1,7 @@
 //! Rigid punches on a large block, in the plane and about an axis.
 //!
-//! The block reaches 500 contact radii, 0.1, in each direction. In the plane pressures are compared at the force that
-//! was found, because the approach depends on the body.
+//! The block extends 500 contact radii (of 0.1) in each direction. In the plane, pressures are compared for the
+//! computed force, because the approach depends on the size of the body.
 
 use crate::exact_solutions::{Cone, FlatDisc, FlatStrip, LineContact, PointContact, Wedge};
 use serde_json::{Value, json};
@@ -9,15 +9,15 @@ use signorini::Error;
 
 use super::answer::{Answer, Solved};
 
-/// E = 1.
+/// Poisson's ratio; Young's modulus is 1.
 const POISSON: f64 = 0.3;
 const MODULUS: f64 = 1.0 / (1.0 - POISSON * POISSON);
 
-/// The size of the block, and the half width of the flat punches.
+/// Size of the block, and half width of the flat punches.
 const SIZE: f64 = 50.0;
 const HALF_WIDTH: f64 = 0.1;
 
-/// Cells of one size over 0.15, around the contact, then growing to the far sides.
+/// Cells of equal size up to 0.15, around the contact, which grow from there to the far sides.
 fn even() -> Value {
     json!({"rectangle": {
         "x": {"points": [0, 0.15, SIZE], "divisions": [30, 24], "ratios": [1, 2000]},
@@ -25,7 +25,8 @@ fn even() -> Value {
         "element": "q8"}})
 }
 
-/// Cells that shrink towards the edge of a flat punch, where the pressure is infinite, and towards the surface.
+/// Cells that become smaller towards the surface and towards the edge of a flat punch, at which the pressure is
+/// infinite.
 fn graded() -> Value {
     json!({"rectangle": {
         "x": {"points": [0, HALF_WIDTH, 0.2, SIZE], "divisions": [50, 30, 50], "ratios": [0.01, 100, 1000]},
@@ -44,7 +45,7 @@ fn pressed(state: &str, body: &Value, shape: &Value, approach: f64) -> Result<So
     }))
 }
 
-/// The pressure at the node of a contact row nearest to `place` against the exact one there.
+/// Compares the pressure at the contact node nearest to `place` with the exact pressure there.
 fn pressure(solved: &Solved, case: &str, axis: &str, place: f64, exact: impl Fn(f64) -> f64) -> Answer {
     let [at, ours] = solved.pressure_near(place);
     solved.answer(case, format!("pressure at {axis} = {at:.2}"), ours, exact(at))
@@ -54,11 +55,11 @@ pub fn punches() -> Result<Vec<Answer>, Error> {
     let (even, graded) = (even(), graded());
     let parabola = json!({"parabola": {"apex": [0, 0], "radius": 1}});
     let wedge = json!({"wedge": {"apex": [0, 0], "slope": 0.1}});
-    // Flat over the half width, out of reach from the next node on.
+    // Flat over the half width; beyond it the obstacle is out of reach.
     let flat = json!({"table": {"points": [[0, 0], [HALF_WIDTH, 0], [HALF_WIDTH + 1e-9, 1], [SIZE, 1]]}});
     let mut answers = Vec::new();
 
-    // The plane model is one half of the body.
+    // The plane model is one half of the symmetric body.
     let (case, solved) = ("cylinder on a block", pressed("plane-strain", &even, &parabola, 0.02)?);
     let (closed, force) = (LineContact { modulus: MODULUS, radius: 1.0 }, 2.0 * solved.force());
     answers.push(pressure(&solved, case, "x", 0.0, |x| closed.pressure(force, x)));

@@ -1,4 +1,5 @@
-//! Elastic half cylinders and half balls on a rigid plane, against Hertz; the ball about its axis and in space.
+//! Elastic half cylinders and half balls on a rigid plane, compared with Hertz; the balls are axisymmetric and in
+//! space.
 
 use crate::exact_solutions::{LineContact, PointContact};
 use serde_json::{Value, json};
@@ -6,17 +7,17 @@ use signorini::Error;
 
 use super::answer::{Answer, Solved};
 
-/// E = 1, nu = 0.3, radius 1.
+/// Plane strain modulus E / (1 - nu^2) for E = 1 and nu = 0.3; the radius is 1.
 const MODULUS: f64 = 1.0 / 0.91;
 
-/// How far the cut of the half ball moves: the contact has the radius sqrt(delta) = 0.005. Hertz's sphere is a half
-/// space; the force of a half ball of this size under this contact is 0.17 % above it.
+/// Displacement delta of the cut face of the half ball; the contact radius is sqrt(delta) = 0.005. Hertz treats the
+/// sphere as a half space; for this contact radius, the force of a half ball is 0.17 % larger.
 const APPROACH: f64 = 2.5e-5;
 
-/// A half cylinder of unit radius whose cut moves rigidly by 0.01 onto a plane, with quadratic elements.
+/// A half cylinder of unit radius, with quadratic elements, whose cut face moves rigidly by 0.01 towards a plane.
 pub fn half_cylinders() -> Result<Vec<Answer>, Error> {
     let line = LineContact { modulus: MODULUS, radius: 1.0 };
-    // The force whose approach is 0.01; section and force are those of the full width.
+    // The exact force for an approach of 0.01; section and force are those of the full width.
     let force = 4.983922e-3;
     let mut answers = Vec::new();
     for element in ["t6", "q8"] {
@@ -38,13 +39,13 @@ pub fn half_cylinder(element: &str) -> Value {
     })
 }
 
-/// A half ball whose cut moves rigidly onto a plane: its section about the axis, and the given quarter of it in space.
+/// A half ball whose cut face moves rigidly towards a plane: its axisymmetric section, and the given quarter in space.
 pub fn half_balls(quarter: &Value) -> Result<Vec<Answer>, Error> {
     let point = PointContact { modulus: MODULUS, radius: 1.0 };
     let force = point.force(APPROACH);
     let solved = Solved::of(&half_ball_about_the_axis())?;
     let case = "half ball on a plane, about the axis";
-    // The node on the axis shows the pressure of the one next to it, half a cell away.
+    // The node on the axis has the pressure of its neighbour, half a cell away, so that another node is compared.
     let [r, ours] = solved.pressure_near(0.12 * APPROACH.sqrt());
     let mut answers = vec![
         solved.answer(case, "force", solved.force(), force),
@@ -68,7 +69,7 @@ pub fn half_ball_about_the_axis() -> Value {
     })
 }
 
-/// A quarter of the half ball, with a quarter of its force.
+/// A quarter of the half ball, which carries a quarter of its force.
 pub fn quarter_ball(divisions: usize, growth: f64) -> Value {
     json!({
         "model": "space",
@@ -82,7 +83,7 @@ pub fn quarter_ball(divisions: usize, growth: f64) -> Value {
     })
 }
 
-/// The same at nu = 0.4999, of linear elements with mean dilatation: about the axis, and in space.
+/// The same half balls at nu = 0.4999, with linear elements and mean dilatation: axisymmetric, and in space.
 pub fn nearly_incompressible_half_balls() -> Result<Vec<Answer>, Error> {
     let nu = 0.4999;
     let point = PointContact { modulus: 1.0 / (1.0 - nu * nu), radius: 1.0 };

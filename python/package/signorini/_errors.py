@@ -1,4 +1,4 @@
-"""The exceptions: what is wrong, where, which value, what is allowed."""
+"""The exceptions. Each message says what is wrong, at which place, which value was found, and what is allowed."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ if TYPE_CHECKING:
 
 
 class SignoriniError(Exception):
-    """Everything that can go wrong between arrays or a file and a certified answer."""
+    """Base class of all exceptions of this package except `Interrupted`."""
 
     code: str = "error"
-    """The name of the kind of error, the same in every version and in the reports of the program."""
+    """Short name of the kind of error. It is the same in every version and in the reports of the program."""
 
 
 class BadInput(SignoriniError, ValueError):
@@ -25,7 +25,7 @@ class BadInput(SignoriniError, ValueError):
 
 
 class BadType(BadInput, TypeError):
-    """An argument of a wrong kind, as a complex array for a load."""
+    """An argument of a wrong type, for example a complex array as load."""
 
     code = "bad-type"
 
@@ -41,11 +41,11 @@ class SceneError(BadInput):
 
     code = "scene"
     path: str = ""
-    """JSON path of the value, as `obstacles[0].approach`."""
+    """JSON path of the value, for example `obstacles[0].approach`."""
     line: int | None = None
-    """Line in the file, from 1, where there is one."""
+    """Line in the file, counted from 1; None if the scene is not from a file."""
     column: int | None = None
-    """Column in the file, from 1, where there is one."""
+    """Column in the file, counted from 1; None if the scene is not from a file."""
 
 
 class FileError(SignoriniError, OSError):
@@ -55,15 +55,15 @@ class FileError(SignoriniError, OSError):
 
 
 class Infeasible(SignoriniError):
-    """Contact rows that no displacement satisfies together."""
+    """Contact rows that no displacement satisfies at the same time."""
 
     code = "infeasible"
     rows: NDArray[np.int64]
-    """The rows that contradict each other, from 0."""
+    """Indices of the rows that contradict each other, counted from 0."""
     weights: NDArray[np.float64]
-    """Farkas' weights of these rows, >= 0, under which they cancel."""
+    """Farkas weights of these rows, >= 0: the weighted sum of the rows is zero, that of their gaps is negative."""
     overlap: float = 0.0
-    """By how much they overlap, in length, for the largest weight 1."""
+    """Overlap of the rows in the unit of length, with the largest weight scaled to 1."""
 
 
 class Unbounded(SignoriniError):
@@ -73,17 +73,17 @@ class Unbounded(SignoriniError):
     motion: str = ""
     """The motion in words."""
     direction: NDArray[np.float64]
-    """The escape d, one entry per dof: K d = 0, B d <= 0, f'd > 0."""
+    """The motion d without end, length n: K d = 0, B d <= 0, f'd > 0."""
 
 
 class UnderHeld(SignoriniError):
-    """A motion that nothing resists and no load drives: the answer is not unique."""
+    """An insufficiently supported body: nothing resists one of its motions, and no load drives it. The answer is not unique."""
 
     code = "under-held"
     motion: str = ""
     """The motion in words."""
     direction: NDArray[np.float64]
-    """The free motion, one entry per dof."""
+    """The free motion, length n."""
 
 
 class NotCertified(SignoriniError):
@@ -93,48 +93,48 @@ class NotCertified(SignoriniError):
     solution: Solution
     """The best answer, with its certificate."""
     condition: str = ""
-    """The worst condition."""
+    """Name of the condition with the largest residual."""
     value: float = 0.0
-    """Its value."""
+    """Relative residual of this condition."""
     tolerance: float = 0.0
-    """What was asked for."""
+    """The tolerance that was requested."""
 
 
 class OutOfTime(SignoriniError, TimeoutError):
-    """A step that cannot be interrupted would take longer than there is time."""
+    """A step that cannot be interrupted is estimated to take longer than the remaining time."""
 
     code = "out-of-time"
     needed: float = 0.0
-    """Seconds that it takes, estimated."""
+    """Estimated duration of the step, in seconds."""
     time: float = 0.0
-    """Seconds that are left."""
+    """Remaining time, in seconds."""
 
 
 class TooLarge(SignoriniError, MemoryError):
-    """A problem that needs more memory than it may take."""
+    """A problem that needs more memory than is available or allowed."""
 
     code = "too-large"
     bytes: float = 0.0
-    """Memory that it takes, estimated, in bytes."""
+    """Estimated memory that the problem needs, in bytes."""
     allowed: float = 0.0
-    """Memory that it may take, in bytes."""
+    """Memory that may be used, in bytes."""
 
 
 class NumericalError(SignoriniError, ArithmeticError):
-    """A step that failed for a reason of its own, as numbers beyond the range of doubles."""
+    """A computation that failed numerically, for example by numbers beyond the range of doubles."""
 
     code = "numerical"
 
 
 class InternalError(SignoriniError, RuntimeError):
-    """A fault of the library itself: please report it."""
+    """A fault of the library itself. Please report it."""
 
     code = "internal"
 
 
 class Interrupted(KeyboardInterrupt):
-    """The work was interrupted. As every KeyboardInterrupt it is no `Exception`, so that nothing swallows it by chance."""
+    """The work was interrupted. It is not an `Exception`, so that `except Exception` does not catch it by accident."""
 
     code: str = "interrupted"
     solution: Any = None
-    """The best answer until then, with its certificate; None where there was none yet."""
+    """The best answer so far, with its certificate; None if there was no answer yet."""

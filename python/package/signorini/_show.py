@@ -1,4 +1,4 @@
-"""What a notebook shows: tables in HTML, and pictures by matplotlib and pyvista, both optional."""
+"""Display in notebooks: tables in HTML, and pictures by matplotlib and pyvista, both of which are optional."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ if TYPE_CHECKING:
     from signorini._signorini import SceneSolution, Solution
     from signorini._studies import Sweep, Tradeoff
 
-# Nodes on the rim of each element in order, and the numbers of the cells of VTK.
+# The nodes around each plane element in order, and the numbers of the cell types in VTK.
 _RIMS = {"T3": [0, 1, 2], "T6": [0, 3, 1, 4, 2, 5], "Q4": [0, 1, 2, 3], "Q8": [0, 4, 1, 5, 2, 6, 3, 7]}
 _VTK = {
     "Line2": 3, "Line3": 21, "T3": 5, "T6": 22, "Q4": 9, "Q8": 23, "Tet4": 10, "Tet10": 24, "Hex8": 12, "Hex20": 25,
 }  # fmt: skip
 
-# An error of zero is drawn here, on a logarithmic axis.
+# An error of zero is drawn at this value, because the axis is logarithmic.
 _LEAST_ERROR = 1e-16
 
 
 def scene_text(scene: dict[str, Any]) -> str:
-    """The JSON of a scene whose numbers may be those of numpy."""
+    """Returns the JSON text of a scene, whose numbers may be numbers or arrays of numpy."""
 
     def plain(value: Any) -> Any:
         if hasattr(value, "tolist"):
@@ -35,7 +35,7 @@ def scene_text(scene: dict[str, Any]) -> str:
     except (TypeError, ValueError, RecursionError) as error:
         from signorini._errors import BadType
 
-        raise BadType(f"the dictionary makes no JSON: {error}") from None
+        raise BadType(f"the dictionary cannot be written as JSON: {error}") from None
 
 
 def _table(title: str, lines: list[tuple[str, str]]) -> str:
@@ -61,12 +61,12 @@ def _lines(solution: Solution) -> list[tuple[str, str]]:
 
 
 def solution_html(solution: Solution) -> str:
-    """The answer as a table."""
+    """Returns the solution as a table in HTML."""
     return _table("Answer to a contact problem", _lines(solution))
 
 
 def scene_html(solution: SceneSolution) -> str:
-    """The answer to a scene as a table."""
+    """Returns the solution of a scene as a table in HTML."""
     lines = _lines(solution)
     if len(solution.pressure):
         lines.insert(3, ("peak pressure", f"{solution.pressure.max():.6e}"))
@@ -84,7 +84,7 @@ def _axes(ax: Any) -> Any:
 
 
 def solution_plot(solution: Solution, ax: Any = None) -> Any:
-    """Contact force of each row; returns the axes."""
+    """Draws the contact force of each row and returns the axes."""
     ax = _axes(ax)
     forces = 0.0 - solution.multiplier
     closed = np.zeros(len(forces), dtype=bool)
@@ -100,7 +100,7 @@ def solution_plot(solution: Solution, ax: Any = None) -> Any:
 
 
 def scene_plot(solution: SceneSolution, ax: Any = None) -> Any:
-    """The moved mesh in the plane with the von Mises stress; in space and on a line the contact forces of the rows."""
+    """Draws a deformed plane mesh with its von Mises stress, or the contact forces of a body in space or a bar; returns the axes."""
     scene = solution.scene
     rim = _RIMS.get(scene.element_kind)
     if rim is None:
@@ -130,7 +130,7 @@ def scene_plot(solution: SceneSolution, ax: Any = None) -> Any:
 
 
 def scene_to_pyvista(solution: SceneSolution) -> Any:
-    """An unstructured grid with displacement, stress and von Mises stress at the nodes."""
+    """Returns an unstructured grid of pyvista with displacement, stress and von Mises stress at the nodes."""
     try:
         import pyvista
     except ImportError as missing:
@@ -140,7 +140,7 @@ def scene_to_pyvista(solution: SceneSolution) -> Any:
     def in_space(vectors: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
         return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))
 
-    # The nodes of an element have the order of VTK.
+    # The nodes of an element are already in the order of VTK.
     cells = {_VTK[scene.element_kind]: np.asarray(scene.elements)}
     grid = pyvista.UnstructuredGrid(cells, in_space(scene.nodes))
     grid.point_data["displacement"] = in_space(solution.displacement)
@@ -150,7 +150,7 @@ def scene_to_pyvista(solution: SceneSolution) -> Any:
 
 
 def tradeoff_plot(tradeoff: Tradeoff, ax: Any = None) -> Any:
-    """Error over seconds: the total error where there are meshes, otherwise that of the algebra."""
+    """Draws error over seconds and returns the axes: the total error of a scene, the algebraic error of a problem."""
     ax = _axes(ax)
     has_total = any(point.get("total_error") is not None for point in tradeoff.points)
     name = "total_error" if has_total else "energy_error"
@@ -176,7 +176,11 @@ def tradeoff_plot(tradeoff: Tradeoff, ax: Any = None) -> Any:
 
 
 def sweep_plot(sweep: Sweep, ax: Any = None) -> Any:
-    """Contact force over the gap of a scene, the way of a problem or the number of the gap; travel over force."""
+    """Draws the results of a sweep and returns the axes.
+
+    A sweep over forces shows the travel of the obstacle over the force. All other sweeps show the contact force: over the gap of a
+    scene, over the path parameter t of a problem, or over the number of the gap.
+    """
     ax = _axes(ax)
     is_scene = bool(sweep.gaps) and np.ndim(sweep.gaps[0]) == 0
     units = sweep.solutions[0].scene.units if is_scene else {"length": "", "force": ""}
@@ -199,5 +203,5 @@ def sweep_plot(sweep: Sweep, ax: Any = None) -> Any:
 
 
 def _travel(solution: SceneSolution) -> float:
-    """How far the pressed obstacle has moved."""
+    """Returns the travel of the obstacle on which the force acts, in the unit of length."""
     return next(float(of["travel"]) for of in solution.resultants if "travel" in of)

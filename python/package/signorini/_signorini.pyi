@@ -1,4 +1,4 @@
-"""The compiled part: arrays go through as they are, work runs without the interpreter and answers Ctrl-C."""
+"""Types of the compiled module: it reads arrays in place, releases the interpreter while it works, and answers Ctrl-C."""
 
 from os import PathLike
 from typing import Any, TypeAlias, final
@@ -34,19 +34,25 @@ _Start: TypeAlias = Solution | ArrayLike
 
 @final
 class Problem:
-    """Frictionless unilateral contact as a convex quadratic program, checked once.
+    """Frictionless unilateral contact as a convex quadratic program. The arrays are checked once, here.
 
     minimise 1/2 u'K u - f'u  subject to  B u - g <= 0
 
-    K (n x n): the stiffness after supports with both triangles, symmetric (to rounding, 1e-10 of its diagonal; the lower triangle is
-    taken). A sparse matrix of scipy, an array of numpy, or what has `to_scipy()` as matrices of dolfinx. f (n): the load. B (m x n):
-    the contact rows, positive towards the obstacle. g (m): the gaps; inf, 1e20 or 1e30 where there is no obstacle. Without B and g
-    nothing is in the way.
+    K: stiffness after supports, n x n, symmetric to rounding (1e-10 of its diagonal). Both triangles must be given; the values are
+    taken from the lower one. K is a sparse matrix of scipy, an array of numpy, or an object with `to_scipy()`, such as a matrix of
+    dolfinx.
+    f: external load, length n, in the unit of force, positive along the axes.
+    B: contact rows, m x n, in the same forms as K, positive towards the obstacle.
+    g: initial gaps, length m, in the unit of length. A negative gap means that the obstacle starts inside the body; inf, 1e20 or
+    1e30 means that the row has no obstacle.
+    If B and g are left out, the problem has no contact rows.
 
-    near_null (n x k): displacements that cost next to no energy, a column each; multigrid needs them for bodies in space. Where all
-    dofs are free and those of a node follow each other, `coordinates` (a row for each node) gives the rigid-body modes instead.
+    near_null: displacements of almost zero energy, n x k, one per column. Multigrid needs them for bodies in space.
+    coordinates: coordinates of the nodes, one row per node; the rigid-body modes are computed from them. They can replace
+    `near_null` if all dofs are free and the dofs of each node follow each other.
 
-    Raises `BadInput` for arrays that do not fit, `NotConvex` for a negative diagonal entry of K.
+    Raises `BadInput` if the arrays do not fit together, `BadType` for an array of a wrong type, and `NotConvex` if K has a negative
+    diagonal entry.
     """
 
     def __new__(
@@ -67,131 +73,131 @@ class Problem:
         """Number of contact rows m."""
     @property
     def K(self) -> Any:
-        """The stiffness (n x n), both triangles, a `csc_array` of scipy."""
+        """Stiffness, n x n, with both triangles, as a `csc_array` of scipy."""
     @property
     def f(self) -> NDArray[np.float64]:
-        """The load, length n, read-only."""
+        """External load, length n, read-only."""
     @property
     def B(self) -> Any:
-        """The contact rows (m x n), a `csc_array` of scipy."""
+        """Contact rows, m x n, as a `csc_array` of scipy."""
     @property
     def g(self) -> NDArray[np.float64]:
-        """The gaps, length m, read-only."""
+        """Initial gaps, length m, read-only."""
     @property
     def near_null(self) -> NDArray[np.float64] | None:
-        """The near-null space (n x k), where one was given."""
+        """Displacements of almost zero energy, n x k, one per column; None if none were given."""
     def replace(self, *, f: ArrayLike | None = None, g: ArrayLike | None = None) -> Problem:
-        """The same body and rows under another load or with other gaps; the matrices are shared."""
+        """Returns a problem with the load f (length n), the gaps g (length m), or both replaced; the matrices are shared."""
     def __reduce__(self) -> tuple[Any, ...]:
-        """A problem can be sent to another process."""
+        """Supports pickle, so that a problem can be sent to another process."""
 
 @disjoint_base
 class Solution:
-    """The answer to a contact problem. Its arrays are read-only."""
+    """The solution of a contact problem. Its arrays are read-only."""
 
     @property
     def u(self) -> NDArray[np.float64]:
-        """Displacement, length n, in the unit of length of the problem."""
+        """Displacements, length n, in the order of the unknowns of K and in the problem's unit of length."""
     @property
     def multiplier(self) -> NDArray[np.float64]:
-        """Contact multiplier, length m, in the unit of force, <= 0 in compression: the force on the body along its row."""
+        """Contact multipliers, length m, in the unit of force: the force on the body along each row, <= 0 in compression."""
     @property
     def contact_set(self) -> NDArray[np.int64]:
-        """The closed rows, from 0 and increasing."""
+        """Indices of the closed rows, counted from 0, in increasing order."""
     @property
     def contact_force(self) -> float:
-        """Total contact force `-sum(multiplier)`, >= 0."""
+        """Total contact force `-sum(multiplier)`, >= 0, in the unit of force."""
     @property
     def method(self) -> str:
-        """`qp`, `active-set`, `penalty` or `mprgp`, with a suffix where a variant ran."""
+        """Name of the method: `qp`, `active-set`, `penalty` or `mprgp`, with a suffix for a variant."""
     @property
     def iterations(self) -> int:
-        """Iterations of the method: linear solves of a loop, interior-point steps, or cycles of multigrid."""
+        """Number of iterations of the method: linear solves, interior-point steps, or multigrid cycles."""
     @property
     def certificate(self) -> Certificate:
-        """How far the answer can be trusted, recomputed from the problem."""
+        """The residuals of all conditions and the error bound, recomputed from the original problem."""
     @property
     def energy_error_bound(self) -> float:
-        """Upper bound on the relative error of u in the energy norm; inf where none is known."""
+        """Upper bound on the relative error of u in the energy norm; inf if none is known."""
     @property
     def proven(self) -> Proven | None:
-        """The rows whose contact is beyond doubt; None where proofs were not asked for or there is no bound."""
+        """Rows that are proven open or closed; None if `proof=False` was given or no error bound is known."""
     @property
     def why(self) -> str:
-        """Why it was found in this way, and what else was tried, in words."""
+        """Explanation in words: why this method was chosen, and which methods were tried before it."""
     @property
     def seconds(self) -> float:
-        """Wall-clock seconds, all in all."""
+        """Wall-clock time of the whole solve, in seconds."""
     @property
     def seconds_of(self) -> dict[str, float]:
-        """Seconds of `factor`, `certificate` and `proof`, which are parts of `solve`."""
+        """Seconds of the steps `factor`, `certificate` and `proof`, and of the whole `solve`, which contains them."""
     @property
     def history(self) -> list[tuple[NDArray[np.int64], float]]:
-        """The contact sets on the way, each with its penalty in multiples of the local stiffness (0 without one)."""
+        """The closed rows in each iteration, with the penalty in multiples of the local stiffness (0 without a penalty)."""
     def to_dict(self) -> dict[str, Any]:
-        """The numbers without the vectors, with the names of the reports of the program."""
+        """Returns all scalar results, under the names that the program uses in its reports; the vectors are left out."""
     def plot(self, ax: Any = None) -> Any:
-        """Draws the contact force of each row; returns the axes. Needs matplotlib."""
+        """Draws the contact force of each row and returns the axes. Needs matplotlib."""
     def _repr_html_(self) -> str: ...
 
 @final
 class Certificate:
-    """How far an answer is from the conditions that define the solution; all numbers are relative."""
+    """Relative residuals of the conditions that define the solution, and a bound on the error."""
 
     @property
     def stationarity(self) -> float:
-        """Imbalance of forces."""
+        """Relative residual of equilibrium, K u - f - B' multiplier = 0."""
     @property
     def penetration(self) -> float:
-        """Penetration into the obstacle."""
+        """Relative penetration into the obstacle, a violation of B u - g <= 0."""
     @property
     def adhesion(self) -> float:
-        """Multipliers of the wrong sign: an obstacle that pulls."""
+        """Relative size of the multipliers of the wrong sign: an obstacle would pull on the body."""
     @property
     def complementarity(self) -> float:
-        """Products of force and open distance."""
+        """Relative size of the products of contact force and open distance, which must be zero."""
     @property
     def duality_gap(self) -> float:
-        """Difference of the primal and the dual energy."""
+        """Relative difference of the primal and the dual energy."""
     @property
     def energy_error_bound(self) -> float:
-        """Upper bound on the error of u in the energy norm; inf where none is known."""
+        """Upper bound on the relative error of u in the energy norm; inf if none is known."""
     @property
     def part_error_bound(self) -> float:
-        """The largest such bound over the whole and each part that nothing couples."""
+        """Largest error bound over the whole problem and over each of its uncoupled parts."""
     @property
     def bound_is_measured(self) -> bool:
-        """Whether the bound rests on a measured eigenvalue, because K was not factorised."""
+        """`True` if the bound uses a measured eigenvalue, because K was not factorised."""
     @property
     def worst(self) -> tuple[str, float]:
-        """The condition that is worst, and its value."""
+        """Name and value of the condition with the largest residual."""
     def meets(self, tolerance: float) -> bool:
-        """Whether all conditions and the bound hold to `tolerance`, or rounding explains what is left."""
+        """Returns `True` if all conditions hold to `tolerance` and the error bound is at most `tolerance` or explained by rounding."""
     def conditions_hold(self, tolerance: float) -> bool:
-        """Whether all conditions hold to `tolerance`, whatever the bound."""
+        """Returns `True` if all conditions hold to `tolerance`. The error bound is not compared."""
     def to_dict(self) -> dict[str, Any]:
-        """The numbers, with the names of the reports of the program."""
+        """Returns all numbers, under the names that the program uses in its reports."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
 
 @final
 class Proven:
-    """Rows that an answer proves to be open or closed in the exact answer."""
+    """Rows that the error bound proves to be open or closed in the exact solution."""
 
     @property
     def open(self) -> NDArray[np.int64]:
-        """Rows that are open beyond doubt."""
+        """Indices of the rows that are proven open, counted from 0."""
     @property
     def closed(self) -> NDArray[np.int64]:
-        """Rows that are closed beyond doubt."""
+        """Indices of the rows that are proven closed, counted from 0."""
     @property
     def undecided(self) -> NDArray[np.int64]:
-        """Rows of which neither is proven."""
+        """Indices of the rows that are proven neither open nor closed, counted from 0."""
 
 @final
 class Prepared:
-    """A problem factorised once, for many gaps, loads and starts."""
+    """A problem that is factorised once and then solved for many gaps, loads and starts."""
 
     def solve(
         self,
@@ -201,69 +207,73 @@ class Prepared:
         start: _Start | None = None,
         time: float | None = None,
     ) -> Solution:
-        """Solves with these gaps (length m) or under this load (length n), from what is known of the answer beforehand.
+        """Solves the problem with the gaps g (length m) and the load f (length n); both default to those of the problem.
 
-        Raises what `solve` raises.
+        start: a solution nearby, an array of closed rows (integers), or a displacement (length n). It changes the number of
+        iterations, not the answer. time: limit in seconds.
+
+        Raises the exceptions of `signorini.solve`.
         """
     def path(self, g0: ArrayLike, g1: ArrayLike) -> Path:
-        """The exact path of the answer while the gaps move from g0 to g1 on a straight line.
+        """Computes the exact solution for all gaps on the straight line from g0 to g1 (length m each).
 
-        Raises `BadInput` if the problem is not condensed or only its rows hold it.
+        Raises `BadInput` if the problem is not condensed, or if the body is supported by its contact rows only.
         """
     @property
     def dofs(self) -> int:
         """Number of unknowns of the problem."""
     @property
     def condensed_dofs(self) -> int:
-        """Number of unknowns that the methods work on."""
+        """Number of unknowns after condensation, on which the methods work."""
     @property
     def factor_entries(self) -> int:
-        """Number of values of the factor; 0 without one."""
+        """Number of values in the factor of K; 0 if K was not factorised."""
     @property
     def seconds(self) -> float:
-        """Wall-clock seconds of the preparation."""
+        """Wall-clock time of the preparation, in seconds."""
 
 @final
 class Event:
-    """A row that touches or releases on a path."""
+    """A point of a path at which a row closes or opens."""
 
     @property
     def at(self) -> float:
-        """Where on the path, from 0 to 1."""
+        """Parameter t of the event, from 0 to 1."""
     @property
     def row(self) -> int:
-        """Which row, from 0."""
+        """Index of the row, counted from 0."""
     @property
     def touches(self) -> bool:
-        """Whether it touches; otherwise it releases."""
+        """`True` if the row closes, `False` if it opens."""
 
 @final
 class Path:
-    """The answers for all gaps (1 - t) g0 + t g1, t from 0 to 1, as polylines."""
+    """The exact solutions for all gaps (1 - t) g0 + t g1 with t from 0 to 1. They are piecewise linear in t."""
 
     @property
     def events(self) -> list[Event]:
-        """The rows that touch or release on the way, in order."""
+        """All points at which a row closes or opens, in the order of t."""
     @property
     def corners(self) -> NDArray[np.float64]:
-        """The corners of all polylines: the beginning, every event, the end."""
+        """Increasing values of t between which the solution is linear: 0, every event, 1."""
     def gap(self, t: float) -> NDArray[np.float64]:
-        """The gaps at t, length m."""
+        """Returns the gaps at t, length m. Raises `BadInput` for a t outside [0, 1], as all methods of a path do."""
     def multiplier(self, t: float) -> NDArray[np.float64]:
-        """The multipliers at t, length m."""
+        """Returns the multipliers at t, length m, <= 0 in compression."""
     def contact_set(self, t: float) -> NDArray[np.int64]:
-        """The closed rows at t; at an event those of the stretch before it."""
+        """Returns the indices of the closed rows at t; at an event, those just before it."""
     def solution(self, t: float) -> Solution:
-        """The whole answer at t, certified like any other."""
+        """Returns the certified solution at t."""
 
 @final
 class Scene:
     """A contact scene: bodies, supports, loads and obstacles.
 
-    From a JSON file, or from a dictionary with the same names, whose further files start from `folder`. Files outside the folder of
-    the scene are read only if `allow_outside` says so. The model is built when it is first asked for.
+    source: the name of a JSON file, or a dictionary with the same keys. folder: the folder of the files that a dictionary names.
+    allow_outside: `True` lets the scene read files outside its folder. The mesh and the matrices are built at the first access.
 
-    Raises `SceneError` for values that are no scene, with path, line and column; `FileError`.
+    Raises `SceneError`, with JSON path, line and column, for a value that is not allowed, and `FileError` for a file that cannot be
+    read.
     """
 
     def __new__(
@@ -275,28 +285,31 @@ class Scene:
     ) -> Scene: ...
     @property
     def title(self) -> str:
-        """What the scene shows."""
+        """Title of the scene; empty if it has none."""
     @property
     def units(self) -> dict[str, str]:
-        """Names of the units of `length`, `force` and `pressure`; empty where the scene has none."""
+        """Names of the units of `length`, `force` and `pressure`; empty strings if the scene names no units."""
     @property
     def problem(self) -> Problem:
         """The contact problem in the free dofs."""
     @property
     def nodes(self) -> NDArray[np.float64]:
-        """Coordinates of the nodes, one row each."""
+        """Coordinates of the nodes, one row per node, in the unit of length."""
     @property
     def elements(self) -> NDArray[np.int64]:
-        """Nodes of the elements, one row each, in the order of VTK."""
+        """Node numbers of the elements, one row per element, counted from 0, in the order of VTK."""
     @property
     def element_kind(self) -> str:
-        """Name of the elements, as `Q4`."""
+        """Name of the element type, for example `Q4`."""
     @property
     def rows(self) -> dict[str, Any]:
-        """What the contact rows stand for, with an entry for each: `node`, `obstacle`, `normal`, `gap` and `area`."""
+        """Node, obstacle, normal, gap and tributary area of each contact row.
+
+        The keys are `node`, `obstacle`, `normal`, `gap` and `area`; each value is an array with one entry per contact row.
+        """
     @property
     def warnings(self) -> list[str]:
-        """What a reader of the answer should know, in sentences."""
+        """Warnings about the scene, one sentence each."""
     def solve(
         self,
         *,
@@ -311,48 +324,48 @@ class Scene:
         condense: bool = True,
         proof: bool = True,
     ) -> SceneSolution:
-        """Solves the scene; arguments and exceptions as `signorini.solve`."""
+        """Solves the scene. Arguments and exceptions are those of `signorini.solve`."""
     def compare(self) -> Comparison:
-        """Solves the scene by three methods."""
+        """Solves the scene by interior point, active set and penalty, and compares the solutions."""
 
 @final
 class SceneSolution(Solution):
-    """The answer to a scene, with what follows from it. Nodal arrays have a row for each node."""
+    """The solution of a scene, with stresses, pressures and forces. Nodal arrays have one row per node."""
 
     @property
     def scene(self) -> Scene:
-        """The scene."""
+        """The scene that was solved."""
     @property
     def displacement(self) -> NDArray[np.float64]:
-        """Displacement of the nodes, supports included."""
+        """Displacements of all nodes, supported ones included, one row per node, in the unit of length."""
     @property
     def pressure(self) -> NDArray[np.float64]:
-        """Contact pressure of each row, in force per area, >= 0."""
+        """Contact pressure of each row, length m, >= 0, in the unit of pressure."""
     @property
     def remaining_gap(self) -> NDArray[np.float64]:
-        """What is left of the gap of each row, in length."""
+        """Remaining gap of each row after deformation, length m, in the unit of length."""
     @property
     def stress(self) -> NDArray[np.float64]:
-        """Stress at the nodes: xx, yy, zz, xy, yz, zx; tension is positive."""
+        """Stress at the nodes, one row per node: xx, yy, zz, xy, yz, zx; tension is positive."""
     @property
     def element_stress(self) -> NDArray[np.float64]:
-        """Stress at the middle of the elements: xx, yy, zz, xy, yz, zx."""
+        """Stress at the centres of the elements, one row per element: xx, yy, zz, xy, yz, zx; tension is positive."""
     @property
     def von_mises(self) -> NDArray[np.float64]:
-        """Von Mises stress at the nodes."""
+        """Von Mises stress at the nodes, one value per node, >= 0."""
     @property
     def contact_forces(self) -> NDArray[np.float64]:
-        """Contact forces on the nodes."""
+        """Contact forces on the body at the nodes, one row per node, along the axes."""
     @property
     def reactions(self) -> NDArray[np.float64]:
-        """Support reactions on the nodes."""
+        """Support reactions on the body at the nodes, one row per node, along the axes."""
     @property
     def resultants(self) -> list[dict[str, Any]]:
-        """Force, moment and centre of each obstacle, support and load."""
+        """Resultant force, moment and centre of each obstacle, support and load, one dictionary for each."""
     def report(self) -> dict[str, Any]:
-        """The report of the program, as `signorini solve --format json` prints it; the seconds of the assembly are left out."""
+        """Returns the report that `signorini solve --format json` prints; only the seconds of the assembly are left out."""
     def to_pyvista(self) -> Any:
-        """The mesh with displacement and stress, a grid of pyvista."""
+        """Returns the mesh with displacement, stress and von Mises stress as a grid of pyvista. Needs pyvista."""
 
 @final
 class Comparison:
@@ -360,19 +373,19 @@ class Comparison:
 
     @property
     def qp(self) -> Solution:
-        """The answer of the interior point."""
+        """The solution of the interior-point method."""
     @property
     def active_set(self) -> Solution:
-        """The answer of the active set."""
+        """The solution of the active-set method."""
     @property
     def penalty(self) -> Solution:
-        """The answer of the penalty."""
+        """The solution of the penalty method."""
     @property
     def agreement(self) -> dict[str, Any]:
-        """How far the answers are from each other, with the names of the reports of the program."""
+        """Differences between the three solutions, under the names that the program uses in its reports."""
     @property
     def agrees(self) -> bool:
-        """Whether interior point and active set are certified and agree."""
+        """`True` if the solutions of interior point and active set are certified and agree."""
 
 def solve(
     problem: Problem,
@@ -388,20 +401,36 @@ def solve(
     condense: bool = True,
     proof: bool = True,
 ) -> Solution:
-    """Solves a contact problem; what is returned is certified.
+    """Solves a contact problem. The returned solution is certified to `tolerance`.
 
-    method: `auto` (the default), `qp`, `active-set`, `penalty` or `mprgp`. accuracy: a relative error in energy that is good enough, or
-    `exact`. time: seconds after which the best answer so far is taken. start: a solution nearby, an array of closed rows (whole
-    numbers), or a displacement. tolerance: what is certified, 1e-9 by default. memory: bytes that it may take; by default what the
-    machine has available. precision: `auto`, `double` or `mixed`. condense: whether the body may be condensed onto its contact dofs.
-    proof: whether rows are proven open or closed.
+    method: `auto` (the default), `qp`, `active-set`, `penalty` or `mprgp`.
+    accuracy: a sufficient relative error in the energy norm, or `exact`.
+    time: limit in seconds; after it the best solution so far is taken.
+    start: a solution nearby, an array of closed rows (integers), or a displacement (length n).
+    threads: number of threads.
+    tolerance: largest relative residual and error bound of a certified solution, 1e-9 by default.
+    memory: limit in bytes; by default the memory that the machine has available.
+    precision: `auto`, `double` or `mixed`.
+    condense: `False` forbids condensing the body onto its contact dofs.
+    proof: `False` omits the proof of open and closed rows.
 
-    Raises `Infeasible`, `Unbounded`, `UnderHeld`, `NotConvex`; `NotCertified` with the best answer; `OutOfTime`; `TooLarge`;
-    `BadInput` for an option out of its range; `Interrupted` with the best answer after Ctrl-C.
+    Raises
+    `Infeasible` if contact rows contradict each other;
+    `Unbounded` if the load moves the body away without end;
+    `UnderHeld` if the body is insufficiently supported, so that the solution is not unique;
+    `NotConvex` if K has a negative eigenvalue;
+    `NotCertified`, with the best solution, if the tolerance is not reached;
+    `OutOfTime` and `TooLarge` if time or memory do not suffice;
+    `NumericalError` if a computation fails, for example by overflow;
+    `BadInput` for an option out of its range;
+    `Interrupted`, with the best solution so far, after Ctrl-C.
     """
 
 def solve_qp(problem: Problem) -> Solution:
-    """Solves a contact problem as a QP by the interior point, its set settled by the active set, certified to 1e-9."""
+    """Solves a contact problem by an interior-point method, certified to 1e-9; the active-set method makes the contact set exact.
+
+    Raises the exceptions of `solve`.
+    """
 
 def prepare(
     problem: Problem,
@@ -416,13 +445,25 @@ def prepare(
     condense: bool = True,
     proof: bool = True,
 ) -> Prepared:
-    """Factorises a problem once for about this number of gaps, loads or starts; options as in `solve`."""
+    """Factorises a problem once, to solve it for several gaps, loads or starts.
+
+    gaps: the expected number of solves, by which the method is chosen. The other options are those of `solve`.
+
+    Raises `BadInput` for an option out of its range, `Infeasible`, `NotConvex`, `OutOfTime`, `TooLarge`, `NumericalError` and
+    `Interrupted`.
+    """
 
 def verify(problem: Problem, u: ArrayLike, multiplier: ArrayLike) -> Certificate:
-    """The certificate of anybody's answer: displacement u (n) and multiplier (m, <= 0 in compression)."""
+    """Returns the certificate of any displacement u (length n) and multiplier (length m, <= 0 in compression).
+
+    Raises `BadInput` if a length is wrong or a value is not finite.
+    """
 
 def compare(problem: Problem | Scene) -> Comparison:
-    """Solves a problem or a scene by three methods; an answer that is not certified is an answer here."""
+    """Solves a problem or a scene by interior point, active set and penalty, and compares the solutions.
+
+    A solution that is not certified is returned as well; its certificate shows the residuals.
+    """
 
 def _measured(
     problem: Problem | Scene, refinements: int, runs: int, most_full_dofs: int, time: float | None

@@ -1,4 +1,4 @@
-"""Studies: trade-offs between time and accuracy, and series of gaps."""
+"""Studies: the trade-off between time and accuracy, and sweeps over gaps, forces or loads."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ class Tradeoff:
     """A problem or a scene solved by every method at every accuracy."""
 
     meshes: list[dict[str, Any]]
-    """The meshes: divisions, dofs, contact rows, the estimated error of the mesh."""
+    """One dictionary per mesh: divisions, dofs, contact rows, and the estimated error of the mesh."""
     points: list[dict[str, Any]]
-    """The points: method, its setting, seconds, errors and bounds; `best` marks the Pareto front of its mesh."""
+    """One dictionary per solve: method, setting, seconds, errors and bounds; `best` marks the Pareto front of its mesh."""
     advice: list[dict[str, Any]]
-    """What to choose: for an accuracy or for a time the index of a point."""
+    """Recommended points: the index of a point for each accuracy or time limit."""
 
     def __repr__(self) -> str:
         return f"<signorini.Tradeoff: {len(self.points)} points on {len(self.meshes)} meshes>"
 
     def plot(self, ax: Any = None) -> Any:
-        """Draws error over time, a line for each method; returns the axes. Needs matplotlib."""
+        """Draws error over time with one line per method, and returns the axes. Needs matplotlib."""
         from signorini._show import tradeoff_plot
 
         return tradeoff_plot(self, ax)
@@ -38,24 +38,24 @@ class Tradeoff:
 
 @dataclass(frozen=True, repr=False)
 class Sweep:
-    """A series of gaps or forces, or the way of a problem to another end."""
+    """The solutions of a sweep: for several gaps or forces, or along a straight line to other gaps and another load."""
 
     gaps: list[Any]
-    """The gaps: numbers for a scene, arrays for a problem."""
+    """The gaps: one number per point for a scene, one array of length m per point for a problem."""
     solutions: list[Any]
-    """The answers, one for each gap, force or point of the way."""
+    """The solutions, one per gap, force or point of the line."""
     events: list[dict[str, Any]]
-    """Rows that touch or release between the first and the last gap, exactly; empty where that is not known."""
+    """The exact points between the first and the last gap at which a row closes or opens; empty if they are not known."""
     corners: list[dict[str, Any]]
-    """The corners of force, width and pressure over the gap of a scene, exactly."""
+    """The exact corners of the curves of force, width and pressure over the gap of a scene."""
     forces: list[float] = field(default_factory=list)
-    """The forces, in a sweep over forces."""
+    """The forces of a sweep over forces, in the unit of force; otherwise empty."""
     t: list[float] = field(default_factory=list)
-    """The points of the way of a problem, from 0 to 1."""
+    """The parameters of a sweep along a straight line, from 0 to 1; otherwise empty."""
 
     @property
     def contact_force(self) -> NDArray[np.float64]:
-        """Total contact force at each gap."""
+        """Total contact force at each point of the sweep, >= 0, in the unit of force."""
         return np.array([solution.contact_force for solution in self.solutions])
 
     def __repr__(self) -> str:
@@ -63,7 +63,7 @@ class Sweep:
         return f"<signorini.Sweep: {len(self.gaps)} {over}, {len(self.events)} events>"
 
     def plot(self, ax: Any = None) -> Any:
-        """Draws the contact force over the gaps or the way, travels over forces; returns the axes. Needs matplotlib."""
+        """Draws the contact force over the gaps or over t, or the travel over the forces; returns the axes. Needs matplotlib."""
         from signorini._show import sweep_plot
 
         return sweep_plot(self, ax)
@@ -77,11 +77,13 @@ def tradeoff(
     most_full_dofs: int = 10_000,
     time: float | None = None,
 ) -> Tradeoff:
-    """Solves a problem or a scene by every method at every accuracy.
+    """Solves a problem or a scene by every method at every accuracy, and measures time and error.
 
-    `refinements` is the number of meshes beside that of a scene, each with half the cell size of the one before. Each point is run
-    `runs` times at least. Points of more than `most_full_dofs` dofs are solved on the contact boundary only. No finer mesh is begun
-    that would end later than `time` seconds after the start.
+    refinements: number of finer meshes of a scene; each halves the cell size of the mesh before it. runs: smallest number of
+    repetitions of each measurement. most_full_dofs: problems with more dofs are solved in condensed form only. time: limit in
+    seconds; a finer mesh is not begun if it is expected to end later.
+
+    Raises `BadInput` for an option out of its range, and the exceptions of `solve`.
     """
     for name, value in (("refinements", refinements), ("runs", runs), ("most_full_dofs", most_full_dofs)):
         if not isinstance(value, (int, np.integer)) or value < 0:
@@ -126,14 +128,17 @@ def sweep(
     method: str | None = None,
     threads: int | None = None,
 ) -> Sweep:
-    """Solves a scene or a problem many times.
+    """Solves a scene or a problem for several gaps, forces or loads.
 
-    A scene: at several scene-wide `gaps` (numbers), or under several `forces` (0 or positive) on the one obstacle that a force presses.
-    A problem: at several `gaps` (an array for each), or at `points` of the way on which its gaps go to `g1`, its load to `f1`, or
-    both, on straight lines.
+    A scene is solved either for several scene-wide `gaps` (numbers, in the unit of length), or under several `forces` (>= 0, in the
+    unit of force) on the one obstacle that a force presses.
+    A problem is solved either for several `gaps` (arrays of length m), or at `points` equidistant points of the straight line on
+    which its gaps go to `g1` (length m), its load to `f1` (length n), or both.
 
-    The stiffness is factorised once, and every solve starts from the last answer. An answer that is not certified is an answer here;
-    its certificate says so.
+    The stiffness is factorised once, and every solve starts from the previous solution. A solution that is not certified is returned
+    as well; its certificate shows the residuals.
+
+    Raises `BadInput` for any other combination of arguments, and the exceptions of `solve`.
     """
     _check_kind(problem)
     is_scene = isinstance(problem, Scene)
@@ -141,8 +146,8 @@ def sweep(
     asked = [name for name, is_given in given.items() if is_given]
     allowed = ["gaps", "forces"] if is_scene else ["gaps", "g1, f1"]
     if len(asked) != 1 or asked[0] not in allowed:
-        told = " and ".join(asked) or "nothing"
-        raise BadInput(f"a sweep over {told}; a {'scene' if is_scene else 'problem'} is swept over {' or '.join(allowed)}")
+        named = " and ".join(asked) or "nothing"
+        raise BadInput(f"a sweep over {named}; a {'scene' if is_scene else 'problem'} is swept over {' or '.join(allowed)}")
     if isinstance(problem, Scene):
         found = _signorini._swept(problem, asked[0], gaps if forces is None else forces, method, threads)
         return Sweep(found["gaps"], found["solutions"], found["events"], found["corners"], found["forces"])
@@ -153,21 +158,21 @@ def sweep(
     return Sweep(all_gaps, _series(problem, prepared, [(gap, None) for gap in all_gaps], method, threads), [], [])
 
 
-# A sweep keeps every answer: more than this would not fit.
+# A sweep keeps all solutions in memory, so that their number is limited.
 _MOST_POINTS = 10_000
 
 
 def _on_the_way(problem: Problem, end: Problem, points: int, method: str | None, threads: int | None) -> Sweep:
-    """A problem on its way to another end."""
+    """Solves a problem at points of the straight line from its own gaps and load to those of `end`."""
     if not isinstance(points, (int, np.integer)) or not 2 <= points <= _MOST_POINTS:
         raise BadInput(f"points is {points!r}; it must be a whole number from 2 to {_MOST_POINTS}")
     changed = np.flatnonzero(np.isfinite(problem.g) != np.isfinite(end.g))
     if len(changed):
         row = changed[0]
         ends = f"goes from {problem.g[row]} to {end.g[row]}"
-        raise BadInput(f"the gap of row {row} {ends}; a row without an obstacle stays one on the way")
+        raise BadInput(f"the gap of row {row} {ends}; a sweep cannot add an obstacle to a row or remove it")
     same_load = np.array_equal(problem.f, end.f)
-    # Fifteen digits, so that a place comes out as it would be written: 0.3, not 0.30000000000000004.
+    # Rounded to fifteen digits, so that t is 0.3 and not 0.30000000000000004.
     t = [float(f"{place:.14e}") for place in np.linspace(0.0, 1.0, int(points))]
     gaps = [_between(problem.g, end.g, place) for place in t]
     loads = [None if same_load else _between(problem.f, end.f, place) for place in t]
@@ -175,7 +180,7 @@ def _on_the_way(problem: Problem, end: Problem, points: int, method: str | None,
     solutions = _series(problem, prepared, list(zip(gaps, loads, strict=True)), method, threads)
     events: list[dict[str, Any]] = []
     if same_load:
-        # What is not condensed has no path.
+        # A problem that is not condensed has no path; its events stay empty.
         with suppress(BadInput):
             path = prepared.path(problem.g, end.g)
             events = [{"t": event.at, "row": event.row, "touches": event.touches} for event in path.events]
@@ -183,7 +188,7 @@ def _on_the_way(problem: Problem, end: Problem, points: int, method: str | None,
 
 
 def _between(first: NDArray[np.float64], last: NDArray[np.float64], t: float) -> NDArray[np.float64]:
-    """Entry by entry (1 - t) first + t last; what is the same at both ends, as an infinite gap, stays as it is."""
+    """Returns (1 - t) first + t last. Entries that are equal at both ends, such as infinite gaps, are copied unchanged."""
     moves = first != last
     between = first.copy()
     between[moves] = (1.0 - t) * first[moves] + t * last[moves]
@@ -193,8 +198,8 @@ def _between(first: NDArray[np.float64], last: NDArray[np.float64], t: float) ->
 def _series(
     problem: Problem, prepared: Prepared, states: list[tuple[Any, Any]], method: str | None, threads: int | None
 ) -> list[Solution]:
-    """The answers for all gaps and loads (None: the problem's own), each from the one before."""
-    # Where multigrid was chosen, an answer that falls short may have another way.
+    """Solves for all gaps and loads (None: the problem's own); each solve starts from the previous solution."""
+    # If `auto` chose multigrid and its solution is not certified, another method may reach the tolerance.
     is_by_choice = method in (None, "auto") and prepared.factor_entries == 0
     solutions: list[Solution] = []
     for gap, load in states:

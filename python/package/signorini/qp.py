@@ -2,9 +2,9 @@
 
     minimise 1/2 x'P x + q'x   subject to   G x <= h,  A x = b,  lb <= x <= ub
 
-P is symmetric and positive semidefinite. An equality is held by two opposite rows, so that its residual, its multiplier and the bound on
-the error stand in the certificate like those of any other row. If the minimum is attained in more than one point, one of them is
-returned, found by proximal steps; its conditions are certified, and there is no bound on its distance to the others.
+P is symmetric and positive semidefinite. An equality becomes two opposite rows, so that the certificate covers its residual, its
+multiplier and the error bound like those of any other row. If there are several minima, proximal steps find one of them; its
+optimality conditions are certified, but its distance to the other minima is not bounded.
 """
 
 from __future__ import annotations
@@ -20,39 +20,39 @@ from signorini._errors import BadInput, BadType, Infeasible, NotCertified, Signo
 
 __all__ = ["QPSolution", "solve_problem", "solve_qp"]
 
-# Proximal steps at the most; for a quadratic program a few are enough.
+# Largest number of proximal steps. For a quadratic program a few are enough.
 _MOST_STEPS = 200
 
-# Proximal terms beside the largest diagonal entry of P, in the order in which they are tried: the smaller, the fewer steps; the
-# larger, the more digits in each.
+# Weights of the proximal term relative to the largest diagonal entry of P, in the order in which they are tried. A
+# smaller weight needs fewer steps; a larger one makes each step more accurate.
 _PROXIMITIES = (1e-8, 1e-6, 1e-4)
 
-# Conditions to which an answer that is not unique is certified.
+# Tolerance to which the conditions of a solution that is not unique are certified.
 _TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, repr=False)
 class QPSolution:
-    """The answer to a quadratic program, with the multipliers and signs of qpsolvers."""
+    """The solution of a quadratic program, with the multipliers and signs of qpsolvers."""
 
     found: bool
-    """Whether there is one: `False` if the constraints contradict each other, or the objective has no lower bound."""
+    """`True` if there is a solution; `False` if the constraints contradict each other or the objective has no lower bound."""
     x: NDArray[np.float64] | None
-    """The minimum, length n."""
+    """The minimum, length n; None if there is none."""
     z: NDArray[np.float64] | None
-    """Multipliers of G x <= h, >= 0."""
+    """Multipliers of G x <= h, one per row of G, >= 0; None without G."""
     y: NDArray[np.float64] | None
-    """Multipliers of A x = b, of either sign: P x + q + G'z + A'y + z_box = 0."""
+    """Multipliers of A x = b, one per row of A, of either sign: P x + q + G'z + A'y + z_box = 0; None without A."""
     z_box: NDArray[np.float64] | None
-    """Multipliers of the bounds: negative at a lower one, positive at an upper one."""
+    """Multipliers of the bounds, length n: <= 0 at a lower bound, >= 0 at an upper bound; None without bounds."""
     obj: float | None
-    """The objective at x."""
+    """Value of the objective at x."""
     certificate: _signorini.Certificate | None
-    """The conditions, recomputed from the problem, and the bound on the error of x."""
+    """The residuals of the optimality conditions, recomputed from the problem, and the bound on the error of x."""
     unique: bool
-    """Whether x is the only minimum, with a bound on its error."""
+    """`True` if x is the only minimum and its error is bounded."""
     reason: str
-    """Why there is none, in a sentence; empty if there is one."""
+    """One sentence that explains why there is no solution; empty if there is one."""
 
     def __repr__(self) -> str:
         if self.x is None:
@@ -71,7 +71,10 @@ def solve_qp(
     ub: Any = None,
     **options: Any,
 ) -> NDArray[np.float64] | None:
-    """Solves a quadratic program: x, or None if there is no solution. Arguments and options are those of `solve_problem`."""
+    """Solves a quadratic program. Returns x (length n), or None if there is no solution.
+
+    Arguments, options and exceptions are those of `solve_problem`.
+    """
     return solve_problem(P, q, G, h, A, b, lb, ub, **options).x
 
 
@@ -88,13 +91,15 @@ def solve_problem(
     initvals: Any = None,
     **options: Any,
 ) -> QPSolution:
-    """Solves a quadratic program.
+    """Solves a quadratic program: minimise 1/2 x'P x + q'x  subject to  G x <= h,  A x = b,  lb <= x <= ub.
 
-    Matrices are arrays of numpy or sparse matrices of scipy. `initvals` is a point near the minimum. Options are those of
+    P (n x n), G and A are arrays of numpy or sparse matrices of scipy; q, lb and ub have length n. There is no constraint for an entry
+    of h or ub of 1e20 or more, or of lb of -1e20 or less. initvals: a point near the minimum, length n. The options are those of
     `signorini.solve`.
 
-    Raises `BadInput` for arrays that are no quadratic program, `NotConvex` if P has a negative eigenvalue, `NotCertified` with the best
-    answer if it does not meet the tolerance.
+    Raises `BadInput` if the arrays do not form a quadratic program, `NotConvex` if P has a negative eigenvalue, `NotCertified`, with the
+    best solution, if the tolerance is not reached, and the other exceptions of `signorini.solve`. A program without a solution is no
+    exception: `found` is then `False`.
     """
     load = -_vector("q", q)
     rows = _Rows(load.size)
@@ -113,7 +118,8 @@ def solve_problem(
     except UnderHeld:
         return _one_of_many(problem, rows, start, options)
     except NotCertified as fell_short:
-        # Without a bound the conditions alone can be certified; a minimum that is hardly unique is found by steps.
+        # Without an error bound only the conditions can be certified. If they fail as well, the minimum is almost not
+        # unique, and proximal steps are tried.
         best = fell_short.solution
         if best.certificate.conditions_hold(_TOLERANCE):
             return rows.answer(problem, best.u, best.multiplier, best.certificate, unique=False)
@@ -127,7 +133,7 @@ _INEQUALITY, _EQUALITY = "inequality", "equality"
 
 
 def _vector(name: str, values: Any) -> NDArray[np.float64]:
-    """A vector, which may come as a column."""
+    """Returns a vector of doubles; a matrix with one column is accepted as well."""
     array = np.asarray(values)
     if array.dtype.kind not in "fiub":
         raise BadType(f"{name} is an array of dtype {array.dtype}; it must be an array of real numbers")
@@ -139,7 +145,7 @@ def _is_sparse(matrix: Any) -> bool:
 
 
 class _Rows:
-    """The rows B x <= g of a contact problem that stand for the constraints of a quadratic program."""
+    """The rows B x <= g of a contact problem that represent the constraints of a quadratic program."""
 
     def __init__(self, unknowns: int) -> None:
         self.unknowns = unknowns
@@ -157,7 +163,7 @@ class _Rows:
         self.gaps.append(gap)
 
     def add(self, name: str, side_name: str, matrix: Any, side: Any, kind: str) -> None:
-        """Adds `matrix x <= side`, or `matrix x = side` by two opposite rows for each."""
+        """Adds `matrix x <= side`, or `matrix x = side` as two opposite rows per equation."""
         from scipy import sparse
 
         if matrix is None and side is None:
@@ -185,7 +191,7 @@ class _Rows:
         self._append(f"-{name}", -matrix, -values)
 
     def add_bounds(self, lb: Any, ub: Any) -> None:
-        """Adds the bounds that are finite."""
+        """Adds one row for each finite bound."""
         from scipy import sparse
 
         self.has_box = lb is not None or ub is not None
@@ -206,7 +212,7 @@ class _Rows:
                 self.lower = bounded
 
     def joined(self) -> tuple[Any, Any]:
-        """B and g; None for both without rows."""
+        """Returns B and g; both are None if there are no rows."""
         from scipy import sparse
 
         if self.count == 0:
@@ -215,7 +221,7 @@ class _Rows:
 
     def _of(self, name: str, multiplier: NDArray[np.float64]) -> NDArray[np.float64]:
         first, end = self.groups[name]
-        # Adding zero takes the sign off a zero.
+        # A minus sign alone would turn 0.0 into -0.0.
         return 0.0 - multiplier[first:end]
 
     def answer(
@@ -227,7 +233,7 @@ class _Rows:
         *,
         unique: bool,
     ) -> QPSolution:
-        """The answer in the signs of qpsolvers."""
+        """Converts a solution into the signs of qpsolvers."""
         x = u.copy()
         z = self._of("G", multiplier) if "G" in self.groups else None
         y = self._of("A", multiplier) - self._of("-A", multiplier) if "A" in self.groups else None
@@ -243,7 +249,7 @@ class _Rows:
 
 
 def _gaps(name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Right-hand sides of rows, with inf where there is no constraint, as other solvers write 1e20 and more."""
+    """Returns right-hand sides in which values of 1e20 and more, which other solvers use for "no constraint", are inf."""
     if np.isnan(values).any():
         entry = int(np.flatnonzero(np.isnan(values))[0])
         raise BadInput(f"{name} has the value nan at entry {entry} (from 0)")
@@ -254,7 +260,7 @@ def _gaps(name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _one_of_many(problem: _signorini.Problem, rows: _Rows, start: Any, options: dict[str, Any]) -> QPSolution:
-    """One of several minima: the limit of proximal steps x <- argmin 1/2 x'P x + q'x + 1/2 d |x - x_before|^2.
+    """Finds one of several minima as the limit of proximal steps x <- argmin 1/2 x'P x + q'x + 1/2 d |x - x_before|^2.
 
     # Source
     R. T. Rockafellar, Monotone operators and the proximal point algorithm, SIAM J. Control Optim. 14 (1976).
@@ -281,7 +287,7 @@ _CONDITIONS = ("stationarity", "penetration", "adhesion", "complementarity", "du
 def _steps(
     problem: _signorini.Problem, has_rows: bool, proximity: float, x: NDArray[np.float64], options: dict[str, Any]
 ) -> _signorini.Solution:
-    """The end of proximal steps from x. A step need not be certified: its end is judged on the problem itself."""
+    """Makes proximal steps from x. A single step need not be certified: the last one is verified on the problem itself."""
     from scipy import sparse
 
     size = proximity * (float(np.asarray(problem.K.diagonal()).max(initial=0.0)) or 1.0)
