@@ -37,7 +37,10 @@ fn ring() -> Value {
 
 /// The horizontal steps of the path with the given stroke width.
 fn steps(svg: &str, width: &str) -> Vec<f64> {
-    let line = svg.lines().find(|line| line.contains(&format!("stroke-width=\"{width}\""))).expect("the line");
+    let line = svg
+        .lines()
+        .find(|line| line.contains(&format!("stroke-width=\"{width}\"")))
+        .expect("the picture has a line of this width");
     let data = line.split(" d=\"").nth(1).unwrap().split('"').next().unwrap();
     let mut steps = Vec::new();
     let mut rest = &data[data.find(['l', 'h', 'v']).unwrap_or(data.len())..];
@@ -76,7 +79,7 @@ fn edges_of_quadratic_elements_are_drawn_as_curves() {
     scene["body"]["ring"]["radius"] = json!({"points": [0.2, 1], "divisions": [1]});
     drawn(&desk, &scene, &["solve"]);
     let svg = fs::read_to_string(desk.path("o/contact.svg")).unwrap();
-    let outline = svg.lines().find(|line| line.contains("stroke-width=\"1.4\"")).expect("the outline");
+    let outline = svg.lines().find(|line| line.contains("stroke-width=\"1.4\"")).expect("the picture has an outline");
     let corners = outline.split(" d=\"").nth(1).unwrap().split('"').next().unwrap().matches(['l', 'h', 'v']).count();
     let elements = fs::read_to_string(desk.path("o/report.json")).unwrap();
     let elements = serde_json::from_str::<Value>(&elements).unwrap()["model"]["elements"].as_u64().unwrap();

@@ -44,8 +44,12 @@ fn the_legend_is_below_the_axes_if_the_lines_leave_no_room() {
     assert_readable(&crowded);
     assert_readable(&free);
     assert!(crowded.height() > free.height());
-    let axis = texts_of(&crowded).into_iter().find(|(text, _)| text == "position x (m)").expect("the axis label").1;
-    let entry = texts_of(&crowded).into_iter().find(|(text, _)| text == "wave 1").expect("the legend").1;
+    let axis = texts_of(&crowded)
+        .into_iter()
+        .find(|(text, _)| text == "position x (m)")
+        .expect("the plot has an axis label")
+        .1;
+    let entry = texts_of(&crowded).into_iter().find(|(text, _)| text == "wave 1").expect("the plot has a legend").1;
     assert!(entry.top() >= axis.bottom() - 1.0);
 }
 

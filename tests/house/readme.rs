@@ -105,7 +105,7 @@ fn the_commands_of_the_readme_are_those_of_the_program() {
     of_program.retain(|name| *name != "help");
     named.sort_unstable();
     of_program.sort_unstable();
-    assert_eq!(named, of_program, "the commands of README.md and those of the program");
+    assert_eq!(named, of_program, "the commands of README.md differ from those of the program");
 }
 
 #[test]

@@ -156,7 +156,7 @@ fn every_frame_has_the_velocities_of_its_nodes() {
     for number in [0, 2] {
         let text = fs::read_to_string(desk.path(&format!("out/series-{number:05}.vtu"))).unwrap();
         let heading = "<DataArray type=\"Float64\" Name=\"velocity\" NumberOfComponents=\"3\" format=\"ascii\">\n";
-        let (_, array) = text.split_once(heading).expect("an array of velocities");
+        let (_, array) = text.split_once(heading).expect("the file has an array of velocities");
         let (array, _) = array.split_once("</DataArray>").unwrap();
         let values: Vec<f64> = array.split_whitespace().map(|value| value.parse().unwrap()).collect();
         assert_eq!(values.len(), 3 * 21);

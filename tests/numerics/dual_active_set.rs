@@ -13,7 +13,7 @@ use signorini::{ContactProblem, Error, Method, Settings, SparseMatrix, Symmetric
 fn run(problem: &ContactProblem, definiteness: Definiteness) -> Result<Outcome, Error> {
     let augmented = AugmentedMatrix::new(problem.stiffness(), problem.contact()).unwrap();
     let scaled = ScaledProblem::new(problem, &augmented, definiteness);
-    DualActiveSet::of(&scaled)?.expect("small enough").solve(Start::default())
+    DualActiveSet::of(&scaled)?.expect("the problem is small enough").solve(Start::default())
 }
 
 /// `|u - u*|_K / |u*|_K`.

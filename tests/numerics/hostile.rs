@@ -108,11 +108,15 @@ fn cases() -> Vec<(String, Dense, Ending)> {
     add("bounds that meet", node([1.0, 0.0], &[([1.0, 0.0], 1.0), ([-1.0, 0.0], -1.0)]), Certified);
     for overlap in [1e-2, 1e-4] {
         let rows = [([0.0, 1.0], -0.5 - overlap), ([0.8, -0.6], 0.3), ([-0.8, -0.6], 0.3)];
-        add(&format!("three rows that leave no room by {overlap:e}"), node([0.3, 1.0], &rows), Refused("infeasible"));
+        add(
+            &format!("three rows that contradict each other by {overlap:e}"),
+            node([0.3, 1.0], &rows),
+            Refused("infeasible"),
+        );
     }
     for overlap in [1e-8, 1e-10, 1e-13] {
         let rows = [([0.0, 1.0], -0.5 - overlap), ([0.8, -0.6], 0.3), ([-0.8, -0.6], 0.3)];
-        add(&format!("three rows that leave hardly no room by {overlap:e}"), node([0.3, 1.0], &rows), Either);
+        add(&format!("three rows that hardly contradict each other, by {overlap:e}"), node([0.3, 1.0], &rows), Either);
     }
     // Redundant and nearly parallel rows.
     for copies in [2, 10, 100] {

@@ -435,7 +435,11 @@ fn a_terminal_shows_progress_and_the_time_left_unless_quiet_is_given() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
     let shown = on_terminal(&desk, &["sweep", "block.json", "--gaps", "0:-0.1:10000", "--out", "o"], " left: ");
-    let line = shown.rsplit("\r\x1b[K").find(|line| line.contains(" left: ")).expect("a line of progress").to_string();
+    let line = shown
+        .rsplit("\r\x1b[K")
+        .find(|line| line.contains(" left: "))
+        .expect("the terminal shows a line of progress")
+        .to_string();
     assert!(line.starts_with('[') && line.contains(" % gap ") && line.contains(" of 10000, "), "{line:?}");
     // Without progress, twice as many gaps are solved, so that the run takes about twice as long.
     let gap: usize = line.split("gap ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();

@@ -38,7 +38,7 @@ fn confined(desk: &Desk, kilobytes: u32, arguments: &str) -> Run {
     );
     let output = Command::new("sh").args(["-c", &script]).current_dir(desk.path(".")).output().unwrap();
     Run {
-        code: output.status.code().expect("an exit code, not a signal"),
+        code: output.status.code().expect("the program ends with an exit code, not by a signal"),
         stdout: String::from_utf8(output.stdout).unwrap(),
         stderr: String::from_utf8(output.stderr).unwrap(),
     }

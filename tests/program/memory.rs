@@ -25,7 +25,11 @@ fn measured(desk: &Desk, arguments: &[&str]) -> (i32, String, f64) {
         std::thread::sleep(Duration::from_micros(200));
     }
     let output = child.wait_with_output().unwrap();
-    (output.status.code().expect("an exit code, no signal"), String::from_utf8(output.stderr).unwrap(), peak)
+    (
+        output.status.code().expect("the program ends with an exit code, not by a signal"),
+        String::from_utf8(output.stderr).unwrap(),
+        peak,
+    )
 }
 
 #[test]

@@ -38,11 +38,11 @@ impl Run {
         // A line that announces what an export writes is not an error.
         let is_fault = |line: &&str| !line.starts_with("warning: ") && !line.starts_with("writing ");
         let sentences: Vec<&str> = run.stderr.lines().filter(is_fault).collect();
-        let [sentence] = sentences[..] else { panic!("not one sentence: {:?}", run.stderr) };
+        let [sentence] = sentences[..] else { panic!("standard error is not one sentence: {:?}", run.stderr) };
         assert!(sentence.starts_with("error: ") && sentence.chars().count() < 1000, "{sentence}");
         assert!(!sentence.chars().any(char::is_control), "{sentence:?}");
         for phrase in phrases {
-            assert!(sentence.contains(phrase), "{sentence:?} lacks {phrase:?}");
+            assert!(sentence.contains(phrase), "{sentence:?} does not contain {phrase:?}");
         }
         run
     }
@@ -114,7 +114,7 @@ sys.exit(os.waitstatus_to_exitcode(status))";
     pub fn run(&self, arguments: &[&str]) -> Run {
         let output = self.command(arguments).output().unwrap();
         Run {
-            code: output.status.code().expect("an exit code, not a signal"),
+            code: output.status.code().expect("the program ends with an exit code, not by a signal"),
             stdout: String::from_utf8(output.stdout).unwrap(),
             stderr: String::from_utf8(output.stderr).unwrap(),
         }
@@ -162,7 +162,7 @@ impl UnderWay {
         if is_read {
             report.read_to_string(&mut stdout).unwrap();
         }
-        let code = self.child.wait().unwrap().code().expect("an exit code, not a signal");
+        let code = self.child.wait().unwrap().code().expect("the program ends with an exit code, not by a signal");
         while self.next_line().is_some() {}
         Run { code, stdout, stderr: self.stderr }
     }

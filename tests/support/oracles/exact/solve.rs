@@ -181,10 +181,13 @@ impl Exact {
         for dof in 0..self.dofs() {
             let column = self.contact.iter().map(|row| &row[dof]);
             let force = &dot(&self.stiffness[dof], &answer.displacement) + &dot(column, &answer.force);
-            assert!(force == &self.load[dof] * &answer.denominator, "equilibrium of dof {dof}");
+            assert!(force == &self.load[dof] * &answer.denominator, "dof {dof} is not in equilibrium");
         }
         for (row, (distance, force)) in self.distances(answer).iter().zip(&answer.force).enumerate() {
-            assert!(distance.sign() >= 0 && force.sign() >= 0 && (distance * force).is_zero(), "contact in row {row}");
+            assert!(
+                distance.sign() >= 0 && force.sign() >= 0 && (distance * force).is_zero(),
+                "the contact conditions of row {row} do not hold"
+            );
         }
     }
 
@@ -195,7 +198,10 @@ impl Exact {
         let (ending, _) = least.end().expect("the identity is definite");
         let weights = ending.err()?;
         let cancels = |dof: usize| dot(self.contact.iter().map(|row| &row[dof]), &weights).is_zero();
-        assert!(weights.iter().all(|weight| weight.sign() >= 0) && (0..self.dofs()).all(cancels), "Farkas' weights");
+        assert!(
+            weights.iter().all(|weight| weight.sign() >= 0) && (0..self.dofs()).all(cancels),
+            "the weights are negative or the rows do not cancel"
+        );
         assert!(dot(&self.gap, &weights).sign() < 0, "Farkas' weights do not show a contradiction");
         Some(weights)
     }
