@@ -1,5 +1,5 @@
-//! `cargo bench`: the steps of a contact solve on small blocks, beside one Cholesky factorisation of the same stiffness.
-//! The ratios on large blocks are those of `cargo run --release --example contact_cost`.
+//! `cargo bench`: the steps of a contact solve on small blocks, compared with one Cholesky factorisation of the same
+//! stiffness. `cargo run --release --example contact_cost` prints the ratios on large blocks.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
@@ -23,7 +23,7 @@ fn active_set() -> Settings {
     Settings::with_method(Method::ActiveSet)
 }
 
-/// The block at the next gap, a tenth further.
+/// The gap of the block in the next step, larger by a tenth.
 fn next_gap(model: &Model) -> Vec<f64> {
     model.problem().gap().iter().map(|gap| gap + case::FIRST_GAP / 10.0).collect()
 }

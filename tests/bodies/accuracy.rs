@@ -1,4 +1,4 @@
-//! What is known of an answer's accuracy: the estimated error of the mesh.
+//! The estimated error of the mesh, compared with exact solutions.
 
 use crate::exact_solutions::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
 use crate::solved_block::solve_block;
@@ -8,7 +8,7 @@ use signorini::fem::Integration;
 use signorini::scene::Answer;
 use signorini::{Scene, solve_qp};
 
-/// Effectivity that an estimate is wanted to have: neither half nor twice the error.
+/// Required effectivity of an estimate: between half and twice the error.
 const EFFECTIVITY: std::ops::Range<f64> = 0.5..2.0;
 
 #[test]
@@ -23,7 +23,8 @@ fn the_estimate_is_near_the_error_of_blocks_with_an_exact_solution() {
                 let block = solve_block(exact, kind, Integration::Standard, cells).unwrap();
                 let effectivity = block.estimated_energy_error().unwrap() / block.errors().unwrap().energy;
                 assert!(EFFECTIVITY.contains(&effectivity), "{name}, {kind:?}, n = {cells}: {effectivity}");
-                // Averages of linear elements converge faster than the elements: the estimate is asymptotically exact.
+                // Averaged stresses of linear elements converge faster than the stresses of the elements: the estimate
+                // is asymptotically exact.
                 let exact_to = if cells == 32 && !kind.is_quadratic() { 0.02 } else { 1.0 };
                 assert!((effectivity - 1.0).abs() < exact_to, "{name}, {kind:?}, n = {cells}: {effectivity}");
             }
@@ -32,7 +33,7 @@ fn the_estimate_is_near_the_error_of_blocks_with_an_exact_solution() {
 }
 
 #[test]
-fn the_estimate_vanishes_where_the_mesh_is_exact_and_halves_with_the_cells() {
+fn the_estimate_vanishes_if_the_mesh_is_exact_and_falls_on_finer_meshes() {
     let scene = |model: &str, body: &serde_json::Value, bottom: &str, gap: f64, shape: serde_json::Value| {
         let (up, side) = if model == "space" {
             ("z", json!({"on": {"boundary": "front"}, "y": 0}))
@@ -54,7 +55,7 @@ fn the_estimate_vanishes_where_the_mesh_is_exact_and_halves_with_the_cells() {
     {
         let block = |cells: usize| json!({"rectangle": {"x": axis(cells), "y": axis(cells), "element": element}});
         let flat = json!({"plane": {"point": [0, 1], "normal": [0, 1]}});
-        // Uniform pressure: rounding is all that is left.
+        // Under uniform pressure only rounding is left.
         assert!(scene(model, &block(4), "bottom", -0.01, flat) < 1e-9, "{model} {element}");
         let round = || json!({"parabola": {"apex": [0, 1], "radius": 2}});
         let [coarse, fine] = [8, 32].map(|cells| scene(model, &block(cells), "bottom", -0.05, round()));

@@ -1,5 +1,5 @@
-//! The closed forms of bar and patch, against linear solves in which the contact is written as a support; all closed forms,
-//! against numbers that can be checked by hand.
+//! The closed forms of bar and patch test, compared with linear solves in which the contact is a support; and all
+//! closed forms, compared with numbers that can be checked by hand.
 
 use crate::bodies::built;
 use crate::exact_solutions::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
@@ -12,13 +12,14 @@ use serde_json::{Value, json};
 use signorini::fem::{ElementKind, Integration};
 use signorini::internals::Cholesky;
 
-/// Tolerance of the bar and of the patch test, relative to the largest value: elements are exact, rounding remains.
+/// Tolerance of the bar and of the patch test, relative to the largest value: the elements are exact, so only rounding
+/// remains.
 const EXACT: f64 = 1e-11;
 
 #[test]
-fn a_bar_stopped_by_a_wall_carries_the_rest_of_its_load_into_it() {
+fn a_bar_stopped_by_a_wall_transfers_the_rest_of_its_load_to_it() {
     let bar = Bar { length: 2.0, axial_stiffness: 1e4, gap: 1e-3 };
-    // EA = E x height 0.1 x thickness 0.1; F = 20 exceeds EA g/L = 5, so that the wall is reached.
+    // EA = E x height 0.1 x thickness 0.1; F = 20 exceeds EA g/L = 5, so that the bar reaches the wall.
     let mut scene = json!({
         "model": "plane-stress", "thickness": 0.1,
         "body": {"rectangle": {"x": {"points": [0, 2], "divisions": [20]}, "y": {"points": [0, 0.1], "divisions": [1]}}},
@@ -40,14 +41,14 @@ fn a_bar_stopped_by_a_wall_carries_the_rest_of_its_load_into_it() {
     };
     assert_eq!(bar.reaction_to_end_force(20.0), 15.0);
     check(&scene, 15.0, &|x| bar.displacement_under_end_force(20.0, x));
-    // Distributed: body force 1000 per volume on an area of 0.01 is q = 10.
+    // Distributed load: a body force of 1000 per volume on an area of 0.01 is q = 10.
     scene["loads"] = json!([{"body-force": [1000, 0]}]);
     assert_eq!(bar.reaction_to_distributed_load(10.0), 5.0);
     check(&scene, 5.0, &|x| bar.displacement_under_distributed_load(10.0, x));
 }
 
 #[test]
-fn a_bar_that_just_touches_feels_no_wall() {
+fn a_bar_that_just_touches_has_no_reaction() {
     let bar = Bar { length: 2.0, axial_stiffness: 10.0, gap: 0.1 };
     assert_eq!(bar.reaction_to_distributed_load(2.0 * 10.0 * 0.1 / 4.0), 0.0);
     assert_eq!(bar.reaction_to_end_force(0.5), 0.0);
@@ -57,7 +58,7 @@ fn a_bar_that_just_touches_feels_no_wall() {
 }
 
 #[test]
-fn a_uniformly_compressed_block_strains_as_the_patch_test_says() {
+fn a_uniformly_compressed_block_has_the_strains_of_the_patch_test() {
     let pressure = 3.0;
     for (model, sides) in
         [("plane-strain", Sides::PlaneStrain), ("plane-stress", Sides::PlaneStress), ("plane-strain", Sides::Confined)]
@@ -87,12 +88,12 @@ fn a_uniformly_compressed_block_strains_as_the_patch_test_says() {
             for stress in &model.stress(&u).unwrap().nodes {
                 assert!((stress.sigma_yy + pressure).abs() < EXACT * pressure, "{sides:?} {element} {stress:?}");
             }
-            // A prescribed top displacement of -eyy H + g over a gap g gives the pressure back.
+            // A prescribed top displacement of -eyy H + g over a gap g gives the same pressure.
             assert!((patch.pressure(1.0, 0.01 - eyy, 0.01) - pressure).abs() < EXACT * pressure);
         }
     }
     let patch = ContactPatch { young: 1000.0, poisson: 0.3, sides: Sides::Confined };
-    assert_eq!(patch.pressure(1.0, 0.01, 0.02), 0.0, "out of reach");
+    assert_eq!(patch.pressure(1.0, 0.01, 0.02), 0.0, "the plane is out of reach");
 }
 
 #[test]
@@ -126,7 +127,7 @@ fn punches_have_the_force_and_the_pressure_of_their_formulas() {
 }
 
 #[test]
-fn a_string_and_a_membrane_press_on_their_obstacles_as_their_formulas_say() {
+fn a_string_and_a_membrane_have_the_contact_force_of_their_formulas() {
     assert!((ObstacleString { load: 1.0, gap: 0.08 }.force() - 0.2).abs() < 1e-15);
     let membrane = DiscMembrane { load: 8.0, gap: 0.25 };
     assert!((membrane.radius() - 0.737351524416).abs() < 1e-12);
@@ -168,7 +169,7 @@ fn exact_blocks_have_the_pressure_and_the_displacement_of_their_formulas() {
 }
 
 #[test]
-fn the_hertz_block_on_16_by_16_cells_has_the_error_that_is_written_down() {
+fn the_hertz_block_on_16_by_16_cells_has_the_recorded_error() {
     let elasticity = PlaneElasticity::plane_strain(1.0, 0.3);
     let exact = HertzBlock { elasticity, half_width: 0.53, peak_pressure: 1.0 };
     let block = solve_block(&exact, ElementKind::Q4, Integration::Standard, 16).unwrap();

@@ -1,4 +1,5 @@
-//! Half discs, rings and half balls: what they cover, where their boundaries lie, and how good their cells are.
+//! Half discs, rings and half balls: their area or volume, the position of their boundaries, and the quality of their
+//! cells.
 
 use std::f64::consts::PI;
 
@@ -9,8 +10,8 @@ use signorini::scene::{Sides, disc, half_ball, half_disc, ring};
 
 const PLANE: [ElementKind; 4] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8];
 
-/// Area or volume, and the smallest determinant over the largest one within any element, at nodes and quadrature
-/// points.
+/// Area or volume, and the smallest ratio of the least to the largest Jacobian determinant within an element, at nodes
+/// and quadrature points.
 fn measure(mesh: &Mesh) -> (f64, f64) {
     let reference = mesh.kind().reference();
     let table = Tabulated::new(reference, Rule::Straight);
@@ -30,9 +31,9 @@ fn measure(mesh: &Mesh) -> (f64, f64) {
     (total, worst)
 }
 
-/// The farthest that a node of a boundary is from where `off` is zero.
+/// The largest absolute value of `off` over the nodes of a boundary.
 fn farthest(mesh: &Mesh, name: &str, off: impl Fn([f64; 3]) -> f64) -> f64 {
-    let boundary = mesh.boundary(name).unwrap_or_else(|| panic!("no boundary {name}"));
+    let boundary = mesh.boundary(name).unwrap_or_else(|| panic!("the mesh has no boundary {name}"));
     boundary.nodes().iter().map(|&node| off(mesh.nodes()[node]).abs()).fold(0.0, f64::max)
 }
 
@@ -41,7 +42,7 @@ fn rate(errors: &[f64]) -> f64 {
 }
 
 #[test]
-fn a_disc_is_its_lower_half_twice_joined_along_the_cut() {
+fn a_disc_consists_of_two_half_discs_joined_along_the_cut() {
     let (centre, radius, zone) = ([3.0, -1.0], 2.0, Zone { width: 0.3, divisions: 3, growth: 1.5 });
     for kind in PLANE {
         for sides in [Sides::Both, Sides::Beyond] {
@@ -85,7 +86,7 @@ fn half_discs_have_good_cells_and_their_area_converges() {
 }
 
 #[test]
-fn half_discs_have_their_boundaries_where_they_say() {
+fn nodes_on_the_boundaries_of_half_discs_are_on_arc_and_cut() {
     let zone = Zone { width: 0.05, divisions: 5, growth: 1.3 };
     for kind in PLANE {
         let mesh = half_disc([3.0, -1.0], 2.0, &zone, Sides::Both, kind).unwrap();
@@ -95,8 +96,13 @@ fn half_discs_have_their_boundaries_where_they_say() {
         let half = half_disc([3.0, -1.0], 2.0, &zone, Sides::Beyond, kind).unwrap();
         assert_eq!(farthest(&half, "symmetry-x", |[x, ..]| x - 3.0), 0.0);
         assert!(half.nodes().iter().all(|at| at[0] >= 3.0));
-        assert_eq!(mesh.nearest_node([3.0, -3.0, 0.0]).map(|found| found.1), Some(0.0), "a node at the lowest point");
-        // The arc runs from one end of the cut through the lowest point to the other, each node next to the one before.
+        assert_eq!(
+            mesh.nearest_node([3.0, -3.0, 0.0]).map(|found| found.1),
+            Some(0.0),
+            "there is a node at the lowest point"
+        );
+        // The arc runs from one end of the cut through the lowest point to the other end; each node is a neighbour of
+        // the one before.
         let arc = mesh.boundary("arc").unwrap().nodes();
         let places: Vec<[f64; 3]> = arc.iter().map(|&node| mesh.nodes()[node]).collect();
         assert!(places.windows(2).all(|pair| pair[0][0] < pair[1][0]), "{kind:?}");
@@ -137,7 +143,7 @@ fn half_balls_have_good_cells_and_their_volume_converges() {
 }
 
 #[test]
-fn half_balls_have_their_boundaries_where_they_say() {
+fn nodes_on_the_boundaries_of_half_balls_are_on_sphere_and_planes() {
     let zone = Zone { width: 0.2, divisions: 2, growth: 2.0 };
     let mesh = half_ball([1.0, 2.0, 3.0], 2.0, &zone, [Sides::Beyond; 2]).unwrap();
     let radius = |[x, y, z]: [f64; 3]| (x - 1.0).hypot(y - 2.0).hypot(z - 3.0) - 2.0;
@@ -145,8 +151,13 @@ fn half_balls_have_their_boundaries_where_they_say() {
     assert_eq!(farthest(&mesh, "cut", |[.., z]| z - 3.0), 0.0);
     assert_eq!(farthest(&mesh, "symmetry-x", |[x, ..]| x - 1.0), 0.0);
     assert_eq!(farthest(&mesh, "symmetry-y", |[_, y, _]| y - 2.0), 0.0);
-    assert_eq!(mesh.nearest_node([1.0, 2.0, 1.0]).map(|found| found.1), Some(0.0), "a node at the lowest point");
-    // The surface of an eighth of a ball is closed: its four boundaries have all faces that one element alone has.
+    assert_eq!(
+        mesh.nearest_node([1.0, 2.0, 1.0]).map(|found| found.1),
+        Some(0.0),
+        "there is a node at the lowest point"
+    );
+    // The surface of an eighth of a ball is closed: its four boundaries contain all faces that belong to only one
+    // element.
     let mut faces = std::collections::HashMap::new();
     for element in mesh.elements() {
         for face in mesh.kind().reference().faces {
@@ -180,7 +191,7 @@ fn rings_close_and_their_area_converges() {
             assert!(rate(&errors) > if kind.is_quadratic() { 3.5 } else { 1.8 }, "{kind:?}: {errors:?}");
         }
     }
-    // On the axis to the last bit: such a half ring can be revolved.
+    // The end nodes are exactly on the axis, so that such a half ring can be revolved.
     let half = ring([0.0, 0.0], &[1.0, 2.0], &[-90.0, 0.0, 90.0], ElementKind::Q4).unwrap();
     assert_eq!(farthest(&half, "start", |[x, ..]| x).max(farthest(&half, "end", |[x, ..]| x)), 0.0);
 }

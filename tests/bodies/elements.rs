@@ -1,8 +1,8 @@
-//! GOAL: every element in every formulation that it fits: patch tests on distorted meshes, rigid-body modes, stiffness
-//! against internal force, mean dilatation.
+//! GOAL: every element passes these tests in every formulation that it fits: patch tests on distorted meshes,
+//! rigid-body modes, stiffness against internal force, mean dilatation.
 //!
-//! MESH: a bar of 5 cells, a 2 x 1 rectangle of 4 x 3 cells, a 2 x 1 x 1.5 box of 3 x 3 x 2 cells, inner nodes moved by
-//! up to a fifth of a cell; E = 7, nu = 0.3.
+//! MESH: a bar of 5 cells, a 2 x 1 rectangle of 4 x 3 cells, a 2 x 1 x 1.5 box of 3 x 3 x 2 cells; inner nodes are
+//! moved by up to a fifth of a cell; E = 7, nu = 0.3.
 
 use crate::bodies::{difference, distort, distorted, largest, nodal_of, solve_held};
 use signorini::fem::Formulation;
@@ -13,7 +13,7 @@ use signorini::fem::{ElasticBody, Integration};
 use signorini::fem::{ElementKind, Mesh};
 use signorini::scene::{bar, cuboid, rectangle};
 
-/// A few thousand operations on numbers of order one.
+/// Rounding of a few thousand operations on numbers of order one.
 const ROUNDING: f64 = 1e-12;
 
 const STRAIN: Formulation = Formulation::PlaneStrain { thickness: 0.5 };
@@ -25,7 +25,7 @@ fn mesh(kind: ElementKind) -> Mesh {
         1 => distort(&bar(&[0.0, 0.4, 0.8, 1.2, 1.6, 2.0]).unwrap(), [0.08, 0.0, 0.0]),
         2 => distorted(kind),
         _ => {
-            // Fewer quadratic cells: their nodes make the curved edges that the test is about.
+            // Quadratic meshes have fewer cells; their nodes make the curved edges that the test needs.
             let along: &[f64] = if kind.is_quadratic() { &[0.0, 0.9, 2.0] } else { &[0.0, 0.7, 1.4, 2.0] };
             let regular = cuboid(along, &[0.0, 0.3, 0.7, 1.0], &[0.0, 0.5, 1.0, 1.5], kind).unwrap();
             let reach = [0.1, 0.05, 0.08];
@@ -34,7 +34,7 @@ fn mesh(kind: ElementKind) -> Mesh {
     }
 }
 
-/// The orthotropic material with the numbers of E = 7, nu = 0.3, along axes that must not matter.
+/// The orthotropic material with the constants of E = 7, nu = 0.3; the direction of its axes has no effect.
 fn twin(formulation: &Formulation) -> Material {
     let material = Material::orthotropic([7.0; 3], [0.3; 3], [7.0 / 2.6; 3]).unwrap();
     let (first, second) = match formulation {
@@ -44,7 +44,8 @@ fn twin(formulation: &Formulation) -> Material {
     material.along(first, second).unwrap()
 }
 
-/// Every element in every formulation, of an isotropic and of an orthotropic material, with both integrations where there are two.
+/// Every element in every formulation, with an isotropic and an orthotropic material, and with mean dilatation if the
+/// element has it.
 pub fn all() -> Vec<(String, ElasticBody)> {
     use ElementKind::{Hex8, Hex20, Line2, Q4, Q8, T3, T6, Tet4, Tet10};
     let mut cases = vec![(Line2, BAR)];
@@ -67,7 +68,7 @@ pub fn all() -> Vec<(String, ElasticBody)> {
     found
 }
 
-/// A displacement of constant strain; about an axis radius and height stretch and do not shear.
+/// A displacement of constant strain; in an axisymmetric body radius and height are stretched without shear.
 fn linear(formulation: &Formulation) -> fn([f64; 3]) -> [f64; 3] {
     match formulation {
         Formulation::Axisymmetric => |[x, y, _]| [0.03 * x, 0.1 - 0.05 * y, 0.0],
@@ -147,7 +148,7 @@ fn stress_that_is_linear_is_exact_at_the_nodes_of_quadratic_elements() {
 }
 
 #[test]
-fn rigid_body_modes_cause_no_force_but_a_radial_one_does() {
+fn rigid_body_modes_cause_no_force_and_a_radial_motion_does() {
     for (name, body) in all() {
         type Motion = (fn([f64; 3]) -> [f64; 3], f64);
         let motions: &[Motion] = match body.formulation() {
@@ -187,7 +188,7 @@ fn assembled_stiffness_and_internal_force_agree() {
 }
 
 #[test]
-fn stiffness_with_supports_is_the_part_of_the_free_dofs() {
+fn stiffness_with_supports_is_the_submatrix_of_the_free_dofs() {
     for (name, body) in all() {
         let count = body.nodal_dofs();
         let full = fem::stiffness(&body, &DofMap::new(vec![None; count]).unwrap()).unwrap();
@@ -201,7 +202,7 @@ fn stiffness_with_supports_is_the_part_of_the_free_dofs() {
 }
 
 #[test]
-fn stiffness_has_no_other_zero_energy_than_rigid_body_modes() {
+fn only_rigid_body_modes_have_zero_energy() {
     for (name, body) in all() {
         let dofs = DofMap::new(vec![None; body.nodal_dofs()]).unwrap();
         let stiffness = fem::stiffness(&body, &dofs).unwrap();
@@ -221,7 +222,7 @@ fn stiffness_has_no_other_zero_energy_than_rigid_body_modes() {
 }
 
 #[test]
-fn mean_dilatation_is_refused_by_name_where_it_does_nothing() {
+fn mean_dilatation_is_refused_by_name_for_elements_without_it() {
     for (kind, formulation, phrase) in [
         (ElementKind::T3, STRAIN, "not for T3"),
         (ElementKind::Q8, STRAIN, "not for Q8"),
@@ -234,8 +235,8 @@ fn mean_dilatation_is_refused_by_name_where_it_does_nothing() {
     }
 }
 
-/// The sinking of the loaded corner of a block whose bottom, left and right sides hold it, by a pressure on the left
-/// half of its top; nu = 0.4999.
+/// The settlement of the loaded corner of a block under a pressure on the left half of its top; supports hold its
+/// bottom, left and right sides; nu = 0.4999.
 fn sinking(mesh: Mesh, formulation: Formulation, integration: Integration) -> f64 {
     let material = Material::new(1.0, 0.4999).unwrap();
     let body = ElasticBody::new(mesh, material, formulation).unwrap().with_integration(integration).unwrap();
@@ -254,24 +255,24 @@ fn sinking(mesh: Mesh, formulation: Formulation, integration: Integration) -> f6
 }
 
 #[test]
-fn mean_dilatation_does_not_lock_where_the_standard_element_does() {
+fn mean_dilatation_does_not_lock_and_the_standard_element_does() {
     let lines = |cells: usize| (0..=cells).map(|i| i as f64 / cells as f64).collect::<Vec<f64>>();
     let plane = |cells: usize, kind| rectangle(&lines(cells), &lines(cells), kind).unwrap();
     let formulation = Formulation::PlaneStrain { thickness: 1.0 };
-    // Quadratic elements on a mesh four times as fine are the reference; they differ from the next finer ones by 0.3 %.
+    // The reference has quadratic elements on a mesh four times as fine; the next finer mesh changes it by 0.3 %.
     let exact = sinking(plane(32, ElementKind::Q8), formulation, Integration::Standard);
     let free = sinking(plane(8, ElementKind::Q4), formulation, Integration::MeanDilatation);
     let locked = sinking(plane(8, ElementKind::Q4), formulation, Integration::Standard);
     assert!((free / exact - 1.0).abs() < 0.05, "mean dilatation {free}, reference {exact}");
     assert!(locked / exact < 0.8, "standard {locked}, reference {exact}");
-    // A layer of hexahedra between two planes is plane strain, node by node.
+    // A layer of hexahedra between two planes is in plane strain, node by node.
     let layer = cuboid(&lines(8), &lines(8), &[0.0, 1.0], ElementKind::Hex8).unwrap();
     let in_space = sinking(layer, Formulation::Space, Integration::MeanDilatation);
     assert!((in_space / free - 1.0).abs() < 1e-9, "{in_space} and {free}");
 }
 
 #[test]
-fn revolved_bodies_have_the_volume_of_the_full_circle_and_no_negative_radius() {
+fn revolved_bodies_have_the_volume_of_the_full_circle_and_refuse_negative_radii() {
     for kind in [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8] {
         let body = ElasticBody::new(mesh(kind), Material::new(1.0, 0.3).unwrap(), Formulation::Axisymmetric).unwrap();
         let mut load = vec![0.0; body.nodal_dofs()];
@@ -285,7 +286,7 @@ fn revolved_bodies_have_the_volume_of_the_full_circle_and_no_negative_radius() {
 }
 
 #[test]
-fn principal_stresses_in_space_are_ordered_and_follow_an_example_by_hand() {
+fn principal_stresses_in_space_are_ordered_and_agree_with_an_example_by_hand() {
     // [[2, 1, 0], [1, 2, 0], [0, 0, -5]]: 3, 1, -5.
     let stress = Stress::in_space([2.0, 2.0, -5.0, 1.0, 0.0, 0.0]);
     let found = [stress.sigma_1, stress.sigma_2, stress.sigma_3];

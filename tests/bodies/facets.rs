@@ -1,7 +1,7 @@
-//! Loads on facets: nodal shares of a uniform load, pressures along the outward normal, and the structured meshes below
-//! them.
+//! Loads on facets: nodal shares of a uniform load, pressures along the outward normal, and the structured meshes used
+//! for both.
 //!
-//! REFERENCE: line2 1/2; line3 1/6, 4/6, 1/6; Q4 1/4; T3 1/3; a frustum of a circle weighted by its radius.
+//! REFERENCE: shares of line2 1/2; line3 1/6, 4/6, 1/6; Q4 1/4; T3 1/3; of a conical surface, weighted by the radius.
 
 use signorini::fem::ElasticBody;
 use signorini::fem::Formulation;
@@ -40,14 +40,15 @@ const ALL: [ElementKind; 7] = [
 ];
 
 #[test]
-fn nodes_of_a_uniformly_loaded_facet_take_their_known_shares() {
+fn nodes_of_a_uniformly_loaded_facet_get_their_known_shares() {
     for (kind, area, shares) in [
         (ElementKind::T3, 0.5, vec![0.5, 0.5]),
         (ElementKind::Q4, 0.5, vec![0.5, 0.5]),
         (ElementKind::T6, 0.5, vec![1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0]),
         (ElementKind::Q8, 0.5, vec![1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0]),
         (ElementKind::Hex8, 2.0, vec![0.25; 4]),
-        // Two triangles share the diagonal: 1/6 of the whole to the corners off it, twice that on it.
+        // Two triangles share the diagonal: the corners off the diagonal get 1/6 of the whole, those on it twice as
+        // much.
         (ElementKind::Tet4, 2.0, vec![1.0 / 3.0, 1.0 / 6.0, 1.0 / 3.0, 1.0 / 6.0]),
         (ElementKind::Line2, 0.25, vec![1.0]),
     ] {
@@ -63,7 +64,7 @@ fn nodes_of_a_uniformly_loaded_facet_take_their_known_shares() {
 
 #[test]
 fn rings_are_loaded_in_proportion_to_their_circumference() {
-    // Integrals of (1 - s), s and of the quadratic functions over [0, 1], times 2 pi (1 + s).
+    // Integrals of (1 - s), s and the quadratic functions over [0, 1], times 2 pi (1 + s).
     let turn = std::f64::consts::TAU;
     for (kind, shares) in [
         (ElementKind::Q4, vec![2.0 / 3.0, 5.0 / 6.0]),
@@ -81,7 +82,7 @@ fn rings_are_loaded_in_proportion_to_their_circumference() {
 }
 
 #[test]
-fn pressure_pushes_against_the_outward_normal_of_every_side_and_leaves_no_resultant_on_a_closed_surface() {
+fn pressure_acts_against_the_outward_normal_and_has_no_resultant_on_a_closed_surface() {
     for kind in ALL {
         let body = one_cell(kind);
         let dimension = body.dimension();
@@ -159,13 +160,13 @@ fn tetrahedra_of_neighbouring_cells_share_their_faces() {
             *faces.entry(nodes).or_insert(0) += 1;
         }
     }
-    // Six sides of four cells of two triangles.
+    // Each of the six sides has four cells of two triangles.
     assert_eq!(faces.values().filter(|&&count| count == 1).count(), 48);
     assert!(faces.values().all(|&count| count <= 2));
 }
 
 #[test]
-fn facets_that_do_not_fit_their_mesh_are_refused() {
+fn facets_that_do_not_match_their_mesh_are_refused() {
     let square = |boundary| {
         let nodes = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| [x, y, 0.0]).to_vec();
         Mesh::new(nodes, ElementKind::Q4, vec![0, 1, 2, 3], vec![boundary])

@@ -1,4 +1,4 @@
-//! Malformed binary mesh files: one sentence each, with the line of the section and the byte of the record.
+//! Malformed binary mesh files: each error is one sentence with the line of the section and the byte of the record.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ fn read(content: &[u8]) -> Result<Mesh, Error> {
     GmshFile::parse(content, "body.msh").and_then(|file| file.mesh(None, 1.0))
 }
 
-/// A file of Gmsh: the unit square of `gmsh_faults.rs` in binary form.
+/// A kept file in binary form: the unit square of `gmsh_faults.rs`.
 fn square(name: &str) -> Vec<u8> {
     std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults").join(name)).unwrap()
 }
@@ -24,14 +24,14 @@ fn section(content: &[u8], name: &str) -> (usize, usize) {
     (begin + head.len(), 1 + content[..begin].iter().filter(|&&byte| byte == b'\n').count())
 }
 
-/// Replaces what stands `at` bytes behind the line `$name`, and looks for the sentence of the record `record` bytes behind.
+/// Replaces bytes at the offset `at` after the line `$name`. The error must name the record at the offset `record`.
 fn check(file: &str, name: &str, (record, at): (usize, usize), bytes: &[u8], phrase: &str) {
     let mut content = square(file);
     let (begin, line) = section(&content, name);
     content.splice(begin + at..begin + at + bytes.len(), bytes.iter().copied());
     let expected = format!("body.msh:{line}: at byte {}: {phrase}", begin + record);
     let found = read(&content).unwrap_err().to_string();
-    assert!(found.starts_with(&expected), "{found}\nis not {expected}");
+    assert!(found.starts_with(&expected), "{found}\ndoes not start with {expected}");
 }
 
 #[test]
@@ -72,7 +72,7 @@ fn faults_of_version_2_have_the_byte_of_their_record() {
 }
 
 #[test]
-fn a_section_without_its_end_is_told() {
+fn a_section_without_its_end_is_a_located_fault() {
     for file in ["square2b.msh", "square4b.msh"] {
         let content = square(file);
         let (nodes, line) = section(&content, "Nodes");
@@ -89,11 +89,11 @@ fn a_section_without_its_end_is_told() {
     }
 }
 
-/// A fault names a byte of the file and the line in which a section begins, or where one should.
+/// Asserts that an error names a byte of the file, and the line in which a section begins or should begin.
 fn assert_located(content: &[u8], error: &Error) {
     let Error::FileSyntax { line, message, .. } = error else { panic!("{error}") };
     let text = content.split(|&byte| byte == b'\n').nth(line - 1).unwrap_or_else(|| panic!("{error}"));
-    assert!(message.len() < 400 && !message.contains(char::is_control), "one sentence: {error}");
+    assert!(message.len() < 400 && !message.contains(char::is_control), "the error is not one sentence: {error}");
     let Some((byte, _)) = message.strip_prefix("at byte ").and_then(|rest| rest.split_once(": ")) else {
         return assert!(*line <= 3, "{error}");
     };
@@ -105,12 +105,13 @@ fn assert_located(content: &[u8], error: &Error) {
 }
 
 #[test]
-fn a_binary_file_cut_anywhere_is_a_located_fault() {
+fn a_binary_file_cut_at_any_byte_is_a_located_fault() {
     for form in FORMS.into_iter().filter(|(_, form)| *form != Form::Ascii) {
         for whole in [plane(1).written(form), space(1).written(form)] {
             let end = whole.windows(12).rposition(|window| window == b"$EndElements").unwrap();
             for cut in 0..end + 12 {
-                let error = read(&whole[..cut]).err().unwrap_or_else(|| panic!("{form:?}, cut at {cut}: accepted"));
+                let error =
+                    read(&whole[..cut]).err().unwrap_or_else(|| panic!("{form:?}, cut at {cut}: the file is accepted"));
                 assert_located(&whole[..cut], &error);
             }
         }

@@ -1,9 +1,9 @@
-//! Malformed mesh files: one sentence each, with file and line.
+//! Malformed mesh files: each error is one sentence with file and line.
 
 use signorini::Error;
 use signorini::fem::GmshFile;
 
-/// A unit square of two triangles in version 2.2; every line of it can be replaced.
+/// A unit square of two triangles in version 2.2; a test may replace any line.
 const V2: [&str; 24] = [
     "$MeshFormat",
     "2.2 0 8",
@@ -31,7 +31,7 @@ const V2: [&str; 24] = [
     "",
 ];
 
-/// The same in version 4.1.
+/// The same square in version 4.1.
 const V4: [&str; 36] = [
     "$MeshFormat",
     "4.1 0 8",
@@ -75,7 +75,7 @@ fn text(lines: &[&str]) -> String {
     lines.join("\n")
 }
 
-/// The lines with one of them (from 1) replaced.
+/// The lines with one replaced; lines are counted from 1.
 fn with(lines: &[&str], line: usize, replacement: &str) -> String {
     let mut lines = lines.to_vec();
     lines[line - 1] = replacement;
@@ -91,17 +91,17 @@ fn check(text: &str, expected_line: usize, phrase: &str) {
         Err(Error::FileSyntax { file, line, message }) => {
             assert_eq!(file.to_str(), Some("folder/body.msh"));
             assert!(line == expected_line && message.contains(phrase), "{phrase}: line {line}: {message}");
-            assert!(!message.contains('\n'), "one sentence: {message}");
+            assert!(!message.contains('\n'), "the error is not one sentence: {message}");
         }
         other => panic!("{phrase}: {other:?}"),
     }
 }
 
 #[test]
-fn both_versions_say_the_same() {
+fn both_versions_give_the_same_mesh() {
     let (old, new) = (read(&text(&V2)).unwrap(), read(&text(&V4)).unwrap());
     assert_eq!((old.nodes().len(), old.element_count()), (4, 2));
-    // Nodes keep the order of the file.
+    // Nodes stay in the order of the file.
     assert_eq!(old.nodes(), [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]]);
     assert_eq!(old.boundary("floor").unwrap().nodes(), [0, 2]);
     assert_eq!(new.boundary("floor").unwrap().nodes(), [0, 1]);
@@ -109,14 +109,14 @@ fn both_versions_say_the_same() {
 }
 
 #[test]
-fn line_ends_and_blank_lines_do_not_matter() {
+fn line_ends_and_blank_lines_do_not_change_the_mesh() {
     assert_eq!(read(&text(&V2).replace('\n', "\r\n")).unwrap(), read(&text(&V2)).unwrap());
     let commented = format!("\u{feff}$Comments\nby hand\n$EndComments\n\n{}\n\n", text(&V4));
     assert_eq!(read(&commented).unwrap(), read(&text(&V4)).unwrap());
 }
 
 #[test]
-fn faults_of_files_have_their_line() {
+fn faults_of_files_are_reported_with_their_line() {
     let cases = [
         (String::new(), 1, "without a section `$MeshFormat`"),
         ("hello".into(), 1, "it is no mesh of Gmsh"),
@@ -185,7 +185,7 @@ fn a_line_number_counts_blank_lines() {
 }
 
 #[test]
-fn elements_that_make_no_body_are_refused_at_their_line() {
+fn elements_that_do_not_form_a_body_are_refused_with_their_line() {
     let cases = [
         (with(&V2, 22, "5 3 2 2 1 10 20 30 40"), 22, "mixes 1 three-node triangles, 1 four-node quadrilaterals"),
         (with(&V2, 22, "5 2 2 2 1 10 40 30"), 22, "element 5: the Jacobian determinant is"),
@@ -200,7 +200,7 @@ fn elements_that_make_no_body_are_refused_at_their_line() {
 }
 
 #[test]
-fn kinds_that_no_body_is_made_of_are_refused_with_the_reason() {
+fn element_types_that_no_body_supports_are_refused_with_the_reason() {
     let nodes: Vec<String> = (1..=27).map(|tag| format!("{tag} {tag} 0 0")).collect();
     let refused = |number: usize, count: usize, phrase: &str| {
         let element: Vec<String> = (1..=count).map(|tag| tag.to_string()).collect();
@@ -221,7 +221,7 @@ fn kinds_that_no_body_is_made_of_are_refused_with_the_reason() {
 }
 
 #[test]
-fn a_mesh_that_is_clockwise_throughout_is_turned() {
+fn a_mesh_whose_elements_are_all_clockwise_is_reoriented() {
     let turned = with(&V2, 21, "4 2 2 2 1 30 20 10").replace("5 2 2 2 1 10 30 40", "5 2 2 2 1 40 30 10");
     let mesh = read(&turned).unwrap();
     let area = |nodes: &[usize]| {
@@ -234,12 +234,12 @@ fn a_mesh_that_is_clockwise_throughout_is_turned() {
                      2 8 2 3 1 1 4 8\n$EndElements\n";
     let mesh = read(quadratic).unwrap();
     assert_eq!(mesh.elements().next().unwrap(), [0, 3, 2, 1, 7, 6, 5, 4]);
-    // A group without a name is called by its number.
+    // A group without a name gets its number as name.
     assert_eq!(mesh.boundary("3").unwrap().nodes(), [0, 7, 3]);
 }
 
 #[test]
-fn a_plane_mesh_lies_at_any_height_and_is_scaled() {
+fn a_plane_mesh_may_have_any_height_and_is_scaled() {
     let high = text(&V2).replace(" 0 0 0\n", " 0 0 7\n").replace("0 1 0\n2", "0 1 7\n2");
     let high = high.replace("20 1 0 0", "20 1 0 7").replace("30 1 1 0", "30 1 1 7");
     let mesh = GmshFile::parse(&high, "high.msh").unwrap().mesh(None, 1e-3).unwrap();
@@ -251,7 +251,7 @@ fn a_plane_mesh_lies_at_any_height_and_is_scaled() {
 }
 
 #[test]
-fn a_domain_that_does_not_exist_is_told_with_those_that_do() {
+fn an_unknown_group_is_refused_with_the_names_of_the_existing_ones() {
     let file = GmshFile::parse(text(&V2), "x").unwrap();
     let message = file.mesh(Some("bulk"), 1.0).unwrap_err().to_string();
     assert!(message.contains("no physical group `bulk`") && message.contains("floor, body"), "{message}");
@@ -259,13 +259,13 @@ fn a_domain_that_does_not_exist_is_told_with_those_that_do() {
 }
 
 #[test]
-fn a_file_cut_anywhere_is_an_error_and_never_a_panic() {
+fn a_file_cut_at_any_byte_is_an_error_and_never_a_panic() {
     for whole in [text(&V2), text(&V4)] {
         let end = whole.find("$EndElements").unwrap();
         for cut in 0..end {
             assert!(read(&whole[..cut]).is_err(), "cut at {cut}");
         }
-        // Every byte replaced: an error or a mesh.
+        // Replaces every byte: the result is an error or a mesh, never a panic.
         for place in 0..whole.len() {
             for byte in ["0", "$", "-", "\n", "9", "\""] {
                 let mut changed = whole.clone();

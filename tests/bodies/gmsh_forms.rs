@@ -1,4 +1,4 @@
-//! One mesh in every form of `.msh`, ASCII and binary, is the same mesh to the last bit.
+//! One mesh in every form of `.msh`, ASCII and binary, is read as the same mesh to the last bit.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ fn random(mut state: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// Tags with gaps and out of order, and a place near each point of a lattice.
+/// Nodes with tags that have gaps and no order, each near a point of a lattice.
 fn nodes(seed: u64, lattice: &[[i32; 3]], axes: usize) -> Vec<(u64, [f64; 3])> {
     let mut random = random(seed);
     let mut tags: Vec<u64> = (0..lattice.len() as u64).map(|place| 3 * place + 7).collect();
@@ -31,7 +31,7 @@ fn nodes(seed: u64, lattice: &[[i32; 3]], axes: usize) -> Vec<(u64, [f64; 3])> {
     tags.into_iter().zip(lattice.iter().map(&mut near)).collect()
 }
 
-/// Cells of three-node triangles, 4 x 3, with a group on two sides and elements of no group on the third.
+/// Three-node triangles in 4 x 3 cells, with a group on two sides and elements without a group on the third.
 pub fn plane(seed: u64) -> Drawing {
     let lattice: Vec<[i32; 3]> = (0..4).flat_map(|y| (0..5).map(move |x| [x, y, 0])).collect();
     let nodes = nodes(seed, &lattice, 2);
@@ -53,7 +53,7 @@ pub fn plane(seed: u64) -> Drawing {
     Drawing { names: vec![(1, 2, "floor"), (2, 9, "body")], nodes, parts }
 }
 
-/// Eight-node bricks, 2 x 2 x 2, with a group below.
+/// Eight-node bricks, 2 x 2 x 2, with a group at the bottom.
 pub fn space(seed: u64) -> Drawing {
     let lattice: Vec<[i32; 3]> = (0..27).map(|place| [place % 3, place / 3 % 3, place / 9]).collect();
     let nodes = nodes(seed, &lattice, 3);
@@ -69,13 +69,13 @@ pub fn space(seed: u64) -> Drawing {
     Drawing { names: vec![(2, 3, "floor"), (3, 4, "body")], nodes, parts }
 }
 
-/// Everything that a file says.
+/// The whole content of a file.
 #[derive(PartialEq)]
 struct Said {
     mesh: Mesh,
-    /// The nodes, each number as its bits.
+    /// The coordinates of the nodes, bit by bit.
     bits: Vec<[u64; 3]>,
-    /// Dimension, tag and name of physical groups.
+    /// Dimension, tag and name of each physical group.
     groups: Vec<(usize, u64, String)>,
     bodies: Vec<String>,
 }
@@ -99,7 +99,7 @@ fn six_forms_of_a_mesh_give_the_same_bits() {
             for (form, content) in &others {
                 assert!(said(content, "other") == expected, "{form:?}, seed {seed}");
             }
-            // One bit more is another mesh.
+            // A change of one bit gives another mesh.
             let mut other = drawing;
             other.nodes[0].1[0] = other.nodes[0].1[0].next_up();
             assert!(FORMS.iter().all(|form| said(&other.written(*form), "moved").bits != expected.bits));
@@ -108,7 +108,7 @@ fn six_forms_of_a_mesh_give_the_same_bits() {
 }
 
 #[test]
-fn binary_files_are_no_text() {
+fn binary_files_are_not_valid_text() {
     let drawing = plane(1);
     let [little, big] = [Form::Little, Form::Big].map(|form| drawing.written((4.1, form)));
     assert!(little != big && little.len() == big.len());
@@ -116,7 +116,7 @@ fn binary_files_are_no_text() {
 }
 
 #[test]
-fn four_files_of_gmsh_hold_one_cube() {
+fn four_files_of_gmsh_contain_the_same_cube() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes");
     let [first, others @ ..] = ["4.1-ascii", "4.1-binary", "2.2-ascii", "2.2-binary"]
         .map(|form| (form, std::fs::read(folder.join(format!("cube-tet4-{form}.msh"))).unwrap()));
@@ -128,7 +128,7 @@ fn four_files_of_gmsh_hold_one_cube() {
 }
 
 #[test]
-fn what_is_no_text_in_a_comment_is_passed_over() {
+fn a_comment_that_is_not_valid_text_is_skipped() {
     let content = plane(1).written((2.2, Form::Ascii));
     let commented = [b"$Comments\nbr\xfccke \xff\n$EndComments\n".as_slice(), &content].concat();
     assert!(said(&commented, "commented") == said(&content, "plain"));

@@ -1,4 +1,4 @@
-//! Bodies without contact: elements, meshes, loads, mass, norms, and linear answers against exact ones.
+//! Bodies without contact: elements, meshes, loads, mass, norms, and linear answers compared with exact ones.
 
 #[path = "../support/bodies.rs"]
 mod bodies;

@@ -1,10 +1,10 @@
-//! Blocks whose exact solution is known: the solution itself, errors in norms, rates.
+//! Blocks with a known exact solution: the solution itself, errors in norms, and rates.
 //!
 //! GOAL        relative errors in energy and L2 on the unit square, and their rates
 //! MESH        n x n cells, T3 and T6 cut from (i,j) to (i+1,j+1)
 //! CONDITIONS  exact displacement left, right and above; contact below
 //! PARAMETERS  E = 1, nu = 0.3, plane strain; smooth k = 3, x0 = 0.5, A = B = 1; edge x0 = 0.53, p0 = 1; Hertz a = 0.53, p0 = 1
-//! REFERENCE   errors of an independent implementation, and the quadrature that it used; theory of the rates
+//! REFERENCE   errors of an independent implementation, with its quadrature; theoretical rates
 
 #[path = "../../tools/verification/reference_errors.rs"]
 mod reference_errors;
@@ -15,10 +15,10 @@ use reference_errors::{REFERENCE, reference_rule};
 use signorini::fem::ElementKind::{self, Hex20, Q4, Q8, T3, T6, Tet10};
 use signorini::fem::Integration;
 
-/// Half a unit of the last digit of the energy errors, and a tenth of it for rounding, as a share of the first digit.
+/// Half a unit of the last digit of the energy errors, with a tenth more for rounding, relative to the first digit.
 const FOUR_DIGITS: f64 = 0.55e-3;
 
-/// The same of the L2 errors, which were rounded to four digits first: 2.0246 to 2.025 to 2.03.
+/// Half a unit of the last digit of the L2 errors, which were rounded to four digits first: 2.0246 to 2.025 to 2.03.
 const THREE_DIGITS: f64 = 5.5e-3;
 
 fn elasticity() -> PlaneElasticity {
@@ -42,7 +42,7 @@ fn solved(exact: &dyn ContactSolution, kind: ElementKind, cells: usize) -> Solve
 }
 
 #[test]
-fn errors_are_those_of_an_independent_implementation_by_its_quadrature() {
+fn errors_agree_with_an_independent_implementation_with_its_quadrature() {
     let (smooth, edge, hertz) = (smooth(), edge(), hertz());
     for reference in &REFERENCE {
         let exact: &dyn ContactSolution = match reference.block {
@@ -62,9 +62,10 @@ fn errors_are_those_of_an_independent_implementation_by_its_quadrature() {
     }
 }
 
-/// Norms by 8 x 8 points in each of 32 x 32 parts of the cells around the edge, found by a separate program.
+/// The expected norms are from a separate program, with 8 x 8 points in each of 32 x 32 parts of the cells around the
+/// edge.
 #[test]
-fn errors_at_the_edge_of_the_contact_are_integrated_in_four_digits() {
+fn errors_at_the_edge_of_the_contact_are_integrated_to_four_digits() {
     for (exact, kind, cells, energy, l2) in [
         (&edge() as &dyn ContactSolution, T3, 16, 5.7211e-2, 2.0246e-3),
         (&edge(), Q4, 16, 2.8947e-2, 1.0617e-3),
@@ -78,33 +79,33 @@ fn errors_at_the_edge_of_the_contact_are_integrated_in_four_digits() {
         let block = solved(exact, kind, cells);
         let errors = block.errors().unwrap();
         for (name, ours, expected) in [("energy", errors.energy, energy), ("L2", errors.l2, l2)] {
-            // A unit of the fifth digit.
+            // One unit of the fifth digit.
             assert!((ours / expected - 1.0).abs() < 1e-4, "{kind:?} n = {cells}, {name}: {ours:.5e}, {expected:.4e}");
         }
-        // What the rules of four points in each direction miss.
+        // Error of the quadrature rules with four points in each direction.
         let coarse = block.errors_by(&reference_rule(kind)).unwrap();
         assert!((coarse.energy / energy - 1.0).abs() < 0.0095, "{kind:?} n = {cells}: {coarse:?}");
     }
 }
 
 #[test]
-fn energy_rates_average_to_those_of_the_theory() {
+fn average_rates_of_the_energy_error_are_those_of_the_theory() {
     let cases: [(&str, &dyn ContactSolution, [f64; 2]); 3] =
         [("smooth", &smooth(), [1.0, 2.0]), ("edge", &edge(), [1.0, 1.5]), ("hertz", &hertz(), [1.0, 1.5])];
     for (name, exact, expected) in cases {
         for kind in [T3, Q4, T6, Q8] {
-            // Three refinements, n = 8 to 64.
+            // Three refinements, from n = 8 to 64.
             let [first, last] = [8, 64].map(|cells| solved(exact, kind, cells).errors().unwrap());
             let rate = |coarse: f64, fine: f64| (coarse / fine).log2() / 3.0;
             let energy = rate(first.energy, last.energy);
             let l2 = rate(first.l2, last.l2);
-            // The averages differ from the limit by what the first, coarse step does: 0.06 at most.
+            // The first, coarse refinement makes the average differ from the limit by at most 0.06.
             let limit = expected[usize::from(kind.is_quadratic())];
             assert!((energy - limit).abs() < 0.08, "{name} {kind:?}: energy rate {energy:.3}");
             let l2_limit = match (kind.is_quadratic(), name) {
                 (false, _) => 2.0,
                 (true, "smooth") => 3.0,
-                // No theory fixes this one; it lies between.
+                // No theory gives this rate; it is between the two others.
                 (true, _) => 2.37,
             };
             assert!((l2 - l2_limit).abs() < 0.15, "{name} {kind:?}: L2 rate {l2:.3}");
@@ -114,7 +115,7 @@ fn energy_rates_average_to_those_of_the_theory() {
 
 #[test]
 fn quadratic_elements_in_space_have_the_energy_rates_of_the_theory_in_contact() {
-    // The contact edge of Hertz lies inside a cell: from step to step the rate is erratic, on the mean 1.2 to 1.5.
+    // The contact edge of Hertz lies inside a cell: the rate varies from step to step, and its mean is 1.2 to 1.5.
     let cases: [(&str, &dyn ContactSolution, f64, f64); 2] =
         [("smooth", &smooth(), 2.0, 0.06), ("hertz", &hertz(), 1.35, 0.2)];
     for (name, exact, limit, allowed) in cases {
@@ -122,7 +123,7 @@ fn quadratic_elements_in_space_have_the_energy_rates_of_the_theory_in_contact() 
             let [first, last] = [4, 16].map(|cells| solve_plate(exact, kind, cells).unwrap());
             let rate = (first.errors().unwrap().energy / last.errors().unwrap().energy).log2() / 2.0;
             assert!((rate - limit).abs() < allowed, "{name} {kind:?}: energy rate {rate:.3}");
-            assert!(last.pressure.iter().all(|at| at.ours >= 0.0), "{name} {kind:?} pulls");
+            assert!(last.pressure.iter().all(|at| at.ours >= 0.0), "{name} {kind:?}: a pressure is negative");
         }
     }
 }
@@ -131,13 +132,13 @@ fn quadratic_elements_in_space_have_the_energy_rates_of_the_theory_in_contact() 
 fn peak_pressure_of_the_hertz_block_is_that_of_the_reference() {
     for (cells, expected) in [(16, 0.99257), (32, 0.99817), (64, 0.99955), (128, 0.99989)] {
         let [peak, _] = solved(&hertz(), Q4, cells).peak_pressure();
-        // Five digits.
+        // The reference has five digits.
         assert!((peak - expected).abs() < 6e-6, "n = {cells}: {peak}");
     }
 }
 
 #[test]
-fn peak_pressure_survives_near_incompressibility_with_mean_dilatation() {
+fn mean_dilatation_keeps_the_peak_pressure_near_incompressibility() {
     let elasticity = PlaneElasticity::plane_strain(1.0, 0.4999);
     let exact = HertzBlock { elasticity, ..hertz() };
     let peak = |integration, cells| solve_block(&exact, Q4, integration, cells).unwrap().peak_pressure()[0];
@@ -145,14 +146,15 @@ fn peak_pressure_survives_near_incompressibility_with_mean_dilatation() {
         let mean = peak(Integration::MeanDilatation, cells);
         assert!((mean - 1.0).abs() < 0.05, "n = {cells}: {mean}");
     }
-    assert!(peak(Integration::Standard, 16) > 2.0, "the standard element locks");
+    assert!(peak(Integration::Standard, 16) > 2.0, "the standard element does not lock");
 }
 
-/// At a grid of points: the gradient is that of the displacement, the stress is in equilibrium with the body force, and
-/// on y = 0 there is no shear, and pressure only where the body rests on the obstacle.
+/// Checks at a grid of points: the gradient is the derivative of the displacement, the stress is in equilibrium with
+/// the body force, and on y = 0 there is no shear stress, and a pressure only if the body touches the obstacle.
 #[test]
 fn exact_solutions_satisfy_the_equations() {
-    // Central differences of step 1e-5: errors of 1e-10 by the step, 1e-11 by rounding, times second derivatives of up to 1e3.
+    // Central differences with step 1e-5: an error of 1e-10 by the step and 1e-11 by rounding, times second derivatives
+    // of up to 1e3.
     let (step, tolerance) = (1e-5, 1e-6);
     let cases: [&dyn ContactSolution; 3] = [&smooth(), &edge(), &hertz()];
     for (case, exact) in cases.into_iter().enumerate() {

@@ -1,7 +1,7 @@
-//! GOAL: every form of the mass has the mass and the centre of the body.
+//! GOAL: every form of the mass matrix has the mass and the centre of mass of the body.
 //!
-//! REFERENCE: volume and moments by quadrature of body forces; the motion of a linear velocity, which the shape
-//! functions contain exactly.
+//! REFERENCE: volume and moments by the quadrature of body forces; the kinetic energy of a linear velocity, which the
+//! shape functions represent exactly.
 
 use crate::bodies::{distort, distorted, nodal_of};
 use signorini::Error;
@@ -14,14 +14,14 @@ use signorini::internals::Cholesky;
 use signorini::internals::dot;
 use signorini::scene::{bar, cuboid};
 
-/// Sums over a mesh, by two quadratures.
+/// Rounding of sums over a mesh with two quadratures.
 const SAME: f64 = 1e-12;
 
 const DENSITY: f64 = 3.0;
 
 const LINES: [f64; 6] = [0.0, 0.2, 0.4, 0.7, 0.9, 1.2];
 
-/// A distorted body of every element and a formulation for it, with a side that shall be the contact boundary.
+/// A distorted body of every element in a suitable formulation, and the side that is its contact boundary.
 fn bodies() -> Vec<(ElasticBody, &'static str)> {
     let material = Material::new(7.0, 0.3).unwrap().with_density(DENSITY).unwrap();
     let mut bodies = Vec::new();
@@ -54,7 +54,7 @@ fn integral(body: &ElasticBody, field: impl Fn([f64; 3]) -> f64) -> f64 {
 }
 
 #[test]
-fn mass_and_centre_are_those_of_the_body_in_every_form() {
+fn every_form_of_the_mass_matrix_has_the_mass_and_centre_of_the_body() {
     for (body, side) in bodies() {
         for form in [MassForm::Consistent, MassForm::Lumped, MassForm::Redistributed] {
             let matrix = mass(&body, &all_free(&body), form, &contact_nodes(&body, side)).unwrap();
@@ -62,7 +62,7 @@ fn mass_and_centre_are_those_of_the_body_in_every_form() {
             let along = nodal_of(body.mesh(), |_| [1.0, 0.0, 0.0]);
             let (size, total) = (body.mesh().size(), integral(&body, |_| 1.0));
             assert!((dot(&along, &matrix.mul(&along)) - total).abs() <= SAME * total, "{what}: mass");
-            // Diagonal scaling of quadratic elements keeps the centre of straight ones only.
+            // The diagonally scaled mass of quadratic elements has the right centre only if the elements are straight.
             if form == MassForm::Lumped && body.mesh().kind().is_quadratic() {
                 continue;
             }
@@ -86,14 +86,14 @@ fn the_consistent_mass_has_the_kinetic_energy_of_a_linear_velocity() {
     }
 }
 
-/// Local axes at some nodes change the numbers of a velocity, not its energy.
+/// Local axes at some nodes change the components of a velocity, but not its energy.
 #[test]
 fn kinetic_energy_does_not_depend_on_the_frames_of_nodes() {
     for (body, side) in bodies().into_iter().filter(|(body, _)| body.dimension() > 1) {
         let dimension = body.dimension();
         let inclined: &[[f64; 3]] =
             if dimension == 2 { &[[0.6, 0.8, 0.0]] } else { &[[0.6, 0.8, 0.0], [0.0, 0.0, 1.0]] };
-        // Two nodes of three, in frames of two kinds, so that all combinations of neighbours appear.
+        // Two of three nodes have local axes, of two kinds, so that all combinations of neighbours occur.
         let nodes = (0..body.mesh().nodes().len()).filter(|node| node % 3 != 0);
         let frames =
             nodes.map(|node| (node, Frame::completing(&inclined[..node % 3 % inclined.len() + 1], dimension).unwrap()));
@@ -110,7 +110,7 @@ fn kinetic_energy_does_not_depend_on_the_frames_of_nodes() {
 }
 
 #[test]
-fn redistributed_mass_leaves_contact_nodes_none_and_is_definite_on_the_others() {
+fn redistributed_mass_is_zero_at_contact_nodes_and_definite_at_the_others() {
     for (body, side) in bodies() {
         let nodes = contact_nodes(&body, side);
         let matrix = mass(&body, &all_free(&body), MassForm::Redistributed, &nodes).unwrap();

@@ -1,4 +1,4 @@
-//! Orthotropic materials and bodies of several: closed forms along and off the axes, layers, what is refused.
+//! Orthotropic materials and bodies of several materials: closed forms along and off the axes, layers, refused input.
 
 use crate::bodies::{difference, distorted, largest, nodal, solve_held};
 use signorini::Error;
@@ -9,7 +9,7 @@ const STRESS: Formulation = Formulation::PlaneStress { thickness: 0.5 };
 const STRAIN: Formulation = Formulation::PlaneStrain { thickness: 0.5 };
 const ROUNDING: f64 = 1e-12;
 
-/// Carbon fibres in epoxy, in GPa: about what data sheets say.
+/// Carbon fibres in epoxy, in GPa; typical values of data sheets.
 const YOUNG: [f64; 3] = [140.0, 10.0, 9.0];
 const RATIOS: [f64; 3] = [0.3, 0.4, 0.28];
 const SHEAR: [f64; 3] = [5.0, 3.6, 4.5];
@@ -20,7 +20,7 @@ fn carbon(degrees: f64) -> Material {
     material.along([cosine, sine, 0.0], [-sine, cosine, 0.0]).unwrap()
 }
 
-/// The compliance in the plane off the axes, by the formulas of textbooks: strains [xx, yy, 2 xy] of the stress [xx, yy, xy].
+/// The compliance in the plane off the axes, by textbook formulas: strains [xx, yy, 2 xy] for the stress [xx, yy, xy].
 ///
 /// # Source
 /// R. M. Jones, *Mechanics of Composite Materials*, 2nd ed. 1999, equation 2.88.
@@ -39,7 +39,7 @@ fn off_axis(degrees: f64) -> [[f64; 3]; 3] {
 }
 
 #[test]
-fn uniform_stresses_strain_a_thin_sheet_as_the_textbook_says_on_and_off_the_axes() {
+fn a_thin_sheet_has_the_strains_of_the_textbook_along_and_off_the_axes() {
     for degrees in [0.0, 30.0, 45.0, 90.0, -70.0] {
         let compliance = off_axis(degrees);
         for stress in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
@@ -54,9 +54,10 @@ fn uniform_stresses_strain_a_thin_sheet_as_the_textbook_says_on_and_off_the_axes
     }
 }
 
-/// In plane strain E2 and nu12 act as 1/E2' = (1 - nu23 nu32)/E2 and so on; across the plane the stress is nu31 s1 + nu32 s2.
+/// In plane strain, E2 and nu12 are replaced by 1/E2' = (1 - nu23 nu32)/E2 and so on; the stress across the plane is
+/// nu31 s1 + nu32 s2.
 #[test]
-fn plane_strain_holds_the_strain_across() {
+fn plane_strain_has_the_reduced_moduli_and_the_stress_across_the_plane() {
     let body = ElasticBody::new(distorted(ElementKind::T6), carbon(0.0), STRAIN).unwrap();
     let ([e1, e2, e3], [nu12, nu23, nu13]) = (YOUNG, RATIOS);
     let (s1, s2) = (3.0, -2.0);
@@ -69,8 +70,8 @@ fn plane_strain_holds_the_strain_across() {
 }
 
 #[test]
-fn a_block_of_turned_axes_is_the_turned_block() {
-    // Axis 1 along y, axis 2 along z, axis 3 along x: the moduli change places.
+fn turned_material_axes_give_the_stiffness_of_permuted_moduli() {
+    // Axis 1 is along y, axis 2 along z, axis 3 along x: the moduli are permuted.
     let mesh = || cuboid(&[0.0, 0.6, 1.0], &[0.0, 1.0], &[0.0, 0.4, 2.0], ElementKind::Hex8).unwrap();
     let turned = Material::orthotropic(YOUNG, RATIOS, SHEAR).unwrap().along([0.0, 2.0, 0.0], [0.0, 1.0, 3.0]).unwrap();
     let ([e1, e2, e3], [nu12, nu23, nu13], [g12, g23, g13]) = (YOUNG, RATIOS, SHEAR);
@@ -83,10 +84,10 @@ fn a_block_of_turned_axes_is_the_turned_block() {
     assert!(difference(&one, &other) < ROUNDING * largest(&one), "{:e}", difference(&one, &other));
 }
 
-/// Two layers in tension along them: each has its own stress, and the stress of a node is that of its layer in the estimate, so
-/// that a mesh that is exact has no error.
+/// Two layers in tension along the layers: each has a different stress. The estimate compares each layer with its nodal
+/// stress, so that an exact mesh has no estimated error.
 #[test]
-fn layers_in_tension_share_the_strain_and_have_no_estimated_error() {
+fn layers_in_tension_have_equal_strain_and_no_estimated_error() {
     let mesh = rectangle(&[0.0, 0.7, 2.0], &[0.0, 0.4, 1.0], ElementKind::Q4).unwrap();
     let body = ElasticBody::new(mesh, Material::new(10.0, 0.0).unwrap(), STRESS).unwrap();
     let body = body.with_material(&[2, 3], Material::new(30.0, 0.0).unwrap()).unwrap();
@@ -97,7 +98,7 @@ fn layers_in_tension_share_the_strain_and_have_no_estimated_error() {
     assert!(difference(&found, &field) < ROUNDING);
     let stress = fem::stress(&body, &found).unwrap();
     for (stress, [_, y, _]) in stress.nodes.iter().zip(&nodes) {
-        // At the interface one value stands for both layers: their mean.
+        // At the interface the nodal stress is the mean of the two layers.
         let expected = if *y < 0.4 {
             0.1
         } else if *y > 0.4 {
@@ -114,7 +115,7 @@ fn layers_in_tension_share_the_strain_and_have_no_estimated_error() {
 }
 
 #[test]
-fn every_material_has_its_own_mass() {
+fn each_material_contributes_its_density_to_the_mass() {
     let mesh = rectangle(&[0.0, 0.7, 2.0], &[0.0, 0.4, 1.0], ElementKind::Q4).unwrap();
     let [light, heavy] = [2.0, 7.0].map(|density| Material::new(1.0, 0.0).unwrap().with_density(density).unwrap());
     let body = ElasticBody::new(mesh, light, STRESS).unwrap().with_material(&[1, 3], heavy).unwrap();
@@ -126,17 +127,17 @@ fn every_material_has_its_own_mass() {
 }
 
 #[test]
-fn what_is_no_stiffness_is_refused() {
+fn constants_without_a_positive_definite_stiffness_are_refused() {
     let refused = |young, ratios, shear, expected: &str| {
         let error = Material::orthotropic(young, ratios, shear).unwrap_err();
         assert!(matches!(&error, Error::Setting { name, .. } if *name == expected), "{error:?}");
     };
     refused([140.0, 0.0, 9.0], RATIOS, SHEAR, "orthotropic.young[1]");
     refused(YOUNG, RATIOS, [5.0, 3.6, f64::INFINITY], "orthotropic.shear[2]");
-    // 4^2 > 140/10.
+    // 4^2 is larger than 140/10.
     refused(YOUNG, [4.0, 0.4, 0.28], SHEAR, "orthotropic.poisson[0]");
     refused(YOUNG, [0.3, f64::NAN, 0.28], SHEAR, "orthotropic.poisson[1]");
-    // 1 - 3 x 0.36 - 2 x 0.216 < 0, although each pair is allowed.
+    // 1 - 3 x 0.36 - 2 x 0.216 is negative, although each pair is allowed.
     refused([1.0; 3], [0.6; 3], [1.0; 3], "orthotropic.poisson");
     let material = Material::orthotropic(YOUNG, RATIOS, SHEAR).unwrap();
     assert!(material.along([1.0, 2.0, 0.0], [-2.0, -4.0, 0.0]).is_err());

@@ -1,4 +1,4 @@
-//! Structured meshes: geometry, boundaries, and what is refused.
+//! Structured meshes: geometry, boundaries, and refused input.
 
 use signorini::Error;
 use signorini::fem::ElasticBody;
@@ -17,7 +17,8 @@ fn cells_grow_by_a_constant_factor_from_first_to_last() {
         let lines = axis(&[2.0, 5.0], &[7], &[ratio]).coordinates().unwrap();
         let cells: Vec<f64> = lines.windows(2).map(|pair| pair[1] - pair[0]).collect();
         assert_eq!((lines.len(), lines[0], lines[7]), (8, 2.0, 5.0));
-        // A cell is a difference of coordinates up to 5, so that 1e-15 of them is lost in a cell of 1e-3.
+        // A cell size is a difference of coordinates up to 5: its rounding error is about 1e-15, which matters in a
+        // cell of 1e-3.
         assert!((cells[6] / cells[0] / ratio - 1.0).abs() < 1e-11, "{ratio}: {cells:?}");
         let growth = cells[1] / cells[0];
         assert!(cells.windows(2).all(|pair| (pair[1] / pair[0] / growth - 1.0).abs() < 1e-11), "{ratio}: {cells:?}");
@@ -25,7 +26,7 @@ fn cells_grow_by_a_constant_factor_from_first_to_last() {
 }
 
 #[test]
-fn breakpoints_are_met_exactly_and_intervals_are_graded_apart() {
+fn breakpoints_are_exact_and_each_interval_is_graded_separately() {
     let lines = axis(&[0.0, 0.1, 0.7, 1.0], &[2, 3, 1], &[3.0, 1.0, 5.0]).coordinates().unwrap();
     assert_eq!(lines.len(), 7);
     assert_eq!((lines[2], lines[5], lines[6]), (0.1, 0.7, 1.0));
@@ -34,13 +35,13 @@ fn breakpoints_are_met_exactly_and_intervals_are_graded_apart() {
 }
 
 #[test]
-fn equal_cells_hit_the_decimals_that_a_reader_expects() {
+fn equal_cells_have_the_expected_decimal_coordinates() {
     let lines = axis(&[0.0, 1.0], &[40], &[]).coordinates().unwrap();
     assert!(lines.iter().enumerate().all(|(i, &x)| x == i as f64 / 40.0));
 }
 
 #[test]
-fn an_axis_that_is_none_is_refused_with_the_field_at_fault() {
+fn an_invalid_axis_is_refused_with_the_faulty_field() {
     let huge = usize::MAX;
     for (axis, field, phrase) in [
         (axis(&[0.0], &[], &[]), "points", "at least two points"),
@@ -69,7 +70,7 @@ fn triangles_are_cut_from_lower_left_to_upper_right() {
 }
 
 #[test]
-fn boundaries_are_named_and_run_with_growing_coordinates() {
+fn boundaries_are_named_and_ordered_by_increasing_coordinates() {
     let mesh = rectangle(&[0.0, 1.0, 2.0], &[0.0, 1.0], ElementKind::Q4).unwrap();
     for (name, nodes) in
         [("left", vec![0, 3]), ("right", vec![2, 5]), ("bottom", vec![0, 1, 2]), ("top", vec![3, 4, 5])]
@@ -87,7 +88,7 @@ fn a_rectangle_beyond_the_size_limit_is_refused_before_it_is_built() {
 }
 
 #[test]
-fn a_mesh_that_does_not_hold_together_is_refused() {
+fn an_inconsistent_mesh_is_refused() {
     let square = || vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     let side = |name: &str| Boundary::new(name, FacetKind::Line2, vec![0, 1]);
     let mut far = square();
@@ -110,7 +111,7 @@ fn a_mesh_that_does_not_hold_together_is_refused() {
 }
 
 #[test]
-fn an_element_inside_out_or_without_area_is_named() {
+fn an_inverted_element_or_one_without_area_is_named() {
     let nodes: Vec<[f64; 3]> =
         [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [2.0, 0.0], [2.0, 1.0]].map(|[x, y]| [x, y, 0.0]).to_vec();
     let material = Material::new(1.0, 0.3).unwrap();

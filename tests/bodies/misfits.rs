@@ -1,4 +1,4 @@
-//! Parts that do not fit together are refused by the library, each in a sentence that names both.
+//! The library refuses parts that do not match, each in a sentence that names both.
 
 use signorini::fem::ElasticBody;
 use signorini::fem::Formulation;
@@ -41,7 +41,7 @@ fn elements_of_another_dimension_are_refused() {
 }
 
 #[test]
-fn bodies_of_two_kinds_do_not_stand_beside_each_other() {
+fn bodies_of_different_kinds_cannot_be_combined() {
     let one = || body(square(ElementKind::Q4), STRAIN).unwrap();
     let phrases = ["one formulation and cross-section", "plane strain and plane stress"];
     refused(one().beside(&body(square(ElementKind::Q4), STRESS).unwrap(), "base"), "mesh", &phrases);
@@ -51,7 +51,7 @@ fn bodies_of_two_kinds_do_not_stand_beside_each_other() {
 }
 
 #[test]
-fn vectors_of_another_body_are_refused() {
+fn vectors_of_another_length_are_refused() {
     let one = body(square(ElementKind::Q4), STRAIN).unwrap();
     let field = stress(&one, &[0.0; 18]).unwrap();
     refused(stress(&one, &[0.0; 17]), "length", &["17", "18 nodal dofs"]);
@@ -73,7 +73,7 @@ fn penalty(change: fn(&mut Penalty)) -> Method {
 }
 
 #[test]
-fn settings_out_of_their_ranges_are_refused_one_by_one() {
+fn each_setting_out_of_its_range_is_refused_by_name() {
     let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]);
     let problem = || {
         let stiffness = SymmetricMatrix::from_lower(one(1.0).unwrap()).unwrap();
@@ -106,7 +106,7 @@ fn settings_out_of_their_ranges_are_refused_one_by_one() {
 }
 
 #[test]
-fn a_matrix_above_its_diagonal_is_no_lower_triangle_and_is_read_as_an_upper_one() {
+fn an_upper_triangle_is_refused_as_lower_and_accepted_as_upper() {
     let entries = [(0, 0, 3.0), (0, 1, -1.0), (1, 1, 2.0)];
     let upper = || SparseMatrix::from_triplets(2, 2, &entries).unwrap();
     refused(SymmetricMatrix::from_lower(upper()), "not-symmetric", &["entry (0, 1) is -1"]);
@@ -119,7 +119,7 @@ fn a_matrix_above_its_diagonal_is_no_lower_triangle_and_is_read_as_an_upper_one(
     refused(DynamicProblem::new(contact, three), "shape", &["mass is 3 x 3", "2 x 2"]);
 }
 
-/// A full matrix whose triangles have entries in different places: only zeros may have no counterpart.
+/// In a full matrix whose triangles have entries at different places, only zeros may lack a counterpart.
 #[test]
 fn triangles_of_a_full_matrix_are_compared_entry_by_entry() {
     let full = |entries: &[(usize, usize, f64)]| {

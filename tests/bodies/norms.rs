@@ -1,6 +1,6 @@
-//! Norms of errors, against integrals by hand.
+//! Norms of errors, compared with integrals by hand.
 //!
-//! GOAL        the norms are right in four digits where the exact strain has a kink or a root inside the cells
+//! GOAL        the norms are right to four digits if the exact strain has a kink or a root inside a cell
 //! MESH        two cells along each axis of the unit interval, square or cube, every element
 //! CONDITIONS  u_x = (x - x0)_+^1.5, compared with c x; nu = 0, so that the energy is E eps_xx^2
 //! REFERENCE   integral of (eps - c)^2 = 9/8 (1-x0)^2 - 2 c (1-x0)^1.5 + c^2, of eps^2 = 9/8 (1-x0)^2;
@@ -13,7 +13,7 @@ use signorini::fem::Material;
 use signorini::fem::{ExactState, error_norms};
 use signorini::scene::{cuboid, rectangle};
 
-/// The norms promise four digits.
+/// The norms are accurate to four digits.
 const FOUR_DIGITS: f64 = 1e-4;
 
 const ROOT: f64 = 0.37;
@@ -26,7 +26,7 @@ fn exact([x, ..]: [f64; 3]) -> ExactState {
 }
 
 #[test]
-fn a_strain_with_a_root_inside_a_cell_is_integrated_in_four_digits() {
+fn a_strain_with_a_root_inside_a_cell_is_integrated_to_four_digits() {
     let lines = [0.0, 0.5, 1.0];
     let material = Material::new(3.0, 0.0).unwrap();
     let left = 1.0 - ROOT;

@@ -1,12 +1,13 @@
-//! GOAL: linear displacement fields are exact on any mesh, for every element and plane state; so is their stress.
+//! GOAL: linear displacement fields and their stresses are exact on any mesh, for every element and plane state.
 //!
-//! MESH: 2 x 1 rectangle, 4 x 3 cells, inner nodes moved by up to a fifth of a cell; E = 7, nu = 0.3, thickness 0.5.
+//! MESH: a 2 x 1 rectangle of 4 x 3 cells; inner nodes are moved by up to a fifth of a cell; E = 7, nu = 0.3, thickness
+//! 0.5.
 
 use crate::bodies::{VARIANTS, difference, distorted_body, largest, nodal, solve_held};
 use signorini::fem::Formulation;
 use signorini::fem::{self, Stress};
 
-/// A few hundred operations on numbers of order one.
+/// Rounding of a few hundred operations on numbers of order one.
 const ROUNDING: f64 = 1e-13;
 
 fn linear([x, y]: [f64; 2]) -> [f64; 2] {
@@ -57,7 +58,7 @@ fn stress_of_a_linear_field_is_exact_in_elements_and_at_nodes() {
 
 #[test]
 fn stress_that_is_linear_in_a_rectangle_is_exact_at_its_nodes() {
-    // u_x = x y is bilinear: eps_xx = y, gamma_xy = x, everywhere in Q4 rectangles of any size.
+    // u_x = x y is bilinear: eps_xx = y, gamma_xy = x, everywhere in rectangular Q4 cells of any size.
     use signorini::fem::ElementKind;
     use signorini::scene::rectangle;
     let mesh = rectangle(&[0.0, 0.2, 1.0], &[0.0, 0.7, 1.0], ElementKind::Q4).unwrap();
@@ -73,15 +74,15 @@ fn stress_that_is_linear_in_a_rectangle_is_exact_at_its_nodes() {
 }
 
 #[test]
-fn principal_and_von_mises_stress_follow_their_definitions() {
-    // Uniaxial, pure shear, equal pressure in all directions: by hand.
+fn principal_and_von_mises_stress_agree_with_their_definitions() {
+    // Uniaxial stress, pure shear and equal pressure in all directions, computed by hand.
     let uniaxial = Stress::new(-3.0, 0.0, 0.0, 0.0);
     assert_eq!((uniaxial.sigma_1, uniaxial.sigma_2, uniaxial.von_mises.round()), (0.0, -3.0, 3.0));
     let shear = Stress::new(0.0, 0.0, 2.0, 0.0);
     assert_eq!((shear.sigma_1, shear.sigma_2), (2.0, -2.0));
     assert!((shear.von_mises - 12_f64.sqrt()).abs() < 1e-15);
     assert_eq!(Stress::new(-5.0, -5.0, 0.0, -5.0).von_mises, 0.0);
-    // The component formula, with the stress across the plane.
+    // The formula in components, including the stress across the plane.
     let (x, y, z, t) = (1.3, -0.4, 0.7, 0.9);
     let expected: f64 = 0.5 * ((x - y) * (x - y) + (y - z) * (y - z) + (z - x) * (z - x)) + 3.0 * t * t;
     assert!((Stress::new(x, y, t, z).von_mises - expected.sqrt()).abs() < 1e-15);
@@ -115,7 +116,7 @@ fn assembled_stiffness_and_internal_force_agree() {
 
 #[test]
 fn stiffness_of_a_square_element_has_its_known_entries() {
-    // Q4, plane stress, nu = 0, E = t = 1, unit square: K_xx = 1/3 + 1/6, K_xy = 1/8 by hand.
+    // Q4, plane stress, nu = 0, E = t = 1, unit square: by hand K_xx = 1/3 + 1/6, K_xy = 1/8.
     let mesh = signorini::scene::rectangle(&[0.0, 1.0], &[0.0, 1.0], signorini::fem::ElementKind::Q4).unwrap();
     let material = signorini::fem::Material::new(1.0, 0.0).unwrap();
     let formulation = Formulation::PlaneStress { thickness: 1.0 };
@@ -143,7 +144,7 @@ fn stiffness_does_not_change_with_the_unit_of_length() {
 }
 
 #[test]
-fn material_refuses_what_is_no_material() {
+fn a_material_with_invalid_constants_is_refused() {
     use signorini::fem::Material;
     let strain = Formulation::PlaneStrain { thickness: 1.0 };
     let stress = Formulation::PlaneStress { thickness: 1.0 };

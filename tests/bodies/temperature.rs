@@ -1,4 +1,4 @@
-//! Temperatures and initial stresses of bodies: what a free body does, and what a held one.
+//! Temperatures and initial stresses: the effects in free and in supported bodies.
 
 use crate::bodies::{difference, distorted, largest, nodal, nodal_of};
 use crate::elements::all;
@@ -17,10 +17,11 @@ fn everywhere(body: &ElasticBody) -> Vec<usize> {
     (0..body.mesh().element_count()).collect()
 }
 
-/// E = 7, nu = 0.3, 20 degrees warmer on distorted meshes of every element, with both integrations: a free body is stretched evenly, and
-/// needs no force for it. In plane strain it is held across by -E alpha T, and stretched by nu times that on top.
+/// 20 degrees warmer, with E = 7 and nu = 0.3, on distorted meshes of every element and integration: a free body
+/// expands uniformly without force. In plane strain the stress across the plane is -E alpha T, and the expansion in the
+/// plane is larger by nu times alpha T.
 #[test]
-fn a_free_body_that_is_warmed_evenly_has_no_stress_whatever_its_mesh() {
+fn a_uniformly_warmed_free_body_has_no_stress_on_any_mesh() {
     for (name, body) in all() {
         let elements = everywhere(&body);
         let expanding = Material::new(7.0, 0.3).unwrap().with_expansion([EXPANSION; 3]).unwrap();
@@ -43,7 +44,7 @@ fn a_free_body_that_is_warmed_evenly_has_no_stress_whatever_its_mesh() {
         if across == 0.0 {
             assert_eq!(fem::discretisation_error(&warm, &field, &stress).unwrap(), 0.0, "{name}");
         }
-        // The load of the free dofs is there although nothing is prescribed.
+        // The load of the free dofs is not zero although no displacement is prescribed.
         let dofs = DofMap::new(vec![None; cold.len()]).unwrap();
         let load = fem::free_load(&warm, &dofs, &cold).unwrap();
         let product = fem::stiffness(&warm, &dofs).unwrap().mul(&field);
@@ -54,7 +55,7 @@ fn a_free_body_that_is_warmed_evenly_has_no_stress_whatever_its_mesh() {
 /// T = 5 + 3 x - 2 y bends a thin sheet without stress: u_x = a (5 x + 3 (x^2 - y^2)/2 - 2 x y), u_y = a (5 y - (y^2 - x^2) + 3 x y).
 #[test]
 fn a_linear_temperature_bends_a_thin_sheet_without_stress() {
-    // Quadrilaterals have all quadratic functions if they are rectangles.
+    // Only rectangular quadrilaterals represent all quadratic functions.
     let straight = rectangle(&[0.0, 0.3, 2.0], &[0.0, 0.6, 1.0], ElementKind::Q8).unwrap();
     for mesh in [distorted(ElementKind::T6), straight] {
         let material = Material::new(7.0, 0.3).unwrap().with_expansion([EXPANSION; 3]).unwrap();
@@ -71,9 +72,10 @@ fn a_linear_temperature_bends_a_thin_sheet_without_stress() {
     }
 }
 
-/// An orthotropic sheet turned by 30 degrees stretches along its own axes: the strain is a tensor like any other.
+/// An orthotropic sheet turned by 30 degrees expands along the axes of the material: the thermal strain is transformed
+/// as a tensor.
 #[test]
-fn an_orthotropic_sheet_expands_along_its_axes() {
+fn an_orthotropic_sheet_expands_along_the_axes_of_its_material() {
     let (sine, cosine) = f64::to_radians(30.0).sin_cos();
     let material = Material::orthotropic([140.0, 10.0, 9.0], [0.3, 0.4, 0.28], [5.0, 3.6, 4.5]).unwrap();
     let material = material.along([cosine, sine, 0.0], [-sine, cosine, 0.0]).unwrap();
@@ -91,7 +93,7 @@ fn an_orthotropic_sheet_expands_along_its_axes() {
 }
 
 #[test]
-fn an_initial_stress_is_the_stress_of_a_body_that_is_held_and_stays_with_another_material() {
+fn an_initial_stress_is_the_stress_without_displacement_for_every_material() {
     let material = Material::new(7.0, 0.3).unwrap();
     let body =
         ElasticBody::new(distorted(ElementKind::Q4), material, Formulation::PlaneStrain { thickness: 1.0 }).unwrap();
@@ -107,7 +109,7 @@ fn an_initial_stress_is_the_stress_of_a_body_that_is_held_and_stays_with_another
 }
 
 #[test]
-fn what_cannot_be_warmed_is_refused() {
+fn temperatures_and_stresses_that_a_body_cannot_have_are_refused() {
     let mesh = || rectangle(&[0.0, 1.0], &[0.0, 1.0], ElementKind::Q4).unwrap();
     let material = Material::new(7.0, 0.3).unwrap();
     let body = ElasticBody::new(mesh(), material, STRESS).unwrap();
@@ -118,5 +120,8 @@ fn what_cannot_be_warmed_is_refused() {
     let expanding = material.with_expansion([EXPANSION; 3]).unwrap();
     let body = ElasticBody::new(mesh(), expanding, STRESS).unwrap().with_temperature(&[0], 1.0, [0.0; 3]).unwrap();
     assert!(body.clone().with_temperature(&[0], f64::INFINITY, [0.0; 3]).is_err());
-    assert!(body.with_material(&[0], material).is_err(), "a temperature without an expansion");
+    assert!(
+        body.with_material(&[0], material).is_err(),
+        "a temperature without a coefficient of expansion is accepted"
+    );
 }

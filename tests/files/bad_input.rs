@@ -1,10 +1,10 @@
-//! Bad scenes and bad problem directories: each ends with its exit code and one sentence that says where, which value,
-//! and what is allowed.
+//! Bad scenes and bad problem directories: each ends with its exit code and one sentence that names the place, the
+//! value, and what is allowed.
 
 use crate::program::{Desk, Problem, matrix, scene, vector};
 use serde_json::{Value, json};
 
-/// The small scene with the value at `pointer` replaced; an object gets a new field where it has none.
+/// The small scene with the value at `pointer` replaced, or added to its object if there was none.
 fn with(pointer: &str, value: Value) -> Value {
     let mut scene = scene();
     let (parent, key) = pointer.rsplit_once('/').unwrap();
@@ -25,7 +25,7 @@ fn plane_stress(mut scene: Value) -> Value {
 }
 
 #[test]
-fn scenes_that_describe_no_problem() {
+fn scenes_that_do_not_describe_a_problem_are_refused() {
     let x = "/body/rectangle/x";
     let table = |points: Value| shape(json!({"table": {"points": points}}));
     let guided = |load: f64, obstacles: Value| {
@@ -126,14 +126,14 @@ fn scenes_that_describe_no_problem() {
 }
 
 #[test]
-fn plane_stress_takes_the_ratio_that_plane_strain_refuses() {
+fn plane_stress_accepts_poissons_ratio_of_one_half() {
     let desk = Desk::new();
     desk.write("scene.json", plane_stress(with("/material/poisson", json!(0.5))).to_string());
     desk.run(&["solve", "scene.json"]).ends_with(0);
 }
 
 #[test]
-fn a_warning_stands_on_its_own_line_and_in_every_command_that_builds_the_scene() {
+fn every_command_that_builds_a_scene_prints_its_warning_on_a_separate_line() {
     let desk = Desk::new();
     desk.write("scene.json", with("/material/poisson", json!(0.4999)).to_string());
     for arguments in [
@@ -144,13 +144,13 @@ fn a_warning_stands_on_its_own_line_and_in_every_command_that_builds_the_scene()
     ] {
         let run = desk.run(arguments).ends_with(0);
         assert!(run.stderr.starts_with("warning: Poisson's ratio 0.4999 "), "{}", run.stderr);
-        // An export tells its bytes, too.
+        // An export also prints the number of bytes that it writes.
         assert_eq!(run.stderr.lines().filter(|line| !line.starts_with("writing ")).count(), 1);
     }
 }
 
 #[test]
-fn files_that_are_no_scene() {
+fn files_that_are_not_scenes_are_refused() {
     let right = scene().to_string();
     let change = |from: &str, to: &str| {
         assert!(right.contains(from), "{from}");
@@ -193,7 +193,7 @@ fn files_that_are_no_scene() {
 }
 
 #[test]
-fn paths_that_are_no_file() {
+fn paths_that_are_not_files_are_refused() {
     let desk = Desk::new();
     desk.write("folder/file", "");
     desk.write("block.json", scene().to_string());
@@ -210,7 +210,7 @@ fn paths_that_are_no_file() {
 }
 
 #[test]
-fn problem_directories_that_hold_no_problem() {
+fn problem_directories_with_invalid_files_are_refused() {
     let right = Problem::right;
     let symmetric = |entries: &[&str]| matrix("symmetric", "2 2", entries);
     let k = |k: String| Problem { k, ..right() };
@@ -269,7 +269,7 @@ fn problem_directories_that_hold_no_problem() {
 }
 
 #[test]
-fn problem_files_that_are_missing_or_folders_are_named() {
+fn missing_problem_files_and_folders_in_their_place_are_named() {
     for name in ["K", "f", "B", "g"] {
         let desk = Desk::new();
         desk.problem("p", &Problem::right());
@@ -282,7 +282,7 @@ fn problem_files_that_are_missing_or_folders_are_named() {
 }
 
 #[test]
-fn answers_that_do_not_fit_are_refused_by_verify() {
+fn verify_refuses_answers_of_wrong_size_or_with_invalid_values() {
     let desk = Desk::new();
     desk.problem("p", &Problem::right());
     let (u, lambda) = (vector(&["0.55", "0.1"]), vector(&["-1.35"]));

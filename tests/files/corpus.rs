@@ -1,7 +1,8 @@
-//! What random damage has found, kept and replayed: one input of every ending that `tests/faults` does not know.
+//! Inputs that random damage has found, one for every ending that `tests/faults` does not cover; each is run again.
 //!
-//! `cargo run --release --example fuzz -- TARGET INPUTS SEED --keep` adds to `tests/corpus`. A file is named after the right file
-//! that was damaged and the code of its error; `problems` has a line for each contact problem, its seed and its ending.
+//! `cargo run --release --example fuzz -- TARGET INPUTS SEED --keep` adds to `tests/corpus`. The name of a file
+//! consists of the name of the right file that was damaged and the code of its error; `problems` has a line for each
+//! contact problem, with its seed and its ending.
 
 #[path = "../../tools/fuzz/damage.rs"]
 mod damage;
@@ -22,7 +23,7 @@ fn corpus() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus")
 }
 
-/// A folder with the right files of a problem.
+/// A folder with the valid files of a problem.
 fn desk() -> tempfile::TempDir {
     let desk = tempfile::tempdir().unwrap();
     for name in ["K.mtx", "f.mtx", "B.mtx", "g.mtx"] {
@@ -45,14 +46,15 @@ fn kept_files_are_refused_with_their_code() {
         files += 1;
     }
     assert!(files >= 40);
-    assert_eq!(faults.len(), files, "each stands for an ending of its own");
+    assert_eq!(faults.len(), files, "two kept files have the same ending");
 }
 
 #[test]
-fn kept_problems_end_as_they_did() {
+fn kept_problems_end_as_recorded() {
     let kept = fs::read_to_string(corpus().join("problems")).unwrap();
     assert!(kept.lines().count() >= 10);
-    // Which method got there, and whether to the last digit, is a matter of rounding; why a problem has no answer is not.
+    // Rounding may change the method that succeeds and the last digit of its answer, but not the reason why a problem
+    // has no answer.
     let sort = |ending: &str| if ending.starts_with("qp") { "not-certified".to_string() } else { ending.to_string() };
     for line in kept.lines() {
         let (seed, ending) = line.split_once(' ').unwrap();
@@ -61,9 +63,10 @@ fn kept_problems_end_as_they_did() {
     }
 }
 
-/// Six rows have 64 sets, and no rule of the loop meets one of them often; where rounding decides, the loop gives up.
+/// Six rows have 64 sets, and the rules of the loop meet each set only a few times; if rounding decides, the loop gives
+/// up.
 #[test]
-fn no_kept_problem_keeps_the_loop_alive() {
+fn the_active_set_loop_ends_on_every_kept_problem() {
     const LONGEST: usize = 400;
     let kept = fs::read_to_string(corpus().join("problems")).unwrap();
     let mut longest = 0;
@@ -81,9 +84,9 @@ fn no_kept_problem_keeps_the_loop_alive() {
     assert!(longest <= LONGEST, "{longest} iterations");
 }
 
-/// A short run of the longer one.
+/// A short form of the fuzz program.
 #[test]
-fn damaged_files_and_problems_do_no_harm() {
+fn damaged_files_and_random_problems_cause_no_panic() {
     let (inputs, desk) = (2000, desk());
     let mut draws = Draws(5);
     for name in [

@@ -1,4 +1,5 @@
-//! Pictures of answers, as the program leaves them: true to the body, in the units of the scene, and the same in title and legend.
+//! Pictures of answers, as the program writes them: they show the body, use the units of the scene, and agree in title
+//! and legend.
 
 use std::fs;
 
@@ -6,7 +7,7 @@ use crate::program::{Desk, example};
 use resvg::usvg::roxmltree::Document;
 use serde_json::{Value, json};
 
-/// The words of a picture that a command leaves.
+/// The words of a picture in a folder.
 fn words(desk: &Desk, picture: &str) -> Vec<String> {
     let svg = fs::read_to_string(desk.path(picture)).unwrap();
     let document = Document::parse(&svg).unwrap();
@@ -19,7 +20,8 @@ fn drawn(desk: &Desk, scene: &Value, command: &[&str]) {
     desk.run(&[&[command[0], "scene.json"], &command[1..], &["--out", "o"]].concat()).ends_with(0);
 }
 
-/// A ring held inside and pressed at its lowest point against a plane; its outer boundary is closed.
+/// A ring supported on its inner boundary and pressed at its lowest point against a plane; its outer boundary is
+/// closed.
 fn ring() -> Value {
     json!({
         "title": "Ring", "units": {"length": "mm", "force": "N"},
@@ -33,16 +35,19 @@ fn ring() -> Value {
     })
 }
 
-/// The horizontal steps of the path of a stroke as wide as this.
+/// The horizontal steps of the path with the given stroke width.
 fn steps(svg: &str, width: &str) -> Vec<f64> {
-    let line = svg.lines().find(|line| line.contains(&format!("stroke-width=\"{width}\""))).expect("the line");
+    let line = svg
+        .lines()
+        .find(|line| line.contains(&format!("stroke-width=\"{width}\"")))
+        .expect("the picture has a line of this width");
     let data = line.split(" d=\"").nth(1).unwrap().split('"').next().unwrap();
     let mut steps = Vec::new();
     let mut rest = &data[data.find(['l', 'h', 'v']).unwrap_or(data.len())..];
     while let Some(kind) = rest.chars().next() {
         let end = rest[1..].find(['l', 'h', 'v', 'M', 'z']).map_or(rest.len(), |at| at + 1);
         let numbers = rest[1..end].trim();
-        // Two numbers stand side by side where the second is negative.
+        // Two numbers have no separator if the second is negative.
         let cut = numbers[1..].find([' ', '-']).map_or(numbers.len(), |at| at + 1);
         match kind {
             'v' => steps.push(0.0),
@@ -54,7 +59,7 @@ fn steps(svg: &str, width: &str) -> Vec<f64> {
 }
 
 #[test]
-fn pressure_on_a_closed_boundary_runs_along_it_without_turning_back() {
+fn the_pressure_curve_of_a_closed_boundary_advances_along_its_arc_length() {
     let desk = Desk::new();
     drawn(&desk, &ring(), &["compare", "--pictures", "answer"]);
     let svg = fs::read_to_string(desk.path("o/pressure.svg")).unwrap();
@@ -65,16 +70,16 @@ fn pressure_on_a_closed_boundary_runs_along_it_without_turning_back() {
     assert!(words.iter().any(|text| text == "Hertz, same force"), "{words:?}");
 }
 
-/// Eight elements around a ring have eight corners and eight mid-sides outside: curves have more points.
+/// Eight elements around a ring have eight corners and eight mid-side nodes outside; a curved outline has more points.
 #[test]
-fn edges_of_quadratic_elements_are_curves() {
+fn edges_of_quadratic_elements_are_drawn_as_curves() {
     let desk = Desk::new();
     let mut scene = ring();
     scene["body"]["ring"]["angle"] = json!({"points": [0, 360], "divisions": [8]});
     scene["body"]["ring"]["radius"] = json!({"points": [0.2, 1], "divisions": [1]});
     drawn(&desk, &scene, &["solve"]);
     let svg = fs::read_to_string(desk.path("o/contact.svg")).unwrap();
-    let outline = svg.lines().find(|line| line.contains("stroke-width=\"1.4\"")).expect("the outline");
+    let outline = svg.lines().find(|line| line.contains("stroke-width=\"1.4\"")).expect("the picture has an outline");
     let corners = outline.split(" d=\"").nth(1).unwrap().split('"').next().unwrap().matches(['l', 'h', 'v']).count();
     let elements = fs::read_to_string(desk.path("o/report.json")).unwrap();
     let elements = serde_json::from_str::<Value>(&elements).unwrap()["model"]["elements"].as_u64().unwrap();
@@ -82,16 +87,16 @@ fn edges_of_quadratic_elements_are_curves() {
 }
 
 #[test]
-fn rounding_beside_the_largest_stress_is_no_stress() {
+fn stresses_of_the_size_of_rounding_are_drawn_as_zero() {
     let desk = Desk::new();
     desk.run(&["solve", &example("bar"), "--out", "o"]).ends_with(0);
     let words = words(&desk, "o/contact.svg");
     assert!(words.iter().all(|text| !text.contains("10⁻")), "{words:?}");
-    assert!(words.iter().any(|text| text == "−500"), "the largest stress is the scale of what is none: {words:?}");
+    assert!(words.iter().any(|text| text == "−500"), "the scale does not show the largest stress: {words:?}");
 }
 
 #[test]
-fn a_body_of_revolution_has_axes_r_and_z() {
+fn the_picture_of_a_body_of_revolution_has_axes_r_and_z() {
     let desk = Desk::new();
     let scene = json!({
         "title": "Punch", "model": "axisymmetric",
@@ -106,7 +111,7 @@ fn a_body_of_revolution_has_axes_r_and_z() {
     assert!(words.contains(&"r (m)".to_string()) && words.contains(&"z (m)".to_string()), "{words:?}");
 }
 
-/// A node between two obstacles, both of which close, is one node in the title as in the legend.
+/// A node between two obstacles, both closed, counts as one node in the title and in the legend.
 #[test]
 fn title_and_legend_count_the_same_nodes() {
     let desk = Desk::new();
@@ -136,12 +141,13 @@ fn a_body_in_space_is_drawn_with_its_contact_in_plan_view() {
     }
     assert!(words.iter().any(|text| text.starts_with("displaced body, displacement and gap × ")), "{words:?}");
     assert!(words.iter().any(|text| text.starts_with("contact pressure p (")), "{words:?}");
-    // The obstacle lets the body be seen.
+    // The obstacle is transparent, so that the body is visible.
     let svg = fs::read_to_string(desk.path("o/contact.svg")).unwrap();
     assert!(svg.contains("fill-opacity=\".28\""));
 }
 
-/// The rows of the active-set loop that starts with none closed: the second picture shows the answer, in the colours of the answer.
+/// The active-set loop starts with no closed row; the second picture shows the answer. Both use the colours of the
+/// answer.
 #[test]
 fn with_all_pictures_the_iterations_of_a_body_in_space_share_the_colours_of_its_answer() {
     let desk = Desk::new();
@@ -153,16 +159,19 @@ fn with_all_pictures_the_iterations_of_a_body_in_space_share_the_colours_of_its_
     };
     let (answer, first) = (ticks("o/contact.svg"), ticks("o/iteration-1.svg"));
     assert!(answer.len() > 10, "{answer:?}");
-    assert_eq!(first, answer, "the first iteration, without contact, has no pressure of its own to set colours by");
+    assert_eq!(
+        first, answer,
+        "the picture of the first iteration, which has no contact, does not use the colours of the answer"
+    );
     let title = words(&desk, "o/iteration-1.svg").into_iter().next().unwrap();
     assert!(title.ends_with("iteration 1 of 2, 0 closed nodes"), "{title}");
-    // Each would take a solve of its own: they are drawn where they are asked for.
+    // Each picture of an iteration needs an additional solve; it is drawn only on request.
     desk.run(&["compare", &example("ball"), "--out", "usual"]).ends_with(0);
     assert!(desk.path("usual/contact.svg").exists() && !desk.path("usual/iteration-1.svg").exists());
 }
 
 #[test]
-fn forces_that_press_stand_in_the_title() {
+fn the_title_names_the_forces_that_press_obstacles() {
     let desk = Desk::new();
     let mut scene = ring();
     let plane = |approach: &str, y: f64, normal: f64, force: f64| json!({"boundary": "outer", "approach": approach, "force": force, "shape": {"plane": {"point": [0, y], "normal": [0, normal]}}});
@@ -175,7 +184,7 @@ fn forces_that_press_stand_in_the_title() {
 }
 
 #[test]
-fn a_sweep_in_space_tells_the_contact_area() {
+fn a_sweep_in_space_reports_the_contact_area() {
     let desk = Desk::new();
     let run = desk.run(&["sweep", &example("ball"), "--gaps", "-0.01:-0.02:2", "--pictures", "none", "--out", "o"]);
     let text = run.ends_with(0).stdout;
@@ -183,7 +192,7 @@ fn a_sweep_in_space_tells_the_contact_area() {
 }
 
 #[test]
-fn the_history_of_a_motion_tells_the_unit_of_time() {
+fn the_history_of_a_motion_shows_the_unit_of_time() {
     let desk = Desk::new();
     let scene = json!({
         "title": "Block falling",
@@ -196,16 +205,17 @@ fn the_history_of_a_motion_tells_the_unit_of_time() {
     drawn(&desk, &scene, &["solve"]);
     let in_seconds = words(&desk, "o/history.svg");
     assert_eq!(in_seconds.iter().filter(|text| text.starts_with("time t (")).count(), 2, "{in_seconds:?}");
-    // Of units that are not named nobody knows the time.
+    // For units without a known name, the unit of time is unknown.
     let mut unnamed = scene;
     unnamed["units"] = json!({"length": "inch", "force": "lbf"});
     drawn(&desk, &unnamed, &["solve"]);
     assert!(words(&desk, "o/history.svg").iter().any(|text| text == "time t"));
 }
 
-/// At most six curves with their names beside them; the error of the mesh is a line, and the exact answer has its own place.
+/// At most six curves with their names beside them; the error of the mesh is a line, and exact answers have a separate
+/// place.
 #[test]
-fn a_tradeoff_is_drawn_as_six_curves_at_most() {
+fn a_tradeoff_is_drawn_with_at_most_six_curves() {
     let desk = Desk::new();
     desk.write("block.json", crate::program::scene().to_string());
     let run = ["tradeoff", "block.json", "--runs", "1", "--refinements", "0", "--out", "o"];

@@ -1,8 +1,8 @@
-//! Malformed files, kept: each changes one thing in a right file of `tests/faults` and is refused with the code and the
-//! sentence that stand beside it in `cases.jsonl`, with JSON path, line and column of a scene, and the line of a table.
+//! Kept malformed files: each changes one place of a valid file of `tests/faults`, and is refused with the code and the
+//! sentence kept in `cases.jsonl`; the sentence has the JSON path, line and column of a scene, or the line of a table.
 //!
-//! A line is `[file, what is replaced, by what, code, sentence]`. `BLESS=1 cargo test --test files faults` writes codes and
-//! sentences anew, to be read before they are kept.
+//! A line is `[file, replaced text, replacement, code, sentence]`. `BLESS=1 cargo test --test files faults` writes
+//! codes and sentences again; read them before you keep them.
 
 use std::fmt::Write;
 use std::fs;
@@ -13,14 +13,14 @@ use signorini::fem::GmshFile;
 use signorini::qp::read_problem;
 use signorini::{Error, Scene, solve_qp};
 
-/// A sentence longer than this says too much.
+/// Largest length of a sentence; a longer one says too much.
 const LONGEST: usize = 400;
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults")
 }
 
-/// Reads, builds and solves what stands in `desk` under `name`; `None` if there is nothing to say against it.
+/// Reads, builds and solves the file `name` in `desk`. Returns `None` if there is no error.
 fn refused(desk: &Path, name: &str) -> Option<Error> {
     let file = desk.join(name);
     let solved = |problem: &signorini::ContactProblem| solve_qp(problem).map(drop);
@@ -45,13 +45,13 @@ fn every_malformed_file_is_refused_with_its_code_and_its_sentence() {
         let case: Vec<Value> = serde_json::from_str(line).unwrap();
         let word = |index: usize| case.get(index).and_then(Value::as_str).unwrap_or_default();
         let (name, from, to) = (word(0), word(1), word(2));
-        assert!(known.insert((name.to_string(), from.to_string(), to.to_string())), "line {} stands twice", number + 1);
+        assert!(known.insert((name.to_string(), from.to_string(), to.to_string())), "line {} occurs twice", number + 1);
         for file in fs::read_dir(folder()).unwrap() {
             let file = file.unwrap().path();
             fs::copy(&file, desk.path().join(file.file_name().unwrap())).unwrap();
         }
         let right = fs::read_to_string(folder().join(name)).unwrap();
-        assert!(right.contains(from), "line {}: {name} has no {from:?}", number + 1);
+        assert!(right.contains(from), "line {}: {name} does not contain {from:?}", number + 1);
         fs::write(desk.path().join(name), right.replacen(from, to, 1)).unwrap();
         let Some(error) = refused(desk.path(), name) else {
             let _ = writeln!(wrong, "line {}: {line} is accepted", number + 1);
@@ -79,7 +79,7 @@ fn every_malformed_file_is_refused_with_its_code_and_its_sentence() {
 }
 
 #[test]
-fn the_files_that_the_cases_change_are_right() {
+fn the_files_that_the_cases_change_are_valid() {
     for name in [
         "plane.json",
         "space.json",
@@ -95,9 +95,9 @@ fn the_files_that_the_cases_change_are_right() {
     }
 }
 
-/// Found by random damage: sizes without bound made the estimate recur without end.
+/// Found by random damage: unbounded sizes made the estimate recurse without end.
 #[test]
-fn sizes_without_bound_are_estimated_as_such() {
+fn the_estimate_of_unbounded_sizes_ends() {
     let text = fs::read_to_string(folder().join("round.json")).unwrap();
     for (from, to) in [
         ("\"width\": 0.2", "\"width\": 0"),

@@ -1,4 +1,4 @@
-//! Files: those that are read, with their faults, and those that are written.
+//! Files that are read, with their faults, and files that are written.
 
 #[path = "../support/oracles/mod.rs"]
 mod oracles;

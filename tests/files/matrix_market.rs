@@ -1,4 +1,4 @@
-//! Problem directories: what is written is read back bit by bit, and every fault of a file has its line.
+//! Problem directories: written files are read back bit by bit, and every fault of a file is reported with its line.
 
 use std::fs;
 use std::path::Path;
@@ -12,7 +12,7 @@ fn write(folder: &Path, files: &[(&str, String)]) {
 }
 
 #[test]
-fn problems_and_answers_come_back_bit_by_bit() {
+fn written_problems_and_answers_are_read_back_bit_by_bit() {
     let mut draws = Draws::new(6);
     for _ in 0..20 {
         let folder = tempfile::tempdir().unwrap();
@@ -33,7 +33,7 @@ fn problems_and_answers_come_back_bit_by_bit() {
 fn files_of_other_programs_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let files = [
-        // Both triangles, capitals, comments, blank lines, trailing blanks, integers, a plus sign.
+        // Both triangles, capitals, comments, blank lines, trailing spaces, integers, a plus sign.
         (
             "K.mtx",
             "%%MatrixMarket MATRIX Coordinate Real General\n% a comment\n\n2 2 4\n1 1 3\n2 1 -1 \n1 2 -1e0\n2 2 +1.0\n",
@@ -49,7 +49,7 @@ fn files_of_other_programs_are_read() {
 }
 
 #[test]
-fn faults_have_their_line_and_say_what_is_allowed() {
+fn faults_are_reported_with_their_line_and_what_is_allowed() {
     let symmetric = "%%MatrixMarket matrix coordinate real symmetric\n";
     let cases = [
         ("", 1, "the file is empty"),
@@ -86,7 +86,7 @@ fn faults_have_their_line_and_say_what_is_allowed() {
 }
 
 #[test]
-fn missing_file_is_named() {
+fn a_missing_file_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let message = qp::read_problem(folder.path()).unwrap_err().to_string();
     assert!(message.starts_with("cannot read ") && message.contains("K.mtx: "), "{message}");

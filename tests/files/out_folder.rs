@@ -1,4 +1,5 @@
-//! What `--out` and `export` leave in a folder: files that are whole, that other programs read, and nothing else.
+//! The files that `--out` and `export` write into a folder: complete files that other programs can read, and no other
+//! files.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,12 +11,12 @@ use resvg::usvg::roxmltree::Document;
 use serde_json::{Value, json};
 use signorini::qp::{read_problem, read_vector};
 
-/// The share of the width or of the height inside its margins that a picture fills.
+/// Smallest share of the width or of the height inside the margins that a picture fills.
 const FILLED: f64 = 0.85;
 /// Margins of a picture, in pixels.
 const MARGIN: f64 = 24.0;
 
-/// The shares of the width and the height inside the margins over which something is drawn.
+/// The shares of the width and of the height inside the margins that contain some drawing.
 fn filled(path: &Path) -> [f64; 2] {
     let pixels = Pixmap::load_png(path).unwrap();
     let is_ink = |place: usize| pixels.pixels()[place].demultiply().red().min(pixels.pixels()[place].green()) < 250;
@@ -28,20 +29,21 @@ fn filled(path: &Path) -> [f64; 2] {
     [0, 1].map(|axis| (ends[axis][1] as f64 - ends[axis][0] as f64 + 1.0) / (sides[axis] - 2.0 * MARGIN))
 }
 
-/// A page holds its data as JSON, asks for nothing from anywhere, and has nothing in it that ends its scripts early.
+/// Checks that a page contains its data as JSON, loads nothing from outside, and contains nothing that ends its scripts
+/// early.
 fn check_page(name: &str, page: &str) {
     let (_, data) = page.split_once("<script type=\"application/json\" id=\"data\">").expect(name);
     let (data, rest) = data.split_once("</script>").expect(name);
     let data: Value = serde_json::from_str(data).unwrap_or_else(|error| panic!("{name}: {error}"));
     assert!(data["about"]["version"].is_string() && data["units"].is_object(), "{name}");
-    assert_eq!(rest.matches("</script>").count(), 2, "{name}: arrays and scripts");
+    assert_eq!(rest.matches("</script>").count(), 2, "{name}: the arrays and the scripts are not in two elements");
     for address in ["http://", "https://", "src=\"/", "@import", "fetch(", "XMLHttpRequest"] {
         let own = page.replace("http://www.w3.org/2000/svg", "");
         assert!(!own.contains(address), "{name} names {address}");
     }
 }
 
-/// The names in a folder, each file read once in the way of its kind.
+/// The names of the files in a folder; each file is read once in the way of its format.
 fn checked(folder: &Path) -> BTreeSet<String> {
     let mut names = BTreeSet::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -85,7 +87,7 @@ fn checked(folder: &Path) -> BTreeSet<String> {
                     "material",
                 ];
                 for array in expected {
-                    assert!(arrays.contains(&array), "{name} lacks {array}: {arrays:?}");
+                    assert!(arrays.contains(&array), "{name} does not contain {array}: {arrays:?}");
                 }
             }
             Some("mtx") if !["K.mtx", "B.mtx", "near_null.mtx"].contains(&name.as_str()) => {
@@ -99,7 +101,7 @@ fn checked(folder: &Path) -> BTreeSet<String> {
                 let cells: BTreeSet<usize> = csv.lines().map(|line| line.split(',').count()).collect();
                 assert!(cells.len() == 1 && csv.lines().count() > 1, "{name}: {cells:?}");
             }
-            _ => panic!("what is {name}?"),
+            _ => panic!("{name} has an unknown kind"),
         }
         assert!(!bytes.is_empty(), "{name} is empty");
         names.insert(name);
@@ -116,7 +118,7 @@ fn pictures(stems: impl IntoIterator<Item = String>) -> BTreeSet<String> {
 }
 
 #[test]
-fn solve_leaves_answer_fields_pictures_and_report() {
+fn solve_writes_answer_fields_pictures_and_report() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
     let run = desk.run(&[
@@ -141,17 +143,17 @@ fn solve_leaves_answer_fields_pictures_and_report() {
     assert_eq!(found, expected);
     assert!(steps >= 2);
     let report: Value = serde_json::from_slice(&fs::read(desk.path("a/b/report.json")).unwrap()).unwrap();
-    assert_eq!(report, run.json(), "the report in the folder is the one that is printed");
-    // The nodal contact forces add up to the resultant.
+    assert_eq!(report, run.json(), "the report in the folder differs from the printed one");
+    // The sum of the nodal contact forces is the resultant.
     let fields = fs::read_to_string(desk.path("a/b/solution.vtu")).unwrap();
-    let (_, forces) = fields.split_once("Name=\"contact_force\"").expect("contact forces");
+    let (_, forces) = fields.split_once("Name=\"contact_force\"").expect("the file has no contact forces");
     let numbers = forces.lines().skip(1).take_while(|line| !line.starts_with('<'));
     let along_y: f64 = numbers.map(|line| line.split_whitespace().nth(1).unwrap().parse::<f64>().unwrap()).sum();
     let resultant = report["resultants"][0]["force"][1].as_f64().unwrap();
     assert!(along_y < 0.0 && (along_y - resultant).abs() < 1e-12 * along_y.abs(), "{along_y} and {resultant}");
 }
 
-/// The columns of a table by their names, as numbers; empty cells are NaN.
+/// The columns of a table by name, as numbers; empty cells are NaN.
 fn columns(csv: &str) -> std::collections::BTreeMap<String, Vec<f64>> {
     let mut lines = csv.lines();
     let names: Vec<String> = lines.next().unwrap().split(',').map(str::to_string).collect();
@@ -160,9 +162,10 @@ fn columns(csv: &str) -> std::collections::BTreeMap<String, Vec<f64>> {
     names.into_iter().enumerate().map(|(place, name)| (name, rows.iter().map(|row| row[place]).collect())).collect()
 }
 
-/// A pressed obstacle over quadratic faces, and a rigid face: every unknown and every row is told, in the order of the vectors.
+/// A pressed obstacle on quadratic faces, and a rigid face: the tables describe every unknown and every row, in the
+/// order of the vectors.
 #[test]
-fn tables_tell_what_the_entries_of_the_vectors_are() {
+fn the_tables_describe_every_entry_of_the_vectors() {
     let axis = |cells: usize| serde_json::json!({"points": [0, 1], "divisions": [cells]});
     let scene = serde_json::json!({
         "model": "space",
@@ -181,7 +184,7 @@ fn tables_tell_what_the_entries_of_the_vectors_are() {
     let dofs = read("dofs.csv");
     let quantity = |of: &str| dofs.lines().filter(|line| line.split(',').nth(1) == Some(of)).count();
     assert_eq!(dofs.lines().count() - 1, u.len());
-    // On top the mid-sides of 8 triangles: 16 edges.
+    // The top has 8 triangles with 16 edges, and so 16 mid-side nodes.
     assert_eq!((quantity("coefficient"), quantity("z"), quantity("travel")), (3 * 16, 1, 1));
     assert!(dofs.lines().last().unwrap().contains("travel,obstacles[0],,,,0e0,0e0,-1e0"), "{dofs}");
     assert_eq!(*u.last().unwrap(), report["resultants"][0]["travel"].as_f64().unwrap());
@@ -191,14 +194,14 @@ fn tables_tell_what_the_entries_of_the_vectors_are() {
     assert!((contact["force"].iter().sum::<f64>() - 3.0).abs() < 1e-9);
     for (row, lambda) in lambda.iter().enumerate() {
         assert_eq!(contact["force"][row], 0.0 - lambda);
-        assert!(contact["remaining_gap"][row] > -1e-12, "coefficients keep the nodes out of the obstacle");
+        assert!(contact["remaining_gap"][row] > -1e-12, "a node is inside the obstacle");
         assert!(contact["closed"][row] == 0.0 || contact["pressure"][row] >= 0.0);
     }
     assert!(report["strain_energy"].as_f64().unwrap() > 0.0);
 }
 
 #[test]
-fn compare_leaves_the_pressure_of_three_methods_too() {
+fn compare_writes_the_pressure_of_three_methods() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
     let run = desk.run(&["compare", "block.json", "--format", "json", "--out", "o"]).ends_with(0);
@@ -211,7 +214,7 @@ fn compare_leaves_the_pressure_of_three_methods_too() {
 }
 
 #[test]
-fn sweep_leaves_a_picture_for_each_gap_and_the_curves() {
+fn sweep_writes_a_picture_for_each_gap_and_the_curves() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
     desk.run(&["sweep", "block.json", "--gaps", "-0.01:-0.03:3", "--out", "o"]).ends_with(0);
@@ -222,7 +225,7 @@ fn sweep_leaves_a_picture_for_each_gap_and_the_curves() {
 }
 
 #[test]
-fn every_example_of_every_shape_is_drawn() {
+fn the_pictures_of_every_example_fill_their_page() {
     let desk = Desk::new();
     for name in crate::program::examples() {
         desk.run(&["compare", &example(&name), "--out", &name]).ends_with(0);
@@ -236,7 +239,7 @@ fn every_example_of_every_shape_is_drawn() {
 }
 
 #[test]
-fn a_problem_directory_gets_its_answer_beside_its_files() {
+fn solve_writes_the_answer_into_the_problem_directory() {
     let desk = Desk::new();
     desk.problem("p", &Problem::right());
     desk.run(&["solve", "p", "--out", "p"]).ends_with(0);
@@ -247,7 +250,7 @@ fn a_problem_directory_gets_its_answer_beside_its_files() {
 }
 
 #[test]
-fn export_leaves_files_that_read_back_as_the_problem_and_tell_what_they_hold() {
+fn exported_files_are_read_back_as_the_same_problem() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
     desk.run(&["export", "block.json", "deep/er"]).ends_with(0);
@@ -265,11 +268,11 @@ fn a_second_run_replaces_the_files_of_the_first() {
     desk.write("o/notes.json", "{}");
     desk.run(&["solve", "block.json", "--out", "o"]).ends_with(0);
     desk.run(&["solve", "block.json", "--out", "o"]).ends_with(0);
-    assert!(checked(&desk.path("o")).contains("notes.json"), "foreign files stay");
+    assert!(checked(&desk.path("o")).contains("notes.json"), "the run removed a file of the user");
 }
 
 #[test]
-fn an_answer_that_is_not_certified_is_written_and_says_so() {
+fn an_answer_that_is_not_certified_is_written_with_its_status() {
     let desk = Desk::new();
     let run = desk.run(&["solve", &example("indentation"), "--method", "penalty", "--out", "o"]);
     run.fails_with(4, &["not certified"]);
@@ -279,7 +282,7 @@ fn an_answer_that_is_not_certified_is_written_and_says_so() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_made_ends_with_one_sentence_and_leaves_nothing() {
+fn a_folder_that_cannot_be_made_causes_one_sentence_and_no_files() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
     desk.write("file", "a regular file");
@@ -300,7 +303,7 @@ fn a_folder_that_cannot_be_made_ends_with_one_sentence_and_leaves_nothing() {
 }
 
 #[test]
-fn a_file_that_cannot_be_replaced_leaves_nothing_temporary() {
+fn a_file_that_cannot_be_replaced_causes_no_temporary_files() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
     desk.write("o/lambda.mtx/occupied", "a folder in the place of a file");
@@ -310,7 +313,7 @@ fn a_file_that_cannot_be_replaced_leaves_nothing_temporary() {
 }
 
 #[test]
-fn titles_and_units_of_any_characters_make_pictures_that_parse() {
+fn titles_and_units_with_any_characters_give_valid_pictures() {
     let desk = Desk::new();
     let mut odd = scene();
     odd["title"] = json!(format!("<&>\"' \u{0}\u{1b}\n\u{fffe} Größe 接触 {}", "long ".repeat(500)));
@@ -323,7 +326,7 @@ fn titles_and_units_of_any_characters_make_pictures_that_parse() {
 }
 
 #[test]
-fn pictures_are_drawn_as_far_as_they_are_wanted() {
+fn only_the_requested_pictures_are_drawn() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
     let drawn = |arguments: &[&str], out: &str| {
@@ -340,7 +343,7 @@ fn pictures_are_drawn_as_far_as_they_are_wanted() {
     desk.run(&["solve", "block.json", "--pictures", "some"]).ends_with(2);
 }
 
-/// The penalty loop has a picture for each penalty; of many iterations twelve are drawn, and each says so.
+/// The penalty loop has a picture for each penalty; of many iterations twelve are drawn, and each picture says so.
 #[test]
 fn penalties_have_pictures_with_common_colours() {
     let desk = Desk::new();
@@ -349,7 +352,7 @@ fn penalties_have_pictures_with_common_colours() {
     let files = checked(&desk.path("o"));
     let rungs: Vec<&String> = files.iter().filter(|name| name.starts_with("rung-") && name.ends_with(".svg")).collect();
     assert!((3..=12).contains(&rungs.len()), "{files:?}");
-    // What a colour bar says lies under the first panel; it is the same in all pictures.
+    // The label of the colour bar under the first panel; it is the same in all pictures.
     let label = |name: &str| {
         let svg = fs::read_to_string(desk.path("o").join(name)).unwrap();
         let (before, _) = svg.split_once(">second principal stress σ₂ (").map(|(a, b)| (a.to_string(), b)).unwrap();
@@ -360,9 +363,9 @@ fn penalties_have_pictures_with_common_colours() {
     }
 }
 
-/// A page of PDF with its letters, as wide as a journal has it, and letters on its panels.
+/// The PDF files contain their font, have the column width of a journal, and number their panels with letters.
 #[test]
-fn pictures_for_paper_are_pdf_of_the_right_width() {
+fn pictures_for_paper_are_pdf_files_of_the_right_width() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
     desk.run(&["compare", "block.json", "--pictures", "answer", "--style", "paper", "--out", "o"]).ends_with(0);
@@ -370,7 +373,7 @@ fn pictures_for_paper_are_pdf_of_the_right_width() {
         let pdf = fs::read(desk.path(&format!("o/{stem}.pdf"))).unwrap();
         assert!(pdf.starts_with(b"%PDF-") && pdf.ends_with(b"%%EOF"), "{stem}");
         let text = String::from_utf8_lossy(&pdf);
-        assert!(text.contains("/FontFile2") && text.contains("/Identity-H"), "{stem} has no letters of its own");
+        assert!(text.contains("/FontFile2") && text.contains("/Identity-H"), "{stem} does not contain its font");
         let sides = text.split_once("/MediaBox [").unwrap().1.split(']').next().unwrap().to_string();
         let width: f64 = sides.split_whitespace().nth(2).unwrap().parse().unwrap();
         assert!((width - millimetres * 72.0 / 25.4).abs() < 0.1, "{stem} is {width} points wide");

@@ -1,4 +1,4 @@
-//! Files: `.vtu` text, and writing that is never half done.
+//! Files: `.vtu` text, and writing that never produces incomplete files.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ fn numbers(document: &Document, name: &str) -> Vec<f64> {
 }
 
 #[test]
-fn vtu_carries_mesh_and_data_without_losing_a_bit() {
+fn vtu_files_contain_mesh_and_data_bit_by_bit() {
     let body = Indented::new([1.0, 0.5], [2, 1]);
     let mut elements = body.elements.clone();
     elements[1] = vec![1, 2, 5];
@@ -54,7 +54,7 @@ fn vtu_carries_mesh_and_data_without_losing_a_bit() {
 }
 
 #[test]
-fn vtu_refuses_what_readers_would_misread() {
+fn vtu_files_that_readers_would_misread_are_refused() {
     let body = Indented::new([1.0, 0.5], [1, 1]);
     let nodes: Vec<[f64; 3]> = body.nodes.iter().map(|&[x, y]| [x, y, 0.0]).collect();
     let cell_types = &[ElementKind::Q4];
@@ -84,7 +84,7 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn picture_is_written_twice_into_a_new_folder_and_nothing_else_is_left_there() {
+fn a_picture_is_written_as_svg_and_png_into_a_new_folder_without_other_files() {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join("a/b");
     let drawing = Drawing::new(30.0, 20.0);
@@ -97,7 +97,7 @@ fn picture_is_written_twice_into_a_new_folder_and_nothing_else_is_left_there() {
 }
 
 #[test]
-fn file_that_takes_the_place_of_an_older_one_replaces_it_whole() {
+fn a_written_file_replaces_an_older_one_completely() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("result.vtu");
     write_atomically(&path, &[b'x'; 100_000]).unwrap();
@@ -119,11 +119,11 @@ fn written_files_have_the_permissions_of_ordinary_files() {
 }
 
 #[test]
-fn place_that_cannot_be_written_is_reported_with_its_path_and_left_as_it_is() {
+fn a_failed_write_is_reported_with_its_path_and_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let occupied = folder.path().join("file");
     std::fs::write(&occupied, b"kept").unwrap();
-    // A file where a folder should be, and a folder where a file should be: refused whoever asks.
+    // A file where a folder should be, and a folder where a file should be; both are refused even for an administrator.
     let refused = |path: &Path, sentence: String| {
         let error = write_atomically(path, b"lost").unwrap_err();
         assert!(matches!(error, Error::File { .. }) && error.to_string().starts_with(&sentence), "{error}");

@@ -1,4 +1,4 @@
-//! The picture of a contact answer: true to its data, readable, and undisturbed by hostile data.
+//! The picture of a contact answer: it agrees with its data, is readable, and tolerates hostile data.
 
 use crate::output_fixture::{
     Indented,
@@ -12,14 +12,14 @@ use signorini::output::Drawing;
 fn colour_at(drawing: &Drawing, x: u32, y: u32) -> [u8; 3] {
     let png = drawing.png(1.0).expect("rasterises");
     let pixels = Pixmap::decode_png(&png).expect("a PNG");
-    let colour = pixels.pixel(x, y).expect("on the page").demultiply();
+    let colour = pixels.pixel(x, y).expect("the pixel is on the page").demultiply();
     [colour.red(), colour.green(), colour.blue()]
 }
 
-/// Left, top, width and height in pixels of the left (1) or the right (2) panel, from what its content is clipped to.
+/// Left, top, width and height in pixels of the left (1) or the right (2) panel, from the clip path of its content.
 fn panel(drawing: &Drawing, which: usize) -> [f64; 4] {
     let svg = drawing.svg();
-    let clip = svg.split(&format!("<clipPath id=\"clip{which}\"><rect ")).nth(1).expect("a clipped panel");
+    let clip = svg.split(&format!("<clipPath id=\"clip{which}\"><rect ")).nth(1).expect("the panel has a clip path");
     ["x", "y", "width", "height"].map(|name| {
         let rest = clip.split(&format!("{name}=\"")).nth(1).expect(name);
         rest.split('"').next().and_then(|text| text.parse().ok()).expect(name)
@@ -32,7 +32,7 @@ fn panel_centre(drawing: &Drawing) -> (u32, u32) {
 }
 
 #[test]
-fn picture_of_an_indented_body_is_readable_and_names_what_it_shows() {
+fn the_picture_of_an_indented_body_is_readable_and_labelled() {
     let body = Indented::new([1.0, 0.5], [40, 20]);
     let obstacle = body.obstacle();
     let drawing = body.picture("Gap −0.01 m, iteration 3, 15 closed nodes", &body.field(), &obstacle).draw().unwrap();
@@ -52,10 +52,11 @@ fn picture_of_an_indented_body_is_readable_and_names_what_it_shows() {
     assert!((1200.0..=1600.0).contains(&drawing.width()), "{}", drawing.width());
 }
 
-/// Shapes become SVG and PNG by separate code; an independent renderer of the SVG must paint the same picture. Renderers smooth
-/// edges differently: a channel counts as different beyond a sixth of its range, and 1 in 10,000 channels may be.
+/// SVG and PNG are made from the shapes by separate code; an independent renderer of the SVG must give the same
+/// picture. Renderers smooth edges differently: a channel counts as different if it differs by more than a sixth of its
+/// range, and 1 in 10,000 channels may.
 #[test]
-fn png_shows_what_the_svg_says() {
+fn the_png_shows_the_same_picture_as_the_svg() {
     const DIFFERENT: u8 = 42;
     const FEW: usize = 1;
     let body = Indented::new([1.0, 0.5], [40, 20]);
@@ -84,8 +85,8 @@ fn png_has_the_size_of_the_drawing_times_its_scale() {
 }
 
 #[test]
-fn equal_values_are_painted_in_the_middle_of_the_colours_and_limits_at_their_ends() {
-    // The ends and the middle of viridis, to the width of a band.
+fn the_middle_value_has_the_middle_colour_and_the_limits_have_the_end_colours() {
+    // The two ends and the middle of viridis, to the width of a colour band.
     for (value, expected) in [(-2.0, [0x44, 0x01, 0x54]), (0.0, [0x21, 0x91, 0x8c]), (2.0, [0xfd, 0xe7, 0x25])] {
         let mut body = Indented::new([1.0, 0.5], [3, 3]);
         body.stress.fill(value);
@@ -110,7 +111,7 @@ fn pictures_stay_readable_at_extreme_shapes_and_magnitudes() {
 }
 
 #[test]
-fn long_titles_are_broken_and_markup_in_them_is_text() {
+fn long_titles_are_broken_and_markup_in_titles_is_escaped() {
     let body = Indented::new([1.0, 0.5], [4, 2]);
     let long = "a body <under> \"pressure\" & more ".repeat(20) + &"endless".repeat(60);
     for title in [long.as_str(), "", "\u{0}\u{8}control\n\tcharacters\u{fffe}", "漢字 😀 ü", "</text><script>"] {
@@ -123,7 +124,7 @@ fn long_titles_are_broken_and_markup_in_them_is_text() {
 }
 
 #[test]
-fn values_that_are_no_numbers_leave_grey_elements_and_say_so() {
+fn elements_with_values_that_are_not_finite_are_grey_with_a_legend() {
     let mut body = Indented::new([1.0, 0.5], [3, 3]);
     body.stress.fill(f64::NAN);
     let drawing = body.picture("No values", &body.field(), &[]).draw().unwrap();
@@ -147,7 +148,7 @@ fn values_that_are_no_numbers_leave_grey_elements_and_say_so() {
 }
 
 #[test]
-fn body_without_nodes_elements_or_candidates_is_an_empty_picture() {
+fn a_body_without_nodes_elements_or_candidates_gives_an_empty_picture() {
     let mut body = Indented::new([1.0, 0.5], [2, 2]);
     body.elements = vec![vec![], vec![0], vec![0, 1], vec![0, 0, 0]];
     assert_readable(&body.picture("Degenerate elements", &body.field(), &[]).draw().unwrap());
@@ -159,7 +160,7 @@ fn body_without_nodes_elements_or_candidates_is_an_empty_picture() {
 }
 
 #[test]
-fn arrays_that_do_not_fit_are_refused_with_both_lengths() {
+fn arrays_of_wrong_length_are_refused_with_both_lengths() {
     let body = Indented::new([1.0, 0.5], [2, 2]);
     let fields = body.field();
     let good = body.picture("Refused", &fields, &[]);
@@ -179,10 +180,10 @@ fn arrays_that_do_not_fit_are_refused_with_both_lengths() {
 }
 
 #[test]
-fn obstacle_is_grey_on_its_inside_and_leaves_the_other_side_white() {
+fn an_obstacle_is_grey_on_its_inside_and_white_on_the_other_side() {
     let body = Indented::new([1.0, 0.5], [8, 4]);
     let grey = |colour: [u8; 3]| colour.iter().all(|&part| (0xb0..0xe0).contains(&part));
-    // Lines beside the body, 0.04 away from it, each with the direction of its inside.
+    // Lines at a distance of 0.04 from the body, each with the direction of its inside.
     let sides = [
         ([[-9.0, 0.54], [9.0, 0.54]], [0.0, 1.0], [0.5, 0.0]),
         ([[-9.0, -0.04], [9.0, -0.04]], [0.0, -3.0], [0.5, 1.0]),
@@ -212,7 +213,7 @@ fn tick_labels_of_a_body_far_from_the_origin_do_not_cover_each_other() {
 }
 
 #[test]
-fn obstacle_out_of_reach_is_said_to_be_outside_the_picture() {
+fn the_legend_names_an_obstacle_outside_the_picture() {
     let body = Indented::new([1.0, 0.5], [4, 2]);
     let plane = [[-1.0, 7.0], [2.0, 7.0]];
     let drawing =
@@ -239,15 +240,15 @@ fn pictures_with_a_common_window_have_the_same_size() {
 }
 
 #[test]
-fn picture_of_twenty_thousand_elements_stays_below_two_megabytes() {
+fn a_picture_of_twenty_thousand_elements_has_less_than_two_megabytes() {
     let body = Indented::new([1.0, 0.5], [200, 100]);
     let svg = body.picture("Fine", &body.field(), &body.obstacle()).draw().unwrap().svg();
     assert!(svg.len() < 2_000_000, "{} bytes", svg.len());
 }
 
-/// A picture of three panels holds the width of the page, and its fields carry one name each.
+/// A picture of three panels keeps the width of the page, and each field has one name.
 #[test]
-fn two_fields_stand_beside_each_other_with_a_bar_each() {
+fn two_fields_are_drawn_side_by_side_with_a_colour_bar_each() {
     let body = Indented::new([1.0, 0.5], [40, 20]);
     let mises: Vec<f64> = body.stress.iter().map(|stress| 0.7 * stress.abs()).collect();
     let quantity = signorini::output::Quantity::new("von Mises stress", "Pa");
@@ -263,9 +264,10 @@ fn two_fields_stand_beside_each_other_with_a_bar_each() {
     assert!(drawing.width() <= 1600.0, "{}", drawing.width());
 }
 
-/// Rounding of 1e-12 beside a uniform stress is painted in one colour, and the bar shows the stress and not its noise.
+/// Rounding of 1e-12 on a uniform stress is painted in one colour, and the colour bar shows the stress without the
+/// rounding.
 #[test]
-fn noise_on_a_uniform_stress_is_one_colour() {
+fn rounding_of_a_uniform_stress_is_painted_in_one_colour() {
     let picture_of = |stress: &dyn Fn(usize) -> f64| {
         let mut body = Indented::new([1.0, 0.5], [6, 6]);
         (0..body.stress.len()).for_each(|node| body.stress[node] = stress(node));
@@ -273,17 +275,17 @@ fn noise_on_a_uniform_stress_is_one_colour() {
     };
     let noisy = |noise: f64| move |node: usize| -1e8 * (1.0 + noise * ((node * 7919 % 13) as f64 - 6.0));
     let drawing = picture_of(&noisy(1e-12));
-    // The lowest value stands for all of them.
+    // All values are painted as the lowest.
     let uniform = picture_of(&|_| -1e8 * (1.0 + 6e-12));
-    assert!(drawing.svg() == uniform.svg(), "the noise is seen");
-    assert!(drawing.svg() != picture_of(&noisy(1e-6)).svg(), "what is more than rounding is not seen");
+    assert!(drawing.svg() == uniform.svg(), "the noise is visible");
+    assert!(drawing.svg() != picture_of(&noisy(1e-6)).svg(), "a difference above rounding is not visible");
     let texts: Vec<String> = texts_of(&drawing).into_iter().map(|(text, _)| text).collect();
     assert!(texts.iter().any(|text| text == "−100"), "{texts:?}");
 }
 
 /// A contact of 2 % of the body is enlarged; one of 40 % is not.
 #[test]
-fn small_contact_is_enlarged_in_a_corner() {
+fn a_small_contact_is_enlarged_in_a_corner() {
     let mut body = Indented::new([1.0, 0.5], [400, 20]);
     let count = |drawing: &Drawing| drawing.svg().matches("<clipPath").count();
     let large = body.picture("Large", &[], &[]).draw().unwrap();
@@ -299,9 +301,9 @@ fn small_contact_is_enlarged_in_a_corner() {
     assert!(texts.iter().any(|text| text.starts_with("× ") && text.ends_with(" wide")), "{texts:?}");
 }
 
-/// Each kind of force has its arrow and its largest size; a force that is rounding has none.
+/// Each kind of force has an arrow and its largest value; a force that is rounding has neither.
 #[test]
-fn forces_have_arrows_and_sizes() {
+fn forces_have_arrows_and_values() {
     let body = Indented::new([1.0, 0.5], [8, 4]);
     let arrow = |kind, force: [f64; 2]| Arrow { kind, at: [0.5, 0.5], moved: [0.0; 2], force, unit: "N".into() };
     let arrows = [arrow(ArrowKind::Contact, [0.0, -70772.0]), arrow(ArrowKind::Load, [1e-9, 0.0])];

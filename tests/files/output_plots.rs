@@ -1,4 +1,4 @@
-//! Line plots: legends that cover nothing, axes that fit, hostile data.
+//! Line plots: legends that cover nothing, axes that match the data, hostile data.
 
 use crate::output_fixture::page::{assert_readable, texts_of};
 use signorini::output::{Plot, Quantity, Scale, Series, line_plots};
@@ -27,7 +27,7 @@ fn coinciding_lines_are_drawn_from_wide_to_thin() {
 }
 
 #[test]
-fn legend_names_every_line_of_several_and_is_missing_for_one() {
+fn a_plot_has_a_legend_only_if_it_has_several_lines() {
     let one = line_plots("One", &[plot(vec![curve("only", pressure)])]);
     assert!(!one.svg().contains("only"));
     let two = line_plots("Two", &[plot(vec![curve("first & last", pressure), Series::new("second", vec![])])]);
@@ -36,7 +36,7 @@ fn legend_names_every_line_of_several_and_is_missing_for_one() {
 }
 
 #[test]
-fn legend_goes_below_the_axes_where_lines_leave_no_room() {
+fn the_legend_is_below_the_axes_if_the_lines_leave_no_room() {
     let crowded: Vec<Series> =
         (1..5).map(|s| curve(&format!("wave {s}"), move |x| (150.0 * x * f64::from(s)).sin())).collect();
     let free = ["a", "b"].map(|name| curve(name, |x| x)).to_vec();
@@ -44,8 +44,12 @@ fn legend_goes_below_the_axes_where_lines_leave_no_room() {
     assert_readable(&crowded);
     assert_readable(&free);
     assert!(crowded.height() > free.height());
-    let axis = texts_of(&crowded).into_iter().find(|(text, _)| text == "position x (m)").expect("the axis label").1;
-    let entry = texts_of(&crowded).into_iter().find(|(text, _)| text == "wave 1").expect("the legend").1;
+    let axis = texts_of(&crowded)
+        .into_iter()
+        .find(|(text, _)| text == "position x (m)")
+        .expect("the plot has an axis label")
+        .1;
+    let entry = texts_of(&crowded).into_iter().find(|(text, _)| text == "wave 1").expect("the plot has a legend").1;
     assert!(entry.top() >= axis.bottom() - 1.0);
 }
 
@@ -62,7 +66,7 @@ fn two_panels_share_one_title_and_do_not_overlap() {
 }
 
 #[test]
-fn logarithmic_axes_show_decades_and_leave_out_what_is_not_positive() {
+fn logarithmic_axes_show_decades_and_omit_values_that_are_not_positive() {
     let points = vec![[1e-3, 1e-2], [1e-2, 0.0], [1e-1, -1.0], [1.0, 1e-9], [10.0, f64::NAN]];
     let plot = Plot { scales: [Scale::Logarithmic; 2], ..plot(vec![Series::new("errors", points)]) };
     let drawing = line_plots("Work and precision", &[plot]);
@@ -72,7 +76,7 @@ fn logarithmic_axes_show_decades_and_leave_out_what_is_not_positive() {
 }
 
 #[test]
-fn plots_without_data_say_so_and_hostile_data_do_not_stop_them() {
+fn plots_without_data_are_labelled_and_hostile_data_are_tolerated() {
     let drawing = line_plots("", &[plot(vec![])]);
     assert!(drawing.svg().contains("no data"));
     assert_readable(&line_plots("No panel", &[]));
@@ -93,15 +97,15 @@ fn plots_without_data_say_so_and_hostile_data_do_not_stop_them() {
     drawing.png(1.0).unwrap();
 }
 
-/// Marks that nothing joins have no line in the legend, and an axis that is asked to begins at zero.
+/// Marks without a line have no line in the legend, and an axis begins at zero on request.
 #[test]
-fn legend_of_marks_has_no_line_and_forces_begin_at_zero() {
+fn the_legend_of_marks_has_no_line_and_the_force_axis_begins_at_zero() {
     let marks: Vec<[f64; 2]> = (1..5).flat_map(|k| [[f64::from(k), 10.0 + f64::from(k)], [f64::NAN; 2]]).collect();
     let path = (1..5).map(|k| [f64::from(k), 10.0 + f64::from(k)]).collect();
     let series = vec![Series::new("exact path", path), Series::new("gaps of the sweep", marks)];
     let drawing = line_plots("Force", &[Plot { nested: true, y_from_zero: true, ..plot(series) }]);
     assert_readable(&drawing);
-    // The line of the second look is dashed: neither in the plot nor in the legend.
+    // The second series would be dashed if it had a line, in the plot or in the legend.
     assert!(!drawing.svg().contains("stroke-dasharray"));
     assert!(texts_of(&drawing).iter().any(|(text, _)| text == "0"));
 }

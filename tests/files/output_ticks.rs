@@ -1,4 +1,4 @@
-//! Ticks at round numbers, and numbers as a reader wants them.
+//! Ticks at round numbers, and readable numbers.
 
 use signorini::internals::{Ticks, brief, decimal, power_of_ten};
 use signorini::output::{Quantity, Scale};
@@ -19,7 +19,7 @@ const RANGES: [[f64; 2]; 12] = [
 ];
 
 #[test]
-fn linear_ticks_are_round_multiples_that_reach_within_a_step_of_both_ends() {
+fn linear_ticks_are_round_multiples_within_a_step_of_both_ends() {
     for range in RANGES {
         for count in 1..=9 {
             let ticks = Ticks::new(Scale::Linear, range, count);
@@ -33,7 +33,7 @@ fn linear_ticks_are_round_multiples_that_reach_within_a_step_of_both_ends() {
             assert_eq!(ticks.positions.len(), ticks.labels.len());
             let slack = 0.01 * ticks.step;
             for position in &ticks.positions {
-                assert!((range[0] - slack..=range[1] + slack).contains(position), "{position} outside {range:?}");
+                assert!((range[0] - slack..=range[1] + slack).contains(position), "{position} is outside {range:?}");
             }
             if let (Some(first), Some(last)) = (ticks.positions.first(), ticks.positions.last()) {
                 assert!(
@@ -42,14 +42,14 @@ fn linear_ticks_are_round_multiples_that_reach_within_a_step_of_both_ends() {
                     ticks.positions
                 );
             } else {
-                assert!(range[1] - range[0] < ticks.step, "{range:?} has no tick at all");
+                assert!(range[1] - range[0] < ticks.step, "{range:?} has no tick");
             }
         }
     }
 }
 
 #[test]
-fn labels_of_ticks_differ_and_read_back_as_their_positions() {
+fn labels_of_ticks_differ_and_give_their_positions() {
     for range in RANGES {
         let ticks = Ticks::new(Scale::Linear, range, 6);
         let unit = 10f64.powi(ticks.exponent);
@@ -64,7 +64,7 @@ fn labels_of_ticks_differ_and_read_back_as_their_positions() {
 }
 
 #[test]
-fn unit_interval_and_stress_range_have_the_ticks_that_one_would_write() {
+fn the_unit_interval_and_a_stress_range_have_the_expected_ticks() {
     let ticks = Ticks::new(Scale::Linear, [0.0, 1.0], 5);
     assert_eq!(ticks.labels, ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
     let ticks = Ticks::new(Scale::Linear, [-1.7e6, 0.1e6], 4);
@@ -84,7 +84,7 @@ fn logarithmic_ticks_are_powers_of_ten_over_decades_and_multiples_within_one() {
 }
 
 #[test]
-fn range_of_data_is_never_empty_whatever_the_data_are() {
+fn the_range_of_data_is_never_empty() {
     let hostile: [&[f64]; 9] = [
         &[],
         &[f64::NAN, f64::INFINITY],
@@ -107,7 +107,7 @@ fn range_of_data_is_never_empty_whatever_the_data_are() {
 }
 
 #[test]
-fn ticks_of_a_range_that_is_none_are_none() {
+fn an_invalid_range_has_no_ticks() {
     for range in [[0.0, 0.0], [1.0, 0.0], [f64::NAN, 1.0], [0.0, f64::INFINITY], [-1e308, 1e308]] {
         for scale in [Scale::Linear, Scale::Logarithmic] {
             assert!(Ticks::new(scale, range, 5).positions.is_empty(), "{scale:?} {range:?}");
@@ -116,7 +116,7 @@ fn ticks_of_a_range_that_is_none_are_none() {
 }
 
 #[test]
-fn numbers_carry_true_minus_signs_and_superscripts() {
+fn numbers_have_true_minus_signs_and_superscripts() {
     assert_eq!(power_of_ten(-12), "10⁻¹²");
     assert_eq!(decimal(-0.04, 1), "0.0");
     assert_eq!(decimal(-1.25, 2), "−1.25");
@@ -144,7 +144,7 @@ fn numbers_carry_true_minus_signs_and_superscripts() {
 }
 
 #[test]
-fn logarithmic_axis_of_one_power_of_ten_has_several_ticks() {
+fn a_logarithmic_axis_over_one_decade_has_several_ticks() {
     for range in [[1.1e-3, 3e-2], [4.5e-3, 0.21], [0.8, 13.0]] {
         let ticks = Ticks::new(Scale::Logarithmic, range, 8);
         assert!(ticks.positions.len() >= 2, "{range:?}: {:?}", ticks.labels);

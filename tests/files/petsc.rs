@@ -1,7 +1,7 @@
-//! GOAL: a scene that goes out as PETSc's files comes back as the problem that it was, bit by bit.
+//! GOAL: a scene that is exported as PETSc files is read back as the same problem, bit by bit.
 //!
-//! CONDITIONS: bodies on a line, in the plane, of revolution and in space; supports of single components, inclined ones, springs;
-//! the same exported as Matrix Market.
+//! CONDITIONS: bodies on a line, in the plane, of revolution and in space; supports of single components, inclined
+//! supports, springs; the same scenes exported as Matrix Market files.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use signorini::Scene;
 use signorini::qp::read_problem;
 
-/// A dome, pressed on a table: it slides along its axis and is guided by springs.
+/// A dome pressed onto a table; it slides along its axis and is guided by springs.
 fn of_revolution() -> Value {
     json!({
         "model": "axisymmetric",
@@ -25,7 +25,7 @@ fn of_revolution() -> Value {
     })
 }
 
-/// A block on rollers along three axes, one of its edges inclined.
+/// A block on rollers along three axes; one of its edges has inclined supports.
 fn in_space(element: &str) -> Value {
     let axis = |cells: usize| json!({"points": [0, 1], "divisions": [cells]});
     json!({
@@ -57,7 +57,7 @@ fn scenes() -> Vec<Value> {
     scenes
 }
 
-/// The report of a command, without what a clock measures.
+/// The report of a command, without its times.
 fn report(desk: &Desk, arguments: &[&str]) -> Value {
     let mut report = desk.run(&[arguments, &["--format", "json"]].concat()).ends_with(0).json();
     report.as_object_mut().unwrap().remove("seconds");
@@ -69,7 +69,7 @@ fn bits(values: &[f64]) -> Vec<u64> {
 }
 
 #[test]
-fn petsc_files_hold_the_problem_of_the_scene_bit_by_bit() {
+fn petsc_files_contain_the_problem_of_the_scene_bit_by_bit() {
     let desk = Desk::new();
     for (number, scene) in scenes().iter().enumerate() {
         let name = format!("{number}.json");
@@ -95,7 +95,7 @@ fn petsc_files_hold_the_problem_of_the_scene_bit_by_bit() {
 }
 
 #[test]
-fn commands_answer_to_petsc_files_as_to_matrix_market_files() {
+fn commands_give_the_same_answer_for_petsc_and_matrix_market_files() {
     let desk = Desk::new();
     for scene in scenes() {
         desk.write("scene.json", scene.to_string());
@@ -130,20 +130,20 @@ fn compare_sweep_and_tradeoff_read_petsc_files() {
 }
 
 #[test]
-fn export_tells_its_bytes_before_it_begins_and_writes_as_many() {
+fn export_announces_the_number_of_bytes_that_it_writes() {
     let desk = Desk::new();
     desk.write("scene.json", in_space("hex8").to_string());
     for form in ["matrix-market", "petsc"] {
         let said = desk.run(&["export", "scene.json", form, "--format", form]).ends_with(0).stderr;
-        let told = said.strip_prefix("writing ").and_then(|rest| rest.split(' ').next()).unwrap();
+        let announced = said.strip_prefix("writing ").and_then(|rest| rest.split(' ').next()).unwrap();
         let files = fs::read_dir(desk.path(form)).unwrap();
         let written: u64 = files.map(|file| file.unwrap().metadata().unwrap().len()).sum();
-        assert_eq!(told.parse::<u64>().unwrap(), written, "{said}");
+        assert_eq!(announced.parse::<u64>().unwrap(), written, "{said}");
     }
 }
 
 #[test]
-fn unknowns_without_a_node_are_refused_and_so_is_a_directory_of_both_forms() {
+fn unknowns_without_a_node_and_a_directory_of_both_forms_are_refused() {
     let desk = Desk::new();
     let mut pressed = scene();
     pressed["obstacles"][0]["force"] = json!(1000.0);
@@ -159,9 +159,10 @@ fn unknowns_without_a_node_are_refused_and_so_is_a_directory_of_both_forms() {
     desk.run(&["solve", "p"]).ends_with(0);
 }
 
-/// Without `near_null.petsc` the nodes tell the rigid-body modes: multigrid solves a block all the same.
+/// Without `near_null.petsc`, the rigid-body modes come from the coordinates of the nodes: multigrid still solves a
+/// block.
 #[test]
-fn coordinates_stand_for_the_modes_that_are_missing() {
+fn coordinates_replace_missing_rigid_body_modes() {
     let desk = Desk::new();
     let mut block = in_space("hex8");
     for axis in ["x", "y", "z"] {

@@ -1,10 +1,11 @@
-//! Malformed PETSc files, kept: each damages one file of the exported scene `tests/faults/plane.json` and is refused with the code
-//! and the sentence that stand beside it in `tests/faults/petsc.jsonl`, with file and byte.
+//! Kept malformed PETSc files: each damages one file of the exported scene `tests/faults/plane.json`, and is refused
+//! with the code and the sentence kept in `tests/faults/petsc.jsonl`; the sentence has file and byte.
 //!
-//! A line is `[file, damage, code, sentence]`. A damage is `put BYTE HEX` (other bytes from there on), `cut BYTES` (so many are left),
-//! `add HEX` (at the end), `make HEX` (nothing but these) or `take away`. What tells the coordinates of nodes is damaged where
-//! `near_null.petsc` is missing. `BLESS=1 cargo test --test files petsc_faults` writes codes and sentences anew, to be read before
-//! they are kept.
+//! A line is `[file, damage, code, sentence]`. A damage is `put BYTE HEX` (replaces bytes from there on), `cut BYTES`
+//! (keeps this number of bytes), `add HEX` (appends bytes), `make HEX` (replaces the whole content) or `take away`.
+//! Files with the coordinates of nodes are damaged in a directory without `near_null.petsc`.
+//!
+//! `BLESS=1 cargo test --test files petsc_faults` writes codes and sentences again; read them before you keep them.
 
 use std::fmt::Write;
 use std::fs;
@@ -14,17 +15,17 @@ use crate::program::Desk;
 use serde_json::Value;
 use signorini::qp::read_problem;
 
-/// A sentence longer than this says too much.
+/// Largest length of a sentence; a longer one says too much.
 const LONGEST: usize = 300;
 
-/// Files that are read where there is no `near_null.petsc`.
+/// Files that are read only if there is no `near_null.petsc`.
 const OF_NODES: [&str; 2] = ["coordinates.petsc", "K.petsc.info"];
 
 fn bytes(hex: &str) -> Vec<u8> {
     (0..hex.len()).step_by(2).map(|at| u8::from_str_radix(&hex[at..at + 2], 16).unwrap()).collect()
 }
 
-/// The bytes of a damaged file; `None` where it is taken away.
+/// The bytes of a damaged file; `None` if the file is removed.
 fn damaged(right: &[u8], damage: &str) -> Option<Vec<u8>> {
     let mut contents = right.to_vec();
     let words: Vec<&str> = damage.split(' ').collect();
@@ -37,7 +38,7 @@ fn damaged(right: &[u8], damage: &str) -> Option<Vec<u8>> {
         ["add", hex] => contents.extend(bytes(hex)),
         ["make", hex] => contents = bytes(hex),
         ["take", "away"] => return None,
-        _ => panic!("what is {damage}?"),
+        _ => panic!("{damage} is an unknown damage"),
     }
     Some(contents)
 }
@@ -92,9 +93,9 @@ fn every_damaged_file_is_refused_with_its_code_and_its_sentence() {
     assert!(wrong.is_empty(), "{wrong}");
 }
 
-/// The program ends as with other bad files.
+/// The program ends as for other invalid files.
 #[test]
-fn the_program_says_what_is_wrong_with_a_damaged_file() {
+fn the_program_names_the_byte_of_a_damaged_petsc_file() {
     let desk = Desk::new();
     let scene: Value = crate::program::scene();
     desk.write("scene.json", scene.to_string());

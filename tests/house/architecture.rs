@@ -1,4 +1,4 @@
-//! The house of the modules: a module names only modules of lower floors.
+//! The order of the modules: a module names only modules of lower floors.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use crate::imports::House;
 
-/// The rooms of each floor, from the ground up. `qp` alone is the front of the rooms in it; `lib` re-exports and `main` calls:
-/// they stand on the roof.
+/// The rooms of each floor, from the lowest up. `qp` alone is the public part of the rooms in it. `lib` only re-exports
+/// and `main` only calls; they are on no floor.
 const FLOORS: [&[&str]; 18] = [
     &["solution", "watch", "memory"],
     &["error"],
@@ -31,10 +31,10 @@ const FLOORS: [&[&str]; 18] = [
 
 fn floor(room: &str) -> usize {
     let found = FLOORS.iter().position(|rooms| rooms.contains(&room));
-    found.unwrap_or_else(|| panic!("`{room}` is no room of the house"))
+    found.unwrap_or_else(|| panic!("`{room}` is not a room of the house"))
 }
 
-/// The room of a module: one of `qp` and `fem`, or a folder or file of `src/`.
+/// The room of a module: a folder or file of `qp` or `fem`, or of `src/`.
 fn room(module: &[String]) -> Option<String> {
     match module {
         [] => None,
@@ -64,7 +64,7 @@ fn a_module_names_only_modules_of_lower_floors() {
             arrows.insert((own.clone(), other));
         }
     }
-    // Names from too few rooms would mean that the imports are not understood.
+    // Too few pairs of rooms would mean that the imports are not parsed correctly.
     assert!(arrows.len() > 60, "{} arrows between rooms", arrows.len());
 }
 
@@ -74,7 +74,7 @@ fn no_two_files_import_each_other() {
     let taken: BTreeMap<_, _> = house.files.keys().map(|module| (module, house.taken_from(module))).collect();
     let mut circles = BTreeSet::new();
     for start in house.files.keys() {
-        // What the file reaches by imports; it must not be among it.
+        // The files that this file reaches by imports; the file itself must not be among these.
         let (mut reached, mut next) = (BTreeSet::new(), vec![start]);
         while let Some(module) = next.pop() {
             for other in &taken[module] {
@@ -87,11 +87,11 @@ fn no_two_files_import_each_other() {
             }
         }
     }
-    assert!(circles.is_empty(), "these files are in circles of imports: {circles:#?}");
+    assert!(circles.is_empty(), "these files are in circular imports: {circles:#?}");
 }
 
 #[test]
-fn bodies_know_no_contact_problem() {
+fn bodies_do_not_name_contact_problems() {
     let house = House::read();
     for module in house.files.keys().filter(|module| module.first().is_some_and(|name| name == "fem")) {
         for other in house.taken_from(module).iter().filter_map(|other| room(other)) {
@@ -106,7 +106,7 @@ fn bodies_know_no_contact_problem() {
 fn only_judged_constructs_the_error_of_an_answer_that_is_not_certified() {
     let name = "Error::NotCertified {";
     let constructs = |text: &str| {
-        // A pattern leaves out what it does not need by `..`; a construction names all fields.
+        // A pattern omits fields by `..`; a construction names all fields.
         text.match_indices(name).any(|(at, _)| !text[at..].split('}').next().unwrap().contains(".."))
     };
     let files = House::read().files.into_values().filter(|source| constructs(&source.text));
@@ -117,12 +117,12 @@ fn only_judged_constructs_the_error_of_an_answer_that_is_not_certified() {
 fn every_room_of_the_house_exists() {
     let rooms: BTreeSet<String> = sources().into_iter().map(|(room, _, _)| room).collect();
     for room in FLOORS.concat() {
-        assert!(rooms.contains(room), "the house has a room `{room}` that src/ has not");
+        assert!(rooms.contains(room), "the house has a room `{room}` that src/ does not have");
     }
 }
 
 #[test]
-fn architecture_shows_the_house_as_it_is() {
+fn the_code_map_of_architecture_lists_every_room_on_its_floor() {
     let architecture = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("ARCHITECTURE.md")).unwrap();
     for (number, rooms) in FLOORS.iter().enumerate() {
         for room in *rooms {
@@ -136,7 +136,7 @@ fn architecture_shows_the_house_as_it_is() {
 #[test]
 fn libraries_stay_in_their_rooms() {
     let rules: [(&str, &[&str]); 14] = [
-        // What it sets holds for the whole process.
+        // The settings of this library apply to the whole process.
         ("set_infinity", &[]),
         ("ctrlc::", &["cli"]),
         ("signal_hook::", &["cli"]),
@@ -171,7 +171,7 @@ fn libraries_stay_in_their_rooms() {
 }
 
 #[test]
-fn methods_speak_no_mechanics_and_do_not_call_each_other() {
+fn methods_use_no_word_of_mechanics_and_do_not_call_each_other() {
     let words = ["mesh", "element", "node", "stress", "young", "poisson", "obstacle"];
     for (room, file, text) in sources().into_iter().filter(|source| source.0 == "qp/method") {
         let code: String = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
@@ -187,14 +187,14 @@ fn methods_speak_no_mechanics_and_do_not_call_each_other() {
 }
 
 #[test]
-fn files_stay_readable() {
+fn no_source_file_has_more_than_600_lines() {
     for (_, file, text) in sources() {
         let lines = text.lines().count();
         assert!(lines <= 600, "{} has {lines} lines: split it", file.display());
     }
 }
 
-/// Each binary is linked on its own, with all dependencies: many would cost more time than the tests in them.
+/// Each binary is linked separately, with all dependencies: many binaries would take longer than the tests in them.
 #[test]
 fn tests_are_modules_of_at_most_eight_binaries() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
@@ -202,7 +202,11 @@ fn tests_are_modules_of_at_most_eight_binaries() {
     let groups: Vec<&PathBuf> = entries.iter().filter(|path| path.join("main.rs").exists()).collect();
     assert!(groups.len() <= 8, "{groups:?}");
     for path in &entries {
-        assert!(path.extension().is_none_or(|extension| extension != "rs"), "{} belongs in a group", path.display());
+        assert!(
+            path.extension().is_none_or(|extension| extension != "rs"),
+            "{} is not in a folder of tests",
+            path.display()
+        );
     }
     for group in groups {
         let main = fs::read_to_string(group.join("main.rs")).unwrap();
@@ -210,7 +214,7 @@ fn tests_are_modules_of_at_most_eight_binaries() {
             let path = entry.unwrap().path();
             let name = path.file_stem().unwrap().to_str().unwrap();
             let is_named = name == "main" || main.contains(&format!("\nmod {name};"));
-            assert!(is_named, "{} is compiled into no binary", path.display());
+            assert!(is_named, "{} is not compiled into any binary", path.display());
         }
     }
 }

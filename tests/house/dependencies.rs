@@ -1,4 +1,4 @@
-//! Dependencies: their licences are those that `deny.toml` allows, and all of them come from the registry.
+//! Dependencies: `deny.toml` allows all their licences, and all come from the registry.
 
 use std::path::Path;
 use std::process::Command;
@@ -27,7 +27,7 @@ fn packages(manifest: &str) -> Vec<Value> {
     metadata["packages"].as_array().unwrap().clone()
 }
 
-/// Returns `true` if one of the choices of an expression as `(MIT OR Apache-2.0) AND Unicode-3.0` is allowed.
+/// Returns `true` if one of the choices of an expression such as `(MIT OR Apache-2.0) AND Unicode-3.0` is allowed.
 fn is_allowed(expression: &str, allowed: &[String]) -> bool {
     let parts = |text: &str, by: &str| -> Vec<String> {
         let (mut parts, mut depth) = (vec![Vec::new()], 0);
@@ -42,7 +42,7 @@ fn is_allowed(expression: &str, allowed: &[String]) -> bool {
         }
         parts.into_iter().map(|part| part.join(" ")).collect()
     };
-    // In the older form a stroke separates choices.
+    // In the older form a slash separates choices.
     let expression = expression.replace('/', " OR ");
     let whole = expression.trim();
     let inner =
@@ -80,7 +80,7 @@ fn licences_of_all_dependencies_are_allowed_and_all_come_from_the_registry() {
 }
 
 #[test]
-fn an_expression_of_licences_is_read_as_it_is_meant() {
+fn expressions_of_licences_are_evaluated_with_and_or_and_parentheses() {
     let allowed: Vec<String> = ["MIT", "Unicode-3.0"].map(String::from).into();
     for (expression, expected) in [
         ("MIT", true),

@@ -1,5 +1,6 @@
-//! The documents do what they say: their commands run and print what is shown below them, every key of a scene has an
-//! example that builds, the index names every page, links lead to headings, and the long documents stay within their limits.
+//! The documents agree with the program: their commands run and print the shown output, every key of a scene has an
+//! example that builds, the index names every page, links lead to headings, and the long documents stay within their
+//! limits.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -12,7 +13,7 @@ use tempfile::TempDir;
 
 use crate::imports::rust_files;
 
-/// Commands that are shown and not run here: how their line begins, and why.
+/// Shown commands that are not run here: the beginning of their line, and the reason.
 const NOT_RUN: [(&str, &str); 6] = [
     ("cargo ", "builds, or measures for minutes; `test.sh` runs the short forms"),
     ("pip ", "installs packages"),
@@ -22,10 +23,10 @@ const NOT_RUN: [(&str, &str); 6] = [
     ("signorini tradeoff examples/indentation.json", "measures for a minute"),
 ];
 
-/// Pages whose commands another test runs.
+/// Pages whose commands are run by another test.
 const RUN_ELSEWHERE: [&str; 1] = ["docs/first-part.md"];
 
-/// Numbers below this are rounding, and differ from machine to machine.
+/// Smaller numbers are rounding, and differ from machine to machine.
 const ROUNDING: f64 = 1e-9;
 
 fn root() -> &'static Path {
@@ -45,7 +46,7 @@ fn pages() -> Vec<String> {
     names
 }
 
-/// What stands in a document beside its running text.
+/// The parts of a document other than its running text.
 enum Part {
     Heading,
     Block { kind: String, text: String, line: usize },
@@ -66,7 +67,7 @@ fn parts(document: &str) -> Vec<Part> {
             (None, None) => {}
         }
     }
-    assert!(open.is_none(), "a block without end");
+    assert!(open.is_none(), "a block has no end");
     parts
 }
 
@@ -79,7 +80,8 @@ fn desk() -> TempDir {
     desk
 }
 
-/// What a block of commands prints on standard output and error; `None` if no line of it is run, an error if it fails.
+/// The output of a block of commands on standard output and error. Returns `None` if no line is run, and an error if a
+/// command fails.
 fn printed(desk: &Path, commands: &str) -> Option<Result<String, String>> {
     let is_run = |line: &&str| !NOT_RUN.iter().any(|(start, _)| line.starts_with(start));
     let script: Vec<&str> = commands.lines().filter(is_run).collect();
@@ -94,7 +96,7 @@ fn printed(desk: &Path, commands: &str) -> Option<Result<String, String>> {
     Some(if output.status.success() { Ok(out + &err) } else { Err(format!("{}\n{out}{err}", output.status)) })
 }
 
-/// The words of a text with one space between them; a number that is rounding is `~`.
+/// The words of a text, separated by single spaces; a number that is only rounding becomes `~`.
 fn words(text: &str) -> String {
     let word = |word: &str| match word.parse::<f64>() {
         Ok(number) if number != 0.0 && number.abs() < ROUNDING => "~".to_string(),
@@ -103,14 +105,14 @@ fn words(text: &str) -> String {
     text.split_whitespace().map(word).collect::<Vec<_>>().join(" ")
 }
 
-/// The commands of a document, run.
+/// Result of running the commands of a document.
 #[derive(Default)]
 struct Followed {
-    /// Blocks that ran.
+    /// Number of blocks that ran.
     ran: usize,
-    /// Lines of output that were compared.
+    /// Number of lines of output that were compared.
     compared: usize,
-    /// Commands that failed, and lines that they did not print.
+    /// Failed commands, and lines that a command did not print.
     wrong: Vec<String>,
 }
 
@@ -156,7 +158,7 @@ fn commands_of_the_documents_run_and_print_what_is_shown() {
     names.retain(|name| !RUN_ELSEWHERE.contains(&name.as_str()));
     names.extend(["README.md", "CONTRIBUTING.md"].map(String::from));
     let followed: Vec<Followed> = std::thread::scope(|scope| {
-        // Two halves at once: the machine that runs the tests has two cores at least.
+        // Two halves run in parallel, because a test machine has at least two cores.
         let half = |start: usize| names.iter().skip(start).step_by(2).map(|name| follow(name)).collect::<Vec<_>>();
         let other = scope.spawn(move || half(1));
         let mut followed = half(0);
@@ -170,7 +172,7 @@ fn commands_of_the_documents_run_and_print_what_is_shown() {
     assert!(ran > 20 && compared > 40, "{ran} blocks ran, {compared} lines were compared");
 }
 
-/// The names in a schema: the keys of its objects, and the choices that are words.
+/// The names in a schema: the keys of its objects, and the choices among words.
 #[derive(Default)]
 struct Names {
     keys: BTreeSet<String>,
@@ -207,7 +209,7 @@ fn words_of(example: &Value, found: &mut BTreeSet<String>) {
     }
 }
 
-/// A small scene; an example of `docs/scenes.md` takes the place of some of its fields.
+/// A small scene; an example of `docs/scenes.md` replaces some of its fields.
 fn small_scene() -> Map<String, Value> {
     let scene = serde_json::json!({
         "title": "A small block",
@@ -256,7 +258,7 @@ fn every_key_of_a_scene_has_an_example_that_builds() {
     let mut names = Names::default();
     names.read(&serde_json::from_slice(&schema.stdout).unwrap());
     assert!(names.keys.len() > 100 && names.choices.len() > 30, "{} and {}", names.keys.len(), names.choices.len());
-    // `$schema` is for editors. A choice may stand in the text alone.
+    // `$schema` is for editors. A choice may occur only in the text.
     let in_text = |choice: &String| page.contains(&format!("`{choice}`"));
     let keys = names.keys.iter().filter(|key| !found.contains(*key) && *key != "$schema");
     let choices = names.choices.iter().filter(|choice| !found.contains(*choice) && !in_text(choice));
@@ -275,7 +277,7 @@ fn the_index_names_every_page() {
 }
 
 #[test]
-fn every_page_opens_with_what_it_is_about() {
+fn every_page_opens_with_a_title_and_prose() {
     for page in pages() {
         let text = read(&page);
         let mut lines = text.lines();
@@ -286,14 +288,14 @@ fn every_page_opens_with_what_it_is_about() {
     }
 }
 
-/// The name under which a page can link to a heading: as GitHub makes it.
+/// The name by which a page can link to a heading, as GitHub makes it.
 fn anchor(heading: &str) -> String {
     let kept = heading.trim_start_matches('#').trim().to_lowercase();
     kept.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c)).collect::<String>().replace(' ', "-")
 }
 
 #[test]
-fn every_link_to_a_heading_leads_to_one() {
+fn every_link_to_a_heading_leads_to_an_existing_heading() {
     let mut links = 0;
     for name in pages().into_iter().chain(["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].map(String::from)) {
         let text = read(&name);
@@ -303,11 +305,11 @@ fn every_link_to_a_heading_leads_to_one() {
             let file: PathBuf = if file.is_empty() { own } else { own.parent().unwrap().join(file) };
             let target = fs::read_to_string(&file).unwrap_or_else(|error| panic!("{name} links to {link}: {error}"));
             let has = target.lines().any(|line| line.starts_with('#') && anchor(line) == heading);
-            assert!(has, "{name} links to {link}, and there is no such heading");
+            assert!(has, "{name} links to {link}, but there is no such heading");
             links += 1;
         }
     }
-    assert!(links > 3, "{links} links to headings");
+    assert!(links > 3, "only {links} links to headings");
 }
 
 #[test]
@@ -342,10 +344,10 @@ fn every_invariant_of_the_architecture_names_a_test_that_exists() {
     assert!((4..=8).contains(&invariants.len()), "{} invariants", invariants.len());
     let tests = tests();
     for invariant in invariants {
-        // The names of tests are sentences; those of files and of items are not.
+        // The names of tests are sentences, with at least a few words; names of files and items are shorter.
         let names = invariant.split('`').skip(1).step_by(2).filter(|name| name.matches('_').count() > 3);
         let names: Vec<&str> = names.collect();
-        assert!(!names.is_empty(), "no test stands beside: {invariant}");
+        assert!(!names.is_empty(), "this invariant names no test: {invariant}");
         for name in names {
             assert!(tests.contains(&format!("fn {name}()")), "there is no test {name}");
         }

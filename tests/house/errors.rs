@@ -14,7 +14,7 @@ use signorini::{
     Condense, ContactProblem, Error, Method, Prepared, Scene, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp,
 };
 
-/// A spring of this stiffness under a load of 2 before walls at these distances, in the directions of `rows`.
+/// A spring of this stiffness under a load of 2, with walls at these distances in the directions of `rows`.
 fn spring(stiffness: f64, rows: &[f64], gap: &[f64]) -> Result<ContactProblem, Error> {
     let rows: Vec<&[f64]> = rows.iter().map(std::slice::from_ref).collect();
     Dense::new(&[&[stiffness]], &[2.0], &rows, gap).problem()
@@ -32,14 +32,14 @@ fn scene(change: (&str, &str)) -> Result<Scene, Error> {
     Scene::from_json(&text.replacen(change.0, change.1, 1), "plane.json")
 }
 
-/// The code of a variant and an error of it.
+/// The code of each variant, the name of the variant, and such an error.
 fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
     let spring_and_wall = spring(1.0, &[1.0], &[0.5])?;
     let matrix = |entries: &[(usize, usize, f64)]| SparseMatrix::from_triplets(2, 2, entries);
     let not_square = SparseMatrix::from_triplets(1, 2, &[]);
     let nowhere = Path::new("nowhere");
     let unprepared = Prepared::new(&spring_and_wall, &Settings::default().with_condensation(Condense::Never))?;
-    // Rows that share a dof at an angle cannot be turned into bounds.
+    // Rows that share a dof at an oblique angle cannot be turned into bounds.
     let oblique =
         Dense::new(&[&[1.0, 0.0], &[0.0, 1.0]], &[2.0, 0.0], &[&[1.0, 0.0], &[1.0, 1.0]], &[0.5; 2]).problem()?;
     let still = unprepared.path(&[0.5], &[0.4]);
@@ -75,7 +75,7 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
     ]))
 }
 
-/// A file of a surface with nothing in it.
+/// The error of a surface file without triangles.
 fn empty_surface() -> Error {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("die.stl");
@@ -83,7 +83,7 @@ fn empty_surface() -> Error {
     ClosedSurface::read(&file, 1.0, [0.0; 3]).map(drop).unwrap_err()
 }
 
-/// A mesh of no such domain.
+/// The error of a mesh file without the requested group.
 fn gmsh_of_another_body() -> Error {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults/square4.msh");
     GmshFile::read(&file).and_then(|file| file.mesh(Some("another"), 1.0)).map(drop).unwrap_err()
@@ -95,7 +95,7 @@ fn variants() -> BTreeMap<String, String> {
     let arms = text.lines().filter(|line| line.trim().starts_with("Error::"));
     let arms = arms.filter_map(|line| {
         let (patterns, class) = line.trim().split_once(" => ")?;
-        // The code is the first text in quotes.
+        // The code is the first string literal.
         Some((patterns, class.split('"').nth(1)?))
     });
     arms.flat_map(|(patterns, code)| patterns.split(" | ").map(move |pattern| (pattern, code)))

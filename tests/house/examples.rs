@@ -1,4 +1,4 @@
-//! Every scene in `examples/` reads, builds, and is the scene that it is described as.
+//! Every scene in `examples/` is read and built without a warning, and agrees with its description.
 
 use signorini::Scene;
 use signorini::fem::ElementKind;
@@ -45,7 +45,7 @@ fn the_inclined_plane_gives_rows_of_two_entries() {
 }
 
 #[test]
-fn the_body_between_two_obstacles_is_held_by_them_alone_along_y() {
+fn the_body_between_two_obstacles_has_no_support_along_y() {
     let model = scene("between").build().unwrap();
     let supported_y = (0..model.mesh().nodes().len()).filter(|node| model.dofs().number(2 * node + 1).is_none());
     assert_eq!(supported_y.count(), 0);
@@ -53,7 +53,7 @@ fn the_body_between_two_obstacles_is_held_by_them_alone_along_y() {
 }
 
 #[test]
-fn the_two_cylinders_face_each_other_node_to_node() {
+fn each_contact_node_of_the_two_cylinders_has_an_opposite_node() {
     let model = scene("two_cylinders").build().unwrap();
     assert_eq!(model.body().regions().len(), 2);
     for row in model.rows() {

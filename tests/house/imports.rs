@@ -1,4 +1,4 @@
-//! Which file of `src/` takes names from which: its `use` declarations and the paths in its code (`crate::a::b(..)`,
+//! The imports between files of `src/`: the `use` declarations and the paths in the code (`crate::a::b(..)`,
 //! `super::c`), followed through re-exports to the file that defines the name.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -8,17 +8,17 @@ use std::path::{Path, PathBuf};
 /// A module by its names from the crate root; `[]` is the crate itself.
 type Module = Vec<String>;
 
-/// A source file, and what its `use` declarations say.
+/// A source file, and the content of its `use` declarations.
 pub struct Source {
-    /// Its path below `src/`.
+    /// Path below `src/`.
     pub path: PathBuf,
-    /// Its text.
+    /// Text of the file.
     pub text: String,
-    /// The paths that it names, from the crate root; those that it re-exports to every user are left out.
+    /// Paths that the file names, from the crate root, without those that it re-exports to every user.
     imports: BTreeSet<Module>,
-    /// The names that `use` declarations bring into it, and where they come from.
+    /// Names that `use` declarations bring into the file, and their origin.
     names: BTreeMap<String, Module>,
-    /// Those of them that it exports to every user.
+    /// The names that the file exports to every user.
     pub exports: BTreeMap<String, Module>,
 }
 
@@ -67,7 +67,7 @@ impl House {
                 }
             }
             for path in paths {
-                // The first name of a path may be one that a declaration brought in.
+                // A declaration may have brought in the first name of a path.
                 let import = match source.names.get(&path[0]) {
                     Some(import) => Some([import.as_slice(), &path[1..]].concat()),
                     None => from_root(&path, &module, &known),
@@ -79,7 +79,7 @@ impl House {
         House { files: texts.into_iter().map(read).collect() }
     }
 
-    /// The modules that `module` takes names from, itself left out.
+    /// The modules from which `module` takes names, without `module` itself.
     pub fn taken_from(&self, module: &Module) -> BTreeSet<Module> {
         let source = &self.files[module];
         let mut found: BTreeSet<Module> = source.imports.iter().map(|import| self.defining(import, 0)).collect();
@@ -113,7 +113,7 @@ fn module_of(path: &Path) -> Module {
     names
 }
 
-/// What the code of a file names: its `use` declarations, taken apart into public or not, name and path; its other paths.
+/// The names in the code of a file: its `use` declarations, each as public or not, name and path; and its other paths.
 type Named = (Vec<(bool, String, Module)>, Vec<Module>);
 
 fn named(text: &str) -> Named {
@@ -141,7 +141,7 @@ fn named(text: &str) -> Named {
     (declarations, paths)
 }
 
-/// Returns `true` if a path that follows these words begins there, and is not the scope of `pub(in ..)`.
+/// Returns `true` if a path after these words begins there, and is not the scope of `pub(in ..)`.
 fn begins_path(before: &[String]) -> bool {
     !before.ends_with(&["::".to_string()]) && !before.ends_with(&["pub", "(", "in"].map(str::to_string))
 }
@@ -150,7 +150,7 @@ fn is_name(word: &str) -> bool {
     word.starts_with(|first: char| first.is_alphabetic() || first == '_')
 }
 
-/// The words of a code: names and numbers, `::`, and each other sign; comments and what stands in quotes are left out.
+/// The words of a code: names and numbers, `::`, and each other character; comments and string literals are left out.
 fn words(text: &str) -> Vec<String> {
     let signs: Vec<char> = text.chars().collect();
     let sign = |at: usize| signs.get(at).copied().unwrap_or('\n');
@@ -163,7 +163,7 @@ fn words(text: &str) -> Vec<String> {
         match signs[start] {
             '/' if sign(at) == '/' => at = (at..signs.len()).find(|&end| sign(end) == '\n').unwrap_or(signs.len()),
             '"' => {
-                // A raw text ends at a quote with as many `#` as it began with.
+                // A raw string ends at a quote followed by as many `#` as it began with.
                 let hashes = (0..start).rev().take_while(|&before| sign(before) == '#').count();
                 let is_raw = start > hashes && sign(start - hashes - 1) == 'r';
                 while at < signs.len()
@@ -173,7 +173,7 @@ fn words(text: &str) -> Vec<String> {
                 }
                 at += 1;
             }
-            // A character; a lifetime has no quote behind it.
+            // A character literal; a lifetime has no closing quote.
             '\'' if sign(at) == '\\' => {
                 at += 2;
                 while sign(at) != '\'' {
@@ -199,7 +199,7 @@ fn words(text: &str) -> Vec<String> {
     words
 }
 
-/// `a::{b, c::d as e}` as `b` from `a::b` and `e` from `a::c::d`.
+/// Splits `a::{b, c::d as e}` into `b` from `a::b` and `e` from `a::c::d`.
 fn taken_apart(tree: &[String]) -> Vec<(String, Module)> {
     let Some(open) = tree.iter().position(|word| word == "{") else {
         let mut path: Module = tree.iter().filter(|word| *word != "::").cloned().collect();
@@ -223,7 +223,7 @@ fn taken_apart(tree: &[String]) -> Vec<(String, Module)> {
         }
     }
     let whole = |(name, rest): (String, Module)| {
-        // `a::{self}` brings in `a`.
+        // `a::{self}` imports `a`.
         let name = if name == "self" { prefix.last().cloned().unwrap_or_default() } else { name };
         (name, [prefix.clone(), rest].concat())
     };
@@ -254,7 +254,7 @@ fn from_root(path: &Module, module: &Module, known: &BTreeSet<Module>) -> Option
 }
 
 #[test]
-fn declarations_and_paths_are_read_and_comments_and_texts_are_not() {
+fn declarations_and_paths_are_read_and_comments_and_strings_are_not() {
     let (declarations, paths) = named(
         r#"
         use crate::a::{self, b::c as d}; // use crate::comment;

@@ -1,6 +1,6 @@
-//! One place per kind: a new element, body shape, obstacle shape, time scheme or error is written in few files.
+//! Each kind has one place: a new element, body shape, obstacle shape, time scheme or error changes few files.
 //!
-//! The files that name a kind are counted: comments and texts in quotes are no names.
+//! The files that name a kind are counted; names in comments and string literals do not count.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -12,7 +12,7 @@ fn sources() -> Vec<(PathBuf, String)> {
     House::read().files.into_values().map(|source| (source.path, code(&source.text))).collect()
 }
 
-/// A text without comments and without what stands in quotes.
+/// The code of a text, without comments and string literals.
 fn code(text: &str) -> String {
     let mut code = String::new();
     let mut is_quoted = false;
@@ -32,7 +32,7 @@ fn code(text: &str) -> String {
     code
 }
 
-/// Does `code` have the name, which no longer name contains?
+/// Returns `true` if `code` contains the name as a whole word.
 fn names(code: &str, name: &str) -> bool {
     let continues = |character: Option<char>| character.is_some_and(|c| c.is_alphanumeric() || c == '_');
     code.match_indices(name)
@@ -50,9 +50,9 @@ fn assert_named_in(names_of_kind: &[String], expected: &[&str]) {
 }
 
 #[test]
-fn an_element_stands_in_three_files() {
+fn an_element_is_named_in_three_files() {
     let (all, scene) = ("fem/element/mod.rs", "scene/schema/cells.rs");
-    // Bodies that are made of one element name it too, and the estimate of a mesh file takes triangles for its elements.
+    // Bodies that consist of one kind of element also name it, and the estimate for a mesh file assumes triangles.
     for (element, file, others) in [
         ("Line2", "fem/element/line2.rs", &["scene/body/bar.rs"][..]),
         ("T3", "fem/element/t3.rs", &[scene, "scene/body/gmsh.rs"]),
@@ -70,7 +70,7 @@ fn an_element_stands_in_three_files() {
 }
 
 #[test]
-fn a_body_shape_stands_in_two_files() {
+fn a_body_shape_is_named_in_two_files() {
     for (shape, spec, file) in [
         ("Rectangle", "RectangleSpec", "rectangle"),
         ("Bar", "BarSpec", "bar"),
@@ -87,7 +87,7 @@ fn a_body_shape_stands_in_two_files() {
 }
 
 #[test]
-fn an_obstacle_shape_stands_in_two_files() {
+fn an_obstacle_shape_is_named_in_two_files() {
     for (shape, spec, file) in [
         ("Plane", "PlaneSpec", "plane"),
         ("Parabola", "ParabolaSpec", "parabola"),
@@ -108,7 +108,7 @@ fn an_obstacle_shape_stands_in_two_files() {
 }
 
 #[test]
-fn a_time_scheme_stands_in_two_files() {
+fn a_time_scheme_is_named_in_two_files() {
     for (scheme, file) in [
         ("Midpoint", "midpoint"),
         ("Trapezoidal", "trapezoidal"),
@@ -127,7 +127,7 @@ fn a_time_scheme_stands_in_two_files() {
     }
 }
 
-/// Beside the place that raises it, an error stands in `error.rs`: code, status and exit code come from there.
+/// Code, status and exit code of an error are defined in `error.rs`; no other file contains a status.
 #[test]
 fn no_error_is_classified_outside_its_own_file() {
     let words = ["bad_input", "under_held", "not_convex", "out_of_time", "infeasible", "unbounded"];

@@ -1,4 +1,4 @@
-//! The house itself: the floors of its modules, its one error, its examples, its documents.
+//! The rules of the project: the floors of its modules, its one error type, its examples, its documents.
 
 #[path = "../support/bodies.rs"]
 mod bodies;

@@ -1,5 +1,5 @@
-//! What every user may rely on: types that cross threads and print themselves, sets that are collections, matrices from
-//! compressed columns, the best answer inside an error; and that the front stays small.
+//! The public interface: types can be sent between threads and have a debug output, sets are collections, matrices are
+//! made from compressed columns, an error carries the best answer; and the interface stays small.
 
 use signorini::Penalty;
 use std::collections::BTreeSet;
@@ -19,7 +19,7 @@ use signorini::{
 fn crosses_threads<T: Send + Sync + Debug>() {}
 
 #[test]
-fn public_types_cross_threads_and_print_themselves() {
+fn public_types_can_be_sent_between_threads_and_debug_printed() {
     crosses_threads::<(ContactProblem, Solution, Certificate, ContactSet, ProvenSet, Goal)>();
     crosses_threads::<(Settings, Method, Watch, Error)>();
     crosses_threads::<(Prepared, BoundarySolution, Path)>();
@@ -43,7 +43,7 @@ fn a_contact_set_is_collected_from_flags_and_iterates_over_closed_rows() {
 }
 
 #[test]
-fn compressed_columns_make_the_matrix_of_their_triplets_or_say_what_is_wrong() {
+fn compressed_columns_make_the_matrix_of_their_triplets_or_are_refused_with_the_fault() {
     let from_csc = |starts: &[usize], rows: &[usize], values: &[f64]| {
         SparseMatrix::from_csc(3, starts.to_vec(), rows.to_vec(), values.to_vec())
     };
@@ -67,10 +67,10 @@ fn compressed_columns_make_the_matrix_of_their_triplets_or_say_what_is_wrong() {
     }
 }
 
-/// Columns and rows with indices of 32 bits make what `from_full` makes of the same entries; of triangles that differ by rounding
-/// the lower is taken, entries that stand on one side only included.
+/// Columns and rows with 32-bit indices give the same matrix as `from_full` with the same entries. If the triangles
+/// differ by rounding, the lower one counts, including entries without a counterpart.
 #[test]
-fn both_triangles_are_taken_in_one_pass_whichever_way_they_are_stored() {
+fn both_triangles_give_the_same_matrix_from_columns_and_from_rows() {
     let mut state = 1_u64;
     let mut random = move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -86,7 +86,7 @@ fn both_triangles_are_taken_in_one_pass_whichever_way_they_are_stored() {
                     entries.extend([(row, column, value), (column, row, value * (1.0 + rounding))]);
                 }
                 if rounding > 0.0 && row > 0 {
-                    // One-sided, and as good as zero.
+                    // An entry in one triangle only, of the size of rounding.
                     let place = if random() < 0.5 { (row, row - 1) } else { (row - 1, row) };
                     entries.push((place.0, place.1, rounding));
                 }
@@ -108,7 +108,7 @@ fn both_triangles_are_taken_in_one_pass_whichever_way_they_are_stored() {
 }
 
 #[test]
-fn triangles_that_make_no_symmetric_matrix_say_what_is_wrong() {
+fn triangles_that_do_not_form_a_symmetric_matrix_are_refused_with_the_fault() {
     let (starts, rows) = ([0_i32, 2, 4], [0_i32, 1, 0, 1]);
     for (starts, rows, values, by_columns, by_rows) in [
         (
@@ -155,9 +155,9 @@ fn triangles_that_make_no_symmetric_matrix_say_what_is_wrong() {
     );
 }
 
-/// An objective without curvature, as that of a linear program, has fewer entries than dofs.
+/// An objective without curvature, such as that of a linear program, has fewer entries than dofs.
 #[test]
-fn entries_of_both_triangles_are_counted_where_diagonal_places_are_empty() {
+fn entries_of_both_triangles_are_counted_if_diagonal_entries_are_missing() {
     for (entries, count) in [(vec![], 0), (vec![(1, 1, 2.0)], 1), (vec![(0, 0, 1.0), (2, 0, 0.5), (2, 2, 1.0)], 4)] {
         let lower = SparseMatrix::from_triplets(3, 3, &entries).unwrap();
         let stiffness = SymmetricMatrix::from_lower(lower).unwrap();
@@ -169,12 +169,12 @@ fn entries_of_both_triangles_are_counted_where_diagonal_places_are_empty() {
 }
 
 #[test]
-fn an_error_that_carries_an_answer_gives_it_away() {
+fn an_error_returns_the_answer_that_it_carries() {
     let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]).unwrap()).unwrap();
     let contact = SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]).unwrap();
     let problem = ContactProblem::new(stiffness, vec![2.0], contact, vec![0.5]).unwrap();
     let settings = Settings::with_method(Method::Penalty(Penalty { last: 1.0, ..Penalty::default() }));
-    // One spring of the stiffness 1 beside the body's own: u = (2 + 0.5)/2.
+    // A penalty spring of stiffness 1 in parallel with the body of stiffness 1: u = (2 + 0.5)/2.
     let best = solve(&problem, &settings).unwrap_err().into_best().unwrap();
     assert!((best.displacement[0] - 1.25).abs() < 1e-15, "{:?}", best.displacement);
     assert!(Error::Interrupted.into_best().is_none());
@@ -192,7 +192,7 @@ fn names(house: &House, module: &[String]) -> BTreeSet<String> {
     source.exports.keys().cloned().chain(defined).collect()
 }
 
-/// A user reads every module and every name: the limits are those of a front that fits into one sitting.
+/// A user reads every module and every name: the limits keep the interface small enough to read at once.
 #[test]
 fn the_front_has_at_most_eight_modules_and_150_names() {
     let house = House::read();
@@ -202,8 +202,8 @@ fn the_front_has_at_most_eight_modules_and_150_names() {
         .lines()
         .filter_map(|line| Some(vec![line.strip_prefix("pub mod ")?.trim_end_matches(';').to_string()]))
         .collect();
-    assert!(rooms.len() < 8, "{rooms:?} beside the crate itself");
-    // What a room offers already is no further name at the root.
+    assert!(rooms.len() < 8, "the public modules are {rooms:?}");
+    // A name that a public module already offers is not counted again at the root.
     let is_own = |from: &Vec<String>| from.len() > 1 && !rooms.contains(&from[..1].to_vec());
     let at_root = root.exports.values().filter(|from| is_own(from)).count();
     let in_rooms: usize = rooms

@@ -1,4 +1,4 @@
-//! README says what the program does: its code is the doctest, its table of signs is the one of the library, its
+//! The README agrees with the program: its code is the doctest, its table of signs is that of the library, and its
 //! commands exist.
 
 use std::fs;
@@ -18,12 +18,12 @@ fn front_page() -> String {
 }
 
 fn block<'a>(text: &'a str, start: &str) -> &'a str {
-    let inside = text.split_once(start).unwrap_or_else(|| panic!("no block {start:?}")).1;
+    let inside = text.split_once(start).unwrap_or_else(|| panic!("there is no block {start:?}")).1;
     inside.split_once("```").unwrap().0.trim()
 }
 
 #[test]
-fn library_example_is_the_doctest() {
+fn library_example_of_the_readme_is_the_doctest() {
     let (readme, page) = (read("README.md"), front_page());
     assert!(page.contains(block(&readme, "```rust\n")), "README's example differs from that in src/lib.rs");
 }
@@ -37,12 +37,12 @@ fn table_of_signs_is_the_same_in_library_readme_and_reference() {
     for file in ["README.md", "reference/README.md"] {
         let text = read(file);
         for line in &table {
-            assert!(text.contains(line), "{file} lacks {line:?}");
+            assert!(text.contains(line), "{file} does not contain {line:?}");
         }
     }
 }
 
-/// The documents that a reader meets.
+/// The documents for users.
 fn documents() -> Vec<String> {
     let docs = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")).unwrap();
     let of_docs = docs.map(|entry| format!("docs/{}", entry.unwrap().file_name().to_str().unwrap()));
@@ -54,8 +54,8 @@ fn documents() -> Vec<String> {
 }
 
 #[test]
-fn every_table_has_as_many_cells_in_all_rows() {
-    // A bar of a formula, `|B_i|`, stands in code of a table only as an escaped one.
+fn all_rows_of_a_table_have_the_same_number_of_cells() {
+    // In a table, a bar inside code, as in `|B_i|`, must be escaped.
     let cells = |line: &str| line.replace("\\|", "").trim().trim_matches('|').split('|').count();
     let mut tables = 0;
     for name in documents().into_iter().filter(|name| name.ends_with(".md")) {
@@ -70,7 +70,7 @@ fn every_table_has_as_many_cells_in_all_rows() {
 }
 
 #[test]
-fn every_link_to_a_file_leads_to_one() {
+fn every_link_to_a_file_leads_to_an_existing_file() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut links = 0;
     for name in documents().into_iter().filter(|name| name.ends_with(".md")) {
@@ -105,11 +105,11 @@ fn the_commands_of_the_readme_are_those_of_the_program() {
     of_program.retain(|name| *name != "help");
     named.sort_unstable();
     of_program.sort_unstable();
-    assert_eq!(named, of_program, "the commands of README.md and those of the program");
+    assert_eq!(named, of_program, "the commands of README.md differ from those of the program");
 }
 
 #[test]
-fn output_in_the_readme_is_what_the_command_prints() {
+fn the_command_in_the_readme_prints_the_shown_output() {
     let readme = read("README.md");
     let shown = block(&readme, "`signorini compare examples/indentation.json` solves by three methods:\n```text\n");
     let output = Command::new(env!("CARGO_BIN_EXE_signorini"))
@@ -119,7 +119,7 @@ fn output_in_the_readme_is_what_the_command_prints() {
         .unwrap();
     assert!(output.status.success());
     let printed = String::from_utf8(output.stdout).unwrap();
-    // Method, iterations, contact nodes and force to nine digits; times and roundings differ from machine to machine.
+    // Method, iterations, contact nodes and force to nine digits; times and rounding differ from machine to machine.
     let facts = |text: &str| -> Vec<String> {
         let rows =
             text.lines().filter(|line| ["qp ", "active-set ", "penalty "].iter().any(|name| line.starts_with(name)));

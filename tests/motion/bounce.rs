@@ -1,35 +1,37 @@
-//! GOAL: bodies that are thrown or dropped meet the wall, and leave it, as waves in them say.
+//! GOAL: bodies that are thrown or dropped hit the wall and bounce back in agreement with the waves in them.
 //!
-//! REFERENCE: `analytical::ImpactingBar`, in a block with the modulus of its lateral supports; a bar that falls, whose
-//! contact is the sum of the impact wave and of the bar that is put on the wall at once (K. F. Graff, *Wave Motion in
-//! Elastic Solids*, Oxford, 1975, section 2.4).
+//! REFERENCE: `exact_solutions::ImpactingBar`, in a block with the modulus of its lateral supports; a falling bar, whose
+//! contact is the sum of the impact wave and of the wave of a weight that is applied at once (K. F. Graff, *Wave Motion
+//! in Elastic Solids*, Oxford, 1975, section 2.4).
 
 use crate::exact_solutions::ImpactingBar;
 use serde_json::{Value, json};
 use signorini::motion::{Integrator, Observation};
 use signorini::{Scene, Settings};
 
-/// What the default scheme promises at its usual step, a Courant number of 0.5, on 100 cells along the wave.
+/// Accuracy of the default scheme at its default step, a Courant number of 0.5, on 100 cells along the wave.
 const ENERGY: f64 = 1e-3;
 const PRESSURE: f64 = 5e-3;
 const SPREAD: f64 = 1e-2;
 const REBOUND: f64 = 1e-2;
 const PENETRATION: f64 = 1e-10;
 
-/// A wave front is some cells wide when it comes back: contact ends that much earlier or later.
+/// A wave front is some cells wide when it returns: contact ends earlier or later by this share.
 const CONTACT_TIME: f64 = 1e-2;
 
-/// Gravity times length over wave speed and speed at the wall: contact takes this share of the time of flight.
+/// Gravity times length, divided by wave speed and by speed at the wall: the share of the time of flight that contact
+/// takes.
 const SOFTNESS: f64 = 0.05;
 
-/// What a bar that rings is early or late by, relative to its flight: its end swings by 2 `SOFTNESS` v L/c about its
-/// place, and the speed of its centre changes by the momentum that comes and goes.
+/// Error of the time at which a vibrating bar hits the wall, relative to its flight: its end vibrates by 2 `SOFTNESS` v
+/// L/c, and the vibration changes the speed of the centre of mass at each contact.
 const FLIGHT: f64 = 1e-2;
 
-/// Energy that a flat blow may cost: the few steps in which it comes and goes are off by less than 1e-5 each.
+/// Largest change of energy by a flat impact: each of the few steps in which contact begins or ends has an error below
+/// 1e-5.
 const BLOW: f64 = 1e-4;
 
-/// What was seen of a body after each step.
+/// Observations of a body after each step.
 struct Seen {
     step: f64,
     all: Vec<Observation>,
@@ -60,7 +62,7 @@ fn motion(scene: &Value) -> Seen {
     Seen { step: dynamics.step, all, centre }
 }
 
-/// A block of 100 x 2 cells that flies along x against a wall, its sides free or on rollers.
+/// A block of 100 x 2 cells that flies along x against a wall; its sides are free or on rollers.
 fn block(poisson: f64, rollers: bool, wall: f64, duration: f64) -> Value {
     let side = |name: &str| json!({"on": {"boundary": name}, "y": 0});
     json!({
@@ -76,7 +78,7 @@ fn block(poisson: f64, rollers: bool, wall: f64, duration: f64) -> Value {
 }
 
 #[test]
-fn a_block_in_plane_strain_hits_a_wall_as_a_bar_of_its_modulus() {
+fn a_block_in_plane_strain_has_the_impact_of_a_bar_of_its_modulus() {
     for (poisson, rollers) in [(0.0, false), (0.3, true)] {
         let modulus = 900.0 * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
         let bar = ImpactingBar { length: 10.0, axial_stiffness: modulus, line_density: 1.0, speed: 10.0, gap: 1.0 };
@@ -99,7 +101,7 @@ fn a_block_in_plane_strain_hits_a_wall_as_a_bar_of_its_modulus() {
         );
         assert!((mean / bar.force() - 1.0).abs() <= PRESSURE, "{mean}");
         let spread = (forces.iter().map(|force| (force - mean).powi(2)).sum::<f64>() / forces.len() as f64).sqrt();
-        assert!(spread <= SPREAD * mean, "the pressure chatters: {spread} of {mean}");
+        assert!(spread <= SPREAD * mean, "the pressure oscillates: {spread} of {mean}");
         assert!((contact / (end - begin) - 1.0).abs() <= CONTACT_TIME, "{contact}");
         assert!((impulse / bar.impulse() - 1.0).abs() <= REBOUND / 2.0, "{impulse}");
         assert!((speed / bar.speed - 1.0).abs() <= REBOUND, "{speed}");
@@ -109,8 +111,9 @@ fn a_block_in_plane_strain_hits_a_wall_as_a_bar_of_its_modulus() {
 }
 
 #[test]
-fn a_bar_that_is_dropped_bounces_as_its_waves_and_gravity_say() {
-    // Length, modulus and density 1, so that waves take 1; it reaches the wall, 10 v below, with v = 0.1.
+fn a_dropped_bar_bounces_in_agreement_with_waves_and_gravity() {
+    // Length, modulus and density are 1, so that a wave takes the time 1; the bar hits the wall, 10 v below,
+    // with v = 0.1.
     let (speed, gravity) = (0.1, 0.1 * SOFTNESS);
     let height = speed * speed / (2.0 * gravity);
     let (fall, contact) = (speed / gravity, 2.0);
@@ -124,7 +127,7 @@ fn a_bar_that_is_dropped_bounces_as_its_waves_and_gravity_say() {
             {"boundary": "left", "approach": "-x", "shape": {"plane": {"point": [-height], "normal": [-1]}}}],
         "analysis": {"dynamic": {"duration": fall + 3.0 * period + 10.0, "initial": []}}
     }));
-    // Contacts: runs of steps with a force, a rest of less than the time of a wave within one.
+    // A contact is a sequence of steps with a force; an interruption shorter than the time of a wave belongs to it.
     let mut contacts: Vec<[f64; 3]> = Vec::new();
     for at in seen.all.iter().filter(|at| at.force > 0.0) {
         let middle = at.time - seen.step / 2.0;
@@ -139,19 +142,22 @@ fn a_bar_that_is_dropped_bounces_as_its_waves_and_gravity_say() {
     let [begin, end, impulse] = contacts[0];
     assert!((begin - fall).abs() <= seen.step, "{begin}");
     assert!((end - begin - contact).abs() <= CONTACT_TIME * contact, "{}", end - begin);
-    // The centre leaves as fast as it came, lower by twice its static sag.
+    // The centre of mass departs with the speed of its arrival, lower by twice the static compression under the weight.
     assert!((impulse / (2.0 * speed + gravity * contact) - 1.0).abs() <= REBOUND / 2.0, "{impulse}");
     let left = ((fall + contact) / seen.step).round() as usize + 20;
     let [place, velocity] = seen.centre[left];
     let later = left as f64 * seen.step - fall - contact;
     let exact = -height - 2.0 * gravity / 3.0 + speed * later - gravity * later * later / 2.0;
     assert!((velocity / (speed - gravity * later) - 1.0).abs() <= REBOUND, "{velocity}");
-    assert!((place - exact).abs() <= 0.1 * gravity, "{place} for {exact}");
+    assert!((place - exact).abs() <= 0.1 * gravity, "{place}, expected {exact}");
     for (number, [begin, ..]) in contacts.iter().enumerate() {
         let expected = fall + number as f64 * period;
-        assert!((begin - expected).abs() <= FLIGHT * number as f64 * period + seen.step, "{begin} for {expected}");
+        assert!(
+            (begin - expected).abs() <= FLIGHT * number as f64 * period + seen.step,
+            "{begin}, expected {expected}"
+        );
     }
-    // Over all contacts, measured by the energy of the fall.
+    // The change of energy over all contacts, relative to the energy of the fall.
     let start = seen.all[0].energy();
     let scale = speed * speed / 2.0;
     let most = seen.all.iter().map(|at| (at.energy() - start).abs() / scale).fold(0.0, f64::max);
@@ -160,7 +166,7 @@ fn a_bar_that_is_dropped_bounces_as_its_waves_and_gravity_say() {
 }
 
 #[test]
-fn the_energy_of_a_flat_blow_is_kept_whenever_within_a_step_it_comes() {
+fn a_flat_impact_keeps_its_energy_at_any_time_within_a_step() {
     for courant in [0.5, 1.0, 1.5] {
         let step = courant * 0.1 / 30.0;
         for arrival in [0.0, 0.25, 0.5, 0.75] {
@@ -177,7 +183,7 @@ fn the_energy_of_a_flat_blow_is_kept_whenever_within_a_step_it_comes() {
             let change = |at: &Observation| (at.energy() / seen.all[0].energy() - 1.0).abs();
             let most = seen.all.iter().map(change).fold(0.0, f64::max);
             assert!(most <= BLOW, "{courant}, {arrival}: {most}");
-            // A corrected force still pushes, and takes from the bar the momentum that it shows.
+            // A corrected force is still a pressure, and its impulse equals the change of momentum of the bar.
             let impulse: f64 = seen.all.iter().map(|at| at.force * seen.step).sum();
             let momentum = 10.0 * (10.0 - seen.centre[seen.centre.len() - 1][1]);
             assert!(seen.all.iter().all(|at| at.force >= 0.0) && (impulse / momentum - 1.0).abs() < 1e-10);

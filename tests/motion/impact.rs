@@ -1,6 +1,6 @@
-//! GOAL: bars in impact move as the closed forms say, and every scheme does what its description says.
+//! GOAL: bars in impact move in agreement with the closed forms, and every scheme behaves as described.
 //!
-//! REFERENCE: waves in bars (`analytical::ImpactingBar`, `analytical::BouncingBar`).
+//! REFERENCE: waves in bars (`exact_solutions::ImpactingBar`, `exact_solutions::BouncingBar`).
 
 #[path = "../../tools/impact/cases.rs"]
 pub mod cases;
@@ -13,14 +13,14 @@ use measure::run;
 use signorini::motion::{DynamicProblem, Integrator, Scheme, SchemeSpec, TimeFunction, stable_step};
 use signorini::{ContactProblem, Error, Precision, Scene, Settings, SparseMatrix, SymmetricMatrix};
 
-/// What the default scheme promises at its usual step, a Courant number of 0.5, on 100 cells.
+/// Accuracy of the default scheme at its default step, a Courant number of 0.5, on 100 cells.
 const ENERGY: f64 = 1e-3;
 const PRESSURE: f64 = 5e-3;
 const REBOUND: f64 = 1e-2;
 const PENETRATION: f64 = 1e-10;
 
 #[test]
-fn the_default_scheme_keeps_energy_pressure_rebound_and_the_wall() {
+fn the_default_scheme_has_exact_energy_pressure_and_rebound_without_penetration() {
     for case in &cases() {
         for courant in [0.5, 1.0, 1.5] {
             let run = run(case, SchemeSpec::Midpoint, courant, 100).unwrap();
@@ -31,7 +31,7 @@ fn the_default_scheme_keeps_energy_pressure_rebound_and_the_wall() {
             assert!(run.penetration <= PENETRATION, "{}: penetration {}", case.name, run.penetration);
             if let Some(speed) = case.rebound.filter(|_| courant == 0.5) {
                 assert!((run.rebound / speed - 1.0).abs() <= REBOUND, "rebound {}", run.rebound);
-                assert!(run.pressure[1] <= 1e-2 * case.pressure, "the pressure chatters: {}", run.pressure[1]);
+                assert!(run.pressure[1] <= 1e-2 * case.pressure, "the pressure oscillates: {}", run.pressure[1]);
             }
         }
     }
@@ -39,7 +39,7 @@ fn the_default_scheme_keeps_energy_pressure_rebound_and_the_wall() {
 
 #[test]
 fn the_displacement_error_of_the_default_scheme_falls_with_cell_and_step() {
-    // The velocity jumps at the wave fronts: a scheme of second order falls with the power 2/3 there.
+    // The velocity jumps at the wave fronts: there, the error of a scheme of second order falls with the power 2/3.
     for case in &cases() {
         let error = |cells| run(case, SchemeSpec::Midpoint, 1.0, cells).unwrap().displacement_error;
         let rate = (error(50) / error(400)).log2() / 3.0;
@@ -48,7 +48,7 @@ fn the_displacement_error_of_the_default_scheme_falls_with_cell_and_step() {
 }
 
 #[test]
-fn contact_stabilised_steps_lose_energy_and_never_gain_any() {
+fn contact_stabilised_steps_never_gain_energy() {
     for case in &cases() {
         for courant in [0.5, 1.0, 1.5] {
             let run = run(case, SchemeSpec::ContactStabilised, courant, 100).unwrap();
@@ -59,7 +59,7 @@ fn contact_stabilised_steps_lose_energy_and_never_gain_any() {
 }
 
 #[test]
-fn the_trapezoidal_rule_gains_energy_as_its_description_warns() {
+fn the_schemes_that_warn_of_energy_growth_gain_energy() {
     let case = &cases()[0];
     for (scheme, least) in [(SchemeSpec::Trapezoidal, 10.0), (SchemeSpec::Hht, 1.1), (SchemeSpec::Penalty, 1.2)] {
         let run = run(case, scheme, 0.5, 100).unwrap();
@@ -71,7 +71,7 @@ fn the_trapezoidal_rule_gains_energy_as_its_description_warns() {
 }
 
 #[test]
-fn central_differences_meet_the_pressure_and_do_not_penetrate() {
+fn central_differences_have_the_exact_pressure_and_no_penetration() {
     for case in &cases() {
         let run = run(case, SchemeSpec::CentralDifference, 0.9, 100).unwrap();
         assert!((run.pressure[0] / case.pressure - 1.0).abs() <= PRESSURE && run.penetration <= PENETRATION);
@@ -89,20 +89,20 @@ fn the_stable_step_of_a_bar_is_the_time_of_a_wave_through_a_cell() {
 }
 
 #[test]
-fn a_step_that_is_none_and_one_beyond_the_stable_one_are_refused() {
+fn invalid_steps_and_steps_beyond_the_stable_one_are_refused() {
     let settings = Settings::default();
     for step in [0.0, -0.1, f64::NAN, f64::INFINITY] {
         let refused = Integrator::new(oscillator(0.0), Scheme::Midpoint, step, &settings).err().unwrap();
         assert!(matches!(refused, Error::Setting { name: "step", .. }), "{refused}");
     }
-    // The frequency is 2: steps are stable up to 2/2.
+    // The angular frequency is 2, so that steps up to 2/2 are stable.
     let explicit = Scheme::CentralDifference { restitution: 0.0 };
     assert!(Integrator::new(oscillator(0.0), explicit, 1.0, &settings).is_ok());
     let refused = Integrator::new(oscillator(0.0), explicit, 1.01, &settings).err().unwrap();
     assert!(refused.to_string().contains("beyond the largest stable one, 1e0"), "{refused}");
 }
 
-/// One mass of 1 on a spring of 4: its frequency is 2.
+/// One mass of 1 on a spring of stiffness 4: its angular frequency is 2.
 fn oscillator(load: f64) -> DynamicProblem {
     let one =
         |value| SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]).unwrap()).unwrap();
@@ -119,8 +119,8 @@ fn displacement_at(problem: DynamicProblem, scheme: Scheme, time: f64, steps: us
 }
 
 #[test]
-fn every_scheme_is_of_second_order_where_nothing_touches() {
-    // A damped oscillator, x'' + 2 zeta omega x' + omega^2 x = 0 from (1, 0), zeta from both parts of the damping.
+fn every_scheme_is_of_second_order_without_contact() {
+    // A damped oscillator, x'' + 2 zeta omega x' + omega^2 x = 0 from (1, 0); zeta contains both parts of the damping.
     let (omega, [mass, stiffness]) = (2.0, [0.3, 0.05]);
     let zeta: f64 = (mass / omega + stiffness * omega) / 2.0;
     let (damped, t) = (omega * (1.0 - zeta * zeta).sqrt(), 3.0);
@@ -141,7 +141,8 @@ fn every_scheme_is_of_second_order_where_nothing_touches() {
         let rate = (error(100) / error(400)).log2() / 2.0;
         assert!((rate - 2.0).abs() < 0.1, "{scheme:?}: {rate}");
     }
-    // Central differences take the damping force of the last half step: undamped, they are of second order too.
+    // Central differences use the damping force of the last half step; without damping they are of second order as
+    // well.
     let error = |steps| {
         let problem = oscillator(0.0).starting_from(vec![1.0], vec![0.0]).unwrap();
         (displacement_at(problem, Scheme::CentralDifference { restitution: 0.0 }, t, steps) - (omega * t).cos()).abs()
@@ -150,7 +151,7 @@ fn every_scheme_is_of_second_order_where_nothing_touches() {
 }
 
 #[test]
-fn a_load_in_time_moves_an_oscillator_as_the_closed_form_says() {
+fn a_time_dependent_load_moves_an_oscillator_as_in_the_closed_form() {
     // x'' + 4 x = sin t from rest: x = sin(t)/3 - sin(2 t)/6.
     let factor = TimeFunction::Sine { frequency: 0.5 / std::f64::consts::PI, phase: 0.0 };
     let problem = oscillator(0.0).with_load(factor, vec![1.0]).unwrap();
@@ -167,7 +168,7 @@ fn a_run_that_is_resumed_goes_on_bit_for_bit() {
     let new =
         || Integrator::new(dynamics.problem.clone(), dynamics.scheme, dynamics.step, &Settings::default()).unwrap();
     let (mut whole, mut second) = (new(), new());
-    // The bar is on the wall from step 300 to step 700.
+    // The bar touches the wall from step 300 to step 700.
     for _ in 0..450 {
         whole.advance().unwrap();
     }
@@ -181,7 +182,7 @@ fn a_run_that_is_resumed_goes_on_bit_for_bit() {
 
 #[test]
 fn a_factor_in_single_precision_gives_the_same_motion() {
-    // A block that is thrown upwards, against a parabola.
+    // A block that is thrown upwards against a parabola.
     let axis = serde_json::json!({"points": [0, 1], "divisions": [16]});
     let scene = serde_json::json!({
         "body": {"rectangle": {"x": axis, "y": axis}},
@@ -207,13 +208,13 @@ fn a_factor_in_single_precision_gives_the_same_motion() {
     });
     let largest = double.iter().fold(0.0_f64, |largest, u| largest.max(u.abs()));
     let apart = double.iter().zip(&mixed).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
-    // Every step is refined to the rounding of double precision, which is not the same rounding.
+    // Every step is refined to the rounding of double precision; the rounding differs.
     assert!(apart > 0.0 && apart <= 1e-9 * largest, "{apart} of {largest}");
 }
 
 #[test]
-fn a_mass_that_bounces_off_a_wall_keeps_the_restitution_it_is_given() {
-    // A free mass of 1 flies at 1 towards a wall; central differences throw it back at half its speed.
+fn a_mass_bounces_off_a_wall_with_the_given_restitution() {
+    // A free mass of 1 flies with speed 1 towards a wall; central differences return it with half its speed.
     let rows = SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]).unwrap();
     let one =
         |value| SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]).unwrap()).unwrap();

@@ -1,16 +1,16 @@
-//! `signorini solve` of scenes that move: what it prints and leaves, what it refuses, how it goes on after a stop.
+//! `signorini solve` of scenes with a motion: its output and files, its refusals, and how it resumes after a stop.
 
 use std::fs;
 
 use crate::program::{Desk, scene};
 use serde_json::{Value, json};
 
-/// What the memory of a run may differ by when it takes ten times as many steps: less than the 2 MB that 36,000 more
-/// observations of seven numbers would take.
+/// Largest difference of memory between runs of which one has ten times as many steps: less than the 2 MB of 36,000
+/// more observations of seven numbers.
 #[cfg(target_os = "linux")]
 const GROWTH: f64 = 1e6;
 
-/// A bar of 20 cells against a wall, 240 steps.
+/// A bar of 20 cells against a wall, with 240 steps.
 pub fn bar() -> Value {
     json!({
         "title": "Bar",
@@ -31,14 +31,14 @@ pub fn with(key: &str, value: Value) -> Value {
 }
 
 #[test]
-fn a_motion_prints_its_numbers_and_leaves_history_series_and_plots() {
+fn a_motion_prints_a_report_and_writes_history_series_and_plots() {
     let desk = Desk::new();
     desk.write("bar.json", bar().to_string());
     let run = desk.run(&["solve", "bar.json", "--out", "out", "--format", "json"]).ends_with(0);
-    assert_eq!(run.stderr, "", "no progress bar where standard error is no terminal");
+    assert_eq!(run.stderr, "", "there is a progress bar although standard error is no terminal");
     let report = run.json();
     assert_eq!((report["status"].as_str(), report["scheme"].as_str()), (Some("certified"), Some("midpoint")));
-    // 2 L rho v0, to within the dispersion of twenty cells.
+    // The impulse is 2 L rho v0, up to the dispersion of twenty cells.
     assert!((report["contact"]["impulse"].as_f64().unwrap() / 200.0 - 1.0).abs() < 0.02, "{report}");
     assert!(report["energy"]["change"].as_f64().unwrap().abs() < 5e-3, "{report}");
     let history = fs::read_to_string(desk.path("out/history.csv")).unwrap();
@@ -57,7 +57,7 @@ fn a_motion_prints_its_numbers_and_leaves_history_series_and_plots() {
 }
 
 #[test]
-fn a_body_in_the_plane_leaves_an_animation_of_all_its_frames() {
+fn a_motion_in_the_plane_writes_an_animation_of_all_its_frames() {
     let mut block = scene();
     block["material"]["density"] = json!(1000);
     block["body"]["rectangle"]["y"]["divisions"] = json!([4]);
@@ -79,7 +79,7 @@ fn memory_does_not_grow_with_the_number_of_steps() {
     let peak = |step: f64| {
         let mut scene = with("step", json!(step));
         scene["analysis"]["dynamic"]["frames"] = json!(2);
-        // Of both histories the plots show as many points.
+        // The plots show the same number of points of both histories.
         scene["analysis"]["dynamic"]["duration"] = json!(1.995);
         desk.write("bar.json", scene.to_string());
         let peak = desk.peak(&["solve", "bar.json", "--out", "out"]);
@@ -91,17 +91,17 @@ fn memory_does_not_grow_with_the_number_of_steps() {
 }
 
 #[test]
-fn a_run_that_was_killed_is_resumed_bit_for_bit() {
+fn a_killed_run_is_resumed_bit_for_bit() {
     let desk = Desk::new();
     desk.write("bar.json", with("frames", json!(60)).to_string());
     desk.run(&["solve", "bar.json", "--out", "whole"]).ends_with(0);
     let mut child = desk.command(&["solve", "bar.json", "--out", "stopped"]).spawn().unwrap();
     while !desk.path("stopped/series-00010.vtu").exists() {
-        assert!(child.try_wait().unwrap().is_none(), "it ended before its tenth frame");
+        assert!(child.try_wait().unwrap().is_none(), "the run ended before its tenth frame");
     }
     child.kill().unwrap();
     child.wait().unwrap();
-    // What is there is whole: every file of the list exists.
+    // The files are complete: every file in the list exists.
     let series = fs::read_to_string(desk.path("stopped/series.pvd")).unwrap();
     assert!(series.ends_with("</VTKFile>\n"));
     let names = series.split('"').filter(|name| name.ends_with(".vtu"));
@@ -127,7 +127,7 @@ fn only_a_run_of_the_same_scene_is_resumed() {
 }
 
 #[test]
-fn values_that_describe_no_motion_are_refused_in_a_sentence_and_nothing_is_written() {
+fn invalid_values_of_a_motion_are_refused_in_one_sentence_without_files() {
     let table = |times: Value, factors: Value| {
         with("loads-in-time", json!([{"load": 0, "factor": {"table": {"times": times, "factors": factors}}}]))
     };
@@ -210,7 +210,7 @@ fn values_that_describe_no_motion_are_refused_in_a_sentence_and_nothing_is_writt
 }
 
 #[test]
-fn a_body_that_starts_inside_is_projected_where_the_scene_says_so() {
+fn a_body_that_starts_inside_an_obstacle_is_projected_if_the_scene_demands_it() {
     let mut inside = with("initial-penetration", json!("project"));
     inside["obstacles"][0]["shape"]["plane"]["point"] = json!([9.75]);
     let desk = Desk::new();
@@ -230,7 +230,7 @@ fn a_scheme_that_gains_energy_is_warned_about_before_and_after() {
 }
 
 #[test]
-fn a_free_body_may_move_though_nothing_holds_it_at_rest() {
+fn a_motion_may_have_a_body_without_supports() {
     let mut free = scene();
     free["supports"] = json!([]);
     free["obstacles"] = json!([]);
@@ -240,7 +240,7 @@ fn a_free_body_may_move_though_nothing_holds_it_at_rest() {
     let desk = Desk::new();
     desk.write("free.json", free.to_string());
     let report = desk.run(&["solve", "free.json", "--format", "json"]).ends_with(0).json();
-    // Mass 1000 * 0.5 at a speed of 5.
+    // The mass is 1000 * 0.5, the speed 5.
     for moment in ["first", "last"] {
         assert!((report["energy"][moment]["kinetic"].as_f64().unwrap() / 6250.0 - 1.0).abs() < 1e-9, "{report}");
     }
@@ -256,7 +256,10 @@ fn a_trade_off_of_a_motion_runs_every_scheme_and_marks_the_best() {
     assert_eq!(schemes.len(), 7);
     assert!(points.iter().any(|point| point["best"] == json!(true)));
     let errors: Vec<f64> = points[..4].iter().map(|point| point["displacement_error"].as_f64().unwrap()).collect();
-    assert!(errors[3] < errors[0] && errors[3] > 0.0, "the default scheme gains by smaller steps: {errors:?}");
+    assert!(
+        errors[3] < errors[0] && errors[3] > 0.0,
+        "smaller steps do not reduce the error of the default scheme: {errors:?}"
+    );
     for name in ["tradeoff.txt", "tradeoff.csv", "tradeoff.png"] {
         assert!(desk.path(&format!("out/{name}")).exists());
     }

@@ -1,4 +1,4 @@
-//! Motions that make no sense are refused before the first step, or at the step where they leave all bounds.
+//! Invalid motions are refused before the first step, or at the step whose values overflow.
 
 use signorini::motion::{DynamicProblem, Integrator, Scheme, TimeFunction, stable_step};
 use signorini::{ContactProblem, Error, Settings, SparseMatrix, SymmetricMatrix};
@@ -7,7 +7,7 @@ fn symmetric(dofs: usize, entries: &[(usize, usize, f64)]) -> SymmetricMatrix {
     SparseMatrix::from_triplets(dofs, dofs, entries).and_then(SymmetricMatrix::from_lower).unwrap()
 }
 
-/// Two masses on springs, the second before a wall at distance 1.
+/// Two masses on springs, the second in front of a wall at distance 1.
 fn contact() -> ContactProblem {
     let row = SparseMatrix::from_triplets(1, 2, &[(0, 1, 1.0)]).unwrap();
     let stiffness = symmetric(2, &[(0, 0, 3.0), (1, 0, -1.0), (1, 1, 1.0)]);
@@ -33,7 +33,7 @@ fn integrator(problem: DynamicProblem, scheme: Scheme, step: f64) -> Result<Inte
 }
 
 #[test]
-fn masses_and_initial_states_that_do_not_fit_are_refused() {
+fn masses_and_initial_states_of_wrong_size_or_sign_are_refused() {
     refused(DynamicProblem::new(contact(), symmetric(1, &[(0, 0, 1.0)])), "shape", &["mass is 1 x 1", "2 x 2"]);
     let negative = symmetric(2, &[(0, 0, 1.0), (1, 1, -2.0)]);
     refused(DynamicProblem::new(contact(), negative), "setting", &["diagonal entry of the mass is -2"]);
@@ -46,7 +46,7 @@ fn masses_and_initial_states_that_do_not_fit_are_refused() {
 }
 
 #[test]
-fn steps_and_schemes_that_do_not_suit_the_motion_are_refused() {
+fn steps_and_schemes_that_the_motion_does_not_allow_are_refused() {
     for step in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         refused(integrator(with_mass(&LUMPED), Scheme::Midpoint, step), "setting", &["step is", "positive and finite"]);
     }
@@ -63,10 +63,12 @@ fn steps_and_schemes_that_do_not_suit_the_motion_are_refused() {
     refused(integrator(with_mass(&LUMPED), EXPLICIT, 1.01 * most), "numerical", &["beyond the largest stable one"]);
 }
 
-/// The bound of the stable step is that of the closed form: frequencies of two masses on springs 2 and 1.
+/// The bound of the stable step agrees with the closed form: the frequencies of two masses on springs of stiffness 2
+/// and 1.
 #[test]
-fn the_stable_step_of_two_masses_is_that_of_their_larger_frequency_and_falls_with_damping() {
-    // det(K - omega^2) = (3 - w)(1 - w) - 1: w = 2 +- sqrt(2). The bound takes the magnitudes of K, which are as large.
+fn the_stable_step_of_two_masses_follows_from_their_larger_frequency_and_falls_with_damping() {
+    // det(K - omega^2) = (3 - w)(1 - w) - 1: w = 2 +- sqrt(2). The bound uses the magnitudes of K, which have the same
+    // largest eigenvalue.
     let omega = (2.0 + 2.0_f64.sqrt()).sqrt();
     let free = stable_step(&with_mass(&LUMPED)).unwrap();
     assert!((free * omega / 2.0 - 1.0).abs() < 1e-6, "{free}");
@@ -76,8 +78,9 @@ fn the_stable_step_of_two_masses_is_that_of_their_larger_frequency_and_falls_wit
 }
 
 #[test]
-fn a_motion_that_leaves_double_precision_is_an_error_at_its_step() {
-    // A mass that flies off on a spring of next to no stiffness: 5e307 after the first step of 1, beyond all after the fourth.
+fn a_motion_that_overflows_double_precision_is_an_error_at_its_step() {
+    // A mass flies away on a spring of almost no stiffness: 5e307 after the first step of 1, beyond double precision
+    // after the fourth.
     let no_rows = SparseMatrix::from_triplets(0, 1, &[]).unwrap();
     let contact = ContactProblem::new(symmetric(1, &[(0, 0, 1e-300)]), vec![0.0], no_rows, vec![]).unwrap();
     let problem = DynamicProblem::new(contact, symmetric(1, &[(0, 0, 1.0)])).unwrap();
@@ -87,7 +90,7 @@ fn a_motion_that_leaves_double_precision_is_an_error_at_its_step() {
         flight.advance().unwrap();
     }
     refused(flight.advance().map(drop), "numerical", &["the motion has the value inf after step 4"]);
-    // What was reached before stays.
+    // The last valid state is kept.
     assert_eq!((flight.state().displacement[0], flight.state().steps), (1.5e308, 3));
 }
 
@@ -101,7 +104,7 @@ fn the_state_of_another_problem_is_not_resumed() {
 }
 
 #[test]
-fn factors_over_time_are_those_of_their_description() {
+fn factors_over_time_have_the_described_values() {
     let table = TimeFunction::Table(vec![(1.0, 2.0), (3.0, -2.0)]);
     let sine = TimeFunction::Sine { frequency: 0.25, phase: 0.0 };
     let ramp = TimeFunction::Ramp { start: 1.0, end: 3.0 };
@@ -121,7 +124,7 @@ fn factors_over_time_are_those_of_their_description() {
 }
 
 #[test]
-fn factors_over_time_that_are_none_are_refused() {
+fn invalid_factors_over_time_are_refused() {
     let table = |points: &[(f64, f64)]| TimeFunction::Table(points.to_vec());
     for (factor, phrase) in [
         (table(&[]), "number of times is 0"),

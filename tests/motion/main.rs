@@ -1,4 +1,4 @@
-//! Motion: schemes against closed forms, the command, what is refused.
+//! Motion: schemes compared with closed forms, the command, refused input.
 
 #[path = "../support/closed_forms/mod.rs"]
 mod exact_solutions;

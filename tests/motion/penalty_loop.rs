@@ -1,17 +1,18 @@
-//! GOAL: the classical penalty loop in every step of a motion ends below its threshold, however small that is.
+//! GOAL: in every step of a motion, the classical penalty loop ends below its threshold, however small the threshold
+//! is.
 //!
-//! REFERENCE: `analytical::ImpactingBar`, a bar whose contact force is constant.
+//! REFERENCE: `exact_solutions::ImpactingBar`, a bar whose contact force is constant.
 
 use crate::impact::{cases::cases, measure::Run, measure::with_value};
 use signorini::motion::{Observation, SchemeSpec};
 
-/// The bar moves by this at most: 5 to the wall, and 10 for the time that is left behind the contact.
+/// Largest displacement of the bar: it flies 5 to the wall, and returns with speed 10 during the time after the contact.
 const REACH: f64 = 8.4;
 
-/// The mean force between the wave fronts is that of the closed form to within this.
+/// Error of the mean force between the wave fronts, compared with the closed form.
 const FORCE: f64 = 0.03;
 
-/// The bar against the wall by the loop with a threshold.
+/// The bar against the wall, by the loop with a threshold.
 fn by(threshold: f64) -> Run {
     with_value(&cases()[0], SchemeSpec::PenaltyLoop, Some(threshold), 1.5, 100).unwrap()
 }
@@ -25,7 +26,7 @@ fn the_loop_ends_below_its_threshold_with_one_penalty_more_for_each_power_of_ten
             let chosen = move |seen: &&Observation| (seen.force > 0.0) == touching;
             run.history[1..].iter().filter(chosen).map(|seen| seen.penalties)
         };
-        // A step that touches nothing is done with the first penalty.
+        // A step without contact needs only the first penalty.
         assert!(penalties(false).all(|count| count <= 2), "{threshold}");
         let most = penalties(true).max().unwrap();
         eprintln!("{threshold}: {most} {} {:?} {:?}", run.penetration, run.pressure, run.energy);
@@ -37,7 +38,7 @@ fn the_loop_ends_below_its_threshold_with_one_penalty_more_for_each_power_of_ten
 }
 
 #[test]
-fn the_loop_meets_the_force_of_the_closed_form_on_the_mean_and_one_spring_penetrates_more() {
+fn the_mean_force_of_the_loop_is_exact_and_a_single_penalty_penetrates_more() {
     let case = &cases()[0];
     let (many, one) = (by(1e-6), with_value(case, SchemeSpec::Penalty, None, 1.5, 100).unwrap());
     for run in [&many, &one] {

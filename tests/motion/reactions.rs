@@ -1,8 +1,9 @@
-//! GOAL: support reactions of a motion balance its other forces and its inertia at every step, at supported dofs too.
+//! GOAL: in every step of a motion, the support reactions balance the other forces and the inertia, including supported
+//! dofs.
 //!
-//! REFERENCE: the momentum of the whole body by the mass of all nodes, supported or free; the static answer; a bar that is
-//! clamped at one end and pulled at the other at once, whose clamp bears twice the force (K. F. Graff, *Wave Motion in
-//! Elastic Solids*, Oxford, 1975, section 2.4).
+//! REFERENCE: the momentum of the whole body with the mass of all nodes, supported or free; the static answer; a bar
+//! that is clamped at one end and suddenly pulled at the other, whose clamp carries twice the force (K. F. Graff, *Wave
+//! Motion in Elastic Solids*, Oxford, 1975, section 2.4).
 
 use std::fs;
 use std::sync::Arc;
@@ -14,20 +15,21 @@ use signorini::motion::{Integrator, Scheme, State};
 use signorini::scene::{Answer, Dynamics, Resultant};
 use signorini::{Model, Scene, Settings, SymmetricMatrix, solve_qp};
 
-/// Rounding of a balance relative to its largest term: the solve of a step leaves less than 1e-13 at each of 35 nodes.
+/// Rounding of a balance relative to its largest term: the solve of a step has an error below 1e-13 at each of 35
+/// nodes.
 const BALANCED: f64 = 1e-11;
 
-/// A motion that starts at the static answer stays there to within what the solves of its steps leave.
+/// A motion that starts at the static answer stays there up to the error of the solves.
 const AT_REST: f64 = 1e-10;
 
-/// Central differences in steps of one cell solve the wave equation exactly: rounding of sums over 400 steps.
+/// Central differences in steps of one cell solve the wave equation exactly, up to the rounding of sums over 400 steps.
 const EXACT: f64 = 1e-11;
 
-/// The mean over the middle of a plateau, of the rule of a bar whose front is smeared over some cells and rings behind.
+/// Error of the mean over the middle of a plateau; the wave front is smeared over some cells and oscillates behind.
 const SMEARED: f64 = 2e-3;
 
-/// A block that slides along its left side, with a corner on an inclined roller, above an inclined plane: rows act on supported
-/// dofs. The weight swings, the traction acts on both upper corners.
+/// A block that slides along its left side, with a corner on an inclined roller, above an inclined plane: contact rows
+/// act on supported dofs. The weight varies as a sine; the traction acts on both upper corners.
 fn block() -> Value {
     let divisions = |length: f64, cells: usize| json!({"points": [0, length], "divisions": [cells]});
     json!({
@@ -63,7 +65,7 @@ fn integrator(dynamics: &Dynamics) -> Integrator {
     Integrator::new(dynamics.problem.clone(), dynamics.scheme, dynamics.step, &Settings::default()).unwrap()
 }
 
-/// The mass of all nodal dofs, none of them supported.
+/// The mass of all nodal dofs, as if there were no supports.
 fn whole_mass(model: &Model, form: MassForm) -> SymmetricMatrix {
     let all = DofMap::new(vec![None; model.dofs().nodal_count()]).unwrap();
     let contact: Vec<usize> = model.rows().iter().map(|row| row.node).collect();
@@ -80,14 +82,14 @@ fn sums(model: &Model, nodal: &[f64]) -> [f64; 3] {
     sums
 }
 
-/// What a scheme takes in its balance: acceleration, velocity, factor of the weight.
+/// The quantities in the balance of a scheme: acceleration, velocity, factor of the weight.
 fn taken(scheme: Scheme, step: f64, [before, after]: [&State; 2]) -> (Vec<f64>, Vec<f64>, f64) {
     let mix = |a: &[f64], b: &[f64], share: f64| -> Vec<f64> {
         a.iter().zip(b).map(|(a, b)| (1.0 - share) * a + share * b).collect()
     };
     let mean_rate = || before.velocity.iter().zip(&after.velocity).map(|(a, b)| (b - a) / step).collect::<Vec<f64>>();
     let [from, to] = [before, after].map(|state| state.steps as f64 * step);
-    // Central differences damp by the velocity half a step earlier.
+    // The damping of central differences uses the velocity half a step earlier.
     let half = |state: &State| shifted(state, if state.steps == 0 { 0.0 } else { -step / 2.0 });
     match scheme {
         Scheme::Midpoint | Scheme::ContactStabilised => {
@@ -105,12 +107,13 @@ fn taken(scheme: Scheme, step: f64, [before, after]: [&State; 2]) -> (Vec<f64>, 
     }
 }
 
-/// The velocity of a state and its acceleration over `time`.
+/// The velocity of a state plus `time` times its acceleration.
 fn shifted(state: &State, time: f64) -> Vec<f64> {
     state.velocity.iter().zip(&state.acceleration).map(|(v, a)| v + time * a).collect()
 }
 
-/// The largest imbalance of 60 steps over the largest force, the steps with contact on a supported dof, and the largest reaction.
+/// The largest imbalance of 60 steps relative to the largest force, the number of steps with contact on a supported
+/// dof, and the largest reaction.
 fn imbalance(scene: &Value, form: MassForm, drag: f64) -> (f64, usize, f64) {
     let (model, dynamics) = parts(scene);
     let mut integrator = integrator(&dynamics);
@@ -143,7 +146,7 @@ fn imbalance(scene: &Value, form: MassForm, drag: f64) -> (f64, usize, f64) {
 }
 
 #[test]
-fn reactions_contact_forces_and_loads_are_the_change_of_momentum_at_every_step() {
+fn reactions_contact_forces_and_loads_sum_to_the_change_of_momentum_at_every_step() {
     let forms = [
         ("consistent", MassForm::Consistent),
         ("lumped", MassForm::Lumped),
@@ -158,7 +161,7 @@ fn reactions_contact_forces_and_loads_are_the_change_of_momentum_at_every_step()
                 "central-difference" => form == MassForm::Lumped,
                 _ => form != MassForm::Redistributed,
             };
-            // The midpoint rule takes mass on contact nodes only where nothing touches.
+            // The midpoint rule allows mass on contact nodes only without contact.
             let alone = scheme == "midpoint" && form != MassForm::Redistributed;
             for (drag, viscous) in [(0.0, 0.0), (2.0, 1e-4)].into_iter().filter(|_| fits) {
                 let mut scene = block();
@@ -198,7 +201,11 @@ fn a_motion_from_the_static_answer_has_its_reactions() {
         let rest = vec![0.0; answer.displacement.len()];
         dynamics.problem = dynamics.problem.starting_from(answer.displacement.clone(), rest).unwrap();
         let mut integrator = integrator(&dynamics);
-        assert_eq!(dynamics.resultants(&model, &integrator).unwrap().len(), 1, "no step, no reaction");
+        assert_eq!(
+            dynamics.resultants(&model, &integrator).unwrap().len(),
+            1,
+            "there are reactions before the first step"
+        );
         for _ in 0..5 {
             integrator.advance().unwrap();
         }
@@ -209,20 +216,21 @@ fn a_motion_from_the_static_answer_has_its_reactions() {
             let values = |of: &Resultant| [of.force.clone(), of.moment.clone(), of.centre.clone().unwrap()].concat();
             let off = values(found).iter().zip(values(expected)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             println!("{scheme}, {}: {off:.1e} of {:?}", found.of, expected.force);
-            assert!(off < AT_REST, "{scheme}: {found:?} for {expected:?}");
+            assert!(off < AT_REST, "{scheme}: {found:?}, expected {expected:?}");
         }
         assert_eq!(all.len(), 3);
     }
 }
 
-/// The resultants of a static answer, without that of the loads.
+/// The resultants of a static answer, without the loads.
 fn resultants(model: &Model, displacement: &[f64], multiplier: &[f64]) -> Vec<Resultant> {
     let closed = multiplier.iter().map(|&lambda| lambda < 0.0).collect();
     let answer = Answer::new(Arc::new(model.clone()), displacement, multiplier, &closed).unwrap();
     answer.resultants().unwrap().iter().filter(|of| of.of != "loads").cloned().collect()
 }
 
-/// A bar of 100 cells, clamped at the left and pulled by 3 at the right from the start on; a wave crosses it in 1/2.
+/// A bar of 100 cells, clamped at the left; from the start a force of 3 pulls its right end. A wave takes 1/2 through
+/// it.
 fn pulled(scheme: &str, step: f64) -> Value {
     json!({
         "model": "bar",
@@ -235,7 +243,7 @@ fn pulled(scheme: &str, step: f64) -> Value {
 }
 
 #[test]
-fn the_clamp_of_a_bar_bears_twice_the_force_that_pulls_it_until_the_wave_returns() {
+fn the_clamp_of_a_suddenly_pulled_bar_carries_twice_the_force_until_the_wave_returns() {
     let cell = 0.1 / 20.0;
     for (scheme, step, margin, tolerance) in [
         ("central-difference", cell, cell, EXACT),
@@ -244,7 +252,7 @@ fn the_clamp_of_a_bar_bears_twice_the_force_that_pulls_it_until_the_wave_returns
     ] {
         let (model, dynamics) = parts(&pulled(scheme, step));
         let mut integrator = integrator(&dynamics);
-        // Until 1/2, until 3/2, and from there on the reactions: their sum, how many, and the farthest from the exact one.
+        // Reactions before 1/2, until 3/2, and after that: their sum, their number, and the largest error.
         let mut plateaus = [(0.0, 0.0, 0.0_f64); 3];
         for _ in 0..dynamics.steps {
             integrator.advance().unwrap();
@@ -261,7 +269,7 @@ fn the_clamp_of_a_bar_bears_twice_the_force_that_pulls_it_until_the_wave_returns
             println!("{scheme}: mean {:.6} of {count} steps for {exact}, farthest {farthest:.1e}", sum / count);
             assert!(
                 count > 50.0 && (sum / count - exact).abs() < 6.0 * tolerance,
-                "{scheme}: {} for {exact}",
+                "{scheme}: {}, expected {exact}",
                 sum / count
             );
             assert!(scheme != "central-difference" || farthest < 6.0 * EXACT, "{farthest:e}");
@@ -270,7 +278,7 @@ fn the_clamp_of_a_bar_bears_twice_the_force_that_pulls_it_until_the_wave_returns
 }
 
 #[test]
-fn the_table_of_resultants_has_the_supports_and_is_resumed_bit_for_bit() {
+fn the_table_of_resultants_contains_the_supports_and_is_resumed_bit_for_bit() {
     let mut scene = block();
     scene["loads"][0] = json!({"body-force": [5, -20]});
     scene["analysis"]["dynamic"] = json!({
@@ -287,17 +295,18 @@ fn the_table_of_resultants_has_the_supports_and_is_resumed_bit_for_bit() {
     desk.run(&["solve", "long.json", "--out", "parts", "--resume"]).ends_with(0);
     let [whole, parts] =
         ["whole", "parts"].map(|run| fs::read_to_string(desk.path(&format!("{run}/resultants.csv"))).unwrap());
-    assert!(whole == parts, "resultants.csv differs");
+    assert!(whole == parts, "resultants.csv differs after the resumption");
     let mut lines = whole.lines();
     let columns = ["obstacles[0]", "supports[0]", "supports[1]"]
         .map(|name| ["f_x", "f_y", "m_z", "c_x", "c_y"].map(|of| format!("{name} {of}")));
     assert_eq!(lines.next().unwrap(), format!("time,{}", columns.concat().join(",")));
-    // No step has led to the first line: nothing is said of the supports.
+    // No step leads to the first line, so that it has no support reactions.
     assert_eq!(lines.next(), Some("0e0,0e0,0e0,0e0,,,,,,,,,,,,"));
     let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
     assert!(rows.len() > 100 && rows.iter().all(|row| row.len() == 16));
     let force = |row: &[&str], column: usize| row[column].parse::<f64>().unwrap();
-    // The rollers push along their normals, through their places: the left side, and the corner.
+    // The forces of the rollers have the direction of their normals and act at the supports: the left side, and the
+    // corner.
     for row in &rows {
         assert_eq!(force(row, 7), 0.0, "{row:?}");
         assert!((force(row, 11) - 2.0 * force(row, 12)).abs() < BALANCED * force(row, 11).abs(), "{row:?}");

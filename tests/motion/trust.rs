@@ -1,4 +1,4 @@
-//! Motions that are not to be trusted: choices that are unstable are refused, and energy that comes from nowhere is told.
+//! Motions that cannot be trusted: unstable choices are refused, and a growth of energy without a source is reported.
 
 use std::fs;
 
@@ -6,13 +6,13 @@ use crate::impact_command::with;
 use crate::program::Desk;
 use serde_json::{Value, json};
 
-/// Energy that a motion may gain and still be certified.
+/// Largest growth of energy of a certified motion.
 const MOST_GROWTH: f64 = 0.01;
 
-/// Rounding of energies that are sums over 240 steps.
+/// Rounding of energies that are summed over 240 steps.
 const ROUNDING: f64 = 1e-9;
 
-/// The bar by a scheme, with one more value.
+/// The bar with a scheme and one more value.
 fn by(scheme: &str, key: &str, value: Value) -> Value {
     let mut scene = with("scheme", json!(scheme));
     scene["analysis"]["dynamic"][key] = value;
@@ -26,7 +26,7 @@ fn solved(scene: &Value, exit: i32) -> Value {
 }
 
 #[test]
-fn unstable_choices_are_refused_with_what_is_allowed() {
+fn unstable_choices_are_refused_with_the_allowed_values() {
     let explicit = |key: &str, value: f64| by("central-difference", key, json!(value));
     for (scene, phrases) in [
         (explicit("courant", 1.0), &["at `analysis.dynamic.courant`", "1 is not allowed", "at most 0.99"][..]),
@@ -44,7 +44,7 @@ fn unstable_choices_are_refused_with_what_is_allowed() {
 }
 
 #[test]
-fn what_the_limits_allow_keeps_its_energy() {
+fn choices_within_the_limits_keep_their_energy() {
     for scene in [
         by("central-difference", "courant", json!(0.99)),
         by("contact-stabilised", "mass", json!("lumped")),
@@ -55,7 +55,7 @@ fn what_the_limits_allow_keeps_its_energy() {
         assert!(report["contact"]["impulse"].as_f64() > Some(100.0), "{report}");
         assert!(report["energy"]["growth"].as_f64().unwrap() <= MOST_GROWTH && report.get("warnings").is_none());
     }
-    // Where nothing can touch, nothing feeds the shortest wave, and contact nodes are none.
+    // Without contact nothing excites the shortest wave, and there are no contact nodes.
     for mut scene in [by("central-difference", "courant", json!(1)), with("mass", json!("consistent"))] {
         scene["obstacles"] = json!([]);
         assert!(solved(&scene, 0)["energy"]["growth"].as_f64().unwrap() <= ROUNDING);
@@ -63,7 +63,7 @@ fn what_the_limits_allow_keeps_its_energy() {
 }
 
 #[test]
-fn a_motion_whose_energy_grew_is_unstable_and_says_by_how_much() {
+fn a_motion_whose_energy_grew_is_reported_as_unstable_with_its_growth() {
     let desk = Desk::new();
     desk.write("scene.json", with("scheme", json!("trapezoidal")).to_string());
     let run = desk.run(&["solve", "scene.json", "--out", "out", "--format", "json"]).ends_with(4);
@@ -95,7 +95,7 @@ fn a_motion_whose_energy_grew_is_unstable_and_says_by_how_much() {
 }
 
 #[test]
-fn a_choice_that_is_only_sometimes_unstable_is_allowed_and_judged_by_its_run() {
+fn a_choice_that_may_be_unstable_is_allowed_and_judged_by_its_result() {
     for (courant, exit, status) in [(0.3, 0, "certified"), (0.9, 4, "unstable")] {
         let mut scene = by("central-difference", "courant", json!(courant));
         scene["analysis"]["dynamic"]["restitution"] = json!(0.5);
@@ -105,8 +105,8 @@ fn a_choice_that_is_only_sometimes_unstable_is_allowed_and_judged_by_its_run() {
 }
 
 #[test]
-fn energy_that_loads_put_in_is_no_sign_of_instability() {
-    // From rest, by a load that swings once in 0.7, and by one that is constant until the bar meets the wall.
+fn energy_supplied_by_loads_does_not_count_as_instability() {
+    // From rest, driven by a sine load with a period of 0.7, and by a constant load until the bar meets the wall.
     for scheme in ["midpoint", "trapezoidal", "contact-stabilised", "central-difference"] {
         let mut driven = with("scheme", json!(scheme));
         driven["analysis"]["dynamic"]["initial"] = json!([]);
@@ -118,7 +118,7 @@ fn energy_that_loads_put_in_is_no_sign_of_instability() {
         for report in [pushed, solved(&driven, 0)] {
             let energy = |field: &str| report["energy"][field].as_f64().unwrap();
             assert_eq!(report["status"], "certified");
-            // What has no mass is in equilibrium with the load from the start; everything else is at rest.
+            // A node without mass is in equilibrium with the load from the start; all other nodes are at rest.
             assert!(energy("initial") < 0.01, "{scheme}: {report}");
             assert_eq!(report["energy"]["last_over_initial"].is_null(), energy("initial") == 0.0);
             let last = &report["energy"]["last"];
@@ -126,7 +126,7 @@ fn energy_that_loads_put_in_is_no_sign_of_instability() {
             assert!(energy("work") > 10.0 && (now / energy("work") - 1.0).abs() < MOST_GROWTH, "{scheme}: {report}");
         }
     }
-    // A bar that falls on the wall by its weight, and comes to bounce.
+    // A bar that falls onto the wall by its weight and bounces.
     let mut falling = with("initial", json!([]));
     falling["loads"] = json!([{"body-force": [20]}]);
     falling["obstacles"][0]["shape"]["plane"]["point"] = json!([12]);

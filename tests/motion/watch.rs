@@ -1,4 +1,5 @@
-//! Chosen points of a motion: what their table says at every step, which points are refused, how it goes on after a stop.
+//! Watched points of a motion: the content of their table at every step, the refused points, and the table after a
+//! resumption.
 
 use std::fs;
 
@@ -6,7 +7,7 @@ use crate::impact_command::{bar, with};
 use crate::program::Desk;
 use serde_json::{Value, json};
 
-/// Rounding of numbers that a few operations make.
+/// Rounding of a few operations.
 const ROUNDING: f64 = 1e-12;
 
 /// The heading and the rows of a table.
@@ -18,9 +19,9 @@ fn table(desk: &Desk, name: &str) -> (Vec<String>, Vec<Vec<f64>>) {
 }
 
 #[test]
-fn a_watched_node_tells_displacement_velocity_and_contact_force_at_every_step() {
+fn the_table_of_a_watched_node_has_displacement_velocity_and_contact_force_at_every_step() {
     let desk = Desk::new();
-    // Cells of 0.5: the point halves the last one.
+    // The cells have the length 0.5; the point is in the middle of the last one.
     let watch = json!([{"node": 20}, {"point": [9.75]}, {"node": 19}]);
     desk.write("bar.json", with("watch", watch).to_string());
     desk.run(&["solve", "bar.json", "--out", "out"]).ends_with(0);
@@ -29,20 +30,20 @@ fn a_watched_node_tells_displacement_velocity_and_contact_force_at_every_step() 
     assert_eq!((heading[0].as_str(), &heading[1..]), ("time", &columns.concat()[..]));
     let (_, history) = table(&desk, "out/history.csv");
     assert_eq!(rows.len(), history.len());
-    // The resultant of the wall is what its only node feels.
+    // The resultant of the wall equals the force on its only node.
     let resultants = fs::read_to_string(desk.path("out/resultants.csv")).unwrap();
     let mut lines = resultants.lines();
     assert_eq!(lines.next(), Some("time,obstacles[0] f_x,obstacles[0] c_x"));
     let forces: Vec<f64> = lines.map(|line| line.split(',').nth(1).unwrap().parse().unwrap()).collect();
-    assert!(resultants.lines().nth(1).unwrap().ends_with(",0e0,"), "no force, no centre: {resultants}");
+    assert!(resultants.lines().nth(1).unwrap().ends_with(",0e0,"), "there is a centre without a force: {resultants}");
     assert_eq!(forces.len(), rows.len());
     for ((row, seen), force) in rows.iter().zip(&history).zip(&forces) {
         assert_eq!((row[0], *force), (seen[0], row[3]));
-        // Until it meets the wall at 0.5, the bar flies at 10.
+        // Before it meets the wall at the time 0.5, the bar flies with speed 10.
         if row[0] < 0.49 {
             assert!((row[1] - 10.0 * row[0]).abs() < 1e-9, "{row:?}");
         }
-        // The force on the body points away from the wall; only the last node feels it.
+        // The force on the body points away from the wall; only the last node has a force.
         assert!((row[3] + seen[1]).abs() <= ROUNDING * seen[1] && row[9] == 0.0, "{row:?} {seen:?}");
         for quantity in 1..=3 {
             let [end, point, before] = [row[quantity], row[quantity + 3], row[quantity + 6]];
@@ -50,13 +51,14 @@ fn a_watched_node_tells_displacement_velocity_and_contact_force_at_every_step() 
         }
     }
     assert!(rows.iter().any(|row| row[3] < -250.0));
-    // The centre of mass leaves with the momentum that it came with; its end rings by less than half of that.
+    // The centre of mass leaves with the speed of its arrival; the vibration of its end is less than half of this
+    // speed.
     assert!((rows[5][2] - 10.0).abs() < 1e-9 && rows[rows.len() - 1][5] < -5.0, "{:?}", rows[rows.len() - 1]);
 }
 
-/// A linear field is exact at any point of any cell, straight or curved.
+/// A linear field is represented exactly at any point of any cell, straight or curved.
 #[test]
-fn a_point_takes_the_values_of_the_element_around_it() {
+fn a_watched_point_has_the_values_of_the_element_around_it() {
     let gradient = [[1e-3, -2e-3], [3e-3, 4e-3]];
     let divisions = json!({"points": [0, 1], "divisions": [3]});
     for body in [
@@ -84,13 +86,13 @@ fn a_point_takes_the_values_of_the_element_around_it() {
             let u = [0, 1].map(|axis| [0.1, 0.2][axis] + gradient[axis][0] * x + gradient[axis][1] * y);
             let expected = [u[0], u[1], 3.0, 4.0, 0.0, 0.0];
             let found = &rows[0][1 + 6 * index..7 + 6 * index];
-            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?} for {expected:?}");
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?}, expected {expected:?}");
         }
     }
 }
 
 #[test]
-fn points_that_are_none_are_refused_with_what_there_is() {
+fn unknown_nodes_and_points_are_refused_with_the_existing_ones() {
     let watch = |value: Value| with("watch", json!([{"node": 0}, value]));
     for (scene, phrases) in [
         (watch(json!({"node": 21})), &["at `analysis.dynamic.watch[1].node`", "no node 21", "numbers 0 to 20"][..]),
@@ -111,11 +113,11 @@ fn points_that_are_none_are_refused_with_what_there_is() {
 }
 
 #[test]
-fn a_run_that_is_resumed_within_its_contact_goes_on_with_its_points_and_its_peaks_bit_for_bit() {
+fn a_run_that_is_resumed_during_contact_continues_watched_points_and_peaks_bit_for_bit() {
     let desk = Desk::new();
     let mut scene = with("watch", json!([{"node": 20}, {"point": [3.3]}]));
     desk.write("long.json", scene.to_string());
-    // The bar is on the wall from 0.5 to 1.17.
+    // The bar touches the wall from 0.5 to 1.17.
     scene["analysis"]["dynamic"]["duration"] = json!(0.8);
     scene["analysis"]["dynamic"]["frames"] = json!(5);
     desk.write("short.json", scene.to_string());
@@ -127,7 +129,7 @@ fn a_run_that_is_resumed_within_its_contact_goes_on_with_its_points_and_its_peak
     };
     let whole = report(&["long.json", "--out", "whole"]);
     report(&["short.json", "--out", "parts"]);
-    // Lines behind the checkpoint, of steps that are not in it, go.
+    // Lines of steps after the checkpoint are removed.
     let table = desk.path("parts/watch.csv");
     fs::write(&table, fs::read_to_string(&table).unwrap() + "9e9,1,2\n").unwrap();
     assert_eq!(report(&["long.json", "--out", "parts", "--resume"]), whole);
@@ -136,11 +138,11 @@ fn a_run_that_is_resumed_within_its_contact_goes_on_with_its_points_and_its_peak
         let [whole, parts] = ["whole", "parts"].map(|run| fs::read(desk.path(&format!("{run}/{name}"))).unwrap());
         assert!(whole == parts, "{name} differs");
     }
-    // A table that is not its own is left as it is.
+    // A table of other origin is not changed.
     fs::write(&table, "mine\n").unwrap();
     desk.run(&["solve", "long.json", "--out", "parts", "--resume"]).fails_with(1, &["cannot resume", "watch.csv"]);
     assert_eq!(fs::read_to_string(&table).unwrap(), "mine\n");
-    // A new run that watches nothing leaves no table of another.
+    // A new run without watched points removes an old table.
     desk.write("bar.json", bar().to_string());
     desk.run(&["solve", "bar.json", "--out", "whole"]).ends_with(0);
     assert!(!desk.path("whole/watch.csv").exists());
@@ -154,11 +156,12 @@ fn every_frame_has_the_velocities_of_its_nodes() {
     for number in [0, 2] {
         let text = fs::read_to_string(desk.path(&format!("out/series-{number:05}.vtu"))).unwrap();
         let heading = "<DataArray type=\"Float64\" Name=\"velocity\" NumberOfComponents=\"3\" format=\"ascii\">\n";
-        let (_, array) = text.split_once(heading).expect("an array of velocities");
+        let (_, array) = text.split_once(heading).expect("the file has an array of velocities");
         let (array, _) = array.split_once("</DataArray>").unwrap();
         let values: Vec<f64> = array.split_whitespace().map(|value| value.parse().unwrap()).collect();
         assert_eq!(values.len(), 3 * 21);
-        // In flight; the node without mass has the mean over its last step, which at the start is none.
+        // The bar is in flight. A node without mass has the mean velocity of its last step; before the first step it
+        // has no velocity.
         for node in 0..if number == 0 { 20 } else { 21 } {
             let velocity = &values[3 * node..3 * node + 3];
             assert!((velocity[0] - 10.0).abs() < 1e-9 && velocity[1..] == [0.0, 0.0], "{number}, {node}: {velocity:?}");

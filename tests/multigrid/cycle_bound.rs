@@ -1,7 +1,8 @@
-//! GOAL: without a factor the bound on the energy error is above the true error, and nearly as small.
+//! GOAL: without a factor, the bound on the energy error is above the true error, and close to it.
 //!
-//! CONDITIONS: bodies in space, in the plane, thin, nearly incompressible, two that touch, with springs for supports; random
-//! gaps; answers from a few cycles to the last digit; small random problems. The true error is that against the direct path.
+//! CONDITIONS: bodies in space, in the plane, thin, nearly incompressible, two in contact, with springs as supports;
+//! random gaps; answers from a few cycles to the last digit; small random problems. The direct path gives the exact
+//! answer.
 
 use crate::bodies::{built, clamped_block, clamped_square};
 use crate::oracles::{Draws, random};
@@ -12,16 +13,16 @@ use signorini::{
     ContactProblem, Error, Method, Prepared, Settings, Solution, SparseMatrix, Start, SymmetricMatrix, Watch, solve,
 };
 
-/// The bound is of the exact answer; the reference has an error of its own, of rounding. Relative energy norm.
+/// Rounding error of the reference answer, in the relative energy norm; the bound holds for the exact answer.
 const OF_REFERENCE: f64 = 1e-11;
 
-/// Bound over true error, in the middle of all cases.
+/// Largest median of bound over true error.
 const MEDIAN: f64 = 1.3;
 
-/// Gaps of each body.
+/// Number of gaps of each body.
 const GAPS: usize = 4;
 
-/// Cycles that the bound takes on a body without thin parts.
+/// Number of cycles for the bound of a body without thin parts.
 const FEW_CYCLES: usize = 6;
 
 fn mprgp() -> Settings {
@@ -41,14 +42,14 @@ fn answer(found: Result<Solution, Error>) -> Option<Solution> {
     }
 }
 
-/// Bound over true error of an answer; `None` where the true error drowns in that of the reference.
+/// Ratio of bound to true error of an answer; `None` if the true error is not above that of the reference.
 fn overestimate(problem: &ContactProblem, found: &Solution, exact: &[f64], what: &str) -> Option<f64> {
     let difference: Vec<f64> = found.displacement.iter().zip(exact).map(|(a, b)| a - b).collect();
     let size = energy(problem, &found.displacement);
     let error = if size > 0.0 { energy(problem, &difference) / size } else { return None };
     let bound = found.certificate.energy_error_bound;
     assert!(bound.is_finite(), "{what}: {:?}", found.certificate);
-    assert!(error <= bound + OF_REFERENCE, "{what}: an error of {error:e} above its bound {bound:e}");
+    assert!(error <= bound + OF_REFERENCE, "{what}: an error of {error:e} is above its bound {bound:e}");
     (error > 10.0 * OF_REFERENCE).then_some(bound / error)
 }
 
@@ -94,7 +95,7 @@ fn scenes() -> Vec<(&'static str, Value, f64)> {
     ]
 }
 
-/// The block on springs instead of its support, so soft that contact changes everything.
+/// The block on springs instead of a support; the springs are so soft that contact changes the whole answer.
 fn on_springs() -> ContactProblem {
     let mut scene = clamped_block(9, -0.01);
     scene["supports"] = json!([{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "front"}, "y": 0}]);
@@ -114,7 +115,7 @@ fn on_springs() -> ContactProblem {
         .unwrap()
 }
 
-/// Answers at several gaps and after several numbers of cycles, and their overestimates.
+/// Adds the ratios of bound to error for answers at several gaps and after several numbers of cycles.
 fn of_body(problem: &ContactProblem, name: &str, reach: f64, draws: &mut Draws, ratios: &mut Vec<f64>) {
     let direct = Prepared::new(problem, &Settings::with_method(Method::ActiveSet)).unwrap();
     let iterative = Prepared::new(problem, &mprgp()).unwrap();
@@ -155,7 +156,7 @@ fn the_bound_of_the_cycles_is_above_the_error_and_near_it() {
         settings.tolerance = 10.0_f64.powf(-6.0 * draws.signed().abs());
         if let Some(found) = answer(solve(&problem, &settings)) {
             let exact = dense.enumerate();
-            // A hierarchy of one level is a factor.
+            // With only one level the hierarchy is a factor.
             assert!(!found.certificate.bound_is_measured);
             ratios.extend(overestimate(&problem, &found, exact.displacement.as_slice(), "random"));
         }
@@ -195,7 +196,7 @@ fn the_energy_of_a_force_is_between_its_bounds_after_few_cycles() {
 }
 
 #[test]
-fn an_accuracy_that_is_named_ends_the_cycles() {
+fn a_requested_accuracy_ends_the_cycles_early() {
     let problem = built(&clamped_block(12, -0.01)).problem().clone();
     let exact = solve(&problem, &Settings::with_method(Method::ActiveSet)).unwrap();
     let whole = solve(&problem, &mprgp()).unwrap();
@@ -216,7 +217,7 @@ fn an_accuracy_that_is_named_ends_the_cycles() {
 }
 
 #[test]
-fn a_body_that_only_contact_holds_has_a_bound_with_springs_on_its_rows() {
+fn a_body_held_by_contact_alone_has_a_bound_with_springs_on_its_rows() {
     let mut scene = clamped_block(6, 0.0);
     scene["supports"] = json!([{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "front"}, "y": 0}]);
     scene["loads"] = json!([{"traction": {"boundary": "bottom", "value": [0, 0, 1e5]}}]);
@@ -230,12 +231,13 @@ fn a_body_that_only_contact_holds_has_a_bound_with_springs_on_its_rows() {
         let energy =
             |u: &[f64]| u.iter().zip(model.problem().stiffness().mul(u)).map(|(u, k)| u * k).sum::<f64>().sqrt();
         let (error, bound) = (energy(&away) / energy(&found.displacement), found.certificate.energy_error_bound);
-        // The reference is exact to twelve digits; half the least Ritz value and few cycles cost less than a factor of 100.
+        // The reference is exact to twelve digits; half the smallest Ritz value and the few cycles cost less than a
+        // factor of 100.
         assert!(error <= bound + 1e-12 && bound <= tolerance && bound <= 100.0 * error + 1e-12, "{error:e} {bound:e}");
     }
 }
 
-/// Two problems that share nothing, the second so many times softer, its load and forces too.
+/// Two uncoupled problems; stiffness, load and forces of the second are multiplied by `softness`.
 fn beside(first: &ContactProblem, second: &ContactProblem, softness: f64) -> ContactProblem {
     let (dofs, rows) = (first.dofs(), first.rows());
     let moved = |matrix: &SparseMatrix, by: (usize, usize), factor: f64| -> Vec<(usize, usize, f64)> {
@@ -262,9 +264,10 @@ fn beside(first: &ContactProblem, second: &ContactProblem, softness: f64) -> Con
     .unwrap()
 }
 
-/// The energy norm of the error of a soft part drowns in that of a stiff one beside it; the bound of the parts does not.
+/// The error of a soft part is small in the energy norm of the whole, which a stiff part dominates; the bound of the
+/// parts shows it.
 #[test]
-fn a_wrong_soft_part_beside_a_stiff_one_shows_in_the_bound_of_the_parts() {
+fn the_bound_of_the_parts_shows_the_error_of_a_soft_part_beside_a_stiff_one() {
     let scene = clamped_block(7, -0.01);
     let (stiff, soft) = (built(&scene).problem().clone(), built(&clamped_block(8, -0.012)).problem().clone());
     let exact = solve(&soft, &Settings::with_method(Method::ActiveSet)).unwrap();
@@ -275,7 +278,7 @@ fn a_wrong_soft_part_beside_a_stiff_one_shows_in_the_bound_of_the_parts() {
         let right = answer(iterative.solve(problem.gap())).unwrap();
         let mut shown = 0;
         for wrong in [0.0, 1e-6, 1e-3, 0.1] {
-            // What one cycle from a wrong start leaves.
+            // The answer after one cycle from a wrong start.
             let start: Vec<f64> = (right.displacement.iter().enumerate())
                 .map(|(dof, u)| if dof < stiff.dofs() { *u } else { u * (1.0 + wrong) })
                 .collect();
@@ -292,8 +295,14 @@ fn a_wrong_soft_part_beside_a_stiff_one_shows_in_the_bound_of_the_parts() {
             let away: Vec<f64> = of_soft.iter().zip(&exact.displacement).map(|(u, v)| u - v).collect();
             let error = energy(&soft, &away) / energy(&soft, of_soft);
             let bound = certificate.part_error_bound;
-            assert!(error <= bound + OF_REFERENCE, "{softness:e} {wrong:e}: an error of {error:e} above {bound:e}");
-            assert!(bound <= 10.0 * error + 1e-6, "{softness:e} {wrong:e}: a bound of {bound:e} on {error:e}");
+            assert!(
+                error <= bound + OF_REFERENCE,
+                "{softness:e} {wrong:e}: the error {error:e} is above its bound {bound:e}"
+            );
+            assert!(
+                bound <= 10.0 * error + 1e-6,
+                "{softness:e} {wrong:e}: the bound {bound:e} is too far above the error {error:e}"
+            );
             shown += usize::from(bound > 1e3 * certificate.energy_error_bound);
         }
         assert_eq!(shown > 0, softness < 1e-8, "{softness:e}: {shown}");
@@ -301,7 +310,7 @@ fn a_wrong_soft_part_beside_a_stiff_one_shows_in_the_bound_of_the_parts() {
 }
 
 #[test]
-fn each_block_of_a_matrix_has_its_own_energy_between_its_bounds() {
+fn the_energy_of_each_block_of_a_matrix_is_between_its_bounds() {
     let (stiff, soft) = (built(&clamped_block(8, -0.01)), built(&clamped_block(9, -0.01)));
     let (stiff, soft) = (stiff.problem(), soft.problem());
     let both = beside(stiff, soft, 1e-12);
@@ -320,9 +329,9 @@ fn each_block_of_a_matrix_has_its_own_energy_between_its_bounds() {
     }
 }
 
-/// A spring of negative stiffness at a pressed row: the springs of the bound would hide it.
+/// A spring of negative stiffness at a pressed row, which the springs of the bound could hide.
 #[test]
-fn springs_hide_no_direction_of_negative_energy() {
+fn springs_of_the_bound_do_not_hide_a_direction_of_negative_energy() {
     let mut scene = clamped_block(9, 0.0);
     scene["supports"] = json!([{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "front"}, "y": 0}]);
     scene["loads"] = json!([{"traction": {"boundary": "bottom", "value": [0, 0, 1e5]}}]);
@@ -341,7 +350,7 @@ fn springs_hide_no_direction_of_negative_energy() {
         let wrong = ContactProblem::new(stiffness, load, problem.contact().clone(), gap)
             .and_then(|wrong| wrong.with_near_null(problem.near_null().unwrap().clone()))
             .unwrap();
-        // From the answer itself nothing moves, and no direction is tried on the way.
+        // Starting from the answer itself, the iteration does not move, and no direction is tried.
         let iterative = Prepared::new(&wrong, &mprgp()).unwrap();
         match iterative.starting_from(Start::near(sound.displacement.clone())).solve(wrong.gap()) {
             Err(Error::NotCertified { solution, .. }) => {

@@ -1,4 +1,4 @@
-//! Multigrid, MPRGP, the bound without a factor, and the choice between both ways.
+//! Multigrid, MPRGP, the bound without a factor, and the choice between factor and multigrid.
 
 #[path = "../support/bodies.rs"]
 mod bodies;

@@ -1,8 +1,9 @@
-//! GOAL: MPRGP with one multigrid hierarchy finds what the direct methods find, at little more than a linear solve.
+//! GOAL: MPRGP with one multigrid hierarchy finds the answer of the direct methods, at little more than the cost of a
+//! linear solve.
 //!
-//! CONDITIONS: a block in space under a sphere, inclined supports and normal rows, two bodies, bodies that only contact
-//! holds, rows on both sides, random problems against the enumeration of all sets; starts from other answers; problems that
-//! have no answer.
+//! CONDITIONS: a block in space under a sphere, inclined supports and normal rows, two bodies, bodies held by contact
+//! alone, rows on both sides, random problems compared with the enumeration of all sets; starts from other answers;
+//! problems without an answer.
 
 use std::path::Path;
 
@@ -12,10 +13,10 @@ use serde_json::json;
 use signorini::internals::multigrid::{NearNullSpace, conjugate_gradients};
 use signorini::{ContactProblem, ContactSet, Error, Method, Prepared, Scene, Settings, Solution, Start, solve};
 
-/// Both answers are certified to 1e-9; the condition numbers of these bodies are 1e3 and less.
+/// Both answers are certified to 1e-9; the condition numbers of these bodies are at most 1e3.
 const SAME: f64 = 1e-6;
 
-/// Contact over linear solve, in cycles: what a contact solve may cost. Measured 1.0 to 1.3.
+/// Largest ratio of cycles of a contact solve to those of a linear solve. Measured 1.0 to 1.3.
 const RATIO: f64 = 1.5;
 
 fn mprgp() -> Settings {
@@ -46,7 +47,7 @@ fn example(name: &str) -> ContactProblem {
 }
 
 #[test]
-fn a_block_costs_little_more_cycles_than_its_linear_solve() {
+fn a_contact_solve_takes_at_most_one_and_a_half_times_the_cycles_of_a_linear_solve() {
     let problem = built(&clamped_block(16, -0.01)).problem().clone();
     let contact = agrees_with_the_direct_path(&problem, "block");
     let iterative = Prepared::new(&problem, &mprgp()).unwrap();
@@ -56,10 +57,9 @@ fn a_block_costs_little_more_cycles_than_its_linear_solve() {
     assert!(ratio <= RATIO, "{} cycles of contact, {} of the linear solve", contact.iterations, linear.cycles);
 }
 
-/// So fine that the closed rows reach beyond the first coarse level, whose smoother must follow.
-/// GOAL: cells that are much higher than wide cost few cycles more than square ones.
+/// GOAL: cells that are much higher than wide need only a few cycles more than square ones.
 #[test]
-fn stretched_cells_cost_few_cycles() {
+fn stretched_cells_need_few_cycles() {
     let cycles = |width: f64| {
         let mut scene = clamped_square(
             1,
@@ -72,12 +72,14 @@ fn stretched_cells_cost_few_cycles() {
         agrees_with_the_direct_path(built(&scene).problem(), &format!("width {width}")).iterations
     };
     let counts = [10.0, 1.0, 0.2].map(cycles);
-    // Square cells; 10 times as high as wide; 50 times, where aggregates of all neighbours let the iteration stagnate.
+    // Square cells; cells 10 times as high as wide; and 50 times, for which aggregates of all neighbours would make the
+    // iteration stagnate.
     assert!(counts.iter().all(|&cycles| cycles <= 60), "{counts:?}");
 }
 
+/// On this fine mesh, closed rows exist beyond the first coarse level, and the smoothers there must respect them.
 #[test]
-fn closed_rows_are_known_on_every_level() {
+fn fine_meshes_with_closed_rows_on_coarse_levels_need_few_cycles() {
     let circle = json!([{"boundary": "top", "approach": "+y", "shape": {"circle": {"apex": [0.5, 1], "radius": 2}}}]);
     let problem = built(&clamped_square(80, circle, -0.01)).problem().clone();
     let contact = agrees_with_the_direct_path(&problem, "square");
@@ -108,9 +110,9 @@ fn scenes_with_inclined_rows_two_bodies_and_free_bodies_agree_with_the_direct_pa
 }
 
 #[test]
-fn a_body_that_only_contact_holds_is_included() {
+fn a_body_held_by_contact_alone_is_solved() {
     let mut scene = clamped_block(6, 0.0);
-    // Guided at two faces, pressed up against the sphere: nothing but contact holds it along z.
+    // The block is guided at two faces and pressed up against the sphere: only contact holds it along z.
     scene["supports"] = json!([{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "front"}, "y": 0}]);
     scene["loads"] = json!([{"traction": {"boundary": "bottom", "value": [0, 0, 1e5]}}]);
     let problem = built(&scene).problem().clone();
@@ -131,7 +133,7 @@ fn random_problems_agree_with_the_enumeration_of_all_sets() {
                 same(&found.displacement, exact.displacement.as_slice(), "random");
                 solved += 1;
             }
-            // Rows that share a dof and are neither parallel nor at right angles.
+            // Rows that share a dof and are neither parallel nor orthogonal.
             Err(Error::Numerical { reason, .. }) => {
                 assert!(reason.contains("right angles"), "{reason}");
                 refused += 1;
@@ -143,7 +145,7 @@ fn random_problems_agree_with_the_enumeration_of_all_sets() {
 }
 
 #[test]
-fn rows_on_both_sides_of_a_dof_and_rows_of_two_dofs_are_bounds() {
+fn rows_on_both_sides_of_a_dof_and_rows_of_two_dofs_are_turned_into_bounds() {
     let dense = Dense::new(
         &[&[4.0, 1.0, 0.0], &[1.0, 3.0, 1.0], &[0.0, 1.0, 2.0]],
         &[10.0, -10.0, 4.0],
@@ -159,7 +161,7 @@ fn rows_on_both_sides_of_a_dof_and_rows_of_two_dofs_are_bounds() {
 }
 
 #[test]
-fn the_last_answer_is_a_start_that_saves_cycles() {
+fn a_start_from_the_last_answer_saves_cycles() {
     let problem = built(&clamped_block(12, -0.01)).problem().clone();
     let iterative = Prepared::new(&problem, &mprgp()).unwrap();
     let first = iterative.solve(problem.gap()).unwrap();
@@ -173,7 +175,7 @@ fn the_last_answer_is_a_start_that_saves_cycles() {
 }
 
 #[test]
-fn a_start_far_off_changes_nothing_but_the_cycles() {
+fn a_start_far_from_the_answer_changes_only_the_number_of_cycles() {
     let problem = built(&clamped_block(8, -0.02)).problem().clone();
     let iterative = Prepared::new(&problem, &mprgp()).unwrap();
     let cold = iterative.solve(problem.gap()).unwrap();
@@ -196,7 +198,7 @@ fn other_units_by_powers_of_two_give_the_same_iterations() {
     assert_eq!(one.multiplier.iter().map(|value| unit * value).collect::<Vec<_>>(), other.multiplier);
 }
 
-/// A block of the problem's own stiffness that nothing holds: no supports, rows at the top along z.
+/// A block without supports, with rows at the top along z; the problem has the stiffness of all dofs.
 fn unsupported(cells: usize, load: [f64; 3]) -> ContactProblem {
     let model = built(&clamped_block(cells, 0.0));
     let body = model.body();
@@ -209,8 +211,9 @@ fn unsupported(cells: usize, load: [f64; 3]) -> ContactProblem {
 }
 
 #[test]
-fn motions_that_nothing_stops_come_back_as_directions_without_a_factor() {
-    // Pressed onto the rows along z, free along x, y and about z; pulled away from them.
+fn motions_that_nothing_stops_are_returned_as_directions_without_a_factor() {
+    // The first block is pressed onto the rows along z, and free along x and y and about z; the second is pulled away
+    // from the rows.
     let pressed = unsupported(6, [0.0, 0.0, 1.0]);
     let free = solve(&pressed, &mprgp()).map(|_| "an answer").unwrap_err();
     let sentence = free.to_string();
@@ -218,14 +221,14 @@ fn motions_that_nothing_stops_come_back_as_directions_without_a_factor() {
     let pulled = solve(&unsupported(6, [0.0, 0.0, -1.0]), &mprgp()).unwrap_err();
     assert!(pulled.to_string().starts_with("unbounded: the load drives a motion"), "{pulled}");
     let (Error::UnderHeld { direction, .. }, Error::Unbounded { direction: escape, .. }) = (free, pulled) else {
-        panic!("not the errors that they say they are")
+        panic!("the errors are of another variant than their messages")
     };
     for direction in [&direction, &escape] {
         let moved = pressed.stiffness().mul(direction);
         assert!(largest(&moved) <= 1e-6 * largest(&pressed.stiffness().diagonal()), "K d is not zero");
     }
-    assert!(largest(&pressed.contact().mul(&direction)) <= 1e-9, "a row under pressure feels the motion");
-    assert!(pressed.contact().mul(&escape).iter().all(|&moved| moved <= 1e-9), "the escape closes rows");
+    assert!(largest(&pressed.contact().mul(&direction)) <= 1e-9, "the motion moves a row under pressure");
+    assert!(pressed.contact().mul(&escape).iter().all(|&moved| moved <= 1e-9), "the escape direction closes rows");
 }
 
 #[test]
@@ -240,7 +243,7 @@ fn a_stiffness_with_a_negative_eigenvalue_on_the_free_face_is_refused() {
     let dense = Dense::new(&[&[1.0, 2.0], &[2.0, 1.0]], &[1.0, -1.0], &[&[1.0, 0.0]], &[5.0]);
     let refused = solve(&dense.problem().unwrap(), &mprgp());
     assert!(matches!(refused, Err(Error::NotConvex { .. })), "{refused:?}");
-    // A hole in a block, three levels deep: the direction is named, where the hierarchy lets it be met.
+    // A block three levels deep with one reduced diagonal entry: the direction is named if the iteration meets it.
     let problem = built(&clamped_block(9, -0.01)).problem().clone();
     let lower = problem.stiffness().lower();
     let dof = problem.dofs() / 2;
@@ -258,14 +261,16 @@ fn a_stiffness_with_a_negative_eigenvalue_on_the_free_face_is_refused() {
 }
 
 #[test]
-fn too_few_cycles_end_with_the_best_answer_not_certified() {
+fn too_few_cycles_return_the_best_answer_as_not_certified() {
     let problem = built(&clamped_block(8, -0.01)).problem().clone();
     let settings = mprgp().with_max_iterations(3);
-    let Err(Error::NotCertified { solution, .. }) = solve(&problem, &settings) else { panic!("three cycles suffice?") };
+    let Err(Error::NotCertified { solution, .. }) = solve(&problem, &settings) else {
+        panic!("three cycles must not suffice")
+    };
     assert_eq!((solution.iterations, solution.method.as_str()), (3, "mprgp-unsettled"));
     assert!(solution.contact_set.count() > 0);
     let settings = mprgp().with_tolerance(1e-15);
-    // Where only rounding is left the loop ends by itself.
+    // If only rounding is left, the loop ends by itself.
     let solution = match solve(&problem, &settings) {
         Ok(solution) => solution,
         Err(Error::NotCertified { solution, .. }) => *solution,
@@ -273,12 +278,14 @@ fn too_few_cycles_end_with_the_best_answer_not_certified() {
     };
     assert!(solution.iterations < 60 && solution.certificate.meets(1e-12), "{:?}", solution.certificate);
     let settings = settings.with_time(std::time::Duration::ZERO);
-    let Err(Error::NotCertified { solution, .. }) = solve(&problem, &settings) else { panic!("in no time?") };
-    assert_eq!((solution.iterations, solution.method.as_str()), (0, "none"), "no time to begin");
+    let Err(Error::NotCertified { solution, .. }) = solve(&problem, &settings) else {
+        panic!("a solve without time must not end certified")
+    };
+    assert_eq!((solution.iterations, solution.method.as_str()), (0, "none"), "the solve must not begin");
 }
 
 #[test]
-fn a_tolerance_of_1e_10_is_reached_where_it_is_asked_for() {
+fn a_requested_tolerance_of_1e_10_is_reached() {
     let axis = |length: f64, cells: usize| json!({"points": [0, length], "divisions": [cells]});
     let mut plate = clamped_block(2, -0.0005);
     plate["body"] = json!({"box": {"x": axis(1.0, 18), "y": axis(1.0, 18), "z": axis(0.02, 2), "element": "hex8"}});
@@ -303,8 +310,8 @@ fn a_tolerance_of_1e_10_is_reached_where_it_is_asked_for() {
 }
 
 #[test]
-fn a_hierarchy_that_is_bad_on_purpose_stagnates_and_says_so() {
-    // A thin plate held at an edge bends, and constants know nothing of bending.
+fn a_bad_hierarchy_ends_not_certified_with_its_number_of_iterations() {
+    // A thin plate held at one edge bends, but constants do not represent bending.
     let axis = |length: f64, cells: usize| json!({"points": [0, length], "divisions": [cells]});
     let mut scene = clamped_block(2, -0.0005);
     scene["body"] = json!({"box": {"x": axis(1.0, 40), "y": axis(0.2, 8), "z": axis(0.004, 2), "element": "hex8"}});
@@ -321,7 +328,7 @@ fn a_hierarchy_that_is_bad_on_purpose_stagnates_and_says_so() {
     assert!(sentence.starts_with("not certified: ") && sentence.contains("(mprgp-"), "{sentence}");
     let Error::NotCertified { solution, .. } = refused else { panic!("{sentence}") };
     assert!(solution.iterations <= 150 && sentence.contains(&format!("after {} iterations", solution.iterations)));
-    // The best answer comes along: its energy is below that of no displacement at all.
+    // The best answer is returned with the error.
     let elastic = problem.stiffness().mul(&solution.displacement);
     let energy: f64 =
         (0..problem.dofs()).map(|i| solution.displacement[i] * (0.5 * elastic[i] - problem.load()[i])).sum();

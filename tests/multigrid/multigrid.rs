@@ -1,7 +1,7 @@
-//! GOAL: the multigrid hierarchy solves what the Cholesky factor solves, in a number of cycles that hardly grows.
+//! GOAL: the multigrid hierarchy gives the answer of the Cholesky factor, in a number of cycles that hardly grows.
 //!
-//! CONDITIONS: blocks in space clamped below, a plane body with rollers, a scalar problem, single and double precision, one
-//! thread and two; near-null spaces that do not fit.
+//! CONDITIONS: blocks in space clamped at the bottom, a plane body with rollers, a scalar problem, single and double
+//! precision, one thread and two; near-null spaces that do not match the problem.
 
 use crate::bodies::{built, clamped_block, clamped_square, largest};
 use crate::oracles::Draws;
@@ -13,21 +13,21 @@ use signorini::{ContactProblem, Error, SparseMatrix, SymmetricMatrix};
 /// Relative residual at which the iteration ends.
 const TOLERANCE: f64 = 1e-10;
 
-/// The error of the displacement is the residual, enlarged by the condition number: 1e3 for these blocks.
+/// The error of the displacement is the residual times the condition number, 1e3 for these blocks.
 const SAME: f64 = 1e-7;
 
-/// The cycle is symmetric but for the rounding of single precision.
+/// The cycle is symmetric up to the rounding of single precision.
 const SYMMETRIC: f64 = 1e-5;
 
-/// Measured 9 to 12 to 1e-10 from 5,000 to 100,000 dofs; the count of a reference hierarchy is about 12.
+/// Measured: 9 to 12 cycles to 1e-10, from 5,000 to 100,000 dofs; a reference hierarchy takes about 12.
 const MOST_CYCLES: usize = 14;
 
-/// A block of so many cells a side, clamped below, under a sphere.
+/// A block of `cells` cells along each side, clamped at the bottom, under a sphere.
 fn block(cells: usize) -> ContactProblem {
     built(&clamped_block(cells, -0.01)).problem().clone()
 }
 
-/// A square on rollers at its sides, clamped below.
+/// A square on rollers at its sides, clamped at the bottom.
 fn square_on_rollers(cells: usize) -> ContactProblem {
     let mut scene = clamped_square(
         cells,
@@ -55,7 +55,7 @@ fn conjugate_gradients_with_one_cycle_agree_with_the_cholesky_factor() {
         let exact = Cholesky::of(problem.stiffness()).unwrap().solve(&load);
         let multigrid = hierarchy(&problem, Precision::Single, 1);
         let found = conjugate_gradients(problem.stiffness(), &load, &multigrid, TOLERANCE, 50).unwrap();
-        assert!(multigrid.unknowns().len() > 1, "there is a coarse level");
+        assert!(multigrid.unknowns().len() > 1, "there is no coarse level");
         assert!(found.residual <= TOLERANCE && found.cycles <= MOST_CYCLES, "{} cycles", found.cycles);
         let error = exact.iter().zip(&found.solution).fold(0.0, |error: f64, (a, b)| error.max((a - b).abs()));
         assert!(error <= SAME * largest(&exact), "{error:e} of {:e}", largest(&exact));
@@ -94,9 +94,10 @@ fn the_cycle_is_symmetric_and_the_same_with_two_threads() {
     assert!(product(&x, &of_x) > 0.0);
     assert!((product(&y, &of_x) - product(&x, &of_y)).abs() <= SYMMETRIC * size);
     assert_eq!(hierarchy(&problem, Precision::Single, 2).cycle(&x), of_x);
-    // The double precision around it as well: its sums run over the same parts, whoever adds them.
+    // The products in double precision are the same as well: their sums are over fixed parts, whichever thread computes
+    // them.
     let large = block(20);
-    assert!(large.stiffness().lower().entries() > 500_000, "large enough for parts");
+    assert!(large.stiffness().lower().entries() > 500_000, "the matrix is too small for several parts");
     let x: Vec<f64> = (0..large.dofs()).map(|_| draws.signed()).collect();
     let products = [1, 2, 3, 8].map(|threads| large.stiffness().mul_on(threads, &x));
     assert!(products.iter().all(|product| *product == products[0]));
@@ -106,7 +107,7 @@ fn the_cycle_is_symmetric_and_the_same_with_two_threads() {
 
 #[test]
 fn a_scalar_problem_is_solved_with_constants() {
-    // Five-point Laplacian of a square of 60 x 60 points, its boundary held.
+    // The five-point Laplacian of a square of 60 x 60 points with a fixed boundary.
     let points = 60;
     let mut entries = Vec::new();
     for row in 0..points {
@@ -131,7 +132,7 @@ fn a_scalar_problem_is_solved_with_constants() {
 }
 
 #[test]
-fn near_null_spaces_that_do_not_fit_are_refused_by_name() {
+fn near_null_spaces_that_do_not_match_the_problem_are_refused_by_name() {
     let problem = block(4);
     let dofs = problem.dofs();
     let short = NearNullSpace::new(vec![vec![1.0; dofs - 1]], dofs);

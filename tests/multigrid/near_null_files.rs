@@ -1,6 +1,6 @@
-//! GOAL: a problem directory may say what costs no energy, and multigrid solves it as the scene that it came from.
+//! GOAL: a problem directory may contain the motions without energy, and multigrid then solves it like its scene.
 //!
-//! CONDITIONS: an exported scene; coordinates of a body without supports; files that do not fit.
+//! CONDITIONS: an exported scene; coordinates of a body without supports; files that do not match the problem.
 
 use std::fs;
 use std::path::Path;
@@ -37,8 +37,8 @@ fn an_exported_scene_is_solved_by_multigrid_as_the_scene_itself() {
     assert!(rough.contains("certified to 1.0e-3 of the energy norm") && rough.contains(", measured"), "{rough}");
 }
 
-/// A square without supports, pushed against a row at each node of its top, and its nodes. Two rows more, one against the
-/// other, guide a corner along x.
+/// A square without supports, pushed against a row at each node of its top, and its nodes. Two opposite rows guide a
+/// corner along x.
 fn unsupported() -> (ContactProblem, Vec<[f64; 3]>) {
     let plane = json!({"plane": {"point": [0, 1], "normal": [0, 1]}});
     let model = built(&clamped_square(30, json!([{"boundary": "top", "approach": "+y", "shape": plane}]), 0.0));
@@ -57,7 +57,7 @@ fn unsupported() -> (ContactProblem, Vec<[f64; 3]>) {
 }
 
 #[test]
-fn coordinates_stand_for_the_rigid_body_modes() {
+fn coordinates_give_the_rigid_body_modes() {
     let (problem, nodes) = unsupported();
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), &problem);
@@ -68,18 +68,18 @@ fn coordinates_stand_for_the_rigid_body_modes() {
     fs::write(folder.path().join("coordinates.mtx"), format!("{head}{}{}", columns[0], columns[1])).unwrap();
     let with = qp::read_problem(folder.path()).unwrap();
     assert_eq!(with.near_null().unwrap().count(), 3);
-    // The rotation costs nothing either: K times it is rounding.
+    // The rotation has no energy: K times the rotation is rounding.
     let rotation = &with.near_null().unwrap().vectors()[2];
     let moved = problem.stiffness().mul(rotation);
     let terms = problem.stiffness().mul_abs(rotation);
     assert!(moved.iter().zip(&terms).all(|(moved, terms)| moved.abs() <= 1e-13 * terms));
     let solution = solve(&with, &Settings::with_method(Method::Mprgp)).unwrap_or_else(|error| panic!("{error}"));
     let pushed: f64 = problem.load().iter().sum();
-    assert!((solution.contact_force() - pushed).abs() <= 1e-8 * pushed, "the rows carry the whole load");
+    assert!((solution.contact_force() - pushed).abs() <= 1e-8 * pushed, "the rows do not carry the whole load");
 }
 
 #[test]
-fn files_that_do_not_fit_are_named_with_what_is_allowed() {
+fn files_that_do_not_match_are_named_with_the_allowed_size() {
     let problem = built(&clamped_block(2, -0.01)).problem().clone();
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), &problem);
@@ -91,7 +91,7 @@ fn files_that_do_not_fit_are_named_with_what_is_allowed() {
         let error = qp::read_problem(folder.path()).unwrap_err().to_string();
         fs::remove_file(folder.path().join(name)).unwrap();
         for word in [name].iter().chain(words) {
-            assert!(error.contains(word), "{error:?} lacks {word:?}");
+            assert!(error.contains(word), "{error:?} does not contain {word:?}");
         }
     };
     refused("near_null.mtx", [dofs - 1, 3], "1", &[&format!("it must have {dofs} rows")]);

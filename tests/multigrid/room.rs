@@ -1,7 +1,7 @@
-//! GOAL: the choice between a factor and multigrid keeps to the memory that is allowed, and says why it was made.
+//! GOAL: the choice between a factor and multigrid respects the memory limit, and the answer gives its reason.
 //!
-//! CONDITIONS: a block, with memory for both ways, for one, for none; an accuracy named, no near-null space, no method left
-//! to choose.
+//! CONDITIONS: a block with memory for factor and multigrid, for one of the two, for neither; a requested accuracy, no
+//! near-null space, a fixed method.
 
 use crate::bodies::{built, clamped_block};
 use serde_json::{Value, json};
@@ -22,10 +22,10 @@ fn block() -> (ContactProblem, Estimate) {
 }
 
 #[test]
-fn a_factor_is_taken_where_it_fits() {
+fn a_factor_is_chosen_if_it_fits() {
     let (problem, estimate) = block();
     assert!(estimate.direct_bytes > estimate.multigrid_bytes && !estimate.prefers_multigrid(estimate.direct_bytes));
-    // The estimate is good to a factor of two.
+    // The estimate is right up to a factor of two.
     for settings in [Settings::default(), within(2.0 * estimate.direct_bytes)] {
         let found = solve(&problem, &settings).unwrap();
         assert!(found.method.starts_with("active-set") && found.reason.is_none(), "{}", found.method);
@@ -33,9 +33,9 @@ fn a_factor_is_taken_where_it_fits() {
 }
 
 #[test]
-fn multigrid_is_taken_where_only_that_fits_and_the_answer_says_why() {
+fn multigrid_is_chosen_with_the_reason_if_only_multigrid_fits() {
     let (problem, estimate) = block();
-    // Not enough for one factor at a time either.
+    // The memory does not suffice even for one factor at a time.
     let between = within(1.05 * estimate.multigrid_bytes);
     let exact = solve(&problem, &Settings::with_method(Method::ActiveSet)).unwrap();
     let mut with_accuracy = between.clone();
@@ -49,7 +49,7 @@ fn multigrid_is_taken_where_only_that_fits_and_the_answer_says_why() {
         assert_eq!(json!(summary)["reason"], json!(reason));
         assert!(found.certificate.energy_error_bound <= settings.accuracy.unwrap_or(1e-4));
     }
-    // Without a near-null space constants must do.
+    // Without a near-null space, constants are used.
     let (stiffness, contact) = (problem.stiffness().clone(), problem.contact().clone());
     let raw = ContactProblem::new(stiffness, problem.load().to_vec(), contact, problem.gap().to_vec()).unwrap();
     let raw_estimate = Estimate::of(&raw);
@@ -58,7 +58,7 @@ fn multigrid_is_taken_where_only_that_fits_and_the_answer_says_why() {
 }
 
 #[test]
-fn a_problem_that_fits_neither_way_is_refused_with_both_estimates() {
+fn a_problem_too_large_for_factor_and_multigrid_is_refused_with_both_estimates() {
     let (problem, estimate) = block();
     let refused = solve(&problem, &within(0.5 * estimate.multigrid_bytes)).unwrap_err();
     assert_eq!(refused.code(), "too-large");
@@ -71,15 +71,15 @@ fn a_problem_that_fits_neither_way_is_refused_with_both_estimates() {
     assert!(matches!(refused, Error::NoRoom { allowed, .. } if allowed == 0.5 * estimate.multigrid_bytes));
     let negative = solve(&problem, &within(-1.0)).unwrap_err().to_string();
     assert_eq!(negative, "memory is -1; it must be positive");
-    // A method that is named is taken, or refused by what it needs.
+    // A requested method is used, or refused with the memory that it needs.
     let mut named = within(0.5 * estimate.multigrid_bytes);
     named.method = Method::ActiveSet;
     assert!(matches!(solve(&problem, &named), Err(Error::TooLarge { .. })));
 }
 
-/// `auto`, a `Prepared` that does not know its gaps, and one that knows that they are many.
+/// Compares `auto`, a `Prepared` without a known number of gaps, and one for many gaps.
 #[test]
-fn a_preparation_weighs_its_gaps() {
+fn a_preparation_for_many_gaps_chooses_the_factor() {
     let problem = built(&clamped_block(22, -0.01)).problem().clone();
     let by_auto = solve(&problem, &Settings::default()).unwrap();
     assert_eq!(by_auto.method, "mprgp");
@@ -91,12 +91,12 @@ fn a_preparation_weighs_its_gaps() {
     assert_eq!([&once.contact_set, &many.contact_set], [&by_auto.contact_set; 2]);
 }
 
-/// GOAL: bodies whose smoother works slowly, and slender ones, whose factor is small, take the direct path.
+/// GOAL: bodies with a slow smoother, and slender bodies with a small factor, use the direct path.
 ///
-/// CONDITIONS: beams of quadratic bricks, and of linear ones with about as many unknowns, clamped at one end; a cube of linear ones.
-/// The times that stand behind the choice: 0.135 s and 0.173 s, 0.20 s and 0.12 s, 0.18 s and 0.08 s.
+/// CONDITIONS: beams of quadratic bricks, and of linear ones with about as many unknowns, clamped at one end; a cube of
+/// linear bricks. The measured times behind the choice: 0.135 s and 0.173 s, 0.20 s and 0.12 s, 0.18 s and 0.08 s.
 #[test]
-fn quadratic_and_slender_bodies_take_the_factor_sooner() {
+fn quadratic_and_slender_bodies_prefer_the_factor() {
     let beam = |length: usize, width: usize, element: &str| -> Value {
         let side = |cells: usize| json!({"points": [0, cells as f64 / length as f64], "divisions": [cells]});
         let mut scene = clamped_block(2, -0.01);

@@ -1,5 +1,5 @@
-//! GOAL: a wrong answer is told from a right one by the numbers of its certificate alone.
-//! CONDITIONS: the exact answer of a small problem, with one fault planted at a time.
+//! GOAL: the numbers of a certificate alone distinguish a wrong answer from a right one.
+//! CONDITIONS: the exact answer of a small problem, with one planted fault at a time.
 
 use crate::oracles::{Dense, Draws, random};
 use signorini::{Certificate, ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp};
@@ -45,11 +45,11 @@ fn wrong_signed_force_in_balance_with_a_wrong_load_is_caught_by_its_sign_alone()
 }
 
 #[test]
-fn lost_factor_two_is_caught() {
+fn a_lost_factor_of_two_is_caught() {
     for (u, lambda) in [([0.5, 1.0], [-5.0, 0.0]), ([0.25, 0.5], [-2.5, 0.0]), ([1.0, 2.0], [-2.5, 0.0])] {
         let certificate = certify(&u, &lambda);
         assert!(!certificate.meets(1e-2), "{u:?} {lambda:?}: {certificate:?}");
-        // The bound is one of the displacement, which is right in the first case.
+        // The bound is one on the displacement, which is right in the first case.
         assert!((certificate.energy_error_bound > 0.1) == (u != [0.5, 1.0]), "{certificate:?}");
     }
 }
@@ -61,7 +61,7 @@ fn swapped_rows_are_caught() {
 }
 
 #[test]
-fn penetration_is_measured_against_the_displacement() {
+fn penetration_is_measured_relative_to_the_displacement() {
     let certificate = certify(&[0.5, 1.001], &[-2.5, 0.0]);
     assert!((certificate.penetration / (0.001 / 1.001) - 1.0).abs() < 1e-9, "{certificate:?}");
 }
@@ -74,7 +74,7 @@ fn force_over_an_open_gap_is_complementarity() {
     assert!(certificate.complementarity > 0.4, "{certificate:?}");
 }
 
-/// The bound is never below the true error, and follows it down: perturbed answers of random problems.
+/// The bound is never below the true error, and it decreases with the error, for perturbed answers of random problems.
 #[test]
 fn energy_bound_holds_for_perturbed_answers() {
     let mut draws = Draws::new(4);
@@ -92,7 +92,7 @@ fn energy_bound_holds_for_perturbed_answers() {
         let bound = problem.certify(&u, &lambda).unwrap().energy_error_bound;
         let u = nalgebra::DVector::from_row_slice(&u);
         let error = norm(&(&u - &reference)) / norm(&u);
-        assert!(error <= bound * (1.0 + 1e-6) + 1e-13, "case {case}: error {error:e} above the bound {bound:e}");
+        assert!(error <= bound * (1.0 + 1e-6) + 1e-13, "case {case}: error {error:e} is above the bound {bound:e}");
     }
 }
 
@@ -108,7 +108,7 @@ fn answer_moved_by_ten_tolerances_is_refused() {
 }
 
 #[test]
-fn not_certified_answers_come_back_with_their_numbers() {
+fn answers_that_are_not_certified_are_returned_with_their_numbers() {
     let loose = signorini::InteriorPoint { polish: false, tolerance: 1e-2 };
     let settings = Settings::with_method(Method::Qp(loose));
     match solve(&two_springs().0, &settings) {
@@ -121,7 +121,7 @@ fn not_certified_answers_come_back_with_their_numbers() {
 }
 
 #[test]
-fn vectors_of_the_wrong_length_and_numbers_that_are_none_are_refused_in_one_sentence() {
+fn vectors_of_wrong_length_or_with_values_that_are_not_finite_are_refused_in_one_sentence() {
     let (problem, u, lambda) = two_springs();
     let message = |result: Result<Certificate, signorini::Error>| result.unwrap_err().to_string();
     assert_eq!(message(problem.certify(&u[1..], &lambda)), "displacement has length 1, but there are 2 dofs");
@@ -132,7 +132,7 @@ fn vectors_of_the_wrong_length_and_numbers_that_are_none_are_refused_in_one_sent
 }
 
 #[test]
-fn problems_that_do_not_fit_together_are_refused_in_one_sentence() {
+fn problems_whose_sizes_do_not_match_are_refused_in_one_sentence() {
     let stiffness =
         || SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &[(0, 0, 1.0), (1, 1, 1.0)]).unwrap());
     let contact = |columns| SparseMatrix::from_triplets(1, columns, &[(0, 0, 1.0)]).unwrap();
@@ -151,7 +151,7 @@ fn problems_that_do_not_fit_together_are_refused_in_one_sentence() {
     assert!(outside.contains("entry (2, 0) lies outside a matrix of 2 rows"), "{outside}");
 }
 
-/// Forces and energies beyond the ends of double precision: the same numbers as in units of order one, bit by bit.
+/// At forces and energies beyond the ends of double precision, the numbers are bit by bit those in units of order one.
 #[test]
 fn certificate_and_proof_do_not_depend_on_the_units() {
     let (problem, u, lambda) = two_springs();
@@ -182,24 +182,24 @@ fn certificate_and_proof_do_not_depend_on_the_units() {
 }
 
 #[test]
-fn nothing_is_proven_by_numbers_that_are_none_or_of_a_body_without_an_energy_norm() {
+fn nothing_is_proven_from_values_that_are_not_finite_or_for_a_body_without_an_energy_norm() {
     let (problem, u, lambda) = two_springs();
     assert!(problem.prove(&u, &lambda).unwrap().is_some());
     assert!(problem.prove(&[f64::NAN, 1.0], &lambda).unwrap().is_none());
     assert!(problem.prove(&u, &[f64::NAN, 0.0]).unwrap().is_none());
-    // A rod that only its wall holds, one that is not held at all, and a dof without stiffness.
+    // A rod that only its wall holds, a rod without any support, and a dof without stiffness.
     let rod: &[&[f64]] = &[&[1.0, -1.0], &[-1.0, 1.0]];
     for stiffness in [rod, &[&[0.0, 0.0], &[0.0, 0.0]], &[&[1.0, 0.0], &[0.0, 0.0]]] {
         let floating = Dense::new(stiffness, &[0.0, 0.0], &[&[0.0, 1.0]], &[0.0]).problem().unwrap();
         let certificate = floating.certify(&[0.0; 2], &[0.0]).unwrap();
         assert!(certificate.conditions_hold(0.0) && !certificate.has_bound(), "{certificate:?}");
-        assert!(!certificate.meets(TOLERANCE), "no bound, not certified: {certificate:?}");
+        assert!(!certificate.meets(TOLERANCE), "certified without a bound: {certificate:?}");
         assert!(floating.prove(&[0.0; 2], &[0.0]).unwrap().is_none());
     }
 }
 
-/// A string of 400 springs of stiffness 1 under a load on each node, every node before a wall at distance 1: too many rows for
-/// a dense boundary. A row of zeros stands behind them, with a gap of its own.
+/// A string of 400 springs of stiffness 1 with a load on each node. Every node is in front of a wall at distance 1: too
+/// many rows for a dense boundary. The last row has no entries; its gap is `gap_of_nothing`.
 fn string(load: f64, gap_of_nothing: f64) -> ContactProblem {
     let nodes = 400;
     let springs: Vec<_> =
@@ -212,12 +212,12 @@ fn string(load: f64, gap_of_nothing: f64) -> ContactProblem {
 }
 
 #[test]
-fn bound_without_a_dense_boundary_is_that_of_a_uniform_penetration() {
+fn bound_without_a_dense_boundary_is_near_the_error_of_a_uniform_penetration() {
     let problem = string(3.0, 1.0);
     let mut lambda: Vec<f64> = problem.stiffness().mul(&[1.0; 400]).iter().map(|force| force - 3.0).collect();
     lambda.push(0.0);
     assert!(problem.certify(&[1.0; 400], &lambda).unwrap().meets(TOLERANCE));
-    // The energy of a uniform displacement is in the two springs at the ends, and the error is one.
+    // The energy of a uniform displacement is that of the two springs at the ends; answer and error are uniform.
     for depth in [1e-6, 1e-10] {
         let bound = problem.certify(&[1.0 + depth; 400], &lambda).unwrap().energy_error_bound;
         assert!((depth * (1.0 - 2e-6)..3.0 * depth).contains(&bound), "{depth:e}: {bound:e}");
@@ -226,13 +226,14 @@ fn bound_without_a_dense_boundary_is_that_of_a_uniform_penetration() {
     assert_eq!((proven.closed.count(), proven.open.count()), (400, 1));
 }
 
-/// A string of 401 nodes on a ground of stiffness 1/2, pressed against a wall at its middle; other walls are far. The body that
-/// follows a node to its wall, and the force of that wall, keep the bound near the error.
+/// A string of 401 nodes, each held by a ground spring of stiffness 1/2, is pressed against a wall at its middle; the
+/// other walls are far. The bound moves the middle node to its wall, lets the body follow, and takes the force of the
+/// wall into account; this keeps the bound near the error.
 #[test]
-fn bound_of_a_string_that_is_pressed_into_a_wall_at_its_middle_is_the_error() {
+fn bound_of_a_string_pressed_into_a_wall_at_its_middle_is_near_the_error() {
     const NODES: usize = 401;
     const DEPTH: f64 = 1e-6;
-    /// The steps in which the body follows leave a few hundredths.
+    /// The body follows in a limited number of steps, which costs the bound a few hundredths.
     const LOOSE: f64 = 1.05;
     let middle = NODES / 2;
     let springs: Vec<_> =
@@ -243,14 +244,15 @@ fn bound_of_a_string_that_is_pressed_into_a_wall_at_its_middle_is_the_error() {
     let at_middle = |value: f64, elsewhere: f64| -> Vec<f64> {
         (0..NODES).map(|node| if node == middle { value } else { elsewhere }).collect()
     };
-    // The ground halves a displacement from node to node: 5/2 - 2/2 at the middle, and nothing elsewhere.
+    // With the ground springs, the displacement halves from node to node; so the force is 5/2 - 2/2 at the middle, and
+    // zero elsewhere.
     let problem = ContactProblem::new(stiffness, at_middle(4.5, 0.0), contact, at_middle(1.0, 10.0)).unwrap();
     let pressed = |depth: f64| -> Vec<f64> {
         (0..NODES).map(|node| (1.0 + depth) * 0.5_f64.powi(node.abs_diff(middle) as i32)).collect()
     };
     let lambda = at_middle(-3.0, 0.0);
     assert!(problem.certify(&pressed(0.0), &lambda).unwrap().meets(TOLERANCE));
-    // A force that is off is no error of the displacement: the wall takes what is out of balance.
+    // A wrong contact force is no error of the displacement: the wall carries the imbalance.
     for (depth, force) in [(DEPTH, -3.0), (-DEPTH, -3.0), (DEPTH, -3.001), (DEPTH, -2.999)] {
         let lambda = at_middle(force, 0.0);
         let bound = problem.certify(&pressed(depth), &lambda).unwrap().energy_error_bound / DEPTH;
@@ -259,8 +261,8 @@ fn bound_of_a_string_that_is_pressed_into_a_wall_at_its_middle_is_the_error() {
 }
 
 #[test]
-fn a_string_that_only_its_walls_hold_has_a_bound() {
-    // Free at both ends: every displacement of all nodes together has no energy.
+fn a_string_held_by_its_walls_alone_has_a_bound() {
+    // Free at both ends: a uniform displacement has no energy.
     const NODES: usize = 400;
     let end = |node: usize| if node == 0 || node == NODES - 1 { 1.0 } else { 2.0 };
     let springs: Vec<_> =
@@ -274,7 +276,7 @@ fn a_string_that_only_its_walls_hold_has_a_bound() {
 }
 
 #[test]
-fn rows_of_two_nodes_that_rounding_leaves_off_their_gaps_have_a_bound() {
+fn rows_of_two_nodes_that_miss_their_gaps_by_rounding_have_a_bound() {
     const NODES: usize = 400;
     const DEPTH: f64 = 1e-6;
     const GAP: f64 = 0.123;
@@ -283,17 +285,17 @@ fn rows_of_two_nodes_that_rounding_leaves_off_their_gaps_have_a_bound() {
     let rows: Vec<_> = (0..NODES - 1).flat_map(|row| [(row, row, 0.7), (row, row + 1, 0.3)]).collect();
     let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(NODES, NODES, &springs).unwrap()).unwrap();
     let contact = SparseMatrix::from_triplets(NODES - 1, NODES, &rows).unwrap();
-    // The load under which all rows press by three at a uniform displacement.
+    // The load under which all rows carry a force of three at a uniform displacement.
     let forces = contact.mul_transposed(&[3.0; NODES - 1]);
     let load = stiffness.mul(&[GAP; NODES]).iter().zip(forces).map(|(elastic, force)| elastic + force).collect();
     let problem = ContactProblem::new(stiffness, load, contact, vec![GAP; NODES - 1]).unwrap();
     let bound = problem.certify(&[GAP + DEPTH; NODES], &[-3.0; NODES - 1]).unwrap().energy_error_bound;
-    // All energy is in the springs at the ends, as that of the error.
+    // All energy is in the springs at the ends, for the answer and for the error.
     assert!(bound.is_finite() && bound >= DEPTH / (GAP + DEPTH) * (1.0 - 1e-6), "{bound:e}");
 }
 
 #[test]
-fn a_row_of_zeros_that_wants_something_has_no_bound() {
+fn a_row_of_zeros_with_a_negative_gap_has_no_bound() {
     let problem = string(0.0, -1.0);
     let certificate = problem.certify(&[0.0; 400], &[0.0; 401]).unwrap();
     assert!(certificate.energy_error_bound.is_infinite() && !certificate.meets(TOLERANCE), "{certificate:?}");

@@ -1,7 +1,7 @@
-//! GOAL: what is said of a problem without a unique answer is true, and the same by every method.
+//! GOAL: every claim about a problem without a unique answer is true, and all methods make the same claim.
 //!
-//! CONDITIONS: a stiffness that resists nothing, or not every motion, with loads in balance and out of it, and rows that stop
-//! the motion one way, both ways or not at all. REFERENCE: the answers can be read off the data.
+//! CONDITIONS: a stiffness that resists no motion, or not every motion; loads in balance and not in balance; rows that
+//! stop the motion in one direction, in both or in none. REFERENCE: the answers follow directly from the data.
 
 use signorini::{ContactProblem, Error, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve};
 
@@ -19,7 +19,7 @@ fn problem(stiffness: &[(usize, usize, f64)], load: &[f64], rows: &[&[f64]], gap
     ContactProblem::new(stiffness, load.to_vec(), contact, gap.to_vec()).unwrap()
 }
 
-/// Two masses joined by a spring, free to move together.
+/// Two masses joined by a spring, without supports.
 const SPRING: [(usize, usize, f64); 3] = [(0, 0, 1.0), (1, 0, -1.0), (1, 1, 1.0)];
 
 fn endings(problem: &ContactProblem) -> impl Iterator<Item = (&'static str, Result<Solution, Error>)> + '_ {
@@ -35,10 +35,10 @@ fn a_stiffness_of_zero_without_load_is_under_held() {
 }
 
 #[test]
-fn a_loaded_dof_that_only_a_row_holds_is_at_its_gap() {
+fn a_loaded_dof_held_by_a_row_alone_is_at_its_gap() {
     let problem = problem(&[(0, 0, 2.0)], &[2.0, 3.0], &[&[0.0, 1.0]], &[0.5]);
     for (method, ending) in endings(&problem) {
-        // Whether its error is bounded is a matter of the certificate; here nothing may be said of the problem.
+        // The certificate decides whether there is a bound on the error; no claim about the problem is allowed here.
         let solution = match ending {
             Ok(solution) => solution,
             Err(Error::NotCertified { solution, .. }) => *solution,
@@ -60,7 +60,7 @@ fn a_load_away_from_the_only_row_is_unbounded_along_the_translation() {
 }
 
 #[test]
-fn a_load_in_balance_is_not_unbounded_but_leaves_the_body_under_held() {
+fn a_body_with_a_load_in_balance_is_under_held_and_not_unbounded() {
     let problem = problem(&SPRING, &[0.25, -0.25], &[&[1.0, 0.0]], &[1.0]);
     for (method, ending) in endings(&problem) {
         let Err(Error::UnderHeld { direction, .. }) = ending else { panic!("{method}: {ending:?}") };
@@ -70,7 +70,7 @@ fn a_load_in_balance_is_not_unbounded_but_leaves_the_body_under_held() {
 
 #[test]
 fn a_body_that_slides_between_two_walls_it_does_not_touch_is_under_held() {
-    // Nothing but a floor carries the load of 3, and two walls at a distance of 5 let the body slide.
+    // A floor carries the load of 3; two walls at a distance of 5 allow the body to slide.
     let rows: [&[f64]; 3] = [&[0.0, 1.0], &[1.0, 0.0], &[-1.0, 0.0]];
     let problem = problem(&[], &[0.0, 3.0], &rows, &[0.0, 5.0, 5.0]);
     for (method, ending) in endings(&problem) {
@@ -80,9 +80,9 @@ fn a_body_that_slides_between_two_walls_it_does_not_touch_is_under_held() {
 }
 
 #[test]
-fn a_dof_that_nothing_holds_is_named_beside_a_load_that_needs_a_force_of_one_bit() {
-    // The load on the last dof is larger by its last bit than that on the second: the second row carries that bit, which is too
-    // little to show that it presses. The first dof drifts wherever the others are.
+fn a_dof_without_support_is_named_although_one_row_carries_only_the_last_bit_of_a_load() {
+    // The load on the last dof differs from that on the second only in its last bit. The second row carries this bit,
+    // which is too little to show that the row has a force. The first dof is free, wherever the others are.
     let rows: [&[f64]; 2] = [&[0.0, 1.0, 1.0], &[0.0, 0.0, 1.0]];
     let problem = problem(&[], &[0.0, 1.0, 1.0 + f64::EPSILON], &rows, &[0.0, 0.0]);
     for (method, ending) in endings(&problem) {
@@ -92,7 +92,7 @@ fn a_dof_that_nothing_holds_is_named_beside_a_load_that_needs_a_force_of_one_bit
 }
 
 #[test]
-fn rows_that_stop_a_motion_both_ways_without_play_hold_it() {
+fn rows_that_stop_a_motion_in_both_directions_without_play_support_it() {
     let problem = problem(&SPRING, &[0.25, -0.25], &[&[1.0, 0.0], &[-1.0, 0.0]], &[1.0, -1.0]);
     for (method, ending) in endings(&problem) {
         assert!(

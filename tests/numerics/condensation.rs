@@ -1,7 +1,8 @@
-//! GOAL: condensed onto the contact dofs, a problem has the same answer, and the next gap or load needs no factorisation.
+//! GOAL: a problem condensed onto its contact dofs has the same answer, and the next gap or load needs no
+//! factorisation.
 //!
-//! CONDITIONS: every example scene, the reference gaps, a body in space, inclined and two-sided rows, bodies that only their
-//! rows hold, redundant rows; one thread and two.
+//! CONDITIONS: every example scene, the reference gaps, a body in space, inclined and two-sided rows, bodies held only
+//! by their rows, redundant rows; one thread and two.
 
 use signorini::Penalty;
 use std::path::Path;
@@ -13,7 +14,7 @@ use signorini::{
     Condense, ContactProblem, Error, Method, Prepared, Scene, Settings, Solution, SparseMatrix, SymmetricMatrix, solve,
 };
 
-/// Condensed and full answers differ by rounding, enlarged by the condition number of the stiffness.
+/// Condensed and full answers differ by rounding times the condition number of the stiffness.
 const SAME: f64 = 1e-11;
 
 const EXACT: [Method; 2] = [Method::qp(), Method::ActiveSet];
@@ -41,7 +42,7 @@ fn example(name: &str) -> ContactProblem {
     Scene::read(path).unwrap().build().unwrap().problem().clone()
 }
 
-/// Answers and, for the active set, the search for them: condensed and full.
+/// Compares condensed and full answers and, for the active set, the sequence of contact sets.
 #[track_caller]
 fn check_both_ways(problem: &ContactProblem, name: &str) {
     for method in EXACT {
@@ -56,7 +57,8 @@ fn check_both_ways(problem: &ContactProblem, name: &str) {
         if method == Method::ActiveSet {
             let sets =
                 |solution: &Solution| solution.history.iter().map(|step| step.contact_set.clone()).collect::<Vec<_>>();
-            // A body that only its rows hold starts from springs, which are measured in condensed stiffness there.
+            // A body held only by its rows starts with springs, whose size comes from the condensed stiffness in a
+            // condensed solve.
             if full.certificate.energy_error_bound.is_finite() {
                 assert_eq!(sets(&condensed), sets(&full), "{what}: history");
             }
@@ -88,7 +90,7 @@ fn the_gaps_of_the_reference_have_the_same_answer_and_the_same_search() {
     }
 }
 
-/// A cube under a sphere; from 14 divisions on minimum degree is so costly that nested dissection is tried.
+/// A cube under a sphere. From 14 divisions on, minimum degree costs so much that nested dissection is tried.
 fn cube(divisions: usize) -> ContactProblem {
     let axis = serde_json::json!({"points": [0, 1], "divisions": [divisions]});
     let scene = serde_json::json!({
@@ -114,7 +116,7 @@ fn body_in_space_has_the_same_answer_and_the_same_search() {
     assert_eq!(condensed.contact_set, full.contact_set);
 }
 
-/// Threads share the columns of a block among them, not the terms of a sum.
+/// Threads divide the columns of a block among themselves, not the terms of a sum.
 #[test]
 fn two_threads_give_the_answer_of_one_bit_by_bit() {
     let mut settings = settings(Method::ActiveSet, Condense::Auto);
@@ -159,7 +161,7 @@ fn boundary_alone_agrees_with_the_whole_answer() {
     assert!(message.contains("gap vector has the value NaN at entry 0"), "{message}");
 }
 
-/// An answer that is not exact is refused on the boundary as it is on the whole.
+/// An answer that is not exact enough is refused on the boundary as on all dofs.
 #[test]
 fn boundary_of_a_poor_answer_is_not_certified() {
     let problem = example("indentation");
@@ -169,9 +171,9 @@ fn boundary_of_a_poor_answer_is_not_certified() {
     assert!(matches!(refused, Err(Error::NotCertified { .. })), "{refused:?}");
 }
 
-/// Neither a diagonal, nor a chain, nor a full matrix trips the orderings.
+/// The orderings work for a diagonal, a chain and a full matrix.
 #[test]
-fn matrices_without_edges_and_with_all_of_them_are_factorised() {
+fn matrices_with_no_coupling_and_with_full_coupling_are_factorised() {
     for n in [1, 2, 3, 7, 64, 1000] {
         let reach = if n < 100 { n } else { 3 };
         for width in [1, 2, reach] {
@@ -186,7 +188,7 @@ fn matrices_without_edges_and_with_all_of_them_are_factorised() {
     }
 }
 
-/// Rows on a tenth of the dofs, some inclined, some twice: K = A A' blocks in a chain.
+/// Rows on a tenth of the dofs, some inclined, some twice; K is a chain of blocks A A'.
 fn chain(draws: &mut Draws) -> ContactProblem {
     let (blocks, size) = (20, 6);
     let n = blocks * size;
@@ -234,12 +236,12 @@ fn inclined_two_sided_and_redundant_rows_condense() {
             let condensed = answer(&problem, &settings(method, Condense::Auto));
             condensed_cases += usize::from(condensed.condensed_dofs < problem.dofs());
             same(&condensed.displacement, &full.displacement, &format!("case {case}, {method:?}"));
-            // Single multipliers of redundant rows are not unique; what they do to the body is.
+            // The multipliers of redundant rows are not unique, but their effect on the body is.
             let force = |solution: &Solution| problem.contact().mul_transposed(&solution.multiplier);
             same(&force(&condensed), &force(&full), &format!("case {case}, {method:?}: B' lambda"));
         }
     }
-    assert!(condensed_cases > 100, "only {condensed_cases} were condensed");
+    assert!(condensed_cases > 100, "only {condensed_cases} cases were condensed");
 }
 
 #[test]
@@ -288,9 +290,10 @@ fn rows_on_most_dofs_are_not_condensed() {
     assert_eq!(answer(&problem, &Settings::default()).condensed_dofs, n);
 }
 
-/// A block that only its contact rows hold along y, far larger than its boundary: pressed it is solved, pulled it escapes.
+/// A block held along y only by its contact rows, with many more dofs than its boundary: if it is pressed it is solved,
+/// and if it is pulled it is unbounded.
 #[test]
-fn floating_body_condenses_and_escapes_as_a_whole() {
+fn floating_body_is_solved_condensed_if_pressed_and_moves_as_a_whole_if_pulled() {
     let block = |traction: f64| {
         let scene = serde_json::json!({
             "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [8]}, "y": {"points": [0, 1], "divisions": [16]}}},
@@ -339,27 +342,27 @@ fn pressed_block(width: f64, height: f64) -> ContactProblem {
 }
 
 #[test]
-fn where_condensation_loses_the_digits_a_repair_or_all_dofs_give_them() {
+fn digits_lost_by_condensation_are_restored_by_a_repair_or_by_a_solve_on_all_dofs() {
     let force = |width: f64| 0.7 / (1.3 * 0.4) * 0.01 * width;
     let wide = pressed_block(1e6, 1.0);
-    // The repair of the bound, on all dofs, gives them back.
+    // The repair of the bound, on all dofs, restores the digits.
     for method in [Method::Auto, Method::qp(), Method::ActiveSet] {
         let solution = answer(&wide, &settings(method, Condense::Auto));
         let error = (solution.contact_force() / force(1e6) - 1.0).abs();
         assert!(error <= 1e-12, "{method:?}: {error:e}");
         assert!(solution.refinements.is_some() && solution.condensed_dofs < wide.dofs(), "{method:?}");
     }
-    // A penalty is repaired by nothing: its answer is that of the springs.
+    // A penalty answer has no repair: it is the answer of the contact springs.
     let soft = settings(Method::penalty(), Condense::Auto).with_tolerance(1e-6);
     let solution = answer(&wide, &soft);
     assert_eq!(solution.condensed_dofs, wide.dofs());
     let error = (solution.contact_force() / force(1e6) - 1.0).abs();
     assert!(error <= 1e-6, "{error:e}");
-    // Both attempts are told, and their time counts.
+    // The solution lists the failed attempt, and its time includes it.
     let [attempt] = &solution.attempts[..] else { panic!("{:?}", solution.attempts) };
     assert!(attempt.reason.contains("condensed dofs") && attempt.reason.contains("above"), "{attempt:?}");
     assert!(attempt.seconds > 0.0 && solution.seconds.solve > attempt.seconds, "{attempt:?}");
-    // There is no second attempt where the first one holds.
+    // If the first attempt is certified, there is no second one.
     let held = answer(&pressed_block(1.0, 1.0), &settings(Method::ActiveSet, Condense::Auto));
     assert!(held.attempts.is_empty() && held.condensed_dofs < held.displacement.len(), "{:?}", held.attempts);
 }

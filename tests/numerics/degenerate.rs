@@ -1,5 +1,5 @@
-//! A thousand problems of 300 rows against the dual problem solved by single exchanges: the contact set must be the same,
-//! row by row, wherever every row presses or stands off clearly.
+//! A thousand problems of 300 rows, compared with the dual problem solved by exchanges of single rows. The contact set
+//! must be the same row by row if every row is clearly closed or clearly open.
 
 use crate::oracles::{Dense, Draws, Enumerated};
 use nalgebra::{DMatrix, DVector};
@@ -9,14 +9,14 @@ const ROWS: usize = 300;
 
 const PROBLEMS: usize = 1000;
 
-/// Forces and distances above this share of the largest are told apart from zero beyond rounding: condition numbers are
-/// below 1e7, times the working precision.
+/// Forces and distances above this share of the largest are certainly not zero: condition numbers are below 1e7, times
+/// the working precision.
 const CLEAR: f64 = 1e-9;
 
-/// By how much displacements may differ, as a share of the largest, for the same reason.
+/// Largest difference of displacements, as a share of the largest; it follows from the same condition numbers.
 const SAME: f64 = 1e-8;
 
-/// Springs of stiffness 10^-spread to 10^spread between the neighbours of a grid, and softer ones to the ground.
+/// Springs of stiffness 10^-spread to 10^spread between the neighbours of a grid, and softer springs to the ground.
 fn grid(draws: &mut Draws, wide: usize, high: usize, spread: f64) -> DMatrix<f64> {
     let n = wide * high;
     let mut stiffness = DMatrix::zeros(n, n);
@@ -35,15 +35,15 @@ fn grid(draws: &mut Draws, wide: usize, high: usize, spread: f64) -> DMatrix<f64
     stiffness
 }
 
-/// No neighbours: every dof on every other, eigenvalues between 0.1 and about 4.
+/// A full matrix with eigenvalues between 0.1 and about 4.
 fn full(draws: &mut Draws, n: usize) -> DMatrix<f64> {
     let a = DMatrix::from_fn(n, n, |_, _| draws.signed() * (3.0 / n as f64).sqrt());
     let stiffness = &a * a.transpose() + DMatrix::identity(n, n) * 0.1;
     (&stiffness + stiffness.transpose()) / 2.0
 }
 
-/// A row on each of the first dofs, in either direction; with `share` of them, smaller entries on up to two others, so that
-/// the rows stay independent.
+/// A row on each of the first dofs, in either direction. A `share` of the rows also has smaller entries on up to two
+/// other dofs; the rows stay independent.
 fn rows(draws: &mut Draws, n: usize, share: f64) -> DMatrix<f64> {
     let mut contact = DMatrix::zeros(ROWS, n);
     for row in 0..ROWS {
@@ -56,7 +56,7 @@ fn rows(draws: &mut Draws, n: usize, share: f64) -> DMatrix<f64> {
     contact
 }
 
-/// The problem of this number, and the rows that it was made to graze.
+/// Problem `number`, and its rows that graze by construction.
 fn problem(number: usize) -> (Dense, Vec<usize>) {
     let mut draws = Draws::new(number as u64);
     let draws = &mut draws;
@@ -65,7 +65,7 @@ fn problem(number: usize) -> (Dense, Vec<usize>) {
         3..6 => grid(draws, 18, 18, 0.5),
         6 => grid(draws, 330, 1, 3.0),
         7 | 8 => grid(draws, 18, 18, 3.0),
-        // The dearest for all: a sparse factor that is full.
+        // The most expensive kind: the sparse factor is full.
         _ if number % 50 == 9 => full(draws, ROWS),
         _ => grid(draws, 6, 52, 1.0),
     };
@@ -77,7 +77,8 @@ fn problem(number: usize) -> (Dense, Vec<usize>) {
         let gap = DVector::from_fn(ROWS, |_, _| draws.uniform() - 0.3);
         return (Dense { stiffness, load, contact, gap }, Vec::new());
     }
-    // Made from its answer: rows that press, rows that stand off, and, in every other problem, a few that do neither.
+    // The problem is made from its answer: rows with a force, rows with a distance and, in every other such problem, a
+    // few rows with neither.
     let displacement = DVector::from_fn(n, |_, _| draws.signed());
     let (mut multiplier, mut gap) = (DVector::zeros(ROWS), &contact * &displacement);
     let mut grazing = Vec::new();
@@ -92,8 +93,7 @@ fn problem(number: usize) -> (Dense, Vec<usize>) {
     (Dense { stiffness, load, contact, gap }, grazing)
 }
 
-/// By how much the least clear row that is not in `grazing` presses or stands off, as a share of the largest force or
-/// distance.
+/// Smallest force or distance of the rows that are not in `grazing`, as a share of the largest force or distance.
 fn margin(dense: &Dense, exact: &Enumerated, grazing: &[usize]) -> f64 {
     let moved = &dense.contact * &exact.displacement;
     let (strongest, farthest) = (exact.multiplier.amax(), moved.amax().max(dense.gap.amax()));
@@ -104,10 +104,11 @@ fn margin(dense: &Dense, exact: &Enumerated, grazing: &[usize]) -> f64 {
     (0..ROWS).filter(|row| !grazing.contains(row)).map(of_row).fold(f64::INFINITY, f64::min)
 }
 
-/// Rounding of a backward stable solve, beside the largest terms.
+/// Rounding of a backward stable solve, relative to the largest terms.
 const ROUNDING: f64 = 1e-11;
 
-/// Equilibrium, and closed rows at their gaps, in the data of the problem; with a margin of the signs, no other set is right.
+/// Checks equilibrium, and the gaps of closed rows, in the data of the problem. If the signs have a margin, no other
+/// set is right.
 fn check(number: usize, dense: &Dense, exact: &Enumerated) {
     let force = dense.contact.transpose() * &exact.multiplier;
     let terms = dense.stiffness.abs() * exact.displacement.abs() + dense.load.abs() + force.abs();
@@ -139,7 +140,7 @@ fn agree(number: usize, method: Method, (dense, grazing): &(Dense, Vec<usize>), 
     }
 }
 
-/// What is counted over many problems.
+/// Counts over all problems.
 #[derive(Default)]
 struct Count {
     problems: usize,
@@ -150,7 +151,7 @@ struct Count {
     others_undecided: usize,
 }
 
-/// Compares every method on the problems whose numbers leave `rest` when divided by `parts`.
+/// Compares every method on the problems whose number modulo `parts` is `rest`.
 fn compare(rest: usize, parts: usize) {
     let (mut count, mut least) = (Count::default(), f64::INFINITY);
     for number in (rest..PROBLEMS).step_by(parts) {
@@ -185,17 +186,17 @@ fn compare(rest: usize, parts: usize) {
          {grazing_undecided} of {grazing} grazing rows and {others_undecided} others"
     );
     assert!(strict > problems * 9 / 10 && proven > strict * ROWS * 9 / 10);
-    // A row made to graze does so but for rounding.
+    // A row that grazes by construction grazes up to rounding.
     assert!(grazing_undecided >= grazing * 99 / 100 && others_undecided == 0);
 }
 
-// Two tests, so that two processors share the work.
+// Two tests, so that two processors can share the work.
 #[test]
 fn contact_sets_of_three_hundred_rows_are_those_of_the_dual_problem() {
     compare(0, 2);
 }
 
 #[test]
-fn contact_sets_of_three_hundred_rows_are_those_of_the_dual_problem_in_the_other_half() {
+fn contact_sets_of_the_odd_problems_of_three_hundred_rows_are_those_of_the_dual_problem() {
     compare(1, 2);
 }

@@ -1,5 +1,6 @@
-//! The dual active-set method on its own, and as the last fallback of the others: rows that are dependent, equal, or
-//! nearly parallel in energy, against all contact sets enumerated, exact answers and the conditions of the solution.
+//! The dual active-set method alone, and as the last fallback of the other methods. Rows are dependent, equal, or
+//! nearly parallel in energy; answers are compared with the enumeration of all contact sets, with exact answers and
+//! with the conditions of the solution.
 
 use crate::oracles::{Dense, Draws, random};
 use nalgebra::{DMatrix, DVector};
@@ -8,11 +9,11 @@ use signorini::internals::AugmentedMatrix;
 use signorini::internals::{Definiteness, DualActiveSet, Outcome, ScaledProblem, Solver};
 use signorini::{ContactProblem, Error, Method, Settings, SparseMatrix, SymmetricMatrix, solve};
 
-/// Runs the method on a problem as it stands; with what is known of its stiffness.
+/// Runs the method on an unscaled problem, with what is known about its stiffness.
 fn run(problem: &ContactProblem, definiteness: Definiteness) -> Result<Outcome, Error> {
     let augmented = AugmentedMatrix::new(problem.stiffness(), problem.contact()).unwrap();
     let scaled = ScaledProblem::new(problem, &augmented, definiteness);
-    DualActiveSet::of(&scaled)?.expect("small enough").solve(Start::default())
+    DualActiveSet::of(&scaled)?.expect("the problem is small enough").solve(Start::default())
 }
 
 /// `|u - u*|_K / |u*|_K`.
@@ -23,11 +24,11 @@ fn energy_error(dense: &Dense, displacement: &[f64], exact: &DVector<f64>) -> f6
     (square(&off) / if size > 0.0 { size } else { 1.0 }).sqrt()
 }
 
-/// Conditions that hold to rounding: a hundred units in the last place of the terms.
+/// The conditions must hold to rounding: a hundred units in the last place of the terms.
 const ROUNDED: f64 = 100.0 * f64::EPSILON;
 
-/// Largest violations of the conditions of the solution, each beside its own terms: force, penetration, pull,
-/// complementarity beside the energies.
+/// Largest violations of the conditions of the solution, each relative to its terms: force, penetration, tension,
+/// complementarity relative to the energies.
 fn conditions(dense: &Dense, outcome: &Outcome) -> [f64; 4] {
     let u = DVector::from_column_slice(&outcome.displacement);
     let lambda = DVector::from_column_slice(&outcome.multiplier);
@@ -46,7 +47,7 @@ fn conditions(dense: &Dense, outcome: &Outcome) -> [f64; 4] {
     [worst(&residual.abs(), &forces), worst(&violation, &lengths), lambda.max().max(0.0), complementarity]
 }
 
-/// Rows in other units, from 1e-8 to 1e8, and half of them equal to the row before or the sum of the two before.
+/// Scales rows by 1e-8 to 1e8, and replaces half of the rows by the row before or by the sum of the two rows before.
 fn make_dependent(draws: &mut Draws, dense: &mut Dense) {
     for row in 1..dense.gap.len() {
         let before = (dense.contact.row(row - 1).into_owned(), dense.gap[row - 1]);
@@ -82,9 +83,10 @@ fn random_problems_have_the_answer_of_the_best_of_all_contact_sets() {
     }
 }
 
-/// Enumeration loses digits where rows are scaled and nearly singular sets are tried; the conditions do not.
+/// Enumeration loses digits if rows are scaled and nearly singular sets are tried; the conditions of the solution do
+/// not.
 #[test]
-fn equal_and_dependent_rows_in_other_units_leave_the_answer_as_it_is() {
+fn conditions_hold_to_rounding_with_equal_and_dependent_rows_in_other_units() {
     let mut draws = Draws::new(18);
     for case in 0..1000 {
         let (n, m) = (1 + draws.below(6), 1 + draws.below(9));
@@ -96,8 +98,8 @@ fn equal_and_dependent_rows_in_other_units_leave_the_answer_as_it_is() {
     }
 }
 
-/// Springs of 1e-2 to 1e2 between `n` dofs and to the ground, rows `u_i+1 - u_i <= g`, and one dof that nothing but 1e-6
-/// and its rows hold: nearly all that a row moves is that dof, so that its two rows are nearly parallel in energy.
+/// Springs of 1e-2 to 1e2 between `n` dofs and to the ground, rows `u_i+1 - u_i <= g`, and one dof held only by a
+/// spring of 1e-6 and its rows. Its two rows move almost nothing else, so that they are nearly parallel in energy.
 fn network(draws: &mut Draws, n: usize) -> Dense {
     let loose = draws.below(n);
     let mut stiffness = DMatrix::zeros(n, n);
@@ -134,7 +136,7 @@ fn networks_with_a_weakly_held_part_are_solved_to_rounding() {
     }
 }
 
-/// Several hundred closed rows: the basis is updated, not made again for each.
+/// With several hundred closed rows, the basis must be updated for each row, not computed anew.
 #[test]
 fn a_network_of_600_dofs_is_solved_to_rounding() {
     let mut draws = Draws::new(4);
@@ -145,9 +147,9 @@ fn a_network_of_600_dofs_is_solved_to_rounding() {
     assert!(outcome.contact_set.count() > 200, "{}", outcome.contact_set.count());
 }
 
-/// A free chain, cut in places, under a load that only its rows balance.
+/// A chain without supports, cut in places, under a load that only its rows balance.
 #[test]
-fn bodies_that_only_their_rows_hold_are_solved_to_rounding() {
+fn bodies_held_by_their_rows_alone_are_solved_to_rounding() {
     let mut draws = Draws::new(6);
     let mut settled = 0;
     for case in 0..1000 {
@@ -171,8 +173,8 @@ fn bodies_that_only_their_rows_hold_are_solved_to_rounding() {
     assert!(settled >= 990, "{settled} of 1000");
 }
 
-/// A last row that contradicts a sum of others by `overlap`, all of them in other units. All numbers have few digits, so that
-/// the rows depend on each other exactly.
+/// The last row contradicts a sum of other rows by `overlap`; each row has other units. All numbers have few digits, so
+/// that the rows depend on each other exactly.
 fn contradicting(draws: &mut Draws, overlap: f64) -> Dense {
     let few = |value: f64| (value * 1024.0).round() / 1024.0;
     let (n, m) = (2 + draws.below(6), 3 + draws.below(8));
@@ -206,14 +208,14 @@ fn contradicting_rows_are_found_with_weights_that_the_problem_verifies() {
     }
 }
 
-/// The same rows with one entry changed in its last place: some displacement, however large, meets them.
+/// The same rows with one entry changed in its last place: then a displacement, however large, meets them.
 #[test]
-fn rows_that_contradict_each_other_but_for_rounding_are_not_called_infeasible() {
+fn rows_that_miss_a_contradiction_by_one_rounding_are_not_called_infeasible() {
     let mut draws = Draws::new(7);
     for case in 0..1000 {
         let mut dense = contradicting(&mut draws, 0.125);
         let last = dense.gap.len() - 1;
-        // Beyond rows of full rank nothing can be met: the last row gets a dof of its own.
+        // If the other rows have full rank, no displacement meets all rows; so the last row gets an additional dof.
         let n = dense.load.len();
         dense.stiffness = dense.stiffness.insert_row(n, 0.0).insert_column(n, 0.0);
         dense.stiffness[(n, n)] = 1.0;
@@ -225,7 +227,7 @@ fn rows_that_contradict_each_other_but_for_rounding_are_not_called_infeasible() 
     }
 }
 
-/// The methods on a factor, which all end with the last resort.
+/// The methods on a factor; each has the dual active set as its last fallback.
 const METHODS: [Method; 4] = [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty()];
 
 #[track_caller]
@@ -243,15 +245,15 @@ fn agrees(dense: &Dense, displacement: &[f64], multiplier: &[f64]) {
     }
 }
 
-/// Stiffness 1 and 1e-6, rows u_0 + u_1 <= -1 and u_0 - u_1 <= -2: in energy they are 2e-3 from parallel.
+/// Stiffness 1 and 1e-6, rows u_0 + u_1 <= -1 and u_0 - u_1 <= -2: in energy they differ by 2e-3 from parallel.
 #[test]
 fn two_rows_that_share_a_soft_dof_are_both_closed_exactly() {
     let dense = Dense::new(&[&[1.0, 0.0], &[0.0, 1e-6]], &[0.0, 0.0], &[&[1.0, 1.0], &[1.0, -1.0]], &[-1.0, -2.0]);
     agrees(&dense, &[-1.5, 0.5], &[-0.74999975, -0.75000025]);
 }
 
-/// With K the identity and no load the answer is the point of the cone `B u <= 0` nearest to f: the apex itself is closed to
-/// all of more rows than dofs. f is a sum of the first two rows, which alone push.
+/// With K the identity and zero gaps, the answer is the point of the cone `B u <= 0` nearest to f. Here it is the apex,
+/// at which all rows are closed, more rows than dofs. f is a sum of the first two rows, and only these have a force.
 #[test]
 fn an_apex_of_more_rows_than_dofs_has_the_multipliers_of_the_rows_that_push() {
     let rows: [&[f64]; 5] = [&[1.0, 0.0], &[0.0, 1.0], &[-1.0, 1e-3], &[-1.0, -1.0], &[1e-3, -1.0]];
@@ -262,7 +264,7 @@ fn an_apex_of_more_rows_than_dofs_has_the_multipliers_of_the_rows_that_push() {
     assert!((force + dense.load).amax() <= 1e-15, "{found:?}");
 }
 
-/// Rows 1, 2 and twice 3 add up to `0 <= -4`; row 0 takes no part.
+/// Row 1, row 2 and twice row 3 add up to `0 <= -4`; row 0 does not contribute.
 #[test]
 fn every_method_finds_that_three_rows_contradict_each_other() {
     let rows: [&[f64]; 4] = [&[-1.0, 1.0, 1.0], &[1.0, 0.0, 1.0], &[-1.0, 0.0, 1.0], &[0.0, 0.0, -1.0]];
@@ -292,8 +294,8 @@ fn networks_are_certified_by_every_exact_method() {
     }
 }
 
-/// A floating pair of springs of 2^52 whose load is in balance to the last bit: condensing leaves rounding, which drives
-/// nothing.
+/// A floating body of springs of 2^52 whose load is in balance to the last bit: condensation causes a rounding error in
+/// it that must not count as a load.
 #[test]
 fn a_load_in_balance_does_not_drive_a_body_away() {
     let spring = 2.0_f64.powi(52);
@@ -309,7 +311,7 @@ fn a_load_in_balance_does_not_drive_a_body_away() {
     let balance = load.iter().sum::<f64>();
     let load = [load[0] - balance, load[1], load[2], load[3], load[4]];
     assert_eq!(load.iter().sum::<f64>(), 0.0);
-    // On one side the rounding pulls away from the row, on the other it presses on it.
+    // On one side of the body the rounding pulls away from the row, on the other it presses onto it.
     let ends = [-1.0, 1.0].map(|side| {
         let row = [0.0, 0.0, side, 0.0, 0.0];
         let problem = Dense::new(&stiffness, &load, &[&row[..]], &[0.5]).problem().unwrap();
@@ -318,7 +320,8 @@ fn a_load_in_balance_does_not_drive_a_body_away() {
     assert!(ends.contains(&"under-held") && !ends.contains(&"unbounded"), "{ends:?}");
 }
 
-/// Without stiffness, load and gap, whatever meets the rows is an answer: a semidefinite problem, and no indefinite one.
+/// With zero stiffness and zero load, every displacement that meets the rows is an answer: the problem is semidefinite,
+/// not indefinite.
 #[test]
 fn a_stiffness_of_zero_is_under_held_and_convex() {
     let empty = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(3, 3, &[]).unwrap()).unwrap();
@@ -332,17 +335,17 @@ fn a_stiffness_of_zero_is_under_held_and_convex() {
     }
 }
 
-/// A load beside which the others are nothing stands on a dof that the motion does not move.
+/// A load that is large compared with the others acts on a dof that the motion does not move.
 #[test]
-fn a_motion_is_driven_by_the_loads_on_it_alone() {
+fn a_motion_is_driven_only_by_the_loads_on_the_dofs_that_it_moves() {
     let dense = Dense::new(&[&[1.0, 0.0], &[0.0, 0.0]], &[1e12, -1.0], &[&[0.0, 1.0]], &[0.5]);
     let error = solve(&dense.problem().unwrap(), &Settings::default()).unwrap_err();
     assert_eq!(error.code(), "unbounded", "{error}");
 }
 
-/// An answer of zero, which corrections shrink further and further, is not pursued to the end of double precision.
+/// Corrections shrink an answer of zero further and further; they must end before the limit of double precision.
 #[test]
-fn an_apex_at_the_origin_ends_without_numbers_out_of_range() {
+fn an_answer_at_an_apex_in_the_origin_is_certified() {
     let mut draws = Draws::new(9);
     for case in 0..200 {
         let mut dense = random(&mut draws, 4, 8);

@@ -1,4 +1,5 @@
-//! The bound of the certificate against the true error: never below it, and close to it, whatever the method.
+//! Compares the bound of the certificate with the true error: for every method, it is never below the error, and close
+//! to it.
 
 use crate::program::examples;
 use crate::random::springs;
@@ -6,16 +7,16 @@ use signorini::qp::{Condense, Method, Settings};
 use signorini::{ContactProblem, Error, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
 use signorini::{InteriorPoint, Penalty};
 
-/// Errors below this are those of the reference, a solve in double precision on matrices of condition 1e4.
+/// Smaller errors may be errors of the reference, a solve in double precision on matrices of condition 1e4.
 const OF_THE_REFERENCE: f64 = 1e-12;
 
-/// The bound may be below an error by the rounding of both.
+/// The bound may be below an error by the rounding of bound and error.
 const ROUNDING: f64 = 1e-6;
 
-/// How many times the error the bound may be.
+/// Largest ratio of the bound to the error.
 const LOOSEST: f64 = 10.0;
 
-/// The same in the median.
+/// Largest median of these ratios.
 const MEDIAN: f64 = 3.0;
 
 fn energy(problem: &ContactProblem, u: &[f64]) -> f64 {
@@ -31,7 +32,7 @@ fn answer(problem: &ContactProblem, settings: &Settings) -> Solution {
     }
 }
 
-/// Every method, more and less exact.
+/// Every method, at several accuracies.
 fn ways() -> Vec<(String, Settings)> {
     let mut ways = Vec::new();
     for condense in [Condense::Auto, Condense::Never] {
@@ -54,12 +55,13 @@ fn ways() -> Vec<(String, Settings)> {
     ways
 }
 
-/// Bound over error of every way that is off by more than the reference; asserts the first half of the claim.
+/// Ratio of bound to error for every setting whose error exceeds that of the reference; asserts that no bound is below
+/// its error.
 fn ratios(name: &str, problem: &ContactProblem) -> Vec<(f64, String)> {
     let exact = solve(problem, &Settings::with_method(Method::ActiveSet)).unwrap();
     let mut ratios = Vec::new();
     if exact.certificate.energy_error_bound.is_infinite() {
-        // A stiffness that is only definite with its rows has no energy norm.
+        // A stiffness that is positive definite only together with its rows has no energy norm.
         return ratios;
     }
     for (way, settings) in ways() {
@@ -92,7 +94,7 @@ fn the_bound_is_near_the_error_on_every_example() {
     for name in examples() {
         let path = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
         let model = Scene::read(path).unwrap().build().unwrap();
-        // All dofs of the larger scenes take the interior point long.
+        // On all dofs of the larger scenes the interior point takes long.
         if model.problem().dofs() < 5000 {
             all.extend(ratios(&name, model.problem()));
         }
@@ -109,9 +111,10 @@ fn the_bound_is_near_the_error_on_a_thousand_random_problems() {
     );
 }
 
-/// A string over an obstacle, every node a candidate: too many for a dense boundary, so that rows are repaired one by one.
+/// A string over an obstacle. Every node is a candidate: too many for a dense boundary, so that rows are repaired one
+/// after the other.
 #[test]
-fn the_bound_is_near_the_error_where_every_dof_is_a_candidate() {
+fn the_bound_is_near_the_error_if_every_dof_is_a_candidate() {
     let nodes = 400;
     let h = 1.0 / (nodes + 1) as f64;
     let stiffness: Vec<_> = (0..nodes)

@@ -1,7 +1,9 @@
-//! GOAL: no answer of the program contradicts exact arithmetic. A short form of `cargo run --release --example fuzz -- exact 20000`.
+//! GOAL: no answer of the program contradicts exact arithmetic. This is a short form of
+//! `cargo run --release --example fuzz -- exact 20000`.
 //!
-//! CONDITIONS: 400 problems of fixed seeds and some that once had a fault, every kind of stiffness and of rows, every method,
-//! options at random; wrong answers to verify. The exact solver itself is held against the elimination of every variable (Fourier, Motzkin) and of every minor.
+//! CONDITIONS: 400 problems of fixed seeds and some that once had a fault, every kind of stiffness and of rows, every
+//! method, random options, and wrong answers for `verify`. The exact solver itself is compared with the elimination of
+//! every variable (Fourier, Motzkin) and with the signs of all minors.
 
 use std::sync::LazyLock;
 
@@ -15,8 +17,8 @@ use crate::exact::trial::draw;
 
 const SEEDS: [u64; 4] = [1, 20, 300, 4000];
 
-/// Problems of other seeds that once had a fault: of seed 77 the first of each sort with each kind of stiffness, and every wrong
-/// proof.
+/// Problems of other seeds that once had a fault. Of seed 77: the first fault of each sort with each kind of stiffness,
+/// and every wrong proof.
 const ONCE_WRONG: [(u64, &[u64]); 21] = [
     (301, &[10625]),
     (303, &[19129]),
@@ -54,7 +56,7 @@ const ONCE_WRONG: [(u64, &[u64]); 21] = [
     ),
 ];
 
-/// Fair problems that once were refused, since their multipliers have more digits than doubles.
+/// Fair problems that once were refused, because their multipliers have more digits than doubles.
 const ONCE_REFUSED: [(u64, u64); 9] = [
     (8101, 1832),
     (8102, 7352),
@@ -67,10 +69,10 @@ const ONCE_REFUSED: [(u64, u64); 9] = [
     (9308, 9790),
 ];
 
-/// Faults that a failure shows.
+/// Largest number of faults that a failure shows.
 const SHOWN: usize = 20;
 
-/// Problems of each seed.
+/// Number of problems of each seed.
 const PROBLEMS: u64 = 100;
 
 /// The counts, and every fault with its problem.
@@ -97,43 +99,43 @@ fn fair_problems_that_once_were_refused_are_certified() {
 }
 
 #[track_caller]
-fn has_none(sorts: &[Sort]) {
+fn assert_no_fault(sorts: &[Sort]) {
     let found: Vec<&str> =
         RUN.1.iter().filter(|fault| sorts.contains(&fault.0)).map(|fault| fault.1.as_str()).collect();
-    assert!(found.is_empty(), "{} faults, the first of them {:#?}", found.len(), &found[..found.len().min(SHOWN)]);
+    assert!(found.is_empty(), "{} faults; the first are {:#?}", found.len(), &found[..found.len().min(SHOWN)]);
 }
 
 #[test]
 fn no_bound_lies_below_the_error() {
-    has_none(&[Sort::Bound, Sort::Rounded]);
+    assert_no_fault(&[Sort::Bound, Sort::Rounded]);
 }
 
 #[test]
-fn no_row_is_proven_to_be_what_it_is_not() {
-    has_none(&[Sort::Proof]);
+fn no_open_row_is_proven_closed_and_no_closed_row_open() {
+    assert_no_fault(&[Sort::Proof]);
 }
 
 #[test]
 fn no_claim_about_a_problem_is_false() {
-    has_none(&[Sort::Claim]);
+    assert_no_fault(&[Sort::Claim]);
 }
 
 #[test]
-fn nothing_is_certified_that_is_wrong() {
-    has_none(&[Sort::Certified]);
+fn no_wrong_answer_is_certified() {
+    assert_no_fault(&[Sort::Certified]);
 }
 
 #[test]
-fn nothing_panics_or_takes_long() {
-    has_none(&[Sort::Panic, Sort::Slow]);
+fn no_solve_panics_or_takes_long() {
+    assert_no_fault(&[Sort::Panic, Sort::Slow]);
 }
 
-/// Kinds of stiffness that fall short of that today; the long form has the counts.
+/// Kinds of stiffness with more refused or missed problems today; the long form has the counts.
 const SHORT: [&str; 4] = ["bodies", "parts", "parts-floating", "zero-diagonal"];
 
-/// At most one problem of a kind of stiffness, as it is with the long form.
+/// At most one problem of each kind of stiffness, as in the long form.
 #[test]
-fn hardly_a_fair_problem_is_refused_and_hardly_one_without_an_answer_is_missed() {
+fn at_most_one_problem_of_a_kind_is_wrongly_refused_or_missed() {
     let short = |line: &String| SHORT.iter().any(|kind| line.contains(&format!("`{kind}`")));
     let rare: Vec<String> = RUN.0.frequent().into_iter().filter(|line| !short(line)).collect();
     assert!(rare.is_empty(), "{rare:#?}\n{}", RUN.0.text());
@@ -142,7 +144,8 @@ fn hardly_a_fair_problem_is_refused_and_hardly_one_without_an_answer_is_missed()
 /// Linear inequalities `a x <= b`: rows (a, b).
 type Inequalities = Vec<(Vec<Dyadic>, Dyadic)>;
 
-/// Is there an x? Every variable is eliminated from all pairs of rows that bound it from both sides.
+/// Returns `true` if some x meets all inequalities. Every variable is eliminated: each pair of rows that bound it from
+/// both sides is combined.
 fn is_solvable(mut rows: Inequalities) -> bool {
     let columns = rows.first().map_or(0, |row| row.0.len());
     for column in 0..columns {
@@ -161,7 +164,7 @@ fn is_solvable(mut rows: Inequalities) -> bool {
     rows.iter().all(|row| row.1.sign() >= 0)
 }
 
-/// `d` with `K d = 0` and `B_i d <= 0` in some rows, and beyond that `extra`.
+/// The inequalities `K d = 0`, `B_i d <= 0` for some rows, and `extra`.
 fn without_energy(exact: &Exact, rows: &[usize], extra: Vec<(Vec<Dyadic>, Dyadic)>) -> Inequalities {
     let negative = |row: &Vec<Dyadic>| row.iter().map(|value| -value).collect::<Vec<_>>();
     let mut inequalities = extra;
@@ -173,7 +176,7 @@ fn without_energy(exact: &Exact, rows: &[usize], extra: Vec<(Vec<Dyadic>, Dyadic
     inequalities
 }
 
-/// The determinant of the rows and columns of `places`, by the first row.
+/// The determinant of a submatrix, expanded along its first row.
 fn minor(matrix: &[Vec<Dyadic>], rows: &[usize], columns: &[usize]) -> Dyadic {
     let Some((&row, rest)) = rows.split_first() else { return Dyadic::integer(1) };
     columns.iter().enumerate().fold(Dyadic::ZERO, |sum, (place, &column)| {
@@ -183,7 +186,7 @@ fn minor(matrix: &[Vec<Dyadic>], rows: &[usize], columns: &[usize]) -> Dyadic {
     })
 }
 
-/// The verdict on a problem by minors and elimination alone; of a solved one the solution tells which rows are closed.
+/// The verdict on a problem by minors and elimination alone; for a solved problem, the solution gives the closed rows.
 fn slow_verdict(exact: &Exact, outcome: &Outcome) -> &'static str {
     let n = exact.dofs();
     let subsets = (0_usize..1 << n).map(|bits| (0..n).filter(|dof| bits >> dof & 1 == 1).collect::<Vec<usize>>());
@@ -210,7 +213,7 @@ fn slow_verdict(exact: &Exact, outcome: &Outcome) -> &'static str {
     if (0..n).any(|dof| moves(dof, 1) || moves(dof, -1)) { "under-held" } else { "solved" }
 }
 
-/// Short numbers, so that contradictions and balance are exact and frequent.
+/// Problems with short numbers, so that exact contradictions and exact balance are frequent.
 fn tiny(draws: &mut Draws) -> Case {
     let (n, m) = (1 + draws.below(3), draws.below(6));
     let rank = draws.below(n + 1);
@@ -224,7 +227,7 @@ fn tiny(draws: &mut Draws) -> Case {
     let contact: Vec<Vec<f64>> = (0..m).map(|_| whole(n)).collect();
     let (mut load, gap, moved, forces) = (whole(n), whole(m), whole(n), whole(m));
     if draws.one_in(2) {
-        // In balance with forces along the rows.
+        // A load in balance with forces along the rows.
         for dof in 0..n {
             let along: f64 = contact.iter().zip(&forces).map(|(row, force)| row[dof] * force.max(0.0)).sum();
             load[dof] = stiffness[dof].iter().zip(&moved).map(|(k, u)| k * u).sum::<f64>() + along;
@@ -246,15 +249,15 @@ fn the_exact_solver_agrees_with_elimination_of_every_variable() {
     assert!(verdicts.len() == 5 && verdicts.values().all(|&count| count >= 50), "{verdicts:?}");
 }
 
-/// The least energy over every set of rows held as equalities whose answer meets all rows.
+/// Random points that meet all rows have at least the energy of the answer.
 #[test]
-fn no_other_point_of_the_rows_has_less_energy() {
+fn no_point_that_meets_the_rows_has_less_energy_than_the_answer() {
     let (mut draws, mut solved) = (Draws(8), 0);
     for _ in 0..300 {
         let case = tiny(&mut draws);
         let exact = Exact::new(&case);
         let Outcome::Solved(answer) = exact.outcome() else { continue };
-        // Twice the energy of a point x over d, times d^2.
+        // Twice the energy of the point x/d, times d^2.
         let energy = |x: &[Dyadic], d: &Dyadic| {
             let elastic: Vec<Dyadic> = exact.stiffness.iter().map(|line| dot(line, x)).collect();
             &dot(x, &elastic) - &(&(&dot(&exact.load, x) * d) * &Dyadic::integer(2))

@@ -1,11 +1,11 @@
-//! GOAL: between two gaps the answer is a polyline whose corners are known exactly.
+//! GOAL: between two gaps the answer is a polyline with exactly known corners.
 //!
 //! REFERENCE: independent solves at random gaps; enumeration of all contact sets for few rows.
 
 use crate::oracles::{Draws, random};
 use signorini::{Condense, Error, Prepared, Scene, Settings, SparseMatrix, SymmetricMatrix, solve_qp};
 
-/// The walk and an independent solve differ by rounding, enlarged by the condition number of the compliance.
+/// The path and an independent solve differ by rounding times the condition number of the compliance.
 const SAME: f64 = 1e-10;
 
 fn indentation() -> signorini::Model {
@@ -35,13 +35,13 @@ fn path_agrees_with_independent_solves_at_random_gaps() {
 }
 
 #[test]
-fn every_event_of_a_symmetric_indentation_is_a_pair_that_touches() {
+fn events_of_a_symmetric_indentation_after_the_first_close_pairs_of_rows() {
     let model = indentation();
     let prepared = Prepared::new(model.problem(), &Settings::default()).unwrap();
     let at = |gap: f64| model.with_gap(gap).unwrap().problem().gap().to_vec();
     let path = prepared.path(&at(0.002), &at(-0.1)).unwrap();
     let events = path.events();
-    // The node under the apex touches first, then the others in pairs, one on either side: 29 closed at the end.
+    // The node under the apex touches first, then the others in pairs, one on each side: 29 rows are closed at the end.
     assert_eq!(events.len(), 29, "{events:?}");
     assert!((events[0].at - 0.002 / 0.102).abs() < 1e-14 && events[0].row == 20, "{:?}", events[0]);
     for pair in events[1..].chunks(2) {
@@ -51,15 +51,15 @@ fn every_event_of_a_symmetric_indentation_is_a_pair_that_touches() {
     assert!(path.corners().windows(2).all(|pair| pair[0] <= pair[1]));
 }
 
-/// Problems with many dofs without rows, so that they condense, and gaps that move at random: rows touch, release and
-/// touch again. The path must agree with enumeration everywhere, on corners, too.
+/// Problems with many dofs without rows, so that they condense, and gaps that change at random: rows close, open and
+/// close again. The path must agree with enumeration everywhere, including its corners.
 #[test]
 fn rows_that_touch_release_and_touch_again_agree_with_independent_solves() {
     let mut draws = Draws::new(9);
     let (mut touches, mut releases, mut returns) = (0, 0, 0);
     for case in 0..800 {
         let dense = random(&mut draws, 6, 5);
-        // Forty more dofs, a chain of springs that hangs on the first.
+        // Forty more dofs, a chain of springs attached to the first dof.
         let n = 46;
         let mut entries = Vec::new();
         for i in 0..6 {
@@ -84,7 +84,7 @@ fn rows_that_touch_release_and_touch_again_agree_with_independent_solves() {
         let prepared = Prepared::new(&problem, &Settings::default()).unwrap();
         let path = match prepared.path(&from, &to) {
             Ok(path) => path,
-            // The gaps at the end may contradict each other, or the rows were too many to condense.
+            // The gaps at the end may contradict each other, or there may be too many rows to condense.
             Err(Error::Infeasible { .. } | Error::NotCondensed { .. } | Error::Numerical { .. }) => continue,
             Err(error) => panic!("case {case}: {error}"),
         };
@@ -98,7 +98,7 @@ fn rows_that_touch_release_and_touch_again_agree_with_independent_solves() {
         for t in places {
             let Ok(independent) = solve_qp(&problem.with_gap(path.gap(t)).unwrap()) else { continue };
             let largest = independent.multiplier.iter().fold(1.0, |largest: f64, value| largest.max(value.abs()));
-            // Rows may be parallel by chance: what they do to the body is unique.
+            // Rows may be parallel by chance: their effect on the body is unique, their multipliers are not.
             let force = problem.contact().mul_transposed(&path.multiplier(t));
             for (a, b) in force.iter().zip(problem.contact().mul_transposed(&independent.multiplier)) {
                 assert!((a - b).abs() <= 1e-8 * largest, "case {case}, t = {t}: {a} and {b}");

@@ -1,8 +1,10 @@
-//! GOAL: small problems on which a promise once broke, each with its exact answer, and what must hold of them.
+//! GOAL: small problems that once broke a promise of the program, each with its exact answer and the properties that
+//! must hold.
 //!
-//! A folder of `tests/corpus/findings` is a problem directory, perhaps with an answer to verify, or a scene; `exact.json` is what
-//! `fuzz exact --answer` writes of it. CONDITIONS, everywhere: no claim about the problem is false, no bound lies below the
-//! error, no proof is wrong, and nothing is certified that is further from the exact answer than it says, whatever the method.
+//! A folder of `tests/corpus/findings` is a problem directory, sometimes with an answer to verify, or a scene. Its
+//! `exact.json` is the output of `fuzz exact --answer`. CONDITIONS, for every method: no claim about the problem is
+//! false, no bound is below the error, no proof is wrong, and no answer is certified with a larger error than its
+//! bound.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,10 +20,11 @@ use signorini::{ContactProblem, Error, Method, Settings, Solution, solve};
 
 const ALL: [Method; 5] = [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
 
-/// An answer is exact to rounding where its relative error in energy is below this, or rounding of u explains it.
+/// An answer is exact to rounding if its relative error in energy is below this, or if the rounding of u explains the
+/// error.
 const ROUNDING: f64 = 1e-13;
 
-/// The best penalty is 1e8; its error is a hundred times one over that at the most.
+/// The best penalty is 1e8; its error is at most a hundred times 1e-8.
 const OF_A_PENALTY: f64 = 1e-6;
 
 fn folder(name: &str) -> PathBuf {
@@ -56,7 +59,7 @@ impl Finding {
         assert!(details.is_empty(), "{}: {details:#?}", self.name);
     }
 
-    /// Solves with a method, and judges how that ends.
+    /// Solves with a method, and judges the ending.
     fn solve(&self, method: Method) -> Result<Solution, Error> {
         let mut settings = Settings::with_method(method);
         settings.prove = true;
@@ -65,11 +68,12 @@ impl Finding {
         ending
     }
 
-    /// Asserts that methods certify the answer, and that it is exact to rounding; MPRGP that it is exact to its tolerance.
+    /// Asserts that the methods certify the answer, and that it is exact to rounding; the answer of MPRGP only to its
+    /// tolerance.
     fn is_certified_by(&self, methods: &[Method]) {
         for &method in methods {
             let ending = self.solve(method);
-            // A penalty leaves an error of its own, which is asked for with it, and says so.
+            // A penalty answer has an error by design, and its certificate states it.
             if let (Method::Penalty(_), Err(Error::NotCertified { solution, .. })) = (method, &ending) {
                 assert!(
                     solution.certificate.energy_error_bound <= OF_A_PENALTY,
@@ -79,7 +83,7 @@ impl Finding {
                 );
                 continue;
             }
-            // MPRGP takes rows that can be turned into bounds, and names others.
+            // MPRGP accepts only rows that can be turned into bounds, and names the other rows.
             if let (Method::Mprgp, Err(Error::Numerical { step: "turning contact rows into bounds", .. })) =
                 (method, &ending)
             {
@@ -100,7 +104,7 @@ impl Finding {
         Desk::new().run(&[&["solve", folder.to_str().unwrap()], arguments].concat())
     }
 
-    /// Asserts that `verify` does not certify the answer of the folder, and that all that it says of it is true.
+    /// Asserts that `verify` does not certify the answer in the folder, and that all its statements about it are true.
     fn is_not_verified(&self) {
         let folder = folder(self.name);
         let files = ["u.mtx", "lambda.mtx"].map(|file| folder.join(file));
@@ -128,7 +132,7 @@ fn two_rows_that_share_a_soft_dof_are_certified() {
 }
 
 #[test]
-fn a_gap_of_1e20_is_no_bound() {
+fn a_gap_of_1e20_does_not_bound_its_row() {
     let finding = Finding::read("gap_1e20");
     for method in ALL {
         assert!(matches!(finding.solve(method), Err(Error::Unbounded { .. })), "{}", method.name());
@@ -139,12 +143,12 @@ fn a_gap_of_1e20_is_no_bound() {
 #[test]
 fn rows_that_contradict_each_other_by_order_one_are_infeasible() {
     let finding = Finding::read("infeasible_not_found");
-    // MPRGP cannot take rows that share unknowns at odd angles, and names them.
+    // MPRGP cannot handle rows that share unknowns at oblique angles, and names them.
     let turned = finding.solve(Method::Mprgp);
     assert!(matches!(turned, Err(Error::Numerical { step: "turning contact rows into bounds", .. })), "{turned:?}");
     for method in [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty()] {
         let Err(Error::Infeasible { rows, weights, .. }) = finding.solve(method) else { panic!("{}", method.name()) };
-        // Rows 1 + 2 + 2 * 3 cancel, and ask for 0 <= -4.
+        // Row 1, row 2 and twice row 3 cancel, and demand 0 <= -4.
         assert_eq!(rows, [1, 2, 3], "{}", method.name());
         let (largest, ratios) = (weights.iter().copied().fold(0.0, f64::max), [0.5, 0.5, 1.0]);
         let agree = ratios.iter().zip(&weights).all(|(ratio, weight)| (ratio - weight / largest).abs() < 1e-12);
@@ -173,9 +177,9 @@ fn a_row_behind_its_scaled_copy_is_not_proven_closed() {
     finding.command(&["--accuracy", "1e-2"]).ends_with(0);
 }
 
-/// A limit that has no room for a factor is kept by multigrid along the lines of the strip.
+/// The limit is too small for a factor; multigrid with coarsening along the strip stays below it.
 #[test]
-fn a_limit_of_memory_leaves_a_stretched_strip_certified() {
+fn a_stretched_strip_is_certified_within_a_limit_of_memory() {
     let (desk, scene) = (Desk::new(), folder("strip_max_memory").join("scene.json"));
     let solve = ["solve", scene.to_str().unwrap(), "--max-memory", "100MB"];
     let found = desk.run(&[&solve[..], &["--format", "json"]].concat()).ends_with(0).json();
@@ -184,13 +188,13 @@ fn a_limit_of_memory_leaves_a_stretched_strip_certified() {
 }
 
 #[test]
-fn rounding_of_a_large_displacement_is_excused_in_full() {
+fn rounding_of_a_large_displacement_is_accounted_for() {
     let finding = Finding::read("unconstrained_stationarity");
     finding.is_certified_by(&[Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty()]);
     finding.command(&[]).ends_with(0);
 }
 
-/// Floating bodies in exact balance: an answer, or under-held, but not unbounded.
+/// Floating bodies in exact balance end certified or as under-held, but not as unbounded.
 #[test]
 fn a_load_in_exact_balance_is_not_unbounded() {
     let finding = Finding::read("under_held_called_unbounded");
@@ -217,7 +221,7 @@ fn is_certified_or_under_held(finding: &Finding) {
 }
 
 #[test]
-fn a_violated_row_that_follows_from_others_is_not_overlooked() {
+fn a_violated_row_that_depends_on_others_is_not_certified() {
     Finding::read("verify_bound_fooled_dependent_row").is_not_verified();
 }
 

@@ -1,22 +1,23 @@
-//! Hostile contact problems: each ends with a certified answer, checked here once more by hand, or with a typed error.
+//! Hostile contact problems: each ends with a certified answer, which is checked here again by independent arithmetic,
+//! or with a typed error.
 
 use crate::oracles::{Dense, Draws, random};
 use nalgebra::{DMatrix, DVector};
 use signorini::{Condense, Error, Method, Settings, Solution, solve};
 
-/// What must come out.
+/// The expected ending.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Ending {
     /// A certified answer.
     Certified,
     /// An error with this code.
     Refused(&'static str),
-    /// One or the other, but no wrong answer: the data contradict each other by about the tolerance.
+    /// A certified answer or any error, but no wrong answer: the data contradict each other by about the tolerance.
     Either,
 }
 use Ending::{Certified, Either, Refused};
 
-/// Relative error that a certified answer may show where it is checked by hand: ten times its tolerance.
+/// Largest relative error of a certified answer in the check below: ten times its tolerance.
 const CHECKED: f64 = 1e-8;
 
 fn springs(n: usize, stiffness: f64) -> DMatrix<f64> {
@@ -35,7 +36,7 @@ fn problem(stiffness: DMatrix<f64>, load: &[f64], contact: &[&[f64]], gap: &[f64
     dense
 }
 
-/// Two dofs in units of stiffness `k` and length `u`: load k u (1, 0.3), gaps u / 2 on both.
+/// Two dofs in units of stiffness `k` and length `u`: load k u (1, 0.3), gaps u / 2 on both dofs.
 fn in_units(k: [f64; 2], u: f64) -> Dense {
     let load = [k[0] * u, 0.3 * k[1] * u];
     problem(
@@ -50,7 +51,7 @@ fn one(k: f64, f: f64, b: f64, g: f64) -> Dense {
     problem(DMatrix::from_element(1, 1, k), &[f], &[&[b]], &[g])
 }
 
-/// A node in the plane, held by springs 1 and 1, between rows of the given normals and gaps.
+/// A node in the plane, held by two springs of stiffness 1, between rows with the given normals and gaps.
 fn node(load: [f64; 2], rows: &[([f64; 2], f64)]) -> Dense {
     let contact: Vec<&[f64]> = rows.iter().map(|row| &row.0[..]).collect();
     let gap: Vec<f64> = rows.iter().map(|row| row.1).collect();
@@ -78,7 +79,7 @@ fn cases() -> Vec<(String, Dense, Ending)> {
     }
     let far = problem(springs(2, 1.0), &[0.0, 3.0], &[&[0.0, 1.0], &[1.0, 0.0]], &[1.0, 1e200]);
     add("one gap out of all reach", far, Certified);
-    // Not convex: an interior-point method does not look.
+    // Problems that are not convex; an interior-point method does not check this.
     add(
         "saddle in a box",
         {
@@ -97,7 +98,7 @@ fn cases() -> Vec<(String, Dense, Ending)> {
         problem(DMatrix::from_row_slice(2, 2, &[1.0, 1.0001, 1.0001, 1.0]), &[0.0, 1.0], &[&[1.0, 0.0]], &[1.0]),
         Refused("not-convex"),
     );
-    // Crossing bounds: infeasible by little counts as solved elsewhere.
+    // Crossing bounds: other solvers report slightly infeasible problems as solved.
     for overlap in [1e-2, 1e-6, 1e-9, 1e-12, 1e-14] {
         let dense = node([1.0, 0.0], &[([1.0, 0.0], 1.0), ([-1.0, 0.0], -1.0 - overlap)]);
         add(&format!("bounds that cross by {overlap:e}"), dense, Refused("infeasible"));
@@ -107,11 +108,15 @@ fn cases() -> Vec<(String, Dense, Ending)> {
     add("bounds that meet", node([1.0, 0.0], &[([1.0, 0.0], 1.0), ([-1.0, 0.0], -1.0)]), Certified);
     for overlap in [1e-2, 1e-4] {
         let rows = [([0.0, 1.0], -0.5 - overlap), ([0.8, -0.6], 0.3), ([-0.8, -0.6], 0.3)];
-        add(&format!("three rows that leave no room by {overlap:e}"), node([0.3, 1.0], &rows), Refused("infeasible"));
+        add(
+            &format!("three rows that contradict each other by {overlap:e}"),
+            node([0.3, 1.0], &rows),
+            Refused("infeasible"),
+        );
     }
     for overlap in [1e-8, 1e-10, 1e-13] {
         let rows = [([0.0, 1.0], -0.5 - overlap), ([0.8, -0.6], 0.3), ([-0.8, -0.6], 0.3)];
-        add(&format!("three rows that leave hardly no room by {overlap:e}"), node([0.3, 1.0], &rows), Either);
+        add(&format!("three rows that hardly contradict each other, by {overlap:e}"), node([0.3, 1.0], &rows), Either);
     }
     // Redundant and nearly parallel rows.
     for copies in [2, 10, 100] {
@@ -120,12 +125,13 @@ fn cases() -> Vec<(String, Dense, Ending)> {
     for angle in [1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15] {
         let angle: f64 = angle;
         let rows = [([1.0, 0.0], 0.5), ([angle.cos(), angle.sin()], 0.5)];
-        // About the tolerance apart, both rows look closed at once: the answer misses by as much, and says so.
+        // If the directions differ by about the tolerance, both rows look closed at once; the answer has an error of
+        // that size, and its certificate says so.
         let ending = if angle == 1e-9 { Either } else { Certified };
         add(&format!("rows {angle:e} apart"), node([3.0, 1.0], &rows), ending);
     }
     add("a row of zeros", node([3.0, 1.0], &[([1.0, 0.0], 0.5), ([0.0, 0.0], 0.0)]), Certified);
-    add("a row of zeros that wants something", node([3.0, 1.0], &[([0.0, 0.0], -1e-300)]), Refused("infeasible"));
+    add("a row of zeros with a negative gap", node([3.0, 1.0], &[([0.0, 0.0], -1e-300)]), Refused("infeasible"));
     add(
         "rows of very different lengths",
         node([3.0, 2.0], &[([1e150, 0.0], 0.5e150), ([0.0, 1e-150], 0.5e-150)]),
@@ -136,9 +142,9 @@ fn cases() -> Vec<(String, Dense, Ending)> {
         problem(springs(5, 1.0), &[0.0; 5], &[&[1.0, 0.0, 0.0, 0.0, 0.0], &[0.0, 0.0, 1.0, 0.0, 0.0]], &[0.0, 0.0]),
         Certified,
     );
-    // Held by nothing, by contact alone, pulled away.
-    add("nothing holds, nothing pulls", problem(DMatrix::zeros(2, 2), &[0.0, 0.0], &[], &[]), Refused("under-held"));
-    add("nothing holds, something pulls", problem(DMatrix::zeros(2, 2), &[0.0, 1.0], &[], &[]), Refused("unbounded"));
+    // Bodies without support, held by contact alone, or pulled away.
+    add("no support and no load", problem(DMatrix::zeros(2, 2), &[0.0, 0.0], &[], &[]), Refused("under-held"));
+    add("no support and a load", problem(DMatrix::zeros(2, 2), &[0.0, 1.0], &[], &[]), Refused("unbounded"));
     add("a free point pressed on a wall", one(0.0, 1.0, 1.0, 0.5), Certified);
     add("a free point pulled off a wall", one(0.0, -1.0, 1.0, 0.5), Refused("unbounded"));
     add("a free point before a wall", one(0.0, 0.0, 1.0, 0.5), Refused("under-held"));
@@ -155,7 +161,7 @@ fn cases() -> Vec<(String, Dense, Ending)> {
     add("no dofs, no rows", problem(DMatrix::zeros(0, 0), &[], &[], &[]), Certified);
     add("no dofs, a row", problem(DMatrix::zeros(0, 0), &[], &[&[]], &[1.0]), Certified);
     add(
-        "no dofs, a row that wants something",
+        "no dofs, a row with a negative gap",
         problem(DMatrix::zeros(0, 0), &[], &[&[]], &[-1.0]),
         Refused("infeasible"),
     );
@@ -172,14 +178,14 @@ fn cases() -> Vec<(String, Dense, Ending)> {
         ),
         Certified,
     );
-    // Ends of double precision.
+    // Numbers at the ends of double precision.
     add("denormal stiffness", one(5e-324, 5e-324, 1.0, 0.5), Either);
     add("denormal load", one(1.0, 5e-324, 1.0, 0.5), Certified);
     add("stiffness near overflow", one(1e308, 1e307, 1.0, 0.05), Certified);
     add("load near overflow", one(1.0, 1e308, 1.0, 1.0), Certified);
     add("displacement beyond double precision", one(1e-300, 1e300, 1.0, f64::INFINITY), Either);
     add("load and gap at opposite ends", one(1.0, 1e-300, 1.0, -1e300), Certified);
-    // Cycling examples of the literature.
+    // Examples of cycling from the literature.
     add(
         "cycle of order three",
         Dense::lcp(&[&[4.0, 5.0, -5.0], &[5.0, 9.0, -5.0], &[-5.0, -5.0, 7.0]], &[2.0, 1.0, -3.0]),
@@ -195,7 +201,7 @@ fn cases() -> Vec<(String, Dense, Ending)> {
         Dense::lcp(&[&[12.0, -2.0, -2.0], &[-2.0, 1.0, 1.0], &[-2.0, 1.0, 3.0]], &[0.0, -4.0, -4.0]),
         Certified,
     );
-    // The Hilbert matrix: positive definite, and singular to double precision from order 13 on.
+    // The Hilbert matrix is positive definite, and from order 13 on singular in double precision.
     for order in [6, 10, 14] {
         let hilbert = DMatrix::from_fn(order, order, |i, j| 1.0 / (i + j + 1) as f64);
         let mut row = vec![0.0; order];
@@ -206,8 +212,8 @@ fn cases() -> Vec<(String, Dense, Ending)> {
     cases
 }
 
-/// Checks the conditions of the solution in dense arithmetic that shares nothing with the crate. Data at the ends of double
-/// precision are brought to order one first, by powers of two.
+/// Checks the conditions of the solution in dense arithmetic that shares no code with the crate. Data at the ends of
+/// double precision are first scaled to order one by powers of two.
 fn check(name: &str, dense: &Dense, solution: &Solution) {
     let size = |values: &[f64]| values.iter().filter(|v| v.is_finite()).fold(0.0, |size: f64, v| size.max(v.abs()));
     let (k, length) = (size(dense.stiffness.as_slice()), size(&solution.displacement).max(f64::MIN_POSITIVE));
@@ -235,7 +241,7 @@ fn check(name: &str, dense: &Dense, solution: &Solution) {
         let distance = (dense.contact.row(row) * &u)[0] - dense.gap[row] / length;
         let near = reach.max(if lambda[row] == 0.0 { 0.0 } else { dense.gap[row].abs() / length }).max(1e-3 * scale);
         assert!(distance <= CHECKED * near, "{name}: row {row} penetrates by {distance:e}");
-        assert!(lambda[row] <= 0.0, "{name}: row {row} pulls");
+        assert!(lambda[row] <= 0.0, "{name}: row {row} has a tensile force");
         assert!(
             (lambda[row] * distance).abs() <= CHECKED * size(lambda.as_slice()) * near || lambda[row] == 0.0,
             "{name}: row {row}"
@@ -273,9 +279,9 @@ fn hostile_problems_end_with_a_certified_answer_or_a_typed_error() {
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
-/// The penalty method answers within its own certificate or says by how much it misses.
+/// The penalty method returns an answer within its certificate, or an error with the value that is too large.
 #[test]
-fn hostile_problems_by_the_penalty_method_end_too() {
+fn hostile_problems_end_with_a_certified_answer_or_an_error_by_the_penalty_method() {
     for (name, dense, _) in cases() {
         match dense.problem().and_then(|problem| solve(&problem, &Settings::with_method(Method::penalty()))) {
             Ok(solution) => check(&name, &dense, &solution),
@@ -285,9 +291,9 @@ fn hostile_problems_by_the_penalty_method_end_too() {
     }
 }
 
-/// Values that are no numbers, planted one at a time in a right problem.
+/// Values that are not finite, planted one at a time in a valid problem.
 #[test]
-fn numbers_that_are_none_are_refused_where_they_stand() {
+fn values_that_are_not_finite_are_refused_except_an_infinite_gap() {
     let mut draws = Draws::new(11);
     for case in 0..60 {
         let mut dense = random(&mut draws, 3, 3);

@@ -1,4 +1,4 @@
-//! The three methods on problems small enough to try every contact set.
+//! The three methods on problems that are small enough to enumerate all contact sets.
 
 use crate::oracles::{Dense, Draws, random};
 use signorini::{ContactProblem, Error, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve, solve_qp};
@@ -14,7 +14,7 @@ fn answer(dense: &Dense, method: Method) -> Solution {
     }
 }
 
-/// Entries within `tolerance` of the largest; data are of order one, an answer of zeros is held against a thousandth.
+/// Compares entries to within `tolerance` of the largest expected entry, or of 1e-3 if all are smaller.
 #[track_caller]
 fn agree(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
     let size = expected.iter().fold(1e-3, |size: f64, value| size.max(value.abs()));
@@ -23,9 +23,9 @@ fn agree(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
     }
 }
 
-/// Two springs in a row, the second end before a wall: k = 2 and 1, force 3, gap 1.
+/// Two springs in a row, the second end in front of a wall: k = 2 and 1, force 3, gap 1.
 #[test]
-fn two_springs_against_a_wall() {
+fn two_springs_pressed_against_a_wall_have_the_answer_of_the_closed_form() {
     let dense = Dense::new(&[&[3.0, -1.0], &[-1.0, 1.0]], &[0.0, 3.0], &[&[0.0, 1.0]], &[1.0]);
     let solution = solve_qp(&dense.problem().unwrap()).unwrap();
     agree(&solution.displacement, &[1.0 / 3.0, 1.0], 1e-15, "u");
@@ -33,9 +33,9 @@ fn two_springs_against_a_wall() {
     assert_eq!(solution.contact_set.count(), 1);
 }
 
-/// Clarabel reads one triangle, and what it finds is not settled here.
+/// Clarabel reads one triangle of K; here no active-set step follows that could correct its answer.
 #[test]
-fn interior_point_alone_sees_the_coupling() {
+fn interior_point_without_polish_uses_the_coupling() {
     let dense = Dense::new(&[&[3.0, -1.0], &[-1.0, 1.0]], &[0.0, 3.0], &[&[0.0, 1.0]], &[1.0]);
     let unpolished = Method::Qp(InteriorPoint { polish: false, ..InteriorPoint::default() });
     let settings = Settings::with_method(unpolished).with_tolerance(1e-6);
@@ -44,9 +44,9 @@ fn interior_point_alone_sees_the_coupling() {
     agree(&solution.displacement, &[1.0 / 3.0, 1.0], 1e-6, "u");
 }
 
-/// Entries in any order, and in parts, make the same matrices.
+/// The order of entries, and their division into terms, does not change the matrices.
 #[test]
-fn order_and_parts_of_the_entries_do_not_matter() {
+fn order_and_division_of_matrix_entries_change_no_bit_of_the_answer() {
     let entries = [(0, 0, 3.0), (1, 0, -1.0), (1, 1, 2.0), (2, 1, -1.0), (2, 2, 1.0)];
     let shuffled = [(2, 2, 0.5), (1, 1, 2.0), (2, 1, -1.0), (0, 0, 1.0), (2, 2, 0.5), (1, 0, -1.0), (0, 0, 2.0)];
     let [one, other] = [&entries[..], &shuffled[..]].map(|entries| {
@@ -57,9 +57,9 @@ fn order_and_parts_of_the_entries_do_not_matter() {
     assert_eq!((one.displacement, one.multiplier), (other.displacement, other.multiplier));
 }
 
-/// Symmetric positive definite problems on which the plain loop cycles, from the literature on pivoting.
+/// Symmetric positive definite problems from the literature on pivoting, for which the plain loop cycles.
 #[test]
-fn cycling_examples_end_by_pivoting_with_the_enumerated_answer() {
+fn cycling_examples_end_with_the_enumerated_answer_after_pivoting() {
     let cases = [
         Dense::lcp(&[&[4.0, 5.0, -5.0], &[5.0, 9.0, -5.0], &[-5.0, -5.0, 7.0]], &[2.0, 1.0, -3.0]),
         Dense::lcp(&[&[5.0, -2.0, -4.0], &[-2.0, 2.0, 3.0], &[-4.0, 3.0, 5.0]], &[4.0, -1.0, -3.0]),
@@ -69,7 +69,12 @@ fn cycling_examples_end_by_pivoting_with_the_enumerated_answer() {
         for method in EXACT {
             let solution = answer(dense, method);
             agree(&solution.displacement, &x, 1e-14, "u");
-            agree(&solution.displacement, dense.enumerate().displacement.as_slice(), 1e-13, "u against enumeration");
+            agree(
+                &solution.displacement,
+                dense.enumerate().displacement.as_slice(),
+                1e-13,
+                "u compared with the enumeration",
+            );
         }
     }
     let pivoted = cases.iter().filter(|dense| answer(dense, Method::ActiveSet).method != "active-set").count();
@@ -77,7 +82,7 @@ fn cycling_examples_end_by_pivoting_with_the_enumerated_answer() {
 }
 
 #[test]
-fn weakly_active_rows_do_not_keep_the_loop_alive() {
+fn weakly_active_rows_do_not_prolong_the_loop() {
     let dense = Dense::lcp(&[&[12.0, -2.0, -2.0], &[-2.0, 1.0, 1.0], &[-2.0, 1.0, 3.0]], &[0.0, -4.0, -4.0]);
     for method in EXACT {
         let solution = answer(&dense, method);
@@ -102,15 +107,15 @@ fn random_problems_agree_with_enumeration() {
         let energy_norm = |u: &nalgebra::DVector<f64>| u.dot(&(&dense.stiffness * u)).max(0.0).sqrt();
         let (distance, bound) =
             (energy_norm(&error) / energy_norm(&exact.displacement), solution.certificate.energy_error_bound);
-        // 1e-12: the enumerated answer is itself rounded.
+        // 1e-12, because the enumerated answer is rounded as well.
         assert!(distance <= bound * (1.0 + 1e-3) + 1e-12, "case {case}: {distance:e} exceeds the stated {bound:e}");
     }
 }
 
-/// Where every row presses or stands off clearly, the contact set must be exactly that of the enumeration.
+/// If every row is clearly closed or clearly open, the contact set must be exactly that of the enumeration.
 #[test]
 fn contact_sets_of_random_problems_are_those_of_the_enumeration() {
-    /// Above the rounding of both, in data of order one.
+    /// Above the rounding of both answers, for data of order one.
     const CLEAR: f64 = 1e-7;
     let mut draws = Draws::new(12);
     let (mut clear, cases) = (0, 10_000);
@@ -136,9 +141,10 @@ fn contact_sets_of_random_problems_are_those_of_the_enumeration() {
 
 /// A row that just touches is neither proven closed nor proven open.
 #[test]
-fn grazing_rows_are_flagged() {
+fn grazing_rows_are_proven_neither_closed_nor_open() {
     for dofs in 3..30 {
-        // Springs in a row, their end pressed onto its wall: the others come to stand at the faces of theirs, but the first.
+        // A row of springs whose end is pressed onto its wall: every other dof just reaches its wall, except the first,
+        // whose wall is farther away.
         let mut dense = Dense::new(&[], &[], &[], &[]);
         dense.stiffness = nalgebra::DMatrix::from_fn(dofs, dofs, |i, j| match i.abs_diff(j) {
             0 if i == dofs - 1 => 1.0,
@@ -159,9 +165,9 @@ fn grazing_rows_are_flagged() {
 }
 
 #[test]
-fn plain_loop_meets_cycles_in_random_symmetric_problems_of_order_three_and_ends_all_the_same() {
-    /// The plain loop ends with a set that it knows, at the latest after the eight that there are; pivoting meets at most
-    /// those eight, and before each single pivot a few blocks.
+fn plain_loop_ends_although_it_meets_cycles_in_random_symmetric_problems_of_order_three() {
+    /// The plain loop ends when it meets a set again, at the latest after all eight sets; pivoting meets at most these
+    /// eight, and a few blocks before single pivots.
     const LONGEST: usize = 8 + 1 + 8 + 3;
     let mut draws = Draws::new(2);
     let (mut pivoted, mut single, mut longest) = (0, 0, 0);
@@ -179,12 +185,12 @@ fn plain_loop_meets_cycles_in_random_symmetric_problems_of_order_three_and_ends_
         single += usize::from(solution.method == "active-set-single-pivoting");
         longest = longest.max(solution.history.len());
     }
-    println!("{pivoted} by pivoting, {single} of them one by one; at most {longest} iterations");
+    println!("{pivoted} by pivoting, {single} of these by single rows; at most {longest} iterations");
     assert!(pivoted > 0, "no problem made the plain loop cycle: the fallback was not exercised");
     assert!(longest <= LONGEST, "{longest} iterations");
 }
 
-/// A rod of two nodes, free in space, k = 1: force 1 presses its second node onto a wall at 0.5.
+/// A rod of two nodes without supports, k = 1; a wall at 0.5 in front of its second node.
 fn rod(load: [f64; 2]) -> Dense {
     Dense::new(&[&[1.0, -1.0], &[-1.0, 1.0]], &load, &[&[0.0, 1.0]], &[0.5])
 }
@@ -221,7 +227,7 @@ fn floating_rod_without_load_is_not_unique() {
 }
 
 #[test]
-fn rod_that_nothing_holds_is_named_whatever_the_load() {
+fn rod_without_support_or_wall_is_under_held_or_unbounded_by_its_load() {
     let mut dense = rod([1.0, -1.0]);
     dense.gap[0] = f64::INFINITY;
     assert!(matches!(solve_qp(&dense.problem().unwrap()), Err(Error::UnderHeld { .. })));
@@ -261,7 +267,7 @@ fn bounds_that_cross_are_infeasible_and_bounds_that_meet_are_an_equality() {
     }
 }
 
-/// Three inclined rows that no displacement of one node satisfies: found by a verified Farkas vector.
+/// Three inclined rows that no displacement of one node meets; a verified Farkas vector shows the contradiction.
 #[test]
 fn rows_that_contradict_in_three_directions_are_infeasible() {
     let contact: [&[f64]; 3] = [&[0.0, 1.0], &[0.8, -0.6], &[-0.8, -0.6]];
@@ -286,7 +292,7 @@ fn duplicate_rows_share_the_force() {
     }
 }
 
-/// k = 1, f = 2, g = 0.3: lambda = -1.7 exactly; the error falls as k/eps and never runs into noise.
+/// k = 1, f = 2, g = 0.3: lambda = -1.7 exactly. The error falls as k/eps and does not end in rounding.
 #[test]
 fn penalty_error_falls_tenfold_from_rung_to_rung() {
     let dense = Dense::new(&[&[1.0]], &[2.0], &[&[1.0]], &[0.3]);
@@ -334,7 +340,7 @@ fn answers_scale_bit_for_bit_with_powers_of_two() {
 }
 
 #[test]
-fn rows_without_obstacle_or_without_dofs_are_no_constraints() {
+fn rows_without_obstacle_and_rows_without_dofs_do_not_constrain_the_answer() {
     let contact: [&[f64]; 3] = [&[0.0, 1.0], &[0.0, 0.0], &[1.0, 0.0]];
     let mut dense =
         Dense::new(&[&[3.0, -1.0], &[-1.0, 1.0]], &[0.0, 3.0], &contact, &[f64::INFINITY, 0.2, f64::INFINITY]);
@@ -351,7 +357,7 @@ fn rows_without_obstacle_or_without_dofs_are_no_constraints() {
 }
 
 #[test]
-fn nothing_to_solve_is_solved() {
+fn empty_and_unloaded_problems_have_the_answer_zero() {
     let empty = Dense::new(&[], &[], &[], &[]);
     for method in [Method::qp(), Method::ActiveSet, Method::penalty()] {
         let solution = answer(&empty, method);

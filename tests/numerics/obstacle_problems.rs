@@ -1,4 +1,4 @@
-//! GOAL: raw QPs without any mesh, on which the contact rows are a large share of the unknowns.
+//! GOAL: QPs without a mesh, in which the contact rows are a large share of the unknowns.
 //!
 //! CONDITIONS: a string and a membrane pushed onto a flat obstacle; box-constrained random problems.
 //! REFERENCE: closed forms of the free boundary and of the force on the obstacle.
@@ -37,7 +37,7 @@ fn string(cells: usize, q: f64, g: f64) -> ContactProblem {
     problem(&stiffness, vec![-q * h; n], &contact, vec![g; n])
 }
 
-/// With linear elements the string is exact at the nodes when the edge of the contact, b = sqrt(2 g / q), is one.
+/// With linear elements the string is exact at the nodes if the edge of the contact, b = sqrt(2 g / q), is a node.
 #[test]
 fn string_on_an_obstacle_is_exact_at_the_nodes() {
     let (q, g, cells) = (1.0, 0.08, 200);
@@ -57,9 +57,10 @@ fn string_on_an_obstacle_is_exact_at_the_nodes() {
     }
 }
 
-/// 2000 cells: the active-set loop from C = 0 would take 400 iterations, the interior point alone finds a poor set.
+/// 2000 cells: starting from C = 0 the active-set loop would take 400 iterations, and the interior point alone finds a
+/// poor set.
 #[test]
-fn fine_string_needs_few_iterations_whatever_the_mesh() {
+fn fine_string_needs_few_iterations_on_every_mesh() {
     let string = string(2000, 1.0, 0.08);
     for method in METHODS {
         let solution = solve(&string, &Settings::with_method(method)).unwrap();
@@ -68,10 +69,10 @@ fn fine_string_needs_few_iterations_whatever_the_mesh() {
     }
 }
 
-/// -Laplace u = -q on the unit disc, u >= -g, radial linear elements; the contact is the disc r <= b with
-/// q (1 - b^2) / 4 + (q b^2 / 2) ln b = g, the force q pi b^2.
+/// -Laplace u = -q on the unit disc, u >= -g, with radial linear elements. The contact is the disc r <= b with
+/// q (1 - b^2) / 4 + (q b^2 / 2) ln b = g; its force is q pi b^2.
 #[test]
-fn membrane_over_a_disc_presses_with_the_force_of_the_closed_form() {
+fn membrane_over_a_disc_has_the_force_of_the_closed_form() {
     let (q, g) = (8.0_f64, 0.25);
     let force = DiscMembrane { load: q, gap: g }.force();
     let mut errors = Vec::new();
@@ -81,7 +82,7 @@ fn membrane_over_a_disc_presses_with_the_force_of_the_closed_form() {
         for cell in 0..cells {
             let (left, right) = (cell as f64 * h, (cell + 1) as f64 * h);
             let k = 2.0 * PI * (left + right) / 2.0 / h;
-            // Integrals of 2 pi q r times the two hat functions.
+            // Integrals of 2 pi q r times the two hat functions of a cell.
             let (to_left, to_right) = (2.0 * left + right, left + 2.0 * right);
             stiffness.push((cell, cell, k));
             load[cell] -= 2.0 * PI * q * h * to_left / 6.0;
@@ -97,7 +98,7 @@ fn membrane_over_a_disc_presses_with_the_force_of_the_closed_form() {
         assert!((found.contact_force() / other.contact_force() - 1.0).abs() < 1e-11);
         errors.push((found.contact_force() / force - 1.0).abs());
     }
-    // The free boundary lies between nodes at a place that changes with the mesh: the error falls with h^2 on average.
+    // The position of the free boundary between two nodes changes with the mesh; on average the error falls with h^2.
     let rate = (errors[0] / errors[3]).log2() / 3.0;
     assert!(errors[3] < 1e-5 && rate > 1.5, "errors {errors:?}, rate {rate}");
 }
@@ -139,9 +140,10 @@ fn membrane_between_two_obstacles_is_certified() {
     }
 }
 
-/// The same on a finer square: from a few cycles of multigrid one or two sets remain, whose later ones take the first factor.
+/// A membrane over one obstacle on a finer square: a few cycles of multigrid give the first set; one or two
+/// more sets follow, which reuse its factor.
 #[test]
-fn the_direct_path_takes_few_sets_where_contact_is_everywhere() {
+fn the_direct_path_takes_few_sets_if_every_dof_is_a_candidate() {
     let side = 90;
     let n = side * side;
     let (stiffness, mut gap) = (five_points(side), Vec::new());
@@ -155,7 +157,7 @@ fn the_direct_path_takes_few_sets_where_contact_is_everywhere() {
     let membrane = problem(&stiffness, vec![-2e-4; n], &contact, gap);
     let exact = solve(&membrane, &Settings::with_method(Method::ActiveSet)).unwrap();
     assert!(exact.contact_set.count() > n / 20 && exact.iterations <= 4, "{} sets", exact.iterations);
-    // From no set at all the front moves by a row of nodes with every set.
+    // Starting from the empty set, each set moves the front by one row of nodes.
     let prepared = Prepared::new(&membrane, &Settings::with_method(Method::ActiveSet)).unwrap();
     let cold = prepared.solve(membrane.gap()).unwrap();
     assert_eq!(cold.contact_set, exact.contact_set);
@@ -170,7 +172,7 @@ fn random_box_constrained_problems_are_certified_by_every_exact_method() {
     let mut draws = Draws::new(5);
     for case in 0..20 {
         let n = 100 + draws.below(200);
-        // Sum of squares of random pairs and a small diagonal: sparse, positive definite, no structure.
+        // A sum of squares of random pairs and a small diagonal: sparse, positive definite, without structure.
         let mut stiffness: Vec<_> = (0..n).map(|i| (i, i, 1e-2)).collect();
         for _ in 0..3 * n {
             let (i, j, a, b) = (draws.below(n), draws.below(n), draws.signed(), draws.signed());

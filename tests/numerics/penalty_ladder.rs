@@ -1,10 +1,10 @@
-//! The penalty ladder told an accuracy, and Richardson's extrapolation over the penalty.
+//! The penalty ladder with a requested accuracy, and Richardson's extrapolation over the penalty.
 
 use signorini::Penalty;
 use signorini::qp::{Condense, Method, Settings};
 use signorini::{ContactProblem, Error, Scene, Solution, solve};
 
-/// The scenes whose stiffness is definite by itself and small enough to be solved on all dofs.
+/// The scenes whose stiffness is positive definite without contact, and small enough for a solve on all dofs.
 fn problems() -> Vec<(String, ContactProblem)> {
     let scene = |name: String| {
         let path = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
@@ -43,7 +43,7 @@ fn last_penalty(found: &Solution) -> f64 {
 }
 
 #[test]
-fn the_ladder_ends_on_the_first_rung_that_is_certified_to_be_good_enough() {
+fn the_ladder_ends_on_the_first_rung_with_the_requested_accuracy() {
     for (name, problem) in problems() {
         let exact = exact(&problem);
         for condense in [Condense::Auto, Condense::Never] {
@@ -56,10 +56,10 @@ fn the_ladder_ends_on_the_first_rung_that_is_certified_to_be_good_enough() {
                 assert!(bound <= accuracy, "{name}, {condense:?}: {bound:e}");
                 assert!(error(&problem, &found, &exact) <= bound * (1.0 + 1e-6) + 1e-12);
                 let penalty = last_penalty(&found);
-                assert!(penalty > last, "{name}: a tighter accuracy takes a larger penalty");
+                assert!(penalty > last, "{name}: a tighter accuracy must take a larger penalty");
                 last = penalty;
                 if penalty > 1.0 {
-                    // One rung less would not do.
+                    // The rung before is not accurate enough.
                     let ladder = Penalty { last: penalty / 10.0, penetration_threshold: 0.0, ..Penalty::default() };
                     let before = self::penalty(&problem, |settings| {
                         (settings.method, settings.condense) = (Method::Penalty(ladder), condense);
@@ -73,7 +73,7 @@ fn the_ladder_ends_on_the_first_rung_that_is_certified_to_be_good_enough() {
 }
 
 #[test]
-fn the_ladder_ends_at_its_floor_and_says_so() {
+fn the_ladder_ends_with_an_error_at_the_accuracy_that_rounding_allows() {
     for (name, problem) in problems() {
         let ladder = Penalty { last: 1e18, ..Penalty::default() };
         let settings = Settings::with_method(Method::Penalty(ladder)).with_accuracy(1e-15);
@@ -82,7 +82,8 @@ fn the_ladder_ends_at_its_floor_and_says_so() {
                 assert_eq!((condition, tolerance), ("reachable energy_error_bound", 1e-15), "{name}");
                 assert_eq!(value, solution.certificate.energy_error_bound);
                 assert!(value < 1e-6, "{name}: floor {value:e}");
-                // Where more penalty would only add rounding, long before the last rung.
+                // The ladder ends at the penalty from which on more penalty only adds rounding, long before the last
+                // rung.
                 assert!(last_penalty(&solution) <= 1e14, "{name}: {:e}", last_penalty(&solution));
             }
             // A penalty answer without penetration is exact.

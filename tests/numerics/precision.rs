@@ -1,4 +1,5 @@
-//! The factor in single precision: the same answers, half the memory, and a refusal where it cannot carry them.
+//! The factor in single precision: it gives the same answers in half the memory, and double precision replaces it if it
+//! is not accurate enough.
 
 use crate::random::springs;
 use signorini::qp::{Condense, Method, Precision, Prepared, Settings};
@@ -43,7 +44,7 @@ fn refined_answers_are_those_of_double_precision() {
 }
 
 #[test]
-fn a_requested_accuracy_is_reached_with_no_more_steps_than_it_takes() {
+fn a_requested_accuracy_is_reached_with_few_refinement_steps() {
     let path = format!("{}/examples/indentation.json", env!("CARGO_MANIFEST_DIR"));
     let model = Scene::read(path).unwrap().build().unwrap();
     let problem = model.problem();
@@ -60,7 +61,7 @@ fn a_requested_accuracy_is_reached_with_no_more_steps_than_it_takes() {
     assert!((2..=6).contains(&steps), "{steps}");
 }
 
-/// On problems whose condition lets the measured contraction vary, the widened bound still holds.
+/// The widened bound holds even if the condition of the problem makes the measured contraction vary.
 #[test]
 fn the_bound_holds_for_a_factor_in_single_precision() {
     let (mut answers, mut worst) = (0, 0.0_f64);
@@ -97,7 +98,7 @@ fn the_factor_takes_half_the_memory() {
     assert_eq!(2 * bytes(Precision::Mixed), bytes(Precision::Double));
 }
 
-/// A chain of springs, one end held, a wall at the other: the condition is that of the square of its length.
+/// A chain of springs, held at one end, with a wall at the other: its condition number is the square of its length.
 fn chain(dofs: usize, soft: f64) -> ContactProblem {
     let mut entries = Vec::new();
     for dof in 0..dofs {
@@ -115,7 +116,7 @@ fn chain(dofs: usize, soft: f64) -> ContactProblem {
 }
 
 #[test]
-fn too_ill_conditioned_a_stiffness_is_factorised_in_double_precision() {
+fn an_ill_conditioned_stiffness_is_factorised_in_double_precision() {
     let answer = |problem: &ContactProblem, precision| match solve(problem, &with(Method::ActiveSet, precision, None)) {
         Ok(solution) => solution,
         Err(Error::NotCertified { solution, .. }) => *solution,
@@ -124,11 +125,11 @@ fn too_ill_conditioned_a_stiffness_is_factorised_in_double_precision() {
     for problem in [chain(20_000, 1.0), chain(50, 1e6), chain(50, 1e9)] {
         let found = answer(&problem, Precision::Mixed);
         assert!(found.certificate.meets(1e-9), "{:?}", found.certificate);
-        // It is the answer of double precision, bit by bit.
+        // This is the answer of double precision, bit by bit.
         let double = answer(&problem, Precision::Double);
         assert_eq!((found.displacement, found.multiplier), (double.displacement, double.multiplier));
     }
-    // What is prepared stays as it is, and says so.
+    // A prepared problem keeps its single-precision factor, and reports if it is not accurate enough.
     let settings = with(Method::ActiveSet, Precision::Mixed, None);
     let problem = chain(2_000, 1.0);
     let prepared = Prepared::new(&problem, &settings).unwrap();
@@ -142,7 +143,7 @@ fn too_ill_conditioned_a_stiffness_is_factorised_in_double_precision() {
 }
 
 #[test]
-fn all_dofs_and_bodies_held_by_contact_are_factorised_in_double_precision() {
+fn problems_on_all_dofs_and_bodies_held_by_contact_are_factorised_in_double_precision() {
     for (name, condense) in [("indentation", Condense::Never), ("block", Condense::Auto)] {
         let path = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
         let model = Scene::read(path).unwrap().build().unwrap();
@@ -155,7 +156,7 @@ fn all_dofs_and_bodies_held_by_contact_are_factorised_in_double_precision() {
 }
 
 #[test]
-fn next_gaps_and_loads_are_refined_too() {
+fn answers_for_next_gaps_and_loads_are_refined() {
     let path = format!("{}/examples/indentation.json", env!("CARGO_MANIFEST_DIR"));
     let model = Scene::read(path).unwrap().build().unwrap();
     let problem = model.problem();
@@ -174,6 +175,6 @@ fn next_gaps_and_loads_are_refined_too() {
     }
     let boundary = prepared.boundary(&gap).unwrap();
     assert!(boundary.condensed_certificate.meets(1e-9));
-    // The exact path is a matter of the exact compliance.
+    // The exact path needs the exact compliance.
     assert!(matches!(prepared.path(problem.gap(), problem.gap()), Err(Error::NotCondensed { .. })));
 }

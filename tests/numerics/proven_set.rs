@@ -1,11 +1,11 @@
-//! The proven contact set: never wrong, whatever the method was told, and whole where the answer is good.
+//! The proven contact set: it is never wrong, at any accuracy, and it is complete if the answer is accurate.
 
 use crate::random::springs;
 use signorini::qp::{Condense, Method, Settings};
 use signorini::{ContactProblem, Error, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
 use signorini::{InteriorPoint, Penalty};
 
-/// Forces and distances below this share of the largest are not told apart from zero in the exact answer.
+/// Forces and distances below this share of the largest may be zero in the exact answer.
 const WEAK: f64 = 1e-9;
 
 fn answer(problem: &ContactProblem, mut settings: Settings) -> Solution {
@@ -17,7 +17,7 @@ fn answer(problem: &ContactProblem, mut settings: Settings) -> Solution {
     }
 }
 
-/// Methods that are told to be anything from rough to exact.
+/// Methods with settings from rough to exact.
 fn ways() -> Vec<Settings> {
     let mut ways = Vec::new();
     for condense in [Condense::Auto, Condense::Never] {
@@ -39,7 +39,7 @@ fn ways() -> Vec<Settings> {
 }
 
 #[test]
-fn no_row_is_proven_to_be_what_it_is_not() {
+fn no_open_row_is_proven_closed_and_no_closed_row_open() {
     let (mut proven, mut wrong_sets, mut rows) = (0, 0, 0);
     for seed in 0..1000 {
         let problem = springs(seed);
@@ -64,23 +64,23 @@ fn no_row_is_proven_to_be_what_it_is_not() {
         }
     }
     println!("{proven} of {rows} rows proven; {wrong_sets} answers with a wrong set");
-    // The test means something: rough answers are among them, and most rows are proven all the same.
+    // The test is effective only if some answers are rough; nevertheless most rows are proven.
     assert!(wrong_sets > 1000);
     assert!(proven > rows / 2);
 }
 
 #[test]
-fn every_row_of_an_exact_answer_is_proven_where_contact_is_strict() {
+fn every_row_of_an_exact_answer_is_proven_if_contact_is_strict() {
     let mut undecided = 0;
     for seed in 0..1000 {
         let problem = springs(seed);
         let found = answer(&problem, Settings::with_method(Method::ActiveSet));
         let strongest = found.multiplier.iter().fold(0.0_f64, |most, value| most.max(-value));
         let violation = problem.violation(&found.displacement);
-        let set = found.proven.expect("springs to the ground hold the body");
+        let set = found.proven.expect("the body is supported by springs to the ground");
         for row in set.undecided() {
             let strict = -found.multiplier[row] > 1e-6 * strongest || -violation[row] > 1e-6;
-            // Two rows on one dof share their force in no particular way.
+            // Two rows on one dof may divide their force in any ratio.
             undecided += usize::from(strict && !shares_its_dofs(&problem, row));
         }
     }
@@ -109,13 +109,13 @@ fn the_rows_of_the_examples_are_proven_at_default_settings() {
 
 #[test]
 fn a_grazing_row_is_undecided() {
-    // A spring of stiffness 2 under a force of 4 moves by 2, to the wall and no further.
+    // A spring of stiffness 2 under a force of 4 moves by 2, exactly to the wall.
     let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]).unwrap();
     let stiffness = SymmetricMatrix::from_lower(one(2.0)).unwrap();
     let problem = ContactProblem::new(stiffness, vec![4.0], one(1.0), vec![2.0]).unwrap();
     let found = answer(&problem, Settings::default());
     assert_eq!(found.proven.unwrap().undecided().collect::<Vec<_>>(), [0]);
-    // A thousandth more, and it is decided.
+    // A force that is larger or smaller by a thousandth decides the state.
     for (load, closed) in [(4.004, true), (3.996, false)] {
         let found = answer(&problem.with_load(vec![load]).unwrap(), Settings::default()).proven.unwrap();
         assert_eq!((found.closed.contains(0), found.open.contains(0)), (closed, !closed));
@@ -123,7 +123,7 @@ fn a_grazing_row_is_undecided() {
 }
 
 #[test]
-fn a_row_that_touches_without_force_is_undecided_in_an_answer_without_any_error() {
+fn a_row_that_touches_without_force_is_undecided_even_in_an_exact_answer() {
     let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]).unwrap();
     let problem =
         ContactProblem::new(SymmetricMatrix::from_lower(one(2.0)).unwrap(), vec![0.0], one(1.0), vec![0.0]).unwrap();
@@ -133,7 +133,8 @@ fn a_row_that_touches_without_force_is_undecided_in_an_answer_without_any_error(
 
 #[test]
 fn two_rows_that_share_both_their_dofs_are_proven_closed_by_a_shift_of_both() {
-    // No dof feels one of them alone. With K = 1 and B = (1, 1/2; 1/2, 1) forces of one at u = (1, 1) balance a load of 5/2.
+    // No dof belongs to only one of the rows. With K = 1 and B = (1, 1/2; 1/2, 1), forces of one at u = (1, 1) balance
+    // a load of 5/2.
     let unit = [(0, 0, 1.0), (1, 1, 1.0)];
     let rows = [(0, 0, 1.0), (0, 1, 0.5), (1, 0, 0.5), (1, 1, 1.0)];
     let matrix = |entries: &[(usize, usize, f64)]| SparseMatrix::from_triplets(2, 2, entries).unwrap();
@@ -144,7 +145,7 @@ fn two_rows_that_share_both_their_dofs_are_proven_closed_by_a_shift_of_both() {
 }
 
 #[test]
-fn of_two_equal_rows_neither_force_is_proven() {
+fn two_equal_rows_are_both_undecided() {
     let rows = SparseMatrix::from_triplets(2, 1, &[(0, 0, 1.0), (1, 0, 1.0)]).unwrap();
     let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 2.0)]).unwrap()).unwrap();
     let problem = ContactProblem::new(stiffness, vec![4.0], rows, vec![1.0, 1.0]).unwrap();

@@ -1,8 +1,8 @@
-//! GOAL: a problem of separate parts gets the answer that each part has for itself, in terms of the whole.
+//! GOAL: in a problem of separate parts, each part gets the answer that it has alone, in terms of the whole problem.
 //!
-//! CONDITIONS: 44 strings over obstacles, of 99 dofs each, stiffness over four decades; their dofs lie one beside another, so that
-//! no part is a range of dofs. Together they are large enough to be solved in pieces.
-//! REFERENCE: closed form, exact at the nodes; `certify`, which factorises the whole.
+//! CONDITIONS: 44 strings over obstacles, of 99 dofs each, with stiffness over four decades. The dofs of the strings
+//! alternate, so that no part is a range of dofs. Together the strings are large enough to be solved in pieces.
+//! REFERENCE: the closed form, which is exact at the nodes; `certify`, which factorises the whole problem.
 
 use crate::exact_solutions::ObstacleString;
 use signorini::{ContactProblem, Error, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve};
@@ -11,7 +11,7 @@ const STRINGS: usize = 44;
 const CELLS: usize = 100;
 const DOFS: usize = CELLS - 1;
 
-/// Load and gap of a string of unit stiffness whose contact begins at a node, another one for each string.
+/// Load and gap of a string of unit stiffness whose contact begins at a node, a different node for each string.
 fn closed_form(string: usize) -> ObstacleString {
     let (gap, edge) = (0.08, (5 + string) as f64 / CELLS as f64);
     ObstacleString { load: 2.0 * gap / (edge * edge), gap }
@@ -25,7 +25,7 @@ fn dof(string: usize, place: usize) -> usize {
     place * STRINGS + string
 }
 
-/// The strings; what `change` does to entries of K, load, entries of B and gaps comes on top.
+/// Entries of K, load, entries of B, and gaps of the strings; a test may change them.
 type Parts = (Vec<(usize, usize, f64)>, Vec<f64>, Vec<(usize, usize, f64)>, Vec<f64>);
 
 fn strings(change: impl FnOnce(&mut Parts)) -> ContactProblem {
@@ -58,17 +58,17 @@ fn check(problem: &ContactProblem, solution: &Solution) {
         for place in 0..DOFS {
             let exact = form.displacement((place + 1) as f64 / CELLS as f64);
             let found = solution.displacement[dof(string, place)];
-            // 1e-11: the condition number of a string, 4e3, times rounding, and room.
+            // 1e-11: the condition number of a string, 4e3, times rounding, with a margin.
             assert!((found - exact).abs() < 1e-11 * form.gap, "string {string}, place {place}: {found}, exact {exact}");
         }
         let force = -solution.multiplier[string * DOFS..(string + 1) * DOFS].iter().sum::<f64>() / stiffness_of(string);
         assert!((force - form.force()).abs() < 1e-9, "string {string}: force {force}, exact {}", form.force());
     }
-    assert_eq!(solution.attempts, [], "solved at once");
+    assert_eq!(solution.attempts, [], "the first attempt is certified");
     let whole = problem.certify(&solution.displacement, &solution.multiplier).unwrap();
     assert_eq!((whole.parts, solution.certificate.parts), (STRINGS, STRINGS));
     assert_eq!(whole.conditions(), solution.certificate.conditions());
-    // Both are upper bounds on one error, by a factor of the whole and by factors of the pieces.
+    // Both are upper bounds on the same error, one from the factor of the whole and one from the factors of the pieces.
     for (of_whole, of_pieces) in [
         (whole.energy_error_bound, solution.certificate.energy_error_bound),
         (whole.part_error_bound, solution.certificate.part_error_bound),
@@ -83,21 +83,23 @@ fn strings_side_by_side_are_each_exact_at_their_nodes() {
     for method in [Method::Auto, Method::ActiveSet, Method::qp(), Method::Mprgp] {
         let mut solution = solve(&problem, &Settings::with_method(method).with_proof()).unwrap();
         if method == Method::Mprgp {
-            // Its bound is 1e-10: the closed form is checked to what it has certified.
+            // The bound of MPRGP is about 1e-10; so only the bound is checked here, not the closed form.
             assert!(solution.certificate.energy_error_bound < 1e-9);
             continue;
         }
         let proven = solution.proven.take().unwrap();
-        // The row at the edge of the contact has no force and no distance: it stays undecided, or rounding decides it.
+        // The row at the edge of the contact has neither force nor distance: it stays undecided, or rounding decides
+        // it.
         assert!(proven.undecided().count() <= 2 * STRINGS, "{method:?}: {} undecided", proven.undecided().count());
         assert!(proven.closed.iter().all(|row| solution.contact_set.contains(row)));
         check(&problem, &solution);
     }
 }
 
-/// A loose answer has a bound far above rounding: that of the pieces is that of the whole, and no smaller than the error.
+/// The bound of a loose answer is far above rounding: the bound of the pieces equals that of the whole, and is not
+/// below the error.
 #[test]
-fn a_loose_bound_of_the_pieces_is_that_of_the_whole() {
+fn the_bound_of_the_pieces_of_a_loose_answer_equals_that_of_the_whole() {
     let problem = strings(|_| ());
     let exact = solve(&problem, &Settings::default()).unwrap();
     let mut settings = Settings::default();
@@ -105,7 +107,7 @@ fn a_loose_bound_of_the_pieces_is_that_of_the_whole() {
     let solution = solve(&problem, &settings).unwrap();
     let whole = problem.certify(&solution.displacement, &solution.multiplier).unwrap().energy_error_bound;
     let bound = solution.certificate.energy_error_bound;
-    // Both square and add the same errors of strings, which rounding leaves alone.
+    // Both sum the squared errors of the strings, which are far above rounding.
     assert!(bound > 1e-4 && (bound / whole - 1.0).abs() < 1e-6, "{bound:e} by pieces, {whole:e} as a whole");
     let moved: Vec<f64> = solution.displacement.iter().zip(&exact.displacement).map(|(u, exact)| u - exact).collect();
     let energy = |v: &[f64]| v.iter().zip(problem.stiffness().mul(v)).map(|(v, force)| v * force).sum::<f64>().sqrt();
@@ -120,7 +122,7 @@ fn the_history_shows_the_sets_of_all_parts() {
     assert!(solution.history.iter().all(|step| step.contact_set.rows() == STRINGS * DOFS));
 }
 
-/// A row without obstacle ties nothing together, though it reaches from string to string.
+/// A row without obstacle does not join its strings into one part.
 #[test]
 fn a_row_without_obstacle_changes_nothing() {
     let problem = strings(|(_, _, contact, gap)| {
@@ -132,9 +134,9 @@ fn a_row_without_obstacle_changes_nothing() {
     check(&problem, &solution);
 }
 
-/// The last string has lost its supports, and is pulled off its obstacle.
+/// The last string has no supports, and its load pulls it off its obstacle.
 #[test]
-fn a_part_that_flies_away_is_named_in_dofs_of_the_whole() {
+fn the_motion_of_an_unbounded_part_is_given_in_dofs_of_the_whole() {
     let (loose, h) = (STRINGS - 1, 1.0 / CELLS as f64);
     let problem = strings(|(entries, load, ..)| {
         for end in [0, DOFS - 1] {
@@ -148,9 +150,9 @@ fn a_part_that_flies_away_is_named_in_dofs_of_the_whole() {
     assert!((0..direction.len()).filter(moves).eq((0..DOFS).map(|place| dof(loose, place))));
 }
 
-/// The last string shall be above 0.1 and below 0 at one place.
+/// Two rows demand that the last string is above 0.1 and below 0 at one place.
 #[test]
-fn rows_that_contradict_each_other_are_named_as_rows_of_the_whole() {
+fn contradicting_rows_are_given_as_rows_of_the_whole() {
     let problem = strings(|(_, _, contact, gap)| {
         let own = dof(STRINGS - 1, 50);
         contact.extend([(gap.len(), own, 1.0), (gap.len() + 1, own, -1.0)]);
@@ -162,7 +164,7 @@ fn rows_that_contradict_each_other_are_named_as_rows_of_the_whole() {
 }
 
 #[test]
-fn a_time_that_is_over_leaves_an_answer_of_the_whole() {
+fn a_solve_without_time_left_returns_an_answer_of_the_whole() {
     let settings = Settings::default().with_time(std::time::Duration::ZERO);
     let Err(Error::NotCertified { solution, .. }) = solve(&strings(|_| ()), &settings) else { panic!() };
     assert_eq!((solution.displacement.len(), solution.multiplier.len()), (STRINGS * DOFS, STRINGS * DOFS));

@@ -1,4 +1,4 @@
-//! A watch: asked to stop from another thread, everything ends with what it has.
+//! A watch: if another thread asks to stop, every computation ends and returns what it has.
 
 use crate::program::scene;
 use serde_json::{Value, json};
@@ -8,7 +8,7 @@ use signorini::motion::Integrator;
 use signorini::study::{TradeoffGrid, compare, motion_tradeoff, sweep, tradeoff};
 use signorini::{Condense, Error, Method, Prepared, Scene, Settings, Solution, Watch, solve};
 
-/// A block of so many by so many cells under a parabola.
+/// A block of `cells` x `cells` cells under a parabola.
 fn block(cells: usize) -> Value {
     let mut block = scene();
     for axis in ["x", "y"] {
@@ -29,7 +29,7 @@ fn found(solved: Result<Solution, Error>) -> Solution {
     })
 }
 
-/// A watch that stops the work when this iteration of a step begins, or this part.
+/// A watch that stops the work when a given iteration or part of a step begins.
 fn stopping_at(step: &'static str, number: usize) -> Watch {
     Watch::observed(move |watch| {
         let now = watch.activity();
@@ -45,9 +45,9 @@ fn clones_share_the_request_and_the_activity_but_not_the_deadline() {
     let watch = Watch::default();
     let (clone, limited) = (watch.clone(), watch.within(0.0));
     assert!(limited.is_over() && !watch.is_over() && watch.time_left().is_none());
-    // The sooner deadline counts.
+    // The earlier deadline counts.
     assert!(limited.within(1e3).is_over() && watch.within(1e3).time_left().unwrap() > 1.0);
-    // No clock goes so far: that is no deadline.
+    // No clock can represent this time; there is no deadline then.
     assert!(watch.within(f64::MAX).time_left().is_none());
     clone.part("gap", 2, 3);
     limited.step("factorisation", 1);
@@ -60,7 +60,7 @@ fn clones_share_the_request_and_the_activity_but_not_the_deadline() {
 }
 
 #[test]
-fn what_is_stopped_before_it_begins_is_interrupted_whatever_the_method() {
+fn work_that_is_stopped_before_it_begins_is_interrupted_by_every_method() {
     let model = build(&block(8));
     for method in [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp] {
         let settings = Settings::with_method(method);
@@ -78,19 +78,19 @@ fn what_is_stopped_before_it_begins_is_interrupted_whatever_the_method() {
 }
 
 #[test]
-fn a_loop_that_is_stopped_ends_with_a_certified_part_of_its_way() {
+fn a_stopped_loop_returns_its_iterations_so_far_with_a_bound() {
     let model = build(&block(60));
-    // All dofs: every iteration is a factorisation.
+    // On all dofs every iteration needs a factorisation.
     let prepared = Prepared::new(model.problem(), &Settings::default().with_condensation(Condense::Never)).unwrap();
     let solved = |settings: &Settings| prepared.with_settings(settings).unwrap().solve(model.problem().gap());
     let mut settings = Settings::with_method(Method::penalty());
     let whole = found(solved(&settings));
     settings.watch = stopping_at("penalty loop", 3);
-    let Err(Error::NotCertified { solution, .. }) = solved(&settings) else { panic!("it was not cut short") };
+    let Err(Error::NotCertified { solution, .. }) = solved(&settings) else { panic!("the loop was not stopped") };
     let iterations = solution.iterations;
     assert!((3..whole.iterations).contains(&iterations), "{iterations} of {}", whole.iterations);
     assert_eq!(solution.history, whole.history[..iterations]);
-    // An answer with a bound: half way, but known how far.
+    // The answer is not final, but its error has a bound.
     let bound = solution.certificate.energy_error_bound;
     assert!(bound.is_finite() && bound > whole.certificate.energy_error_bound, "{bound}");
 
@@ -103,7 +103,7 @@ fn a_loop_that_is_stopped_ends_with_a_certified_part_of_its_way() {
 }
 
 #[test]
-fn interior_point_and_multigrid_notice_that_they_should_end() {
+fn interior_point_and_multigrid_end_early_on_request() {
     let model = build(&block(40));
     let prepared = Prepared::new(model.problem(), &Settings::default().with_condensation(Condense::Never)).unwrap();
     let solved = |settings: &Settings| prepared.with_settings(settings).unwrap().solve(model.problem().gap());
@@ -111,7 +111,7 @@ fn interior_point_and_multigrid_notice_that_they_should_end() {
     let mut settings = Settings::with_method(Method::Qp(unpolished));
     let whole = found(solved(&settings));
     settings.watch = stopping_at("interior point", 2);
-    let Err(Error::NotCertified { solution, .. }) = solved(&settings) else { panic!("it was not cut short") };
+    let Err(Error::NotCertified { solution, .. }) = solved(&settings) else { panic!("the solve was not stopped") };
     assert!(solution.iterations < whole.iterations, "{} of {}", solution.iterations, whole.iterations);
 
     let settings = Settings::with_method(Method::Mprgp);
@@ -122,7 +122,7 @@ fn interior_point_and_multigrid_notice_that_they_should_end() {
 }
 
 #[test]
-fn a_sweep_that_is_stopped_has_the_gaps_until_then() {
+fn a_stopped_sweep_returns_the_gaps_solved_so_far() {
     let model = build(&block(20));
     let gaps = even_gaps(0.0, -0.05, 400);
     let whole = sweep(&model, &gaps, &Settings::default()).unwrap();
@@ -139,7 +139,7 @@ fn a_sweep_that_is_stopped_has_the_gaps_until_then() {
 }
 
 #[test]
-fn a_tradeoff_that_is_stopped_has_the_points_until_then() {
+fn a_stopped_tradeoff_returns_the_points_measured_so_far() {
     let scene = Scene::from_json(&block(20).to_string(), "scene").unwrap();
     let watch = stopping_at("run", 4);
     let grid = TradeoffGrid { refinements: 0, runs: 1, ..TradeoffGrid::default() };
@@ -167,7 +167,7 @@ fn bar() -> Scene {
 }
 
 #[test]
-fn a_motion_that_is_stopped_stays_in_its_last_whole_step_and_goes_on_bit_for_bit() {
+fn a_stopped_motion_keeps_its_last_complete_step_and_resumes_bit_for_bit() {
     let scene = bar();
     let model = scene.build().unwrap();
     let dynamics = scene.dynamics(&model).unwrap().unwrap();
@@ -192,7 +192,7 @@ fn a_motion_that_is_stopped_stays_in_its_last_whole_step_and_goes_on_bit_for_bit
     assert_eq!(resumed.state(), whole.state());
 
     assert!(matches!(motion_tradeoff(&scene, &settings), Err(Error::Interrupted)));
-    // On a slow machine the time may be over before the preparation is done.
+    // On a slow machine the time may be over before the preparation is complete.
     let limited = |seconds: f64| {
         let mut settings = Settings::default();
         settings.watch = Watch::default().within(seconds);

@@ -1,4 +1,4 @@
-//! What solve, compare, sweep and export print and leave, in text and JSON.
+//! Output of solve, compare, sweep and export: text, JSON and files.
 
 use crate::program::{Desk, Problem, example, examples, scene};
 use crate::promised::{has, is_answer, vectors};
@@ -15,7 +15,7 @@ fn solve_prints_one_object_of_the_promised_form_for_every_example() {
 }
 
 #[test]
-fn solve_of_a_problem_directory_gives_the_answer_that_a_hand_finds() {
+fn solve_of_a_problem_directory_gives_the_answer_computed_by_hand() {
     let desk = Desk::new();
     desk.problem("p", &Problem::right());
     let run = desk.run(&["solve", "p", "--format", "json", "--out", "p"]).ends_with(0);
@@ -28,7 +28,7 @@ fn solve_of_a_problem_directory_gives_the_answer_that_a_hand_finds() {
 }
 
 #[test]
-fn each_method_answers_under_its_own_name() {
+fn each_answer_names_its_method() {
     let desk = Desk::new();
     desk.problem("p", &Problem::right());
     for (method, name, tolerance) in [
@@ -45,7 +45,7 @@ fn each_method_answers_under_its_own_name() {
 }
 
 #[test]
-fn condensed_and_full_problems_give_the_same_force_under_their_own_sizes() {
+fn condensed_and_full_problems_give_the_same_force_and_report_their_sizes() {
     let (desk, scene) = (Desk::new(), example("indentation"));
     let solve = |more: &[&str]| {
         let arguments = [&["solve", &scene, "--format", "json"], more].concat();
@@ -70,7 +70,7 @@ fn text_reports_show_title_units_force_and_certificate() {
         "certified to 1.0e-9",
         "K u - f - B' lambda",
     ] {
-        assert!(run.stdout.contains(phrase), "{}\nlacks {phrase:?}", run.stdout);
+        assert!(run.stdout.contains(phrase), "{}\ndoes not contain {phrase:?}", run.stdout);
     }
     assert!(run.stdout.lines().all(|line| line.chars().count() <= 100), "{}", run.stdout);
 }
@@ -104,7 +104,11 @@ fn sweep_certifies_every_gap_with_growing_force_and_width() {
     let report = desk.run(&arguments).ends_with(0).json();
     let points = report["points"].as_array().expect("an array");
     let gaps: Vec<f64> = points.iter().map(|point| point["gap"].as_f64().unwrap()).collect();
-    assert_eq!(gaps, [-0.01, -0.02, -0.03, -0.04, -0.05, -0.06, -0.07, -0.08, -0.09, -0.1], "as they are written");
+    assert_eq!(
+        gaps,
+        [-0.01, -0.02, -0.03, -0.04, -0.05, -0.06, -0.07, -0.08, -0.09, -0.1],
+        "the gaps are printed as written"
+    );
     let mut last = (0.0, 0.0);
     for point in points {
         is_answer(point, true);
@@ -116,7 +120,7 @@ fn sweep_certifies_every_gap_with_growing_force_and_width() {
     }
 }
 
-/// GOAL: the methods that a sweep may be told give its answers, with and without a factor.
+/// GOAL: a sweep by any method finds the same contact sets, with and without a factor.
 #[test]
 fn a_sweep_by_any_method_finds_the_same_contact_sets() {
     let desk = Desk::new();
@@ -135,9 +139,9 @@ fn a_sweep_by_any_method_finds_the_same_contact_sets() {
     }
 }
 
-/// GOAL: `--accuracy exact` takes a factor where the program would choose otherwise, and warns where it has no say.
+/// GOAL: `--accuracy exact` makes the program choose a factor, and gives a warning if it has no effect.
 #[test]
-fn an_exact_accuracy_is_the_linear_solve_of_the_settled_set() {
+fn an_exact_accuracy_chooses_the_active_set_and_warns_if_the_method_is_given() {
     let desk = Desk::new();
     let scene = example("indentation");
     let solve = ["solve", &scene, "--format", "json", "--accuracy", "exact"];
@@ -149,9 +153,9 @@ fn an_exact_accuracy_is_the_linear_solve_of_the_settled_set() {
     assert!(refused.contains("at most 0.1, as 1e-3, or `exact`"), "{refused}");
 }
 
-/// GOAL: what a proof costs stands by itself, and it is left out where it is not wanted.
+/// GOAL: the time of the proof is reported separately, and the proof can be omitted.
 #[test]
-fn a_proof_has_seconds_of_its_own_and_can_be_left_out() {
+fn the_time_of_a_proof_is_reported_separately_and_the_proof_can_be_omitted() {
     let desk = Desk::new();
     let scene = example("indentation");
     let with = desk.run(&["solve", &scene, "--format", "json"]).ends_with(0).json();
@@ -177,7 +181,7 @@ fn sweep_prints_one_line_for_each_gap_and_names_an_untitled_scene_by_its_file() 
 }
 
 #[test]
-fn an_obstacle_out_of_reach_is_certified_as_the_free_body() {
+fn an_obstacle_out_of_reach_gives_a_certified_answer_without_contact() {
     let desk = Desk::new();
     let mut far = scene();
     far["gap"] = json!(1);

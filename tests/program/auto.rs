@@ -1,4 +1,5 @@
-//! The choice left to the program: an accuracy or a time is named, the answer keeps to it or says how far it got.
+//! The program chooses the method for a requested accuracy or time; the answer meets the request or states what it
+//! reached.
 
 use crate::program::{Desk, example, examples};
 use signorini::qp::{Condense, Method, Precision, Prepared, Settings};
@@ -27,7 +28,7 @@ fn an_accuracy_is_reached_and_certified() {
                 settings.precision = precision;
                 let found = solve(&problem, &settings).unwrap();
                 let bound = found.certificate.energy_error_bound;
-                // Where no bound is known the conditions decide, to the tolerance.
+                // If no bound is known, the conditions decide, to the tolerance.
                 assert!(bound <= accuracy || (bound.is_infinite() && found.certificate.meets(1e-9)), "{name}");
                 assert!(error(&problem, &found, &exact) <= accuracy, "{name}, {accuracy:e}");
                 assert!(precision != Precision::Double || found.refinements.is_none());
@@ -37,7 +38,7 @@ fn an_accuracy_is_reached_and_certified() {
 }
 
 #[test]
-fn an_accuracy_beyond_rounding_comes_with_what_is_reachable() {
+fn an_accuracy_below_rounding_is_refused_with_the_reachable_one() {
     let problem = problem("indentation");
     match solve(&problem, &Settings::for_accuracy(1e-30)) {
         Err(Error::NotCertified { solution, condition, value, tolerance }) => {
@@ -49,7 +50,7 @@ fn an_accuracy_beyond_rounding_comes_with_what_is_reachable() {
 }
 
 #[test]
-fn a_time_that_suffices_changes_nothing_and_none_returns_what_there_is() {
+fn enough_time_gives_the_exact_answer_and_no_time_gives_one_that_is_not_certified() {
     let problem = problem("indentation");
     let exact = solve(&problem, &Settings::default()).unwrap();
     let mut enough = Settings::within(Duration::from_secs(1_000_000));
@@ -74,8 +75,8 @@ fn a_time_that_suffices_changes_nothing_and_none_returns_what_there_is() {
 }
 
 #[test]
-fn a_loop_that_is_out_of_time_ends_with_the_set_that_it_has() {
-    // All dofs: every iteration is a factorisation.
+fn a_loop_without_time_does_not_begin_and_a_stopped_loop_ends_after_one_iteration() {
+    // On all dofs every iteration needs a factorisation.
     let problem = problem("indentation");
     let prepared = Prepared::new(&problem, &Settings::default().with_condensation(Condense::Never)).unwrap();
     for method in [Method::ActiveSet, Method::penalty()] {
@@ -85,7 +86,7 @@ fn a_loop_that_is_out_of_time_ends_with_the_set_that_it_has() {
             matches!(prepared.with_settings(&settings).unwrap().solve(problem.gap()), Err(Error::OutOfTime { .. })),
             "{method:?}"
         );
-        // Asked to stop, it ends after the iteration that it is in.
+        // A loop that is asked to stop ends after the current iteration.
         settings.time = None;
         settings.watch.stop();
         match prepared.with_settings(&settings).unwrap().solve(problem.gap()) {
@@ -96,7 +97,7 @@ fn a_loop_that_is_out_of_time_ends_with_the_set_that_it_has() {
 }
 
 #[test]
-fn settings_that_are_no_accuracy_are_refused_by_name() {
+fn invalid_accuracies_are_refused_by_name() {
     let problem = problem("bar");
     for wrong in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
         let refused = solve(&problem, &Settings::for_accuracy(wrong));

@@ -1,9 +1,9 @@
-//! Scenes of a few hundred to some ten thousand dofs for the tests of memory and time.
+//! Scenes of a few hundred to some ten thousand dofs for the tests of memory and time limits.
 #![cfg(target_os = "linux")]
 
 use serde_json::{Value, json};
 
-/// A block of so many by so many cells, one unit high, under a parabola.
+/// A block of `cells` cells along x and y, one unit high, under a parabola.
 pub fn block(cells: [usize; 2], element: &str) -> Value {
     let width = cells[0] as f64 / cells[1] as f64;
     let axis = |length: f64, cells: usize| json!({"points": [0, length], "divisions": [cells]});
@@ -40,7 +40,7 @@ pub fn strip(cells: usize) -> Value {
     strip
 }
 
-/// The same, of a material that hardly changes its volume: a hierarchy is of no use, iterations on it stagnate.
+/// The same strip of a nearly incompressible material: iterations on a multigrid hierarchy stagnate.
 pub fn stiff_in_volume(cells: usize) -> Value {
     let mut strip = strip(cells);
     strip["material"]["poisson"] = json!(0.49999);

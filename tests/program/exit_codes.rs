@@ -1,4 +1,4 @@
-//! The exit code with which a command ends, and what a failure says in text and JSON.
+//! The exit code of a command, and the message of a failure in text and JSON.
 
 use crate::program::{Desk, Problem, example, matrix, scene};
 use crate::promised::is_answer;
@@ -13,11 +13,11 @@ fn exit_code_1_means_bad_input() {
     desk.run(&["compare", "bad.json"]).fails_with(1, &["missing field `body`"]);
     desk.run(&["sweep", "bad.json", "--gaps", "0:1:2"]).fails_with(1, &["missing field `body`"]);
     desk.run(&["export", "bad.json", "p"]).fails_with(1, &["missing field `body`"]);
-    assert!(!desk.path("p").exists(), "nothing is written of a scene that fails");
+    assert!(!desk.path("p").exists(), "a scene that fails writes no file");
 }
 
 #[test]
-fn exit_code_2_means_usage_and_says_what_is_expected() {
+fn exit_code_2_means_wrong_usage_and_the_message_names_what_is_expected() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
     for (arguments, phrase) in [
@@ -51,7 +51,7 @@ fn exit_code_2_means_usage_and_says_what_is_expected() {
 }
 
 #[test]
-fn exit_code_3_means_that_there_is_no_one_solution() {
+fn exit_code_3_means_that_there_is_no_unique_solution() {
     let desk = Desk::new();
     let cases = [
         ("infeasible", Problem::infeasible(), "contact rows 0 and 1 oppose each other"),
@@ -87,7 +87,7 @@ fn exit_code_4_means_an_answer_that_is_not_certified() {
     is_answer(&run.json(), true);
     assert_eq!(run.json()["status"], "not_certified");
     let strict = desk.run(&["solve", &example("indentation"), "--tolerance", "1e-30"]);
-    // What is left of the error is rounding of the displacement to doubles, and the report says so.
+    // The remaining error is rounding of the displacement to doubles, and the report says so.
     let strict = strict.ends_with(0);
     assert!(strict.stdout.contains("certified to 1.0e-30"), "{}", strict.stdout);
     assert!(strict.stdout.contains("explained by rounding the displacement to double precision"), "{}", strict.stdout);

@@ -1,4 +1,5 @@
-//! What is read and what is told of it: no pipe, nothing outside the folder of the scene, no content of other files.
+//! The files that the program reads, and what its messages reveal: no named pipes, no files outside the folder of the
+//! scene, no content of other files.
 #![cfg(target_os = "linux")]
 
 use std::fs;
@@ -9,7 +10,7 @@ use crate::program::{Desk, Problem, scene};
 use serde_json::json;
 
 #[test]
-fn a_named_pipe_is_refused_instead_of_waited_for() {
+fn a_named_pipe_is_refused_without_waiting() {
     let desk = Desk::new();
     desk.problem("p", &Problem::right());
     fs::remove_file(desk.path("p/g.mtx")).unwrap();
@@ -40,7 +41,7 @@ fn with_mesh(file: &str) -> String {
 }
 
 #[test]
-fn a_mesh_file_outside_the_folder_of_the_scene_is_read_only_where_that_is_allowed() {
+fn a_mesh_file_outside_the_folder_of_the_scene_is_read_only_if_that_is_allowed() {
     let desk = Desk::new();
     desk.write("outside.msh", mesh("block-t3.msh"));
     desk.write("s/below/inside.msh", mesh("block-t3.msh"));
@@ -64,7 +65,7 @@ fn a_mesh_file_outside_the_folder_of_the_scene_is_read_only_where_that_is_allowe
 }
 
 #[test]
-fn no_error_quotes_a_file_that_is_no_mesh() {
+fn no_error_quotes_a_file_that_is_not_a_mesh() {
     let desk = Desk::new();
     let secrets = ["hunter2:x:0\n", "$hunter2\n", "$Comments\nold\n$EndComments\nhunter2\n", "\n\n hunter2"];
     for secret in secrets {
@@ -76,7 +77,7 @@ fn no_error_quotes_a_file_that_is_no_mesh() {
 }
 
 #[test]
-fn no_error_quotes_a_file_that_a_link_leads_to_outside_the_folder() {
+fn no_error_quotes_a_file_outside_the_folder_that_a_link_points_to() {
     let secrets = [
         "hunter2:x:0\n",
         "%%MatrixMarket matrix hunter2 real general\n",
@@ -98,7 +99,7 @@ fn no_error_quotes_a_file_that_a_link_leads_to_outside_the_folder() {
                 let run = desk.run(&["solve", "p", "--format", format]).fails_with(1, &[&format!("p/{name}.mtx:")]);
                 assert!(!run.stderr.contains("hunter2") && !run.stdout.contains("hunter2"), "{}", run.stderr);
             }
-            // In the folder itself what is wrong is shown.
+            // For a file inside the folder, the error quotes the faulty text.
             fs::remove_file(&file).unwrap();
             fs::write(&file, secret).unwrap();
             desk.run(&["solve", "p"]).fails_with(1, &["hunter2"]);

@@ -1,11 +1,12 @@
-//! Habits of a good command: it tells shells and manuals of itself, says why it does what it does, and guesses what is meant.
+//! Conventions of command-line programs: completions, a manual page, reasons for decisions, and suggestions for
+//! misspelt names.
 
 use std::process::Command;
 
 use crate::program::{Desk, Problem, example, scene, vector};
 use serde_json::{Value, json};
 
-/// The names behind `Commands:` in the help.
+/// The names listed under `Commands:` in the help.
 fn commands(desk: &Desk) -> Vec<String> {
     let help = desk.run(&["--help"]).ends_with(0).stdout;
     let list = help.split("Commands:\n").nth(1).unwrap().split("\n\n").next().unwrap().to_string();
@@ -21,12 +22,12 @@ fn options(desk: &Desk, command: &str) -> Vec<String> {
 }
 
 #[test]
-fn completions_of_every_shell_know_commands_and_options() {
+fn completions_of_every_shell_contain_commands_and_options() {
     let desk = Desk::new();
     for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
         let script = desk.run(&["completions", shell]).ends_with(0).stdout;
         for word in commands(&desk).iter().map(String::as_str).chain(["total-error", "max-memory"]) {
-            assert!(script.contains(word), "{shell} lacks {word}");
+            assert!(script.contains(word), "{shell} does not contain {word}");
         }
     }
     desk.run(&["completions", "tcsh"]).ends_with(2);
@@ -61,19 +62,19 @@ fn the_page_of_the_manual_has_every_command_with_its_options() {
     let desk = Desk::new();
     let page = desk.run(&["man"]).ends_with(0).stdout;
     let plain = page.replace("\\-", "-");
-    assert_eq!(page.lines().filter(|line| line.starts_with(".TH ")).count(), 1, "one page");
-    assert_eq!(page.lines().filter(|line| line.starts_with(".ie ")).count(), 1, "set up once");
+    assert_eq!(page.lines().filter(|line| line.starts_with(".TH ")).count(), 1, "there is one title");
+    assert_eq!(page.lines().filter(|line| line.starts_with(".ie ")).count(), 1, "the macros are set up once");
     for command in commands(&desk) {
         let title = format!(".SH \"SIGNORINI {}\"\n", command.to_uppercase());
         let section = plain.split(&title).nth(1).unwrap_or_else(|| panic!("no section for {command}"));
         let section = section.split("\n.SH ").next().unwrap();
         for option in options(&desk, &command) {
-            assert!(section.contains(&option), "{command} lacks {option}: {section}");
+            assert!(section.contains(&option), "the section of {command} does not contain {option}: {section}");
         }
         assert!(section.contains("Example: signorini "), "{command}");
     }
     assert!(plain.contains(".SH \"EXIT STATUS\"\n.nf\n\\&Exit codes: 0 certified"));
-    // A line that begins with a dot is a request of roff.
+    // In roff, a line that begins with a dot is a request.
     let known = [".TH", ".SH", ".SS", ".TP", ".PP", ".IP", ".RS", ".RE", ".br", ".nf", ".fi", ".ie", ".el"];
     for line in page.lines().filter(|line| line.starts_with('.')) {
         assert!(known.iter().any(|request| line.starts_with(request)), "{line:?}");
@@ -81,7 +82,7 @@ fn the_page_of_the_manual_has_every_command_with_its_options() {
 }
 
 #[test]
-fn the_help_of_every_command_has_an_example_that_the_program_takes() {
+fn the_help_of_every_command_has_an_example_with_valid_arguments() {
     let desk = Desk::new();
     for command in commands(&desk) {
         let help = desk.run(&[&command, "--help"]).ends_with(0).stdout;
@@ -91,7 +92,7 @@ fn the_help_of_every_command_has_an_example_that_the_program_takes() {
         assert!(!calls.is_empty(), "{command}: {help}");
         for call in calls {
             let call = call.split(" > ").next().unwrap();
-            // Files that are missing end with 1, words that are none with 2.
+            // Missing files end with exit code 1, unknown words with 2.
             let arguments: Vec<&str> = call.split(' ').skip(1).collect();
             let run = desk.run(&arguments);
             assert!(run.code <= 1, "{call}: {}", run.stderr);
@@ -100,7 +101,7 @@ fn the_help_of_every_command_has_an_example_that_the_program_takes() {
 }
 
 #[test]
-fn the_help_of_solve_tells_three_knobs_apart() {
+fn the_help_of_solve_distinguishes_tolerance_accuracy_and_time() {
     let help = Desk::new().run(&["solve", "--help"]).ends_with(0).stdout;
     let words = ["--tolerance is how well", "--accuracy how far off", "--time when"];
     for word in words {
@@ -109,7 +110,7 @@ fn the_help_of_solve_tells_three_knobs_apart() {
 }
 
 #[test]
-fn an_answer_says_what_was_weighed_and_the_text_shows_the_same_numbers() {
+fn json_and_text_of_an_answer_show_the_same_estimates_of_both_methods() {
     let desk = Desk::new();
     let scene = example("indentation");
     let why = desk.run(&["solve", &scene, "--format", "json"]).ends_with(0).json()["why"].clone();
@@ -134,9 +135,10 @@ fn an_answer_says_what_was_weighed_and_the_text_shows_the_same_numbers() {
     assert!(shown.iter().all(|line| line.chars().count() <= 100), "{shown:?}");
 }
 
-/// An estimated error is that of an answer, which has its reason; a guaranteed one is of many answers, and says so.
+/// An estimated error belongs to one answer, whose reason is printed; a guaranteed error belongs to many answers, and a
+/// warning says so.
 #[test]
-fn an_error_against_the_continuum_is_explained_as_far_as_it_has_one_answer() {
+fn an_estimated_total_error_is_explained_and_a_guaranteed_one_warns() {
     let desk = Desk::new();
     let estimated = desk.run(&["solve", &example("ball"), "--total-error", "0.5", "--explain"]).ends_with(0);
     assert!(estimated.stdout.contains("\n  why "), "{}", estimated.stdout);
@@ -146,14 +148,14 @@ fn an_error_against_the_continuum_is_explained_as_far_as_it_has_one_answer() {
 }
 
 #[test]
-fn a_method_that_was_asked_for_is_why_enough() {
+fn a_requested_method_is_its_only_reason() {
     let run = Desk::new().run(&["solve", &example("ball"), "--format", "json", "--method", "active-set"]);
     let expected = json!({"chosen": "active-set", "reason": "by active-set: it was asked for", "considered": []});
     assert_eq!(run.ends_with(0).json()["why"], expected);
 }
 
 #[test]
-fn a_sweep_says_why_for_all_its_points() {
+fn a_sweep_gives_the_reason_for_its_method_at_every_point() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
     let swept = desk.run(&["sweep", "block.json", "--gaps", "0:-0.01:3", "--format", "json"]).ends_with(0).json();
@@ -163,7 +165,7 @@ fn a_sweep_says_why_for_all_its_points() {
 }
 
 #[test]
-fn a_name_that_is_nearly_right_is_answered_with_the_one_that_is_meant() {
+fn a_misspelt_name_is_answered_with_the_nearest_valid_name() {
     let desk = Desk::new();
     let wrong = |pointer: &str, value: Value| {
         let mut scene = scene();
@@ -196,16 +198,16 @@ fn a_name_that_is_nearly_right_is_answered_with_the_one_that_is_meant() {
     }
     let long = "x".repeat(1_000_000);
     assert!(!wrong("/supports/0/on", json!({"boundary": long})).ends_with(1).stderr.contains("did you mean"));
-    // A group of elements, of a mesh and of a body without groups.
+    // Groups of elements: an unknown group of a body without groups.
     let run = wrong("/materials", json!([{"group": "stel", "material": {"young": 1, "poisson": 0}}]));
     assert!(run.ends_with(1).stderr.contains("the body has none"));
-    // Options and methods are those of the command line.
+    // Misspelt options and methods on the command line.
     let run = desk.run(&["solve", "wrong.json", "--method", "activ-set"]).ends_with(2);
     assert!(run.stderr.contains("a similar value exists: 'active-set'"), "{}", run.stderr);
 }
 
 #[test]
-fn a_group_that_is_nearly_right_is_answered_with_the_one_that_is_meant() {
+fn a_misspelt_group_is_answered_with_the_nearest_valid_group() {
     let desk = Desk::new();
     let mesh = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/two-parts-q8.msh");
     std::fs::copy(mesh, desk.path("part.msh")).unwrap();
@@ -227,8 +229,8 @@ fn a_group_that_is_nearly_right_is_answered_with_the_one_that_is_meant() {
     assert!(run.stderr.contains(&format!("did you mean `{name}`?")), "{}", run.stderr);
 }
 
-/// Four springs of stiffness 4 in a row, the end pushed with force 3 towards a wall at 4: it goes to 3 by itself, and a wall at g takes
-/// 3 - g of it.
+/// Four springs of stiffness 4 in a row; a force of 3 pushes the end towards a wall at 4. Without contact the end moves
+/// to 3; a wall at g carries the force 3 - g.
 fn springs(desk: &Desk) {
     let k = ["1 1 8", "2 1 -4", "2 2 8", "3 2 -4", "3 3 8", "4 3 -4", "4 4 4"];
     let k = crate::program::matrix("symmetric", "4 4", &k);
@@ -236,7 +238,7 @@ fn springs(desk: &Desk) {
     desk.problem("p", &Problem { k, f: vector(&["0", "0", "0", "3"]), b, g: vector(&["4"]) });
 }
 
-/// K = [[2, -1], [-1, 2]], f = (1, 1), u_2 <= 2, which is out of reach.
+/// K = [[2, -1], [-1, 2]], f = (1, 1), u_2 <= 2; this wall is out of reach.
 fn problem(desk: &Desk) {
     desk.problem("p", &Problem { g: vector(&["2"]), ..Problem::right() });
 }
@@ -253,7 +255,7 @@ fn a_problem_directory_is_swept_from_its_gaps_to_others() {
         assert_eq!((&point["t"], &point["status"]), (&json!(t), &json!("certified")));
         assert!((point["contact"]["force"].as_f64().unwrap() - force).abs() < 1e-12, "{point:#}");
     }
-    // The wall is at 3 half way.
+    // The wall is at 3 after half of the sweep.
     let [event] = &swept["events"].as_array().unwrap()[..] else { panic!("{:#}", swept["events"]) };
     assert!((event["t"].as_f64().unwrap() - 0.5).abs() < 1e-12, "{event:#}");
     assert_eq!((&event["row"], &event["touches"]), (&json!(0), &json!(true)));
@@ -270,10 +272,10 @@ fn a_problem_directory_is_swept_to_another_load_and_to_both() {
     let desk = Desk::new();
     problem(&desk);
     desk.write("p/f1.mtx", vector(&["5", "5"]));
-    // Without contact u = f; u_2 <= 2 closes at f = 2; then lambda = (3 g - 3 f) / 2.
+    // Without contact u = f; the row u_2 <= 2 closes at f = 2; then lambda = (3 g - 3 f) / 2.
     let force_at = |points: &str| -> Vec<f64> {
         let swept = desk.run(&["sweep", "p", "--points", points, "--format", "json"]).ends_with(0).json();
-        assert!(swept.get("events").is_none(), "nothing is known between");
+        assert!(swept.get("events").is_none(), "a sweep of loads reports no events");
         swept["points"].as_array().unwrap().iter().map(|point| point["contact"]["force"].as_f64().unwrap()).collect()
     };
     let near = |found: &[f64], expected: &[f64]| {
@@ -286,7 +288,7 @@ fn a_problem_directory_is_swept_to_another_load_and_to_both() {
 }
 
 #[test]
-fn what_a_sweep_of_a_problem_directory_lacks_is_named() {
+fn missing_or_wrong_input_of_a_sweep_of_a_problem_directory_is_named() {
     let desk = Desk::new();
     problem(&desk);
     desk.run(&["sweep", "p", "--points", "3"]).fails_with(1, &["p/g1.mtx", "it is missing, and so is f1.mtx"]);
@@ -315,7 +317,7 @@ fn a_solve_starts_from_the_answer_of_an_earlier_one() {
     assert!(first["iterations"].as_u64().unwrap() > 2, "{first:#}");
     assert_eq!(again["iterations"], 1, "{again:#}");
     assert_eq!(again["contact"]["count"], first["contact"]["count"]);
-    // The other ways take it too: multigrid needs fewer cycles, the QP settles its set at once.
+    // The other methods also use the start: multigrid needs fewer cycles, and the QP ends with its first set.
     let cycles = |more: &[&str]| {
         let arguments = [&["solve", "p", "--method", "mprgp", "--format", "json"], more].concat();
         desk.run(&arguments).ends_with(0).json()["iterations"].as_u64().unwrap()
@@ -364,11 +366,11 @@ fn a_scene_is_drawn_before_it_is_solved() {
         "candidates for contact (5)",
         "obstacle at gap −0.01 m",
     ] {
-        assert!(svg.contains(words), "no {words}");
+        assert!(svg.contains(words), "the picture does not contain {words}");
     }
     desk.run(&["draw", "block.json", "--out", "set-up.PNG"]).ends_with(0);
     assert!(std::fs::read(desk.path("set-up.PNG")).unwrap().starts_with(b"\x89PNG"));
-    // What is not there is not in the legend.
+    // The legend omits what the scene does not contain.
     scene["loads"] = json!([]);
     scene.as_object_mut().unwrap().remove("springs");
     desk.write("block.json", scene.to_string());
@@ -388,25 +390,26 @@ fn a_picture_of_another_kind_or_of_a_bar_is_refused() {
 }
 
 #[test]
-fn the_set_up_in_space_shows_what_is_held_and_what_may_touch() {
+fn the_picture_of_a_set_up_in_space_shows_supports_and_contact_candidates() {
     let desk = Desk::new();
     desk.run(&["draw", &example("ball"), "--out", "ball.svg"]).ends_with(0);
     let svg = std::fs::read_to_string(desk.path("ball.svg")).unwrap();
     for words in ["set-up", "candidates for contact", "obstacle", ">body<", ">held<"] {
-        assert!(svg.contains(words), "no {words}");
+        assert!(svg.contains(words), "the picture does not contain {words}");
     }
-    // No load stands in the scene.
+    // The scene has no load.
     assert!(!svg.contains(">loaded<"));
 }
 
-/// Runs the program on a terminal of its own, tells what the terminal shows, and ends it once that has `phrase`.
+/// Runs the program on a new terminal, returns what the terminal shows, and ends the program once that contains
+/// `phrase`.
 #[cfg(target_os = "linux")]
 fn on_terminal(desk: &Desk, arguments: &[&str], phrase: &str) -> String {
     let script = "import os, pty, sys
 child, terminal = pty.fork()
 if child == 0:
     os.execv(sys.argv[1], [sys.argv[1]] + sys.argv[3:])
-# Bytes that are joined one by one would be copied anew with every piece.
+# Joining immutable bytes would copy everything with every piece.
 shown = bytearray()
 while not sys.argv[2] or sys.argv[2].encode() not in shown:
     try:
@@ -428,13 +431,17 @@ sys.stdout.buffer.write(shown)";
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_terminal_shows_the_share_that_is_done_and_the_time_left_unless_it_shall_be_quiet() {
+fn a_terminal_shows_progress_and_the_time_left_unless_quiet_is_given() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
     let shown = on_terminal(&desk, &["sweep", "block.json", "--gaps", "0:-0.1:10000", "--out", "o"], " left: ");
-    let line = shown.rsplit("\r\x1b[K").find(|line| line.contains(" left: ")).expect("a line of progress").to_string();
+    let line = shown
+        .rsplit("\r\x1b[K")
+        .find(|line| line.contains(" left: "))
+        .expect("the terminal shows a line of progress")
+        .to_string();
     assert!(line.starts_with('[') && line.contains(" % gap ") && line.contains(" of 10000, "), "{line:?}");
-    // As many gaps again take as long as it took until then, and show nothing.
+    // Without progress, twice as many gaps are solved, so that the run takes about twice as long.
     let gap: usize = line.split("gap ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     let gaps = format!("0:-0.1:{}", (2 * gap).min(10_000));
     let quiet = on_terminal(&desk, &["sweep", "block.json", "--gaps", &gaps, "--format", "json", "--quiet"], "");

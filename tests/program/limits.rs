@@ -1,4 +1,4 @@
-//! Limits of memory and of files: what is too large is refused by name before it is built or read.
+//! Limits of memory and of files: input that is too large is refused by name before it is built or read.
 #![cfg(target_os = "linux")]
 
 use std::fs;
@@ -13,22 +13,24 @@ use signorini::{Scene, SparseMatrix, SymmetricMatrix};
 /// The estimate and the measured peak may differ by this factor.
 const WITHIN: f64 = 2.0;
 
-/// The whole address space of the program, in kB, when it refuses a scene of 1e12 elements: most of it is its own code.
+/// The whole address space of the program, in kB, when it refuses a scene of 1e12 elements: most is the code of the
+/// program.
 const REFUSAL_KILOBYTES: u32 = 20_000;
 
 /// The address space, in kB, in which hostile files are refused; one announces rows of 800 MB.
 const FILE_KILOBYTES: u32 = 400_000;
 
-/// The address space, in kB, that matrix products reserve: twice the cache of the third level, where the machine tells it.
+/// The address space, in kB, that matrix products reserve: twice the third-level cache, if the machine reports its
+/// size.
 fn packed_kilobytes() -> u32 {
     let size = fs::read_to_string("/sys/devices/system/cpu/cpu0/cache/index3/size").unwrap_or_default();
     2 * size.trim().trim_end_matches('K').parse().unwrap_or(0)
 }
 
-/// Seconds of processor time in which a refusal ends that takes milliseconds; to look at 1e12 elements would take minutes.
+/// Seconds of processor time for a refusal. It takes milliseconds; a loop over 1e12 elements would take minutes.
 const REFUSAL_SECONDS: u32 = 10;
 
-/// Runs the program in an address space of so many kB, for as long as a refusal may take.
+/// Runs the program in an address space of `kilobytes` kB, with the processor time of a refusal.
 fn confined(desk: &Desk, kilobytes: u32, arguments: &str) -> Run {
     let script = format!(
         "ulimit -v {kilobytes}; ulimit -t {REFUSAL_SECONDS}; exec '{}' {arguments}",
@@ -36,7 +38,7 @@ fn confined(desk: &Desk, kilobytes: u32, arguments: &str) -> Run {
     );
     let output = Command::new("sh").args(["-c", &script]).current_dir(desk.path(".")).output().unwrap();
     Run {
-        code: output.status.code().expect("an exit code, not a signal"),
+        code: output.status.code().expect("the program ends with an exit code, not by a signal"),
         stdout: String::from_utf8(output.stdout).unwrap(),
         stderr: String::from_utf8(output.stderr).unwrap(),
     }
@@ -127,7 +129,7 @@ fn an_export_takes_the_memory_of_the_model_alone_within_a_factor_of_two() {
         desk.write("scene.json", scene.to_string());
         for form in ["matrix-market", "petsc"] {
             let export = ["export", "scene.json", form, "--format", form];
-            let estimate = told(&desk.run(&[&export[..], &["--max-memory", "1MB"]].concat()).ends_with(1));
+            let estimate = named_memory(&desk.run(&[&export[..], &["--max-memory", "1MB"]].concat()).ends_with(1));
             let peak = desk.peak(&export);
             let ratio = estimate / peak;
             assert!(ratio < WITHIN && ratio > 0.9, "{ratio:.2} of the peak {peak:e}: {form}, {}", scene["body"]);
@@ -136,8 +138,8 @@ fn an_export_takes_the_memory_of_the_model_alone_within_a_factor_of_two() {
     }
 }
 
-/// The memory that a refusal tells, in bytes.
-fn told(run: &Run) -> f64 {
+/// The memory named in a refusal, in bytes.
+fn named_memory(run: &Run) -> f64 {
     let (_, needed) = run.stderr.split_once("needs about ").unwrap_or_else(|| panic!("{}", run.stderr));
     let mut words = needed.split(' ');
     let number: f64 = words.next().unwrap().parse().unwrap();
@@ -161,9 +163,13 @@ fn the_estimate_of_a_problem_directory_is_within_a_factor_of_two_of_the_peak() {
         for options in ["--method active-set", "--method active-set --no-condense", "--method mprgp"] {
             let arguments: Vec<&str> = ["solve", "p"].into_iter().chain(options.split(' ')).collect();
             let refused = desk.run(&[&arguments[..], &["--max-memory", "1MB"]].concat());
-            let estimate = told(&refused.fails_with(1, &["1 MB are allowed", "of the stiffness"]));
+            let estimate = named_memory(&refused.fails_with(1, &["1 MB are allowed", "of the stiffness"]));
             let ratio = estimate / desk.peak(&arguments);
-            assert!(ratio < WITHIN && ratio > 1.0 / WITHIN, "{ratio:.2} of the peak: {options:?}, {}", scene["body"]);
+            assert!(
+                ratio < WITHIN && ratio > 1.0 / WITHIN,
+                "{ratio:.2} of the peak with {options:?}, {}",
+                scene["body"]
+            );
         }
         fs::remove_dir_all(desk.path("p")).unwrap();
     }
@@ -212,7 +218,7 @@ fn a_scene_of_a_million_million_elements_is_refused_at_once_and_without_memory()
 }
 
 #[test]
-fn max_memory_refuses_with_the_size_and_lets_pass_what_fits() {
+fn max_memory_refuses_a_scene_with_its_size_and_accepts_one_that_fits() {
     let desk = Desk::new();
     desk.write("scene.json", rectangle([200, 200], "q4").to_string());
     for command in [&["compare", "scene.json"][..], &["solve", "scene.json", "--method", "qp"]] {
@@ -237,7 +243,7 @@ fn max_memory_refuses_with_the_size_and_lets_pass_what_fits() {
 }
 
 #[test]
-fn files_that_announce_more_than_they_hold_are_refused_without_the_memory() {
+fn files_with_fewer_entries_than_announced_are_refused_without_reserving_memory() {
     let desk = Desk::new();
     let right = Problem::right;
     let cases = [
@@ -257,7 +263,7 @@ fn files_that_announce_more_than_they_hold_are_refused_without_the_memory() {
 }
 
 #[test]
-fn files_without_end_are_read_up_to_a_cap() {
+fn endless_files_are_read_up_to_a_cap() {
     let desk = Desk::new();
     confined(&desk, FILE_KILOBYTES, "solve /dev/zero").fails_with(1, &["/dev/zero", "longer than 64 MB"]);
     desk.problem("p", &Problem::right());
@@ -270,10 +276,10 @@ fn files_without_end_are_read_up_to_a_cap() {
         "mesh.json",
         clamped("plane-strain", body, "a", "b", "+y", json!({"body": {"boundary": ""}})).to_string(),
     );
-    // A scene is held against what is left beside the blocks that matrix products reserve.
+    // A scene is compared with the memory left beside the blocks that matrix products reserve.
     confined(&desk, FILE_KILOBYTES + packed_kilobytes(), "solve mesh.json --allow-outside")
         .fails_with(1, &["/dev/zero", "longer than 64 MB"]);
-    // A sparse file of 1 GB takes no place on the disk.
+    // A sparse file of 1 GB occupies no space on the disk.
     fs::File::create(desk.path("long.json")).unwrap().set_len(1 << 30).unwrap();
     confined(&desk, FILE_KILOBYTES, "solve long.json").fails_with(1, &["long.json", "longer than 256 MB"]);
     desk.write("u.mtx", vector(&["1"]));
@@ -299,9 +305,9 @@ fn a_panic_of_a_library_is_an_error_with_its_message() {
     assert!(beyond.unwrap_err().contains("None"));
 }
 
-/// What cannot be solved is no number, which no certificate accepts.
+/// A system that cannot be solved yields NaN, which no certificate accepts.
 #[test]
-fn a_right_hand_side_of_another_length_gives_no_number() {
+fn a_right_hand_side_of_wrong_length_yields_nan() {
     let matrix = SparseMatrix::from_triplets(2, 2, &[(0, 0, 2.0), (1, 1, 3.0)]).unwrap();
     let cholesky = Cholesky::of(&SymmetricMatrix::from_lower(matrix).unwrap()).unwrap();
     assert!(cholesky.solve(&[2.0, 3.0]).iter().all(|x| (x - 1.0_f64).abs() < 1e-14));

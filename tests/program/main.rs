@@ -1,4 +1,4 @@
-//! The program: its command line, its limits, its process, the choices that it makes.
+//! The program: its command line, its limits, its process, and its decisions.
 
 #[path = "../support/program.rs"]
 mod program;

@@ -1,4 +1,4 @@
-//! A limit of memory is kept: the peak stays below it, and a refusal names the least that suffices.
+//! A memory limit is kept: the peak stays below it, and a refusal names the smallest sufficient limit.
 #![cfg(target_os = "linux")]
 
 use std::fs;
@@ -25,11 +25,15 @@ fn measured(desk: &Desk, arguments: &[&str]) -> (i32, String, f64) {
         std::thread::sleep(Duration::from_micros(200));
     }
     let output = child.wait_with_output().unwrap();
-    (output.status.code().expect("an exit code, no signal"), String::from_utf8(output.stderr).unwrap(), peak)
+    (
+        output.status.code().expect("the program ends with an exit code, not by a signal"),
+        String::from_utf8(output.stderr).unwrap(),
+        peak,
+    )
 }
 
 #[test]
-fn the_peak_of_memory_stays_below_the_limit_and_a_limit_refuses_or_certifies() {
+fn the_peak_of_memory_stays_below_the_limit_and_runs_are_refused_or_certified() {
     let desk = Desk::new();
     let scenes = [
         block([80, 80], "q4"),
@@ -44,7 +48,7 @@ fn the_peak_of_memory_stays_below_the_limit_and_a_limit_refuses_or_certifies() {
         let name = format!("scene{number}.json");
         desk.write(&name, scene.to_string());
         for options in ["--method auto", "--method auto --no-condense", "--method qp --no-condense", "--method mprgp"] {
-            // What fails without a limit may fail with one.
+            // A run that fails without a limit may fail with one.
             let free: Vec<&str> = ["solve", &name].into_iter().chain(options.split(' ')).collect();
             let (without, ..) = measured(&desk, &free);
             for megabytes in [30, 45, 65, 90] {
@@ -65,16 +69,17 @@ fn the_peak_of_memory_stays_below_the_limit_and_a_limit_refuses_or_certifies() {
     assert!(solved > 30 && refused > 10, "{solved} solved, {refused} refused");
 }
 
-/// Where memory is short the factor of the stiffness makes room for those of the contact sets, and is made again.
+/// If memory is short, the factor of the stiffness is dropped for those of the contact sets, and computed again.
 #[test]
-fn the_least_memory_that_a_refusal_tells_suffices() {
+fn the_memory_limit_named_in_a_refusal_suffices() {
     let desk = Desk::new();
     desk.write("strip.json", stiff_in_volume(800).to_string());
     let solve = ["solve", "strip.json", "--format", "json"];
     let free = desk.run(&solve).ends_with(0).json();
     let refused = desk.run(&[&solve[..], &["--max-memory", "50MB"]].concat()).ends_with(1).stderr;
-    let told = refused.split_once("a factor of the stiffness it takes about ").unwrap_or_else(|| panic!("{refused}")).1;
-    let megabytes = told.split(' ').next().unwrap().parse::<f64>().unwrap() + 1.0;
+    let named =
+        refused.split_once("a factor of the stiffness it takes about ").unwrap_or_else(|| panic!("{refused}")).1;
+    let megabytes = named.split(' ').next().unwrap().parse::<f64>().unwrap() + 1.0;
     let limit = format!("{megabytes}MB");
     let (code, said, peak) = measured(&desk, &[&solve[..], &["--max-memory", &limit]].concat());
     assert!(code == 0 && peak <= 1e6 * megabytes && peak > 0.5e6 * megabytes, "{limit}: {code}, {peak:e}, {said}");
@@ -86,7 +91,7 @@ fn the_least_memory_that_a_refusal_tells_suffices() {
 }
 
 #[test]
-fn a_limit_of_memory_tries_what_fits_and_tells_what_failed() {
+fn a_limit_of_memory_tries_methods_that_fit_and_names_those_that_failed() {
     let problem =
         Scene::from_json(&stiff_in_volume(800).to_string(), "strip").unwrap().build().unwrap().problem().clone();
     let within = |memory: f64| {
@@ -119,7 +124,7 @@ fn a_limit_of_memory_tries_what_fits_and_tells_what_failed() {
 }
 
 #[test]
-fn a_refusal_names_the_least_memory_that_suffices() {
+fn a_smaller_memory_than_the_named_one_is_refused() {
     for scene in [strip(300), block([60, 60], "q4"), block([40, 40], "q8")] {
         let problem = Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap().problem().clone();
         for condense in [Condense::Auto, Condense::Never] {
@@ -137,17 +142,17 @@ fn a_refusal_names_the_least_memory_that_suffices() {
                 (memory, refusals) = (1.0001 * bytes, refusals + 1);
             }
             assert!(refusals > 0);
-            assert!(matches!(prepared(0.99 * memory), Err(Error::TooLarge { .. })), "less than {memory} is enough");
+            assert!(matches!(prepared(0.99 * memory), Err(Error::TooLarge { .. })), "less than {memory} suffices");
         }
     }
 }
 
-/// In an address space of any size a run ends with an answer or with one sentence.
+/// In an address space of any size, a run ends with an answer or with an error of one sentence.
 #[test]
-fn where_memory_cannot_be_had_the_program_says_so_and_ends() {
+fn a_run_whose_memory_allocation_fails_ends_with_one_sentence() {
     let desk = Desk::new();
     let scenes = [block([120, 120], "q4"), cube(12, "hex8"), strip(600)];
-    // Matrix products reserve twice the cache of the third level: on machines where that is large, all limits are larger.
+    // Matrix products reserve twice the third-level cache; on machines with a large cache, all limits are larger.
     let cache = std::fs::read_to_string("/sys/devices/system/cpu/cpu0/cache/index3/size").unwrap_or_default();
     let cache_kilobytes: u64 = cache.trim().trim_end_matches('K').parse().unwrap_or(0);
     let more = (2 * 1024 * cache_kilobytes).saturating_sub(64 << 20) / 1_000_000;

@@ -1,4 +1,4 @@
-//! A run of a motion: resumed from its own files alone, and ended on request.
+//! A run of a motion is resumed from its files alone, and ends on request.
 #![cfg(target_os = "linux")]
 
 use std::fs;
@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use crate::program::Desk;
 use serde_json::{Value, json};
 
-/// A bar of 20 cells that flies against a wall, 120 steps a unit of time.
+/// A bar of 20 cells that flies against a wall, with 120 steps per unit of time.
 fn bar(duration: f64, frames: usize) -> Value {
     json!({
         "model": "bar",
@@ -20,7 +20,7 @@ fn bar(duration: f64, frames: usize) -> Value {
     })
 }
 
-/// What a folder of a motion says of its end: the whole history and the last state.
+/// The end of a motion in its output folder: the whole history and the last state.
 fn end(desk: &Desk, folder: &str) -> (String, Value) {
     let text = |name: &str| fs::read_to_string(desk.path(folder).join(name)).unwrap();
     let mut checkpoint: Value = serde_json::from_str(&text("checkpoint.json")).unwrap();
@@ -33,7 +33,7 @@ fn end(desk: &Desk, folder: &str) -> (String, Value) {
 #[test]
 fn a_resumed_motion_goes_on_to_a_longer_duration_bit_for_bit() {
     let desk = Desk::new();
-    // Neither duration is a whole number of steps, and only in the second the bar touches the wall.
+    // Neither duration is a whole number of steps, and the bar touches the wall only in the second.
     for (name, duration, frames) in [("short", 0.4012, 5), ("long", 1.7034, 12)] {
         desk.write(&format!("{name}.json"), bar(duration, frames).to_string());
     }
@@ -43,7 +43,7 @@ fn a_resumed_motion_goes_on_to_a_longer_duration_bit_for_bit() {
     let run = desk.run(&["solve", "long.json", "--out", "parts", "--resume", "--format", "json"]).ends_with(0);
     assert!(run.json()["contact"]["impulse"].as_f64().unwrap() > 0.0);
     assert_eq!(end(&desk, "parts"), end(&desk, "whole"));
-    // Neither back in time, nor to another scene.
+    // A motion is resumed neither to an earlier time nor with another scene.
     let back = desk.run(&["solve", "short.json", "--out", "parts", "--resume"]);
     back.fails_with(1, &["at `analysis.dynamic.duration`", "step 205 already"]);
     let mut other = bar(1.7034, 12);
@@ -60,7 +60,7 @@ fn a_request_to_terminate_ends_a_run_as_an_interrupt_does() {
     let arguments = ["solve", "bar.json", "--out", "o", "--format", "json"];
     let mut child = desk.command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     while !desk.path("o/series-00003.vtu").exists() {
-        assert!(child.try_wait().unwrap().is_none(), "it ended before it could be terminated");
+        assert!(child.try_wait().unwrap().is_none(), "the run ended before it could be terminated");
         std::thread::yield_now();
     }
     assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
@@ -72,9 +72,9 @@ fn a_request_to_terminate_ends_a_run_as_an_interrupt_does() {
     assert!(report["steps"].as_u64().unwrap() > 0, "{report}");
 }
 
-/// What a run is resumed from is its own: nothing else is told of, waited for, or cut off.
+/// A run is resumed only from its own files: the content of other files is neither quoted, waited for, nor cut off.
 #[test]
-fn a_motion_is_resumed_from_its_own_files_only() {
+fn a_motion_is_resumed_only_from_files_that_it_wrote() {
     let desk = Desk::new();
     desk.write("bar.json", bar(0.1, 4).to_string());
     let begun = |desk: &Desk| desk.run(&["solve", "bar.json", "--out", "run"]).ends_with(0);

@@ -1,4 +1,4 @@
-//! A first scene for a mesh: it runs as it is written.
+//! The command `new` writes a first scene for a mesh, which runs without changes.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::process::Command;
 
 use crate::program::Desk;
 
-/// Meshes that Gmsh wrote, of every element.
+/// Mesh files from Gmsh, of every element.
 fn meshes() -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes");
     let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -21,7 +21,7 @@ fn copied(desk: &Desk, name: &str) {
 }
 
 #[test]
-fn the_first_scene_of_every_mesh_is_certified_as_it_is_written() {
+fn the_first_scene_of_every_mesh_is_certified_without_changes() {
     let names = meshes();
     assert!(names.len() >= 8, "{names:?}");
     for name in names {
@@ -33,7 +33,7 @@ fn the_first_scene_of_every_mesh_is_certified_as_it_is_written() {
         assert!(text.starts_with(&format!("// A first scene for {name}")), "{text}");
         let report = desk.run(&["solve", "scene.json", "--format", "json"]).ends_with(0).json();
         assert_eq!(report["status"], "certified", "{name}");
-        // The plate presses: it has a travel, and the sum of its forces is the one of the scene.
+        // The plate presses the body: it has a travel, and the sum of its forces is the force in the scene.
         assert!(report["resultants"][0]["travel"].as_f64().unwrap() > 0.0, "{name}: {}", report["resultants"]);
     }
 }
@@ -51,7 +51,7 @@ fn two_commands_lead_from_a_mesh_to_an_answer() {
 }
 
 #[test]
-fn a_first_scene_lists_what_the_file_has_and_guesses_its_unit() {
+fn a_first_scene_lists_the_groups_of_the_file_and_guesses_its_unit() {
     let desk = Desk::new();
     copied(&desk, "two-parts-q8.msh");
     let metres = desk.run(&["new", "two-parts-q8.msh"]).ends_with(0).stdout;
@@ -65,7 +65,7 @@ fn a_first_scene_lists_what_the_file_has_and_guesses_its_unit() {
 }
 
 #[test]
-fn lines_of_comment_leave_the_places_of_errors_alone() {
+fn comment_lines_do_not_change_the_line_numbers_of_errors() {
     let desk = Desk::new();
     desk.write("scene.json", "// a comment\n{\n  // another\n  \"Gap\": 1\n}\n");
     desk.run(&["solve", "scene.json"]).fails_with(1, &["scene.json:4:", "unknown field `Gap`"]);

@@ -1,7 +1,7 @@
-//! The process: killed, interrupted, out of space or run again, it leaves whole files or none.
+//! A process that is killed, interrupted, out of disk space or run again leaves only complete files.
 //!
-//! No clock: a test waits for what the program shows, a line of `--progress` or a file, and then acts on work that is far
-//! from its end. A run that ended all the same before the test could act is repeated.
+//! The tests read no clock: a test waits for output of the program, a line of `--progress` or a file, and then acts on
+//! work that is far from its end. If a run ends before the test can act, it is repeated.
 #![cfg(unix)]
 
 use crate::program::{Desk, Run, example, scene};
@@ -10,16 +10,17 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// How a file that waits to take its place is called.
+/// Start of the name of a file that is complete before it is renamed to its place.
 const WAITING: &str = ".signorini-";
 
-/// A run may end before the test can act on it, but not so often in a row, however busy the machine is.
+/// Largest number of repetitions: a run may end before the test can act on it, but not this often in a row, even on a
+/// busy machine.
 const TRIES: usize = 50;
 
-/// How the line of progress is taken back.
+/// The characters that erase the progress line.
 const ERASED: &str = "\r\x1b[K";
 
-/// Asserts that every file in its place is whole, and tells how many there are.
+/// Asserts that every file in its place is complete, and returns the number of files.
 fn whole(folder: &Path) -> usize {
     let Ok(entries) = fs::read_dir(folder) else { return 0 };
     let mut count = 0;
@@ -57,7 +58,7 @@ fn whole(folder: &Path) -> usize {
                 let first = text.lines().next().map_or(0, cells);
                 assert!(text.ends_with('\n') && text.lines().all(|line| cells(line) == first), "{name} is broken");
             }
-            _ => panic!("what is {name}?"),
+            _ => panic!("{name} has an unknown kind"),
         }
     }
     count
@@ -68,14 +69,14 @@ fn a_kill_at_any_moment_leaves_no_broken_file() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
     let there = || fs::read_dir(desk.path("o")).map_or(0, Iterator::count);
-    // Pictures take their time: few runs draw them.
+    // Pictures take long, so only a few runs draw them.
     let runs: [(&[&str], usize); 2] =
         [(&["export", "block.json", "o"], 40), (&["solve", "block.json", "--out", "o"], 6)];
     for (arguments, kills) in runs {
         fs::remove_dir_all(desk.path("o")).unwrap_or(());
         desk.run(arguments).ends_with(0);
         let all = whole(&desk.path("o"));
-        // As many kills at each number of files, those counted that wait to take their place.
+        // The same number of kills at each number of files, including temporary files that are not yet renamed.
         for files in 0..=all {
             let mut killed = 0;
             for _ in 0..TRIES * kills {
@@ -84,24 +85,24 @@ fn a_kill_at_any_moment_leaves_no_broken_file() {
                 while there() < files && child.try_wait().unwrap().is_none() {
                     std::thread::yield_now();
                 }
-                // By SIGKILL.
+                // Ends the program by SIGKILL.
                 child.kill().unwrap();
                 let is_early = !child.wait().unwrap().success();
-                // With the last file there may be nothing left to do.
+                // When the last file exists, the program may have finished.
                 killed += usize::from(is_early || files == all);
                 whole(&desk.path("o"));
                 if killed == kills {
                     break;
                 }
             }
-            assert_eq!(killed, kills, "{arguments:?} always ended before it could be killed at {files} files");
+            assert_eq!(killed, kills, "{arguments:?} ended too often before it could be killed at {files} files");
         }
     }
 }
 
-/// Files may grow to so many blocks only: the k-th write that needs more fails.
+/// The size of files is limited to `blocks` blocks: the first write beyond the limit fails.
 #[test]
-fn a_write_that_fails_is_named_and_leaves_only_whole_files() {
+fn a_failed_write_is_named_and_leaves_only_complete_files() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
     let (mut failed, mut passed) = (0, 0);
@@ -131,7 +132,7 @@ fn a_write_that_fails_is_named_and_leaves_only_whole_files() {
     assert!(failed >= 6 && passed >= 3, "{failed} failed, {passed} passed");
 }
 
-/// A block of so many by so many cells.
+/// A block of `x` by `y` cells.
 fn block(x: usize, y: usize) -> Value {
     let mut block = scene();
     for (axis, cells) in [("x", x), ("y", y)] {
@@ -140,20 +141,20 @@ fn block(x: usize, y: usize) -> Value {
     block
 }
 
-/// The first run that `event` shows to be under way, that is then interrupted, and that was `cut` short by it. The folder
-/// `o` holds what it left.
+/// The first run that is interrupted after `event` and that `cut` accepts as interrupted early. The folder `o` holds
+/// its files.
 fn interrupted(desk: &Desk, arguments: &[&str], event: &str, cut: impl Fn(&Run) -> bool) -> Run {
     let mut runs = (0..TRIES).map(|_| {
         fs::remove_dir_all(desk.path("o")).unwrap_or(());
         let mut run = desk.start(arguments);
-        assert!(run.waits_for(event), "{arguments:?} never came to {event:?}");
+        assert!(run.waits_for(event), "{arguments:?} did not show {event:?}");
         run.interrupt();
         run.ends(true)
     });
-    runs.find(|run| run.code == 130 && cut(run)).expect("a run that was cut short")
+    runs.find(|run| run.code == 130 && cut(run)).expect("no run was interrupted early")
 }
 
-/// Whether it notices the interrupt behind the factorisation or is ended in it depends on the machine.
+/// It depends on the machine whether the program notices the interrupt after the factorisation or is ended during it.
 #[test]
 fn an_interrupt_of_a_factorisation_ends_the_program_without_an_answer() {
     let desk = Desk::new();
@@ -165,7 +166,7 @@ fn an_interrupt_of_a_factorisation_ends_the_program_without_an_answer() {
     assert_eq!(whole(&desk.path("o")), 0);
 }
 
-/// A program that waits for the reader of its report looks no more whether it should end.
+/// While the program waits for the reader of its report, it does not check for requests to stop.
 #[test]
 fn an_interrupt_that_is_not_noticed_ends_the_program() {
     let desk = Desk::new();
@@ -177,9 +178,9 @@ fn an_interrupt_that_is_not_noticed_ends_the_program() {
     assert_eq!(run.stderr, "interrupted\n");
 }
 
-/// The first is noticed, and leads to a report that nobody reads.
+/// The first interrupt is noticed, and leads to a report that nobody reads.
 #[test]
-fn a_second_interrupt_does_not_wait() {
+fn a_second_interrupt_ends_the_program_at_once() {
     let desk = Desk::new();
     desk.write("block.json", block(40, 20).to_string());
     let mut run = desk.start(&["sweep", "block.json", "--gaps", "0:-0.1:10000", "--format", "json"]);
@@ -193,10 +194,10 @@ fn a_second_interrupt_does_not_wait() {
     assert!(said.len() == 2 && said[1] == "interrupted", "{said:?}");
 }
 
-/// The ladder of penalties on all dofs: a factorisation for each of its iterations, each with an answer. On a slow machine
-/// a small body has iterations that end soon enough after the interrupt, on a fast one a large body has enough to do.
+/// The ladder of penalties on all dofs: every iteration is a factorisation and yields an answer. On a slow machine, the
+/// iterations of a small body end soon enough after the interrupt; on a fast machine, a large body runs long enough.
 #[test]
-fn an_interrupted_solve_tells_the_best_answer_that_it_has() {
+fn an_interrupted_solve_reports_its_best_answer() {
     let desk = Desk::new();
     let arguments = ["solve", "block.json", "--method", "penalty", "--no-condense", "--format", "json", "--out", "o"];
     let mut runs = [100, 50, 150].into_iter().cycle().take(TRIES).map(|cells| {
@@ -204,17 +205,17 @@ fn an_interrupted_solve_tells_the_best_answer_that_it_has() {
         interrupted(&desk, &arguments, "penalty loop, iteration 2", |_| true)
     });
     let has_answer = |run: &Run| !run.stdout.is_empty() && run.json()["status"] == "not_certified";
-    let run = runs.find(has_answer).expect("a run that was interrupted with an answer");
+    let run = runs.find(has_answer).expect("no interrupted run reported an answer");
     let report = run.json();
     assert!(report["certificate"]["energy_error_bound"].as_f64().is_some_and(|bound| bound > 0.0), "{report}");
     assert!(report["contact"]["force"].as_f64().is_some_and(|force| force > 0.0), "{report}");
     assert!(run.stderr.ends_with("interrupted: the report is of what was found until then\n"), "{}", run.stderr);
-    // Answer with its tables, and report; pictures would take too long.
+    // The answer with its tables, and the report; pictures would take too long.
     assert_eq!(whole(&desk.path("o")), 6);
 }
 
 #[test]
-fn an_interrupted_sweep_tells_the_gaps_that_were_done() {
+fn an_interrupted_sweep_reports_the_gaps_solved_so_far() {
     let desk = Desk::new();
     desk.write("block.json", block(40, 20).to_string());
     let arguments = ["sweep", "block.json", "--gaps", "0:-0.1:10000", "--format", "json", "--out", "o"];
@@ -226,11 +227,11 @@ fn an_interrupted_sweep_tells_the_gaps_that_were_done() {
 }
 
 #[test]
-fn an_interrupted_tradeoff_tells_the_points_that_were_measured() {
+fn an_interrupted_tradeoff_reports_the_points_measured_so_far() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
     let arguments = ["tradeoff", "block.json", "--runs", "1000", "--format", "json"];
-    // Every way has been run once by then, on the first mesh.
+    // By then every method has run once on the first mesh.
     let run = interrupted(&desk, &arguments, "run 101 of ", |run| {
         !run.stdout.is_empty() && run.json()["points"].as_array().unwrap().iter().all(|point| point["mesh"] == 0)
     });
@@ -238,7 +239,7 @@ fn an_interrupted_tradeoff_tells_the_points_that_were_measured() {
     assert!(run.stderr.starts_with("interrupted in run "), "{}", run.stderr);
 }
 
-/// A bar that flies against a wall and back for so long.
+/// A bar that flies against a wall and back, for the given duration.
 fn bar(duration: f64) -> Value {
     serde_json::json!({
         "model": "bar",
@@ -249,11 +250,11 @@ fn bar(duration: f64) -> Value {
     })
 }
 
-/// Longer than anybody waits: a hundred million steps and more.
+/// A duration that no test waits for: more than a hundred million steps.
 const ENDLESS: f64 = 1e6;
 
 #[test]
-fn an_interrupted_motion_leaves_its_frames_and_is_resumed_bit_for_bit() {
+fn an_interrupted_motion_keeps_its_frames_and_is_resumed_bit_for_bit() {
     let desk = Desk::new();
     desk.write("bar.json", bar(20.0).to_string());
     desk.run(&["solve", "bar.json", "--out", "all"]).ends_with(0);
@@ -277,11 +278,13 @@ fn a_motion_ends_at_its_time_limit() {
     let mut runs = ["0.5", "5", "50"]
         .iter()
         .map(|limit| desk.run(&["solve", "bar.json", "--time-limit", limit, "--format", "json"]).ends_with(4));
-    let run = runs.find(|run| run.stderr.starts_with("out of time after step ")).expect("a motion that began");
+    let run = runs
+        .find(|run| run.stderr.starts_with("out of time after step "))
+        .expect("no motion began before its time limit");
     assert_eq!(run.json()["status"], "not_certified");
 }
 
-/// Ten runs write the same bytes, the seconds in the report apart.
+/// Ten runs write the same bytes, except the seconds in the report.
 #[test]
 fn ten_runs_write_the_same_bytes() {
     let desk = Desk::new();
@@ -316,18 +319,18 @@ fn without_seconds(value: &mut Value) {
     }
 }
 
-/// Work that lasts longer than a second on every machine: a second is what passes before a terminal shows anything.
+/// The work lasts longer than a second on every machine; a terminal shows nothing during the first second.
 #[test]
-fn no_progress_is_shown_where_nobody_watches() {
+fn no_progress_is_shown_without_a_terminal() {
     let desk = Desk::new();
     desk.write("bar.json", bar(ENDLESS).to_string());
     let run = desk.run(&["solve", "bar.json", "--time-limit", "1.5"]).ends_with(4);
-    // That its time is over, and nothing else.
+    // The message says only that the time is over.
     assert!(run.stderr.lines().count() == 1 && !run.stderr.contains('\r'), "{:?}", run.stderr);
 }
 
 #[test]
-fn each_step_is_a_line_where_progress_is_asked_for() {
+fn the_option_progress_prints_a_line_for_each_step() {
     let desk = Desk::new();
     let run = desk.run(&["solve", &example("indentation"), "--out", "o", "--progress"]).ends_with(0);
     let steps: Vec<&str> = run.stderr.lines().map(|line| line.strip_prefix("progress: ").unwrap()).collect();
@@ -339,8 +342,8 @@ fn each_step_is_a_line_where_progress_is_asked_for() {
     assert!(run.stderr.contains("progress: gap 3 of 3\n"), "{}", run.stderr);
 }
 
-/// Runs the program with standard error on a terminal and tells what it drew there; it is interrupted as soon as it has
-/// drawn all of `awaited`, and then must end with 130, else with 0.
+/// Runs the program with standard error on a terminal and returns what it drew there. As soon as all of `awaited` is
+/// drawn, the program is interrupted and must end with 130; if `awaited` is empty, it must end with 0.
 fn drawn(desk: &Desk, arguments: &[&str], awaited: &[&str]) -> String {
     let script = "import os, pty, re, signal, sys
 program, count, *rest = sys.argv[1:]
@@ -371,7 +374,7 @@ sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))";
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// What is left on a terminal that erases its last line at each `ERASED`, and all that it showed.
+/// The text that remains on a terminal which erases its last line at each `ERASED`, and all texts that it showed.
 fn left_and_shown(drawn: &str) -> (&str, Vec<&str>) {
     let mut lines: Vec<&str> = drawn.split(ERASED).collect();
     let left = lines.pop().unwrap();
@@ -380,7 +383,7 @@ fn left_and_shown(drawn: &str) -> (&str, Vec<&str>) {
 }
 
 #[test]
-fn on_a_terminal_long_work_shows_what_it_does_and_leaves_nothing_of_it() {
+fn long_work_shows_its_progress_on_a_terminal_and_erases_it() {
     let desk = Desk::new();
     desk.write("block.json", block(100, 100).to_string());
     let awaited = ["\\] [0-9]+ % gap [0-9]+ of 10000, ", " s left: "];
@@ -390,16 +393,16 @@ fn on_a_terminal_long_work_shows_what_it_does_and_leaves_nothing_of_it() {
     assert!(left.starts_with("interrupted in gap ") && left.lines().count() == 1, "{left:?}");
 
     desk.write("large.json", block(1000, 500).to_string());
-    // What is done in the second that has begun depends on the machine.
+    // The step that runs after the first second depends on the machine.
     let awaited = ["[0-9] s (passed|left of this): (ordering|factorisation|certificate|report)"];
     let drawn_by_solve = drawn(&desk, &["solve", "large.json", "--method", "active-set"], &awaited);
     let (left, _) = left_and_shown(&drawn_by_solve);
     assert!(left.contains("interrupted") && left.lines().count() == 1, "{drawn_by_solve:?}");
 }
 
-/// It is short where the machine is not very slow; the first second shows nothing anywhere.
+/// This work is short except on a very slow machine; during the first second nothing is shown on any machine.
 #[test]
-fn on_a_terminal_short_work_shows_nothing() {
+fn short_work_shows_no_progress_on_a_terminal() {
     let drawn = drawn(&Desk::new(), &["solve", &example("bar")], &[]);
     let (left, shown) = left_and_shown(&drawn);
     assert!(left.is_empty() && shown.iter().all(|line| !line.starts_with("0 s passed")), "{drawn:?}");

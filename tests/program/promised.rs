@@ -1,4 +1,4 @@
-//! The promised form of JSON reports.
+//! The documented form of JSON reports.
 
 use crate::program::Desk;
 use serde_json::Value;
@@ -14,7 +14,7 @@ pub fn has(value: &Value, fields: &[(&str, &str)]) {
             "count" => field.is_u64(),
             "string" => field.is_string(),
             "bool" => field.is_boolean(),
-            other => panic!("no kind {other}"),
+            other => panic!("{other} is not a kind"),
         };
         assert!(fits, "{name} is {field}, not a {kind}, in {value:#}");
     }
@@ -28,7 +28,7 @@ pub const CERTIFICATE: [(&str, &str); 5] = [
     ("duality_gap", "number"),
 ];
 
-/// Asserts the promised form of one answer.
+/// Asserts the documented form of one answer.
 #[track_caller]
 pub fn is_answer(answer: &Value, of_scene: bool) {
     has(answer, &[("status", "string"), ("method", "string"), ("iterations", "count"), ("tolerance", "number")]);
@@ -36,7 +36,8 @@ pub fn is_answer(answer: &Value, of_scene: bool) {
     has(&answer["contact"], &[("count", "count"), ("force", "number")]);
     assert_eq!(answer["contact"]["pressure_max"].is_f64(), of_scene, "{answer:#}");
     has(&answer["certificate"], &CERTIFICATE);
-    let bound = answer["certificate"].get("energy_error_bound").expect("a bound, or null where none is known");
+    let bound =
+        answer["certificate"].get("energy_error_bound").expect("the field is a bound, or null if no bound is known");
     assert!(bound.is_f64() || bound.is_null(), "{bound}");
     has(&answer["model"], &[("dofs", "count"), ("contact_rows", "count"), ("condensed_dofs", "count")]);
     has(

@@ -1,4 +1,5 @@
-//! The printed schema of a scene: every example conforms to it, and what it refuses the program refuses too.
+//! The printed schema of a scene: every example conforms to it, and the program refuses every scene that the schema
+//! refuses.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +7,8 @@ use std::path::Path;
 use crate::program::{Desk, example, examples, scene};
 use serde_json::{Value, json};
 
-/// Does `value` have the form of `schema`? As far as the words that the schema of a scene uses.
+/// Returns an error if `value` does not have the form of `schema`. Supports the keywords that the schema of a scene
+/// uses.
 fn conforms(value: &Value, schema: &Value, root: &Value) -> Result<(), String> {
     let keys = |value: &Value| value.as_object().map(|map| map.keys().cloned().collect::<Vec<_>>()).unwrap_or_default();
     for word in keys(schema) {
@@ -71,7 +73,7 @@ fn conforms(value: &Value, schema: &Value, root: &Value) -> Result<(), String> {
         return Err(format!("{value} is not {}", schema["const"]));
     }
     if schema["enum"].as_array().is_some_and(|choices| !choices.contains(value)) {
-        return Err(format!("{value} is none of {}", schema["enum"]));
+        return Err(format!("{value} is not one of {}", schema["enum"]));
     }
     for (word, allowed) in [("oneOf", 1..=1), ("anyOf", 1..=usize::MAX)] {
         if let Some(choices) = schema[word].as_array() {
@@ -124,7 +126,7 @@ fn every_example_conforms_to_the_printed_schema_and_a_misspelt_one_does_not() {
     }
 }
 
-/// The scenes of `tests/wrong_scenes.json`: what is wrong, and the scene.
+/// The scenes of `tests/wrong_scenes.json`: a description of the fault, and the scene.
 fn wrong_scenes() -> Vec<(String, Value)> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/wrong_scenes.json");
     let file: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
@@ -144,7 +146,7 @@ fn wrong_scenes() -> Vec<(String, Value)> {
 }
 
 #[test]
-fn what_the_schema_refuses_the_program_refuses_too() {
+fn the_program_refuses_every_scene_that_the_schema_refuses() {
     let desk = Desk::new();
     let schema = desk.run(&["schema"]).ends_with(0).json();
     let file = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/wrong_scenes.json")).unwrap();
@@ -155,10 +157,10 @@ fn what_the_schema_refuses_the_program_refuses_too() {
     let wrong = wrong_scenes();
     assert!(wrong.len() >= 20, "{}", wrong.len());
     for (what, scene) in wrong {
-        assert!(conforms(&scene, &schema, &schema).is_err(), "the schema takes {what}");
+        assert!(conforms(&scene, &schema, &schema).is_err(), "the schema accepts {what}");
         desk.write("wrong.json", scene.to_string());
         let run = desk.run(&["solve", "wrong.json"]);
-        assert_eq!(run.code, 1, "the program takes {what}: {}{}", run.stdout, run.stderr);
+        assert_eq!(run.code, 1, "the program accepts {what}: {}{}", run.stdout, run.stderr);
     }
 }
 

@@ -1,4 +1,4 @@
-//! The command line at a terminal: help, what is read and written, and what a title must not do to it.
+//! The command line at a terminal: help, standard input and output, and titles with control characters.
 
 use std::fs;
 use std::io::Read;
@@ -10,7 +10,7 @@ use serde_json::json;
 const COMMANDS: [&str; 9] = ["solve", "compare", "sweep", "draw", "export", "verify", "schema", "completions", "man"];
 
 #[test]
-fn no_arguments_show_the_help() {
+fn a_call_without_arguments_shows_the_help() {
     let run = Desk::new().run(&[]).ends_with(2);
     for command in COMMANDS {
         assert!(run.stderr.contains(command), "{}", run.stderr);
@@ -54,7 +54,7 @@ fn a_schema_address_a_byte_order_mark_and_standard_input_are_accepted() {
 }
 
 #[test]
-fn a_title_cannot_steer_the_terminal() {
+fn control_characters_in_a_title_are_escaped() {
     let desk = Desk::new();
     let mut loud = scene();
     loud["title"] = json!("red \u{1b}[31m\nand\u{7} loud");
@@ -70,7 +70,7 @@ fn a_title_cannot_steer_the_terminal() {
 }
 
 #[test]
-fn a_reader_that_goes_away_makes_no_panic() {
+fn a_closed_reader_causes_no_panic() {
     let desk = Desk::new();
     for arguments in [&["schema"][..], &["solve", &example("indentation"), "--format", "json"], &["--help"], &[]] {
         let mut child = desk.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();

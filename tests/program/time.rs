@@ -1,4 +1,4 @@
-//! A limit of time is kept, and attempts that failed count in it and are named.
+//! A time limit is kept; it includes failed attempts, which the report names.
 #![cfg(target_os = "linux")]
 
 use std::sync::{Arc, Mutex};
@@ -10,8 +10,8 @@ use serde_json::{Value, json};
 use signorini::{Error, Method, Scene, Settings, Watch, solve};
 
 #[test]
-fn time_of_failed_attempts_counts_and_they_are_named() {
-    // A factor in single precision is too poor for so slender cells.
+fn time_of_failed_attempts_is_included_and_the_attempts_are_named() {
+    // A factor in single precision is not accurate enough for cells this slender.
     let problem = Scene::from_json(&strip(300).to_string(), "strip").unwrap().build().unwrap().problem().clone();
     let mut settings = Settings::for_accuracy(1e-30);
     settings.precision = signorini::qp::Precision::Mixed;
@@ -24,28 +24,28 @@ fn time_of_failed_attempts_counts_and_they_are_named() {
 }
 
 #[test]
-fn a_step_that_is_estimated_to_take_longer_than_there_is_time_does_not_begin() {
+fn a_step_with_a_longer_estimate_than_the_time_left_does_not_begin() {
     let watch = Watch::default();
-    // Without a deadline everything may begin.
+    // Without a deadline every step may begin.
     assert!(watch.allows(1e9) && watch.keeping(1e9).time_left().is_none());
     let hour = watch.within(3600.0);
     assert!(hour.allows(3000.0) && !hour.allows(4000.0));
-    // An hour less ten minutes for one more step.
+    // An hour minus ten minutes that are kept for one more step.
     let left = hour.keeping(600.0).time_left().unwrap();
     assert!((2900.0..=3000.0).contains(&left), "{left}");
     assert!(hour.keeping(4000.0).is_over() && !hour.is_over());
-    // What took at least a hundred times its estimate makes all that follows take as much longer.
+    // After a step that took at least a hundred times its estimate, all later estimates are multiplied by this ratio.
     hour.timed(0.001, || std::thread::sleep(Duration::from_millis(100)));
     assert!(hour.needed(1.0) >= 100.0 && !hour.allows(36.0) && !watch.within(3600.0).allows(36.0));
     assert!(hour.unhurried().allows(1e9));
 }
 
 #[test]
-fn no_way_begins_a_step_that_its_time_does_not_suffice_for() {
+fn no_method_begins_a_step_for_which_its_time_does_not_suffice() {
     let model = Scene::from_json(&block([60, 60], "q4").to_string(), "block").unwrap().build().unwrap();
     for method in [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp] {
         for condense in [signorini::qp::Condense::Auto, signorini::qp::Condense::Never] {
-            // On a machine where everything takes a million times as long, a minute is nothing.
+            // On a machine that is a million times slower, a minute suffices for no step.
             let mut settings = Settings::within(Duration::from_secs(60));
             (settings.method, settings.condense, settings.tolerance) = (method, condense, 1e-6);
             let fast = solve(model.problem(), &settings).unwrap();
@@ -64,7 +64,7 @@ fn no_way_begins_a_step_that_its_time_does_not_suffice_for() {
     }
 }
 
-/// A flat strip of Q8 cells that touches with all its rows: the bound on its boundary takes longer than all else.
+/// A flat strip of Q8 cells with all rows closed: the bound on its boundary takes longer than all other steps.
 fn touching(cells: usize) -> Value {
     let mut scene = block([cells, 2], "q8");
     scene["obstacles"][0]["shape"] = json!({"plane": {"point": [0, 1], "normal": [0, 1]}});
@@ -72,7 +72,7 @@ fn touching(cells: usize) -> Value {
 }
 
 #[test]
-fn a_certificate_that_is_asked_to_end_leaves_a_weaker_bound() {
+fn a_stopped_certificate_returns_a_larger_bound() {
     let model = Scene::from_json(&touching(300).to_string(), "touching").unwrap().build().unwrap();
     let solved = |stops: bool| {
         let began = Arc::new(Mutex::new(None));
@@ -101,8 +101,8 @@ fn a_certificate_that_is_asked_to_end_leaves_a_weaker_bound() {
 }
 
 #[test]
-fn an_answer_comes_by_a_fifth_more_than_its_time() {
-    // Of the machine: other tests run beside this one.
+fn an_answer_takes_at_most_a_fifth_more_than_its_time_limit() {
+    // Delay of the machine, in seconds: other tests run beside this one.
     const DELAY: f64 = 1.5;
     let desk = Desk::new();
     desk.write("touching.json", touching(1000).to_string());
@@ -120,7 +120,7 @@ fn an_answer_comes_by_a_fifth_more_than_its_time() {
 }
 
 #[test]
-fn a_failed_attempt_stands_in_the_report_with_its_time_and_its_reason() {
+fn a_failed_attempt_is_reported_with_its_time_and_its_reason() {
     let desk = Desk::new();
     desk.write("strip.json", strip(300).to_string());
     let arguments = ["solve", "strip.json", "--precision", "mixed"];
@@ -132,7 +132,7 @@ fn a_failed_attempt_stands_in_the_report_with_its_time_and_its_reason() {
     assert!(attempt["method"] == "active-set" && attempt["reason"].as_str().unwrap().contains("single precision"));
     let seconds = |value: &Value| value.as_f64().unwrap();
     assert!(seconds(&report["seconds"]["total"]) > seconds(&attempt["seconds"]), "{report}");
-    // What needs but one attempt tells of none.
+    // A solve without a failed attempt reports no attempts.
     let report = desk.run(&["solve", "strip.json", "--format", "json"]).ends_with(0).json();
     assert!(report.get("attempts").is_none(), "{report}");
 }

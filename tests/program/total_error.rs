@@ -1,4 +1,4 @@
-//! The guaranteed total error: what it promises, what it takes, what is refused.
+//! The guaranteed total error: its bounds, its cost, and the scenes that are refused.
 
 use crate::plane_scenes::{of_column, shown};
 use crate::program::Desk;
@@ -37,35 +37,35 @@ pub fn solved(scene: &Value, arguments: &[&str]) -> (i32, Value, String) {
 }
 
 #[test]
-fn the_classical_scene_takes_few_unknowns() {
+fn the_classical_scene_takes_at_most_the_unknowns_of_a_prototype() {
     let (code, report, _) = solved(&classical(0.3), &["--total-error", "1e-2"]);
     assert_eq!((code, &report["status"], &report["ended"]), (0, &json!("certified"), &json!("goal")));
     assert_eq!(report["total_error"]["guaranteed"], true);
     let levels = report["levels"].as_array().unwrap();
     let number = |level: &Value, name: &str| level[name].as_f64().unwrap();
     let first_below = |bound: f64| levels.iter().find(|level| number(level, "bound") <= bound).unwrap();
-    // The unknowns that an independent prototype took.
+    // The numbers of unknowns of an independent prototype.
     assert!(number(first_below(0.05), "dofs") <= 1312.0 && number(first_below(0.01), "dofs") <= 6142.0, "{report}");
     let [low, high] = [0, 1].map(|end| report["force_interval"][end].as_f64().unwrap());
     // The force on a mesh of 66,202 unknowns lies between 70939.1 and 70942.3.
     assert!(low < 70939.2 && 70942.2 < high && (high - low) / 2.0 < 1e-3 * low, "{low} {high}");
     let own = &report["own_mesh"];
     assert!(own["element"] == "Q4" && own["total_error"]["bound"].as_f64().unwrap() > 0.2, "{own}");
-    // The rate from 3 % on, over the unknowns.
+    // The rate with respect to the number of unknowns, from 3 % on.
     let (from, to) = (first_below(0.03), levels.last().unwrap());
     let rate = (number(from, "bound") / number(to, "bound")).ln() / (number(to, "dofs") / number(from, "dofs")).ln();
     assert!(rate > 0.95, "{rate}");
 }
 
 #[test]
-fn near_incompressibility_takes_not_many_more() {
+fn a_nearly_incompressible_block_takes_less_than_15000_unknowns() {
     let (code, report, _) = solved(&classical(0.4999), &["--total-error", "1e-2"]);
     assert_eq!(code, 0);
     assert!(report["levels"].as_array().unwrap().last().unwrap()["dofs"].as_f64().unwrap() < 15_000.0, "{report}");
 }
 
-/// What is quadratic is exact on the first mesh. The head would move by b h^2/2M with the modulus M of a column that cannot bulge;
-/// the plane presses it back.
+/// A quadratic displacement is exact on the first mesh. With the modulus M of a column that cannot bulge, the head
+/// would move by b h^2/2M; the plane presses it back.
 #[test]
 fn a_column_under_its_weight_is_exact() {
     for (model, modulus) in [("plane-strain", 100.0 * 0.7 / (1.3 * 0.4)), ("plane-stress", 100.0 / (1.0 - 0.09))] {
@@ -75,13 +75,13 @@ fn a_column_under_its_weight_is_exact() {
         let found = report["contact_force"].as_f64().unwrap();
         assert!((found / force - 1.0).abs() < 1e-9, "{found} {force}");
         for end in 0..2 {
-            // Square roots of rounding: the interval of the force is of the order of its square.
+            // The interval of the force has the size of the square root of the rounding error.
             assert!((report["force_interval"][end].as_f64().unwrap() / force - 1.0).abs() < 1e-6, "{report}");
         }
     }
 }
 
-/// A mesh of Gmsh, whose middle nodes come last; its arc is the polygon of all nodes.
+/// A mesh of Gmsh in which the middle nodes come last; its arc is the polygon through all nodes.
 #[test]
 fn quadratic_triangles_of_a_file_with_a_curved_side_have_a_bound() {
     let desk = Desk::new();
@@ -101,7 +101,7 @@ fn quadratic_triangles_of_a_file_with_a_curved_side_have_a_bound() {
     assert!(intervals.last().unwrap() <= &0.05, "{intervals:?}");
 }
 
-/// Half a disc of radius 1 in triangles, its flat side clamped, pressed 0.02 into a plane.
+/// A half disc of radius 1 meshed with triangles, its flat side clamped, pressed 0.02 into a plane.
 fn half_disc(divisions: usize, growth: f64) -> Value {
     json!({
         "body": {"half-disc": {
@@ -114,15 +114,15 @@ fn half_disc(divisions: usize, growth: f64) -> Value {
     })
 }
 
-/// New nodes go onto the circle: the force is that of the disc, whatever the first mesh is.
+/// New nodes are placed on the circle: the force is that of the disc for every first mesh.
 #[test]
-fn nodes_on_known_circles_follow_them() {
+fn new_nodes_are_placed_on_known_circles() {
     let forces = [half_disc(2, 2.0), half_disc(8, 1.4)].map(|scene| {
         let (code, report, message) = solved(&scene, &["--total-error", "0.02"]);
         assert!(code == 0 && report["domain"] == "last-polygon", "{message}");
         report["contact_force"].as_f64().unwrap()
     });
-    // Polygons of 16 and of 60 sides are farther apart.
+    // The forces of polygons of 16 and of 60 sides differ by more than this.
     assert!((forces[0] / forces[1] - 1.0).abs() < 2e-3, "{forces:?}");
     let desk = Desk::new();
     desk.write("scene.json", half_disc(2, 2.0).to_string());
@@ -135,8 +135,8 @@ fn nodes_on_known_circles_follow_them() {
     assert!((force / forces[0] - 1.0).abs() < 1e-2, "{force}");
 }
 
-/// Lame's quarter of a ring of radii 1 and 2 under pressure inside, its outside before a plane that it does not reach: half the work
-/// of the pressure is the energy.
+/// Lame's quarter of a ring of radii 1 and 2 under internal pressure, outside in front of a plane that it does not
+/// reach. Its potential energy is minus half the work of the pressure.
 #[test]
 fn a_pressed_ring_has_the_energy_of_lame() {
     let scene = json!({
@@ -153,14 +153,14 @@ fn a_pressed_ring_has_the_energy_of_lame() {
     let moved = 1.3 / 100.0 / 3.0 * (0.4 + 4.0);
     let exact = -0.5 * moved * std::f64::consts::FRAC_PI_2;
     let [low, high] = [0, 1].map(|end| report["potential_energy"][end].as_f64().unwrap());
-    // Polygons of some hundred sides are 1e-4 off in energy.
+    // A polygon of some hundred sides has an error of 1e-4 in energy.
     assert!(low < high && low / exact < 1.0005 && high / exact > 0.9995, "{low} {exact} {high}");
     assert!((high / exact - 1.0).abs() < 5e-4, "{low} {exact} {high}");
 }
 
 #[test]
-fn a_body_that_moves_far_is_bounded_by_its_own_strain() {
-    // The same block, its bottom moved by 100 and the parabola with it: the strain is 1e-4 of the displacement.
+fn a_large_rigid_motion_does_not_change_the_bound() {
+    // The same block with its bottom moved by 100, and the parabola with it: the strain is 1e-4 of the displacement.
     let mut scene = classical(0.3);
     scene["supports"][0]["y"] = json!(100);
     scene["obstacles"][0]["shape"]["parabola"]["apex"] = json!([0.5, 100.49]);
@@ -172,14 +172,14 @@ fn a_body_that_moves_far_is_bounded_by_its_own_strain() {
 }
 
 #[test]
-fn a_force_error_is_reached_too() {
+fn a_requested_force_error_is_reached() {
     let (code, report, _) = solved(&classical(0.3), &["--total-error", "0.1", "--force-error", "2e-3"]);
     let [low, high] = [0, 1].map(|end| report["force_interval"][end].as_f64().unwrap());
     assert!(code == 0 && (high - low) / 2.0 <= 2e-3 * report["contact_force"].as_f64().unwrap(), "{report}");
 }
 
 #[test]
-fn what_time_does_not_allow_is_said() {
+fn a_total_error_that_the_time_does_not_allow_ends_with_exit_code_4() {
     let (code, report, _) = solved(&classical(0.3), &["--total-error", "1e-7", "--time", "1"]);
     assert_eq!((code, &report["status"], &report["ended"]), (4, &json!("not_certified"), &json!("time")));
     assert!(report["total_error"]["bound"].as_f64().unwrap() < 0.5 && report["next_triangles"].as_u64().unwrap() > 64);
@@ -189,7 +189,7 @@ fn support(scene: &mut Value, further: Value) {
     scene["supports"].as_array_mut().unwrap().push(further);
 }
 
-/// The classical scene with a change, its error to be below 20 %.
+/// Solves the classical scene with a change, for a total error below 20 %.
 fn changed(change: &dyn Fn(&mut Value)) -> (i32, Value, String) {
     let mut scene = classical(0.3);
     change(&mut scene);
@@ -197,7 +197,7 @@ fn changed(change: &dyn Fn(&mut Value)) -> (i32, Value, String) {
 }
 
 #[test]
-fn what_has_no_guarantee_is_estimated_with_the_reason() {
+fn scenes_without_a_guarantee_are_estimated_with_the_reason() {
     type Change = dyn Fn(&mut Value);
     let cases: [(&Change, &str); 4] = [
         (&|scene| scene["model"] = json!("axisymmetric"), "model: an axisymmetric body has no guaranteed bound"),
@@ -215,13 +215,13 @@ fn what_has_no_guarantee_is_estimated_with_the_reason() {
         assert!(report["reason"].as_str().unwrap().contains(reason), "{report}");
         let levels = report["levels"].as_array().unwrap();
         assert!(levels.len() > 1 && levels[0]["total_error"].as_f64().unwrap() > 0.2, "{report}");
-        // The answer is that of the last mesh.
+        // The answer belongs to the last mesh.
         assert_eq!(report["answer"]["model"]["dofs"], levels.last().unwrap()["dofs"]);
     }
 }
 
 #[test]
-fn what_has_no_total_error_is_refused_with_the_reason() {
+fn scenes_without_a_total_error_are_refused_with_the_reason() {
     let (code, report, message) =
         changed(&|scene| scene["loads"] = json!([{"force": {"at": [1, 0.5], "value": [1, 0]}}]));
     assert!(
@@ -250,7 +250,7 @@ fn what_has_no_total_error_is_refused_with_the_reason() {
     assert!(code == 2 && message.contains("--total-error"), "{message}");
 }
 
-/// A block of 1 x 1 x 0.5 in tetrahedra, clamped below, with a ball 0.01 deep in its top.
+/// A block of 1 x 1 x 0.5 meshed with tetrahedra, clamped at the bottom, with a ball pressed 0.01 into its top.
 pub fn block(cells: usize) -> Value {
     let axis = |length: f64, divisions: usize| json!({"points": [0, length], "divisions": [divisions]});
     json!({
@@ -264,16 +264,17 @@ pub fn block(cells: usize) -> Value {
     })
 }
 
-/// Bisected tetrahedra take fewer unknowns than equal ones, stand where the contact is, and make a mesh that another scene can have.
+/// Bisection gives fewer unknowns than uniform tetrahedra, refines at the contact, and writes a mesh that another scene
+/// can read.
 #[test]
-fn tetrahedra_follow_the_contact() {
+fn bisected_tetrahedra_need_fewer_unknowns_than_uniform_ones() {
     let desk = Desk::new();
     desk.write("scene.json", block(2).to_string());
     let run = desk.run(&["solve", "scene.json", "--total-error", "0.2", "--format", "json", "--out", "out"]);
     let found = run.ends_with(0).json();
     let last = found["levels"].as_array().unwrap().last().unwrap().clone();
     assert!(last["total_error"].as_f64().unwrap() <= 0.2 && last["energy_error_bound"].as_f64().unwrap() <= 0.02);
-    // With 1.5 times the unknowns and more, equal tetrahedra are farther off.
+    // With more than 1.5 times as many unknowns, uniform tetrahedra have a larger error.
     let (_, equal, _) = solved(&block(10), &[]);
     assert!(equal["model"]["dofs"].as_f64().unwrap() > 1.5 * last["dofs"].as_f64().unwrap(), "{equal}");
     assert!(equal["discretisation_error"].as_f64().unwrap() > 1.3 * last["total_error"].as_f64().unwrap(), "{equal}");
@@ -292,9 +293,9 @@ fn tetrahedra_follow_the_contact() {
     }
 }
 
-/// The first mesh, whose nodes all stand beside the tip, would be at rest and without any error.
+/// On the first mesh no node is at the tip: its answer would have no contact and no error.
 #[test]
-fn a_tip_between_nodes_is_seen() {
+fn a_tip_between_nodes_is_found_by_refinement() {
     for element in ["tet4", "hex8"] {
         let mut scene = block(2);
         scene["body"]["box"]["element"] = json!(element);
@@ -324,7 +325,7 @@ fn a_file_of_other_elements_has_no_finer_mesh() {
 
 /// A short form of `cargo run --release --example guarantee`.
 #[test]
-fn no_random_scene_catches_the_guarantee_in_a_lie() {
+fn no_random_scene_violates_the_guarantee() {
     let mut meshes = 0;
     for seed in 1..=24 {
         let one = shown(seed, 3).unwrap();
@@ -338,7 +339,7 @@ fn no_random_scene_catches_the_guarantee_in_a_lie() {
 }
 
 #[test]
-fn the_folder_has_fields_meshes_and_pictures() {
+fn the_output_folder_has_fields_meshes_and_pictures() {
     let desk = Desk::new();
     desk.write("scene.json", classical(0.3).to_string());
     let run = desk.run(&["solve", "scene.json", "--total-error", "0.1", "--out", "out"]);

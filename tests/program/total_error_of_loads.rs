@@ -1,10 +1,11 @@
-//! The total error with parts of boundaries and spread loads: what stays guaranteed, what is estimated.
+//! The total error with parts of boundaries and distributed loads: some loads keep the guarantee, for others the error
+//! is estimated.
 
 use crate::total_error::{block, classical, column, solved};
 use serde_json::{Value, json};
 
 #[test]
-fn gravity_is_a_constant_body_force() {
+fn gravity_has_the_force_of_a_constant_body_force() {
     let mut scene = column("plane-strain");
     let (_, expected, _) = solved(&scene, &["--total-error", "1e-6"]);
     scene["material"]["density"] = json!(2);
@@ -14,9 +15,9 @@ fn gravity_is_a_constant_body_force() {
     assert_eq!(report["contact_force"], expected["contact_force"]);
 }
 
-/// A force of 600 on a side of 0.5 with a thickness of 2 is a traction of 600.
+/// A force of 600 on a side of length 0.5 with a thickness of 2 equals a traction of 600.
 #[test]
-fn a_force_on_a_boundary_is_a_constant_traction() {
+fn a_force_on_a_boundary_has_the_contact_force_of_a_constant_traction() {
     let found = [
         json!({"force": {"boundary": "right", "value": [600, -300]}}),
         json!({"traction": {"boundary": "right", "value": [600, -300]}}),
@@ -32,7 +33,8 @@ fn a_force_on_a_boundary_is_a_constant_traction() {
     assert!((found[0] / found[1] - 1.0).abs() < 1e-12, "{found:?}");
 }
 
-/// Half a layer that a strip of 0.5 presses onto a plane: the plane carries the strip, and the bound says so.
+/// Half of a layer on a plane, pressed by a strip of width 0.5: the plane carries the load of the strip, and the bound
+/// is guaranteed.
 #[test]
 fn a_load_on_a_part_has_a_guaranteed_bound() {
     let scene = json!({
@@ -50,7 +52,7 @@ fn a_load_on_a_part_has_a_guaranteed_bound() {
 }
 
 #[test]
-fn what_changes_along_a_boundary_is_estimated_with_the_reason() {
+fn loads_and_supports_that_vary_along_a_boundary_are_estimated_with_the_reason() {
     let profile = json!({"along": [0, 1], "places": [0, 0.5], "factors": [1, 0]});
     let cases = [
         (json!({"pressure": {"boundary": "left", "value": 1e4, "profile": profile}}), "loads[0].pressure.profile"),
@@ -75,9 +77,10 @@ fn what_changes_along_a_boundary_is_estimated_with_the_reason() {
     estimated(&scene, "supports[0].profile");
 }
 
-/// The edge of the part is one of cells: halves of its facets stay within, and the load is the same on every mesh.
+/// The edge of the part is an edge of cells: the halves of its facets stay inside it, and the load is the same on every
+/// mesh.
 #[test]
-fn a_part_is_found_again_on_bisected_tetrahedra() {
+fn a_load_on_a_part_is_the_same_on_bisected_tetrahedra() {
     let mut scene = block(2);
     scene["parts"] = json!([{"name": "half", "of": "top", "box": {"min": [0, 0, 0.5], "max": [0.5, 1, 0.5]}}]);
     scene["loads"] = json!([{"pressure": {"boundary": "half", "value": 3000}}]);
@@ -89,7 +92,8 @@ fn a_part_is_found_again_on_bisected_tetrahedra() {
     assert!((force / -1500.0 - 1.0).abs() < 1e-12, "{loads}");
 }
 
-/// Two materials, an orthotropic one, or a temperature have no guaranteed bound: the estimate stands for it, and says why.
+/// Several materials, an orthotropic material, or a temperature have no guaranteed bound: the error is estimated, and
+/// the report gives the reason.
 #[test]
 fn materials_without_a_guaranteed_bound_are_estimated_with_the_reason() {
     let other = json!([{"box": {"min": [0, 0], "max": [0.5, 0.25]}, "material": {"young": 3e6, "poisson": 0.2}}]);

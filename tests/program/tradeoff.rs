@@ -1,4 +1,4 @@
-//! The trade-off of a small scene: errors that fall with what the methods are told, a front that nothing beats, files.
+//! The trade-off of a small scene: errors that fall with the settings of the methods, the Pareto front, files.
 
 use crate::program::{Desk, scene};
 use serde_json::{Value, json};
@@ -12,7 +12,7 @@ fn measured(value: &Value) -> Tradeoff {
 }
 
 #[test]
-fn errors_fall_with_what_the_methods_are_told() {
+fn errors_fall_with_the_tolerance_and_with_the_penalty() {
     let result = measured(&scene());
     assert_eq!(result.meshes.iter().map(|mesh| mesh.dofs).collect::<Vec<_>>(), [20, 72]);
     assert!(result.meshes[1].discretisation_error < result.meshes[0].discretisation_error);
@@ -25,20 +25,22 @@ fn errors_fall_with_what_the_methods_are_told() {
                 result.points.iter().filter(is_meant).collect()
             };
             let (qp, penalty) = (of("qp"), of("penalty"));
-            let told = |points: &[&TradeoffPoint], knob: f64| {
+            let error_at = |points: &[&TradeoffPoint], knob: f64| {
                 points.iter().find(|point| point.knob == Some(knob)).unwrap().energy_error
             };
-            // An interior point that is told less may stop better than it promised, but not by six digits.
-            assert!(told(&qp, 1e-10) < 1e-3 * told(&qp, 1e-2), "{qp:?}");
-            // The error of a penalty is k/(k + eps): a hundredth with a hundred times the penalty.
-            let ratio = told(&penalty, 1e4) / told(&penalty, 1e6);
+            // An interior point with a loose tolerance may stop with a smaller error than promised, but not by six
+            // digits.
+            assert!(error_at(&qp, 1e-10) < 1e-3 * error_at(&qp, 1e-2), "{qp:?}");
+            // The error of a penalty is k/(k + eps): a hundredth if the penalty is a hundred times larger.
+            let ratio = error_at(&penalty, 1e4) / error_at(&penalty, 1e6);
             assert!((ratio / 100.0 - 1.0).abs() < 0.01, "{ratio}");
             for point in of("qp, polished").into_iter().chain(of("active-set")) {
                 assert!(point.energy_error < 1e-12 && point.force_error < 1e-12 && point.rows_wrong == 0, "{point:?}");
             }
         }
     }
-    // A factor in single precision is refined to what is asked for, and to the same answer where nothing is.
+    // A factor in single precision is refined to the requested accuracy or, without a request, to the answer of double
+    // precision.
     let mixed: Vec<&TradeoffPoint> = result.points.iter().filter(|point| point.mixed).collect();
     assert!(mixed.iter().all(|point| point.condensed));
     let active = |point: &&&TradeoffPoint| point.method == "active-set";
@@ -52,15 +54,17 @@ fn errors_fall_with_what_the_methods_are_told() {
     }
 }
 
-/// Certificate and proof have seconds of their own, multigrid is one of the methods, and the text compares what a loose answer loses.
+/// The times of certificate and proof are separate, multigrid is one of the methods, and the text compares the errors
+/// of loose answers.
 #[test]
-fn what_a_loose_answer_costs_and_loses_stands_beside_the_exact_one() {
+fn the_text_compares_time_and_error_of_loose_and_exact_answers() {
     let result = measured(&scene());
     assert!(result.points.iter().all(|point| point.certificate_seconds > 0.0 && point.proof_seconds >= 0.0));
     let cycles: Vec<&TradeoffPoint> = result.points.iter().filter(|point| point.method == "mprgp").collect();
-    assert_eq!(cycles.len(), 10, "five accuracies on two meshes");
+    assert_eq!(cycles.len(), 10, "there are five accuracies on two meshes");
     assert!(cycles.iter().all(|point| point.energy_error_bound <= point.knob.unwrap()), "{cycles:?}");
-    // On a scene of twenty dofs chance decides which is the fastest: here a digit more takes a hundredth of the time more.
+    // On a scene of twenty dofs the fastest method is random; so the times are set: each further digit takes one
+    // percent more time.
     let mut timed = result.clone();
     for point in &mut timed.points {
         point.seconds = 1e-3 * (1.0 - 0.01 * point.energy_error.max(1e-16).log10());
@@ -74,12 +78,12 @@ fn what_a_loose_answer_costs_and_loses_stands_beside_the_exact_one() {
             "{text}"
         );
     }
-    // A penalty of a hundred times the stiffness loses a share of the force that is no rounding.
+    // A penalty of a hundred times the stiffness has an error of the force that is far above rounding.
     let lost = text.lines().find(|line| line.starts_with("  penalty") && line.contains(" % of the force"));
     assert!(lost.is_some(), "{text}");
 }
 
-/// The total error is that of algebra and mesh, and the choice of mesh and method the best of all points.
+/// The total error combines the errors of algebra and mesh; the chosen mesh and method are the best of all points.
 #[test]
 fn a_total_error_or_a_time_chooses_mesh_and_method() {
     let result = measured(&scene());
@@ -97,7 +101,7 @@ fn a_total_error_or_a_time_chooses_mesh_and_method() {
         let soonest = result.points.iter().filter(good).map(|point| point.seconds).fold(f64::INFINITY, f64::min);
         assert_eq!(advice.point.map_or(f64::INFINITY, |index| result.points[index].seconds), soonest);
     }
-    // In ten seconds everything of this small scene is done: the finer mesh is nearer.
+    // Ten seconds suffice for every point of this small scene, so the finer mesh is chosen.
     let best = &result.points[chosen[5].point.unwrap()];
     assert!(
         best.mesh == 1 && best.total_error.unwrap() < 1.02 * result.meshes[1].discretisation_error.unwrap(),
@@ -107,11 +111,11 @@ fn a_total_error_or_a_time_chooses_mesh_and_method() {
     assert!(text.contains("  in 10 s") && text.contains("72 dofs by "), "{text}");
 }
 
-/// Errors below this are those of rounding, and one is as good as another.
+/// Smaller errors are rounding and count as equal.
 const ROUNDING: f64 = 1e-12;
 
 #[test]
-fn the_front_is_what_no_other_point_beats_and_the_advice_lies_on_it() {
+fn no_point_dominates_the_front_and_the_advice_is_on_it() {
     let result = measured(&scene());
     let beaten = |point: &TradeoffPoint| {
         result.points.iter().any(|other| {
@@ -139,7 +143,7 @@ fn the_front_is_what_no_other_point_beats_and_the_advice_lies_on_it() {
 }
 
 #[test]
-fn finer_meshes_are_nested_and_a_mesh_file_has_none() {
+fn finer_meshes_are_nested_and_a_mesh_file_cannot_be_refined() {
     let graded = json!({"points": [0, 1, 3], "divisions": [4, 1], "ratios": [5, 1]});
     let mut value = scene();
     value["body"]["rectangle"]["x"] = graded;
@@ -159,9 +163,10 @@ fn finer_meshes_are_nested_and_a_mesh_file_has_none() {
     assert!(coarse.refined(0).is_err());
 }
 
-/// Four times as fine along every edge: so many times the nodes of a body of one, two or three dimensions, nearly.
+/// With cells four times finer along every edge, the number of nodes grows by about 4, 16 or 64 in one, two or three
+/// dimensions.
 #[test]
-fn every_body_that_is_not_from_a_file_has_finer_meshes() {
+fn every_body_that_is_not_from_a_file_can_be_refined() {
     let line = json!({"points": [0, 1], "divisions": [12]});
     let (zone, centre) = (json!({"width": 0.2, "divisions": 8, "growth": 1.1}), json!([0, 1]));
     let angle = json!({"points": [-90, 0], "divisions": [12]});
@@ -186,7 +191,7 @@ fn every_body_that_is_not_from_a_file_has_finer_meshes() {
 }
 
 #[test]
-fn the_program_prints_the_table_and_leaves_its_values() {
+fn tradeoff_prints_the_table_and_writes_its_values() {
     let desk = Desk::new();
     desk.write("scene.json", scene().to_string());
     let command = ["tradeoff", "scene.json", "--refinements", "1", "--runs", "1", "--out", "out"];
@@ -200,7 +205,7 @@ fn the_program_prints_the_table_and_leaves_its_values() {
     let json = desk.run(&[&command[..6], &["--format", "json"]].concat()).ends_with(0).json();
     let points = json["points"].as_array().unwrap().len();
     assert_eq!(csv.lines().count(), points + 1);
-    // The one field in quotation marks may hold a comma.
+    // Only the field in quotation marks may contain a comma.
     assert!(csv.lines().skip(1).all(|line| line.replace(", ", " ").split(',').count() == columns));
     assert!(desk.path("out/total-error.png").exists());
     assert!(desk.path("out/tradeoff.png").exists() && desk.path("out/tradeoff.txt").exists());
@@ -209,9 +214,9 @@ fn the_program_prints_the_table_and_leaves_its_values() {
     desk.run(&["tradeoff", "scene.json", "--refinements", "9"]).ends_with(2);
 }
 
-/// Matrices have no mesh: their trade-off is that of the algebra, the same as that of the scene which they came from.
+/// Matrices have no mesh: the trade-off is the algebraic part of that of their scene.
 #[test]
-fn a_problem_directory_has_the_algebraic_part() {
+fn tradeoff_of_a_problem_directory_has_the_algebraic_errors_of_its_scene() {
     let desk = Desk::new();
     desk.write("scene.json", scene().to_string());
     desk.run(&["export", "scene.json", "matrices"]).ends_with(0);
@@ -233,7 +238,7 @@ fn a_problem_directory_has_the_algebraic_part() {
     assert!(desk.path("out/tradeoff.png").exists() && !desk.path("out/total-error.png").exists());
 }
 
-/// A time of nothing still has the mesh of the scene, and one of plenty all that are asked for.
+/// With almost no time only the mesh of the scene is used, and with much time all requested meshes are used.
 #[test]
 fn meshes_are_as_fine_as_the_time_allows() {
     let desk = Desk::new();

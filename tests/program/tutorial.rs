@@ -1,4 +1,4 @@
-//! The tutorial is what the program does: its commands run, and print what it shows.
+//! The tutorial agrees with the program: its commands run and print the shown output.
 
 use std::fs;
 use std::path::Path;
@@ -25,7 +25,7 @@ fn blocks(document: &str) -> Vec<Block> {
     blocks
 }
 
-/// The words of a text, one space apart: a report breaks its lines elsewhere.
+/// The words of a text, separated by single spaces, because a report breaks its lines at other places.
 fn words(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
@@ -42,7 +42,7 @@ fn the_commands_of_the_first_part_print_what_the_tutorial_shows() {
             "json" => {
                 desk.write("foot.json", &block.text);
                 let kept = fs::read_to_string(root.join("examples/first-part/foot.json")).unwrap();
-                assert_eq!(kept, block.text, "the scene of the tutorial is the one that is kept");
+                assert_eq!(kept, block.text, "the scene of the tutorial equals the kept one");
             }
             "sh" => {
                 printed.clear();
@@ -56,11 +56,11 @@ fn the_commands_of_the_first_part_print_what_the_tutorial_shows() {
             }
             "text" => {
                 for line in block.text.lines() {
-                    assert!(printed.contains(&words(line)), "{line:?} is not printed: {printed}");
+                    assert!(printed.contains(&words(line)), "{line:?} is not in the output: {printed}");
                     shown += 1;
                 }
             }
-            other => panic!("a block of {other}"),
+            other => panic!("the tutorial has a block of {other}"),
         }
     }
     assert!(shown > 8, "{shown}");

@@ -1,9 +1,9 @@
-//! `signorini verify` accepts the answer of a problem directory and no other.
+//! `signorini verify` accepts the right answer of a problem directory and rejects every other.
 
 use crate::program::{Desk, Problem, Run, scene, vector};
 use crate::promised::{CERTIFICATE, has, vectors};
 
-/// Judges the answer that stands beside the problem directory `p`.
+/// Verifies the answer in the problem directory `p`.
 pub fn verify(desk: &Desk, format: &str) -> Run {
     let (u, lambda) = ("p/u.mtx", "p/lambda.mtx");
     desk.run(&["verify", "p", "--displacement", u, "--multiplier", lambda, "--format", format])
@@ -30,7 +30,7 @@ fn verify_accepts_what_solve_wrote_and_rejects_each_single_changed_entry() {
     let mut changes = 0;
     for (name, values) in [("u", &u), ("lambda", &lambda)] {
         for index in 0..values.len() {
-            // A hundred tolerances of the largest entry.
+            // A change of a hundred tolerances of the largest entry.
             let mut changed = values.clone();
             changed[index] += 1e-7 * largest(values);
             desk.write(&format!("p/{name}.mtx"), text(&changed));
@@ -45,7 +45,7 @@ fn verify_accepts_what_solve_wrote_and_rejects_each_single_changed_entry() {
 }
 
 #[test]
-fn verify_rejects_a_multiplier_of_the_other_sign() {
+fn verify_rejects_a_multiplier_of_the_wrong_sign() {
     let desk = Desk::new();
     desk.problem("p", &Problem::right());
     desk.write("p/u.mtx", vector(&["0.55", "0.1"]));
@@ -55,7 +55,8 @@ fn verify_rejects_a_multiplier_of_the_other_sign() {
     verify(&desk, "text").ends_with(0);
 }
 
-/// A cube whose stiffness has a hierarchy of several levels, exported, with the answer of multigrid beside it.
+/// Exports a cube whose stiffness has a hierarchy of several levels, with the answer of multigrid in its problem
+/// directory.
 #[cfg(target_os = "linux")]
 fn solved_cube(desk: &Desk, cells: usize) {
     desk.write("cube.json", crate::blocks::cube(cells, "hex8").to_string());
@@ -72,16 +73,16 @@ fn solved_cube(desk: &Desk, cells: usize) {
 const WITHOUT_FACTOR: [&str; 8] =
     ["verify", "p", "--displacement", "p/u.mtx", "--multiplier", "p/lambda.mtx", "--factor-time", "1e-9"];
 
-/// Both bounds lie above the error of the changed answer, which is the energy of what was added to one dof.
+/// Both bounds are above the error of the changed answer, which is the energy of the change of one dof.
 #[cfg(target_os = "linux")]
 #[test]
-fn where_there_is_no_time_for_a_factor_the_bound_is_measured_and_as_good() {
+fn without_time_for_a_factor_the_bound_is_measured_and_at_most_twice_the_proven_one() {
     let desk = Desk::new();
     solved_cube(&desk, 12);
     let without = |desk: &Desk| desk.run(&[&WITHOUT_FACTOR[..], &["--format", "json"]].concat());
     let (measured, proven) = (without(&desk).ends_with(0).json(), verify(&desk, "json").ends_with(0).json());
     assert_eq!(measured["certificate"]["bound_is_measured"], true);
-    // What a factor proves is not called measured.
+    // A bound from a factor is not called measured.
     assert!(proven["certificate"]["bound_is_measured"].is_null());
     for condition in ["stationarity", "penetration", "adhesion", "complementarity", "duality_gap"] {
         assert_eq!(measured["certificate"][condition], proven["certificate"][condition], "{condition}");
@@ -95,15 +96,15 @@ fn where_there_is_no_time_for_a_factor_the_bound_is_measured_and_as_good() {
     let (measured, proven) = (without(&desk).ends_with(4).json(), verify(&desk, "json").ends_with(4).json());
     let [measured, proven] =
         [&measured, &proven].map(|report| report["certificate"]["energy_error_bound"].as_f64().unwrap());
-    // The proven bound is the error itself but for a repair of the rows; the measured one takes a rest twice.
+    // The proven bound equals the error except for a repair of the rows; the measured one counts its remainder twice.
     assert!(measured > 0.99 * proven && measured < 2.0 * proven, "{measured:e} {proven:e}");
 }
 
-/// Neither the files nor a second matrix stand in memory beside the hierarchy: a matrix in a file of PETSc has 12 bytes for an entry,
-/// hierarchy and problem take about twice as many.
+/// The memory contains the hierarchy and the problem, but neither the files nor a second matrix. A matrix in a file of
+/// PETSc has 12 bytes per entry; hierarchy and problem take about twice as much.
 #[cfg(target_os = "linux")]
 #[test]
-fn verify_without_a_factor_takes_the_memory_of_the_hierarchy_and_says_if_there_is_none() {
+fn verify_without_a_factor_takes_only_the_memory_of_the_hierarchy_and_refuses_a_smaller_limit() {
     let desk = Desk::new();
     solved_cube(&desk, 24);
     let file = std::fs::metadata(desk.path("p/K.petsc")).unwrap().len() as f64;

@@ -1,10 +1,11 @@
-//! Questions that were not asked: each is refused, or warned of, with its code, its numbers and its remedy.
+//! Scenes and problems that are probably mistakes: each is refused, or answered with a warning that has a code, numbers
+//! and a remedy.
 
 use crate::program::{Desk, Problem, Run, examples, scene, vector};
 use crate::verify::verify;
 use serde_json::{Value, json};
 
-/// The report of `solve` of a scene, which ends with exit code 0.
+/// The report of `solve` for a scene, which must end with exit code 0.
 fn solved(scene: &Value) -> (Value, String) {
     let desk = Desk::new();
     desk.write("scene.json", scene.to_string());
@@ -20,18 +21,19 @@ fn refused(scene: &Value, files: &[(&str, &str)]) -> (Run, String) {
     (desk.run(&["solve", "scene.json"]).ends_with(1), code)
 }
 
-/// The message of the only warning, whose code is `code`; the text says the same, in its own lines.
+/// The message of the only warning, which must have the code `code`; the text report must contain it too.
 #[track_caller]
 fn warned((report, text): &(Value, String), code: &str) -> String {
     let warnings = report["warnings"].as_array().expect("warnings");
     let warning = warnings.iter().find(|warning| warning["code"] == code).unwrap_or_else(|| panic!("{warnings:?}"));
     let message = warning["message"].as_str().unwrap();
     let one_line = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(one_line.contains(message), "{one_line} lacks {message}");
+    assert!(one_line.contains(message), "{one_line} does not contain {message}");
     message.to_string()
 }
 
-/// The block lies below its obstacle, which is said to come from above: at its closed nodes it would pull.
+/// The block lies below its obstacle, but the scene says that the obstacle approaches from above: its closed nodes
+/// would be in tension.
 #[test]
 fn an_obstacle_that_pulls_is_refused() {
     let mut scene = scene();
@@ -42,14 +44,14 @@ fn an_obstacle_that_pulls_is_refused() {
     let (run, code) = refused(&scene, &[]);
     assert_eq!(code, "\"approach-away\"");
     run.fails_with(1, &["`obstacles[0].approach`", "pulls the body", "node ", "180 degrees", "turn `approach` around"]);
-    // The same obstacle from the other side.
+    // The same obstacle with the right approach direction.
     scene["obstacles"][0] =
         json!({"boundary": "top", "approach": "+y", "shape": {"plane": {"point": [0, 0.49], "normal": [0, 1]}}});
     assert!(solved(&scene).0["contact"]["force"].as_f64() > Some(0.0));
 }
 
 #[test]
-fn a_body_that_touches_nothing_is_told_its_smallest_remaining_gap() {
+fn a_body_without_contact_is_warned_of_with_its_smallest_remaining_gap() {
     let mut scene = scene();
     scene["gap"] = json!(0.25);
     scene["loads"] = json!([]);
@@ -60,7 +62,7 @@ fn a_body_that_touches_nothing_is_told_its_smallest_remaining_gap() {
 }
 
 #[test]
-fn a_body_pressed_together_by_half_is_told_its_strain() {
+fn a_body_compressed_by_half_is_warned_of_with_its_strain() {
     let mut scene = scene();
     scene["gap"] = json!(-0.25);
     let message = warned(&solved(&scene), "large-strain");
@@ -70,7 +72,8 @@ fn a_body_pressed_together_by_half_is_told_its_strain() {
     assert!(!others.to_string().contains("large-strain"), "{others}");
 }
 
-/// A half disc in a cup of its own radius: the surface leans by up to 45 degrees from the approach direction.
+/// A half disc in a cup of the same radius: the surface normal deviates by up to 45 degrees from the approach
+/// direction.
 fn cup(rule: &str) -> Value {
     let mut points: Vec<[f64; 2]> = (-10..=10)
         .map(|step| {
@@ -78,7 +81,7 @@ fn cup(rule: &str) -> Value {
             [angle.sin(), -angle.cos()]
         })
         .collect();
-    // Its rim is level.
+    // The rim of the cup is horizontal.
     points.insert(0, [-2.0, points[0][1]]);
     points.push([2.0, points[0][1]]);
     json!({
@@ -90,7 +93,7 @@ fn cup(rule: &str) -> Value {
 }
 
 #[test]
-fn rows_that_leave_the_normals_of_their_surface_are_warned_of() {
+fn rows_that_deviate_from_the_normals_of_their_surface_are_warned_of() {
     let along_approach = solved(&cup("approach"));
     let message = warned(&along_approach, "leaning-normals");
     assert!(message.starts_with("the surface of obstacles[0] leans by 3"), "{message}");
@@ -106,7 +109,7 @@ fn rows_that_leave_the_normals_of_their_surface_are_warned_of() {
 }
 
 #[test]
-fn a_contact_of_one_node_is_said_to_depend_on_the_mesh() {
+fn a_contact_of_one_node_is_warned_of_as_mesh_dependent() {
     let mut scene = scene();
     let top = 0.5;
     scene["obstacles"][0] =
@@ -118,9 +121,9 @@ fn a_contact_of_one_node_is_said_to_depend_on_the_mesh() {
     assert!(message.contains("refine it near the contact and compare"), "{message}");
 }
 
-/// A flat punch on a wider block: the pressure at its edges has no limit.
+/// A flat punch on a wider block: the pressure at the edges of the punch is singular.
 #[test]
-fn a_peak_at_the_edge_of_a_punch_is_said_to_grow() {
+fn a_peak_pressure_at_the_edge_of_a_punch_is_warned_of_as_mesh_dependent() {
     let mut scene = scene();
     scene["body"]["rectangle"]["x"]["divisions"] = json!([20]);
     scene["body"]["rectangle"]["y"]["divisions"] = json!([10]);
@@ -131,13 +134,13 @@ fn a_peak_at_the_edge_of_a_punch_is_said_to_grow() {
     assert!(message.contains("the peak pressure stands at the edge of the contact, node "), "{message}");
 }
 
-/// Two triangles, each in a volume group of its own.
+/// Two triangles in two groups of elements.
 const TWO_GROUPS: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 3 \"base\"\n2 1 \"steel\"\n2 2 \"rubber\"\n$EndPhysicalNames\n\
      $Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n\
      $Elements\n3\n1 1 2 3 1 1 2\n2 2 2 1 1 1 2 3\n3 2 2 2 2 1 3 4\n$EndElements\n";
 
 #[test]
-fn a_mesh_of_several_groups_is_not_taken_for_one_material() {
+fn a_mesh_of_several_groups_is_not_given_one_material() {
     let mut scene = scene();
     scene["body"] = json!({"gmsh": {"file": "two.msh"}});
     scene["supports"] = json!([{"on": {"boundary": "base"}, "x": 0, "y": 0}]);
@@ -154,7 +157,7 @@ fn a_mesh_of_several_groups_is_not_taken_for_one_material() {
 }
 
 #[test]
-fn a_tolerance_that_says_nothing_is_a_usage_error() {
+fn a_tolerance_that_is_too_large_is_a_usage_error() {
     let desk = Desk::new();
     desk.write("scene.json", scene().to_string());
     for option in ["--tolerance", "--accuracy"] {
@@ -187,7 +190,7 @@ fn multipliers_of_the_opposite_sign_are_named() {
 }
 
 #[test]
-fn no_example_is_warned_of() {
+fn the_examples_cause_no_warning() {
     let desk = Desk::new();
     for name in examples() {
         let report = desk.run(&["solve", &crate::program::example(&name), "--format", "json"]).ends_with(0).json();
@@ -195,7 +198,8 @@ fn no_example_is_warned_of() {
     }
 }
 
-/// The small block, clamped at its bottom and pressed on a plane, with a change.
+/// The small block, clamped at its bottom and pressed on a plane, with a change. Each test below plants one mistake in
+/// it.
 fn pressed(change: impl Fn(&mut Value)) -> Value {
     let mut scene = scene();
     scene["loads"] = json!([]);
@@ -205,7 +209,7 @@ fn pressed(change: impl Fn(&mut Value)) -> Value {
 }
 
 #[test]
-fn the_block_that_the_mistakes_below_begin_with_is_not_warned_of() {
+fn the_block_without_a_planted_mistake_causes_no_warning() {
     assert_eq!(solved(&pressed(|_| {})).0.get("warnings"), None);
 }
 
@@ -222,7 +226,7 @@ fn an_obstacle_on_a_clamped_boundary_is_warned_of() {
 }
 
 #[test]
-fn a_load_that_goes_into_a_support_is_warned_of() {
+fn a_load_on_a_supported_boundary_is_warned_of() {
     let loaded = pressed(|scene| scene["loads"] = json!([{"traction": {"boundary": "bottom", "value": [0, 5]}}]));
     let message = warned(&solved(&loaded), "load-on-support");
     assert!(message.starts_with("loads[0] acts where supports hold the body"), "{message}");
@@ -240,13 +244,13 @@ fn forces_and_supports_on_a_single_node_are_warned_of() {
     });
     let message = warned(&solved(&pulled), "point-support");
     assert!(message.starts_with("supports[1] holds a single node with a force of 5"), "{message}");
-    // A node that only keeps the body in its place carries nothing.
+    // A support at one node that only fixes the position of the body carries no force.
     let kept = pressed(|scene| scene["supports"] = supports(0.0));
     assert_eq!(solved(&kept).0.get("warnings"), None);
 }
 
 #[test]
-fn an_obstacle_that_stands_there_twice_is_warned_of() {
+fn an_obstacle_that_is_given_twice_is_warned_of() {
     let doubled = pressed(|scene| {
         let first = scene["obstacles"][0].clone();
         scene["obstacles"].as_array_mut().unwrap().push(first);
@@ -255,7 +259,7 @@ fn an_obstacle_that_stands_there_twice_is_warned_of() {
     assert!(message.starts_with("obstacles[0] and obstacles[1] make the same rows"), "{message}");
 }
 
-/// Two triangles whose common edge has two nodes at each end: one is held, the other by the obstacle alone.
+/// Two triangles whose common edge has two nodes at each end, so that they are not connected; each has a support.
 const SLIT: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"base\"\n1 2 \"lid\"\n2 3 \"steel\"\n$EndPhysicalNames\n\
      $Nodes\n6\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 0\n6 1 1 0\n$EndNodes\n\
      $Elements\n4\n1 1 2 1 1 1 2\n2 1 2 2 2 4 6\n3 2 2 3 1 1 2 3\n4 2 2 3 1 5 6 4\n$EndElements\n";
@@ -294,15 +298,15 @@ fn half_a_body_that_is_free_at_its_cut_is_warned_of() {
     assert!(!solved(&held).0.to_string().contains("free-symmetry"));
 }
 
-/// The side of the block, and an obstacle that is said to come from above.
+/// The obstacle approaches along +y, but its boundary is the side of the block.
 #[test]
-fn an_obstacle_that_drags_a_boundary_along_itself_is_warned_of() {
+fn an_obstacle_perpendicular_to_its_boundary_is_warned_of() {
     let aside = pressed(|scene| scene["obstacles"][0]["boundary"] = json!("right"));
     let message = warned(&solved(&aside), "across-approach");
     assert!(message.contains("make an angle of 90 degrees"), "{message}");
 }
 
-/// The edge of a wedge between two nodes: no row sees it.
+/// The edge of a wedge lies between two nodes, so that no contact row reaches it.
 #[test]
 fn an_edge_between_two_nodes_is_warned_of() {
     let sharp = pressed(|scene| {
@@ -316,11 +320,11 @@ fn an_edge_between_two_nodes_is_warned_of() {
     );
 }
 
-/// A gap with the wrong sign in a problem directory: nothing touches, and the answer is that of a free body.
+/// A gap with the wrong sign in a problem directory: no row closes, and the answer is that of a free body.
 #[test]
-fn a_problem_without_closed_rows_is_told_so() {
+fn a_problem_without_closed_rows_is_warned_of() {
     let desk = Desk::new();
-    // Both dofs move by 1.
+    // Without contact both dofs move by 1.
     desk.problem("problem", &Problem { g: vector(&["10"]), ..Problem::right() });
     let report = desk.run(&["solve", "problem", "--format", "json"]).ends_with(0).json();
     let text = desk.run(&["solve", "problem"]).ends_with(0).stdout;

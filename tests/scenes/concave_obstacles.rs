@@ -1,14 +1,14 @@
-//! GOAL: contact rows of concave circles, spheres and cylinders and of tori, by both rules, against distance functions that share
-//! nothing with the library; the guaranteed enclosure of a concave circle; a ball in a cup.
+//! GOAL: contact rows of concave circles, spheres and cylinders and of tori, by both rules, compared with distance
+//! functions that share no code with the library; the guaranteed enclosure of a concave circle; a ball in a cup.
 //!
-//! BODY: clamped unit square of 8 x 8 Q4, or unit cube of 4 x 4 x 4 Hex8; candidates are the nodes of the top.
+//! BODY: a clamped unit square of 8 x 8 Q4, or a unit cube of 4 x 4 x 4 Hex8; candidates are the nodes of the top.
 
 use crate::bodies::{built, clamped_square};
 use crate::exact_solutions::PointContact;
 use serde_json::{Value, json};
 use signorini::{Model, Scene, solve_qp};
 
-/// Distances of order one, a handful of operations.
+/// Rounding of a few operations on distances of order one.
 const ROUNDING: f64 = 1e-14;
 
 fn square(rule: &str, shape: Value, gap: f64) -> Model {
@@ -35,10 +35,10 @@ fn length(vector: [f64; 3]) -> f64 {
     vector.iter().map(|part| part * part).sum::<f64>().sqrt()
 }
 
-/// A function of the place that grows by 1 for every length towards the obstacle, and is zero at its surface.
+/// A function of position that is zero on the surface of the obstacle and grows by 1 per unit of length into it.
 type Depth = Box<dyn Fn([f64; 3]) -> f64>;
 
-/// Checks the rows of the closest point: the gap is the distance, and its normal leads straight to the surface.
+/// Checks the rows of the closest-point rule: the gap is the distance, and the normal points straight to the surface.
 fn check_closest(model: &Model, depth: &Depth, shift: [f64; 3], what: &Value) {
     assert!(!model.rows().is_empty(), "{what}");
     for row in model.rows() {
@@ -48,19 +48,19 @@ fn check_closest(model: &Model, depth: &Depth, shift: [f64; 3], what: &Value) {
         assert!((length(row.normal) - 1.0).abs() < ROUNDING, "{what} {row:?}");
         let foot = [0, 1, 2].map(|axis| at[axis] + row.gap * row.normal[axis]);
         assert!(depth(foot).abs() < ROUNDING, "{what} {row:?}");
-        // Into the obstacle the depth grows by as much as the way.
+        // Into the obstacle, the depth grows by the length of the path.
         let further = [0, 1, 2].map(|axis| foot[axis] + 0.01 * row.normal[axis]);
         assert!((depth(further) - 0.01).abs() < ROUNDING, "{what} {row:?}");
     }
 }
 
-/// Checks the rows along the approach direction: each ends where the depth is zero and grows.
+/// Checks the rows along the approach direction: each ends at a point at which the depth is zero and grows.
 fn check_approach(model: &Model, depth: &Depth, shift: [f64; 3], what: &Value) {
     assert!(!model.rows().is_empty(), "{what}");
     for row in model.rows() {
         let at = model.mesh().nodes()[row.node];
         let foot = |way: f64| [0, 1, 2].map(|axis| at[axis] - shift[axis] + way * row.normal[axis]);
-        // The depth of a place changes by as much as the place, whatever the slope of the surface.
+        // A change of position changes the depth by at most its length, for every slope of the surface.
         assert!(depth(foot(row.gap)).abs() < ROUNDING, "{what} {row:?} {}", depth(foot(row.gap)));
         assert!(depth(foot(row.gap + 1e-3)) > 0.0 && depth(foot(row.gap - 1e-3)) < 0.0, "{what} {row:?}");
     }
@@ -68,7 +68,7 @@ fn check_approach(model: &Model, depth: &Depth, shift: [f64; 3], what: &Value) {
 
 #[test]
 fn a_square_in_a_circle_has_rows_to_the_circle_around_it() {
-    // The centre below, within and above the top of the square.
+    // The centre is below the top of the square, on it, and above it.
     for centre in [[0.4, 0.6], [0.5, 1.0], [0.47, 1.3]] {
         let depth: Depth = Box::new(move |[x, y, _]| (x - centre[0]).hypot(y - centre[1]) - 0.9);
         for shape in [
@@ -87,7 +87,7 @@ fn a_square_in_a_circle_has_rows_to_the_circle_around_it() {
 }
 
 #[test]
-fn at_the_centre_of_a_circle_around_it_a_node_goes_straight_along_the_approach_direction() {
+fn the_row_of_a_node_at_the_centre_of_a_circle_has_the_approach_direction() {
     let shape = json!({"circle": {"centre": [0.5, 1.0], "radius": 0.9, "side": "inside"}});
     let model = square("closest-point", shape, 0.0);
     let row = model.rows().iter().find(|row| model.mesh().nodes()[row.node] == [0.5, 1.0, 0.0]).unwrap();
@@ -119,7 +119,7 @@ fn the_gap_to_a_circle_on_a_stretch_stays_within_its_enclosure() {
             }
             assert!(!narrow || below.max(above) < 0.01 || to > 1.29, "{side} {from} {to}: {below} {above}");
         }
-        // Where the circle ends on the way, nothing is higher than what is told, and nothing holds beyond.
+        // If the circle ends inside the stretch, the values are a lower bound of the gap, and there is no upper bound.
         let (values, [below, above]) = circle.gap_along([1.0, 1.0, 0.0], [1.6, 1.0, 0.0], 0.0).unwrap();
         assert!(below == 0.0 && above == f64::INFINITY);
         let lowest = (0..=300).map(|step| exact(1.0 + step as f64 / 1000.0)).fold(f64::INFINITY, f64::min);
@@ -137,7 +137,7 @@ fn a_cube_in_a_sphere_or_a_cylinder_has_rows_to_the_surface_around_it() {
     for centre in [[0.45, 0.4, 0.6], [0.5, 0.5, 1.0], [0.47, 0.52, 1.3]] {
         let [cx, cy, cz] = centre;
         let ball: Depth = Box::new(move |[x, y, z]| length([x - cx, y - cy, z - cz]) - 1.1);
-        // The axis (3, 4, 0)/5 and what lies across it in the level.
+        // The axis (3, 4, 0)/5, and the horizontal coordinate perpendicular to it.
         let tube: Depth = Box::new(move |[x, y, z]| (0.8 * (x - cx) - 0.6 * (y - cy)).hypot(z - cz) - 1.1);
         for (shape, depth) in [
             (json!({"sphere": {"centre": centre, "radius": 1.1, "side": "inside"}}), &ball),
@@ -158,10 +158,10 @@ fn a_cube_in_a_sphere_or_a_cylinder_has_rows_to_the_surface_around_it() {
 fn a_torus_has_the_rows_of_its_distance_function() {
     let shift = [0.0, 0.0, -0.02];
     for (axis, centre, rows) in [
-        // Flat before the body: some nodes face the tube, some the hole.
+        // A torus lying flat in front of the body: some nodes face the tube, some the hole.
         ([0.0, 0.0, -2.0], [0.45, 0.55, 1.28], 1..26),
         ([0.0, 0.0, -2.0], [0.45, 0.55, 1.23], 1..26),
-        // Upright across the body, its ring far above or into the top.
+        // A torus standing upright across the body, with its ring far above the top or inside it.
         ([3.0, 4.0, 0.0], [0.45, 0.55, 1.75], 1..26),
         ([0.0, 1.0, 0.0], [0.47, 0.53, 1.66], 5..26),
     ] {
@@ -185,16 +185,16 @@ fn a_torus_has_the_rows_of_its_distance_function() {
 }
 
 #[test]
-fn on_the_axis_of_a_flat_torus_the_row_ends_where_the_planes_through_the_closest_points_meet() {
+fn on_the_axis_of_a_flat_torus_the_row_ends_at_the_planes_through_the_closest_points() {
     let shape = json!({"torus": {"centre": [0.5, 0.5, 1.4], "axis": [0, 0, 1], "major": 0.3, "minor": 0.1}});
     let model = cube("closest-point", shape, 0.0);
     let row = model.rows().iter().find(|row| model.mesh().nodes()[row.node] == [0.5, 0.5, 1.0]).unwrap();
-    // The ring is at the distance 0.5, its surface at 0.4, along a way with the cosine 0.8.
+    // The ring is at the distance 0.5 and its surface at 0.4; the direction to it has the cosine 0.8.
     assert_eq!(row.normal, [0.0, 0.0, 1.0]);
     assert!((row.gap - 0.5).abs() < ROUNDING, "{row:?}");
 }
 
-/// GOAL       a ball in a cup that is half as large again
+/// GOAL       a ball in a cup with a radius larger by a half
 /// CONDITIONS axisymmetric; the cut of the half ball moves rigidly by delta into the cup; no friction
 /// PARAMETERS R1 = 1, R2 = 1.5, E = 1, nu = 0.3, delta = 0.0012: the contact has the radius sqrt(R delta) = 0.06
 /// REFERENCE  Hertz with 1/R = 1/R1 - 1/R2, R = 3: F = 4/3 E* sqrt(R) delta^1.5, p0 = 2 E* a/(pi R)
@@ -227,7 +227,7 @@ fn a_ball_in_a_cup_has_the_force_and_the_pressure_of_hertz_with_the_difference_o
 }
 
 #[test]
-fn what_is_no_torus_and_no_side_is_refused_at_its_field() {
+fn an_invalid_torus_and_an_invalid_side_are_refused_with_their_field() {
     let torus = |key: &str, value: Value| {
         let mut shape = json!({"torus": {"centre": [0, 0, 2], "axis": [0, 0, 1], "major": 0.5, "minor": 0.2}});
         shape["torus"][key] = value;

@@ -1,7 +1,7 @@
-//! GOAL: from a scene to a contact answer, against closed forms, invariants, other units and stored independent answers.
+//! GOAL: contact answers of scenes, compared with closed forms, invariants, other units and stored independent answers.
 //!
-//! REFERENCE: bar against a wall and contact patch in closed form; `reference/results.json` (cvxpy, Clarabel and OSQP,
-//! settled by sparse LU, versions in the file).
+//! REFERENCE: bar against a wall and contact patch in closed form; `reference/results.json` (cvxpy with Clarabel and
+//! OSQP, polished by sparse LU; versions in the file).
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use signorini::{Error, Method, Model, Scene, Settings, Solution, solve, solve_qp
 
 const EXACT: [Method; 2] = [Method::qp(), Method::ActiveSet];
 
-/// Both closed forms are met to rounding enlarged by the condition number of the stiffness, below 1e4 here.
+/// Rounding times the condition number of the stiffness, below 1e4 here; both closed forms must agree to this.
 const CLOSED_FORM: f64 = 1e-11;
 
 fn model(scene: &Value) -> Model {
@@ -36,7 +36,7 @@ fn close(found: f64, expected: f64, scale: f64, tolerance: f64, what: &str) {
     assert!((found - expected).abs() <= tolerance * scale, "{what}: {found:e}, expected {expected:e}");
 }
 
-/// A bar of length 2 along x, one row of elements, nu = 0; wall at x = 2 + gap.
+/// A bar of length 2 along x, one row of elements, nu = 0; the wall is at x = 2 + gap.
 fn bar(element: &str, loads: Value, gap: f64) -> Value {
     json!({
         "model": "plane-stress",
@@ -57,11 +57,13 @@ fn bar(element: &str, loads: Value, gap: f64) -> Value {
 fn bar_against_a_wall_is_exact_at_the_nodes() {
     let closed = |gap| Bar { length: 2.0, axial_stiffness: 1e3 * 0.1, gap };
     for element in ["t3", "q4"] {
-        // F = 4: the free end would move by 0.08. q = 4 per length: by 0.08, too. Gaps: inside, wide, exactly reached.
+        // F = 4, or q = 4 per length: the free end would move by 0.08 in both cases. The gaps are negative, larger than
+        // 0.08, and exactly 0.08.
         for gap in [0.03, 0.5, 0.08, -0.01] {
             let end_force = json!([{"traction": {"boundary": "right", "value": [4.0 / 0.1, 0]}}]);
             let distributed = json!([{"body-force": [4.0 / 0.1, 0]}]);
-            // Triangles share a distributed load unevenly between the two rows of nodes: not exact at the nodes.
+            // Triangles distribute a line load unevenly between the two rows of nodes, so that they are not exact at
+            // the nodes.
             let cases = [(end_force, true), (distributed, false)];
             for (loads, by_end) in cases.into_iter().filter(|case| case.1 || element == "q4") {
                 let model = model(&bar(element, loads, gap));
@@ -87,7 +89,7 @@ fn bar_against_a_wall_is_exact_at_the_nodes() {
     }
 }
 
-/// A block of 1 x 0.8 pressed by p onto the plane below it, one corner guided; graded mesh.
+/// A block of 1 x 0.8, pressed by p onto the plane below it, with one corner guided, on a graded mesh.
 fn patch(element: &str, state: &str, loads: Value, supports: Value, gap: f64) -> Value {
     json!({
         "model": state,
@@ -181,7 +183,7 @@ fn three_methods_agree_at_ten_gaps_and_with_the_stored_independent_answers() {
         let solution = &comparison.answers[0].solution;
         let force = stored["force"].as_f64().unwrap();
         close(solution.contact_force(), force, force, 1e-9, "force");
-        // The stored answers agree among each other to 1e-8 in u and 1e-7 in lambda.
+        // The stored answers agree with each other to 1e-8 in u and 1e-7 in lambda.
         for (name, values, tolerance) in
             [("displacement", &solution.displacement, 1e-8), ("multiplier", &solution.multiplier, 1e-7)]
         {
@@ -223,7 +225,7 @@ fn the_same_scene_in_other_units_has_the_same_dimensionless_answer() {
             for (a, b) in solution.displacement.iter().zip(&reference.displacement) {
                 close(a / length, *b, u, 1e-9, &format!("{method:?}, {length:e}, {young:e}: u"));
             }
-            // Forces per metre of thickness: modulus times length.
+            // Forces per metre of thickness are scaled by modulus times length.
             for (a, b) in solution.multiplier.iter().zip(&reference.multiplier) {
                 close(
                     a / length * (1e7 / young),
@@ -276,7 +278,7 @@ fn without_a_gap_the_answer_is_proportional_to_the_load() {
 }
 
 #[test]
-fn obstacle_out_of_reach_leaves_the_free_body() {
+fn an_obstacle_out_of_reach_has_no_contact_row_closed() {
     let mut scene = indentation();
     scene["gap"] = json!(0.5);
     scene["loads"] = json!([{"traction": {"boundary": "right", "value": [1e3, 0]}}]);
@@ -288,9 +290,9 @@ fn obstacle_out_of_reach_leaves_the_free_body() {
     }
 }
 
-/// The first iteration works with C = 0, the last with the answer's set; each differs from the one before.
+/// The first iteration uses C = 0, the last the set of the answer; each set differs from the one before.
 #[test]
-fn history_of_the_active_set_goes_from_nothing_closed_to_the_answer() {
+fn the_history_of_the_active_set_begins_with_the_empty_set_and_ends_with_the_answer() {
     let solution = answer(&model(&indentation()), Method::ActiveSet);
     let history: Vec<_> = solution.history.iter().map(|step| &step.contact_set).collect();
     assert_eq!(history[0].count(), 0);
@@ -299,7 +301,8 @@ fn history_of_the_active_set_goes_from_nothing_closed_to_the_answer() {
     assert_eq!(history.len(), solution.iterations);
 }
 
-/// Bars of stiffness ratio up to 1e12 in series, pushed against a wall: u_1 = k2 g / (k1 + k2), lambda as in closed form.
+/// Bars in series with stiffness ratios up to 1e12, pushed against a wall: u_1 = k2 g / (k1 + k2), lambda from the
+/// closed form.
 #[test]
 fn bars_in_series_keep_their_digits_over_twelve_decades_of_stiffness() {
     use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
@@ -318,7 +321,8 @@ fn bars_in_series_keep_their_digits_over_twelve_decades_of_stiffness() {
             let solution = solve(&problem, &Settings::with_method(method)).unwrap();
             let what = format!("ratio {ratio:e}, {method:?}");
             close(solution.displacement[1], gap, gap, 1e-12, &what);
-            // K itself holds k1 + k2: with k2 = 1e12 its rounding, 1e-4 of k1, is an error of the data, not of the solver.
+            // The entry k1 + k2 of K is rounded: with k2 = 1e12 this rounding, 1e-4 of k1, is an error of the data, not
+            // of the solver.
             let data = f64::EPSILON * (1.0 + k2 / k1);
             close(solution.displacement[0], gap * k2 / (k1 + k2), gap, 1e-12 + data, &what);
             close(solution.multiplier[0], -force / 2.0, force, 1e-12 + data, &what);
@@ -328,7 +332,7 @@ fn bars_in_series_keep_their_digits_over_twelve_decades_of_stiffness() {
 
 /// A sphere of radius 1 on a block of revolution of quadratic elements: the node on the axis has no tributary area.
 #[test]
-fn pressure_on_the_axis_of_revolution_is_finite_and_the_largest() {
+fn pressure_on_the_axis_of_revolution_is_finite_and_near_the_largest() {
     let scene = |element: &str| {
         model(&json!({
             "model": "axisymmetric",
@@ -352,14 +356,15 @@ fn pressure_on_the_axis_of_revolution_is_finite_and_the_largest() {
         assert!(pressure[axis] > 0.9 * peak, "{element}: {} of {peak}", pressure[axis]);
         peak
     });
-    // Hertz: p0 = 2 E* a / (pi R) = 0.07 with a = 0.1; the coarse mesh and the finite block cost some per cent.
+    // Hertz: p0 = 2 E* a / (pi R) = 0.07 with a = 0.1; the coarse mesh and the finite block cause an error of a few per
+    // cent.
     assert!(peaks.iter().all(|peak| (peak / 0.07 - 1.0).abs() < 0.1), "{peaks:?}");
 }
 
-/// A half cylinder of radius 1 whose cut moves rigidly by delta = 0.01 onto a plane, free to widen: with E = 1, nu = 0.3
-/// delta = F/(pi E*) (2 ln(4R/a) - 1) and p0 = a E*/(2R) give F = 4.983922e-3, p0 = 0.041753222.
+/// A half cylinder of radius 1 whose cut moves rigidly by delta = 0.01 onto a plane and can expand sideways: with E = 1
+/// and nu = 0.3, delta = F/(pi E*) (2 ln(4R/a) - 1) and p0 = a E*/(2R) give F = 4.983922e-3, p0 = 0.041753222.
 #[test]
-fn half_cylinder_of_quadratic_elements_reaches_the_force_and_the_pressure_of_hertz() {
+fn a_half_cylinder_of_quadratic_elements_has_the_force_and_the_pressure_of_hertz() {
     for element in ["q8", "t6"] {
         let model = model(&json!({
             "body": {"half-disc": {"radius": 1, "zone": {"width": 0.1, "divisions": 8}, "element": element}},
@@ -370,7 +375,7 @@ fn half_cylinder_of_quadratic_elements_reaches_the_force_and_the_pressure_of_her
         }));
         let solution = answer(&model, Method::qp());
         let peak = model.pressure(&solution.multiplier).unwrap().into_iter().fold(0.0, f64::max);
-        // The theory is that of a half space under a small contact: 0.1 % in the force, 1 % in the pressure.
+        // The theory assumes a half space and a small contact: 0.1 % in the force, 1 % in the pressure.
         close(solution.contact_force(), 4.983922e-3, 4.983922e-3, 1e-3, &format!("{element}: F"));
         close(peak, 0.041753222, 0.041753222, 1e-2, &format!("{element}: p0"));
     }

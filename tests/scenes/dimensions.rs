@@ -1,4 +1,5 @@
-//! GOAL: contact scenes on a line, about an axis and in space, against closed forms; what is refused there.
+//! GOAL: contact scenes on a line, about an axis and in space, compared with closed forms, and the scenes that are
+//! refused there.
 
 use crate::bodies::{built, largest};
 use crate::exact_solutions::Bar;
@@ -6,7 +7,7 @@ use serde_json::{Value, json};
 use signorini::scene::Warning;
 use signorini::{Error, Model, Scene, solve_qp};
 
-/// Closed forms are met to rounding enlarged by the condition number of the stiffness, below 1e4 here.
+/// Rounding times the condition number of the stiffness, below 1e4 here; closed forms must agree to this.
 const CLOSED_FORM: f64 = 1e-11;
 
 #[track_caller]
@@ -56,7 +57,7 @@ fn a_bar_against_a_wall_is_exact_at_its_nodes() {
     }
 }
 
-/// A block of 1 x 0.8 x 0.6 pressed onto the plane below it, guided at two sides; graded mesh.
+/// A block of 1 x 0.8 x 0.6, pressed onto the plane below it and guided at two sides, on a graded mesh.
 fn block(element: &str, integration: &str) -> Value {
     json!({
         "model": "space",
@@ -75,7 +76,7 @@ fn block(element: &str, integration: &str) -> Value {
     })
 }
 
-/// Uniform pressure p: strain -p/E along axis `down`, nu p/E across.
+/// Checks a uniform pressure p: the strain is -p/E along the axis `down`, and nu p/E perpendicular to it.
 fn check_patch(model: &Model, down: usize, what: &str) {
     let (young, nu, p) = (2e5, 0.3, 300.0);
     let solution = solve_qp(model.problem()).unwrap();
@@ -136,7 +137,7 @@ fn uniform_pressure_on_a_disc_is_exact_on_every_mesh_and_needs_no_support() {
     }
 }
 
-/// The corner of a quadratic element on the axis has no tributary area, and a pressure all the same.
+/// The corner of a quadratic element on the axis has no tributary area, but it has a pressure.
 fn check_patch_of_disc(model: &Model, what: &str) {
     let solution = solve_qp(model.problem()).unwrap();
     close(solution.contact_force(), 300.0 * std::f64::consts::PI, 1e3, &format!("{what}: full circle"));
@@ -168,7 +169,7 @@ fn refused(scene: &Value) -> Error {
 }
 
 #[test]
-fn free_motions_are_named_in_every_dimension() {
+fn rigid_body_motions_without_support_are_named_in_every_dimension() {
     let mut floating = block("hex8", "standard");
     floating["supports"] = json!([]);
     let mut wall = bar(0.0, json!([]));
@@ -200,7 +201,7 @@ fn free_motions_are_named_in_every_dimension() {
 }
 
 #[test]
-fn what_does_not_fit_the_dimension_is_refused_at_its_path() {
+fn fields_that_do_not_match_the_dimension_are_refused_at_their_path() {
     let with = |mut scene: Value, pointer: &str, value: Value| {
         let (parent, key) = pointer.rsplit_once('/').unwrap();
         let place = scene.pointer_mut(parent).unwrap();
@@ -253,7 +254,7 @@ fn what_does_not_fit_the_dimension_is_refused_at_its_path() {
 }
 
 #[test]
-fn near_incompressibility_is_warned_of_until_the_dilatation_is_averaged() {
+fn near_incompressibility_is_warned_of_except_with_mean_dilatation() {
     let warnings = |mut scene: Value, poisson: f64| {
         scene["material"]["poisson"] = json!(poisson);
         built(&scene).warnings().to_vec()
@@ -269,14 +270,14 @@ fn near_incompressibility_is_warned_of_until_the_dilatation_is_averaged() {
 }
 
 #[test]
-fn approach_rule_in_space_measures_along_its_axis() {
+fn the_approach_rule_in_space_measures_the_gap_along_its_axis() {
     let mut scene = block("hex8", "standard");
     scene["obstacles"][0] = json!({"boundary": "bottom", "approach": "-z",
         "shape": {"plane": {"point": [0, 0, -0.1], "normal": [0.3, 0.4, -1]}}});
     scene["gap"] = json!(0.05);
     let model = built(&scene);
     for row in model.rows() {
-        // The plane: 0.3 x + 0.4 y - (z + 0.1) = 0.
+        // The equation of the plane is 0.3 x + 0.4 y - (z + 0.1) = 0.
         let [x, y, z] = model.mesh().nodes()[row.node];
         let surface = 0.3 * x + 0.4 * y - 0.1;
         assert_eq!(row.normal, [0.0, 0.0, -1.0]);

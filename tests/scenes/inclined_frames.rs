@@ -1,5 +1,5 @@
-//! GOAL: normals and coordinates that meet at a node make one frame or are refused; rigid-body modes along rollers are
-//! named; the dof map turns vectors in and back.
+//! GOAL: normals and coordinates that are prescribed at one node form one frame or are refused; rigid-body modes along
+//! rollers are named; the dof map transforms vectors in both directions.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use signorini::fem::{DofMap, Frame};
 use signorini::{Error, Scene, solve_qp};
 
 #[test]
-fn an_axis_parallel_normal_is_the_plain_support_of_either_sense() {
+fn a_normal_along_an_axis_of_either_sign_equals_a_support_along_that_axis() {
     let plain = json!([{"on": {"boundary": "bottom"}, "y": -0.01}, {"on": {"boundary": "left"}, "x": 0}]);
     let expected = built(&square("plane-strain", "q4", plain));
     for (normal, value) in [([0.0, 7.0], -0.01), ([0.0, -1e-3], 0.01), ([0.0, 1e300], -0.01)] {
@@ -34,7 +34,7 @@ fn an_axis_parallel_normal_is_the_plain_support_of_either_sense() {
 }
 
 #[test]
-fn parallel_normals_that_agree_are_one_support() {
+fn parallel_normals_with_consistent_values_are_one_support() {
     let once =
         json!([{"on": {"boundary": "bottom"}, "normal": [1, -2], "value": 0.01}, {"on": {"boundary": "left"}, "x": 0}]);
     let mut twice = once.clone();
@@ -45,7 +45,7 @@ fn parallel_normals_that_agree_are_one_support() {
 
 #[test]
 fn nearly_parallel_normals_are_solved_without_loss_of_the_frame() {
-    // Normals 1e-6 apart in space: the second axis is what is left of a difference.
+    // Two normals in space that differ by 1e-6: the second axis is the remainder of a difference.
     let mut scene = cube("hex8", json!([{"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0}]));
     for normal in [[1.0, 1.0, 0.5], [1.0, 1.0, 0.5 + 1e-6]] {
         let support = json!({"on": {"point": [1, 1, 1]}, "normal": normal});
@@ -54,9 +54,9 @@ fn nearly_parallel_normals_are_solved_without_loss_of_the_frame() {
     let model = built(&scene);
     let solution = solve_qp(model.problem()).unwrap();
     let nodal = model.nodal_displacement(&solution.displacement).unwrap();
-    // They span the plane of (1, 1, 0) and z: what is left free is along (1, -1, 0).
+    // The normals span the plane of (1, 1, 0) and z: only (1, -1, 0) is free.
     let [x, y, z] = [78, 79, 80].map(|dof: usize| nodal[dof]);
-    // The second normal knows its direction to the rounding of the first over 1e-6.
+    // The direction of the second axis has the rounding of the first divided by 1e-6.
     assert!(z.abs() < 1e-9 * x.abs() && (x + y).abs() < 1e-9 * x.abs() && x != 0.0, "{x} {y} {z}");
     let balance = model.force_balance(&solution.displacement, &solution.multiplier).unwrap();
     assert!(balance < 1e-12, "{balance:e}");
@@ -103,7 +103,7 @@ fn supports_that_contradict_each_other_are_refused_by_name_and_place() {
                       {"on": {"boundary": "bottom"}, "normal": [1, -2], "value": 0.1},
                       {"on": {"boundary": "bottom"}, "normal": [1, 0], "value": 0.1}]);
     let (path, message) = refused(&square("plane-strain", "q4", flat));
-    // The coordinate goes first, and the two oblique normals then contradict it.
+    // The coordinate is applied first; then the two oblique normals contradict it.
     assert!(
         path == "supports[1].normal" && message.contains("supports[0] and supports[2] prescribe"),
         "{path}: {message}"
@@ -126,19 +126,20 @@ fn rigid_body_modes_along_rollers_are_found_and_named() {
         scene["obstacles"] = json!([]);
         scene
     };
-    // Two parallel rollers: the body slides along both; unit length at each of its 20 nodes.
+    // Two parallel rollers: the body slides along both; the direction has unit length at each of its 20 nodes.
     let (mode, direction) = under_held(&rollers(&[([0.0, 0.0], [3.0, 4.0]), ([1.0, 0.0], [-3.0, -4.0])]));
     assert!(mode.contains("translation along") && mode.contains("0.800") && mode.contains("0.600"), "{mode}");
     assert!((dot(&direction, &direction) - 20.0).abs() < 1e-9, "{direction:?}");
-    // Two others: the body turns about the point where the normals meet, (0.5, 0.5); so do three through one point.
+    // Two other rollers: the body rotates about the point at which the normals meet, (0.5, 0.5); three rollers through
+    // one point allow the same rotation.
     let cross = [([0.0, 0.0], [1.0, 1.0]), ([1.0, 0.0], [-1.0, 1.0]), ([0.5, 0.0], [0.0, 1.0])];
     for count in [2, 3] {
         let (motion, _) = under_held(&rollers(&cross[..count]));
         assert!(motion.contains("rotation about z through (0.5, 0.5)"), "{motion}");
     }
-    // A third that passes the point by holds the body.
+    // A third roller whose normal does not pass through that point prevents the rotation.
     check(&rollers(&[cross[0], cross[1], ([0.75, 0.0], [0.0, 1.0])]));
-    // In space: on one inclined plane three motions are left.
+    // In space, three motions are free on an inclined plane.
     let mut scene = cube("hex8", json!([{"on": {"boundary": "bottom"}, "normal": [0, 0.6, -0.8]}]));
     scene["obstacles"] = json!([]);
     let (motion, _) = under_held(&scene);
@@ -147,8 +148,8 @@ fn rigid_body_modes_along_rollers_are_found_and_named() {
 }
 
 #[test]
-fn an_escape_along_rollers_is_named() {
-    // Two parallel rollers and a flank that stops the slide one way; the load drives the other way.
+fn an_unbounded_translation_along_rollers_is_named() {
+    // Two parallel rollers and a wall that stops the body in one direction; the load acts in the other direction.
     let mut scene = square("plane-strain", "q4", json!([{"on": {"boundary": "bottom"}, "normal": [3, 4]}]));
     scene["obstacles"] =
         json!([{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [1, 0], "normal": [1, 0]}}}]);
@@ -162,7 +163,7 @@ fn an_escape_along_rollers_is_named() {
 }
 
 #[test]
-fn frames_turn_there_and_back() {
+fn frames_transform_vectors_in_both_directions() {
     let given = [[0.6, 0.0, 0.8], [0.0, -1.0, 0.0]];
     let frame = Frame::completing(&given, 3).unwrap();
     assert_eq!(frame.axes()[..2], given);
@@ -174,7 +175,7 @@ fn frames_turn_there_and_back() {
     assert_eq!(plane.axes()[2], [0.0, 0.0, 1.0]);
     assert!(dot(&plane.axes()[0], &plane.axes()[1]).abs() < ROUNDING);
 
-    // Restricting is the transpose of expanding: f . (expand u) = (restrict f) . u where nothing is prescribed.
+    // Restricting is the transpose of expanding: f . (expand u) = (restrict f) . u if no value is prescribed.
     let prescribed = vec![None, None, Some(0.5), None, Some(-1.0), None];
     let dofs = DofMap::with_frames(prescribed, 2, BTreeMap::from([(1, plane)])).unwrap();
     let (free, force) = ([0.3, -0.2, 0.7, 0.1], [1.0, 2.0, -3.0, 0.5, 0.25, 4.0]);
@@ -187,7 +188,7 @@ fn frames_turn_there_and_back() {
         let value: f64 = along.free.iter().map(|&(dof, factor)| factor * free[dof]).sum();
         assert!((value + along.prescribed - dot(&nodal[2 * node..2 * node + 2], &vector)).abs() < ROUNDING);
     }
-    assert!(dofs.along(1, &[0.6, 0.8]).free.is_empty(), "rounding is no component");
+    assert!(dofs.along(1, &[0.6, 0.8]).free.is_empty(), "a component of the size of rounding is kept");
     assert!(difference(&dofs.supported_part(&force).unwrap(), &[0.0, 0.0, -0.84, -1.12, 0.25, 0.0]) < ROUNDING);
 
     for given in [&[[1.0, 1.0, 0.0]][..], &[[1.0, 0.0, 0.0], [0.6, 0.8, 0.0]], &[[0.0, 0.0, 1.0]], &[[f64::NAN; 3]]] {

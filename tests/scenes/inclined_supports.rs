@@ -1,5 +1,5 @@
-//! GOAL: rollers on inclined planes against Lagrange multipliers in the coordinate axes: displacement, contact forces,
-//! reactions along the normals, balance.
+//! GOAL: rollers on inclined planes, compared with Lagrange multipliers in the coordinate axes: displacement, contact
+//! forces, reactions along the normals, balance.
 
 use std::collections::BTreeMap;
 
@@ -9,8 +9,8 @@ use serde_json::{Value, json};
 use signorini::{Error, solve_qp};
 
 #[test]
-fn rollers_in_the_plane_hold_as_lagrange_multipliers_do() {
-    // Side by side at the corner: two oblique normals hold it fully.
+fn rollers_in_the_plane_agree_with_lagrange_multipliers() {
+    // Two rollers that share a corner: their two oblique normals fix it completely.
     let supports = json!([
         {"on": {"boundary": "bottom"}, "normal": [3, -4], "value": 0.01},
         {"on": {"boundary": "left"}, "normal": [-2, -0.3], "value": -0.02},
@@ -19,13 +19,13 @@ fn rollers_in_the_plane_hold_as_lagrange_multipliers_do() {
         for model in ["plane-strain", "plane-stress"] {
             let model = check(&square(model, element, supports.clone()));
             let corner = (0..2).filter(|&dof| model.dofs().number(dof).is_some()).count();
-            assert_eq!((corner, model.dofs().frame(0)), (0, None), "the corner is held fully, without a frame");
+            assert_eq!((corner, model.dofs().frame(0)), (0, None), "the corner is fixed completely, without a frame");
         }
     }
 }
 
 #[test]
-fn a_normal_joins_coordinates_in_one_support_and_at_one_node() {
+fn a_normal_combines_with_coordinates_in_one_support_and_at_one_node() {
     check(&square(
         "plane-strain",
         "q4",
@@ -48,8 +48,8 @@ fn a_normal_joins_coordinates_in_one_support_and_at_one_node() {
 }
 
 #[test]
-fn rollers_in_space_hold_as_lagrange_multipliers_do() {
-    // Edges have two oblique normals, the corner at the origin three.
+fn rollers_in_space_agree_with_lagrange_multipliers() {
+    // Edges have two oblique normals, the corner at the origin has three.
     let supports = json!([
         {"on": {"boundary": "bottom"}, "normal": [0.2, -0.3, -1], "value": 0.01},
         {"on": {"boundary": "left"}, "normal": [-1, 0.4, 0.1], "value": 0.02},
@@ -65,12 +65,12 @@ fn rollers_in_space_hold_as_lagrange_multipliers_do() {
 }
 
 #[test]
-fn a_body_of_revolution_rests_in_a_cone() {
+fn a_body_of_revolution_in_a_conical_support_agrees_with_lagrange_multipliers() {
     for element in ["q4", "t6"] {
         let mut scene = square("axisymmetric", element, json!([{"on": {"boundary": "bottom"}, "normal": [1, -2]}]));
         scene["loads"] = json!([{"pressure": {"boundary": "right", "value": 0.02}}, {"body-force": [0, -0.01]}]);
         check(&scene);
-        // On the axis the cone holds the node fully: u_x = 0 and (1, -2) . u = 0.02 sqrt(5).
+        // On the axis the cone fixes the node completely: u_x = 0 and (1, -2) . u = 0.02 sqrt(5).
         scene["supports"][0]["value"] = json!(0.02);
         let model = check(&scene);
         let nodal = model.nodal_displacement(&vec![0.0; model.problem().dofs()]).unwrap();
@@ -80,8 +80,8 @@ fn a_body_of_revolution_rests_in_a_cone() {
 }
 
 #[test]
-fn a_contact_row_may_meet_a_roller_at_its_node() {
-    // Nodes of the top on a roller and under the parabola at once, with oblique rows.
+fn a_node_may_have_a_roller_and_a_contact_row() {
+    // The nodes of the top are on a roller and under the parabola, with oblique rows.
     let mut scene = square(
         "plane-strain",
         "q4",
@@ -97,12 +97,16 @@ fn a_contact_row_may_meet_a_roller_at_its_node() {
     let pressed = solve_qp(model.problem()).unwrap();
     for x in [0.5, 0.75] {
         let row = model.rows().iter().position(|row| model.mesh().nodes()[row.node] == [x, 1.0, 0.0]).unwrap();
-        assert!(pressed.multiplier[row] < 0.0, "the row of the roller at x = {x} is closed");
-        assert_eq!(model.problem().contact().transposed().column(row).count(), 1, "one free dof");
+        assert!(pressed.multiplier[row] < 0.0, "the row of the roller at x = {x} is open");
+        assert_eq!(
+            model.problem().contact().transposed().column(row).count(),
+            1,
+            "the row has entries at one free dof"
+        );
     }
 }
 
-/// The top of the square on a roller of the normal (3, 4), under a plane of the same normal at a distance.
+/// The top of the square is on a roller with the normal (3, 4), under a plane with the same normal at a distance.
 fn parallel(distance: f64, value: f64) -> Value {
     let mut scene = square(
         "plane-strain",
@@ -118,11 +122,11 @@ fn parallel(distance: f64, value: f64) -> Value {
 }
 
 #[test]
-fn a_row_along_the_normal_of_a_roller_holds_or_fails_by_itself() {
-    // The plane is nearest to the corner (1, 1), 0.05 from it; the roller moves the top by 0.04 towards it.
+fn a_row_along_the_normal_of_a_roller_is_dropped_or_infeasible() {
+    // The plane is nearest to the corner (1, 1), at a distance of 0.05; the roller moves the top by 0.04 towards it.
     assert_eq!(check(&parallel(0.05, 0.04)).rows().len(), 0);
     let model = built(&parallel(0.05, 0.06));
-    assert_eq!(model.rows().len(), 1, "the corner alone is pushed through");
+    assert_eq!(model.rows().len(), 1, "only the corner penetrates");
     let error = model.explain(solve_qp(model.problem()).unwrap_err());
     let Error::Infeasible { reason, .. } = &error else { panic!("{error}") };
     assert!(reason.contains("at (1, 1)") && reason.contains("obstacles[0]"), "{reason}");

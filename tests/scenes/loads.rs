@@ -1,4 +1,4 @@
-//! Loads that are spread, tabulated, or forces of inertia: resultants, closed forms, what is refused.
+//! Distributed loads, tabulated loads, and inertia forces: resultants, closed forms, refused input.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use signorini::scene::{Answer, Resultant};
 use signorini::{Error, Scene, solve_qp};
 
-/// Sums of nodal forces: rounding alone.
+/// Rounding of sums of nodal forces.
 const ROUNDING: f64 = 1e-12;
 
 fn answer(scene: &Value) -> Answer {
@@ -27,7 +27,7 @@ fn close(found: &[f64], expected: &[f64], scale: f64, tolerance: f64) {
     assert!(is_close, "{found:?} instead of {expected:?}");
 }
 
-/// A wall of height 3 and thickness 0.5, clamped below, with water up to `water` on its left.
+/// A wall of height 3 and thickness 0.5, clamped at the bottom, with water up to `water` on its left.
 fn wall(element: &str, water: f64, rows: usize) -> Value {
     json!({
         "model": "plane-stress", "thickness": 0.25,
@@ -41,7 +41,7 @@ fn wall(element: &str, water: f64, rows: usize) -> Value {
     })
 }
 
-/// The water line lies within an edge: g rho h^2/2 of each thickness, at a third of the height.
+/// The water line is inside an edge: the force per thickness is g rho h^2/2, at a third of the height.
 #[test]
 fn the_pressure_of_water_has_its_resultant_at_a_third_of_its_height() {
     for element in ["t3", "t6", "q4", "q8"] {
@@ -55,9 +55,10 @@ fn the_pressure_of_water_has_its_resultant_at_a_third_of_its_height() {
     }
 }
 
-/// In space the water line crosses facets, and none of their corners; the wall is one across, its depth 2 along y.
+/// In space the water line crosses facets, but no corner of a facet; the wall has a thickness of 1, and a depth of 2
+/// along y.
 #[test]
-fn the_water_line_may_cross_facets_in_space() {
+fn a_water_line_that_crosses_facets_in_space_has_the_exact_resultant() {
     for element in ["tet4", "hex8"] {
         let axis = |length: f64, cells: usize| json!({"points": [0, length], "divisions": [cells]});
         let found = loads(&json!({
@@ -73,11 +74,12 @@ fn the_water_line_may_cross_facets_in_space() {
     }
 }
 
-/// A cantilever under a triangular pressure: q L^4/30EI of bending and q L^2/6kGA of shear, k = 10(1+nu)/(12+11nu).
+/// A cantilever under a triangular pressure: deflection q L^4/30EI by bending and q L^2/6kGA by shear,
+/// k = 10(1+nu)/(12+11nu).
 #[test]
 fn a_wall_under_water_bends_like_a_cantilever() {
     let mut scene = wall("q8", 3.0, 24);
-    // Half as thick, the clamp no hindrance to what goes across.
+    // A wall half as thick, whose clamp does not prevent the strain across it.
     scene["body"]["rectangle"]["x"]["points"] = json!([0, 0.25]);
     scene["material"]["poisson"] = json!(0.0);
     let answer = answer(&scene);
@@ -90,9 +92,9 @@ fn a_wall_under_water_bends_like_a_cantilever() {
     assert!(shear > 3e-3 * bending);
 }
 
-/// A boundary of curved edges, and one of bent facets in space: what is given is what acts.
+/// On a boundary of curved edges, and on one of bent facets in space, the resultant equals the prescribed value.
 #[test]
-fn forces_and_moments_on_a_boundary_are_those_that_are_given() {
+fn forces_and_moments_on_a_boundary_have_the_prescribed_resultant() {
     let disc = json!({
         "model": "plane-strain", "thickness": 0.3,
         "body": {"half-disc": {"centre": [3, 1], "radius": 1, "element": "t6",
@@ -122,9 +124,10 @@ fn forces_and_moments_on_a_boundary_are_those_that_are_given() {
     }
 }
 
-/// On the full circle: the axial force as it is given, the radial one summed up.
+/// In an axisymmetric model both forces are for the full circle: the axial one as prescribed, the radial one as a sum
+/// of magnitudes.
 #[test]
-fn a_force_about_an_axis_is_that_of_the_full_circle() {
+fn a_force_in_an_axisymmetric_model_is_that_of_the_full_circle() {
     let mut scene = json!({
         "model": "axisymmetric",
         "body": {"rectangle": {"x": {"points": [1, 2], "divisions": [3]}, "y": {"points": [0, 1], "divisions": [2]}}},
@@ -138,7 +141,8 @@ fn a_force_about_an_axis_is_that_of_the_full_circle() {
     close(pressed.displacement(), answer(&scene).displacement(), largest(pressed.displacement()), ROUNDING);
 }
 
-/// u_x = -k x y, u_y = k (x^2 + nu y^2)/2 with k = M/EI is quadratic: quadratic elements are exact.
+/// The displacement u_x = -k x y, u_y = k (x^2 + nu y^2)/2 with k = M/EI is quadratic, so that quadratic elements are
+/// exact.
 #[test]
 fn a_moment_at_the_end_of_a_cantilever_bends_it_to_a_parabola() {
     let (young, poisson, depth, moment) = (1000.0, 0.3, 0.5, 0.2);
@@ -164,9 +168,10 @@ fn a_moment_at_the_end_of_a_cantilever_bends_it_to_a_parabola() {
     }
 }
 
-/// In space a moment about the axis of a square bar twists, and one across bends it about either side.
+/// In space, a moment about the axis of a square bar twists it, and moments perpendicular to the axis bend it about
+/// either side.
 #[test]
-fn a_moment_across_the_end_of_a_bar_in_space_bends_it() {
+fn moments_on_the_end_of_a_bar_in_space_bend_and_twist_it() {
     let axis = |low: f64, high: f64, cells: usize| json!({"points": [low, high], "divisions": [cells]});
     let tip = |moment: [f64; 3], at: [f64; 3]| {
         let answer = answer(&json!({
@@ -184,13 +189,14 @@ fn a_moment_across_the_end_of_a_bar_in_space_bends_it() {
     assert!((bent[1] / (0.1 * 64.0 / 2.0 / (1000.0 * about_z)) - 1.0).abs() < 0.02, "{bent:?}");
     let bent = tip([0.0, 0.1, 0.0], [8.0, 0.0, 0.0]);
     assert!((bent[2] / (-0.1 * 64.0 / 2.0 / (1000.0 * about_y)) - 1.0).abs() < 0.02, "{bent:?}");
-    // The torsion constant of a rectangle of 2 x 1: 0.229 2 1^3.
+    // The torsion constant of a rectangle of 2 x 1 is 0.229 2 1^3.
     let twisted = tip([0.1, 0.0, 0.0], [8.0, 0.0, 1.0]);
     let angle = 0.1 * 8.0 / (500.0 * 0.229 * 2.0);
     assert!((twisted[1] / -angle - 1.0).abs() < 0.05, "{twisted:?} instead of {angle}");
 }
 
-/// The largest relative errors of radial displacement and of stress, at the nodes of a quarter of an annulus of radii 1 and 2 that turns.
+/// The largest relative errors of radial displacement and of stress at the nodes of a rotating quarter annulus of radii
+/// 1 and 2.
 fn annulus(element: &str, cells: usize) -> [f64; 2] {
     let (young, nu, density, omega) = (100.0, 0.3, 2.0, 3.0);
     let answer = answer(&json!({
@@ -225,7 +231,7 @@ fn annulus(element: &str, cells: usize) -> [f64; 2] {
 /// REFERENCE: S. Timoshenko, J. N. Goodier, Theory of Elasticity, 1970, section 32: sigma_r = c (a^2 + b^2 - a^2 b^2/r^2 - r^2),
 /// sigma_t = c (a^2 + b^2 + a^2 b^2/r^2 - (1+3nu)/(3+nu) r^2), c = (3+nu)/8 rho omega^2.
 #[test]
-fn a_turning_disc_has_the_stresses_of_timoshenko() {
+fn a_rotating_disc_has_the_stresses_of_timoshenko() {
     for (element, displacement, stress) in [("q4", 2.0, 0.9), ("q8", 2.0, 2.0)] {
         let [coarse, fine] = [8, 16].map(|cells| annulus(element, cells));
         let rates = [0, 1].map(|k| (coarse[k] / fine[k]).log2());
@@ -235,10 +241,10 @@ fn a_turning_disc_has_the_stresses_of_timoshenko() {
     }
 }
 
-/// A solid shaft between planes: u(b) = (1+nu)(1-2nu)/E rho omega^2 b^3/4 with the sides held, by Timoshenko's stresses with
-/// nu/(1-nu) for nu.
+/// A solid shaft between planes with fixed sides: u(b) = (1+nu)(1-2nu)/E rho omega^2 b^3/4, from Timoshenko's stresses
+/// with nu/(1-nu) in place of nu.
 #[test]
-fn a_turning_shaft_widens_as_timoshenko_says() {
+fn a_rotating_shaft_has_the_radial_displacement_of_timoshenko() {
     let (young, nu, density, omega) = (100.0, 0.3, 2.0, 3.0);
     for element in ["t6", "q8"] {
         let answer = answer(&json!({
@@ -255,7 +261,7 @@ fn a_turning_shaft_widens_as_timoshenko_says() {
     }
 }
 
-/// Two bodies of different densities: all of them weigh, and all of them turn about an axis that is inclined.
+/// Two bodies of different densities: gravity acts on both, and both rotate about an inclined axis.
 #[test]
 fn gravity_and_rotation_act_on_all_bodies_by_their_densities() {
     let cube = |low: f64| {
@@ -275,13 +281,13 @@ fn gravity_and_rotation_act_on_all_bodies_by_their_densities() {
     close(&found.force, &[7.0, 0.0, -7.0 * 9.81], 70.0, ROUNDING);
     close(&found.moment, &[-7.0 * 9.81 / 2.0, 7.0 * 9.81 / 2.0 + 2.0 * 0.5 + 5.0 * 3.5, -3.5], 70.0, ROUNDING);
     scene["loads"] = json!([{"centrifugal": {"omega": 2, "axis": [0, 3, 3], "point": [0, 1, 1]}}]);
-    // The way from the axis to each centre of mass: the axis runs through the origin along (0, 1, 1).
+    // The vector from the axis to each centre of mass; the axis passes through the origin along (0, 1, 1).
     let way = |z: f64| [0.5, (0.5 - z) / 2.0, (z - 0.5) / 2.0];
     let force = [0, 1, 2].map(|k| 4.0 * (2.0 * way(0.5)[k] + 5.0 * way(3.5)[k]));
     close(&loads(&scene).force, &force, 30.0, ROUNDING);
 }
 
-/// A displacement that is linear on all sides is linear within.
+/// A displacement that is linear on all sides is linear inside.
 #[test]
 fn displacements_that_are_linear_along_the_sides_pass_the_patch_test() {
     let profile = json!({"along": [3, 4], "places": [-5, 5], "factors": [-5, 5]});
@@ -298,7 +304,7 @@ fn displacements_that_are_linear_along_the_sides_pass_the_patch_test() {
 }
 
 #[test]
-fn new_loads_on_supports_alone_are_warned_of() {
+fn loads_on_supported_boundaries_are_warned_of() {
     let scene = json!({
         "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [3]}, "y": {"points": [0, 2], "divisions": [4]}}},
         "material": {"young": 100, "poisson": 0.3},
@@ -314,7 +320,7 @@ fn new_loads_on_supports_alone_are_warned_of() {
 }
 
 #[test]
-fn loads_that_are_none_are_refused_at_their_path() {
+fn invalid_loads_are_refused_at_their_path() {
     let plane = |load: Value| {
         json!({
             "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [2]}, "y": {"points": [0, 1], "divisions": [2]}}},

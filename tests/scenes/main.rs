@@ -1,4 +1,4 @@
-//! Scenes: what is read and refused, the rows of obstacles, supports, and contact answers against closed forms.
+//! Scenes: accepted and refused input, the rows of obstacles, supports, and contact answers compared with closed forms.
 
 #[path = "../support/bodies.rs"]
 mod bodies;

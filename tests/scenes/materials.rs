@@ -1,4 +1,5 @@
-//! Bodies of several materials in scenes: layers and strips against closed forms, groups of mesh files, what is refused.
+//! Bodies of several materials in scenes: layers and strips compared with closed forms, groups of mesh files, refused
+//! input.
 
 use crate::bodies::built;
 use serde_json::{Value, json};
@@ -8,7 +9,7 @@ use std::sync::Arc;
 
 const ROUNDING: f64 = 1e-10;
 
-/// The answer to a scene whose mesh files are those of the tests.
+/// The answer to a scene that uses the mesh files of the tests.
 pub fn answer(scene: &Value) -> Answer {
     let model = Scene::from_json(&scene.to_string(), "scene").unwrap();
     let model = Scene { folder: Some("tests/meshes".into()), ..model }.build().unwrap();
@@ -36,9 +37,9 @@ pub fn refused(scene: &Value, path: &str, phrases: &[&str]) {
     phrases.iter().for_each(|phrase| assert!(error.to_string().contains(phrase), "{error}"));
 }
 
-/// A bar of 3 m whose last metre is four times as stiff as the rest, pulled to 0.01 m: springs of 50 and 400 in a row.
+/// A bar of 3 m whose last metre is four times as stiff as the rest, pulled to 0.01 m: springs of 50 and 400 in series.
 #[test]
-fn a_layered_bar_is_springs_in_a_row() {
+fn a_layered_bar_has_the_stiffness_of_springs_in_series() {
     let answer = answer(&json!({
         "model": "bar",
         "body": {"bar": {"x": {"points": [0, 2, 3], "divisions": [2, 3]}, "area": 1}},
@@ -53,8 +54,8 @@ fn a_layered_bar_is_springs_in_a_row() {
     assert!(answer.stress().unwrap().elements.iter().all(|stress| (stress.sigma_xx - force).abs() < ROUNDING));
 }
 
-/// A strip of two layers, nu = 0, that is bent to the curvature 0.01 about its neutral axis: the moment of the parallel-axis theorem, no
-/// force.
+/// A strip of two layers, nu = 0, bent to the curvature 0.01 about its neutral axis: the moment agrees with the
+/// parallel-axis theorem, and the force is zero.
 #[test]
 fn a_bent_strip_of_two_layers_has_the_stiffness_of_the_parallel_axis_theorem() {
     let (layers, curvature, length) = ([(100.0, 0.0, 0.6), (700.0, 0.6, 1.0)], 0.01, 4.0);
@@ -91,9 +92,9 @@ fn a_bent_strip_of_two_layers_has_the_stiffness_of_the_parallel_axis_theorem() {
     assert!(answer.discretisation_error().unwrap() < ROUNDING);
 }
 
-/// Two blocks of 1 x 1 in one file, side by side, pulled apart: the compliances add up.
+/// Two blocks of 1 x 1 side by side in one file, pulled apart: their compliances add up.
 #[test]
-fn groups_of_a_mesh_file_have_materials_of_their_own() {
+fn each_group_of_a_mesh_file_can_have_a_different_material() {
     let scene = json!({
         "model": "plane-stress",
         "body": {"gmsh": {"file": "two-parts-q8.msh"}},
@@ -109,7 +110,7 @@ fn groups_of_a_mesh_file_have_materials_of_their_own() {
     for (scene, stress) in [
         (scene.clone(), 3.0),
         (changed(&changed(&scene, "/material", json!({"young": 300, "poisson": 0})), "/materials", json!([scene["materials"][0]])), 3.0),
-        // Of two entries the last one counts.
+        // The last of two entries for an element applies.
         (changed(&scene, "/materials/0", json!({"group": "second", "box": {"min": [0, 0], "max": [9, 9]}, "material": {"young": 5, "poisson": 0}}))
             .pointer("/materials")
             .map(|materials| changed(&changed(&scene, "/material", json!({"young": 100, "poisson": 0})), "/materials", materials.clone()))
@@ -137,7 +138,7 @@ fn groups_of_a_mesh_file_have_materials_of_their_own() {
     assert!(matches!(error, Error::Refused { code: "several-groups", .. }), "{error}");
 }
 
-/// A square whose right half is of another material.
+/// A square with another material in its right half.
 fn halves() -> Value {
     json!({
         "body": {"rectangle": {"x": {"points": [0, 2], "divisions": [4]}, "y": {"points": [0, 1], "divisions": [2]}}},
@@ -148,7 +149,7 @@ fn halves() -> Value {
 }
 
 #[test]
-fn gravity_pulls_each_material_by_its_density() {
+fn gravity_acts_on_each_material_by_its_density() {
     let mut scene = halves();
     scene["loads"] = json!([{"gravity": [0, -10]}]);
     let answer = answer(&scene);
@@ -160,7 +161,7 @@ fn gravity_pulls_each_material_by_its_density() {
 }
 
 #[test]
-fn materials_that_are_none_are_refused_where_they_stand() {
+fn invalid_materials_are_refused_at_their_path() {
     let right = halves();
     let material = |value: Value| changed(&right, "/materials/0/material", value);
     let orthotropic = |change: &[(&str, Value)]| {
@@ -224,7 +225,7 @@ fn materials_that_are_none_are_refused_where_they_stand() {
 }
 
 #[test]
-fn a_jump_of_stiffness_is_named_with_its_numbers() {
+fn a_large_jump_of_stiffness_is_warned_of_with_its_values() {
     let codes = |young: f64| {
         let model = built(&changed(&halves(), "/materials/0/material/young", json!(young)));
         let warnings: Vec<String> =
@@ -237,9 +238,9 @@ fn a_jump_of_stiffness_is_named_with_its_numbers() {
     assert!(found[0].contains("3e-3") && found[0].contains("1e2") && found[0].contains("3.3e4"), "{found:?}");
 }
 
-/// The same square twice, once as a further body: each has its own materials.
+/// The same square twice, the second as a further body, each with different materials.
 #[test]
-fn further_bodies_have_parts_of_their_own() {
+fn further_bodies_have_separate_materials() {
     let mut scene = halves();
     scene["further-bodies"] = json!([{
         "name": "base",

@@ -1,4 +1,4 @@
-//! Scenes on bodies from mesh files and on round bodies, solved end to end against closed forms.
+//! Scenes on bodies from mesh files and on round bodies, solved completely and compared with closed forms.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -9,7 +9,7 @@ use signorini::{Error, Model, Scene, solve_qp};
 const YOUNG: f64 = 1000.0;
 const POISSON: f64 = 0.3;
 
-/// Uniform compression is exact up to rounding; the largest difference met is 6e-15.
+/// Uniform compression is exact up to rounding; the largest measured difference is 6e-15.
 const ROUNDING: f64 = 1e-12;
 
 /// A scene as if it were read from a file in the folder of the meshes.
@@ -65,8 +65,8 @@ fn uniform_compression_is_exact_on_unstructured_meshes() {
     }
 }
 
-/// The stress, the forces and the side of a half ball of ten-node tetrahedra from Gmsh, pressed as the linear mesh of the same
-/// nodes cannot be: the force of Hertz within a few per cent of the mean of a coarse contact.
+/// A half ball of ten-node tetrahedra from Gmsh under a sphere. Its faces are curved and quadratic; forces and moments
+/// must balance.
 #[test]
 fn forces_and_moments_balance_on_curved_quadratic_faces() {
     let support = |on: Value, axis: &str, value: f64| json!({"on": on, axis: value});
@@ -85,7 +85,7 @@ fn forces_and_moments_balance_on_curved_quadratic_faces() {
         let balance = model.force_balance(&solution.displacement, &solution.multiplier).unwrap();
         assert!(balance < 1e-12, "{rule}: {balance:e}");
         assert!(solution.multiplier.iter().all(|&lambda| lambda <= 0.0));
-        // What the rows say of the moment is what the nodal forces say.
+        // The moment of the contact rows equals the moment of the nodal forces.
         let forces = model.contact_forces(&solution.multiplier).unwrap();
         let nodes = model.mesh().nodes();
         let moment = (0..nodes.len())
@@ -107,7 +107,7 @@ fn a_scaled_mesh_in_other_units_gives_the_same_pressure() {
     assert!(pressures.iter().all(|pressure| (pressure / expected - 1.0).abs() < 1e-7), "{pressures:?}");
 }
 
-/// A round body of radius 1 above the plane through its lowest point, its cut moved down.
+/// A round body of radius 1 above the plane through its lowest point; its cut moves down.
 fn indented(model: &str, body: Value, round: &str, depth: f64, symmetry: &[&str]) -> Value {
     let vertical = if model == "space" { "z" } else { "y" };
     let down: Vec<f64> = if model == "space" { vec![0.0, 0.0, -1.0] } else { vec![0.0, -1.0] };
@@ -123,7 +123,7 @@ fn indented(model: &str, body: Value, round: &str, depth: f64, symmetry: &[&str]
     })
 }
 
-/// GOAL: the peak pressure of a cylinder and a ball on a rigid plane, from the total force.
+/// GOAL: the peak pressure of a cylinder and of a ball on a rigid plane, from the total force.
 ///
 /// CONDITIONS: half disc, or half ball, of radius 1 whose flat cut is moved down; contact half-width near 0.06.
 ///
@@ -160,9 +160,10 @@ fn round_bodies_have_the_peak_pressure_of_hertz() {
     assert!((4.0 * quarter / force - 1.0).abs() < 0.05, "in space {}, revolved {force}", 4.0 * quarter);
 }
 
-/// GOAL: the pressure of a ball of unstructured tetrahedra of ten nodes, as Gmsh writes them, on a rigid plane.
+/// GOAL: the pressure of a ball of unstructured ten-node tetrahedra from Gmsh on a rigid plane.
 ///
-/// CONDITIONS: a quarter of a half ball of radius 1 whose cut is moved down by 0.004; five edges within the radius of the contact.
+/// CONDITIONS: a quarter of a half ball of radius 1 whose cut is moved down by 0.004; five edges along the radius of
+/// the contact.
 ///
 /// REFERENCE: Hertz, from the total force: p0 = (6 F E*^2 / (pi^3 R^2))^(1/3), a = (3 F R / (4 E*))^(1/3), p = p0 sqrt(1 - (r/a)^2).
 #[test]
@@ -190,12 +191,12 @@ fn a_ball_of_unstructured_quadratic_tetrahedra_has_the_pressure_of_hertz() {
 }
 
 #[test]
-fn an_unstructured_half_disc_carries_the_force_of_the_structured_one() {
+fn an_unstructured_half_disc_has_the_contact_force_of_a_structured_one() {
     let zone = json!({"width": 0.3, "divisions": 8, "growth": 1.2});
     let structured = json!({"half-disc": {"centre": [0, 1], "radius": 1, "element": "t6", "zone": zone}});
     let force = |body: Value| {
         let mut value = indented("plane-strain", body, "arc", 0.03, &[]);
-        // The node at the lowest point keeps the disc from sliding.
+        // The support of the node at the lowest point prevents sliding.
         let cut = value["supports"][0].clone();
         value["supports"] = json!([cut, {"on": {"point": [0, 0]}, "x": 0}]);
         solved(&scene(&value).build().unwrap()).1
@@ -204,11 +205,11 @@ fn an_unstructured_half_disc_carries_the_force_of_the_structured_one() {
     assert!((one / other - 1.0).abs() < 0.01, "{one} and {other}");
 }
 
-/// GOAL: a thick ring under pressure from outside, inside a quarter with planes of symmetry.
+/// GOAL: a thick ring under external pressure; a quarter with planes of symmetry.
 ///
 /// REFERENCE: Lamé, plane strain: u(b) = -p b (1 + nu) ((1 - 2 nu) b^2 + a^2) / (E (b^2 - a^2)).
 #[test]
-fn a_pressed_ring_narrows_as_lame_says() {
+fn a_ring_under_external_pressure_has_the_displacement_of_lame() {
     let axis = |points: [f64; 2], cells: usize| json!({"points": points, "divisions": [cells]});
     let value = json!({
         "body": {"ring": {"radius": axis([1.0, 2.0], 6), "angle": axis([0.0, 90.0], 12), "element": "q8"}},
@@ -227,7 +228,7 @@ fn a_pressed_ring_narrows_as_lame_says() {
 }
 
 #[test]
-fn a_mesh_file_stands_beside_its_scene() {
+fn the_path_of_a_mesh_file_is_relative_to_its_scene() {
     let folder = tempfile::tempdir().unwrap();
     let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes");
     std::fs::create_dir(folder.path().join("parts")).unwrap();
@@ -236,13 +237,13 @@ fn a_mesh_file_stands_beside_its_scene() {
     let value = pressed("plane-strain", body, "y", &[("bottom", "y"), ("left", "x")]);
     std::fs::write(folder.path().join("scene.json"), value.to_string()).unwrap();
     assert!(Scene::read(folder.path().join("scene.json")).unwrap().build().is_ok());
-    // Text alone has no folder: the name starts from the current one.
+    // A scene from text has no folder: the path is relative to the current one.
     let error = Scene::from_json(&value.to_string(), "scene").unwrap().build().unwrap_err();
     assert!(matches!(&error, Error::File { action: "read", path, .. } if path.ends_with("parts/block.msh")), "{error}");
 }
 
 #[test]
-fn faults_of_a_mesh_keep_their_file_and_line() {
+fn faults_of_a_mesh_are_reported_with_file_and_line() {
     let folder = tempfile::tempdir().unwrap();
     let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes");
     let text = std::fs::read_to_string(meshes.join("block-t3.msh")).unwrap();
@@ -255,7 +256,7 @@ fn faults_of_a_mesh_keep_their_file_and_line() {
 }
 
 #[test]
-fn values_that_describe_no_body_are_refused_at_their_path() {
+fn invalid_bodies_are_refused_at_their_path() {
     let on = |model: &str, body: Value| {
         let value = pressed(model, body, if model == "space" { "z" } else { "y" }, &[("bottom", "y")]);
         scene(&value).build().unwrap_err()
@@ -297,7 +298,7 @@ fn values_that_describe_no_body_are_refused_at_their_path() {
 }
 
 #[test]
-fn a_missing_group_is_told_with_those_that_exist() {
+fn an_unknown_boundary_is_refused_with_the_names_of_the_existing_ones() {
     let body = json!({"gmsh": {"file": "block-t3.msh"}});
     let mut value = pressed("plane-strain", body, "y", &[("floor", "y")]);
     let message = scene(&value).build().unwrap_err().to_string();

@@ -1,15 +1,17 @@
-//! GOAL: the contact rows of every obstacle shape, by both rules, against formulas that share nothing with the library.
+//! GOAL: the contact rows of every obstacle shape, by both rules, compared with formulas that share no code with the
+//! library.
 //!
-//! BODY: clamped unit square, 8 x 8 Q4; candidates are the nodes of one side.
+//! BODY: a clamped unit square of 8 x 8 Q4; candidates are the nodes of one side.
 
 use crate::bodies::{built, clamped_square};
 use serde_json::{Value, json};
 use signorini::Model;
 
-/// Distances of order one, a handful of operations.
+/// Rounding of a few operations on distances of order one.
 const ROUNDING: f64 = 1e-14;
 
-/// A golden-section search finds a minimum to the square root of rounding; the distance itself is then exact to rounding.
+/// A golden-section search finds the place of a minimum to the square root of rounding; the distance itself is then
+/// exact to rounding.
 const SEARCHED: f64 = 1e-12;
 
 fn top(rule: &str, shape: Value, gap: f64) -> Model {
@@ -43,12 +45,16 @@ fn along_the_approach_direction_the_gap_is_the_height_above_the_node() {
             assert!((contact.gap - expected).abs() < ROUNDING, "{shape} {contact:?} {expected}");
             assert_eq!(*gap_of_problem, contact.gap);
         }
-        assert!(model.problem().contact().values().iter().all(|&entry| entry == 1.0), "boolean rows: {shape}");
-        assert_eq!(model.problem().contact().entries(), 9, "one entry a row: {shape}");
+        assert!(
+            model.problem().contact().values().iter().all(|&entry| entry == 1.0),
+            "the rows are not boolean: {shape}"
+        );
+        assert_eq!(model.problem().contact().entries(), 9, "a row has more than one entry: {shape}");
     }
 }
 
-/// The closest distance from `node` to the curve, searched: coarsely, then by golden section around the best point.
+/// The smallest distance from `node` to the curve, by a coarse search and then a golden-section search around the best
+/// point.
 fn searched_distance(node: [f64; 2], curve: &dyn Fn(f64) -> f64, (low, high): (f64, f64)) -> f64 {
     let distance = |t: f64| (t - node[0]).hypot(curve(t) - node[1]);
     let steps = 20_000;
@@ -87,7 +93,7 @@ fn curves() -> Vec<Curve> {
     }
     const ZIGZAG: [[f64; 2]; 6] = [[-1.0, 1.3], [0.1, 0.9], [0.3, 1.2], [0.6, 1.15], [0.7, 0.95], [2.0, 1.6]];
     curves.push((json!({"table": {"points": ZIGZAG}}), Box::new(rise(&ZIGZAG)), (-1.0, 2.0)));
-    // A roof that the square has broken through: nodes inside, closest to its ridge.
+    // A roof that the top of the square penetrates: nodes inside are closest to its ridge.
     const ROOF: [[f64; 2]; 3] = [[-1.0, -1.9], [0.47, 0.9], [2.0, -2.0]];
     curves.push((json!({"table": {"points": ROOF}}), Box::new(rise(&ROOF)), (-1.0, 2.0)));
     curves
@@ -109,7 +115,7 @@ fn closest_point_distances_are_the_smallest_distances_signed_negative_inside() {
 }
 
 #[test]
-fn closest_point_normals_are_unit_and_lead_from_the_node_to_the_surface() {
+fn closest_point_normals_have_unit_length_and_point_from_the_node_to_the_surface() {
     for (shape, curve, _) in curves() {
         let model = top("closest-point", shape.clone(), 0.0);
         for row in model.rows() {
@@ -125,7 +131,7 @@ fn closest_point_normals_are_unit_and_lead_from_the_node_to_the_surface() {
 
 #[test]
 fn moving_the_node_along_the_normal_reduces_the_distance_one_to_one() {
-    // d(gap)/dx = -n, by central differences on a square that is shifted instead of the node.
+    // d(gap)/dx = -n, by central differences; the square is shifted instead of the node.
     let step = 1e-6;
     for (shape, _, _) in curves() {
         let gaps = |dx: f64, dy: f64| -> Vec<f64> {
@@ -145,7 +151,8 @@ fn moving_the_node_along_the_normal_reduces_the_distance_one_to_one() {
         let along_x = slope(gaps(step, 0.0), gaps(-step, 0.0));
         let along_y = slope(gaps(0.0, step), gaps(0.0, -step));
         for (i, row) in model.rows().iter().enumerate() {
-            // Second differences of the distance are below 10, the step squared and rounding over the step below 1e-9.
+            // Second differences of the distance are below 10; the squared step, and rounding divided by the step, are
+            // below 1e-9.
             assert!((along_x[i] + row.normal[0]).abs() < 1e-8, "{shape} {row:?} {}", along_x[i]);
             assert!((along_y[i] + row.normal[1]).abs() < 1e-8, "{shape} {row:?} {}", along_y[i]);
         }
@@ -153,7 +160,7 @@ fn moving_the_node_along_the_normal_reduces_the_distance_one_to_one() {
 }
 
 #[test]
-fn a_node_behind_a_vertex_or_on_an_axis_goes_straight_back() {
+fn the_row_of_a_node_behind_a_vertex_or_on_an_axis_has_the_approach_direction() {
     for (shape, depth) in [
         (json!({"wedge": {"apex": [0.5, 0.9], "slope": 2.0}}), 0.1),
         (json!({"table": {"points": [[0, 1.4], [0.5, 0.9], [1, 1.4]]}}), 0.1),
@@ -166,7 +173,7 @@ fn a_node_behind_a_vertex_or_on_an_axis_goes_straight_back() {
         assert_eq!(row.normal, [0.0, 1.0, 0.0], "{shape}");
         assert!((row.gap + depth).abs() < ROUNDING, "{shape}: {row:?}");
     }
-    // In a notch the node goes straight ahead, until it meets both flanks.
+    // In a notch, the row has the approach direction, and the gap ends at both flanks.
     let notch = top("closest-point", json!({"table": {"points": [[0, 1.1], [0.5, 1.2], [1, 1.1]]}}), 0.0);
     let row = notch.rows().iter().find(|row| notch.mesh().nodes()[row.node] == [0.5, 1.0, 0.0]).unwrap();
     assert_eq!(row.normal, [0.0, 1.0, 0.0]);
@@ -174,10 +181,10 @@ fn a_node_behind_a_vertex_or_on_an_axis_goes_straight_back() {
 }
 
 #[test]
-fn a_node_on_a_vertex_takes_the_bisector_of_its_flanks() {
+fn the_normal_of_a_node_on_a_vertex_bisects_its_flanks() {
     let model = top("closest-point", json!({"table": {"points": [[0, 1], [0.5, 1], [1, 1.5]]}}), 0.0);
     let row = model.rows().iter().find(|row| model.mesh().nodes()[row.node] == [0.5, 1.0, 0.0]).unwrap();
-    // Flanks at 0 and 45 degrees: the normal leans by half of it.
+    // The flanks have the angles 0 and 45 degrees: the normal is inclined by half of this.
     let half = std::f64::consts::PI / 8.0;
     assert!((row.normal[0] + half.sin()).abs() < ROUNDING && (row.normal[1] - half.cos()).abs() < ROUNDING);
     assert_eq!(row.gap, 0.0);
@@ -195,17 +202,17 @@ fn an_inclined_plane_gives_rows_of_two_entries() {
     for (i, row) in model.rows().iter().enumerate() {
         let [x, ..] = model.mesh().nodes()[row.node];
         assert!((row.normal[0] - 0.6).abs() < ROUNDING && (row.normal[1] - 0.8).abs() < ROUNDING);
-        // The shift of -0.5 is along +y: 0.8 of it count.
+        // The shift of -0.5 is along +y; its component along the normal is 0.8 times that.
         assert!((row.gap - (0.6 * (0.5 - x) - 0.4)).abs() < ROUNDING, "{row:?}");
         assert_eq!(model.problem().contact().transposed().column(i).count(), 2);
     }
 }
 
 #[test]
-fn every_approach_direction_is_the_same_scene_turned() {
-    // Gaps and normals of a parabola above the top, seen in the frame of each side.
+fn the_rows_of_every_approach_direction_are_the_same_after_a_rotation() {
+    // Gaps and normals of a parabola above the top, expressed in the frame of each side.
     let reference = top("closest-point", json!({"parabola": {"apex": [0.3, 1.05], "radius": 0.6}}), -0.02);
-    // Where a direction [x, y] points in the frame of each side: along it, and outwards.
+    // A direction [x, y] in the frame of each side: along the side, and outwards.
     type Turn = fn([f64; 2]) -> [f64; 2];
     let sides: [(&str, &str, [f64; 2], Turn); 3] = [
         ("bottom", "-y", [0.3, -0.05], |[x, y]| [x, -y]),
@@ -233,25 +240,26 @@ fn nodes_beyond_the_reach_of_a_circle_have_no_row() {
     let shape = json!({"circle": {"apex": [0.5, 1.1], "radius": 0.2}});
     let near =
         |model: &Model| -> Vec<f64> { model.rows().iter().map(|row| model.mesh().nodes()[row.node][0]).collect() };
-    // Columns stand at multiples of 1/8: 0.375, 0.5, 0.625 are within 0.2 of the apex.
+    // The columns of nodes are at multiples of 1/8: 0.375, 0.5 and 0.625 are within 0.2 of the apex.
     assert_eq!(near(&top("approach", shape.clone(), 0.0)), [0.375, 0.5, 0.625]);
-    // By the closest point every node below the centre sees the circle; above it none does that lies outside.
+    // By the closest-point rule every node below the centre has a row; nodes above the centre and outside the circle
+    // have none.
     assert_eq!(near(&top("closest-point", shape.clone(), 0.0)).len(), 9);
     assert_eq!(near(&top("closest-point", json!({"circle": {"apex": [3, 0.9], "radius": 0.05}}), 0.0)).len(), 0);
 }
 
 #[test]
-fn a_circle_of_huge_radius_is_a_plane_without_loss_of_digits() {
+fn a_circle_of_huge_radius_has_the_gaps_of_a_plane_to_all_digits() {
     for rule in ["approach", "closest-point"] {
         for row in top(rule, json!({"circle": {"apex": [0.5, 1.0], "radius": 1e9}}), -1e-3).rows() {
-            // The bulge of 1.25e-10 at most is all that differs.
+            // The curvature changes the gap by at most 1.25e-10.
             assert!((row.gap + 1e-3).abs() < 2e-10, "{rule} {row:?}");
         }
     }
 }
 
 #[test]
-fn outlines_follow_the_surface_over_the_body_and_meet_corners() {
+fn outlines_follow_the_surface_over_the_body_and_contain_its_corners() {
     let wedge = top("approach", json!({"wedge": {"apex": [0.43, 1.1], "slope": 0.5}}), -0.02);
     let outline = wedge.obstacle_outline(0, 10);
     assert!((outline[0][0] + 0.3).abs() < ROUNDING && (outline[outline.len() - 1][0] - 1.3).abs() < ROUNDING);

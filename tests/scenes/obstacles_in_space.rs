@@ -1,16 +1,16 @@
-//! GOAL: contact rows of the obstacles in space, by both rules, against formulas and searches that share nothing with
-//! the library; a brick under a sphere.
+//! GOAL: contact rows of the obstacles in space, by both rules, compared with formulas and searches that share no code
+//! with the library; a brick under a sphere.
 //!
-//! BODY: clamped unit cube of 4 x 4 x 4 Hex8; candidates are the nodes of its top, z = 1.
+//! BODY: a clamped unit cube of 4 x 4 x 4 Hex8; candidates are the nodes of its top, z = 1.
 
 use crate::bodies::built;
 use serde_json::{Value, json};
 use signorini::{Model, Scene, solve_qp};
 
-/// Distances of order one, a handful of operations.
+/// Rounding of a few operations on distances of order one.
 const ROUNDING: f64 = 1e-14;
 
-/// A search finds a minimum to the square root of rounding; the distance itself is then exact to rounding.
+/// A search finds the place of a minimum to the square root of rounding; the distance itself is then exact to rounding.
 const SEARCHED: f64 = 1e-12;
 
 fn scene(rule: &str, shape: Value, gap: f64) -> Value {
@@ -31,7 +31,7 @@ fn top(rule: &str, shape: Value, gap: f64) -> Model {
 
 type Height = Box<dyn Fn(f64, f64) -> f64>;
 
-/// Shapes above and partly inside the cube, moved by `shift`, each with its height z(x, y).
+/// Shapes above the cube and partly inside it, moved by `shift`, each with its height z(x, y).
 fn shapes([dx, dy, dz]: [f64; 3]) -> Vec<(Value, Height)> {
     let mut shapes: Vec<(Value, Height)> = Vec::new();
     for z in [1.2 + dz, 0.95 + dz] {
@@ -39,17 +39,17 @@ fn shapes([dx, dy, dz]: [f64; 3]) -> Vec<(Value, Height)> {
         let sphere = move |x: f64, y: f64| z + 1.5 - (2.25 - (x - cx).powi(2) - (y - cy).powi(2)).sqrt();
         shapes.push((json!({"sphere": {"apex": [cx, cy, z], "radius": 1.5}}), Box::new(sphere)));
         shapes.push((json!({"sphere": {"centre": [cx, cy, z + 1.5], "radius": 1.5}}), Box::new(sphere)));
-        // Across the axis (3, 4): the coordinate is (4 x - 3 y)/5.
+        // The coordinate perpendicular to the axis (3, 4) is (4 x - 3 y)/5.
         let across = move |x: f64, y: f64| 0.8 * (x - cx) - 0.6 * (y - cy);
         let cylinder = move |x: f64, y: f64| z + 1.5 - (2.25 - across(x, y).powi(2)).sqrt();
         let spec = json!({"cylinder": {"apex": [cx, cy, z], "axis": [3, 4, 0], "radius": 1.5}});
         shapes.push((spec, Box::new(cylinder)));
         let cone = move |x: f64, y: f64| z + 0.6 * (x - cx).hypot(y - cy);
         shapes.push((json!({"cone": {"apex": [cx, cy, z], "slope": 0.6}}), Box::new(cone)));
-        // One bilinear cell: heights z + 0.1 x - 0.2 y + 0.15 x y.
+        // One bilinear cell with the heights z + 0.1 x - 0.2 y + 0.15 x y.
         let bilinear = move |x: f64, y: f64| z + 0.1 * (x - dx) - 0.2 * (y - dy) + 0.15 * (x - dx) * (y - dy);
         shapes.push((height_map(&[-2.0 + dx, 3.0 + dx], &[-2.0 + dy, 3.0 + dy], &bilinear), Box::new(bilinear)));
-        // Creases along x = 0.4 and y = 0.6.
+        // The creases are at x = 0.4 and y = 0.6.
         let roof = move |x: f64, y: f64| z + 0.5 * (x - dx - 0.4).abs() - 0.3 * (y - dy - 0.6).abs();
         let lines = ([-2.0 + dx, 0.4 + dx, 3.0 + dx], [-2.0 + dy, 0.6 + dy, 3.0 + dy]);
         shapes.push((height_map(&lines.0, &lines.1, &roof), Box::new(roof)));
@@ -67,7 +67,7 @@ fn along_the_approach_direction_the_gap_is_the_height_above_the_node() {
     for (shape, height) in shapes([0.0; 3]) {
         let model = top("approach", shape.clone(), -0.03);
         assert_eq!(model.rows().len(), 25, "{shape}");
-        assert_eq!(model.problem().contact().entries(), 25, "one entry a row: {shape}");
+        assert_eq!(model.problem().contact().entries(), 25, "a row has more than one entry: {shape}");
         for row in model.rows() {
             let [x, y, z] = model.mesh().nodes()[row.node];
             assert_eq!(row.normal, [0.0, 0.0, 1.0]);
@@ -76,7 +76,7 @@ fn along_the_approach_direction_the_gap_is_the_height_above_the_node() {
     }
 }
 
-/// The smallest distance to the graph, on ever finer grids around the best point so far.
+/// The smallest distance to the graph, found on finer and finer grids around the best point so far.
 fn searched_distance(node: [f64; 3], height: &Height) -> f64 {
     let distance = |x: f64, y: f64| (x - node[0]).hypot(y - node[1]).hypot(height(x, y) - node[2]);
     let (mut centre, mut reach, mut best) = ([node[0], node[1]], 0.5, f64::INFINITY);
@@ -96,7 +96,7 @@ fn searched_distance(node: [f64; 3], height: &Height) -> f64 {
 }
 
 #[test]
-fn closest_points_are_the_nearest_of_all_and_lie_on_the_surface_along_the_unit_normal() {
+fn closest_points_are_the_nearest_points_and_are_on_the_surface_along_the_unit_normal() {
     for (shape, height) in shapes([0.0; 3]) {
         let model = top("closest-point", shape.clone(), 0.0);
         assert_eq!(model.rows().len(), 25, "{shape}");
@@ -115,7 +115,8 @@ fn closest_points_are_the_nearest_of_all_and_lie_on_the_surface_along_the_unit_n
 
 #[test]
 fn the_gap_grows_against_the_normal_as_the_obstacle_moves() {
-    // Central differences: the obstacle moved by h along an axis changes the gap by h times the normal's part there.
+    // Central differences: if the obstacle moves by h along an axis, the gap changes by h times the component of the
+    // normal.
     let h = 1e-5;
     let gaps = |shift: [f64; 3]| -> Vec<Vec<f64>> {
         let models = shapes(shift).into_iter().map(|(shape, _)| top("closest-point", shape, 0.0));
@@ -134,15 +135,15 @@ fn the_gap_grows_against_the_normal_as_the_obstacle_moves() {
         for (row, contact) in top("closest-point", shape.clone(), 0.0).rows().iter().enumerate() {
             for (axis, [ahead, behind]) in differences.iter().enumerate() {
                 let slope = (ahead[index][row] - behind[index][row]) / (2.0 * h);
-                // Third derivatives of the distance are below 100, and rounding over the step below 1e-10.
+                // Third derivatives of the distance are below 100, and rounding divided by the step is below 1e-10.
                 assert!((slope - contact.normal[axis]).abs() < 1e-8, "{shape} {contact:?} axis {axis}: {slope}");
             }
         }
     }
 }
 
-/// Where a point or a direction of the scene under the top goes in the scene of another side: the two coordinates across
-/// keep their order, the height becomes the coordinate along the side's outward normal.
+/// The image of a point or a direction under another side: the two coordinates along the side keep their order, the
+/// height becomes the coordinate along the outward normal of the side.
 fn placed([x, y, z]: [f64; 3], axis: usize, sense: f64, origin: f64) -> [f64; 3] {
     let mut placed = [[0.0, x, y], [x, 0.0, y], [x, y, 0.0]][axis];
     placed[axis] = if sense > 0.0 { z } else { origin - z };
@@ -150,7 +151,7 @@ fn placed([x, y, z]: [f64; 3], axis: usize, sense: f64, origin: f64) -> [f64; 3]
 }
 
 #[test]
-fn every_approach_direction_is_the_same_scene_turned() {
+fn the_rows_of_every_approach_direction_are_the_same_after_a_rotation() {
     let shape = |name: &str, axis: usize, sense: f64| {
         let point = |at: [f64; 3]| json!(placed(at, axis, sense, 1.0));
         match name {
@@ -202,7 +203,7 @@ fn row_under(x: &[f64], y: &[f64], height: &dyn Fn(f64, f64) -> f64, at: [f64; 2
 }
 
 #[test]
-fn a_node_equally_close_to_several_points_of_a_height_map_takes_their_mean_normal() {
+fn a_node_equally_close_to_several_points_of_a_height_map_has_their_mean_normal() {
     let straight = |(normal, gap): ([f64; 3], f64), expected: f64, what: &str| {
         let level = normal[0].abs().max(normal[1].abs());
         assert!(level < SEARCHED && (normal[2] - 1.0).abs() < SEARCHED, "{what}: {normal:?}");
@@ -210,16 +211,16 @@ fn a_node_equally_close_to_several_points_of_a_height_map_takes_their_mean_norma
     };
     let (wide, mid) = ([-2.0, 0.5, 3.0], [0.5, 0.5]);
     let folded = |x: f64| (x - 0.5).abs();
-    // Inside a wedge, and inside a pyramid: straight back over two flanks, and over four.
+    // A node inside a wedge, and inside a pyramid: the mean normal of two flanks, and of four, is vertical.
     straight(row_under(&wide, &wide, &|x, _| 0.9 + folded(x), mid), -0.1, "wedge");
     straight(row_under(&wide, &wide, &|x, y| 0.9 + folded(x) + folded(y), mid), -0.1, "pyramid");
-    // In a notch and in a funnel: straight ahead until it meets the flanks.
+    // A node in a notch, and in a funnel: the row is vertical up to the flanks.
     straight(row_under(&wide, &wide, &|x, _| 1.2 - folded(x), mid), 0.2, "notch");
     straight(row_under(&wide, &wide, &|x, y| 1.2 - 0.5 * (folded(x) + folded(y)), mid), 0.2, "funnel");
-    // Grid lines through one of the feet alone, at x = 0.4: a foot that two cells share counts once.
+    // Grid lines pass through only one of the closest points, at x = 0.4: a point shared by two cells counts once.
     let uneven = [-2.0, 0.4, 0.5, 3.0];
     straight(row_under(&uneven, &wide, &|x, _| 1.2 - folded(x), mid), 0.2, "shared foot");
-    // A saddle in one cell has two closest points, one on either side.
+    // A saddle in one cell has two closest points, one on each side.
     let saddle = |x: f64, y: f64| 1.3 - 8.0 * (x - 0.5) * (y - 0.5);
     let ends = [-0.5, 1.5];
     let (normal, _) = row_under(&ends, &ends, &saddle, mid);
@@ -250,7 +251,7 @@ fn a_brick_under_a_sphere_has_symmetric_pressures_and_balanced_forces() {
 }
 
 #[test]
-fn shapes_that_do_not_fit_and_broken_height_maps_are_refused_at_their_place() {
+fn shapes_of_wrong_dimension_and_invalid_height_maps_are_refused_at_their_path() {
     let map = |x: Value, y: Value, heights: Value| json!({"height-map": {"x": x, "y": y, "heights": heights}});
     let flat = json!([[1, 1], [1, 1]]);
     for (shape, path, words) in [
@@ -271,7 +272,7 @@ fn shapes_that_do_not_fit_and_broken_height_maps_are_refused_at_their_place() {
 }
 
 #[test]
-fn a_body_of_revolution_meets_a_sphere_and_a_cone_as_curves_of_its_half_plane() {
+fn rows_of_a_body_of_revolution_have_the_distances_to_a_sphere_and_a_cone() {
     let lines = json!({"points": [0, 1], "divisions": [8]});
     for (shape, expected) in [
         (json!({"circle": {"apex": [0, 1.1], "radius": 2}}), (|r: f64| r.hypot(2.1) - 2.0) as fn(f64) -> f64),

@@ -1,4 +1,4 @@
-//! Parts of boundaries: which facets they have, what may be done with them, what is refused.
+//! Parts of boundaries: their facets, their use, refused input.
 
 use crate::bodies::built;
 use serde_json::{Value, json};
@@ -6,7 +6,7 @@ use signorini::scene::Answer;
 use signorini::{Error, Model, Scene, solve_qp};
 use std::sync::Arc;
 
-/// A square of 4 x 4 cells on a clamped bottom, with parts.
+/// A square of 4 x 4 cells, clamped at the bottom, with parts.
 fn square(parts: Value) -> Value {
     json!({
         "body": {"rectangle": {"x": {"points": [0, 4], "divisions": [4]}, "y": {"points": [0, 4], "divisions": [4]}}},
@@ -16,7 +16,7 @@ fn square(parts: Value) -> Value {
     })
 }
 
-/// The coordinates of the nodes of a boundary, in its order.
+/// The coordinates of the nodes of a boundary, in order.
 fn nodes(model: &Model, boundary: &str) -> Vec<[f64; 2]> {
     let nodes = model.mesh().nodes();
     let of = model.mesh().boundary(boundary).unwrap();
@@ -24,7 +24,7 @@ fn nodes(model: &Model, boundary: &str) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn a_part_has_the_facets_whose_centroids_lie_in_its_region() {
+fn a_part_has_the_facets_whose_centroids_are_in_its_region() {
     let model = built(&square(json!([
         {"name": "strip", "of": "top", "box": {"min": [0.9, 4], "max": [3, 4]}},
         {"name": "corner", "sphere": {"centre": [4, 4], "radius": 1.5}},
@@ -34,7 +34,7 @@ fn a_part_has_the_facets_whose_centroids_lie_in_its_region() {
         {"name": "skin"}
     ])));
     assert_eq!(nodes(&model, "strip"), [[1.0, 4.0], [2.0, 4.0], [3.0, 4.0]]);
-    // Seen from outside, along the surface and around the corner.
+    // The nodes are ordered along the surface and around the corner, seen from outside.
     assert_eq!(nodes(&model, "corner"), [[4.0, 2.0], [4.0, 3.0], [4.0, 4.0], [3.0, 4.0], [2.0, 4.0]]);
     assert_eq!(nodes(&model, "up").len(), 5);
     assert_eq!(nodes(&model, "sides").len(), 13);
@@ -43,7 +43,7 @@ fn a_part_has_the_facets_whose_centroids_lie_in_its_region() {
 }
 
 #[test]
-fn a_part_of_a_curved_boundary_runs_through_where_that_begins() {
+fn a_part_of_a_closed_boundary_is_ordered_across_the_start_of_the_boundary() {
     let model = built(&json!({
         "body": {"disc": {
             "centre": [0, 0], "radius": 1, "element": "t6", "zone": {"width": 0.3, "divisions": 2, "growth": 1.5}
@@ -59,7 +59,7 @@ fn a_part_of_a_curved_boundary_runs_through_where_that_begins() {
         let part = nodes(&model, &k.to_string());
         assert!(part.len() > 4);
         let steps = part.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]));
-        // Neighbours follow each other: no step goes across.
+        // Consecutive nodes are neighbours: there is no jump.
         assert!(steps.fold(0.0, f64::max) < 0.3, "{part:?}");
     }
 }
@@ -90,7 +90,7 @@ fn parts_of_further_bodies_carry_loads_supports_and_contact() {
 }
 
 #[test]
-fn parts_that_are_none_are_refused_at_their_path() {
+fn invalid_parts_are_refused_at_their_path() {
     let cases = [
         (json!({"name": "top"}), "parts[0].name", "`top` is not allowed"),
         (json!({"name": ""}), "parts[0].name", "needs a name of its own"),
@@ -119,7 +119,7 @@ fn parts_that_are_none_are_refused_at_their_path() {
     }
 }
 
-/// Half a layer of height 1 on a smooth plane, pressed by a strip load of half width 0.5 on its top.
+/// Half of a layer of height 1 on a smooth plane, pressed by a strip load of half width 0.5 on its top.
 fn layer(load: f64, cells: usize) -> Answer {
     let model = Arc::new(built(&json!({
         "body": {"rectangle": {
@@ -138,14 +138,15 @@ fn layer(load: f64, cells: usize) -> Answer {
 
 /// GOAL: the width of a receding contact.
 ///
-/// CONDITIONS: plane strain, a layer of height h on a smooth rigid plane, without weight, under a strip load of half width h/2.
+/// CONDITIONS: plane strain; a weightless layer of height h on a smooth rigid plane, under a strip load of half width
+/// h/2.
 ///
-/// REFERENCE: the layer is a sum of waves along x, whose compliances are those of symmetric and antisymmetric loads; the pressure is
-/// a sum of Chebyshev polynomials with sqrt(b^2 - x^2). The slope of the lower face is zero in |x| < b and the pressure ends without
-/// a singularity for b = 1.007782 h alone; the pressure in the middle is then 0.789588 of the load over h. Eight polynomials and five
-/// agree in nine digits.
+/// REFERENCE: the layer is a sum of waves along x with the compliances of symmetric and antisymmetric loads; the
+/// pressure is a sum of Chebyshev polynomials times sqrt(b^2 - x^2). Only for b = 1.007782 h is the slope of the lower
+/// face zero in |x| < b with a pressure that ends without a singularity; then the pressure in the middle is 0.789588 of
+/// the load divided by h. Eight polynomials and five agree to nine digits.
 #[test]
-fn a_receding_contact_depends_on_geometry_alone() {
+fn the_width_of_a_receding_contact_does_not_depend_on_the_load() {
     const HALF_WIDTH: f64 = 1.007_782;
     const MIDDLE: f64 = 0.789_588;
     let (one, thousand) = (layer(1.0, 40), layer(1000.0, 40));
@@ -154,10 +155,10 @@ fn a_receding_contact_depends_on_geometry_alone() {
         assert!((large - 1000.0 * small).abs() < 1e-9 * 1000.0, "{small} {large}");
     }
     let segments = one.segments();
-    let [segment] = &segments[..] else { panic!("one contact") };
+    let [segment] = &segments[..] else { panic!("there is not exactly one contact") };
     let (width, off) = (segment.extent.width.unwrap(), segment.extent.width_uncertainty.unwrap());
     assert!((width - HALF_WIDTH).abs() < off && off < 0.02, "{width} ± {off}");
-    // The load of unit pressure is 1 on the whole strip, and the height is 1.
+    // The load has unit pressure on the whole strip, and the height is 1.
     let middle = one.pressure()[0];
     assert!((middle / MIDDLE - 1.0).abs() < 2e-3, "{middle}");
 }

@@ -1,4 +1,5 @@
-//! Obstacles that a force presses: travel and force against closed forms, and against obstacles that are moved.
+//! Obstacles that are pressed by a force: travel and force, compared with closed forms and with obstacles of prescribed
+//! travel.
 
 use crate::solved_scene::{answer, built};
 use serde_json::{Value, json};
@@ -9,10 +10,10 @@ use signorini::{Error, Settings};
 use crate::exact_solutions::LineContact;
 use crate::program::Desk;
 
-/// Travel and force of two problems with the same answer: rounding, enlarged by condition numbers of up to 1e5.
+/// Difference of travel and force of two problems with the same answer: rounding times condition numbers of up to 1e5.
 const SAME: f64 = 1e-10;
 
-/// The force along the approach direction on each obstacle.
+/// The force on each obstacle along its approach direction.
 fn forces(answer: &Answer) -> Vec<f64> {
     let obstacles = answer.model().obstacles();
     let along = |(resultant, approach): (&Resultant, [f64; 3])| {
@@ -21,7 +22,7 @@ fn forces(answer: &Answer) -> Vec<f64> {
     answer.resultants().unwrap().iter().zip(obstacles.iter().map(|obstacle| obstacle.approach())).map(along).collect()
 }
 
-/// A block on its bottom, under a shape.
+/// A block on its bottom, under an obstacle shape.
 fn block(body: Value, space: bool, rule: &str, shape: Value) -> Value {
     let held = if space {
         json!({"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0})
@@ -40,7 +41,7 @@ fn axis(divisions: usize) -> Value {
 }
 
 #[test]
-fn a_force_and_the_travel_that_it_finds_are_those_of_an_obstacle_that_is_moved() {
+fn a_prescribed_force_gives_the_travel_of_an_obstacle_moved_to_that_force() {
     let plane = json!({"rectangle": {"x": axis(12), "y": axis(8), "element": "q8"}});
     let solid = |element: &str| json!({"box": {"x": axis(4), "y": axis(4), "z": axis(3), "element": element}});
     let circle = json!({"circle": {"centre": [0.45, 2.01], "radius": 1}});
@@ -56,7 +57,7 @@ fn a_force_and_the_travel_that_it_finds_are_those_of_an_obstacle_that_is_moved()
         let travel = 0.012;
         scene["obstacles"][0]["gap"] = (-travel).into();
         let moved = answer(&scene);
-        let [force] = forces(&moved)[..] else { panic!("one obstacle") };
+        let [force] = forces(&moved)[..] else { panic!("there is not exactly one obstacle") };
         assert!(force > 0.0);
         scene["obstacles"][0].as_object_mut().unwrap().remove("gap");
         scene["obstacles"][0]["force"] = force.into();
@@ -72,9 +73,10 @@ fn a_force_and_the_travel_that_it_finds_are_those_of_an_obstacle_that_is_moved()
     }
 }
 
-/// Half a cylinder of radius 1 on its cut; a plane comes from below with the force whose approach Hertz gives as 0.01.
+/// Half a cylinder of radius 1 supported on its cut; a plane presses from below with the force for which Hertz gives
+/// the approach 0.01.
 #[test]
-fn a_plane_pressed_on_half_a_cylinder_travels_as_hertz_says() {
+fn a_plane_pressed_on_half_a_cylinder_has_the_travel_of_hertz() {
     let (force, line) = (4.983922e-3, LineContact { modulus: 1.0 / 0.91, radius: 1.0 });
     let answer = answer(&json!({
         "model": "plane-strain",
@@ -85,17 +87,17 @@ fn a_plane_pressed_on_half_a_cylinder_travels_as_hertz_says() {
                        "shape": {"plane": {"point": [0, -1], "normal": [0, -1]}}}],
     }));
     let travel = answer.travel(0).unwrap();
-    // The theory is that of a small contact, a/R = 0.076.
+    // The theory assumes a small contact; here a/R = 0.076.
     assert!((travel / 0.01 - 1.0).abs() < 1e-3, "{travel}");
     let peak = answer.pressure().iter().copied().fold(0.0, f64::max);
     assert!((peak / line.peak_pressure(force) - 1.0).abs() < 0.01, "{peak}");
 }
 
-/// GOAL        a thin ring between two plates, each pressed with F
+/// GOAL        a thin ring between two plates, each pressed with the force F
 /// REFERENCE   S. Timoshenko, *Strength of Materials* II, thin ring under two opposite forces: the diameter shortens by
-///             (pi/4 - 2/pi) F R^3/(E I), with the share of axial and shear stiffness below a hundredth here
+/// (pi/4 - 2/pi) F R^3/(E I); the axial and shear stiffness contribute less than a hundredth here
 #[test]
-fn two_plates_on_a_ring_travel_alike_and_as_a_thin_ring_yields() {
+fn two_plates_on_a_ring_have_equal_travel_as_for_a_thin_ring() {
     let (force, height) = (1e-3, 0.05);
     let plate = |approach: &str, y: f64| {
         json!({"boundary": "outer", "approach": approach, "force": force,
@@ -122,13 +124,13 @@ fn two_plates_on_a_ring_travel_alike_and_as_a_thin_ring_yields() {
         scene["obstacles"][index]["gap"] = (-[above, below][index]).into();
     }
     for moved in forces(&answer(&scene)) {
-        // The ring is soft: 1e-12 of its size in the travel is 1e-9 of the force.
+        // The ring is soft: an error of 1e-12 of its size in the travel is 1e-9 of the force.
         assert!((moved / force - 1.0).abs() < 1e-8, "{moved}");
     }
 }
 
 #[test]
-fn a_sweep_over_forces_begins_where_the_obstacle_touches() {
+fn a_sweep_over_forces_begins_at_the_travel_of_first_contact() {
     let desk = Desk::new();
     let mut scene = block(
         json!({"rectangle": {"x": axis(12), "y": axis(8)}}),
@@ -153,7 +155,7 @@ fn a_sweep_over_forces_begins_where_the_obstacle_touches() {
 }
 
 #[test]
-fn forces_that_do_not_press_are_refused() {
+fn invalid_forces_of_a_sweep_are_refused() {
     let circle = json!({"circle": {"apex": [0.5, 1], "radius": 1}});
     let mut scene = block(json!({"rectangle": {"x": axis(2), "y": axis(2)}}), false, "approach", circle);
     let refused = |scene: &Value, force: f64, phrase: &str| {
@@ -169,7 +171,7 @@ fn forces_that_do_not_press_are_refused() {
 }
 
 #[test]
-fn what_cannot_be_pressed_is_refused_where_it_stands() {
+fn obstacles_that_cannot_be_pressed_are_refused_at_their_path() {
     let plain = || {
         block(
             json!({"rectangle": {"x": axis(2), "y": axis(2)}}),
@@ -201,7 +203,7 @@ fn what_cannot_be_pressed_is_refused_where_it_stands() {
         },
         &["obstacles[0].force", "no travel produces the force"],
     );
-    // Two plates against each other hold nothing along their way.
+    // Two opposite plates do not support the body along the direction in which they move.
     refused(
         &|scene| {
             scene["obstacles"][0]["force"] = json!(3);

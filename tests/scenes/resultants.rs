@@ -1,4 +1,5 @@
-//! Resultants and contact segments: equilibrium of forces and moments, symmetry, and the contact of Hertz within its uncertainty.
+//! Resultants and contact segments: equilibrium of forces and moments, symmetry, and the contact of Hertz within its
+//! uncertainty.
 
 use std::sync::Arc;
 
@@ -10,7 +11,7 @@ use signorini::scene::{Answer, Resultant, Units};
 use signorini::study::{Summary, scene_summary};
 use signorini::{Scene, solve_qp};
 
-/// Rounding of the solves: forces that balance do so to about 1e-12 of the largest.
+/// Rounding of the solves: forces balance to about 1e-12 of the largest.
 const BALANCED: f64 = 1e-9;
 
 fn answer(scene: &Value) -> Answer {
@@ -29,7 +30,8 @@ fn size(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |size: f64, value| size.hypot(*value))
 }
 
-/// All resultants together vanish, force and moment, and each stands on its own line of action.
+/// Asserts that the forces and moments of all resultants sum to zero, and that the moment of each is that of its force
+/// at its centre.
 #[track_caller]
 fn balance(all: &[Resultant]) {
     let largest = all.iter().map(|one| size(&one.force)).fold(0.0, f64::max);
@@ -43,7 +45,7 @@ fn balance(all: &[Resultant]) {
             (&[x, y, z], &[fx, fy, fz]) => vec![y * fz - z * fy, z * fx - x * fz, x * fy - y * fx],
             _ => continue,
         };
-        // In space a part along the force may be left over: a wrench.
+        // In space, a moment along the force may remain: a wrench.
         let left: Vec<f64> = one.moment.iter().zip(&moment).map(|(given, at_centre)| given - at_centre).collect();
         let along: f64 = left.iter().zip(&one.force).map(|(left, force)| left * force).sum::<f64>() / size(&one.force);
         let across = (size(&left).powi(2) - if left.len() == 3 { along * along } else { 0.0 }).max(0.0).sqrt();
@@ -74,18 +76,18 @@ fn forces_and_moments_of_obstacles_supports_and_loads_balance() {
         assert_eq!(names[names.len() - 3..], ["supports[0]", "supports[1]", "loads"]);
         assert_eq!(names.len(), 3 + obstacles.as_array().unwrap().len());
         balance(all);
-        // The loads act at (3, 0.5): 3 x 1200 + 0.5 x 3000 about the origin, counterclockwise.
+        // The loads act at (3, 0.5): the moment about the origin is 3 x 1200 + 0.5 x 3000, counterclockwise.
         let loads = &all[names.len() - 1];
         let exact = [-3000.0, 1200.0, 5100.0];
         let ours = [loads.force[0], loads.force[1], loads.moment[0]];
         assert!(ours.iter().zip(exact).all(|(ours, exact)| (ours / exact - 1.0).abs() < 1e-13), "{ours:?}");
-        // The corner is held by both supports, each along its own axis: rollers take no force along themselves.
+        // Both supports hold the corner, each along a different axis: a roller has no force along its plane.
         assert_eq!((all[names.len() - 3].force[0], all[names.len() - 2].force[1]), (0.0, 0.0));
     }
 }
 
 #[test]
-fn they_balance_in_space_and_between_two_bodies() {
+fn forces_and_moments_balance_in_space_and_between_two_bodies() {
     let axis = |points: [f64; 2], n: usize| json!({"points": points, "divisions": [n]});
     let space = json!({
         "model": "space",
@@ -100,22 +102,24 @@ fn they_balance_in_space_and_between_two_bodies() {
     assert!(answer_in_space.contact_set().count() > 2);
     let in_space = answer_in_space.resultants().unwrap();
     let support = in_space.iter().find(|one| one.of == "supports[0]").unwrap();
-    assert_eq!(support.nodes, 16, "a node that is held in three directions is one node");
+    assert_eq!(support.nodes, 16, "a node with supports in three directions counts once");
     balance(in_space);
     let two = std::fs::read_to_string("examples/two_cylinders.json").unwrap();
     let two = answer(&serde_json::from_str(&two).unwrap());
     let all = two.resultants().unwrap();
     let bodies: Vec<_> = all.iter().map(|one| (one.of.as_str(), one.on.as_deref().unwrap())).collect();
     assert_eq!(bodies, [("pair[0]", "body"), ("supports[0]", "body"), ("supports[1]", "base")]);
-    // On the upper body the pair and its support balance; the lower one has its support alone, and the pair's opposite.
+    // On the upper body, the pair and the support balance; on the lower body, only the support and the opposite of the
+    // pair act.
     let on = |body: &str| all.iter().filter(|one| one.on.as_deref() == Some(body)).map(|one| one.force[1]).sum::<f64>();
     assert!(on("body").abs() < BALANCED * all[0].force[1], "{all:?}");
     assert!((on("base") - all[0].force[1]).abs() < BALANCED * all[0].force[1], "{all:?}");
 }
 
-/// A ring of round section between two plates: each presses with the same force, and the sum of multipliers is twice that.
+/// A ring of circular section between two plates: each presses with the same force, and the sum of multipliers is twice
+/// that force.
 #[test]
-fn a_ring_between_two_plates_feels_the_same_force_from_each() {
+fn two_plates_on_a_ring_have_opposite_forces() {
     let plate = |sign: f64, approach: &str| {
         let boundary = if sign > 0.0 { "upper" } else { "lower" };
         json!({"boundary": boundary, "approach": approach,
@@ -142,7 +146,7 @@ fn a_ring_between_two_plates_feels_the_same_force_from_each() {
 }
 
 #[test]
-fn what_forces_are_those_of_is_said() {
+fn the_basis_of_forces_names_thickness_and_modelled_part() {
     let basis = |change: &dyn Fn(&mut Value)| {
         let mut scene = block(json!([]), json!([]));
         change(&mut scene);
@@ -150,7 +154,7 @@ fn what_forces_are_those_of_is_said() {
     };
     let clamp = json!([{"on": {"boundary": "bottom"}, "x": 0, "y": 0}]);
     assert_eq!(basis(&|scene| scene["supports"] = clamp.clone()), "per metre");
-    // Rollers on flat sides may be planes of symmetry.
+    // Flat sides on rollers may be planes of symmetry.
     assert_eq!(basis(&|_| {}), "per metre, of the modelled part");
     assert_eq!(
         basis(&|scene| (scene["supports"], scene["thickness"]) = (clamp.clone(), json!(0.1))),
@@ -160,9 +164,9 @@ fn what_forces_are_those_of_is_said() {
     assert!(model.basis_of_forces().contains("of a thickness of 0.1 m"), "{}", model.basis_of_forces());
 }
 
-/// A table with two humps touches a strip twice: two segments, each with its own force, that add up to the whole.
+/// A table with two humps touches the strip twice: two segments, each with a force; the forces add up to the whole.
 #[test]
-fn two_humps_make_two_segments() {
+fn two_humps_give_two_contact_segments() {
     let obstacle = json!([{"boundary": "top", "approach": "+y",
         "shape": {"table": {"points": [[1.0, 1.2], [1.5, 1.0], [2.0, 1.2], [2.5, 1.0], [3.0, 1.2]]}}}]);
     let mut scene = block(obstacle, json!([]));
@@ -174,17 +178,17 @@ fn two_humps_make_two_segments() {
     let forces: f64 = segments.iter().map(|segment| segment.force[1]).sum();
     assert!((forces - total[1]).abs() < 1e-12 * forces.abs(), "{forces}");
     for (segment, middle) in segments.iter().zip([1.5, 2.5]) {
-        let [from, to] = segment.ends.clone().expect("two ends");
+        let [from, to] = segment.ends.clone().expect("the segment has two ends");
         assert!((from[0].min(to[0])..from[0].max(to[0])).contains(&middle), "{segment:?}");
         assert_eq!((from[1], to[1]), (1.0, 1.0));
         let width = segment.extent.width.unwrap();
         assert!((width - (from[0] - to[0]).abs()).abs() < 1e-12, "{segment:?}");
-        // The closed nodes lie within, the next ones do not.
+        // The closed nodes are inside the ends, the next nodes are not.
         assert!(segment.nodes.len() as f64 * 0.05 <= width + 0.05 && width < (segment.nodes.len() + 1) as f64 * 0.05);
     }
 }
 
-/// The contact that closes a whole boundary ends where it ends: there is nothing to estimate.
+/// A contact that closes a whole boundary ends with the boundary: no estimate is needed.
 #[test]
 fn a_flat_contact_has_no_uncertainty() {
     let plane = json!([{"boundary": "top", "approach": "+y", "shape": {"plane": {"point": [0, 1], "normal": [0, 1]}}}]);
@@ -197,9 +201,9 @@ fn a_flat_contact_has_no_uncertainty() {
     assert_eq!(segments[0].nodes.len(), 9);
 }
 
-/// A closed node among open ones determines neither its area nor its pressure.
+/// The area and the pressure of a single closed node among open ones are uncertain.
 #[test]
-fn the_pressure_of_a_single_closed_node_is_wholly_uncertain() {
+fn the_pressure_of_a_single_closed_node_is_fully_uncertain() {
     let point = json!([{"boundary": "top", "approach": "+y",
         "shape": {"table": {"points": [[0.0, 3.0], [2.0, 1.0], [4.0, 3.0]]}}}]);
     let answer = answer(&block(point, json!([])));
@@ -209,8 +213,8 @@ fn the_pressure_of_a_single_closed_node_is_wholly_uncertain() {
     assert_eq!(segments[0].extent.pressure_uncertainty, segments[0].pressure_max);
 }
 
-/// Half cylinders of Hertz, on meshes whose nodes stand differently to the edge: the width is within its uncertainty, and
-/// nearer than the sum of tributary lengths on the whole.
+/// Half cylinders of Hertz on meshes whose nodes have different positions relative to the edge: the width is within its
+/// uncertainty, and on average closer than the sum of tributary lengths.
 #[test]
 fn the_width_of_hertz_lies_within_its_uncertainty() {
     let (mut ours, mut tributary, mut meshes) = (0.0, 0.0, 0.0);
@@ -232,17 +236,17 @@ fn the_width_of_hertz_lies_within_its_uncertainty() {
                 off / exact,
                 whole / exact
             );
-            // Hertz's body is a half space: that of this radius differs by 1 %.
+            // The theory of Hertz assumes a half space: for this radius it differs by 1 %.
             assert!((width - exact).abs() <= off + 0.01 * exact, "{element}, {divisions}: {width} ± {off}, {exact}");
             ours += (width / exact - 1.0).abs();
             tributary += (whole / exact - 1.0).abs();
             meshes += 1.0;
         }
     }
-    assert!(ours < tributary, "{} and {} on the mean", ours / meshes, tributary / meshes);
+    assert!(ours < tributary, "the mean errors are {} and {}", ours / meshes, tributary / meshes);
 }
 
-/// A quarter of a ball in space: its area within the uncertainty, nearer than the tributary areas.
+/// A quarter of a ball in space: the area is within its uncertainty, and closer than the sum of tributary areas.
 #[test]
 fn the_area_of_hertz_lies_within_its_uncertainty() {
     let mut scene = quarter_ball(6, 2.0);
@@ -272,9 +276,10 @@ fn the_area_of_hertz_lies_within_its_uncertainty() {
     }
 }
 
-/// On a disc that rows press along y, a pressure acts on the area as it is seen along y: the cosine of the angle from the lowest point.
+/// On a disc with rows along y, a pressure acts on the area projected along y: the factor is the cosine of the angle
+/// from the lowest point.
 #[test]
-fn a_pressure_acts_on_the_area_that_its_row_sees() {
+fn a_pressure_acts_on_the_area_projected_along_its_row() {
     let mut scene = half_cylinder("q4");
     scene["obstacles"][0]["shape"] = json!({"table": {"points": [[-2, -0.5], [-0.5, -0.85], [0.5, -0.85], [2, -0.5]]}});
     let answer = answer(&scene);
@@ -284,7 +289,7 @@ fn a_pressure_acts_on_the_area_that_its_row_sees() {
         let [x, y, _] = answer.model().mesh().nodes()[row.node];
         let cosine = -y / x.hypot(y);
         if *lambda < 0.0 {
-            // The normal at a node is the mean of the two facets there, which may differ in length.
+            // The normal at a node is the mean of the normals of its two facets, which may differ in length.
             assert!((pressure * row.tributary_area * cosine / -lambda - 1.0).abs() < 1e-2, "at {x}: {pressure}");
             steepest = steepest.max(x.abs() / x.hypot(y));
         }
@@ -292,9 +297,10 @@ fn a_pressure_acts_on_the_area_that_its_row_sees() {
     assert!(steepest > 0.35, "{steepest}");
 }
 
-/// An estimate of the mesh without a bound of the answer, and the reverse: nothing is compared, and the reason stands there.
+/// If the estimate of the mesh or the bound of the answer is missing, they are not compared, and the report gives the
+/// reason.
 #[test]
-fn advice_that_cannot_be_given_names_its_reason() {
+fn missing_advice_on_tolerance_and_mesh_names_its_reason() {
     let plane = json!([{"boundary": "top", "approach": "+y", "shape": {"plane": {"point": [0, 1], "normal": [0, 1]}}}]);
     let model = Arc::new(Scene::from_json(&block(plane, json!([])).to_string(), "scene").unwrap().build().unwrap());
     let solution = solve_qp(model.problem()).unwrap();

@@ -1,18 +1,19 @@
-//! Rigid-body modes: every body that is not held is caught before it is built, with its motion by name; none that is held is
-//! refused. Rows that contradict each other are named with their Farkas weights, which are checked here by hand.
+//! Rigid-body modes: every body without enough supports is refused before it is built, with its motion by name, and no
+//! other body is refused. Rows that contradict each other are named with their Farkas weights, which are checked here
+//! by independent arithmetic.
 
 use crate::oracles::Dense;
 use serde_json::{Value, json};
 use signorini::{Error, Scene, solve_qp};
 
-/// What is left of a null vector, relative to its terms.
+/// Rounding of K d for a null vector d, relative to its terms.
 const NULL: f64 = 1e-9;
 
 fn axis(length: f64) -> Value {
     json!({"points": [0, length], "divisions": [2]})
 }
 
-/// The bodies of each model, of size 1, with a load that presses them on what stands below.
+/// The bodies of each model, of size 1, with a load that presses them onto the floor.
 fn body(model: &str) -> Value {
     match model {
         "bar" => json!({"bar": {"x": axis(1.0)}}),
@@ -54,13 +55,13 @@ fn floor(model: &str) -> Value {
     json!({"boundary": side, "approach": approach, "shape": {"plane": {"point": at, "normal": normal}}})
 }
 
-/// Supports, obstacles and the words that name a motion, `None` where the body is held.
+/// Supports, obstacles and the words that name a motion, or `None` if the body has enough supports.
 type Case = (&'static str, Vec<Value>, bool, Option<&'static str>);
 
 fn cases() -> Vec<Case> {
     let mut cases: Vec<Case> = Vec::new();
     let mut add = |model, supports: Vec<Value>, on_floor, motion| cases.push((model, supports, on_floor, motion));
-    // A bar can only slide.
+    // A bar can only translate.
     add("bar", vec![], false, Some("translation along x"));
     add("bar", vec![], true, None);
     add("bar", vec![boundary("left", json!({"x": 0}))], false, None);
@@ -70,7 +71,7 @@ fn cases() -> Vec<Case> {
         add("bar", vec![boundary("left", json!({"x": held}))], true, None);
         add("bar", vec![boundary("left", json!({"x": 0})), boundary("right", json!({"x": held}))], false, None);
     }
-    // About the axis a body can only slide along it.
+    // A body of revolution can only translate along its axis.
     for (side, held, motion) in [
         ("bottom", json!({"y": 0}), None),
         ("top", json!({"y": 0.1}), None),
@@ -93,7 +94,8 @@ fn cases() -> Vec<Case> {
         for (side, held, free, on_floor) in [
             ("bottom", json!({"x": 0, "y": 0}), None, None),
             ("bottom", json!({"y": 0}), Some("translation along x"), Some("translation along x")),
-            // A line of nodes held along itself can still turn about its own points, but not slide.
+            // A line of nodes supported along the line can still rotate about its points, but not translate along the
+            // line.
             ("bottom", json!({"x": 0}), Some("translation along y"), None),
             ("left", json!({"x": 0}), Some("translation along y"), None),
             ("right", json!({"y": 0}), Some("translation along x"), Some("translation along x")),
@@ -199,7 +201,7 @@ fn cases() -> Vec<Case> {
 }
 
 #[test]
-fn bodies_that_are_not_held_are_caught_and_named_and_no_other_is() {
+fn exactly_the_bodies_without_enough_supports_are_refused_with_their_motion() {
     let (mut caught, mut held, mut wrong) = (0, 0, Vec::new());
     for (model, supports, on_floor, motion) in cases() {
         let obstacles = if on_floor { json!([floor(model)]) } else { json!([]) };
@@ -209,7 +211,7 @@ fn bodies_that_are_not_held_are_caught_and_named_and_no_other_is() {
         match (built, motion) {
             (Err(Error::UnderHeld { mode: found, direction }), Some(motion)) => {
                 caught += 1;
-                // A floor under supported nodes alone has no rows, and holds nothing.
+                // A floor that touches only supported nodes has no rows, and supports nothing.
                 let guided = on_floor && found.contains("a frictionless obstacle does not hold it, add a guide");
                 if !found.contains(motion) || !(guided || found.contains("add a support")) {
                     wrong.push(format!("{named}: {found}, not {motion}"));
@@ -218,12 +220,12 @@ fn bodies_that_are_not_held_are_caught_and_named_and_no_other_is() {
             }
             (Ok(model), None) => {
                 held += 1;
-                // Held and pressed on: it has an answer.
+                // The body is supported and pressed onto the floor, so that it has an answer.
                 if let Err(error) = solve_qp(model.problem()) {
                     wrong.push(format!("{named}: {}", model.explain(error)));
                 }
             }
-            (Ok(_), Some(motion)) => wrong.push(format!("{named}: held, not {motion}")),
+            (Ok(_), Some(motion)) => wrong.push(format!("{named}: accepted, but it has the {motion}")),
             (Err(error), _) => wrong.push(format!("{named}: {error}")),
         }
     }
@@ -231,9 +233,10 @@ fn bodies_that_are_not_held_are_caught_and_named_and_no_other_is() {
     assert!(caught >= 40 && held >= 60, "{caught} caught, {held} held");
 }
 
-/// Without a mesh the null vector comes from the factorisation: K d = 0, B d = 0, and f'd > 0 where it escapes.
+/// Without a mesh the null vector comes from the factorisation: K d = 0, B d = 0, and f'd > 0 if the problem is
+/// unbounded.
 #[test]
-fn raw_problems_return_the_null_vector() {
+fn problems_without_a_mesh_return_the_null_vector() {
     for springs in 2..30 {
         for (force, gap) in [(0.0, 0.5), (-1.0, 0.5), (-1.0, f64::INFINITY), (1.0, f64::INFINITY)] {
             let mut dense = Dense::new(&[], &[], &[], &[]);
@@ -257,7 +260,10 @@ fn raw_problems_return_the_null_vector() {
             assert!((direction.amax() - 1.0).abs() < NULL);
             if let Error::Unbounded { .. } = error {
                 assert!(dense.load.dot(&direction) > 0.0, "{springs}: the load does no work");
-                assert!(gap.is_infinite() || (&dense.contact * &direction)[0] <= NULL, "{springs}: the row stops it");
+                assert!(
+                    gap.is_infinite() || (&dense.contact * &direction)[0] <= NULL,
+                    "{springs}: the row stops the motion"
+                );
                 assert!(force != 0.0);
             } else {
                 assert!(force == 0.0, "{springs}: {error}");
@@ -266,7 +272,8 @@ fn raw_problems_return_the_null_vector() {
     }
 }
 
-/// Triangles of rows, in any orientation and of any lengths, that leave no room by the given share of their size.
+/// Triangles of rows, with any orientation and any lengths, that contradict each other by the given share of their
+/// size.
 #[test]
 fn contradicting_rows_have_farkas_weights_and_an_overlap() {
     for case in 0..40 {
@@ -278,7 +285,7 @@ fn contradicting_rows_have_farkas_weights_and_an_overlap() {
             let angle = turn + 2.0 * std::f64::consts::PI / 3.0 * row as f64;
             lengths[row] * if column == 0 { angle.cos() } else { angle.sin() }
         });
-        // Three unit normals at 120 degrees add up to nothing: their gaps may not.
+        // Three unit normals at 120 degrees sum to zero, but their gaps are negative.
         dense.gap = nalgebra::DVector::from_fn(3, |row, _| -overlap / 3.0 * lengths[row]);
         let problem = dense.problem().unwrap();
         let error = solve_qp(&problem).unwrap_err();
@@ -295,9 +302,9 @@ fn contradicting_rows_have_farkas_weights_and_an_overlap() {
     }
     let dense = Dense::new(&[&[1.0]], &[0.0], &[&[1.0], &[-1.0]], &[1.0, -0.5]);
     let problem = dense.problem().unwrap();
-    assert_eq!(problem.overlap(&[0, 1], &[1.0, 1.0]), None, "there is room");
+    assert_eq!(problem.overlap(&[0, 1], &[1.0, 1.0]), None, "the rows do not contradict each other");
     assert_eq!(problem.overlap(&[0, 1], &[1.0, 0.5]), None, "the rows do not cancel");
-    assert_eq!(problem.overlap(&[0, 1], &[1.0, -1.0]), None, "a negative weight");
+    assert_eq!(problem.overlap(&[0, 1], &[1.0, -1.0]), None, "a weight is negative");
     assert_eq!(problem.overlap(&[0, 2], &[1.0, 1.0]), None, "there is no row 2");
     assert_eq!(problem.overlap(&[], &[]), None);
 }

@@ -1,4 +1,4 @@
-//! Boundaries that move as rigid plates, held against beams and against each other.
+//! Boundaries that move as rigid plates, compared with beams and with each other.
 
 use crate::solved_scene::{answer, built};
 use serde_json::{Value, json};
@@ -8,7 +8,8 @@ fn face(answer: &Answer) -> &Resultant {
     answer.resultants().unwrap().iter().find(|resultant| resultant.of == "rigid-faces[0]").unwrap()
 }
 
-/// A bar [0, length] x [-1/2, 1/2] (x [-1/2, 1/2]) of E = 1000, nu = 0, its left end guided or clamped, a plate at its right end.
+/// A bar [0, length] x [-1/2, 1/2] (x [-1/2, 1/2]) with E = 1000, nu = 0; its left end is guided or clamped, its right
+/// end has a plate.
 fn bar(length: f64, element: &str, plate: Value) -> Value {
     let space = ["tet4", "hex8", "tet10", "hex20"].contains(&element);
     let across = json!({"points": [-0.5, 0.5], "divisions": [2]});
@@ -29,7 +30,7 @@ fn bar(length: f64, element: &str, plate: Value) -> Value {
 }
 
 #[test]
-fn a_plate_stretches_a_bar_evenly_on_every_element() {
+fn a_plate_stretches_a_bar_uniformly_with_every_element() {
     for element in ["t3", "q4", "t6", "q8", "tet4", "hex8", "tet10", "hex20"] {
         let force = if element.len() == 2 { vec![3.0, 0.0] } else { vec![3.0, 0.0, 0.0] };
         let answer = answer(&bar(5.0, element, json!({"force": force})));
@@ -42,10 +43,10 @@ fn a_plate_stretches_a_bar_evenly_on_every_element() {
     }
 }
 
-/// Bending by a moment is quadratic in the place: quadratic elements have the rotation M L/(E I) and the deflection M L^2/(2 E I) of
-/// a beam exactly.
+/// The displacement of bending by a moment is quadratic: quadratic elements have exactly the rotation M L/(E I) and the
+/// deflection M L^2/(2 E I) of a beam.
 #[test]
-fn a_moment_turns_the_end_plate_of_a_cantilever_as_a_beam() {
+fn a_moment_rotates_the_end_plate_of_a_cantilever_as_in_beam_theory() {
     let (length, moment, stiffness) = (5.0, 2.0, 1000.0 / 12.0);
     for (element, moments) in [("t6", vec![moment]), ("q8", vec![moment]), ("hex20", vec![0.0, 0.0, moment])] {
         let answer = answer(&bar(length, element, json!({"moment": moments})));
@@ -57,10 +58,11 @@ fn a_moment_turns_the_end_plate_of_a_cantilever_as_a_beam() {
     }
 }
 
-/// GOAL        a cantilever with a rigid end plate under a force across it
-/// REFERENCE   beam with shear: w = P L^3/(3 E I) + P L/(k G A), k = 5/6; the plate keeps the end plane, as the clamp does
+/// GOAL        a cantilever with a rigid end plate under a transverse force
+/// REFERENCE   beam with shear: w = P L^3/(3 E I) + P L/(k G A), k = 5/6; the plate keeps the end section plane, as the
+/// clamp does
 #[test]
-fn a_force_on_the_end_plate_bends_a_cantilever_and_the_plate_gives_it_back() {
+fn a_force_on_the_end_plate_equals_the_reaction_of_its_prescribed_motion() {
     let (length, force) = (10.0, 0.5);
     for (element, vector) in
         [("q8", json!([0, -force])), ("tet10", json!([0, -force, 0])), ("hex20", json!([0, -force, 0]))]
@@ -70,7 +72,7 @@ fn a_force_on_the_end_plate_bends_a_cantilever_and_the_plate_gives_it_back() {
         let (face_bent, motion) = (face(&bent).clone(), face(&bent).motion.clone().unwrap());
         let sunk = force * length.powi(3) / 3.0 / (1000.0 / 12.0) + force * length / (5.0 / 6.0 * 500.0);
         assert!((motion.displacement[1] / -sunk - 1.0).abs() < 4e-3, "{element}: {motion:?} {sunk}");
-        // The same motion prescribed asks for the same force.
+        // Prescribing the same motion needs the same force.
         let space = motion.rotation.len() == 3;
         let rotation = match space {
             true => json!({"x": motion.rotation[0], "y": motion.rotation[1], "z": motion.rotation[2]}),
@@ -89,9 +91,9 @@ fn a_force_on_the_end_plate_bends_a_cantilever_and_the_plate_gives_it_back() {
     }
 }
 
-/// A block of nu = 0.3 between a plane and a plate that may tilt: the contact carries what presses the plate.
+/// A block with nu = 0.3 between a plane and a plate that may tilt: the contact force equals the force on the plate.
 #[test]
-fn a_plate_presses_a_block_on_an_obstacle() {
+fn the_contact_carries_the_force_and_moment_of_a_pressed_plate() {
     for element in ["hex8", "tet10"] {
         let axis = || json!({"points": [-1, 1], "divisions": [3]});
         let scene = json!({
@@ -112,7 +114,7 @@ fn a_plate_presses_a_block_on_an_obstacle() {
 }
 
 #[test]
-fn faces_that_cannot_move_so_are_refused_where_they_stand() {
+fn invalid_motions_of_rigid_faces_are_refused_at_their_path() {
     let refused = |change: &dyn Fn(&mut Value), phrases: &[&str]| {
         let mut scene = bar(2.0, "q4", json!({"force": [1, 0]}));
         change(&mut scene);

@@ -1,9 +1,9 @@
-//! Malformed scenes: each is refused in one sentence that says where, what, and what is allowed.
+//! Malformed scenes: each is refused in one sentence that names the place, the fault, and what is allowed.
 
 use serde_json::{Value, json};
 use signorini::{Error, Scene};
 
-/// A scene that is right; the tables below change one thing in it.
+/// A valid scene; each entry of the tables below changes one field.
 fn right() -> Value {
     json!({
         "title": "right",
@@ -45,12 +45,12 @@ fn shape(shape: Value) -> String {
 }
 
 #[test]
-fn the_scene_that_the_tables_start_from_is_right() {
+fn the_scene_that_the_tables_change_is_valid() {
     Scene::from_json(&right().to_string(), "scene").unwrap().build().unwrap();
 }
 
 #[test]
-fn values_that_describe_no_problem_are_refused_at_their_path() {
+fn invalid_values_are_refused_at_their_path() {
     let x = "/body/rectangle/x";
     let table = |points: Value| shape(json!({"table": {"points": points}}));
     let plane = |normal: Value| shape(json!({"plane": {"point": [0, 1], "normal": normal}}));
@@ -109,12 +109,12 @@ fn values_that_describe_no_problem_are_refused_at_their_path() {
         let Error::Scene { path: found, message } = &error else { panic!("{path}: {error}") };
         assert_eq!(found, path, "{error}");
         assert!(message.contains(phrase), "{error}\n  lacks: {phrase}");
-        assert!(!error.to_string().contains('\n'), "one sentence: {error}");
+        assert!(!error.to_string().contains('\n'), "the error is not one sentence: {error}");
     }
 }
 
 #[test]
-fn a_scene_with_nothing_left_to_solve_is_refused() {
+fn a_scene_without_free_dofs_is_refused() {
     let mut scene = right();
     scene["body"]["rectangle"]["y"] = json!({"points": [0, 1], "divisions": [1]});
     scene["supports"] =
@@ -132,7 +132,7 @@ fn plane_stress_accepts_a_ratio_of_one_half() {
 }
 
 #[test]
-fn texts_that_are_no_scene_are_refused_at_path_line_and_column() {
+fn invalid_scene_texts_are_refused_with_path_line_and_column() {
     let text = right().to_string();
     let without = |key: &str| {
         let mut scene = right();
@@ -192,7 +192,7 @@ fn texts_that_are_no_scene_are_refused_at_path_line_and_column() {
         (with("/obstacles/0/rule", json!(["approach"])), "obstacles[0].rule", "array, expected a string"),
         (with("/supports/0/on", json!({"edge": "top"})), "supports[0].on.edge", "`boundary` or `point`"),
         (with("/gap", json!([0])), "gap", "expected a number"),
-        // An array where an object belongs: serde alone would fill the fields in order.
+        // An array in place of an object: serde alone would fill the fields in order.
         (with("/material", json!([1000, 0.3])), "material", "expected an object"),
         (with("/units", json!(["m", "N"])), "units", "expected an object"),
         (with("/body/rectangle/x", json!([[0, 1], [4]])), "body.rectangle.x", "expected an object"),
@@ -200,7 +200,7 @@ fn texts_that_are_no_scene_are_refused_at_path_line_and_column() {
         (with("/loads/0/traction", json!(["top", [0, 1]])), "loads[0].traction", "expected an object"),
         (with("/obstacles", json!({})), "obstacles", "expected an array of objects"),
         ("[]".into(), ".", "expected an object"),
-        // Text that is no JSON.
+        // Text that is not JSON.
         (raw("\"gap\":0.0", "\"gap\":NaN"), "gap", "expected"),
         (raw("\"gap\":0.0", "\"gap\":1e999"), "gap", "number out of range"),
         (raw("\"x\":0,\"y\":0", "\"normal\":[1,1e999]"), "supports[0].normal[1]", "number out of range"),
@@ -217,19 +217,22 @@ fn texts_that_are_no_scene_are_refused_at_path_line_and_column() {
         assert_eq!((source_name.as_str(), *line > 0), ("the scene", true), "{error}");
         assert!(path.is_empty() || found == path, "{error}\n  path should be: {path}");
         assert!(message.contains(phrase), "{error}\n  lacks: {phrase}");
-        assert!(!message.contains("line") && !message.contains("variant"), "position or Rust words twice: {error}");
+        assert!(
+            !message.contains("line") && !message.contains("variant"),
+            "the message repeats the position or contains words of Rust: {error}"
+        );
     }
 }
 
 #[test]
-fn line_and_column_point_at_the_value() {
+fn line_and_column_are_those_of_the_value() {
     let text = "{\n  \"body\": 3\n}";
     let Err(Error::SceneSyntax { line, column, .. }) = Scene::from_json(text, "scene") else { panic!() };
     assert_eq!((line, column > 8), (2, true));
 }
 
 #[test]
-fn an_array_is_refused_wherever_an_example_has_an_object() {
+fn an_array_in_place_of_an_object_is_refused_everywhere() {
     fn objects(value: &Value, at: String, found: &mut Vec<String>) {
         match value {
             Value::Object(fields) => {
@@ -260,7 +263,7 @@ fn a_schema_address_and_a_byte_order_mark_are_accepted() {
 }
 
 #[test]
-fn a_file_that_is_not_there_is_named() {
+fn a_missing_scene_file_is_named() {
     let error = Scene::read("no/such/scene.json").unwrap_err();
     assert!(matches!(&error, Error::File { action: "read", .. }));
     assert!(error.to_string().contains("no/such/scene.json"), "{error}");
@@ -277,7 +280,7 @@ fn the_schema_names_every_field_of_a_scene() {
 }
 
 #[test]
-fn numbers_that_json_cannot_say_are_refused_in_scenes_made_by_hand() {
+fn values_that_are_not_finite_are_refused_in_scenes_built_in_rust() {
     let scene = Scene::from_json(&right().to_string(), "scene").unwrap();
     let refused = |change: &dyn Fn(&mut Scene), path: &str| {
         let mut scene = scene.clone();

@@ -1,4 +1,4 @@
-//! From a scene to a problem and back: supports, gaps, forces, balance, words for errors.
+//! Models of scenes: supports, gaps, forces, balance, and motions in words.
 
 use crate::bodies::{built, clamped_square, difference, largest, solve_with_closed_rows};
 use serde_json::{Value, json};
@@ -8,7 +8,7 @@ use signorini::{Error, Model, Scene};
 
 const ROUNDING: f64 = 1e-14;
 
-/// Forces of a solved body: rounding of a few hundred unknowns, relative to the sum of all forces.
+/// Rounding of the forces of a body with a few hundred unknowns, relative to the sum of all forces.
 const BALANCED: f64 = 1e-12;
 
 fn plane_above(gap: f64) -> Value {
@@ -19,7 +19,7 @@ fn plane_above(gap: f64) -> Value {
     )
 }
 
-/// A clamped square under all kinds of load, between an inclined plane above and a parabola at its right.
+/// A clamped square under all kinds of loads, between an inclined plane above and a parabola at its right.
 fn loaded(gap: f64) -> Value {
     let mut scene = clamped_square(
         5,
@@ -43,7 +43,7 @@ fn loaded(gap: f64) -> Value {
 }
 
 #[test]
-fn another_gap_gives_the_model_that_a_new_scene_with_that_gap_gives() {
+fn a_model_with_another_gap_equals_the_model_of_a_scene_with_that_gap() {
     for scene in [plane_above(-0.1), loaded(-0.1)] {
         let mut other = scene.clone();
         other["gap"] = json!(-0.03);
@@ -55,7 +55,7 @@ fn another_gap_gives_the_model_that_a_new_scene_with_that_gap_gives() {
 }
 
 #[test]
-fn a_gap_that_is_no_number_is_refused() {
+fn a_gap_that_is_not_finite_is_refused() {
     let model = built(&plane_above(0.0));
     for gap in [f64::NAN, f64::INFINITY] {
         assert!(matches!(model.with_gap(gap), Err(Error::Scene { path, .. }) if path == "gap"));
@@ -71,7 +71,7 @@ fn loads_reactions_and_contact_forces_balance() {
         assert!(balance < BALANCED, "{closed:?}: {balance:e}");
         if !closed.is_empty() {
             let wrong: Vec<f64> = lambda.iter().map(|value| -value).collect();
-            assert!(model.force_balance(&u, &wrong).unwrap() > 1e-3, "a flipped sign is noticed");
+            assert!(model.force_balance(&u, &wrong).unwrap() > 1e-3, "a wrong sign of the forces still balances");
         }
     }
 }
@@ -90,8 +90,8 @@ fn reactions_of_a_free_body_carry_its_loads() {
 }
 
 #[test]
-fn prescribed_displacements_load_the_free_dofs_and_come_back_at_the_supports() {
-    // Uniform stretch of a bar in plane stress, both ends prescribed: u_x = 0.01 x, sigma_xx = E 0.01.
+fn prescribed_displacements_at_both_ends_stretch_a_bar_uniformly() {
+    // Uniform stretch of a bar in plane stress with both ends prescribed: u_x = 0.01 x, sigma_xx = E 0.01.
     let scene = json!({
         "model": "plane-stress",
         "body": {"rectangle": {"x": {"points": [0, 3], "divisions": [6]}, "y": {"points": [0, 1], "divisions": [2]}}},
@@ -114,7 +114,7 @@ fn prescribed_displacements_load_the_free_dofs_and_come_back_at_the_supports() {
 
 #[test]
 fn rows_at_supported_dofs_keep_only_their_free_part() {
-    // The upper left corner is held along x at 0.1 and is a candidate of an inclined plane.
+    // The upper left corner is supported along x at 0.1, and is a candidate for an inclined plane.
     let mut scene = clamped_square(
         2,
         json!([{"boundary": "top", "approach": "+y", "rule": "closest-point",
@@ -127,13 +127,13 @@ fn rows_at_supported_dofs_keep_only_their_free_part() {
     let entries: Vec<f64> = model.problem().contact().transposed().column(row).map(|entry| entry.1).collect();
     assert_eq!(entries.len(), 1);
     assert!((entries[0] - 0.8).abs() < ROUNDING);
-    // Shifted by 0.5 along y: 0.4 along the normal; 0.06 of it is taken up by the support.
+    // The plane is shifted by 0.5 along y, that is by 0.4 along the normal; the support takes 0.06.
     assert!((model.rows()[row].gap - 0.4).abs() < ROUNDING);
     assert!((model.problem().gap()[row] - 0.34).abs() < ROUNDING);
 }
 
 #[test]
-fn a_row_on_supported_dofs_is_dropped_where_it_holds_and_kept_empty_where_it_fails() {
+fn a_row_on_supported_dofs_is_dropped_if_it_holds_and_kept_empty_if_it_fails() {
     let side = |gap: f64| {
         built(&clamped_square(
             4,
@@ -157,7 +157,7 @@ fn a_row_on_supported_dofs_is_dropped_where_it_holds_and_kept_empty_where_it_fai
 fn a_node_between_two_obstacles_has_a_row_and_a_pressure_for_each() {
     let wall = |approach: &str, x: f64, n: f64| json!({"boundary": "right", "approach": approach, "shape": {"plane": {"point": [x, 0], "normal": [n, 0]}}});
     let model = built(&clamped_square(2, json!([wall("+x", 1.1, 1.0), wall("-x", 0.8, -1.0)]), 0.0));
-    // Two free candidates for each obstacle; the third is clamped and clear of both walls.
+    // Each obstacle has two free candidates; the third is clamped and touches neither wall.
     let rows: Vec<(usize, usize)> = model.rows().iter().map(|row| (row.node, row.obstacle)).collect();
     assert_eq!(rows, [(5, 0), (8, 0), (5, 1), (8, 1)]);
     let areas: Vec<f64> = model.rows().iter().map(|row| row.tributary_area).collect();
@@ -175,7 +175,7 @@ fn a_node_between_two_obstacles_has_a_row_and_a_pressure_for_each() {
 }
 
 #[test]
-fn lengths_that_do_not_fit_are_refused() {
+fn vectors_of_wrong_length_are_refused_by_a_model() {
     let model = built(&plane_above(0.0));
     let (u, lambda) = (vec![0.0; model.problem().dofs()], vec![0.0; model.rows().len()]);
     assert!(matches!(model.nodal_displacement(&u[1..]), Err(Error::Length { .. })));
@@ -189,12 +189,12 @@ fn under_held(scene: &Value) -> (String, Vec<f64>) {
     match Scene::from_json(&scene.to_string(), "scene").unwrap().build() {
         Err(Error::UnderHeld { mode, direction }) => (mode, direction),
         Err(other) => panic!("{other}"),
-        Ok(_) => panic!("the body is said to be held"),
+        Ok(_) => panic!("the body is not refused"),
     }
 }
 
 #[test]
-fn a_rigid_body_mode_that_nothing_resists_is_named_before_anything_is_solved() {
+fn an_unsupported_rigid_body_mode_is_named_before_the_solve() {
     let on_plane = |supports: Value| {
         let mut scene = plane_above(0.0);
         scene["supports"] = supports;
@@ -222,10 +222,10 @@ fn a_rigid_body_mode_that_nothing_resists_is_named_before_anything_is_solved() {
         assert!(found.starts_with(motion), "{found}");
         assert!(largest(&direction) > 0.1, "{found}");
     }
-    // One guide is enough on a flat obstacle.
+    // One guide is sufficient on a flat obstacle.
     let mut guided = on_plane(json!([{"on": {"point": [0.5, 0]}, "x": 0}]));
     assert!(Scene::from_json(&guided.to_string(), "scene").unwrap().build().is_ok());
-    // A parabola that takes its normals at the closest points holds the sideways motion to first order.
+    // A parabola with normals at the closest points resists the sideways motion to first order.
     guided["supports"] = json!([]);
     guided["obstacles"][0]["rule"] = json!("closest-point");
     guided["obstacles"][0]["shape"] = json!({"parabola": {"apex": [0.5, 1], "radius": 1}});
@@ -233,15 +233,15 @@ fn a_rigid_body_mode_that_nothing_resists_is_named_before_anything_is_solved() {
 }
 
 #[test]
-fn a_motion_found_free_costs_no_elastic_energy() {
-    // One corner pinned: the direction must be the rotation about it.
+fn an_unsupported_motion_has_no_elastic_energy() {
+    // With one corner pinned, the direction must be the rotation about this corner.
     let mut scene = plane_above(0.0);
     scene["obstacles"] = json!([]);
     scene["supports"] = json!([{"on": {"point": [1, 0]}, "x": 0, "y": 0}]);
     let (_, direction) = under_held(&scene);
     scene["supports"] = json!([{"on": {"boundary": "bottom"}, "x": 0, "y": 0}]);
     let held = built(&scene);
-    // Nodes in order; the pinned one, number 4, has no entry in the direction.
+    // Entries are in the order of the nodes; the pinned node, number 4, has no entry in the direction.
     let mut nodal = direction.clone();
     nodal.splice(8..8, [0.0, 0.0]);
     let force = signorini::fem::internal_force(held.body(), &nodal).unwrap();
@@ -263,11 +263,11 @@ fn unbounded_motions_are_explained_in_words() {
         other => other.to_string(),
     };
     assert_eq!(explained(restricted(&|_| [0.0, -3.0])), "translation along -y");
-    assert_eq!(explained(restricted(&|[x, y]| [0.0, x * y])), "column 3", "no rigid-body mode");
-    assert_eq!(explained(vec![1.0]), "column 3", "a direction of the wrong length");
+    assert_eq!(explained(restricted(&|[x, y]| [0.0, x * y])), "column 3", "this field is not a rigid-body mode");
+    assert_eq!(explained(vec![1.0]), "column 3", "the direction has the wrong length");
     assert_eq!(explained(vec![f64::NAN; model.problem().dofs()]), "column 3");
     let free_of_supports = |field: &dyn Fn([f64; 2]) -> [f64; 2]| {
-        // Rows at the supports do not count: a scene held at one point far from the mode's pole.
+        // Rows at supported nodes do not count: here the only support is at one point, the centre of the rotation.
         let mut scene = plane_above(0.0);
         scene["supports"] = json!([{"on": {"point": [0.25, 0]}, "x": 0, "y": 0}]);
         let model = built(&scene);
@@ -283,7 +283,7 @@ fn unbounded_motions_are_explained_in_words() {
 }
 
 #[test]
-fn warnings_say_what_to_do_next() {
+fn near_incompressibility_and_missing_rows_are_warned_of() {
     let mut scene = plane_above(0.0);
     assert_eq!(built(&scene).warnings(), []);
     scene["material"]["poisson"] = json!(0.495);
@@ -299,7 +299,7 @@ fn warnings_say_what_to_do_next() {
 
 #[test]
 fn a_change_of_units_by_powers_of_two_changes_the_problem_bit_by_bit() {
-    // Lengths times b, stress times a: K times a (per thickness), gap times b, load times a b.
+    // Lengths times b, stress times a: then K times a (per thickness), gap times b, load times a b.
     let (a, b) = (2_f64.powi(17), 2_f64.powi(-10));
     let scaled = |a: f64, b: f64| -> Model {
         let mut scene = loaded(-0.05 * b);
@@ -324,7 +324,7 @@ fn a_change_of_units_by_powers_of_two_changes_the_problem_bit_by_bit() {
 }
 
 #[test]
-fn extreme_units_are_built_or_refused_without_a_number_that_is_none() {
+fn scenes_in_extreme_units_are_refused_or_built_with_finite_numbers() {
     for (length, young) in [(1e-150, 1e300), (1e-150, 1e-300), (1e150, 1e7), (1e-9, 1e-300), (1e300, 1e7), (1.0, 1e308)]
     {
         let mut scene = plane_above(-0.01 * length);
@@ -344,11 +344,11 @@ fn extreme_units_are_built_or_refused_without_a_number_that_is_none() {
     }
 }
 
-/// A number is read as the double that is nearest to what was written.
+/// A number is read as the nearest double.
 #[test]
 fn numbers_of_a_scene_are_read_to_the_last_bit() {
     for digits in 1..400_u32 {
-        // Seventeen digits of everything between 1e-20 and 1e20.
+        // Numbers of seventeen digits between 1e-20 and 1e20.
         let gap = f64::from(digits).sqrt() * 10_f64.powi(digits as i32 % 41 - 20);
         let text = plane_above(-1.0).to_string().replace("\"gap\":-1.0", &format!("\"gap\":-{gap:.17e}"));
         assert_eq!(Scene::from_json(&text, "scene").unwrap().gap, -gap, "{gap:.17e}");

@@ -1,4 +1,4 @@
-//! Springs and foundations, held against closed forms.
+//! Springs and foundations, compared with closed forms.
 
 use crate::solved_scene::{answer, built};
 use serde_json::{Value, json};
@@ -6,12 +6,13 @@ use signorini::scene::Answer;
 
 fn resultant(answer: &Answer, of: &str) -> Vec<f64> {
     let all = answer.resultants().unwrap();
-    all.iter().find(|resultant| resultant.of == of).unwrap_or_else(|| panic!("no {of}: {all:?}")).force.clone()
+    all.iter().find(|resultant| resultant.of == of).unwrap_or_else(|| panic!("there is no {of}: {all:?}")).force.clone()
 }
 
-/// A bar of stiffness EA/L = 50 between a spring of 200 and a pull of 3, and the same spring on its end node or boundary.
+/// A bar of stiffness EA/L = 50 between a spring of 200 and a pull of 3; the spring is at the end node, or on the end
+/// boundary.
 #[test]
-fn a_bar_on_a_spring_moves_as_both_in_series() {
+fn a_bar_on_a_spring_has_the_displacement_of_both_in_series() {
     let bar = |on: Value| {
         json!({
             "model": "bar",
@@ -37,7 +38,7 @@ fn a_bar_on_a_spring_moves_as_both_in_series() {
 /// PARAMETERS  E = 1000, height 1, foundation k = 0.05 per area: beta = (k/(4 E I))^(1/4), beta L = 7 on each side
 /// REFERENCE   M. Hetenyi, *Beams on Elastic Foundation*, infinite beam: w = P beta/(2 k) under the force
 #[test]
-fn a_beam_on_an_elastic_foundation_sinks_as_hetenyi_says() {
+fn a_beam_on_an_elastic_foundation_has_the_deflection_of_hetenyi() {
     let (young, foundation, force): (f64, f64, f64) = (1000.0, 0.05, 1.0);
     let beta = (foundation / (4.0 * young / 12.0)).powf(0.25);
     let half = 7.0 / beta;
@@ -55,15 +56,16 @@ fn a_beam_on_an_elastic_foundation_sinks_as_hetenyi_says() {
     let under = nodes.iter().position(|at| at[0] == 0.0 && at[1] == -0.5).unwrap();
     let sink = -answer.displacement()[2 * under + 1];
     let exact = force * beta / (2.0 * foundation);
-    // Shear, which the beam leaves out, adds about (beta h)^2 = 0.6 %; the end at beta L = 7 a thousandth.
+    // Shear, which beam theory omits, adds about (beta h)^2 = 0.6 %; the end at beta L = 7 adds a thousandth.
     assert!((sink / exact - 1.0).abs() < 0.01, "{sink} {exact}");
-    let [across, up] = resultant(&answer, "springs[0]")[..] else { panic!("in the plane") };
+    let [across, up] = resultant(&answer, "springs[0]")[..] else { panic!("the force has two components") };
     assert!(across.abs() < 1e-9 && (up - force).abs() < 1e-9, "{across} {up}");
 }
 
-/// A block on a foundation alone, lowered at its top: the foundation holds it, and quadratic faces too.
+/// A block held only by a foundation, its top moved down: the foundation carries the force, for quadratic faces as
+/// well.
 #[test]
-fn a_foundation_carries_what_presses_on_it_on_every_element() {
+fn a_foundation_carries_the_contact_force_with_every_element() {
     for element in ["tet4", "hex8", "tet10", "hex20"] {
         let axis = |cells: usize| json!({"points": [0, 1], "divisions": [cells]});
         let scene = json!({
@@ -75,7 +77,7 @@ fn a_foundation_carries_what_presses_on_it_on_every_element() {
             "obstacles": [{"boundary": "top", "approach": "+z", "shape": {"plane": {"point": [0, 0, 1], "normal": [0, 0, 1]}}}],
             "gap": -0.03,
         });
-        // Springs of 500 and of 1000 in series, pressed by 0.03.
+        // Springs of 500 and of 1000 in series, compressed by 0.03.
         let answer = answer(&scene);
         let force = resultant(&answer, "springs[0]")[2];
         assert!((force - 0.03 / (1.0 / 500.0 + 1.0 / 1000.0)).abs() < 1e-10, "{element}: {force}");
@@ -84,7 +86,7 @@ fn a_foundation_carries_what_presses_on_it_on_every_element() {
 }
 
 #[test]
-fn springs_that_hold_nothing_are_refused_where_they_stand() {
+fn invalid_springs_are_refused_at_their_path() {
     let refused = |spring: Value, phrases: &[&str]| {
         let scene = json!({
             "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [1]}, "y": {"points": [0, 1], "divisions": [1]}}},

@@ -1,7 +1,9 @@
-//! GOAL: obstacles from files of triangles: their rows against brute force, against the shapes that they approximate and against
-//! closed forms; one surface from all formats; what is refused, and where.
+//! GOAL: obstacles from files of triangles: their rows, compared with brute force, with the shapes that they
+//! approximate and with closed forms; the same surface from all formats; files that are refused, with the place of the
+//! fault.
 //!
-//! BODY: clamped unit cube of 4 x 4 x 4 Hex8; candidates are the nodes of its top, z = 1. Other places are asked of the obstacle.
+//! BODY: a clamped unit cube of 4 x 4 x 4 Hex8; candidates are the nodes of its top, z = 1. For other positions, the
+//! tests ask the obstacle directly.
 
 use std::fs;
 use std::path::Path;
@@ -12,7 +14,7 @@ use signorini::scene::{ObstacleRow, PlacedObstacle};
 use signorini::{Error, Model, Scene, solve_qp};
 use tempfile::TempDir;
 
-/// Distances of order one, a handful of operations.
+/// Rounding of a few operations on distances of order one.
 const ROUNDING: f64 = 1e-14;
 
 fn scene(rule: &str, shape: Value, gap: f64) -> Value {
@@ -27,12 +29,12 @@ fn scene(rule: &str, shape: Value, gap: f64) -> Value {
     })
 }
 
-/// The model of a scene that stands in a folder.
+/// The model of a scene in a folder.
 fn model_in(folder: &Path, scene: &Value) -> Result<Model, Error> {
     Scene { folder: Some(folder.into()), ..Scene::from_json(&scene.to_string(), "scene")? }.build()
 }
 
-/// The model of a scene whose obstacle is this binary STL.
+/// The model of a scene whose obstacle is the binary STL file of this surface.
 fn with_surface(rule: &str, surface: &Triangles, side: &str, gap: f64) -> Model {
     let desk = TempDir::new().unwrap();
     fs::write(desk.path().join("die.stl"), surface.binary_stl()).unwrap();
@@ -59,7 +61,7 @@ fn length(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Numbers from 0 to 1 from a seed.
+/// Random numbers from 0 to 1 from a seed.
 fn random(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     move || {
@@ -70,7 +72,7 @@ fn random(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// The distance of a point to a triangle by the regions of its corners, sides and inside.
+/// The distance of a point from a triangle, by the regions of its corners, its sides and its inside.
 ///
 /// # Source
 /// C. Ericson, *Real-Time Collision Detection*, 2005, section 5.1.5.
@@ -103,7 +105,7 @@ fn distance_to([a, b, c]: [[f64; 3]; 3], p: [f64; 3]) -> f64 {
     dot(ap, normal).abs() / length(normal)
 }
 
-/// How often the surface goes around a point: the sum of the angles under which it sees the triangles.
+/// The winding number of the surface about a point: the sum of the solid angles of its triangles.
 ///
 /// # Source
 /// A. van Oosterom, J. Strackee, *The solid angle of a plane triangle*, IEEE Trans. Biomed. Eng. 30 (1983) 125-126.
@@ -116,7 +118,7 @@ fn winding(surface: &Triangles, p: [f64; 3]) -> f64 {
     (0..surface.corners.len()).map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
 }
 
-/// Rough bodies: a ball, a ring, and both through each other, every vertex moved.
+/// Irregular bodies: a ball, a ring, and both intersecting, with every vertex moved.
 fn rough(seed: u64) -> Triangles {
     let mut next = random(seed);
     let ball = Triangles::sphere(0.6, 2);
@@ -130,7 +132,7 @@ fn rough(seed: u64) -> Triangles {
     base.moved(|at| moved(at, 0.03)).moved(|[x, y, z]| [x + 0.5, y + 0.5, z + 1.4]).single()
 }
 
-/// GOAL: the tree finds what a search through all triangles finds, on the same side.
+/// GOAL: the search tree gives the distance and the side that a search through all triangles gives.
 #[test]
 fn distances_and_sides_are_those_of_a_search_through_all_triangles() {
     let mut inside = 0;
@@ -148,19 +150,20 @@ fn distances_and_sides_are_those_of_a_search_through_all_triangles() {
             let turns = winding(&surface, at);
             assert!((turns - turns.round()).abs() < 1e-9);
             assert_eq!(found.gap < 0.0, turns > 0.5, "{seed} {at:?} {found:?} {turns}");
-            // The normal leads to a point of the surface.
+            // The normal points to a point of the surface.
             let foot = [0, 1, 2].map(|axis| at[axis] + found.gap * found.normal[axis]);
             let off = (0..surface.corners.len()).map(|index| distance_to(surface.triangle(index), foot));
             assert!(off.fold(f64::INFINITY, f64::min) < 1e-14, "{seed} {at:?} {found:?}");
             inside += usize::from(found.gap < 0.0);
         }
     }
-    assert!(inside > 100, "{inside} places inside");
+    assert!(inside > 100, "only {inside} places are inside");
 }
 
-/// GOAL: along the approach direction the row ends where the way enters the solid, next ahead, or behind from within.
+/// GOAL: along the approach direction the row ends at the point at which the line enters the solid: the next one ahead,
+/// or behind a point inside.
 #[test]
-fn along_the_approach_direction_the_row_ends_where_a_walk_enters_the_solid() {
+fn along_the_approach_direction_the_row_ends_at_the_point_of_entry_into_the_solid() {
     let mut met = 0;
     for seed in 0..6 {
         let surface = rough(seed);
@@ -170,7 +173,7 @@ fn along_the_approach_direction_the_row_ends_where_a_walk_enters_the_solid() {
         for _ in 0..20 {
             let [x, y, z] = [next() * 0.9, next() * 0.9, 0.6 + 1.4 * next()];
             let found = row(&model, [x, y, z]);
-            // Steps shorter than the tubes are thick.
+            // Steps shorter than the thickness of the tubes.
             let sense = if within(x, y, z) { -1.0 } else { 1.0 };
             let steps = (0..700).map(|step| z + sense * 0.003 * step as f64);
             let change = steps.map(|z| (z, within(x, y, z))).find(|&(_, is_within)| is_within == (sense > 0.0));
@@ -189,7 +192,7 @@ fn along_the_approach_direction_the_row_ends_where_a_walk_enters_the_solid() {
             met += 1;
         }
     }
-    assert!(met > 30, "{met} ways enter the solid");
+    assert!(met > 30, "only {met} lines enter the solid");
 }
 
 /// The signed distance to the unit cube about the origin, positive outside.
@@ -200,7 +203,7 @@ fn to_cube(at: [f64; 3]) -> f64 {
 }
 
 #[test]
-fn around_a_cube_rows_are_those_of_its_distance_function_from_outside_and_inside() {
+fn rows_of_a_cube_agree_with_its_distance_function_outside_and_inside() {
     let cube = Triangles::cuboid([-0.5; 3], [0.5; 3]);
     for (side, sign) in [("outside", 1.0), ("inside", -1.0)] {
         let model = with_surface("closest-point", &cube, side, 0.0);
@@ -213,7 +216,8 @@ fn around_a_cube_rows_are_those_of_its_distance_function_from_outside_and_inside
             let foot = [0, 1, 2].map(|axis| at[axis] + found.gap * found.normal[axis]);
             assert!(to_cube(foot).abs() < ROUNDING, "{side} {at:?} {found:?}");
         }
-        // On a face, an edge and a corner: normals weighted by angles, which diagonals of the faces do not change.
+        // On a face, an edge and a corner, normals are weighted by angles, on which the diagonals of the faces have no
+        // effect.
         for on in [[0.1, 0.2, -0.5], [0.5, 0.2, -0.5], [0.5, 0.5, -0.5]] {
             let out = on.map(|part: f64| if part.abs() == 0.5 { part.signum() } else { 0.0 });
             let found = row(&model, on).unwrap();
@@ -225,38 +229,39 @@ fn around_a_cube_rows_are_those_of_its_distance_function_from_outside_and_inside
 }
 
 #[test]
-fn a_place_equally_close_to_several_faces_takes_their_mean_or_goes_along_the_approach_direction() {
+fn a_point_equally_close_to_several_faces_has_their_mean_normal_or_the_approach_direction() {
     let hole = with_surface("closest-point", &Triangles::cuboid([-0.5; 3], [0.5; 3]), "inside", 0.0);
-    // As close to the face x = 0.5 as to z = 0.5: half way between, to where their planes meet.
+    // A point equally close to the faces x = 0.5 and z = 0.5: the row has the mean direction and ends at the edge of
+    // both planes.
     let found = row(&hole, [0.3, 0.0, 0.3]).unwrap();
     let half = 0.5_f64.sqrt();
     assert!(length(minus(found.normal, [half, 0.0, half])) < ROUNDING, "{found:?}");
     assert!((found.gap - 0.2 * 2.0_f64.sqrt()).abs() < ROUNDING, "{found:?}");
-    // In the middle all six faces cancel.
+    // In the centre the normals of all six faces cancel.
     let found = row(&hole, [0.0; 3]).unwrap();
     assert!(length(minus(found.normal, [0.0, 0.0, 1.0])) < ROUNDING && (found.gap - 0.5).abs() < ROUNDING, "{found:?}");
     let ball = with_surface("closest-point", &Triangles::sphere(0.5, 3), "inside", 0.0);
-    // Its flat triangles are not all equally close: of those that are one leads nearly up.
+    // The flat triangles of the ball are not all equally close; one of the closest is nearly vertical above.
     let found = row(&ball, [0.0; 3]).unwrap();
     assert!(found.normal[2] > 0.9 && (found.gap - 0.5).abs() < 0.01, "{found:?}");
 }
 
 #[test]
-fn a_hole_has_rows_along_the_approach_direction_to_its_far_side() {
+fn rows_in_a_hole_end_at_its_far_side_along_the_approach_direction() {
     let hole = with_surface("approach", &Triangles::cuboid([0.0; 3], [1.0, 1.0, 2.0]), "inside", 0.0);
-    // Within the hole, beyond its far side, and before its near side.
+    // Inside the hole, beyond its far side, and in front of its near side.
     for (z, gap) in [(1.5, 0.5), (2.25, -0.25), (-0.5, 2.5)] {
         assert_eq!(row(&hole, [0.3, 0.4, z]).map(|row| row.gap), Some(gap), "{z}");
     }
     assert_eq!(row(&hole, [1.3, 0.4, 1.5]), None);
 }
 
-/// GOAL       a surface of triangles tends to the sphere that it approximates
-/// CONDITIONS a clamped cube under a sphere of radius 1.5 that starts 0.05 inside; both rules
-/// PARAMETERS icosahedra cut 3, 4 and 5 times: 1,280 to 20,480 triangles, whose sides halve
-/// REFERENCE  the shape `sphere`; what lies between chord and arc is quartered
+/// GOAL       a surface of triangles converges to the sphere that it approximates
+/// CONDITIONS a clamped cube under a sphere of radius 1.5 that starts 0.05 inside the cube; both rules
+/// PARAMETERS icosahedra subdivided 3, 4 and 5 times: 1,280 to 20,480 triangles, with half the side length each time
+/// REFERENCE  the shape `sphere`; the distance between chord and arc falls by a factor of four
 #[test]
-fn rows_and_force_of_a_sphere_of_triangles_tend_to_those_of_the_sphere_with_the_square_of_their_size() {
+fn rows_and_force_of_a_sphere_of_triangles_converge_with_the_square_of_their_size() {
     let centre = [0.43, 0.37, 2.5];
     for rule in ["approach", "closest-point"] {
         let exact = crate::bodies::built(&scene(rule, json!({"sphere": {"centre": centre, "radius": 1.5}}), -0.05));
@@ -284,7 +289,7 @@ fn rows_and_force_of_a_sphere_of_triangles_tend_to_those_of_the_sphere_with_the_
 }
 
 #[test]
-fn all_formats_scales_and_orientations_make_the_same_rows() {
+fn all_formats_scales_and_orientations_give_the_same_rows() {
     let desk = TempDir::new().unwrap();
     let die = Triangles::sphere(0.75, 2).moved(|[x, y, z]| [x + 0.5, y + 0.5, z + 1.75]).single();
     let clockwise = Triangles { corners: die.corners.iter().map(|&[a, b, c]| [a, c, b]).collect(), ..die.clone() };
@@ -320,10 +325,10 @@ fn all_formats_scales_and_orientations_make_the_same_rows() {
 }
 
 #[test]
-fn a_triangle_without_an_area_changes_nothing() {
+fn triangles_without_area_do_not_change_the_rows() {
     let desk = TempDir::new().unwrap();
     let cube = Triangles::cuboid([0.0, 0.0, 1.1], [1.0, 1.0, 2.1]);
-    // A corner of the cube is split in two at the same place, and an edge in two that lie on it: T-shaped, but closed.
+    // An edge of the cube gets an additional vertex on it; triangles without area close the T-shaped junction.
     let mut split = cube.clone();
     split.vertices.push([0.5, 0.0, 1.1]);
     let on_edge = |corners: &[usize; 3]| corners.contains(&0) && corners.contains(&1);
@@ -331,7 +336,7 @@ fn a_triangle_without_an_area_changes_nothing() {
     let [a, b, c] = split.corners[place];
     let turned = if (a, b) == (0, 1) || (b, c) == (0, 1) || (c, a) == (0, 1) { [1, 0, 8] } else { [0, 1, 8] };
     let third = [a, b, c].into_iter().find(|&corner| corner > 1).unwrap();
-    // The triangle is cut at the new vertex, and one without an area fills in between.
+    // One triangle is divided at the new vertex, and a triangle without area fills the gap between the edges.
     let [from, to] = if turned == [1, 0, 8] { [0, 1] } else { [1, 0] };
     split.corners[place] = [from, 8, third];
     split.corners.extend([[8, to, third], [from, to, 8], [2, 2, 3]]);
@@ -351,16 +356,17 @@ fn a_triangle_without_an_area_changes_nothing() {
 }
 
 #[test]
-fn a_model_of_another_gap_has_the_surface_moved() {
+fn a_model_with_another_gap_has_the_rows_of_a_moved_surface() {
     let die = Triangles::sphere(0.75, 2).moved(|[x, y, z]| [x + 0.5, y + 0.5, z + 1.75]);
     for rule in ["approach", "closest-point"] {
         let model = with_surface(rule, &die, "outside", 0.0);
-        // The file is gone with its folder: nothing is read again.
+        // The file was removed with its folder: it is not read again.
         let moved = model.with_gap(-0.04).unwrap();
         let expected = with_surface(rule, &die.clone().moved(|[x, y, z]| [x, y, z - 0.04]), "outside", 0.0);
         assert_eq!(moved.rows().len(), expected.rows().len());
         for (found, expected) in moved.rows().iter().zip(expected.rows()) {
-            // What is moved before it is rounded to single precision is another surface by that.
+            // The vertices of the file are moved before they are rounded to single precision, so that the surfaces
+            // differ by rounding.
             assert!((found.gap - expected.gap).abs() < 1e-6, "{found:?} {expected:?}");
         }
     }
@@ -375,7 +381,7 @@ fn refusal(name: &str, content: &[u8], surface: Value) -> String {
 }
 
 #[test]
-fn a_file_that_holds_no_closed_surface_is_refused_at_its_place() {
+fn a_file_without_a_closed_surface_is_refused_with_the_place_of_the_fault() {
     let cube = Triangles::cuboid([0.0; 3], [1.0; 3]);
     let without = |count: usize| {
         let corners = cube.corners[..cube.corners.len() - count].to_vec();
@@ -383,7 +389,7 @@ fn a_file_that_holds_no_closed_surface_is_refused_at_its_place() {
     };
     let mut flipped = cube.clone();
     flipped.corners[4].swap(0, 1);
-    // Two cubes that share an edge.
+    // Two cubes with a common edge.
     let crowded = cube.clone().and(cube.clone().moved(|[x, y, z]| [x + 1.0, y + 1.0, z]));
     let mut apart = cube.clone();
     apart.vertices.push([0.0, 0.0, 1e-9]);
@@ -435,13 +441,13 @@ fn a_file_that_holds_no_closed_surface_is_refused_at_its_place() {
         let error = refusal(name, &content, surface.clone());
         assert!(!error.contains('\n'), "{error}");
         for phrase in phrases {
-            assert!(error.contains(phrase), "{error:?} lacks {phrase:?}");
+            assert!(error.contains(phrase), "{error:?} does not contain {phrase:?}");
         }
     }
 }
 
 #[test]
-fn a_surface_outside_the_folder_of_the_scene_is_read_only_where_that_is_allowed() {
+fn a_surface_outside_the_folder_of_the_scene_is_read_only_if_that_is_allowed() {
     let desk = TempDir::new().unwrap();
     fs::create_dir(desk.path().join("s")).unwrap();
     let die = Triangles::sphere(0.75, 2).moved(|[x, y, z]| [x + 0.5, y + 0.5, z + 1.75]);
@@ -457,7 +463,7 @@ fn a_surface_outside_the_folder_of_the_scene_is_read_only_where_that_is_allowed(
     assert_eq!(allowed.build().unwrap().rows().len(), 25);
 }
 
-/// Files cut short and changed at random are read or refused, and nothing else.
+/// Files that are truncated or changed at random are read or refused; no other ending is allowed.
 #[test]
 fn a_damaged_file_is_read_or_refused() {
     let desk = TempDir::new().unwrap();

@@ -1,21 +1,22 @@
-//! Planes of symmetry: a quarter, a half and the whole say the same.
+//! Planes of symmetry: a quarter, a half and the whole have the same answer.
 
 use crate::solved_scene::{answer, built};
 use serde_json::{Value, json};
 
 use crate::program::Desk;
 
-/// Answers to one problem on one mesh: rounding, enlarged by a condition number of 1e3.
+/// Difference of answers to the same problem on the same mesh: rounding times a condition number of 1e3.
 const SAME: f64 = 1e-10;
 
-/// A block [-1, 1]^2 x [0, 1], or what planes of symmetry leave of it, on a spring and a support, under a ball that a force presses.
+/// A block [-1, 1]^2 x [0, 1], or the part that planes of symmetry define, on a spring and a support, under a ball
+/// pressed by a force.
 fn block(element: &str, planes: &[&str]) -> Value {
     let across = |name: &str| match planes.contains(&name) {
         true => json!({"points": [0, 1], "divisions": [2]}),
         false => json!({"points": [-1, 1], "divisions": [4]}),
     };
     let mut supports = vec![json!({"on": {"boundary": "bottom"}, "z": 0})];
-    // What symmetry holds for the parts.
+    // The whole body needs these supports; for a part, the planes of symmetry replace them.
     for (axis, point) in [("x", [0, 1, 0]), ("y", [1, 0, 0])] {
         if !planes.contains(&axis) {
             supports.push(json!({"on": {"point": point}, axis: 0}));
@@ -39,7 +40,7 @@ fn block(element: &str, planes: &[&str]) -> Value {
 }
 
 #[test]
-fn a_quarter_a_half_and_the_whole_agree() {
+fn a_quarter_and_a_half_have_the_answer_of_the_whole() {
     for element in ["hex8", "hex20"] {
         let whole = answer(&block(element, &[]));
         let travel = whole.travel(0).unwrap();
@@ -64,16 +65,17 @@ fn a_quarter_a_half_and_the_whole_agree() {
     }
 }
 
-/// On a clamped bottom each part pushes sideways, and against its mirror image: of the whole nothing is left across the planes.
+/// On a clamped bottom, each part has a horizontal force that its mirror image balances: in the whole, the forces
+/// across the planes are zero.
 #[test]
-fn forces_across_the_planes_cancel_and_those_along_them_add_up() {
+fn forces_across_the_planes_cancel_and_forces_along_them_add_up() {
     let mut scene = block("hex8", &["x", "y"]);
     scene["supports"][0] = json!({"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0});
     scene["loads"] = json!([{"traction": {"boundary": "right", "value": [5, 0, 7]}}]);
     let answer = answer(&scene);
     let all = answer.resultants().unwrap();
     let [support, loads] = ["supports[0]", "loads"].map(|of| all.iter().find(|resultant| resultant.of == of).unwrap());
-    // The side of the quarter has the area 1: the whole has four of them, two on each side.
+    // The side of the quarter has the area 1: the whole has four such areas, two on each side.
     for (axis, expected) in [0.0, 0.0, 28.0].into_iter().enumerate() {
         assert!((loads.force[axis] - expected).abs() < SAME * 28.0, "{loads:?}");
     }
@@ -84,19 +86,19 @@ fn forces_across_the_planes_cancel_and_those_along_them_add_up() {
 }
 
 #[test]
-fn the_report_says_what_the_forces_are_those_of() {
+fn the_report_names_the_whole_as_the_basis_of_forces() {
     let desk = Desk::new();
     desk.write("scene.json", block("hex8", &["x", "y"]).to_string());
     let report = desk.run(&["solve", "scene.json", "--format", "json"]).ends_with(0).json();
     assert_eq!(report["force_basis"], "of the whole, which is 4 times the modelled part");
     assert!((report["contact"]["force"].as_f64().unwrap() - 40.0).abs() < 1e-8);
-    // The mesh is coarse; nothing is said of cuts that no support holds.
+    // The mesh is coarse, which is warned of; cuts without supports cause no warning.
     let codes: Vec<_> = report["warnings"].as_array().unwrap().iter().map(|warning| warning["code"].clone()).collect();
     assert_eq!(codes, ["mesh-dependent"]);
 }
 
 #[test]
-fn planes_where_the_body_does_not_end_flat_are_refused() {
+fn planes_of_symmetry_on_which_the_body_does_not_end_are_refused() {
     let refused = |change: &dyn Fn(&mut Value), phrases: &[&str]| {
         let mut scene = block("hex8", &["x"]);
         change(&mut scene);

@@ -1,11 +1,12 @@
-//! Temperatures and initial stresses in scenes: held and free bodies, a bimetal strip, a thick ring, what is refused.
+//! Temperatures and initial stresses in scenes: supported and free bodies, a bimetal strip, a thick ring, refused
+//! input.
 
 use crate::materials::{answer, changed, refused};
 use serde_json::{Value, json};
 
 const ROUNDING: f64 = 1e-10;
 
-/// A bar of 2 m, E A = 100 x 0.5, between walls or before one.
+/// A bar of 2 m with E A = 100 x 0.5, between two walls or in front of one.
 fn bar(supports: Value) -> Value {
     json!({
         "model": "bar",
@@ -17,7 +18,7 @@ fn bar(supports: Value) -> Value {
 }
 
 #[test]
-fn a_clamped_bar_is_pressed_by_e_alpha_t() {
+fn a_heated_clamped_bar_has_the_stress_e_alpha_t() {
     let answer = answer(&bar(json!([{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "right"}, "x": 0}])));
     for stress in &answer.stress().unwrap().nodes {
         assert!((stress.sigma_xx + 3.0).abs() < ROUNDING, "{stress:?}");
@@ -27,9 +28,10 @@ fn a_clamped_bar_is_pressed_by_e_alpha_t() {
     assert!(forces.balance < ROUNDING, "{forces:?}");
 }
 
-/// Half of the length is warmer by 30 + 20: the stress is that of the mean, and the temperature no error of the mesh.
+/// Half of the length is warmer by 30, half by 50: the stress is that of the mean, and the jump of temperature causes
+/// no error of the mesh.
 #[test]
-fn the_last_temperature_of_an_element_counts() {
+fn the_last_temperature_of_an_element_applies() {
     let mut scene = bar(json!([{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "right"}, "x": 0}]));
     scene["body"]["bar"]["x"]["divisions"] = json!([4]);
     scene["temperature"] = json!([{"value": 30}, {"box": {"min": [1], "max": [2]}, "value": 50}]);
@@ -41,9 +43,9 @@ fn the_last_temperature_of_an_element_counts() {
     assert!(answer.discretisation_error().unwrap() < ROUNDING);
 }
 
-/// The end would move by 0.06 and meets a wall at 0.02: a spring of 25 is shortened by the rest.
+/// The end would move by 0.06 and meets a wall at 0.02: a spring of stiffness 25 is compressed by the difference.
 #[test]
-fn a_bar_that_grows_into_a_wall_is_pressed_by_what_the_gap_leaves() {
+fn a_heated_bar_is_compressed_by_its_expansion_beyond_the_gap() {
     let mut scene = bar(json!([{"on": {"boundary": "left"}, "x": 0}]));
     scene["obstacles"] =
         json!([{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [2.02], "normal": [1]}}}]);
@@ -52,9 +54,10 @@ fn a_bar_that_grows_into_a_wall_is_pressed_by_what_the_gap_leaves() {
     assert!((answer.forces().unwrap().reactions[0] - 1.0).abs() < ROUNDING);
 }
 
-/// A body on three pins that is warmed, bent by a gradient, and relieved of an initial stress is free: no stress, no reaction.
+/// A body on three pins that is warmed, bent by a temperature gradient and given an initial stress can deform freely:
+/// no stress, no reaction.
 #[test]
-fn a_body_on_pins_that_hold_no_strain_has_neither_stress_nor_reactions() {
+fn a_heated_body_on_statically_determinate_pins_has_neither_stress_nor_reactions() {
     let answer = answer(&json!({
         "model": "plane-stress",
         "body": {"rectangle": {
@@ -73,12 +76,12 @@ fn a_body_on_pins_that_hold_no_strain_has_neither_stress_nor_reactions() {
     assert_eq!(answer.discretisation_error().unwrap(), 0.0);
 }
 
-/// Half of a strip of two metals, 40 times as long as thick: the curvature of its middle.
+/// Half of a strip of two metals, 40 times as long as thick: the curvature in its middle.
 ///
 /// # Source
 /// S. Timoshenko, *Analysis of bi-metal thermostats*, J. Opt. Soc. Am. 11 (1925) 233-255, equation 4.
 #[test]
-fn a_bimetal_strip_curves_as_timoshenko_says() {
+fn a_bimetal_strip_has_the_curvature_of_timoshenko() {
     let (thin, thick, e1, e2, a1, a2, warmer) = (0.3, 0.7, 210.0, 100.0, 1.2e-5, 1.9e-5, 50.0);
     let (m, n): (f64, f64) = (thin / thick, e1 / e2);
     let whole = (1.0 + m).powi(2);
@@ -95,13 +98,14 @@ fn a_bimetal_strip_curves_as_timoshenko_says() {
         "supports": [{"on": {"boundary": "left"}, "x": 0}, {"on": {"point": [0, 0]}, "y": 0}]
     }));
     let node = answer.model().mesh().nodes().iter().position(|at| *at == [10.0, 0.0, 0.0]).unwrap();
-    // The upper metal expands more: the strip bends down.
+    // The upper metal expands more, so that the strip bends down.
     let found = -2.0 * answer.displacement()[2 * node + 1] / 100.0;
-    // Far from the ends the displacement is quadratic and exact; measured 3e-9, what bending of a slender strip leaves of the digits.
+    // Far from the ends the displacement is quadratic and exact; the measured error is 3e-9, the rounding of a slender
+    // strip in bending.
     assert!((found / expected - 1.0).abs() < 1e-7, "{found} {expected}");
 }
 
-/// A thick ring, free inside and outside and held along its axis, whose temperature grows with the radius.
+/// A thick ring, free inside and outside and supported along its axis, whose temperature grows with the radius.
 ///
 /// # Source
 /// S. Timoshenko, J. N. Goodier, *Theory of Elasticity*, 3rd ed. 1970, article 151.
@@ -118,7 +122,7 @@ fn a_thick_ring_with_a_linear_temperature_has_the_stresses_of_the_closed_form() 
         "supports": [{"on": {"boundary": "bottom"}, "y": 0}, {"on": {"boundary": "top"}, "y": 0}]
     });
     let factor = young * expansion / (1.0 - nu);
-    // The integral of T r from the inner radius.
+    // The integral of T r from the inner radius to r.
     let heat = |r: f64| slope * (r.powi(3) - inner.powi(3)) / 3.0;
     let answer = answer(&scene);
     let mut largest = 0.0_f64;
@@ -131,12 +135,13 @@ fn a_thick_ring_with_a_linear_temperature_has_the_stresses_of_the_closed_form() 
             largest = largest.max((found - expected).abs() / (factor * slope * outer));
         }
     }
-    // Quadratic elements of a 24th of the width: measured 2e-4 at the nodes, of the stress that holds the outer temperature.
+    // The quadratic elements have a 24th of the width; measured 2e-4 at the nodes, relative to the stress of the fully
+    // constrained outer temperature.
     assert!(largest < 4e-4, "{largest:e}");
 }
 
 #[test]
-fn temperatures_and_stresses_that_are_none_are_refused_where_they_stand() {
+fn invalid_temperatures_and_initial_stresses_are_refused_at_their_path() {
     let right = bar(json!([{"on": {"boundary": "left"}, "x": 0}]));
     let stressed = |value: Value| changed(&right, "/initial-stress", json!([value]));
     let plane = json!({

@@ -1,5 +1,5 @@
-//! GOAL: a body turned together with its rollers, loads and obstacle gives the turned answer: on meshes from files,
-//! against the body as it stood and against closed forms; what the program writes of it.
+//! GOAL: a body rotated together with its rollers, loads and obstacle has the rotated answer: on meshes from files,
+//! compared with the original body and with closed forms; and the files that the program writes for it.
 
 use std::fmt::Write;
 
@@ -11,13 +11,13 @@ use signorini::qp::read_vector;
 use signorini::scene::{cuboid, rectangle};
 use signorini::{Model, Scene, Solution, solve_qp};
 
-/// Rounding enlarged by the condition of the stiffness, below 1e4 here.
+/// Rounding times the condition number of the stiffness, below 1e4 here.
 const CLOSED_FORM: f64 = 1e-11;
 
-/// A handful of operations.
+/// Rounding of a few operations.
 const ROUNDING: f64 = 1e-14;
 
-/// A turn: where the coordinate axes go.
+/// A rotation: the images of the coordinate axes.
 type Turn = [[f64; 3]; 3];
 
 const STRAIGHT: Turn = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -27,7 +27,7 @@ fn in_plane(degrees: f64) -> Turn {
     [[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]]
 }
 
-/// About x by 0.5, then about z by 0.7: all three axes lean, z least.
+/// A rotation about x by 0.5, then about z by 0.7: all three axes are inclined, z least.
 fn leaning() -> Turn {
     let (about_x, about_z) = ((0.5_f64).sin_cos(), (0.7_f64).sin_cos());
     let turn = |[x, y, z]: [f64; 3]| {
@@ -41,7 +41,7 @@ fn apply(turn: &Turn, vector: &[f64]) -> [f64; 3] {
     [0, 1, 2].map(|axis| vector.iter().zip(turn).map(|(part, image)| part * image[axis]).sum())
 }
 
-/// The mesh, turned, as a file of Gmsh in version 2.2, its boundaries as physical groups.
+/// The rotated mesh as a Gmsh file of version 2.2, with its boundaries as physical groups.
 fn gmsh(mesh: &Mesh, turn: &Turn) -> String {
     let (body, side) = match mesh.kind() {
         ElementKind::T3 => (2, 1),
@@ -74,7 +74,7 @@ fn gmsh(mesh: &Mesh, turn: &Turn) -> String {
     text + "$EndElements\n"
 }
 
-/// A unit square or cube of 4 cells a side; in the plane 2 long.
+/// A unit square or cube of 4 cells along each side; in the plane 2 long.
 fn mesh(kind: ElementKind) -> Mesh {
     let lines = |size: f64| (0..=4).map(|i| size * f64::from(i) / 4.0).collect::<Vec<f64>>();
     match kind {
@@ -83,7 +83,7 @@ fn mesh(kind: ElementKind) -> Mesh {
     }
 }
 
-/// A body on rollers at the sides `rollers` (side, outward normal, value), everything turned by `turn`.
+/// A body on rollers at the sides `rollers` (side, outward normal, value), with everything rotated by `turn`.
 struct Turned {
     model: &'static str,
     kind: ElementKind,
@@ -93,7 +93,7 @@ struct Turned {
 }
 
 impl Turned {
-    /// A vector of the straight scene in the turned one.
+    /// A vector of the original scene in the rotated scene.
     fn vector(&self, straight: &[f64]) -> Value {
         json!(apply(&self.turn, straight)[..straight.len()])
     }
@@ -108,7 +108,7 @@ impl Turned {
         })
     }
 
-    /// Writes mesh and scene into a desk.
+    /// Writes mesh and scene into a temporary folder.
     fn write(&self, desk: &Desk, scene: &Value) {
         desk.write("body.msh", gmsh(&mesh(self.kind), &self.turn));
         desk.write("scene.json", scene.to_string());
@@ -129,7 +129,7 @@ fn largest(a: &[f64]) -> f64 {
     a.iter().fold(0.0, |m, x| m.max(x.abs()))
 }
 
-/// Compares vectors of the turned body, an entry per coordinate and node, with those of the straight one.
+/// Compares nodal vectors of the rotated body with those of the original body.
 #[track_caller]
 fn compare(turn: &Turn, dimension: usize, straight: &[f64], turned: &[f64], what: &str) {
     assert_eq!(straight.len(), turned.len());
@@ -142,7 +142,7 @@ fn compare(turn: &Turn, dimension: usize, straight: &[f64], turned: &[f64], what
     }
 }
 
-/// Solves a scene as it stands and turned, and compares all that comes of it.
+/// Solves a scene in the original position and rotated, and compares all results.
 fn turns_along(straight: &Turned, turn: Turn, scene: &dyn Fn(&Turned) -> (Value, Value)) {
     let (loads, obstacles) = scene(straight);
     let (model, solution) = straight.solved(loads, obstacles);
@@ -150,7 +150,7 @@ fn turns_along(straight: &Turned, turn: Turn, scene: &dyn Fn(&Turned) -> (Value,
     let (loads, obstacles) = scene(&turned);
     let (other, answer) = turned.solved(loads, obstacles);
     assert!(solution.contact_force() > 0.1, "{}", solution.contact_force());
-    assert_eq!(solution.contact_set, answer.contact_set, "contact set");
+    assert_eq!(solution.contact_set, answer.contact_set, "the contact sets differ");
     let dimension = model.mesh().dimension();
     let nodal = |model: &Model, solution: &Solution| model.nodal_displacement(&solution.displacement).unwrap();
     compare(&turn, dimension, &nodal(&model, &solution), &nodal(&other, &answer), "displacement");
@@ -165,12 +165,12 @@ fn turns_along(straight: &Turned, turn: Turn, scene: &dyn Fn(&Turned) -> (Value,
     for (a, b) in before.elements.iter().chain(&before.nodes).zip(after.elements.iter().chain(&after.nodes)) {
         let off =
             (a.sigma_1 - b.sigma_1).abs().max((a.sigma_2 - b.sigma_2).abs()).max((a.von_mises - b.von_mises).abs());
-        assert!(off < CLOSED_FORM * scale, "stress off by {off:e} of {scale:e}");
+        assert!(off < CLOSED_FORM * scale, "the stress differs by {off:e} of {scale:e}");
     }
 }
 
 #[test]
-fn a_turned_block_on_rollers_under_a_circle_gives_the_turned_answer() {
+fn a_rotated_block_on_rollers_under_a_circle_has_the_rotated_answer() {
     for kind in [ElementKind::T3, ElementKind::Q4, ElementKind::Q8] {
         let rollers = vec![("bottom", vec![0.0, -1.0], 0.002), ("left", vec![-1.0, 0.0], -0.001)];
         let block = Turned { model: "plane-strain", kind, turn: STRAIGHT, rollers, poisson: 0.3 };
@@ -190,8 +190,8 @@ fn a_turned_block_on_rollers_under_a_circle_gives_the_turned_answer() {
 }
 
 #[test]
-fn a_turned_box_on_rollers_under_a_sphere_gives_the_turned_answer() {
-    // Edges of the box have two normals, one corner three, all at right angles but for rounding.
+fn a_rotated_box_on_rollers_under_a_sphere_has_the_rotated_answer() {
+    // Edges of the box have two normals, one corner has three, all at right angles up to rounding.
     for kind in [ElementKind::Hex8, ElementKind::Tet4] {
         let rollers = vec![
             ("bottom", vec![0.0, 0.0, -1.0], 0.0),
@@ -230,7 +230,7 @@ fn uniform_pressure_on_an_inclined_plane_is_exact_on_inclined_rollers() {
             for stress in model.stress(&solution.displacement).unwrap().nodes {
                 assert!((stress.sigma_2 + p).abs() < CLOSED_FORM * p && stress.sigma_1.abs() < CLOSED_FORM * p);
             }
-            // The rollers carry nothing here.
+            // The rollers carry no force here.
             let reactions = model.reactions(&solution.displacement, &solution.multiplier).unwrap();
             assert!(largest(&reactions) < CLOSED_FORM * p, "{:e}", largest(&reactions));
         }
@@ -238,7 +238,7 @@ fn uniform_pressure_on_an_inclined_plane_is_exact_on_inclined_rollers() {
 }
 
 #[test]
-fn an_inclined_bar_on_rollers_meets_its_wall_as_the_closed_form_says() {
+fn an_inclined_bar_on_rollers_agrees_with_the_closed_form() {
     // Without lateral contraction a strip on rollers is a bar: length 2, cross-section 1, EA = 1000.
     let turn = in_plane(40.0);
     for (gap, moved) in [(0.006, 0.0), (0.05, 0.0), (0.006, 0.001)] {
@@ -255,7 +255,7 @@ fn an_inclined_bar_on_rollers_meets_its_wall_as_the_closed_form_says() {
         let of = |x: f64| moved + closed.displacement_under_end_force(4.0, x);
         let straight: Vec<f64> = mesh(bar.kind).nodes().iter().flat_map(|&[x, ..]| [of(x), 0.0]).collect();
         compare(&turn, 2, &straight, &model.nodal_displacement(&solution.displacement).unwrap(), "displacement");
-        // The rollers of the held end carry what the wall does not, along their normal.
+        // The rollers of the held end carry the rest of the load, along their normal.
         let reactions = model.reactions(&solution.displacement, &solution.multiplier).unwrap();
         let held = model.mesh().boundary("left").unwrap().nodes();
         let sum = |axis: usize| held.iter().map(|&node| reactions[2 * node + axis]).sum::<f64>();
@@ -265,7 +265,7 @@ fn an_inclined_bar_on_rollers_meets_its_wall_as_the_closed_form_says() {
     }
 }
 
-/// A turned block under a circle, in files.
+/// A rotated block under a circle, in files.
 fn desk() -> Desk {
     let desk = Desk::new();
     let rollers = vec![("bottom", vec![0.0, -1.0], 0.002), ("left", vec![-1.0, 0.0], 0.0)];
@@ -278,7 +278,7 @@ fn desk() -> Desk {
 }
 
 #[test]
-fn fields_for_paraview_hold_the_displacement_along_the_coordinate_axes() {
+fn fields_for_paraview_contain_the_displacement_along_the_coordinate_axes() {
     let desk = desk();
     desk.run(&["solve", "scene.json", "--out", "out"]).ends_with(0);
     let files: Vec<_> = std::fs::read_dir(desk.path("out")).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -291,7 +291,7 @@ fn fields_for_paraview_hold_the_displacement_along_the_coordinate_axes() {
     let nodal = model.nodal_displacement(&free).unwrap();
     let in_space: Vec<f64> = nodal.chunks(2).flat_map(|u| [u[0], u[1], 0.0]).collect();
     assert_eq!(written, in_space);
-    // The rollers of the bottom moved it by 0.002 along its turned normal.
+    // The rollers of the bottom move it by 0.002 along its rotated normal.
     let normal = apply(&in_plane(30.0), &[0.0, -1.0]);
     for node in model.mesh().boundary("bottom").unwrap().nodes() {
         let along = normal[0] * written[3 * node] + normal[1] * written[3 * node + 1];

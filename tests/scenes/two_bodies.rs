@@ -1,10 +1,10 @@
-//! Two elastic bodies, node to node, against their rigid equivalent, closed forms and Hertz.
+//! Two elastic bodies in contact node to node, compared with the equivalent rigid obstacle, closed forms and Hertz.
 
 use crate::exact_solutions::LineContact;
 use serde_json::{Value, json};
 use signorini::{Error, Model, Scene, Solution, solve_qp};
 
-/// Two solves of one problem in other unknowns differ by rounding, which the condition of these meshes multiplies.
+/// Two solves of one problem in different unknowns differ by rounding times the condition number of these meshes.
 const ROUNDING: f64 = 1e-10;
 
 fn model(value: &Value) -> Model {
@@ -37,7 +37,7 @@ fn half_disc(half: &str, element: &str) -> Value {
                          "element": element, "integration": "standard"}})
 }
 
-/// Two half cylinders on top of each other; the upper cut moves down by `approach`, the lower one stays.
+/// Two half cylinders, one above the other; the upper cut moves down by `approach`, the lower cut is fixed.
 fn pair_of_discs(moduli: [f64; 2], ratios: [f64; 2], approach: f64, element: &str) -> Value {
     json!({
         "body": half_disc("lower", element), "material": {"young": moduli[0], "poisson": ratios[0]},
@@ -51,7 +51,7 @@ fn pair_of_discs(moduli: [f64; 2], ratios: [f64; 2], approach: f64, element: &st
 }
 
 #[test]
-fn two_equal_bodies_meet_as_one_meets_a_rigid_plane_half_way() {
+fn two_equal_bodies_have_the_answer_of_one_body_on_a_rigid_plane_at_half_the_approach() {
     for element in ["t3", "q4", "t6", "q8"] {
         let (pair, of_pair) = solved(&pair_of_discs([1.0, 1.0], [0.3, 0.3], 0.01, element));
         let rigid = json!({
@@ -73,7 +73,7 @@ fn two_equal_bodies_meet_as_one_meets_a_rigid_plane_half_way() {
         let nodes = one.mesh().nodes().len();
         for node in 0..nodes {
             let [x, y] = [single[2 * node], single[2 * node + 1]];
-            // Both in the frame that moves with the middle.
+            // Both displacements relative to the motion of the middle plane.
             let upper = [nodal[2 * node], nodal[2 * node + 1] + 0.005];
             let lower = [nodal[2 * (nodes + node)], -(nodal[2 * (nodes + node) + 1] + 0.005)];
             for found in [upper, lower] {
@@ -85,11 +85,12 @@ fn two_equal_bodies_meet_as_one_meets_a_rigid_plane_half_way() {
 }
 
 #[test]
-fn cylinders_of_two_materials_press_as_hertz_says() {
+fn cylinders_of_two_materials_have_the_force_and_pressure_of_hertz() {
     let (moduli, ratios, approach) = ([1.0, 3.0], [0.3, 0.2], 0.012);
     let plane = [0, 1].map(|body: usize| moduli[body] / (1.0 - ratios[body] * ratios[body]));
     let contact = LineContact { modulus: 1.0 / (1.0 / plane[0] + 1.0 / plane[1]), radius: 0.5 };
-    // Each half cylinder gives way by F/(pi E*) (2 ln(4R/a) - 1), with its own modulus and radius, and the common a.
+    // Each half cylinder is compressed by F/(pi E*) (2 ln(4R/a) - 1), with its own modulus and radius, and with the
+    // common a.
     let sum = |force: f64| {
         let logarithm = 2.0 * (4.0 / contact.half_width(force)).ln() - 1.0;
         plane.iter().map(|modulus| force / (std::f64::consts::PI * modulus) * logarithm).sum::<f64>()
@@ -99,7 +100,7 @@ fn cylinders_of_two_materials_press_as_hertz_says() {
         force *= approach / sum(force);
     }
     assert!((sum(force) / approach - 1.0).abs() < 1e-12);
-    // The linear elements of this mesh see the contact's edge to a cell, a tenth of the half-width.
+    // The linear elements of this mesh resolve the edge of the contact to one cell, a tenth of the half-width.
     for (element, of_force, of_pressure) in [("t6", 2e-3, 1e-2), ("q8", 2e-3, 1e-2), ("q4", 1e-2, 2e-2)] {
         let (model, solution) = solved(&pair_of_discs(moduli, ratios, approach, element));
         let found = -2.0 * solution.multiplier.iter().sum::<f64>();
@@ -135,7 +136,7 @@ fn stack(model: &str, bodies: [Value; 2], sides: &[(&str, &str)]) -> Value {
 }
 
 #[test]
-fn a_uniform_pressure_passes_from_one_body_to_the_other() {
+fn two_bodies_pressed_together_have_the_exact_uniform_pressure() {
     let axis = |points: [f64; 2], divisions: usize| json!({"points": points, "divisions": [divisions]});
     let across = || json!({"points": [0, 0.4, 1.5], "divisions": [2, 1]});
     let mut cases = Vec::new();
@@ -196,7 +197,7 @@ fn shrink_fit(candidates: &str, other: &str, interference: f64, element: &str) -
 #[test]
 fn a_shrink_fit_has_the_pressure_of_lame() {
     let (a, b, c, interference): (f64, f64, f64, f64) = (1.0, 2.0, 3.0, 1e-4);
-    // Radial compliance of a ring under a pressure at b, in plane strain: E' = E/(1 - nu^2), nu' = nu/(1 - nu).
+    // Radial compliance of a ring under a pressure at b in plane strain: E' = E/(1 - nu^2), nu' = nu/(1 - nu).
     let compliance = |young: f64, poisson: f64, other: f64, sign: f64| {
         let (modulus, ratio) = (young / (1.0 - poisson * poisson), poisson / (1.0 - poisson));
         ((b * b + other * other) / (other * other - b * b).abs() + sign * ratio) / modulus
@@ -205,10 +206,10 @@ fn a_shrink_fit_has_the_pressure_of_lame() {
     let (model, solution) = solved(&shrink_fit("outer", "sleeve.inner", interference, "q8"));
     assert_eq!(solution.contact_set.count(), model.rows().len());
     for pressure in model.pressure(&solution.multiplier).unwrap() {
-        // Quadratic elements of 6 degrees; the geometry of the overlap itself is of the order of the interference.
+        // Quadratic elements of 6 degrees; the overlap changes the geometry by about the interference.
         assert!((pressure / exact - 1.0).abs() < 1e-3, "{pressure} instead of {exact}");
     }
-    // The same rows, seen from the other side.
+    // The same rows with the roles of the bodies exchanged.
     let (_, reversed) = solved(&shrink_fit("sleeve.inner", "outer", interference, "q8"));
     let largest = solution.displacement.iter().fold(0.0_f64, |largest, u| largest.max(u.abs()));
     for (ours, theirs) in solution.displacement.iter().zip(&reversed.displacement) {
@@ -217,7 +218,7 @@ fn a_shrink_fit_has_the_pressure_of_lame() {
 }
 
 #[test]
-fn bodies_without_contact_or_load_stay_as_they_are() {
+fn bodies_without_contact_or_load_do_not_move() {
     let mut value = pair_of_discs([1.0, 1.0], [0.3, 0.3], 0.0, "q4");
     value["gap"] = json!(0.1);
     let (_, solution) = solved(&value);
@@ -245,7 +246,7 @@ fn an_under_held_body_is_named() {
         let Err(Error::UnderHeld { mode, .. }) = built else { panic!("{built:?}") };
         assert!(mode.starts_with(named), "{mode}");
     }
-    // Resting on the base, pressed by a load, the upper body needs a guide only.
+    // The upper body, resting on the base and pressed by a load, only needs a guide.
     let mut scene = value.clone();
     scene["supports"] = Value::Array(without("top"));
     scene["loads"] = json!([{"traction": {"boundary": "top", "value": [0, -0.01]}}]);
@@ -253,7 +254,7 @@ fn an_under_held_body_is_named() {
     for pressure in model.pressure(&solution.multiplier).unwrap() {
         assert!((pressure / 0.01 - 1.0).abs() < ROUNDING);
     }
-    // Pulled away it is unbounded.
+    // If the load pulls it away, it is unbounded.
     scene["loads"] = json!([{"traction": {"boundary": "top", "value": [0, 0.01]}}]);
     let model = self::model(&scene);
     let error = model.explain(solve_qp(model.problem()).unwrap_err());
@@ -261,7 +262,7 @@ fn an_under_held_body_is_named() {
     assert_eq!(mode, "translation along y of the first body");
 }
 
-/// Two blocks on each other; the upper one has `cells` along each side, the lower one twice as many or half.
+/// Two blocks, one on the other; the upper one has `cells` cells along each side, the lower one `below`.
 fn blocks(model: &str, cells: usize, below: usize) -> Value {
     let axis = |from: f64, to: f64, cells: usize| json!({"points": [from, to], "divisions": [cells]});
     let body = |from: f64, cells: usize| match model {
@@ -291,9 +292,9 @@ fn blocks(model: &str, cells: usize, below: usize) -> Value {
     })
 }
 
-/// Whichever side is finer, its nodes between those of the other have no row and would go through.
+/// On the finer side, nodes between those of the other side have no row and would penetrate.
 #[test]
-fn surfaces_of_different_meshes_are_refused_whichever_is_finer() {
+fn surfaces_of_different_meshes_are_refused_for_either_finer_side() {
     for model in ["plane-strain", "space"] {
         solved(&blocks(model, 3, 3));
         for (cells, below) in [(2, 4), (4, 2), (3, 4)] {
@@ -304,14 +305,14 @@ fn surfaces_of_different_meshes_are_refused_whichever_is_finer() {
             assert!(message.contains("node ") && message.contains("pair up"), "{message}");
         }
     }
-    // A base that reaches beyond the body has nodes that face nothing.
+    // A base that is wider than the body has nodes without a node opposite; this is allowed.
     let mut wide = blocks("plane-strain", 4, 4);
     wide["further-bodies"][0]["body"]["rectangle"]["x"] = json!({"points": [-1, 0, 1, 2], "divisions": [3, 4, 3]});
     solved(&wide);
 }
 
 #[test]
-fn bodies_that_do_not_fit_are_refused() {
+fn further_bodies_that_do_not_match_are_refused() {
     let discs = || pair_of_discs([1.0, 1.0], [0.3, 0.3], 0.01, "q4");
     let change = |pointer: &str, value: Value| {
         let mut scene = discs();

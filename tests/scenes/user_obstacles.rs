@@ -1,6 +1,7 @@
-//! GOAL: an obstacle of a user's own stands beside those of a scene: same rows, same answer, refused if it makes no sense.
+//! GOAL: an obstacle that a user implements works beside those of a scene: same rows, same answer, and an error for
+//! invalid rows.
 //!
-//! BODY: clamped unit square, 8 x 8 Q4; candidates are the nodes of its top.
+//! BODY: a clamped unit square of 8 x 8 Q4; candidates are the nodes of its top.
 
 use std::sync::Arc;
 
@@ -9,10 +10,10 @@ use serde_json::{Value, json};
 use signorini::scene::{Obstacle, ObstacleRow, Warning};
 use signorini::{Error, Model, Scene, solve_qp};
 
-/// The built-in shapes subtract the shift from the height; here the node is moved instead.
+/// Rounding: the built-in shapes subtract the shift from the height, while for this obstacle the node is moved.
 const ROUNDING: f64 = 4e-16;
 
-/// A user's obstacle above the square: its row for a point.
+/// A user's obstacle above the square, defined by its row for a point.
 struct Above(fn([f64; 3]) -> Result<Option<ObstacleRow>, String>);
 
 impl std::fmt::Debug for Above {
@@ -55,7 +56,7 @@ fn of_shape(rule: &str, shape: Value) -> Model {
 }
 
 #[test]
-fn a_users_parabola_gives_the_rows_and_the_answer_of_the_built_in_one() {
+fn a_users_parabola_has_the_rows_and_the_answer_of_the_built_in_one() {
     let own = with(|[x, y, _]| {
         let height = 1.0 + (x - 0.4) * (x - 0.4) / 1.4;
         Ok(Some(ObstacleRow { normal: [0.0, 1.0, 0.0], gap: height - y }))
@@ -73,8 +74,8 @@ fn a_users_parabola_gives_the_rows_and_the_answer_of_the_built_in_one() {
 }
 
 #[test]
-fn a_users_plane_gives_the_rows_of_the_built_in_one_along_its_normal() {
-    // n = (0.6, 0.8), through (0, 1).
+fn a_users_plane_has_the_rows_of_the_built_in_one_along_its_normal() {
+    // The plane with n = (0.6, 0.8) through (0, 1).
     let own =
         with(|[x, y, _]| Ok(Some(ObstacleRow { normal: [0.6, 0.8, 0.0], gap: 0.6 * (0.0 - x) + 0.8 * (1.0 - y) })));
     let built_in = of_shape("closest-point", json!({"plane": {"point": [0, 1], "normal": [0.6, 0.8]}}));
@@ -82,7 +83,7 @@ fn a_users_plane_gives_the_rows_of_the_built_in_one_along_its_normal() {
 }
 
 #[test]
-fn a_users_obstacle_stands_behind_those_of_the_scene() {
+fn a_users_obstacle_is_numbered_after_those_of_the_scene() {
     let scene = scene(json!([
         {"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [1.5, 0], "normal": [1, 0]}}}
     ]));
@@ -90,14 +91,14 @@ fn a_users_obstacle_stands_behind_those_of_the_scene() {
     let model = scene.build_with(&[("top", Arc::new(flat))]).unwrap();
     assert_eq!(model.obstacles().len(), 2);
     let rows = model.rows().iter().filter(|row| row.obstacle == 1);
-    // The scene's gap of -0.03 brings it nearer.
+    // The gap of the scene, -0.03, moves the obstacle towards the body.
     assert!(rows.clone().count() == 9 && rows.clone().all(|row| (row.gap - 0.22).abs() < ROUNDING));
     let nearer = model.with_gap(-0.25).unwrap();
     assert!(nearer.rows().iter().filter(|row| row.obstacle == 1).all(|row| row.gap == 0.0));
 }
 
 #[test]
-fn what_is_out_of_reach_has_no_row() {
+fn nodes_out_of_reach_of_a_users_obstacle_have_no_row() {
     let right = with(|[x, y, _]| Ok((x >= 0.5).then_some(ObstacleRow { normal: [0.0, 1.0, 0.0], gap: 1.25 - y })));
     assert_eq!(right.unwrap().rows().len(), 5);
     let nowhere = with(|_| Ok(None)).unwrap();
@@ -105,7 +106,7 @@ fn what_is_out_of_reach_has_no_row() {
 }
 
 #[test]
-fn a_row_that_makes_no_sense_is_refused_with_its_node() {
+fn an_invalid_row_of_a_users_obstacle_is_refused_with_its_node() {
     fn row(normal: [f64; 3], gap: f64) -> Result<Option<ObstacleRow>, String> {
         Ok(Some(ObstacleRow { normal, gap }))
     }

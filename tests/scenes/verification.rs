@@ -1,6 +1,6 @@
-//! Every answer of `cargo run --release --example verification` lies as near the exact one as is said here.
+//! Every answer of `cargo run --release --example verification` has at most the error stated here.
 //!
-//! GOAL        classical contact problems by the scenes of the command itself
+//! GOAL        classical contact problems, with the scenes of the command itself
 //! REFERENCE   closed forms of `tests/support/closed_forms`
 
 #[allow(dead_code)]
@@ -22,22 +22,23 @@ use contact_patch::{VARIANTS, contact_patch};
 use round_bodies::{half_ball_about_the_axis, quarter_ball};
 use serde_json::json;
 
-/// Elements are exact; the condition number of the stiffness, below 1e4, enlarges rounding.
+/// The elements are exact; rounding is multiplied by the condition number of the stiffness, below 1e4.
 const EXACT: f64 = 1e-12;
 
-/// Punches: the cells at the edge of the contact, a thirtieth to a thousandth of it, and the size of the block, 500 radii.
+/// Error of the punches, by the cells at the edge of the contact, a thirtieth to a thousandth of it, and by the size of
+/// the block, 500 radii.
 const PUNCH: f64 = 0.005;
 
-/// The force of a half cylinder, whose elements are quadratic; its theory is that of a small contact.
+/// Error of the force of a half cylinder of quadratic elements; the theory assumes a small contact.
 const CYLINDER_FORCE: f64 = 1e-3;
 
-/// The largest nodal pressure of quadratic elements is a mean over a cell, an eighth of the contact.
+/// Error of the largest nodal pressure of quadratic elements, which is a mean over a cell, an eighth of the contact.
 const CYLINDER_PRESSURE: f64 = 1e-2;
 
-/// A half ball about its axis, five quadratic cells to the contact.
+/// Error of an axisymmetric half ball with five quadratic cells along the radius of the contact.
 const BALL: f64 = 0.005;
 
-/// Linear cells in space, of which seven lie along the radius of the contact, and that grow from shell to shell.
+/// Error of linear cells in space: seven are along the radius of the contact, and they grow from shell to shell.
 const BALL_IN_SPACE: f64 = 0.03;
 
 #[track_caller]
@@ -45,7 +46,7 @@ fn check(answers: &[Answer], tolerance: f64) {
     assert!(!answers.is_empty());
     for Answer { case, element, quantity, ours, exact, .. } in answers {
         let error = (ours / exact - 1.0).abs();
-        assert!(error < tolerance, "{case}, {element}, {quantity}: {ours:e}, exact {exact:e}, off by {error:.1e}");
+        assert!(error < tolerance, "{case}, {element}, {quantity}: {ours:e}, exact {exact:e}, error {error:.1e}");
     }
 }
 
@@ -58,21 +59,22 @@ fn a_uniformly_compressed_block_is_exact_on_distorted_meshes_of_every_element() 
 }
 
 #[test]
-fn bars_carry_the_rest_of_their_load_into_the_wall() {
+fn bars_transfer_the_rest_of_their_load_to_the_wall() {
     check(&closed_forms::bars().unwrap(), EXACT);
 }
 
 #[test]
 fn a_string_is_exact_and_a_membrane_converges() {
     let answers = closed_forms::obstacle_problems().unwrap();
-    // 2000 cells: a condition number of 4e6. The membrane has an error of h^2 = 1.6e-6 times a number below one.
+    // With 2000 cells the string has a condition number of 4e6. The error of the membrane is h^2 = 1.6e-6 times a
+    // number below one.
     check(&answers[..1], 1e-11);
     check(&answers[1..], 1e-6);
 }
 
 #[test]
-fn forces_are_those_of_the_stored_answers() {
-    // Stored in double precision; the independent solvers agree among each other to 1e-8.
+fn forces_agree_with_the_stored_answers() {
+    // The answers are stored in double precision; the independent solvers agree with each other to 1e-8.
     check(&closed_forms::stored_answers().unwrap(), 1e-8);
 }
 
@@ -90,8 +92,9 @@ fn half_cylinders_have_the_force_and_the_pressure_of_hertz() {
 }
 
 #[test]
-fn a_half_ball_has_the_force_and_the_pressure_of_hertz_about_its_axis_and_in_space() {
-    // Fewer shells than in the table, which double: 2.6 % in the force, in a tenth of the time.
+fn a_half_ball_has_the_force_and_the_pressure_of_hertz_axisymmetric_and_in_space() {
+    // The shells grow by a factor of two, so that there are fewer than in the table: 2.6 % in the force, in a tenth of
+    // the time.
     let answers = round_bodies::half_balls(&quarter_ball(8, 2.0)).unwrap();
     let (in_space, about_axis): (Vec<_>, Vec<_>) = answers.into_iter().partition(|answer| answer.element == "Hex8");
     check(&about_axis, BALL);
@@ -99,8 +102,8 @@ fn a_half_ball_has_the_force_and_the_pressure_of_hertz_about_its_axis_and_in_spa
     assert!(about_axis[0].unknowns * 15 < in_space[0].unknowns);
 }
 
-/// A quarter of a half ball of 20-node bricks. Rows are those of coefficients: pressures at corners and
-/// mid-sides lie on one curve.
+/// A quarter of a half ball of 20-node bricks. The rows are for coefficients, so that pressures at corners and mid-side
+/// nodes are on one curve.
 #[test]
 fn quadratic_bricks_have_the_pressure_of_hertz_at_every_node_of_a_ball() {
     let point = PointContact { modulus: 1.0 / 0.91, radius: 1.0 };
@@ -123,9 +126,10 @@ fn quadratic_bricks_have_the_pressure_of_hertz_at_every_node_of_a_ball() {
     assert!(inside > 40, "{inside}");
 }
 
-/// The corner on the axis has nearly no tributary area where the edge is curved: its pressure is not lambda over that.
+/// The corner on the axis has almost no tributary area if the edge is curved, so that its pressure is not lambda
+/// divided by that area.
 #[test]
-fn quadratic_elements_show_a_finite_pressure_at_the_pole_of_a_ball() {
+fn quadratic_elements_have_the_pressure_of_hertz_at_the_pole_of_a_ball() {
     let point = PointContact { modulus: 1.0 / 0.91, radius: 1.0 };
     for element in ["t6", "q8"] {
         for divisions in [5, 10, 20] {
@@ -135,14 +139,14 @@ fn quadratic_elements_show_a_finite_pressure_at_the_pole_of_a_ball() {
             scene["body"]["half-disc"]["zone"] = json!({"width": 0.12, "divisions": divisions});
             let solved = Solved::of(&scene).unwrap();
             let ratio = solved.peak_pressure() / point.peak_pressure(solved.force());
-            // The node next to it, half a cell or 0.12 of the contact away at most, stands for it.
+            // It has the pressure of the next node, at most half a cell or 0.12 of the contact away.
             assert!((ratio - 1.0).abs() < 0.02, "{element}, {divisions}: {ratio}");
         }
     }
 }
 
 #[test]
-fn mean_dilatation_keeps_the_ball_of_hertz_near_incompressibility() {
-    // As in space at nu = 0.3, with shells that double: 2.6 % in the force.
+fn mean_dilatation_gives_the_force_of_a_nearly_incompressible_ball() {
+    // As in space at nu = 0.3, with shells that grow by a factor of two: 2.6 % in the force.
     check(&round_bodies::nearly_incompressible_half_balls().unwrap(), 0.05);
 }

@@ -14,7 +14,7 @@ use signorini::{ContactProblem, Model, Scene};
 const STRAIN: Formulation = Formulation::PlaneStrain { thickness: 0.5 };
 const STRESS: Formulation = Formulation::PlaneStress { thickness: 0.5 };
 
-/// All elements of the plane in both plane states.
+/// All element kinds of the plane, each in plane strain and in plane stress.
 pub const VARIANTS: [(ElementKind, Formulation); 8] = [
     (ElementKind::T3, STRAIN),
     (ElementKind::T3, STRESS),
@@ -26,13 +26,14 @@ pub const VARIANTS: [(ElementKind, Formulation); 8] = [
     (ElementKind::Q8, STRESS),
 ];
 
-/// A 2 x 1 rectangle of 4 x 3 cells whose inner corners are moved by up to a fifth of a cell; mid-sides stay in the
-/// middle.
+/// A 2 x 1 rectangle of 4 x 3 cells whose inner corners are moved by up to a fifth of a cell; mid-side nodes stay in
+/// the middle of their side.
 pub fn distorted(kind: ElementKind) -> Mesh {
     distort(&rectangle(&[0.0, 0.5, 1.0, 1.5, 2.0], &[0.0, 0.3, 0.7, 1.0], kind).unwrap(), [0.1, 0.06, 0.0])
 }
 
-/// The mesh with inner nodes moved by up to `reach` along each axis; in the plane mid-sides go to the middle of their side.
+/// The mesh with inner nodes moved by up to `reach` along each axis; in the plane, mid-side nodes are put in the middle
+/// of their side.
 pub fn distort(regular: &Mesh, reach: [f64; 3]) -> Mesh {
     let (low, high) = regular.extent();
     let dimension = regular.dimension();
@@ -71,7 +72,7 @@ pub fn nodal_of(mesh: &Mesh, field: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
     mesh.nodes().iter().flat_map(|&at| field(at).into_iter().take(mesh.dimension())).collect()
 }
 
-/// Solves the body with the displacement prescribed where `held` says so, under a nodal load.
+/// Solves the body under a nodal load, with the displacement prescribed at the dofs for which `held` returns `true`.
 pub fn solve_held(body: &ElasticBody, field: &[f64], held: impl Fn(usize) -> bool, load: &[f64]) -> Vec<f64> {
     let prescribed: Vec<Option<f64>> = (0..field.len()).map(|dof| held(dof).then_some(field[dof])).collect();
     let dofs = fem::DofMap::new(prescribed).unwrap();
@@ -94,7 +95,7 @@ pub fn largest(a: &[f64]) -> f64 {
     a.iter().fold(0.0, |m, x| m.max(x.abs()))
 }
 
-/// A clamped unit square of `n` x `n` Q4, its top facing the given obstacles in +y.
+/// A clamped unit square of `n` x `n` Q4 cells; its top faces the given obstacles in +y.
 pub fn clamped_square(n: usize, obstacles: Value, gap: f64) -> Value {
     json!({
         "body": {"rectangle": {
@@ -120,13 +121,13 @@ pub fn clamped_block(n: usize, gap: f64) -> Value {
     })
 }
 
-/// Builds a scene that is known to be right.
+/// Builds the model of a valid scene; panics on an error.
 pub fn built(scene: &Value) -> Model {
     Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap()
 }
 
-/// Displacement and multipliers when the given rows are closed and the others open, by one dense linear solve:
-/// `K u - B_c' lambda = f, B_c u = g_c`. Signs are whatever they come out.
+/// Displacement and multipliers if the given rows are closed and the others open, by one dense linear solve:
+/// `K u - B_c' lambda = f, B_c u = g_c`. The signs are not checked.
 pub fn solve_with_closed_rows(problem: &ContactProblem, closed: &[usize]) -> (Vec<f64>, Vec<f64>) {
     let (n, m) = (problem.dofs(), closed.len());
     let mut matrix = DMatrix::zeros(n + m, n + m);

@@ -1,9 +1,9 @@
-//! Writes meshes in every form of `.msh`: version 4.1 and 2.2, as ASCII and as bytes in both orders.
+//! Writes meshes in every form of `.msh`: versions 4.1 and 2.2, as ASCII and as binary data in both byte orders.
 //!
 //! # Source
 //! C. Geuzaine, J.-F. Remacle, *Gmsh Reference Manual*, chapter "Gmsh file formats", MSH file format and its version 2.
 
-/// How numbers are written.
+/// The form of numbers in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     Ascii,
@@ -25,7 +25,7 @@ pub const FORMS: [(f64, Form); 6] = [
 pub struct Part {
     pub dimension: i32,
     pub entity: i32,
-    /// The physical group, 0 for none.
+    /// The physical group, or 0 for no group.
     pub group: i32,
     /// The number of the element type.
     pub number: i32,
@@ -33,11 +33,11 @@ pub struct Part {
     pub elements: Vec<Vec<u64>>,
 }
 
-/// What a file holds.
+/// The content of a file.
 pub struct Drawing {
-    /// Dimension, tag and name of physical groups.
+    /// Dimension, tag and name of each physical group.
     pub names: Vec<(i32, i32, &'static str)>,
-    /// Tag and place of each node.
+    /// Tag and coordinates of each node.
     pub nodes: Vec<(u64, [f64; 3])>,
     pub parts: Vec<Part>,
 }
@@ -72,7 +72,7 @@ impl Pen {
         self.put(format!("{value:e}"), value.to_le_bytes());
     }
 
-    /// Ends the line of ASCII.
+    /// Ends a line of an ASCII file.
     fn end(&mut self) {
         if self.form == Form::Ascii {
             self.bytes.push(b'\n');
@@ -102,8 +102,8 @@ impl Drawing {
             self.nodes_in_blocks(&mut pen);
             self.elements_in_blocks(&mut pen);
         } else {
-            self.nodes_one_by_one(&mut pen);
-            self.elements_one_by_one(&mut pen);
+            self.nodes_each_with_tag(&mut pen);
+            self.elements_each_with_header(&mut pen);
         }
         pen.bytes
     }
@@ -128,7 +128,7 @@ impl Drawing {
             pen.end();
         }
         pen.text(if pen.form == Form::Ascii { "$EndEntities\n" } else { "\n$EndEntities\n" });
-        // Passed over: what looks like its end is none.
+        // A reader skips this section: its content looks like the end of a section, but is not.
         pen.text("$Periodic\n$EndPeriodically \u{1}\u{10}");
         pen.text(if pen.form == Form::Ascii { "\n$EndPeriodic\n" } else { "$EndPeriodic\n" });
     }
@@ -156,7 +156,7 @@ impl Drawing {
                 pen.end();
             }
         }
-        // A line end after the numbers is usual, but not in every file.
+        // Most files have a line end after the numbers, but not all.
         pen.text("$EndNodes\n");
     }
 
@@ -180,7 +180,7 @@ impl Drawing {
         pen.text(if pen.form == Form::Ascii { "$EndElements\n" } else { "\n$EndElements\n" });
     }
 
-    fn nodes_one_by_one(&self, pen: &mut Pen) {
+    fn nodes_each_with_tag(&self, pen: &mut Pen) {
         pen.text(&format!("$Nodes\n{}\n", self.nodes.len()));
         for (tag, at) in &self.nodes {
             pen.int(*tag as i32);
@@ -190,7 +190,7 @@ impl Drawing {
         pen.text(if pen.form == Form::Ascii { "$EndNodes\n" } else { "\n$EndNodes\n" });
     }
 
-    fn elements_one_by_one(&self, pen: &mut Pen) {
+    fn elements_each_with_header(&self, pen: &mut Pen) {
         let count: usize = self.parts.iter().map(|part| part.elements.len()).sum();
         pen.text(&format!("$Elements\n{count}\n"));
         let mut tag = 0;

@@ -1,4 +1,4 @@
-//! Blocks with an exact solution, discretised: how far the answer is from it.
+//! Discretised blocks with an exact solution, and the error of their answers.
 #![allow(dead_code)]
 
 use std::time::Instant;
@@ -15,11 +15,11 @@ use signorini::{ContactProblem, Error, SparseMatrix, solve_qp};
 /// The contact pressure at one node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NodalPressure {
-    /// Where, on y = 0.
+    /// Coordinate of the node on y = 0.
     pub x: f64,
-    /// Multiplier over tributary area.
+    /// Multiplier divided by tributary area.
     pub ours: f64,
-    /// That of the exact solution.
+    /// Pressure of the exact solution.
     pub exact: f64,
 }
 
@@ -29,40 +29,40 @@ pub struct SolvedBlock<'a> {
     pub unknowns: usize,
     /// The pressure at the contact rows, in increasing x.
     pub pressure: Vec<NodalPressure>,
-    /// Assembly and solve, in seconds.
+    /// Time of assembly and solve, in seconds.
     pub seconds: f64,
     exact: &'a dyn ContactSolution,
     body: ElasticBody,
-    /// Of all nodes.
+    /// Displacement of all nodes.
     displacement: Vec<f64>,
 }
 
 impl SolvedBlock<'_> {
-    /// The relative errors of the displacement, in four digits.
+    /// The relative errors of the displacement, to four digits.
     ///
     /// # Errors
-    /// None for a block that [`solve_block`] made.
+    /// None for a block made by [`solve_block`].
     pub fn errors(&self) -> Result<ErrorNorms, Error> {
         error_norms(&self.body, &self.displacement, |at| state(self.exact, at))
     }
 
-    /// The relative errors of the displacement by one quadrature rule for every element.
+    /// The relative errors of the displacement, with one quadrature rule for every element.
     ///
     /// # Errors
-    /// None for a block that [`solve_block`] made.
+    /// None for a block made by [`solve_block`].
     pub fn errors_by(&self, rule: &[QuadraturePoint]) -> Result<ErrorNorms, Error> {
         error_norms_by(rule, &self.body, &self.displacement, |at| state(self.exact, at))
     }
 
-    /// The relative error in energy as it is estimated from the stresses, without the exact solution.
+    /// The relative error in energy, estimated from the stresses without the exact solution.
     ///
     /// # Errors
-    /// None for a block that [`solve_block`] made.
+    /// None for a block made by [`solve_block`].
     pub fn estimated_energy_error(&self) -> Result<f64, Error> {
         discretisation_error(&self.body, &self.displacement, &stress(&self.body, &self.displacement)?)
     }
 
-    /// The largest nodal pressure, and that of the exact solution at a node.
+    /// The largest nodal pressure of the answer, and the largest of the exact solution at the nodes.
     pub fn peak_pressure(&self) -> [f64; 2] {
         let largest = |value: fn(&NodalPressure) -> f64| self.pressure.iter().map(value).fold(0.0, f64::max);
         [largest(|at| at.ours), largest(|at| at.exact)]
@@ -78,8 +78,8 @@ fn in_space([x, y]: [f64; 2]) -> [f64; 3] {
     [x, y, 0.0]
 }
 
-/// Solves the same in space: a plate `[0, 1]^2` of four cells' thickness, or less, whose faces z = const do not move across
-/// their plane. Quadratic faces on y = 0 have rows of coefficients.
+/// Solves the same problem in space: a plate `[0, 1]^2`, at most four cells thick, whose faces z = const do not move
+/// along z. Quadratic faces on y = 0 have contact rows for the coefficients.
 ///
 /// # Errors
 /// As [`solve_block`].
@@ -126,14 +126,14 @@ pub fn solve_plate(exact: &dyn ContactSolution, kind: ElementKind, cells: usize)
     Ok(SolvedBlock { unknowns: problem.dofs(), pressure, seconds, exact, body, displacement })
 }
 
-/// Solves the block `[0, 1]^2` in plane strain with `cells` x `cells` cells and compares it with `exact`.
+/// Solves the block `[0, 1]^2` in plane strain with `cells` x `cells` cells and compares the answer with `exact`.
 ///
-/// The exact displacement is prescribed at the nodes of the left, right and upper side; every other node of y = 0 has a
-/// contact row `-u_y <= gap(x)`.
+/// The exact displacement is prescribed at the nodes of the left, right and upper sides; every other node of y = 0 has
+/// a contact row `-u_y <= gap(x)`.
 ///
 /// # Errors
-/// [`Error::Mesh`] for an element that is not plane or an integration that does not fit it, [`Error::Setting`] for
-/// elastic constants that are none, and as [`solve_qp`].
+/// [`Error::Mesh`] for an element that is not plane or an unsuitable integration, [`Error::Setting`] for invalid
+/// elastic constants, and the errors of [`solve_qp`].
 pub fn solve_block(
     exact: &dyn ContactSolution,
     kind: ElementKind,

@@ -1,6 +1,7 @@
-//! Random scenes in the plane that have a guaranteed bound, and what the brackets on their meshes must fulfil.
+//! Random scenes in the plane that have a guaranteed bound, and the properties that the brackets on their meshes must
+//! have.
 
-// The study looks at more than the test.
+// The study uses more of this module than the test.
 #![allow(dead_code)]
 
 use serde_json::{Value, json};
@@ -10,10 +11,11 @@ use signorini::{Error, Scene};
 /// Elements of the scene's own mesh.
 pub const ELEMENTS: [&str; 4] = ["t3", "t6", "q4", "q8"];
 
-/// Energies and forces are compared to within this share of the largest: rounding of stresses near incompressibility.
+/// Energies and forces are compared up to this share of the largest: stresses near incompressibility are rounded by
+/// this much.
 const ROUNDING: f64 = 1e-8;
 
-/// Numbers between 0 and 1 from a seed.
+/// Random numbers between 0 and 1 from a seed.
 struct Draws(u64);
 
 impl Draws {
@@ -40,7 +42,7 @@ impl Draws {
     }
 }
 
-/// A block under a rigid obstacle, and its kind of element.
+/// A block under a rigid obstacle, and the name of its element.
 pub fn scene(seed: u64) -> (Scene, &'static str) {
     let mut draws = Draws(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
     (0..8).for_each(|_| {
@@ -96,10 +98,11 @@ pub fn scene(seed: u64) -> (Scene, &'static str) {
     (Scene::from_json(&scene.to_string(), "scene").unwrap(), element)
 }
 
-/// A column of the weight or the uplift b between rollers, its head against a plane: its displacement is quadratic.
+/// A column between rollers under a body force b, up or down, its head against a plane: its displacement is quadratic.
 ///
-/// With the modulus M of a column that cannot bulge, the pressure q at the head, the height h and the gap g: the head moves by
-/// `b h^2/2M - q h/M`, which is g where it touches, and the stress at y is `b (h - y) - q`. Energy and force of the exact answer follow.
+/// With the modulus M of a column that cannot bulge, the pressure q at the head, the height h and the gap g, the head
+/// moves by `b h^2/2M - q h/M`, which equals g if the head touches; the stress at y is `b (h - y) - q`. This gives
+/// energy and force of the exact answer.
 pub fn column(seed: u64) -> (Scene, &'static str, [f64; 2]) {
     let mut draws = Draws(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
     (0..8).for_each(|_| {
@@ -113,7 +116,7 @@ pub fn column(seed: u64) -> (Scene, &'static str, [f64; 2]) {
         _ => young / (1.0 - poisson * poisson),
     };
     let gap = height * 1e-3 * draws.between(-1.0, 1.0);
-    // From a head that hardly touches to one that is pressed by many times the force.
+    // The head hardly touches, or is pressed with up to many times the force, or anything between.
     let force = 2.0 * modulus / (height * height) * (gap + height * 1e-3 * draws.between(0.01, 2.0));
     let scene = json!({
         "model": model,
@@ -136,7 +139,7 @@ pub fn column(seed: u64) -> (Scene, &'static str, [f64; 2]) {
     (Scene::from_json(&scene.to_string(), "scene").unwrap(), element, exact)
 }
 
-/// The brackets of a column, held against the exact energy and force, and what is not as it is guaranteed.
+/// Compares the brackets of a column with the exact energy and force. Returns the violations of the guarantee.
 ///
 /// # Errors
 /// Those of the total error.
@@ -144,7 +147,8 @@ pub fn of_column(seed: u64, levels: usize) -> Result<Vec<String>, Error> {
     let (scene, element, [energy, force]) = column(seed);
     let mut violations = Vec::new();
     for (number, one) in examined(&scene, levels)?.iter().enumerate() {
-        // Both sides hold the quadratic displacement: what is left is rounding of their energies, and its root in the distance.
+        // Both sides contain the quadratic displacement: only rounding of their energies is left, and its root in the
+        // distance.
         let size = ROUNDING * one.norm.powi(2).max(energy.abs());
         let [low, high] = one.energies;
         let [least, most] = one.force_interval.unwrap_or([f64::NAN; 2]);
@@ -157,21 +161,21 @@ pub fn of_column(seed: u64, levels: usize) -> Result<Vec<String>, Error> {
     Ok(violations)
 }
 
-/// What the brackets of one scene show.
+/// Findings about the brackets of one scene.
 #[derive(Clone, Debug)]
 pub struct Shown {
     pub element: &'static str,
-    /// What is not as it is guaranteed, in words.
+    /// Violations of the guarantee, in words.
     pub violations: Vec<String>,
-    /// Bound over true error of v, on the meshes whose error is many times that of the last one.
+    /// Bound divided by true error of v, on the meshes whose error is many times that of the last mesh.
     pub of_displacement: Vec<f64>,
-    /// The same of the scene's own mesh, judged by the last bracket.
+    /// Bound divided by true error on the scene's original mesh, judged by the last bracket.
     pub of_own: Option<f64>,
-    /// Half the width of the interval of the force over the bound, both relative.
+    /// Half the width of the interval of the force divided by the bound, both relative.
     pub of_force: Vec<f64>,
 }
 
-/// The brackets on the mesh of a scene and `levels` finer ones, held against each other.
+/// Compares the brackets on the mesh of a scene and on `levels` finer ones with each other.
 ///
 /// # Errors
 /// Those of the total error.
@@ -187,19 +191,28 @@ pub fn shown(seed: u64, levels: usize) -> Result<Shown, Error> {
                 violations.push(format!("seed {seed}, {element}, mesh {number}: {what}: {one:?}, {last:?}"));
             }
         };
-        // The exact energy is between those of every mesh, and so all intervals meet.
-        hold("the energies miss those of the last mesh", one.energies[0] <= last.energies[1] + ROUNDING * size);
-        hold("the energies miss those of the last mesh", last.energies[0] <= one.energies[1] + ROUNDING * size);
+        // The exact energy is between the energies of every mesh; so all intervals overlap.
+        hold(
+            "the energies do not overlap those of the last mesh",
+            one.energies[0] <= last.energies[1] + ROUNDING * size,
+        );
+        hold(
+            "the energies do not overlap those of the last mesh",
+            last.energies[0] <= one.energies[1] + ROUNDING * size,
+        );
         let least = one.own[1].max(last.own[1] - last.bound);
         // |u - w| is at least |w - v| - |u - v|, with v of the last mesh.
         hold(
-            "the own mesh is further off than its bound",
+            "the original mesh has a larger error than its bound",
             one.own[0] + ROUNDING * one.norm >= last.own[1] - last.bound,
         );
-        hold("no bound of the own mesh", one.own[0].is_finite() && least.is_finite());
+        hold("the original mesh has no bound", one.own[0].is_finite() && least.is_finite());
         if let (Some(one), Some(last)) = (one.force_interval, last.force_interval) {
             let size = ROUNDING * last[1].abs();
-            hold("the forces miss those of the last mesh", one[0] <= last[1] + size && last[0] <= one[1] + size);
+            hold(
+                "the forces do not overlap those of the last mesh",
+                one[0] <= last[1] + size && last[0] <= one[1] + size,
+            );
             hold("the interval is empty", one[0] <= one[1] + size);
         }
     }
@@ -207,7 +220,7 @@ pub fn shown(seed: u64, levels: usize) -> Result<Shown, Error> {
     Ok(Shown { element, violations, of_displacement, of_own, of_force })
 }
 
-/// Bounds over errors, where the last mesh tells the error to a few percent.
+/// Bounds divided by errors, on meshes for which the last mesh gives the error to a few percent.
 fn effectivities(found: &[Examined]) -> (Vec<f64>, Option<f64>, Vec<f64>) {
     const CLEAR: f64 = 20.0;
     let last = found.last().unwrap();

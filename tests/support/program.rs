@@ -1,4 +1,4 @@
-//! The built program in temporary folders, and what to give it.
+//! Runs the built program in temporary folders, and provides its input.
 #![allow(dead_code)]
 
 use std::fs;
@@ -10,7 +10,7 @@ use std::sync::mpsc::{self, Receiver};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// What a run left behind.
+/// Result of a run.
 pub struct Run {
     pub code: i32,
     pub stdout: String,
@@ -23,7 +23,7 @@ impl Run {
         serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("{error}: {:?}", self.stdout))
     }
 
-    /// Asserts an exit code, and that nothing panicked.
+    /// Asserts the exit code, and that nothing panicked.
     #[track_caller]
     pub fn ends_with(self, code: i32) -> Self {
         assert!(!self.stderr.contains("panicked"), "{}", self.stderr);
@@ -31,18 +31,18 @@ impl Run {
         self
     }
 
-    /// Asserts an exit code, and a standard error of one sentence with every one of `phrases`.
+    /// Asserts the exit code, and that standard error is one sentence which contains each of `phrases`.
     #[track_caller]
     pub fn fails_with(self, code: i32, phrases: &[&str]) -> Self {
         let run = self.ends_with(code);
-        // What an export is about to write is no fault.
+        // A line that announces what an export writes is not an error.
         let is_fault = |line: &&str| !line.starts_with("warning: ") && !line.starts_with("writing ");
         let sentences: Vec<&str> = run.stderr.lines().filter(is_fault).collect();
-        let [sentence] = sentences[..] else { panic!("not one sentence: {:?}", run.stderr) };
+        let [sentence] = sentences[..] else { panic!("standard error is not one sentence: {:?}", run.stderr) };
         assert!(sentence.starts_with("error: ") && sentence.chars().count() < 1000, "{sentence}");
         assert!(!sentence.chars().any(char::is_control), "{sentence:?}");
         for phrase in phrases {
-            assert!(sentence.contains(phrase), "{sentence:?} lacks {phrase:?}");
+            assert!(sentence.contains(phrase), "{sentence:?} does not contain {phrase:?}");
         }
         run
     }
@@ -79,7 +79,7 @@ impl Desk {
         command
     }
 
-    /// The largest resident size of the program, in bytes, as the system counts it to its end.
+    /// The largest resident size of the program until its end, in bytes, as the system counts it.
     pub fn peak(&self, arguments: &[&str]) -> f64 {
         let script = "import os, sys
 silent = [(os.POSIX_SPAWN_OPEN, 1, os.devnull, os.O_WRONLY, 0)]
@@ -92,77 +92,77 @@ sys.exit(os.waitstatus_to_exitcode(status))";
         1024.0 * String::from_utf8(output.stdout).unwrap().trim().parse::<f64>().unwrap()
     }
 
-    /// Python with a script whose first argument is the program. Isolated and without `site`, Python stays small: it
-    /// counts as the program until that is loaded.
+    /// Starts Python with a script whose first argument is the program. Without `site` and in isolated mode Python is
+    /// small: until the program is loaded, its size is counted as that of the program.
     pub fn by_python(&self, script: &str) -> Command {
         let mut python = Command::new("python3");
         python.args(["-I", "-S", "-c", script, env!("CARGO_BIN_EXE_signorini")]).current_dir(self.0.path());
         python
     }
 
-    /// Starts the program with `--progress`, to follow its steps.
+    /// Starts the program with `--progress`, so that a test can follow its steps.
     pub fn start(&self, arguments: &[&str]) -> UnderWay {
         let mut command = self.command(arguments);
         let mut child = command.arg("--progress").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let said = BufReader::new(child.stderr.take().unwrap());
-        let (tell, told) = mpsc::channel();
-        // Read all the time: the program never waits for the test.
-        std::thread::spawn(move || said.lines().map_while(Result::ok).try_for_each(|line| tell.send(line)));
-        UnderWay { child, told, stderr: String::new() }
+        let (sender, lines) = mpsc::channel();
+        // Standard error is read all the time, so that the program never waits for the test.
+        std::thread::spawn(move || said.lines().map_while(Result::ok).try_for_each(|line| sender.send(line)));
+        UnderWay { child, lines, stderr: String::new() }
     }
 
     pub fn run(&self, arguments: &[&str]) -> Run {
         let output = self.command(arguments).output().unwrap();
         Run {
-            code: output.status.code().expect("an exit code, not a signal"),
+            code: output.status.code().expect("the program ends with an exit code, not by a signal"),
             stdout: String::from_utf8(output.stdout).unwrap(),
             stderr: String::from_utf8(output.stderr).unwrap(),
         }
     }
 }
 
-/// A run of the program that tells its steps.
+/// A run of the program that reports its steps.
 pub struct UnderWay {
     child: Child,
-    told: Receiver<String>,
-    /// What it said beside its steps.
+    lines: Receiver<String>,
+    /// Standard error except the steps.
     stderr: String,
 }
 
 impl UnderWay {
-    /// Waits until the program says `phrase` on standard error. Returns `false` if it ends without that.
+    /// Waits until the program prints `phrase` on standard error. Returns `false` if the program ends first.
     pub fn waits_for(&mut self, phrase: &str) -> bool {
         std::iter::from_fn(|| self.next_line()).any(|line| line.contains(phrase))
     }
 
-    /// The next line of standard error; `None` if it is closed.
+    /// The next line of standard error; `None` if standard error is closed.
     fn next_line(&mut self) -> Option<String> {
-        let line = self.told.recv().ok()?;
+        let line = self.lines.recv().ok()?;
         if !line.starts_with("progress: ") {
             self.stderr += &format!("{line}\n");
         }
         Some(line)
     }
 
-    /// Waits until the program begins to print its report. If that is longer than a pipe holds, the program then waits for a
-    /// reader.
+    /// Waits until the program begins to print its report. If the report is larger than the buffer of a pipe, the
+    /// program then waits for a reader.
     pub fn waits_for_report(&mut self) {
         self.child.stdout.as_mut().unwrap().read_exact(&mut [0]).unwrap();
     }
 
-    /// Interrupts it as a terminal does; does nothing if it has ended.
+    /// Interrupts the program as a terminal does; does nothing if it has ended.
     pub fn interrupt(&self) {
         assert!(Command::new("kill").args(["-INT", &self.child.id().to_string()]).status().unwrap().success());
     }
 
-    /// Waits for its end, while its report is read or nobody reads it.
+    /// Waits until the program ends; its report is read only if `is_read` is `true`.
     pub fn ends(mut self, is_read: bool) -> Run {
         let mut report = self.child.stdout.take().unwrap();
         let mut stdout = String::new();
         if is_read {
             report.read_to_string(&mut stdout).unwrap();
         }
-        let code = self.child.wait().unwrap().code().expect("an exit code, not a signal");
+        let code = self.child.wait().unwrap().code().expect("the program ends with an exit code, not by a signal");
         while self.next_line().is_some() {}
         Run { code, stdout, stderr: self.stderr }
     }
@@ -205,19 +205,19 @@ impl Problem {
         Problem { b, g: vector(&["-1", "-1"]), ..Problem::right() }
     }
 
-    /// Nothing holds the second dof, and its load pulls it away from its obstacle.
+    /// The second dof has no support, and its load pulls it away from its obstacle.
     pub fn unbounded() -> Self {
         Problem { k: matrix("symmetric", "2 2", &["1 1 1"]), f: vector(&["1", "-1"]), ..Problem::right() }
     }
 
-    /// Nothing holds the second dof, and no load moves it.
+    /// The second dof has no support, and no load moves it.
     pub fn under_held() -> Self {
         let b = matrix("general", "1 2", &["1 1 1"]);
         Problem { k: matrix("symmetric", "2 2", &["1 1 1"]), f: vector(&["1", "0"]), b, ..Problem::right() }
     }
 }
 
-/// Where an example scene lies.
+/// The path of an example scene.
 pub fn example(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(format!("{name}.json"));
     path.to_str().unwrap().to_string()
@@ -234,7 +234,7 @@ pub fn examples() -> Vec<String> {
     names
 }
 
-/// A small scene that is right: a block of 4 x 2 cells under a parabola.
+/// A small valid scene: a block of 4 x 2 cells under a parabola.
 pub fn scene() -> Value {
     serde_json::json!({
         "title": "Small block",

@@ -2,7 +2,8 @@
 
 use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
 
-/// A chain of springs with springs to the ground, of random stiffness, and rows on random nodes, some of them inclined.
+/// A chain of springs with springs to the ground, of random stiffness, and contact rows, some inclined, on random
+/// nodes.
 pub fn springs(seed: u64) -> ContactProblem {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     let mut random = || {

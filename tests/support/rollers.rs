@@ -1,5 +1,5 @@
-//! Scenes on inclined supports, and what they are held against: Lagrange multipliers in the coordinate axes, a dense
-//! linear solve of `K u - N'r - B_c'lambda = f, N u = v, B_c u = g_c` over all dofs, which knows no frame.
+//! Scenes on inclined supports, and a solver to compare them with: Lagrange multipliers in the coordinate axes, in a
+//! dense linear solve of `K u - N'r - B_c'lambda = f, N u = v, B_c u = g_c` over all dofs, without rotated frames.
 #![allow(dead_code)]
 
 use nalgebra::{DMatrix, DVector};
@@ -9,10 +9,10 @@ use signorini::{Model, solve_qp};
 
 use super::bodies::{built, difference, largest};
 
-/// Rounding enlarged by the condition of the dense saddle-point system, below 1e5 here, and a margin.
+/// Rounding times the condition of the dense saddle-point system, below 1e5 here, with a margin.
 const DENSE: f64 = 1e-10;
 
-/// A few operations on numbers of order one.
+/// Rounding of a few operations on numbers of order one.
 pub const ROUNDING: f64 = 1e-14;
 
 /// A prescribed component `normal . u = value` of a node.
@@ -30,7 +30,8 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-/// What a scene prescribes, read from its JSON; components of a node that depend on earlier ones are left out.
+/// The components that a scene prescribes, read from its JSON; components of a node that depend on earlier ones are
+/// left out.
 fn components(scene: &Value, model: &Model) -> Vec<Component> {
     let (mesh, dimension) = (model.mesh(), model.mesh().dimension());
     let mut all: Vec<Component> = Vec::new();
@@ -70,7 +71,7 @@ fn components(scene: &Value, model: &Model) -> Vec<Component> {
     all
 }
 
-/// Solves a scene and the same problem with Lagrange multipliers; compares displacement, contact forces, reactions.
+/// Solves a scene, and the same problem with Lagrange multipliers; compares displacement, contact forces and reactions.
 #[track_caller]
 pub fn check(scene: &Value) -> Model {
     let model = built(scene);
@@ -107,7 +108,7 @@ pub fn check(scene: &Value) -> Model {
         }
         let own = &nodal[dimension * component.node..dimension * (component.node + 1)];
         let off = dot(own, &component.normal) - component.value;
-        assert!(off.abs() < ROUNDING, "node {} is off its plane by {off:e}", component.node);
+        assert!(off.abs() < ROUNDING, "node {} is not on its plane, by {off:e}", component.node);
     }
     let found = model.reactions(&solution.displacement, &solution.multiplier).unwrap();
     let scale = largest(&reactions);

@@ -1,4 +1,4 @@
-//! Scenes of a test: built, and solved.
+//! Builds and solves the scenes of tests.
 #![allow(dead_code)]
 
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use serde_json::Value;
 use signorini::scene::Answer;
 use signorini::{Error, Model, Scene, solve_qp};
 
-/// The model of a scene, or why there is none.
+/// The model of a scene, or the error of building it.
 pub fn built(scene: &Value) -> Result<Model, Error> {
     Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build())
 }

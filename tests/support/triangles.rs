@@ -1,10 +1,10 @@
-//! Closed surfaces of triangles, and the files that hold them.
+//! Closed surfaces of triangles, and the files that contain them.
 #![allow(dead_code)]
 
 use std::collections::HashMap;
 use std::fmt::Write;
 
-/// Vertices, and triangles counterclockwise seen from outside.
+/// Vertices, and triangles that are counterclockwise seen from outside.
 #[derive(Clone, Debug)]
 pub struct Triangles {
     pub vertices: Vec<[f64; 3]>,
@@ -12,7 +12,8 @@ pub struct Triangles {
 }
 
 impl Triangles {
-    /// A sphere about the origin: an icosahedron, every triangle cut into four `times` times, 20 x 4^times triangles.
+    /// A sphere about the origin: an icosahedron, every triangle divided into four, `times` times: 20 x 4^times
+    /// triangles.
     pub fn sphere(radius: f64, times: usize) -> Self {
         let golden = (1.0 + 5.0_f64.sqrt()) / 2.0;
         let mut vertices = Vec::new();
@@ -49,7 +50,7 @@ impl Triangles {
                         vertices.len() - 1
                     })
                 });
-                // Each new vertex goes out to the sphere through the old ones.
+                // Each new vertex is moved radially onto the sphere through the old ones.
                 for new in [d, e, f] {
                     let length = apart(vertices[new], [0.0; 3]).sqrt();
                     vertices[new] = vertices[new].map(|part| part * (golden * golden + 1.0).sqrt() / length);
@@ -89,13 +90,13 @@ impl Triangles {
         Triangles { vertices, corners }
     }
 
-    /// The same with every vertex moved.
+    /// The same surface with every vertex moved.
     pub fn moved(mut self, to: impl FnMut([f64; 3]) -> [f64; 3]) -> Self {
         self.vertices = self.vertices.into_iter().map(to).collect();
         self
     }
 
-    /// Both, side by side or through each other.
+    /// Both surfaces together, side by side or intersecting.
     pub fn and(mut self, other: Triangles) -> Self {
         let first = self.vertices.len();
         self.vertices.extend(other.vertices);
@@ -121,7 +122,7 @@ impl Triangles {
         bytes
     }
 
-    /// The same surface as a binary STL holds it.
+    /// The surface after rounding to the single precision of a binary STL.
     pub fn single(self) -> Self {
         self.moved(|at| at.map(|part| f64::from(part as f32)))
     }

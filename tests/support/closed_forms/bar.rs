@@ -1,13 +1,13 @@
 //! An elastic bar against a wall.
 
-/// An elastic bar on [0, L] that is held at x = 0; a wall stands at the distance `gap` beyond x = L.
+/// An elastic bar on [0, L] that is fixed at x = 0, with a wall at the distance `gap` beyond x = L.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bar {
     /// Length L.
     pub length: f64,
     /// Axial stiffness EA, in force.
     pub axial_stiffness: f64,
-    /// Distance from the end of the bar to the wall; negative where the wall starts inside the bar.
+    /// Distance from the end of the bar to the wall; negative if the wall starts inside the bar.
     pub gap: f64,
 }
 
@@ -23,7 +23,7 @@ impl Bar {
     }
 
     /// The force of the wall on the bar, `>= 0`, under a distributed load q (force per length):
-    /// `R = max(0, q L/2 - EA g/L)`; `q = 2 EA g/L^2` just touches.
+    /// `R = max(0, q L/2 - EA g/L)`. At `q = 2 EA g/L^2` the bar just touches the wall.
     pub fn reaction_to_distributed_load(&self, load: f64) -> f64 {
         (load * self.length / 2.0 - self.axial_stiffness * self.gap / self.length).max(0.0)
     }

@@ -1,9 +1,10 @@
-//! Elastic bars in impact: waves that run up and down a bar.
+//! Elastic bars in impact: closed forms of the waves that travel along a bar.
 
 /// A free elastic bar on [0, L] that flies with `speed` towards a wall at the distance `gap` beyond x = L.
 ///
-/// The end that touches stops, a wave of compression runs to the free end and comes back as a wave of release: the wall
-/// feels the constant force `rho c v0 A` for exactly `2 L/c`, then the bar flies back with v0 and without a wave.
+/// The end that touches stops, and a compression wave travels to the free end, which reflects it as a release wave: the
+/// force of the wall is the constant `rho c v0 A` for exactly `2 L/c`, then the bar flies back with v0 and without a
+/// wave.
 ///
 /// # Source
 /// K. F. Graff, *Wave Motion in Elastic Solids*, Oxford, 1975, section 2.4.
@@ -27,7 +28,7 @@ impl ImpactingBar {
         (self.axial_stiffness / self.line_density).sqrt()
     }
 
-    /// When contact begins and when it ends: `g/v0` and `g/v0 + 2 L/c`.
+    /// Start and end of the contact: `g/v0` and `g/v0 + 2 L/c`.
     pub fn contact(&self) -> [f64; 2] {
         let begin = self.gap / self.speed;
         [begin, begin + 2.0 * self.length / self.wave_speed()]
@@ -43,7 +44,7 @@ impl ImpactingBar {
         2.0 * self.line_density * self.length * self.speed
     }
 
-    /// The energy of the bar, at any time.
+    /// The energy of the bar, constant in time.
     pub fn energy(&self) -> f64 {
         self.line_density * self.length * self.speed * self.speed / 2.0
     }
@@ -58,8 +59,9 @@ impl ImpactingBar {
     }
 }
 
-/// The bar of length, stiffness and density 1 on [0, 1], held at x = 1, with a wall that allows `u(0) >= 0`, which lets
-/// go at rest from `u = (1 - x)/2`: its motion has the period 3, and the wall presses with 1/2 for one third of it.
+/// The bar of length, stiffness and density 1 on [0, 1], held at x = 1, with a wall that demands `u(0) >= 0`, released
+/// at rest from `u = (1 - x)/2`: its motion has the period 3, and the pressure of the wall is 1/2 during one third of
+/// the period.
 ///
 /// # Source
 /// F. Dabaghi, A. Petrov, J. Pousin, Y. Renard, *Convergence of mass redistribution method for the one-dimensional wave
@@ -70,7 +72,7 @@ pub struct BouncingBar;
 impl BouncingBar {
     /// The period.
     pub const PERIOD: f64 = 3.0;
-    /// The energy, at any time.
+    /// The energy, constant in time.
     pub const ENERGY: f64 = 0.125;
 
     /// The pressure of the wall at time t, `>= 0`.

@@ -1,7 +1,7 @@
 //! A string and a membrane over flat obstacles.
 
-/// A string on (0, 1) with fixed ends, `-u'' = -q`, over an obstacle at `u >= -g`.
-/// A parabola up to the contact, tangent to the obstacle there.
+/// A string on (0, 1) with fixed ends, `-u'' = -q`, over an obstacle at `u >= -g`. Its deflection is a parabola up to
+/// the contact, and tangent to the obstacle there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObstacleString {
     /// Load q per length, downwards, `>= 0`.
@@ -39,7 +39,8 @@ pub struct DiscMembrane {
 }
 
 impl DiscMembrane {
-    /// The radius b of the contact: `q (1 - b^2)/4 + (q b^2/2) ln b = g`; 0 where the obstacle is not reached.
+    /// The radius b of the contact: `q (1 - b^2)/4 + (q b^2/2) ln b = g`; 0 if the membrane does not reach the
+    /// obstacle.
     pub fn radius(&self) -> f64 {
         // The deflection at the edge of a contact of radius b falls from q/4 at b = 0 to 0 at b = 1.
         let deflection = |b: f64| self.load * ((1.0 - b * b) / 4.0 + b * b / 2.0 * b.ln());

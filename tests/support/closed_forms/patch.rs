@@ -1,13 +1,13 @@
 //! The contact patch test.
 
-/// How the sides of the block of the contact patch test are held.
+/// Boundary conditions on the sides of the block of the contact patch test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sides {
-    /// Free sides, no strain across the plane.
+    /// Free sides in plane strain: no strain across the plane.
     PlaneStrain,
-    /// Free sides, no stress across the plane.
+    /// Free sides in plane stress: no stress across the plane.
     PlaneStress,
-    /// Sides that cannot move outwards: no strain but the vertical one.
+    /// Sides that cannot move outwards: only the vertical strain is not zero.
     Confined,
 }
 
@@ -18,7 +18,7 @@ pub struct ContactPatch {
     pub young: f64,
     /// Poisson's ratio nu.
     pub poisson: f64,
-    /// How the sides are held.
+    /// Boundary conditions on the sides.
     pub sides: Sides,
 }
 
@@ -44,8 +44,8 @@ impl ContactPatch {
         (across, -pressure / self.modulus())
     }
 
-    /// The pressure when the top of a block of `height` is pressed down by `displacement` and the plane starts at the
-    /// distance `gap` below it: `p = max(0, E' (d - g)/H)`.
+    /// The pressure if the top of a block of `height` is pressed down by `displacement` and the plane starts at the
+    /// distance `gap` below the block: `p = max(0, E' (d - g)/H)`.
     pub fn pressure(&self, height: f64, displacement: f64, gap: f64) -> f64 {
         (self.modulus() * (displacement - gap) / height).max(0.0)
     }

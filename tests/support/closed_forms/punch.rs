@@ -1,6 +1,6 @@
 //! Rigid punches on an elastic half space, in terms of the contact modulus E* = E/(1-nu^2).
 //!
-//! In the plane there is no approach to compare: it depends on the whole body.
+//! In the plane the approach is not compared, because it depends on the whole body.
 
 use std::f64::consts::PI;
 

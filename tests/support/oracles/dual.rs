@@ -1,24 +1,25 @@
-//! The slow, obvious way for hundreds of rows: the dual problem `w = A x + q`, `w >= 0`, `x >= 0`, `w'x = 0` in the
+//! A slow and simple solver for hundreds of rows: the dual problem `w = A x + q`, `w >= 0`, `x >= 0`, `w'x = 0` in the
 //! multipliers `x = -lambda`, with `A = B K^-1 B'` and `q = g - B K^-1 f` as full matrices.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::{Dense, Enumerated};
 
-/// Sweeps of projected Gauss-Seidel through which the set of pressing rows must stay.
+/// Number of sweeps of projected Gauss-Seidel in which the set of pressing rows must not change.
 const STAYS: usize = 20;
 
-/// Most sweeps: exchanges settle what they leave.
+/// Largest number of sweeps; exchanges of single rows correct the set that they reach.
 const MOST_SWEEPS: usize = 400;
 
-/// Wrong signs below this, relative to the largest, are rounding, which must not exchange a row for ever.
+/// A wrong sign of a smaller value, relative to the largest, is rounding; exchanging its row could go on without end.
 const ROUNDING: f64 = 1e-13;
 
 impl Dense {
-    /// Displacement and multipliers where the stiffness is definite and the rows are linearly independent.
+    /// Displacement and multipliers of a problem with definite stiffness and linearly independent rows.
     ///
-    /// Projected Gauss-Seidel guesses the set; then the first row whose sign is wrong changes sides, one at a time, which
-    /// ends for every P-matrix (K. G. Murty, *Note on a Bard-type scheme for solving the complementarity problem*, 1974).
+    /// Projected Gauss-Seidel guesses the set. Then the first row whose sign is wrong changes sides, one row at a time;
+    /// this ends for every P-matrix (K. G. Murty, *Note on a Bard-type scheme for solving the complementarity problem*,
+    /// 1974).
     pub fn dual(&self) -> Enumerated {
         let m = self.gap.len();
         let rows: Vec<Vec<(usize, f64)>> = (0..m)
@@ -41,7 +42,7 @@ impl Dense {
     }
 }
 
-/// The rows that press after projected Gauss-Seidel.
+/// The rows with a force after projected Gauss-Seidel.
 fn guess(matrix: &DMatrix<f64>, q: &DVector<f64>) -> Vec<usize> {
     let m = q.len();
     let (mut x, mut closed, mut stayed) = (DVector::zeros(m), Vec::new(), 0);
@@ -60,7 +61,7 @@ fn guess(matrix: &DMatrix<f64>, q: &DVector<f64>) -> Vec<usize> {
     closed
 }
 
-/// The set whose signs are all right.
+/// The closed set for which all signs are right.
 fn exchange(matrix: &DMatrix<f64>, q: &DVector<f64>, mut closed: Vec<usize>) -> Vec<usize> {
     loop {
         let x = forces(matrix, q, &closed);
@@ -78,17 +79,17 @@ fn exchange(matrix: &DMatrix<f64>, q: &DVector<f64>, mut closed: Vec<usize>) -> 
     }
 }
 
-/// x with the rows of `closed` at their gaps and zero elsewhere.
+/// The unknowns x, with the rows of `closed` at their gaps and zero for all other rows.
 fn forces(matrix: &DMatrix<f64>, q: &DVector<f64>, closed: &[usize]) -> DVector<f64> {
     let inner = matrix.select_rows(closed).select_columns(closed);
     let right = -q.select_rows(closed);
     let mut x = DVector::zeros(q.len());
-    let found = inner.cholesky().expect("independent rows").solve(&right);
+    let found = inner.cholesky().expect("rows are independent").solve(&right);
     closed.iter().zip(found.iter()).for_each(|(&row, value)| x[row] = *value);
     x
 }
 
-/// `K = L L'` row by row, each from the first entry of its row of K on.
+/// `K = L L'` row by row; each row is stored from the first nonzero entry of the row of K.
 struct Envelope {
     first: Vec<usize>,
     rows: Vec<Vec<f64>>,

@@ -1,4 +1,4 @@
-//! Problems given as dense arrays, and the slow, obvious way to solve them: try every contact set.
+//! Problems given as dense arrays, and a slow and simple solver that tries every contact set.
 #![allow(dead_code)]
 
 mod dual;
@@ -36,7 +36,7 @@ impl Dense {
         }
     }
 
-    /// The LCP w = M x + q, w >= 0, x >= 0, w'x = 0 as the QP min 1/2 x'Mx + q'x, -x <= 0.
+    /// The linear complementarity problem w = M x + q, w >= 0, x >= 0, w'x = 0 as the QP min 1/2 x'Mx + q'x, -x <= 0.
     pub fn lcp(matrix: &[&[f64]], q: &[f64]) -> Self {
         let n = q.len();
         let load: Vec<f64> = q.iter().map(|value| -value).collect();
@@ -55,8 +55,8 @@ impl Dense {
         )
     }
 
-    /// Solves the saddle-point system of every contact set and returns the one whose signs are all right, or, where
-    /// rounding leaves no such set, the one that violates them least.
+    /// Solves the saddle-point system of every contact set and returns the one for which all signs are right. If
+    /// rounding leaves no such set, it returns the one with the smallest violation.
     pub fn enumerate(&self) -> Enumerated {
         let (n, m) = (self.load.len(), self.gap.len());
         assert!(m <= 12, "enumeration of 2^{m} sets");
@@ -105,7 +105,7 @@ pub fn sparse(dense: &DMatrix<f64>) -> Result<SparseMatrix, Error> {
     SparseMatrix::from_triplets(dense.nrows(), dense.ncols(), &triplets)
 }
 
-/// A small generator of numbers in [0, 1) (splitmix64), so that every run draws the same.
+/// A small generator of numbers in [0, 1) (splitmix64), which draws the same numbers in every run.
 pub struct Draws(u64);
 
 impl Draws {
@@ -132,7 +132,7 @@ impl Draws {
     }
 }
 
-/// A random problem of `n` dofs and `m` rows: K = A A' + small diagonal, rows with one or two entries.
+/// A random problem of `n` dofs and `m` rows: K = A A' + a small diagonal, rows with one or two entries.
 pub fn random(draws: &mut Draws, n: usize, m: usize) -> Dense {
     let a = DMatrix::from_fn(n, n, |_, _| draws.signed());
     let stiffness = &a * a.transpose() + DMatrix::identity(n, n) * 0.1;
@@ -143,7 +143,7 @@ pub fn random(draws: &mut Draws, n: usize, m: usize) -> Dense {
             contact[(row, draws.below(n))] = draws.signed();
         }
     }
-    // A feasible point makes the problem feasible: the gaps are measured from it.
+    // The gaps are measured from a feasible point, so that the problem is feasible.
     let inside = DVector::from_fn(n, |_, _| draws.signed());
     let gap = &contact * inside + DVector::from_fn(m, |_, _| draws.uniform());
     let stiffness = (&stiffness + stiffness.transpose()) / 2.0;

@@ -1,6 +1,6 @@
-//! A rectangle under a rigid parabola, with fields that look like contact without solving anything.
+//! A rectangle under a rigid parabola, with fields that look like contact but come from no solve.
 
-// Each test file uses a part of this.
+// Each test file uses only a part of this module.
 #![allow(dead_code)]
 
 pub mod page;
@@ -74,7 +74,7 @@ impl Indented {
         [ObstacleLine { points: &self.parabola, inside: [0.0, 1.0] }]
     }
 
-    /// The stress, with the ends of its colours.
+    /// The stress, with the limits of its colour scale.
     pub fn field(&self) -> [FieldPanel<'_>; 1] {
         self.field_within([-1.7e6, 0.1e6])
     }

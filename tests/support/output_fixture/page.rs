@@ -1,4 +1,4 @@
-//! What a reader of a picture would object to, found in the SVG itself.
+//! Finds faults that a reader of a picture would see, in the SVG itself.
 
 use resvg::usvg::{Group, Node, Options, Rect, Tree};
 use signorini::output::Drawing;
@@ -16,7 +16,7 @@ fn texts(group: &Group, found: &mut Vec<(String, Rect)>) {
     }
 }
 
-/// The SVG of a drawing, read with its own fonts.
+/// The SVG of a drawing, read with the fonts of the drawing.
 pub fn tree_of(drawing: &Drawing) -> Tree {
     let mut options = Options::default();
     options.fontdb_mut().load_font_data(include_bytes!("../../../src/output/font/signorini-sans.ttf").to_vec());
@@ -24,7 +24,7 @@ pub fn tree_of(drawing: &Drawing) -> Tree {
     Tree::from_str(&drawing.svg(), &options).expect("well-formed SVG")
 }
 
-/// Every text with its box in pixels; panics where the SVG is not well formed or carries a number that is none.
+/// Every text with its box in pixels; panics if the SVG is not well formed or contains a number that is not finite.
 pub fn texts_of(drawing: &Drawing) -> Vec<(String, Rect)> {
     let svg = drawing.svg();
     for attribute in svg.split(" d=\"").skip(1) {
@@ -37,15 +37,15 @@ pub fn texts_of(drawing: &Drawing) -> Vec<(String, Rect)> {
     found
 }
 
-/// No text is cut off by the page, none covers another.
+/// Asserts that the page cuts off no text and that no text covers another.
 pub fn assert_readable(drawing: &Drawing) {
     let texts = texts_of(drawing);
     let (width, height) = (drawing.width() as f32, drawing.height() as f32);
     for (k, (text, place)) in texts.iter().enumerate() {
         let on_page = place.left() >= 0.0 && place.top() >= 0.0 && place.right() <= width && place.bottom() <= height;
-        assert!(on_page, "`{text}` at {place:?} leaves the page of {width} x {height}");
+        assert!(on_page, "`{text}` at {place:?} is not inside the page of {width} x {height}");
         for (other, there) in &texts[k + 1..] {
-            // Boxes hold the line height, letters less than that: touching lines overlap by a little of nothing.
+            // Boxes have the height of a line, letters less: boxes of lines that touch may overlap a little.
             let across = place.right().min(there.right()) - place.left().max(there.left());
             let down = place.bottom().min(there.bottom()) - place.top().max(there.top());
             assert!(across <= 0.0 || down <= 4.0, "`{text}` covers `{other}`: {place:?} and {there:?}");

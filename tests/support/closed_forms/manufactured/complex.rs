@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul};
 
-/// `re + i im`; the sign of a zero `im` tells the side of a branch cut.
+/// `re + i im`; the sign of a zero `im` selects the side of a branch cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Complex {
     pub re: f64,
@@ -18,14 +18,14 @@ impl Complex {
         Complex { re: factor * self.re, im: factor * self.im }
     }
 
-    /// The power of the branch that is real on the positive real axis and cut along the negative one.
+    /// The power on the branch that is real on the positive real axis and cut along the negative one.
     pub fn power(self, exponent: f64) -> Self {
         let size = self.re.hypot(self.im).powf(exponent);
         let (sin, cos) = (exponent * self.im.atan2(self.re)).sin_cos();
         Complex { re: size * cos, im: size * sin }
     }
 
-    /// The logarithm of the same branch.
+    /// The logarithm on the same branch.
     pub fn ln(self) -> Self {
         Complex { re: self.re.hypot(self.im).ln(), im: self.im.atan2(self.re) }
     }

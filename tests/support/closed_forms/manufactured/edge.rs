@@ -1,4 +1,5 @@
-//! The state at a generic edge of a contact: pressure of the square root of the distance.
+//! The state at a generic edge of a contact: the pressure is proportional to the square root of the distance from the
+//! edge.
 
 use super::complex::Complex;
 use super::stress_function::StressFunction;

@@ -1,12 +1,11 @@
-//! A contact whose displacement is as smooth as one likes.
+//! A contact whose displacement has as many derivatives as a test chooses.
 
 use super::{ContactSolution, PlaneElasticity};
 
-/// Contact with the plane y = 0 up to x = x0, left by a gap that opens with the power k:
-/// `u_x = -y alpha'`, `u_y = alpha - y beta/M`, `alpha = A (x-x0)_+^k`, `beta = B (x0-x)_+^k`.
+/// Contact with the plane y = 0 for x <= x0; beyond x0 a gap opens with the power k: `u_x = -y alpha'`,
+/// `u_y = alpha - y beta/M`, `alpha = A (x-x0)_+^k`, `beta = B (x0-x)_+^k`.
 ///
-/// The pressure is beta, the gap that opens is alpha. `k >= 3` for a body force without jumps but in
-/// the highest derivative.
+/// The pressure is beta, the opening gap is alpha. With `k >= 3` the body force jumps only in its highest derivative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Smooth {
     /// The elastic constants.

@@ -1,4 +1,4 @@
-//! The state that a stress function makes, free of shear on y = 0:
+//! The state of a stress function, without shear stress on y = 0:
 //! `2 mu u_x = (kappa-1)/2 Re Zbar - y Im Z`, `2 mu u_y = (kappa+1)/2 Im Zbar - y Re Z`, `Z = Zbar'`.
 //!
 //! # Source

@@ -1,12 +1,12 @@
-//! A problem in dense doubles, as the program is given it.
+//! A problem in dense doubles, as it is given to the program.
 
 use nalgebra::DMatrix;
 use signorini::{ContactProblem, Error, SparseMatrix, SymmetricMatrix};
 
-/// Gaps that QP solvers take for infinite; any other finite gap is a length, however long.
+/// QP solvers take gaps from this value on as infinite; any smaller finite gap is a length, however large.
 const UNBOUNDED: [f64; 2] = [1e20, 1e30];
 
-/// Is a gap a length?
+/// Returns `true` if a gap is a length, that is, if it bounds its row.
 pub fn is_length(gap: f64) -> bool {
     gap.is_finite() && !UNBOUNDED.contains(&gap)
 }
@@ -61,7 +61,7 @@ impl Case {
         Case { stiffness, load: problem.load().to_vec(), contact, gap: problem.gap().to_vec() }
     }
 
-    /// Least and largest eigenvalue of `D K D` with a unit diagonal; dofs with an empty diagonal stay as they are.
+    /// Smallest and largest eigenvalue of `D K D` with a unit diagonal; dofs with a zero diagonal keep their scale.
     pub fn equilibrated_spectrum(&self) -> (f64, f64) {
         let n = self.dofs();
         let unit = |dof: usize| match self.stiffness[dof][dof] {

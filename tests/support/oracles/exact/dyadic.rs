@@ -1,4 +1,4 @@
-//! Numbers m 2^e with an integer m of any size: doubles are such numbers, and their sums and products stay so.
+//! Numbers m 2^e with an integer m of any size. Doubles are such numbers, and so are their sums and products.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Neg, Sub};
@@ -49,12 +49,12 @@ impl Dyadic {
         Dyadic { mantissa: self.mantissa.magnitude().clone().into(), exponent: self.exponent }
     }
 
-    /// The integer `self / 2^exponent`, for an exponent that is low enough to leave one.
+    /// The integer `self / 2^exponent`; the exponent must be low enough for an integer.
     pub fn over(&self, exponent: i64) -> BigInt {
         if self.is_zero() {
             return BigInt::ZERO;
         }
-        assert!(self.exponent >= exponent, "2^{} over 2^{exponent} is no integer", self.exponent);
+        assert!(self.exponent >= exponent, "2^{} over 2^{exponent} is not an integer", self.exponent);
         &self.mantissa << (self.exponent - exponent)
     }
 
@@ -65,9 +65,9 @@ impl Dyadic {
 }
 
 impl From<f64> for Dyadic {
-    /// The number that a finite double is.
+    /// Converts a finite double without rounding.
     fn from(value: f64) -> Self {
-        assert!(value.is_finite(), "{value} is no number");
+        assert!(value.is_finite(), "{value} is not finite");
         let bits = value.to_bits();
         let (biased, fraction) = ((bits >> 52 & 0x7ff) as i64, bits & ((1 << 52) - 1));
         let (mantissa, exponent) = if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
@@ -137,7 +137,7 @@ pub fn dot<'a>(a: impl IntoIterator<Item = &'a Dyadic>, b: impl IntoIterator<Ite
     a.into_iter().zip(b).filter(|(a, b)| !a.is_zero() && !b.is_zero()).fold(Dyadic::ZERO, |sum, (a, b)| &sum + &(a * b))
 }
 
-/// `m 2^e`, also where 2^e itself is no double.
+/// `m 2^e`, even if 2^e itself is not a double.
 fn scaled(m: f64, e: i64) -> f64 {
     let e = e.clamp(-2400, 2400) as i32;
     let (first, second) = (e / 3, e / 3);
@@ -146,7 +146,7 @@ fn scaled(m: f64, e: i64) -> f64 {
 
 /// `a / b` as m 2^e with an even e and m of about 2^70; `None` for zero.
 fn quotient(a: &Dyadic, b: &Dyadic) -> Option<(f64, i64)> {
-    assert!(!b.is_zero(), "nothing is divided by zero");
+    assert!(!b.is_zero(), "the divisor is not zero");
     if a.is_zero() {
         return None;
     }
@@ -165,7 +165,7 @@ pub fn ratio(a: &Dyadic, b: &Dyadic) -> f64 {
     quotient(a, b).map_or(0.0, |(m, e)| scaled(m, e))
 }
 
-/// `sqrt(a / b)`, to a few units in the last place, also where a / b itself is no double.
+/// `sqrt(a / b)`, to a few units in the last place, even if a / b itself is not a double.
 pub fn root_of_ratio(a: &Dyadic, b: &Dyadic) -> f64 {
     quotient(a, b).map_or(0.0, |(m, e)| scaled(m.sqrt(), e / 2))
 }

@@ -1,24 +1,24 @@
-//! What the program names as the reason of a claim, held against the data.
+//! Compares the reason that the program gives for a claim with the data.
 
 use signorini::Error;
 
 use super::dyadic::Dyadic;
 use super::solve::Exact;
 
-/// Sums that vanish exactly may be left with this share of their terms: the evidence is given in doubles.
+/// Sums that vanish exactly may keep this share of their terms, because the evidence is given in doubles.
 const ROUNDING: f64 = 1e-9;
 
-/// Entries of a direction below this share of the largest stand for zero.
+/// Entries of a direction below this share of the largest count as zero.
 const NOTHING: f64 = 1e-15;
 
-/// The entries of a direction, with those that stand for zero replaced by it.
+/// The entries of a direction; entries that count as zero are replaced by zero.
 fn cleaned(direction: &[f64]) -> Vec<Dyadic> {
     let largest = direction.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let kept = |&value: &f64| if value.abs() > NOTHING * largest { value } else { 0.0 };
     direction.iter().map(kept).map(Dyadic::from).collect()
 }
 
-/// A sum of products, and the sum of their sizes.
+/// A sum of products, and the sum of their magnitudes.
 fn sum<'a>(terms: impl Iterator<Item = (&'a Dyadic, &'a Dyadic)>) -> (Dyadic, Dyadic) {
     terms.fold((Dyadic::ZERO, Dyadic::ZERO), |(sum, size), (a, b)| {
         let product = a * b;
@@ -26,12 +26,12 @@ fn sum<'a>(terms: impl Iterator<Item = (&'a Dyadic, &'a Dyadic)>) -> (Dyadic, Dy
     })
 }
 
-/// Is a sum zero but for rounding?
+/// Returns `true` if a sum is zero up to rounding.
 fn vanishes((sum, size): &(Dyadic, Dyadic)) -> bool {
     sum.abs() <= size * &Dyadic::from(ROUNDING)
 }
 
-/// What is wrong with the weights or the direction that an error names, if something is.
+/// The fault of the weights or of the direction that an error names, if there is one.
 pub fn fault(exact: &Exact, error: &Error) -> Option<&'static str> {
     match error {
         Error::Infeasible { rows, weights, .. } if !weights.is_empty() => infeasible(exact, rows, weights),
@@ -44,7 +44,7 @@ pub fn fault(exact: &Exact, error: &Error) -> Option<&'static str> {
 /// Farkas: `y >= 0`, `B'y = 0`, `g'y < 0`.
 fn infeasible(exact: &Exact, rows: &[usize], weights: &[f64]) -> Option<&'static str> {
     if weights.len() != rows.len() || weights.iter().any(|&weight| weight < 0.0 || !weight.is_finite()) {
-        return Some("the weights are not one for each row, zero or positive");
+        return Some("the weights are not one nonnegative number for each row");
     }
     let places: Option<Vec<usize>> =
         rows.iter().map(|row| exact.rows.iter().position(|bounded| bounded == row)).collect();

@@ -1,4 +1,4 @@
-//! The program's answers and claims held against the exact ones.
+//! Compares the program's answers and claims with the exact ones.
 
 use signorini::{Certificate, ContactProblem, Error, Goal, ProvenSet, Solution};
 
@@ -10,44 +10,47 @@ use super::evidence;
 use super::measure::{Errors, Relative};
 use super::solve::{Answer, Exact, Outcome};
 
-/// A contradiction, a drive or an eigenvalue that counts less than this decides nothing: the tolerance of a certificate may be behind it.
+/// A contradiction, a drive or an eigenvalue below this share decides nothing: it may be within the tolerance of a
+/// certificate.
 const BORDERLINE: f64 = 1e-8;
 
-/// Rows closer to a dependence than this have lost all but the last digits of what tells them apart.
+/// Below this distance from linear dependence, rounding has destroyed all but the last digits of the difference between
+/// rows.
 const DEPENDENT: f64 = 1e-13;
 
-/// A change of a gap by this share of the terms of its row, `|g| + |B| |u|`, is rounding of the data.
+/// A change of a gap by this share of the terms of its row, `|g| + |B| |u|`, counts as rounding of the data.
 const OF_DATA: f64 = 1e-15;
 
-/// A bound that falls short by a smaller factor has lost it by rounding, as far as it is above rounding itself.
+/// A bound that is too small by at most this factor is wrong by its own rounding, as far as the bound exceeds rounding
+/// itself.
 const OF_THE_BOUND: f64 = 1.001;
 
 /// The program must certify a unique answer if the equilibrated stiffness has a condition below this.
 pub const CONDITIONED: f64 = 1e10;
 
-/// Sorts of faults, the gravest first.
+/// Sorts of faults, the most serious first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Sort {
     /// A bound on the error that lies below the error.
     Bound,
-    /// The same, by no more than rounding of the bound itself or of the exact displacement.
+    /// A bound below the error, but only by rounding of the bound itself or of the exact displacement.
     Rounded,
     /// A row proven open that is closed, or proven closed that is open.
     Proof,
-    /// Infeasible, unbounded, not convex or under-held, of a problem that is not.
+    /// Reported as infeasible, unbounded, not convex or without enough supports, but the problem is not.
     Claim,
-    /// The weights or the direction that a claim names do not show it.
+    /// The weights or the direction that a claim names do not prove the claim.
     Evidence,
-    /// Certified, but further from the exact answer than certified.
+    /// Certified, but with a larger error than certified.
     Certified,
     Panic,
-    /// Too long.
+    /// The solve took too long.
     Slow,
-    /// Not certified, of a problem that has a unique answer and a fair condition.
+    /// Not certified, although the problem has a unique answer and an acceptable condition.
     Refused,
-    /// Infeasible, unbounded or under-held, and not said to be.
+    /// Infeasible, unbounded or without enough supports, but not reported as such.
     Missed,
-    /// Not certified, of a problem that has a unique answer, but a stiffness that is singular or in worse condition.
+    /// Not certified; the problem has a unique answer, but its stiffness is singular or in worse condition.
     Hard,
 }
 
@@ -82,21 +85,22 @@ impl Sort {
         }
     }
 
-    /// Must there be none at all? Refused and missed problems may be rare, hard ones any number.
+    /// Returns `true` if not one fault of this sort is allowed. A few problems may be refused or missed, and any number
+    /// may be hard.
     pub fn is_forbidden(self) -> bool {
         !matches!(self, Sort::Refused | Sort::Missed | Sort::Hard)
     }
 }
 
-/// Something that must not be.
+/// A violation of what the program promises.
 #[derive(Clone, Debug)]
 pub struct Fault {
     pub sort: Sort,
-    /// What was asked, what was said, and what is right.
+    /// The question, the program's answer, and the right answer.
     pub detail: String,
-    /// By how much a bound falls short.
+    /// Factor by which a bound is too small.
     pub factor: f64,
-    /// The answer in which the fault is: u and lambda.
+    /// The faulty answer: u and lambda.
     pub answer: Option<(Vec<f64>, Vec<f64>)>,
 }
 
@@ -106,21 +110,22 @@ impl Fault {
     }
 }
 
-/// A problem with all that is known exactly of it.
+/// A problem with everything that is known exactly about it.
 pub struct Judge<'a> {
     pub case: &'a Case,
     pub exact: &'a Exact,
     pub outcome: &'a Outcome,
     /// Condition of the equilibrated stiffness, infinite if it is singular.
     pub condition: f64,
-    /// Its least eigenvalue, over the largest.
+    /// Smallest eigenvalue of the equilibrated stiffness divided by its largest.
     pub lowest: f64,
-    /// The least singular value of the rows that carry force in the exact answer, each of energy length one: below rounding
-    /// double precision cannot tell them from rows that depend on each other, and their exact answer is that of their last bits.
+    /// The smallest singular value of the rows that carry force in the exact answer, each scaled to unit length in
+    /// energy. Below rounding, double precision cannot distinguish them from dependent rows, and their last bits decide
+    /// the exact answer.
     pub apart: f64,
 }
 
-/// How far the rows that carry force are from depending on each other; 1 for none.
+/// Distance of the rows that carry force from linear dependence; 1 if no row carries force.
 fn apart(case: &Case, exact: &Exact, outcome: &Outcome) -> f64 {
     let Outcome::Solved(answer) = outcome else { return 1.0 };
     let pressing = exact.rows.iter().zip(&answer.force).filter(|(_, force)| !force.is_zero());
@@ -150,12 +155,12 @@ impl<'a> Judge<'a> {
         Judge { case, exact, outcome, condition, lowest, apart: apart(case, exact, outcome) }
     }
 
-    /// The exact answer in a word.
+    /// The name of the exact outcome.
     pub fn verdict(&self) -> &'static str {
         self.outcome.verdict()
     }
 
-    /// Does rounding of the data decide how this problem ends?
+    /// Returns `true` if rounding of the data decides how this problem ends.
     pub fn is_borderline(&self) -> bool {
         match self.outcome {
             Outcome::Solved(_) => self.apart < DEPENDENT,
@@ -165,14 +170,14 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Must the program certify this problem?
+    /// Returns `true` if the program must certify this problem.
     pub fn is_fair(&self) -> bool {
         matches!(self.outcome, Outcome::Solved(answer) if answer.is_unique) && self.condition < CONDITIONED
     }
 
-    /// Returns `true` if a displacement u meets every row of an infeasible problem, exactly, once each gap is changed by at most
-    /// 1e-15 of `|g| + |B| |u|`. Then data that agree with these to their rounding have an answer there, however much the rows overlap beside
-    /// gaps that are small: a displacement in doubles meets no row better.
+    /// Returns `true` if a displacement u meets every row of an infeasible problem exactly, once each gap is changed by
+    /// at most 1e-15 of `|g| + |B| |u|`. Then data that agree with these up to rounding have an answer, even if the
+    /// rows overlap by much compared with small gaps: no displacement in doubles meets a row better.
     fn meets_rounded_rows(&self, displacement: &[f64]) -> bool {
         let (u, rounding) = (displacement.iter().map(|&value| Dyadic::from(value)), Dyadic::from(OF_DATA));
         let u: Vec<Dyadic> = u.collect();
@@ -183,7 +188,8 @@ impl<'a> Judge<'a> {
         matches!(self.outcome, Outcome::Infeasible { .. }) && self.exact.contact.iter().zip(&self.exact.gap).all(meets)
     }
 
-    /// The faults of how a solve ended; those of the program's own choice may not be refusals either.
+    /// The faults in the ending of a solve; `must_end` forbids a refusal, because the program chose the settings
+    /// itself.
     pub fn ending(&self, asked: &str, goal: Goal, ending: &Result<Solution, Error>, must_end: bool) -> Vec<Fault> {
         let (solution, said) = match ending {
             Ok(solution) => (Some(solution), "certified".to_string()),
@@ -225,10 +231,10 @@ impl<'a> Judge<'a> {
         if is_false || self.is_borderline() {
             return faults;
         }
-        let is_told = match self.outcome {
+        let is_reported = match self.outcome {
             Outcome::Solved(answer) if answer.is_unique => is_certified,
             Outcome::Solved(_) => is_certified || matches!(ending, Err(Error::UnderHeld { .. })),
-            // What meets the rows to a tolerance meets rows that overlap by less.
+            // An answer that meets the rows to a tolerance may meet rows that contradict each other by less.
             Outcome::Infeasible { overlap, .. } if is_certified => {
                 *overlap <= goal.tolerance
                     || solution.is_some_and(|answer| self.meets_rounded_rows(&answer.displacement))
@@ -237,10 +243,10 @@ impl<'a> Judge<'a> {
             Outcome::Unbounded { .. } => matches!(ending, Err(Error::Unbounded { .. })),
             Outcome::Indefinite { .. } => !is_certified,
         };
-        if !is_told && is_certified {
+        if !is_reported && is_certified {
             let answer = solution.map(|solution| (solution.displacement.clone(), solution.multiplier.clone()));
             faults.push(Fault { answer, ..fault(Sort::Certified) });
-        } else if !is_told && must_end {
+        } else if !is_reported && must_end {
             let sort = match self.verdict() {
                 "solved" if self.is_fair() => Sort::Refused,
                 "solved" => Sort::Hard,
@@ -292,7 +298,7 @@ impl<'a> Judge<'a> {
             return Vec::new();
         }
         if displacement.iter().chain(multiplier).any(|value| !value.is_finite()) {
-            let detail = format!("{asked}: certified with numbers that are none");
+            let detail = format!("{asked}: certified with numbers that are not finite");
             return if certified.is_some() { vec![Fault::new(Sort::Certified, detail)] } else { Vec::new() };
         }
         let errors = Errors { case: self.case, exact: self.exact, answer };
@@ -333,7 +339,7 @@ impl<'a> Judge<'a> {
         faults
     }
 
-    /// A row that is proven to be what it is not.
+    /// A row whose proven state is wrong.
     fn wrong_proof(&self, answer: &Answer, proven: &ProvenSet) -> Option<String> {
         let distances = self.exact.distances(answer);
         for (place, &row) in self.exact.rows.iter().enumerate() {

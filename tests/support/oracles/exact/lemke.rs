@@ -1,6 +1,6 @@
-//! The conditions `e = K u + B' z - f = 0`, `s = g - B u >= 0`, `z >= 0`, `s'z = 0` in integers: the displacement is eliminated
-//! by principal pivots, and what is left is a linear complementarity problem for Lemke's method with the lexicographic rule,
-//! which is finite and ends in a solution or a ray for every positive semidefinite K.
+//! Solves the conditions `e = K u + B' z - f = 0`, `s = g - B u >= 0`, `z >= 0`, `s'z = 0` in integers. Principal
+//! pivots eliminate the displacement; the rest is a linear complementarity problem. Lemke's method with the
+//! lexicographic rule is finite and ends in a solution or a ray for every positive semidefinite K.
 //!
 //! # Source
 //! R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem* (1992), sections 2.3, 4.4 and 4.9.
@@ -24,7 +24,7 @@ pub enum Variable {
     Distance(usize),
     /// z_i.
     Force(usize),
-    /// What Lemke's method adds.
+    /// The artificial variable of Lemke's method.
     Artificial,
 }
 
@@ -42,16 +42,16 @@ impl Variable {
     }
 }
 
-/// How the conditions end.
+/// Result of the conditions.
 #[derive(Clone, Debug)]
 pub enum Ending {
-    /// Displacements and forces, over a positive denominator.
+    /// Displacements and forces, divided by a positive denominator.
     Solved { displacement: Vec<BigInt>, force: Vec<BigInt>, denominator: BigInt },
     /// No solution. The forces of the ray are Farkas' weights if K is definite.
     Ray(Vec<BigInt>),
 }
 
-/// The conditions with their displacement eliminated as far as K is regular.
+/// The conditions after eliminating the displacement as far as K is regular.
 pub struct Eliminated {
     tableau: Tableau<Variable>,
     dofs: usize,
@@ -60,7 +60,7 @@ pub struct Eliminated {
     pub null: Vec<Vec<BigInt>>,
 }
 
-/// Eliminates u as far as K is regular; `None` if K has a negative eigenvalue.
+/// Eliminates u as far as K is regular. Returns `None` if K has a negative eigenvalue.
 pub fn eliminate(problem: &Integers) -> Option<Eliminated> {
     let Integers { stiffness, contact, load, gap, .. } = problem;
     let (dofs, rows) = (load.len(), gap.len());
@@ -100,13 +100,13 @@ pub fn eliminate(problem: &Integers) -> Option<Eliminated> {
 }
 
 impl Eliminated {
-    /// Solves what is left.
+    /// Solves the remaining complementarity problem.
     pub fn end(self) -> Ending {
         let Eliminated { mut tableau, dofs, rows, null } = self;
         if !null.is_empty() && !eliminate_free(&mut tableau) {
             return Ending::Ray(vec![BigInt::ZERO; rows]);
         }
-        // Every displacement is basic now, or does not matter; an imbalance that is not basic is zero.
+        // Every displacement is basic now, or has no effect; an imbalance that is not basic is zero.
         while let Some(place) = tableau.others.iter().position(|other| matches!(other, Imbalance(_) | Displacement(_)))
         {
             tableau.drop_other(place);
@@ -133,7 +133,7 @@ impl Eliminated {
             let place = tableau.basic.iter().position(|&basic| basic == variable);
             place.map_or(BigInt::ZERO, |place| tableau.rows[place][0].clone())
         };
-        // The displacements over the product of both denominators.
+        // The displacements over the product of the two denominators.
         let others: Vec<BigInt> = of_displaced.iter().map(|&variable| value(variable)).collect();
         let mut displacement = vec![BigInt::ZERO; dofs];
         for (dof, row) in displaced {
@@ -145,15 +145,18 @@ impl Eliminated {
     }
 }
 
-/// Exchanges each displacement that K leaves free, and the force that is to balance it, with a row that it moves; `false` if
-/// nothing balances the load on it.
+/// Exchanges each displacement that K leaves undetermined, and the force that has to balance it, with a row that it
+/// moves. Returns `false` if nothing balances its load.
 fn eliminate_free(tableau: &mut Tableau<Variable>) -> bool {
     let free: Vec<Variable> = tableau.others.iter().copied().filter(|other| matches!(other, Displacement(_))).collect();
     for variable in free {
         let column =
-            tableau.others.iter().position(|&other| other == variable).expect("a free displacement stays free");
-        let imbalance =
-            tableau.basic.iter().position(|&basic| basic == variable.complement()).expect("so does its balance");
+            tableau.others.iter().position(|&other| other == variable).expect("a free displacement is not basic");
+        let imbalance = tableau
+            .basic
+            .iter()
+            .position(|&basic| basic == variable.complement())
+            .expect("the balance of a free displacement is basic");
         let is_row = |place: &usize| matches!(tableau.basic[*place], Distance(_) | Force(_));
         let moved = (0..tableau.basic.len()).filter(is_row).find(|&place| sign(tableau.entry(place, column)) != 0);
         let Some(place) = moved else {
@@ -170,14 +173,15 @@ fn eliminate_free(tableau: &mut Tableau<Variable>) -> bool {
     true
 }
 
-/// Solves the complementarity problem of a tableau; the ray, if that is how it ends.
+/// Solves the complementarity problem of a tableau. Returns the ray if Lemke's method ends in one.
 fn lemke(tableau: &mut Tableau<Variable>) -> Option<Vec<(Variable, BigInt)>> {
     let start = tableau.basic.clone();
     let artificial = tableau.others.len();
     tableau.others.push(Artificial);
     let denominator = tableau.denominator.clone();
     tableau.rows.iter_mut().for_each(|row| row.push(denominator.clone()));
-    // The lowest constant leaves; of equal ones the last, which is the lexicographic rule for unit vectors.
+    // The variable with the lowest constant leaves; of equal ones the last, as the lexicographic rule demands for unit
+    // vectors.
     let lowest = (0..tableau.rows.len()).rev().min_by(|&a, &b| tableau.rows[a][0].cmp(&tableau.rows[b][0]))?;
     if sign(&tableau.rows[lowest][0]) >= 0 {
         return None;
@@ -200,7 +204,7 @@ fn lemke(tableau: &mut Tableau<Variable>) -> Option<Vec<(Variable, BigInt)>> {
     }
 }
 
-/// The basic variable that vanishes first as the other at `column` grows, by the lexicographic rule.
+/// The basic variable that becomes zero first as the variable at `column` grows, by the lexicographic rule.
 fn first_to_vanish(tableau: &Tableau<Variable>, column: usize, start: &[Variable]) -> Option<usize> {
     let falling = (0..tableau.rows.len()).filter(|&place| sign(tableau.entry(place, column)) < 0);
     falling.reduce(|best, place| match earlier(tableau, column, start, place, best) {

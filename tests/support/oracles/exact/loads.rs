@@ -1,9 +1,10 @@
-//! Loads that leave a problem solvable, unbounded, in balance or at a vertex.
+//! Loads for which a problem is solvable, unbounded, in balance or at a vertex.
 
 use super::Draws;
 use super::rows::{Rows, dot};
 
-/// A load on the stiffness K: one that moves the body by about 1, alone or pressed onto its rows, or any, or none.
+/// A load on the stiffness K: one that moves the body by about 1, with or without forces along its rows; or a random
+/// load; or zero.
 pub fn load(draws: &mut Draws, stiffness: &[Vec<f64>], rows: &Rows, point: &[f64], at_vertex: bool) -> Vec<f64> {
     let n = point.len();
     let by_moving = |moved: &[f64]| stiffness.iter().map(|line| dot(line, moved)).collect::<Vec<f64>>();
@@ -11,7 +12,7 @@ pub fn load(draws: &mut Draws, stiffness: &[Vec<f64>], rows: &Rows, point: &[f64
         0 => (0..n).map(|_| f64::from(draws.between(-8, 8)) / 4.0).collect(),
         1 => (0..n).map(|_| 2.0 * draws.signed()).collect(),
         _ => {
-            // A part of the dofs moves far more than the rest.
+            // Some of the dofs move far more than the others.
             let far = draws.pick(&[1.0, 1.0, 1024.0, 1048576.0]);
             (0..n).map(|_| draws.signed() * if draws.one_in(2) { far } else { 1.0 }).collect()
         }
@@ -30,7 +31,7 @@ pub fn load(draws: &mut Draws, stiffness: &[Vec<f64>], rows: &Rows, point: &[f64
     }
 }
 
-/// The load and forces along some of the rows, each about as strong as the stiffness of its dofs.
+/// The load plus forces along some of the rows, each about as large as the stiffness of its dofs.
 fn pressed(draws: &mut Draws, mut load: Vec<f64>, stiffness: &[Vec<f64>], rows: &Rows) -> Vec<f64> {
     for row in &rows.contact {
         if draws.one_in(3) {

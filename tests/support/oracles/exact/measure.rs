@@ -1,22 +1,22 @@
-//! How far an answer is from the exact one, in energy, evaluated without rounding.
+//! The distance of an answer from the exact one, in energy, evaluated without rounding.
 
 use super::case::Case;
 use super::dyadic::{Dyadic, dot, ratio, root_of_ratio};
 use super::solve::{Answer, Exact};
 
-/// Couplings below this share of `sqrt(K_ii K_jj)` do not join two dofs to a part.
+/// Couplings below this share of `sqrt(K_ii K_jj)` do not join two dofs into one part.
 const COUPLED: f64 = 1e-6;
 
-/// A displacement that is this share of force over root of stiffness, in energy, is at rest.
+/// A displacement below this share of force divided by root of stiffness, in energy, counts as rest.
 const AT_REST: f64 = 1e-6;
 
-/// What is at rest is measured in doubles: by so much that measure may be off.
+/// The size of a body at rest is computed in doubles: its error is at most this factor.
 const IN_DOUBLES: f64 = 1.0 + 1e-12;
 
-/// Rounding may move every displacement by so much of itself.
+/// Rounding may change every displacement by this share.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// A problem beside its exact answer.
+/// A problem and its exact answer.
 pub struct Errors<'a> {
     pub case: &'a Case,
     pub exact: &'a Exact,
@@ -27,7 +27,7 @@ pub struct Errors<'a> {
 pub struct Relative {
     error: Dyadic,
     size: Dyadic,
-    /// The relative error that rounding the exact displacement explains.
+    /// The relative error caused by rounding the exact displacement.
     pub explained: f64,
 }
 
@@ -40,7 +40,7 @@ impl Relative {
         }
     }
 
-    /// Is the relative error at most `bound`, exactly?
+    /// Returns `true` if the relative error is at most `bound`, compared exactly.
     pub fn is_within(&self, bound: f64) -> bool {
         let bound = Dyadic::from(bound);
         self.error <= &(&bound * &bound) * &self.size
@@ -48,13 +48,14 @@ impl Relative {
 }
 
 impl Errors<'_> {
-    /// The error of (u, lambda) as the certificate states it: relative to the energy norm of u, or of what is at rest.
+    /// The error of (u, lambda) as the certificate states it: relative to the energy norm of u, or to the size that
+    /// counts as rest if that is larger.
     pub fn whole(&self, displacement: &[f64], multiplier: &[f64]) -> Relative {
         let all: Vec<usize> = (0..self.case.dofs()).collect();
         self.within(&all, displacement, multiplier, false)
     }
 
-    /// The error in each part, relative to the larger norm of both answers, or of what is at rest.
+    /// The error in each part, relative to the larger norm of the two answers, or to the size that counts as rest.
     pub fn parts(&self, displacement: &[f64], multiplier: &[f64]) -> Vec<Relative> {
         parts(self.case).iter().map(|part| self.within(part, displacement, multiplier, true)).collect()
     }
@@ -82,7 +83,7 @@ impl Errors<'_> {
         Relative { error: square(&apart), size, explained }
     }
 
-    /// The largest force over the root of the stiffness of its dof.
+    /// The largest force divided by the root of the stiffness of its dof.
     fn static_size(&self, dofs: &[usize], multiplier: &[f64]) -> f64 {
         let pressed =
             |dof: usize| (0..self.case.rows()).map(|row| self.case.contact[row][dof] * multiplier[row]).sum::<f64>();
@@ -93,7 +94,7 @@ impl Errors<'_> {
         dofs.iter().map(of_dof).fold(0.0, f64::max)
     }
 
-    /// What rounding of the exact displacement may be worth, in energy.
+    /// The largest effect of rounding the exact displacement, in energy.
     fn rounding(&self, dofs: &[usize]) -> f64 {
         let exact: Vec<f64> =
             dofs.iter().map(|&dof| ratio(&self.answer.displacement[dof], &self.answer.denominator).abs()).collect();

@@ -1,7 +1,7 @@
-//! Small contact problems solved in exact arithmetic, and the program's answers held against them.
+//! Solves small contact problems in exact arithmetic, and compares the program's answers with the exact ones.
 //!
-//! Doubles are taken as the rationals that they are. `solve` decides every problem: solved (and whether the displacement is
-//! unique), infeasible, unbounded, or not convex; each verdict is verified in the original data before it is returned.
+//! Doubles are taken as exact rational numbers. `solve` decides every problem: solved (and whether the displacement is
+//! unique), infeasible, unbounded, or not convex. Each verdict is verified in the original data before it is returned.
 #![allow(dead_code)]
 
 pub mod case;

@@ -9,7 +9,7 @@ pub struct Rows {
     pub gap: Vec<f64>,
 }
 
-/// Makes rows of a body of some dofs, with gaps measured from a point.
+/// Makes rows for a body; their gaps are measured from a point.
 type Make = fn(&mut Draws, &[f64]) -> Rows;
 
 /// Every kind with its name.
@@ -30,7 +30,7 @@ pub const ROWS: [(&str, Make); 14] = [
     ("infeasible", infeasible),
 ];
 
-/// Relative amounts by which a copied row is tighter or looser than the first.
+/// Relative amounts by which the gap of a copied row is tighter or looser than that of the first.
 const OFFSETS: [f64; 10] = [0.0, 0.0, 0.0, 6e-3, -6e-3, 1e-3, -1e-3, 1e-9, -1e-9, 1.0];
 
 impl Rows {
@@ -48,7 +48,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Adds `count` rows, each at a distance from the point that is often zero or positive.
+/// Adds `count` rows; the distance of each from the point is mostly zero or positive.
 fn add(rows: &mut Rows, draws: &mut Draws, point: &[f64], count: usize, make: fn(&mut Draws, usize) -> Vec<f64>) {
     for _ in 0..count {
         let row = make(draws, point.len());
@@ -96,7 +96,7 @@ fn few(draws: &mut Draws, point: &[f64]) -> Rows {
 }
 
 fn some(draws: &mut Draws, point: &[f64], most: usize, make: fn(&mut Draws, usize) -> Vec<f64>) -> Rows {
-    // As many as a larger body has dofs, now and then.
+    // Sometimes as many rows as a larger body has dofs.
     let most = if draws.one_in(4) { most.max(point.len()) } else { most };
     let (mut rows, count) = (Rows::default(), 1 + draws.below(most));
     add(&mut rows, draws, point, count, make);
@@ -107,7 +107,7 @@ fn boolean(draws: &mut Draws, point: &[f64]) -> Rows {
     some(draws, point, 9, unit)
 }
 
-/// Rows between two dofs; some of them from each dof to the next.
+/// Rows between two dofs; in some problems, from each dof to the next.
 fn difference(draws: &mut Draws, point: &[f64]) -> Rows {
     if draws.one_in(2) {
         return some(draws, point, 9, pair);
@@ -129,7 +129,7 @@ fn dense(draws: &mut Draws, point: &[f64]) -> Rows {
     some(draws, point, 9, random)
 }
 
-/// A few rows, then more that are made from those before them.
+/// A few rows, then more that are derived from those.
 fn more(draws: &mut Draws, point: &[f64], make: fn(&mut Draws, &Rows) -> (Vec<f64>, f64)) -> Rows {
     let mut rows = some(draws, point, 5, any);
     for _ in 0..1 + draws.below(4) {
@@ -139,7 +139,7 @@ fn more(draws: &mut Draws, point: &[f64], make: fn(&mut Draws, &Rows) -> (Vec<f6
     rows
 }
 
-/// A gap that is tighter or looser by some of itself, or of 1 if it is zero.
+/// A gap made tighter or looser by a share of its size, or by that share of 1 if it is zero.
 fn off(draws: &mut Draws, gap: f64) -> f64 {
     gap + draws.pick(&OFFSETS) * if gap == 0.0 { 1.0 } else { gap.abs() }
 }
@@ -189,7 +189,7 @@ fn nearly_parallel(draws: &mut Draws, point: &[f64]) -> Rows {
     })
 }
 
-/// Rows without entries among others; a zero-diagonal stiffness adds rows on empty dofs by chance.
+/// Empty rows among others; a stiffness with a zero diagonal adds rows on dofs without stiffness by chance.
 fn empty(draws: &mut Draws, point: &[f64]) -> Rows {
     more(draws, point, |draws, rows| {
         let mut row = vec![0.0; rows.contact[0].len()];
@@ -211,7 +211,7 @@ fn infinite(draws: &mut Draws, point: &[f64]) -> Rows {
     rows
 }
 
-/// More rows than the point needs, all through it.
+/// More rows than the point needs; all pass through the point.
 fn vertex(draws: &mut Draws, point: &[f64]) -> Rows {
     let mut rows = Rows::default();
     for _ in 0..1 + draws.below(point.len() + 4) {
@@ -222,7 +222,7 @@ fn vertex(draws: &mut Draws, point: &[f64]) -> Rows {
     rows
 }
 
-/// A row that is the opposite of a sum of others, and asks for too much.
+/// A row that is the opposite of a sum of others and contradicts them.
 fn infeasible(draws: &mut Draws, point: &[f64]) -> Rows {
     let mut rows = some(draws, point, 5, any);
     let (mut row, mut gap) = (vec![0.0; point.len()], 0.0);

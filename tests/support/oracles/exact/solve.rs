@@ -1,4 +1,5 @@
-//! The exact answer of a problem, or exactly why there is none; every verdict is verified in the data before it is returned.
+//! The exact answer of a problem, or the exact reason why it has no answer. Every verdict is verified in the data
+//! before it is returned.
 
 use serde_json::{Value, json};
 
@@ -17,21 +18,21 @@ pub struct Exact {
     pub load: Vec<Dyadic>,
     pub contact: Vec<Vec<Dyadic>>,
     pub gap: Vec<Dyadic>,
-    /// For each row its place among all rows of the case; rows without a bound are left out.
+    /// For each row its index among all rows of the case; rows without a bound are left out.
     pub rows: Vec<usize>,
 }
 
-/// A solution: displacements u (n) and forces z = -lambda (m of [`Exact`]), each over `denominator > 0`.
+/// A solution: displacements u (n) and forces z = -lambda (m of [`Exact`]), each divided by `denominator > 0`.
 #[derive(Clone, Debug)]
 pub struct Answer {
     pub displacement: Vec<Dyadic>,
     pub force: Vec<Dyadic>,
     pub denominator: Dyadic,
-    /// Is there no other displacement that solves the problem?
+    /// `true` if no other displacement solves the problem.
     pub is_unique: bool,
 }
 
-/// How a problem ends.
+/// Outcome of a problem.
 #[derive(Clone, Debug)]
 pub enum Outcome {
     Solved(Answer),
@@ -53,7 +54,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// The verdict in a word, as the program names it.
+    /// The name of the outcome, as the program uses it.
     pub fn verdict(&self) -> &'static str {
         match self {
             Outcome::Solved(answer) if answer.is_unique => "solved",
@@ -70,7 +71,7 @@ impl Exact {
     pub fn rounded(&self, case: &Case, answer: &Answer) -> (Vec<f64>, Vec<f64>) {
         let round = |value| ratio(value, &answer.denominator);
         let mut lambda = vec![0.0; case.rows()];
-        // Zero without a sign, as files have it.
+        // Zero without a sign, as in files.
         self.rows.iter().zip(&answer.force).for_each(|(&row, force)| lambda[row] = 0.0 - round(force));
         (answer.displacement.iter().map(round).collect(), lambda)
     }
@@ -136,7 +137,7 @@ impl Exact {
                             self.load.iter().zip(&direction).fold(Dyadic::ZERO, |sum, (f, d)| &sum + &(f * d).abs());
                         Outcome::Unbounded { drive: ratio(&dot(&self.load, &direction), &size), direction }
                     }
-                    (None, None) => panic!("a feasible problem without an escape has a solution"),
+                    (None, None) => panic!("a feasible problem without an escape direction must have a solution"),
                 }
             }
         }
@@ -146,8 +147,8 @@ impl Exact {
         self.gap.iter().zip(weights).fold(Dyadic::ZERO, |sum, (g, y)| &sum + &(g * y).abs())
     }
 
-    /// The answer of the conditions, verified, or the forces of the ray in which they end, and the null space of K; `None` if K has a
-    /// negative eigenvalue.
+    /// The verified answer of the conditions, or the forces of the ray in which they end, and the null space of K.
+    /// Returns `None` if K has a negative eigenvalue.
     fn end(&self) -> Option<(Result<Answer, Vector>, Vec<Vector>)> {
         let integers = Integers::of(self);
         let eliminated = eliminate(&integers)?;
@@ -180,21 +181,28 @@ impl Exact {
         for dof in 0..self.dofs() {
             let column = self.contact.iter().map(|row| &row[dof]);
             let force = &dot(&self.stiffness[dof], &answer.displacement) + &dot(column, &answer.force);
-            assert!(force == &self.load[dof] * &answer.denominator, "equilibrium of dof {dof}");
+            assert!(force == &self.load[dof] * &answer.denominator, "dof {dof} is not in equilibrium");
         }
         for (row, (distance, force)) in self.distances(answer).iter().zip(&answer.force).enumerate() {
-            assert!(distance.sign() >= 0 && force.sign() >= 0 && (distance * force).is_zero(), "contact in row {row}");
+            assert!(
+                distance.sign() >= 0 && force.sign() >= 0 && (distance * force).is_zero(),
+                "the contact conditions of row {row} do not hold"
+            );
         }
     }
 
-    /// Farkas' weights, if no displacement meets the rows: the ray of the least displacement that would.
+    /// Farkas' weights if no displacement meets the rows: the ray of the search for the smallest displacement that
+    /// does.
     fn contradiction(&self) -> Option<Vec<Dyadic>> {
         let least = self.with(identity(self.dofs()), vec![Dyadic::ZERO; self.dofs()]);
         let (ending, _) = least.end().expect("the identity is definite");
         let weights = ending.err()?;
         let cancels = |dof: usize| dot(self.contact.iter().map(|row| &row[dof]), &weights).is_zero();
-        assert!(weights.iter().all(|weight| weight.sign() >= 0) && (0..self.dofs()).all(cancels), "Farkas' weights");
-        assert!(dot(&self.gap, &weights).sign() < 0, "Farkas' weights leave a gap");
+        assert!(
+            weights.iter().all(|weight| weight.sign() >= 0) && (0..self.dofs()).all(cancels),
+            "the weights are negative or the rows do not cancel"
+        );
+        assert!(dot(&self.gap, &weights).sign() < 0, "Farkas' weights do not show a contradiction");
         Some(weights)
     }
 
@@ -208,21 +216,21 @@ impl Exact {
         (rows, null.iter().map(|vector| dot(&self.load, vector)).collect())
     }
 
-    /// A direction without energy that the load drives and no row stops, if there is one: the projection of the load onto the
-    /// cone of the directions that the rows leave.
+    /// A direction without energy along which the load pushes and which no row stops, if there is one: the projection
+    /// of the load onto the cone of the directions that the rows allow.
     fn escape(&self, null: &[Vec<Dyadic>]) -> Option<Vec<Dyadic>> {
         let (contact, load) = self.in_null_space(null);
         let coefficients = projection(load, contact)?;
         let entry = |dof: usize| dot(null.iter().map(|vector| &vector[dof]), &coefficients);
         let direction: Vec<Dyadic> = (0..self.dofs()).map(entry).collect();
-        assert!(self.stiffness.iter().all(|row| dot(row, &direction).is_zero()), "an escape has no energy");
-        assert!(self.contact.iter().all(|row| dot(row, &direction).sign() <= 0), "no row stops an escape");
-        assert!(dot(&self.load, &direction).sign() > 0, "the load drives an escape");
+        assert!(self.stiffness.iter().all(|row| dot(row, &direction).is_zero()), "the escape direction has energy");
+        assert!(self.contact.iter().all(|row| dot(row, &direction).sign() <= 0), "a row stops the escape direction");
+        assert!(dot(&self.load, &direction).sign() > 0, "the load does no work along the escape direction");
         Some(direction)
     }
 
-    /// Is u the only solution? Others differ by a direction without energy that leaves the closed rows or slides along them,
-    /// and along all that carry a force.
+    /// Returns `true` if u is the only solution. Another one differs from u by a direction without energy that opens
+    /// closed rows or slides along them, and that slides along all rows with a force.
     fn is_unique(&self, answer: &Answer, null: &[Vec<Dyadic>]) -> bool {
         if null.is_empty() {
             return true;
@@ -248,11 +256,11 @@ fn identity(size: usize) -> Vec<Vec<Dyadic>> {
     (0..size).map(|i| (0..size).map(|j| Dyadic::integer(i64::from(i == j))).collect()).collect()
 }
 
-/// The nearest point to `load` in the cone `rows c <= 0`, times a positive number; `None` for zero.
+/// The point nearest to `load` in the cone `rows c <= 0`, times a positive number; `None` if it is zero.
 fn projection(load: Vec<Dyadic>, rows: Vec<Vec<Dyadic>>) -> Option<Vec<Dyadic>> {
     let gap = vec![Dyadic::ZERO; rows.len()];
     let nearest = Exact { stiffness: identity(load.len()), load, rows: (0..gap.len()).collect(), contact: rows, gap };
     let (ending, _) = nearest.end().expect("the identity is definite");
-    let answer = ending.expect("a cone has a nearest point");
+    let answer = ending.expect("a cone must have a nearest point");
     answer.displacement.iter().any(|value| !value.is_zero()).then_some(answer.displacement)
 }

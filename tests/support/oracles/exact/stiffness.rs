@@ -4,7 +4,7 @@ use super::Draws;
 
 type Matrix = Vec<Vec<f64>>;
 
-/// Makes a matrix of some size.
+/// Makes a matrix of random size.
 type Make = fn(&mut Draws) -> Matrix;
 
 /// Every kind with its name.
@@ -34,7 +34,7 @@ pub const KINDS: [(&str, Make); 23] = [
     ("bodies", bodies),
 ];
 
-/// Small conveniences of random numbers.
+/// Convenience functions for random numbers.
 impl Draws {
     pub fn one_in(&mut self, n: usize) -> bool {
         self.below(n) == 0
@@ -44,18 +44,18 @@ impl Draws {
         from[self.below(from.len())].clone()
     }
 
-    /// A whole number between two, both possible.
+    /// An integer between two bounds, both included.
     pub fn between(&mut self, low: i32, high: i32) -> i32 {
         low + self.below((high - low + 1) as usize) as i32
     }
 
-    /// A number between two with even chances for each decade.
+    /// A number between two bounds; every decade is equally likely.
     pub fn decades(&mut self, low: f64, high: f64) -> f64 {
         let part = 0.5 + 0.5 * self.signed();
         low * (high / low).powf(part)
     }
 
-    /// A positive number of few bits between about 2^low and 2^high.
+    /// A positive number with few bits, between about 2^low and 2^high.
     pub fn short(&mut self, low: i32, high: i32) -> f64 {
         f64::from(self.between(1, 15)) * 2.0_f64.powi(self.between(low, high) - 3)
     }
@@ -69,7 +69,7 @@ fn size(draws: &mut Draws) -> usize {
     1 + draws.below(8)
 }
 
-/// The same, and now and then more.
+/// A random size, sometimes larger.
 fn size_of_network(draws: &mut Draws) -> usize {
     if draws.one_in(12) { 9 + draws.below(16) } else { 1 + draws.below(8) }
 }
@@ -125,7 +125,7 @@ fn add_spring(k: &mut Matrix, i: usize, j: usize, spring: f64) {
     k[j][i] -= spring;
 }
 
-/// Springs between dofs `from..to`: a chain and some more.
+/// Springs between dofs `from..to`: a chain and a few more.
 fn connect(k: &mut Matrix, draws: &mut Draws, from: usize, to: usize, spring: fn(&mut Draws) -> f64) {
     for i in from + 1..to {
         let before = from + draws.below(i - from);
@@ -159,7 +159,7 @@ fn springs(draws: &mut Draws) -> Matrix {
     k
 }
 
-/// A part of the network is held by 1e-6 only.
+/// A network of which one part is held only by a spring of 1e-6.
 fn springs_weak(draws: &mut Draws) -> Matrix {
     let n = 1 + size_of_network(draws);
     let (mut k, middle) = (square(n), 1 + draws.below(n - 1));
@@ -170,7 +170,8 @@ fn springs_weak(draws: &mut Draws) -> Matrix {
     k
 }
 
-/// Networks without ground, of numbers so short that every sum is exact.
+/// Networks of two parts, most of these without a spring to the ground; their numbers have so few bits that every sum
+/// is exact.
 fn springs_floating(draws: &mut Draws) -> Matrix {
     let n = 2 + draws.below(7);
     let (mut k, middle) = (square(n), 1 + draws.below(n));
@@ -206,7 +207,7 @@ fn membrane(draws: &mut Draws) -> Matrix {
     k
 }
 
-/// A four-node element in plane stress, a x b, of modulus 1 and Poisson's ratio nu, times `1 - nu^2`.
+/// A four-node element a x b in plane stress, with Young's modulus 1 and Poisson's ratio nu, times `1 - nu^2`.
 fn quad(a: f64, b: f64, nu: f64) -> [[f64; 8]; 8] {
     let (mut k, at) = ([[0.0; 8]; 8], 1.0 / 3.0_f64.sqrt());
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
@@ -225,7 +226,7 @@ fn quad(a: f64, b: f64, nu: f64) -> [[f64; 8]; 8] {
     k
 }
 
-/// Elements `across x along` of a size, the nodes at the left end clamped.
+/// A plate of `across` x `along` equal elements; the nodes at the left end are clamped.
 fn elements(along: usize, across: usize, element: &[[f64; 8]; 8], clamped: bool) -> Matrix {
     let dof = |i: usize, j: usize| 2 * (i * (across + 1) + j);
     let mut k = square(2 * (along + 1) * (across + 1));
@@ -237,7 +238,7 @@ fn elements(along: usize, across: usize, element: &[[f64; 8]; 8], clamped: bool)
                 .collect();
             for (p, &at) in dofs.iter().enumerate() {
                 for (q, &to) in dofs.iter().enumerate() {
-                    // The same rounding in both triangles.
+                    // Makes the rounding in both triangles equal.
                     k[at][to] += element[p.max(q)][p.min(q)];
                 }
             }
@@ -252,11 +253,11 @@ fn plate(draws: &mut Draws) -> Matrix {
     elements(along, across, &quad(1.0, draws.decades(0.5, 2.0), 0.3), true)
 }
 
-/// One square of Poisson's ratio 1/4, times 24: every entry is a multiple of 1/4.
+/// One square element with Poisson's ratio 1/4, times 24: every entry is a multiple of 1/4.
 fn plate_floating(draws: &mut Draws) -> Matrix {
     let quarters = quad(1.0, 1.0, 0.25).map(|line| line.map(|value| (96.0 * value).round() / 4.0));
     let mut k = elements(1, 1, &quarters, false);
-    // Some are supported at a node, along one axis or both.
+    // Some bodies are supported at a node, along one axis or both.
     let held = draws.below(3);
     k.truncate(8 - held);
     k.iter_mut().for_each(|line| line.truncate(8 - held));
@@ -269,7 +270,7 @@ fn strip(draws: &mut Draws) -> Matrix {
     elements(along, 1, &quad(slender / along as f64, 1.0, 0.3), true)
 }
 
-/// A clamped Euler-Bernoulli beam: deflection and slope at each node.
+/// A clamped Euler-Bernoulli beam, with deflection and slope at each node.
 fn beam(draws: &mut Draws) -> Matrix {
     let (elements, length) = (1 + draws.below(5), draws.decades(1e-2, 1e2));
     let mut k = square(2 * (elements + 1));
@@ -288,7 +289,7 @@ fn beam(draws: &mut Draws) -> Matrix {
     k[2..].iter().map(|line| line[2..].to_vec()).collect()
 }
 
-/// Puts blocks along the diagonal.
+/// Joins matrices as the blocks of a diagonal.
 fn blocks(parts: Vec<Matrix>) -> Matrix {
     let mut k = square(parts.iter().map(Vec::len).sum());
     let mut from = 0;
@@ -318,7 +319,7 @@ fn parts(draws: &mut Draws) -> Matrix {
     blocks((0..2 + draws.below(3)).map(|_| part(draws)).collect())
 }
 
-/// The same with powers of two, and some of them held by contact only.
+/// Parts with stiffnesses that are powers of two; some are held by contact only.
 fn parts_floating(draws: &mut Draws) -> Matrix {
     let part = |draws: &mut Draws| {
         let (n, scale) = (1 + draws.below(3), 2.0_f64.powi(-draws.pick(&[0, 0, 20, 40, 66])));
@@ -347,20 +348,20 @@ fn zero(draws: &mut Draws) -> Matrix {
     square(1 + draws.below(4))
 }
 
-/// `A A'` with a column of A that counts 2^-10 to 2^-18.
+/// `A A'` with one column of A scaled by 2^-10 to 2^-18.
 fn nearly_singular(draws: &mut Draws) -> Matrix {
     let n = 2 + draws.below(5);
     let (mut a, small) = (whole(draws, n, n), 2.0_f64.powi(-draws.between(10, 18)));
     a.iter_mut().for_each(|line| line[n - 1] *= small);
     let mut k = gram(&a);
-    // A column that follows from others leaves a null space; a weak ground takes most of it.
+    // A column that depends on others gives a null space, which a weak spring to the ground mostly removes.
     if draws.one_in(2) {
         (0..n).for_each(|i| k[i][i] += small * small);
     }
     k
 }
 
-/// A singular matrix less 2^-10 to 2^-4 of itself on the diagonal.
+/// A singular matrix minus 2^-10 to 2^-4 of its diagonal.
 fn indefinite(draws: &mut Draws) -> Matrix {
     let mut k = integer_deficient(draws);
     let less = 2.0_f64.powi(-draws.between(4, 10));
@@ -382,7 +383,7 @@ fn arrow(draws: &mut Draws) -> Matrix {
     k
 }
 
-/// Two or three chains, the first grounded, of numbers so short that every sum is exact.
+/// Two or three chains, the first grounded; their numbers have so few bits that every sum is exact.
 fn bodies(draws: &mut Draws) -> Matrix {
     let body = |draws: &mut Draws, grounded: bool| {
         let n = 1 + draws.below(4);

@@ -1,4 +1,4 @@
-//! Counts of faults by kind of stiffness and kind of rows.
+//! Counts the faults for each kind of stiffness and each kind of rows.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -6,19 +6,20 @@ use std::fmt::Write;
 use super::judge::Sort;
 use super::trial::{Report, Trial};
 
-/// Of the problems of a kind at most this share, or one, may be refused, and of the others missed.
+/// Largest share of the problems of one kind that may be refused, and of those without an answer that may be missed;
+/// one is always allowed.
 const RARE: f64 = 1e-3;
 
 /// The problems of one kind.
 #[derive(Clone, Debug, Default)]
 struct Line {
     problems: usize,
-    /// Problems by exact verdict.
+    /// Number of problems of each exact verdict.
     verdicts: BTreeMap<&'static str, usize>,
-    /// Problems that had to be certified, and that had to be found to have no answer.
+    /// Number of problems that must be certified, and number that must be found to have no answer.
     fair: usize,
     other: usize,
-    /// Problems with a fault of each sort.
+    /// Number of problems with a fault of each sort.
     faults: BTreeMap<Sort, usize>,
     worst_factor: f64,
     longest: f64,
@@ -50,7 +51,7 @@ impl Line {
         }
     }
 
-    /// Is a sort of fault more frequent than it may be?
+    /// Returns `true` if a sort of fault is more frequent than allowed.
     fn exceeds(&self, sort: Sort) -> bool {
         let count = self.count(sort);
         match sort {
@@ -110,7 +111,7 @@ impl Table {
         self.all.count(sort)
     }
 
-    /// What must not be and is, in words.
+    /// The forbidden faults that occurred, in words.
     pub fn failures(&self) -> Vec<String> {
         let forbidden = Sort::ALL.into_iter().filter(|sort| sort.is_forbidden() && self.count(*sort) > 0);
         let mut failures: Vec<String> = forbidden
@@ -120,7 +121,7 @@ impl Table {
         failures
     }
 
-    /// The kinds of stiffness of which too many problems are refused or missed.
+    /// The kinds of stiffness for which too many problems are refused or missed.
     pub fn frequent(&self) -> Vec<String> {
         let mut frequent = Vec::new();
         for (name, line) in &self.kinds {

@@ -1,4 +1,4 @@
-//! Integer-preserving pivoting (Edmonds, Bareiss): every entry is a minor of the integers at the start.
+//! Integer-preserving pivoting (Edmonds, Bareiss): every entry is a minor of the initial integers.
 //!
 //! # Source
 //! E. H. Bareiss, *Sylvester's identity and multistep integer-preserving Gaussian elimination*, Math. Comp. 22 (1968), 565-578.
@@ -13,7 +13,7 @@ pub struct Tableau<V> {
     pub rows: Vec<Vec<BigInt>>,
     pub denominator: BigInt,
     pub basic: Vec<V>,
-    /// The variable of each column but the first.
+    /// The variable of each column except the first.
     pub others: Vec<V>,
 }
 
@@ -22,12 +22,12 @@ impl<V: Copy> Tableau<V> {
         Tableau { rows, denominator: 1.into(), basic, others }
     }
 
-    /// The coefficient of variable `other` in basic variable `basic`, by place.
+    /// The coefficient of variable `other` in basic variable `basic`, both by index.
     pub fn entry(&self, basic: usize, other: usize) -> &BigInt {
         &self.rows[basic][other + 1]
     }
 
-    /// Exchanges a basic variable with another, by place; the entry where they meet must not be zero.
+    /// Exchanges a basic variable with another, by index; their common entry must not be zero.
     pub fn pivot(&mut self, basic: usize, other: usize) {
         let column = other + 1;
         let flip = match sign(&self.rows[basic][column]) {
@@ -41,7 +41,7 @@ impl<V: Copy> Tableau<V> {
             let is_zero = sign(&factor) == 0;
             for (place, (entry, of_pivot)) in row.iter_mut().zip(&pivot_row).enumerate() {
                 if place == column {
-                    // The sign of the denominator stands in the pivot.
+                    // The pivot carries the sign of the denominator.
                     *entry = factor.clone();
                     continue;
                 }
@@ -59,7 +59,7 @@ impl<V: Copy> Tableau<V> {
         std::mem::swap(&mut self.basic[basic], &mut self.others[other]);
     }
 
-    /// Leaves out a variable that is zero.
+    /// Removes a variable that is zero.
     pub fn drop_other(&mut self, other: usize) {
         self.others.remove(other);
         self.rows.iter_mut().for_each(|row| drop(row.remove(other + 1)));

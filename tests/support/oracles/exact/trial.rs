@@ -1,4 +1,4 @@
-//! One drawn problem: what it is, what the program is asked of it, and every fault of its answers.
+//! One random problem, the questions to the program, and every fault of its answers.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
@@ -13,13 +13,13 @@ use super::rows::{ROWS, Rows};
 use super::solve::{Exact, Outcome};
 use super::stiffness::KINDS;
 
-/// No solve of so few unknowns takes so many seconds.
+/// Longest time of a solve, in seconds: problems of this size take far less.
 const LONG: f64 = 5.0;
 
-/// Wrong answers of a problem that are verified.
+/// Number of wrong answers of a problem that are verified.
 const VERIFIED: usize = 4;
 
-/// A problem of some kind, and where its random numbers go on.
+/// A problem of some kind, and the state of its random numbers.
 pub struct Trial {
     pub kind: &'static str,
     pub rows: &'static str,
@@ -27,14 +27,14 @@ pub struct Trial {
     draws: Draws,
 }
 
-/// What a trial has found.
+/// The findings of a trial.
 #[derive(Clone, Debug)]
 pub struct Report {
-    /// The exact answer in a word.
+    /// The name of the exact outcome.
     pub verdict: &'static str,
-    /// Did it have to be certified?
+    /// `true` if the program had to certify the problem.
     pub is_fair: bool,
-    /// Does rounding of the data decide how it ends?
+    /// `true` if rounding of the data decides how the problem ends.
     pub is_borderline: bool,
     pub faults: Vec<Fault>,
     /// The longest solve, in seconds.
@@ -42,7 +42,7 @@ pub struct Report {
     pub exact_seconds: f64,
 }
 
-/// Problem `number` of a seed, of one kind of stiffness if it is named.
+/// Problem `number` of a seed; if `kind` is `None`, the number determines the kind of stiffness.
 pub fn draw(seed: u64, number: u64, kind: Option<&str>) -> Trial {
     let mut start = Draws(seed);
     let mixed = start.below(usize::MAX >> 1) as u64;
@@ -58,7 +58,7 @@ pub fn draw(seed: u64, number: u64, kind: Option<&str>) -> Trial {
         1 => (0..n).map(|_| f64::from(draws.between(-4, 4)) / 2.0).collect(),
         _ => (0..n).map(|_| draws.signed()).collect(),
     };
-    // A point of few bits leaves gaps without rounding, so that rows meet in it exactly.
+    // A point with few bits gives gaps without rounding, so that rows meet in it exactly.
     let at_vertex = rows_kind == "vertex";
     let point = if at_vertex { point.iter().map(|x| (4.0 * x).round() / 4.0).collect() } else { point };
     let mut rows = make_rows(&mut draws, &point);
@@ -85,7 +85,7 @@ fn shuffle(draws: &mut Draws, rows: &mut Rows) {
     }
 }
 
-/// Dofs in units of 2^-27 to 2^27, and rows mostly in units that fit them.
+/// Scales dofs by 2^-27 to 2^27, and most rows to match.
 fn scale_dofs(draws: &mut Draws, case: &mut Case) {
     let unit: Vec<f64> = (0..case.dofs()).map(|_| 2.0_f64.powi(draws.between(-27, 27))).collect();
     for i in 0..unit.len() {
@@ -104,7 +104,7 @@ fn scale_dofs(draws: &mut Draws, case: &mut Case) {
 
 fn scale_row(row: &mut [f64], gap: &mut f64, unit: f64) {
     row.iter_mut().for_each(|b| *b *= unit);
-    // A gap that has no bound keeps none, and one that has keeps its own.
+    // An infinite gap stays infinite, and a finite gap stays finite.
     let scaled = *gap * unit;
     if is_length(*gap) && is_length(scaled) {
         *gap = scaled;
@@ -117,17 +117,17 @@ fn scale_rows(draws: &mut Draws, case: &mut Case) {
     }
 }
 
-/// Other units of length and force.
+/// Changes the units of length and force.
 fn change_units(draws: &mut Draws, case: &mut Case) {
     let (length, force) = (draws.between(-40, 40), draws.between(-40, 40));
     case.stiffness.iter_mut().flatten().for_each(|value| *value *= 2.0_f64.powi(force - length));
     case.load.iter_mut().for_each(|value| *value *= 2.0_f64.powi(force));
-    // A gap that has no bound keeps none, and one that has keeps its own.
+    // An infinite gap stays infinite, and a finite gap stays finite.
     case.gap.iter_mut().filter(|gap| is_length(**gap)).for_each(|gap| *gap *= 2.0_f64.powi(length));
 }
 
 impl Trial {
-    /// Solves the problem exactly, asks the program, and judges all that it says.
+    /// Solves the problem exactly, asks the program, and judges all its answers.
     pub fn run(&self) -> Report {
         let mut draws = self.draws.clone();
         let start = Instant::now();
@@ -184,7 +184,7 @@ impl Trial {
         }
     }
 
-    /// An answer that is wrong in some way, from the exact one: its name, u and lambda.
+    /// A wrong answer, made from the exact one: its name, u and lambda.
     fn wrong(&self, draws: &mut Draws, exact: &Exact, outcome: &Outcome) -> (String, Vec<f64>, Vec<f64>) {
         let (n, m) = (self.case.dofs(), self.case.rows());
         let zero = || ("zero".to_string(), vec![0.0; n], vec![0.0; m]);
@@ -223,7 +223,7 @@ impl Trial {
         }
     }
 
-    /// The exact answer of the same problem without a row, or with a row at another gap.
+    /// The exact answer of the same problem with a row left out, or with a row at another gap.
     fn of_another(&self, draws: &mut Draws, u: Vec<f64>, lambda: Vec<f64>) -> (String, Vec<f64>, Vec<f64>) {
         let (row, mut other) = (draws.below(self.case.rows()), self.case.clone());
         let is_dropped = draws.one_in(2);
@@ -269,7 +269,7 @@ fn settings(draws: &mut Draws) -> Settings {
     settings
 }
 
-/// What is asked, as the command line has it.
+/// The settings in words, similar to the command line.
 fn words(settings: &Settings) -> String {
     let mut words = vec![settings.method.name().to_string(), format!("tolerance {:e}", settings.tolerance)];
     words.extend(settings.accuracy.map(|accuracy| format!("accuracy {accuracy:e}")));

@@ -1,4 +1,4 @@
-//! A problem in integers: powers of two bring its entries to order one, so that the integers stay short.
+//! A problem in integers. Powers of two scale its entries to order one, so that the integers stay short.
 
 use num_bigint::BigInt;
 
@@ -12,7 +12,7 @@ use super::solve::Exact;
 /// R B D v <= R g                  divided by 2^b
 /// ```
 ///
-/// and with the unit 2^c of v, `2^(c + a - b)` of y.
+/// and with the unit 2^c of v, the unit of y is `2^(c + a - b)`.
 pub struct Integers {
     pub stiffness: Vec<Vec<BigInt>>,
     pub contact: Vec<Vec<BigInt>>,
@@ -73,8 +73,8 @@ fn lowest<'a>(values: impl IntoIterator<Item = &'a Dyadic>) -> Option<i64> {
     values.into_iter().filter(|value| !value.is_zero()).map(Dyadic::exponent).min()
 }
 
-/// Exponents for each dof and each row: a unit diagonal of K, or rows of order one at dofs without stiffness, then rows of
-/// order one.
+/// Exponents for each dof and each row: first a unit diagonal of K, or rows of order one at dofs without stiffness;
+/// then rows of order one.
 fn equilibrating(exact: &Exact) -> (Vec<i64>, Vec<i64>) {
     let largest = |sizes: &mut dyn Iterator<Item = i64>| sizes.max().unwrap_or(0);
     let of_dof = |dof: usize| match &exact.stiffness[dof][dof] {
