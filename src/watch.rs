@@ -144,7 +144,7 @@ impl Watch {
         self.shared.noticed.load(Ordering::SeqCst)
     }
 
-    /// The current activity.
+    /// The part, step and iteration that run at present.
     pub fn activity(&self) -> Activity {
         self.shared.activity.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }

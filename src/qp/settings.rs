@@ -13,7 +13,7 @@ use crate::watch::Watch;
 /// penalty.
 const PENETRATION: f64 = 100.0;
 
-/// The method that finds the contact set, with its own options.
+/// The method that finds the contact set, with its own options; every method ends with the same certificate.
 ///
 /// ```
 /// use signorini::{Method, Penalty};
@@ -72,14 +72,14 @@ pub enum Condense {
     Never,
 }
 
-/// Precision of the sparse factor; everything else is in double precision.
+/// Precision of the sparse factor; matrices, answers and certificates are always in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Precision {
     /// Double, unless [`Method::Auto`] has an accuracy that single precision reaches in less time.
     #[default]
     Auto,
-    /// Double precision.
+    /// 8 bytes for each value of the factor, and no refinement.
     Double,
     /// Single precision with half the memory, and an answer refined in double precision; if the problem is not condensed, or
     /// too ill-conditioned, the factor is in double precision after all.
@@ -116,7 +116,7 @@ pub enum Precision {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Settings {
-    /// The method.
+    /// The method that finds the contact set; the program chooses it by default.
     pub method: Method,
     /// The rule for condensing the problem onto its contact dofs.
     pub condense: Condense,

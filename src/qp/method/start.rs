@@ -54,7 +54,7 @@ impl Start {
         Ok(())
     }
 
-    /// A displacement near the answer, one entry per dof.
+    /// A displacement near the answer, one entry per dof, in the problem's unit of length, along the positive axes.
     pub fn near(displacement: Vec<f64>) -> Self {
         Start { displacement: Some(displacement), contact_set: None }
     }

@@ -128,7 +128,7 @@ impl ContactProblem {
         &self.stiffness
     }
 
-    /// The external load f, length n, in N.
+    /// The external load f, length n, in N, along the positive axes.
     pub fn load(&self) -> &[f64] {
         &self.load
     }
@@ -143,7 +143,7 @@ impl ContactProblem {
         &self.gap
     }
 
-    /// The same body and obstacle with other gaps.
+    /// The same body and obstacle with other gaps, length m, in m; negative if the obstacle starts inside the body.
     ///
     /// # Errors
     /// As [`ContactProblem::new`].
@@ -151,7 +151,7 @@ impl ContactProblem {
         self.with(self.load.clone(), gap)
     }
 
-    /// The same body and obstacle under another load.
+    /// The same body and obstacle under another load, length n, in N, along the positive axes.
     ///
     /// # Errors
     /// As [`ContactProblem::new`].
@@ -159,7 +159,8 @@ impl ContactProblem {
         self.with(load, self.gap.clone())
     }
 
-    /// The same body and contact rows with another load and other gaps; the matrices are shared.
+    /// The same body and contact rows with another load (length n, in N) and other gaps (length m, in m, negative
+    /// inside the body); the matrices are shared.
     ///
     /// # Errors
     /// As [`ContactProblem::new`].
@@ -184,7 +185,8 @@ impl ContactProblem {
         self.parts.get_or_find(|| Parts::of(&self.stiffness, self.diagonal(), &self.contact, &self.gap))
     }
 
-    /// The violation B u - g of each row, length m: positive is penetration; `-inf` without an obstacle.
+    /// The violation B u - g of each row, length m, in m: positive is penetration; `-inf` without an obstacle. The
+    /// displacement u has length n, in m.
     pub fn violation(&self, displacement: &[f64]) -> Vec<f64> {
         let mut violation = self.contact.mul(displacement);
         for (value, gap) in violation.iter_mut().zip(&self.gap) {
