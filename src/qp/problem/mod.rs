@@ -22,6 +22,23 @@ use crate::qp::linear::{Accumulator, SparseMatrix, SymmetricMatrix};
 ///
 /// Shapes, finite values and symmetry are checked once, when it is built. The solve finds out whether K is positive
 /// semidefinite, and whether supports and obstacle hold the body.
+///
+/// ```
+/// use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
+///
+/// // Two springs of stiffness 2 and 1 in a row, pushed with the forces 2 and 3; the end meets a wall at distance 1.
+/// let stiffness = SparseMatrix::from_triplets(2, 2, &[(0, 0, 3.0), (1, 0, -1.0), (1, 1, 1.0)])?;
+/// let contact = SparseMatrix::from_triplets(1, 2, &[(0, 1, 1.0)])?;
+/// let problem = ContactProblem::new(SymmetricMatrix::from_lower(stiffness)?, vec![2.0, 3.0], contact, vec![1.0])?;
+///
+/// assert_eq!((problem.dofs(), problem.rows()), (2, 1));
+/// // At u = (1, 4) the end is 3 inside the wall.
+/// assert_eq!(problem.violation(&[1.0, 4.0]), [3.0]);
+/// // At u = (1, 1) the forces are in balance if the wall pushes back with 3: K u = (2, 0) = f + B' lambda.
+/// assert!(problem.certify(&[1.0, 1.0], &[-3.0])?.meets(1e-12));
+/// assert!(!problem.certify(&[1.0, 1.0], &[-2.0])?.meets(1e-2));
+/// # Ok::<(), signorini::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactProblem {
     pub(in crate::qp) stiffness: SymmetricMatrix,
