@@ -35,21 +35,21 @@ pub struct MotionSummary {
     pub impulse: f64,
     /// Deepest penetration, in length.
     pub penetration_max: f64,
-    /// Kinetic, strain and potential energy at the start, in this order, in energy.
+    /// Kinetic, strain and potential energy at the start, in this order, in force times length.
     pub energy_first: [f64; 3],
-    /// Kinetic, strain and potential energy after the last step, in this order, in energy.
+    /// Kinetic, strain and potential energy after the last step, in this order, in force times length.
     pub energy_last: [f64; 3],
-    /// Smallest and largest sum of the three energies so far, in this order, in energy.
+    /// Smallest and largest sum of the three energies so far, in this order, in force times length.
     pub energy_range: [f64; 2],
-    /// Largest sum of kinetic and strain energy, in energy: the reference for energies.
+    /// Largest sum of kinetic and strain energy, in force times length: the reference for energies.
     pub energy_scale: f64,
     /// Total number of penalties in all steps, and the largest number in one step; 0 in schemes without a loop over penalties.
     pub penalties: [usize; 2],
-    /// Work of the loads since the start, in energy.
+    /// Work of the loads since the start, in force times length.
     pub work: f64,
-    /// The largest work of the loads so far, in energy, `>= 0`.
+    /// The largest work of the loads so far, in force times length, `>= 0`.
     pub work_max: f64,
-    /// The largest excess of kinetic and strain energy over the work of the loads, `>= 0`, in energy.
+    /// The largest excess of kinetic and strain energy over the work of the loads, `>= 0`, in force times length.
     pub excess_max: f64,
 }
 

@@ -77,8 +77,8 @@ impl Material {
         Ok(Material { density: Some(density), ..self })
     }
 
-    /// The same material with coefficients of thermal expansion (strain per degree) along its axes, for an isotropic material along x, y
-    /// and z; temperatures need them.
+    /// The same material with three coefficients of thermal expansion, in strain per degree, along its axes, for an isotropic
+    /// material along x, y and z; temperatures need them.
     ///
     /// # Errors
     /// [`Error::Setting`] for a coefficient that is not finite.

@@ -82,10 +82,9 @@ fn with_infinite(mut gap: Vec<f64>) -> Vec<f64> {
 }
 
 impl ContactProblem {
-    /// The problem of stiffness K (n x n, N/m), load f (n, N), contact rows B (m x n) and initial gaps g (m, m).
-    ///
-    /// A row of B is positive towards the obstacle. A gap is negative if the obstacle starts inside the body and
-    /// `f64::INFINITY`, or exactly 1e20 or 1e30, without an obstacle.
+    /// The problem of stiffness K (n x n, in N/m), load f (length n, in N, along the positive axes), contact rows B (m x n,
+    /// dimensionless) and initial gaps g (length m, in m). A row of B is positive towards the obstacle. A gap is negative if
+    /// the obstacle starts inside the body and `f64::INFINITY`, or exactly 1e20 or 1e30, without an obstacle.
     ///
     /// # Errors
     /// [`Error::Length`] and [`Error::Shape`] for sizes that do not fit, [`Error::NotFinite`] for a load that is not

@@ -144,7 +144,7 @@ impl PlacedObstacle {
         self.rule
     }
 
-    /// The approach direction [x, y, z], of length 1: from the body to the obstacle.
+    /// The approach direction [x, y, z], a dimensionless vector of length 1: from the body to the obstacle.
     pub fn approach(&self) -> [f64; 3] {
         self.approach
     }
