@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use crate::error::Error;
 
-/// A factor, without a unit, that changes with time and multiplies a load or a prescribed displacement.
+/// A factor, without a unit, that changes with time and multiplies one load of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TimeFunction {
     /// Straight lines between points `(time, factor)`, times strictly increasing; constant before the first and after

@@ -1,6 +1,6 @@
-//! Dependencies: their licences are those that `deny.toml` allows, and all of them come from the registry.
+//! Dependencies: their licences are those that `deny.toml` allows, all of them come from the registry, and none was yanked there.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
@@ -75,6 +75,61 @@ fn licences_of_all_dependencies_are_allowed_and_all_come_from_the_registry() {
                 is_ours || source.is_some_and(|source| source.starts_with("registry+")),
                 "{manifest}: {name} comes from {source:?}"
             );
+        }
+    }
+}
+
+#[test]
+fn every_exception_for_an_advisory_names_a_crate_that_is_still_locked() {
+    let text = fs::read_to_string(root().join("deny.toml")).unwrap();
+    let exceptions: Vec<&str> = text.lines().filter(|line| line.contains("\"RUSTSEC-")).collect();
+    assert!(!exceptions.is_empty());
+    let locked: Vec<String> =
+        ["Cargo.lock", "python/Cargo.lock"].map(|name| fs::read_to_string(root().join(name)).unwrap()).into();
+    for exception in exceptions {
+        let reason = exception.split_once("reason = \"").unwrap_or_else(|| panic!("no reason in {exception}")).1;
+        let name = format!("\nname = \"{}\"\n", reason.split(' ').next().unwrap());
+        assert!(locked.iter().any(|lock| lock.contains(&name)), "no lock file has the crate of {exception}");
+    }
+}
+
+/// The warnings of cargo about locked versions of a package that were yanked; `None` if the index of the registry is out of reach.
+fn yanked(folder: &Path) -> Option<Vec<String>> {
+    let mut cargo = Command::new(env::var("CARGO").unwrap_or_else(|_| "cargo".into()));
+    cargo.args(["package", "--no-verify", "--allow-dirty", "--color", "never", "--target-dir"]);
+    cargo.arg(Path::new(env!("CARGO_TARGET_TMPDIR")).join("yanked")).current_dir(folder).env("CARGO_NET_RETRY", "0");
+    let output = cargo.output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    if !output.status.success() {
+        // Only a network that fails is an excuse.
+        assert!(text.contains("failed to download") || text.contains("Unable to update"), "{text}");
+        return None;
+    }
+    Some(text.lines().filter(|line| line.contains("is yanked in registry")).map(str::to_string).collect())
+}
+
+/// A package with the dependencies of `python/` from the registry and its lock file, without code: as it stands, `python/` cannot be
+/// packed, because it names this crate by its path.
+fn python_without_this_crate() -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("python");
+    fs::create_dir_all(folder.join("src")).unwrap();
+    let manifest = fs::read_to_string(root().join("python/Cargo.toml")).unwrap();
+    let kept: String =
+        manifest.lines().filter(|line| !line.starts_with("signorini = ")).map(|line| format!("{line}\n")).collect();
+    fs::write(folder.join("Cargo.toml"), kept).unwrap();
+    fs::copy(root().join("python/Cargo.lock"), folder.join("Cargo.lock")).unwrap();
+    fs::write(folder.join("src/lib.rs"), "").unwrap();
+    folder
+}
+
+#[test]
+fn no_locked_version_was_yanked_from_the_registry() {
+    for folder in [root().to_path_buf(), python_without_this_crate()] {
+        match yanked(&folder) {
+            Some(warnings) => assert!(warnings.is_empty(), "{}", warnings.join("\n")),
+            None => eprintln!(
+                "skipped: the index of the registry cannot be reached, so yanked versions were not looked for"
+            ),
         }
     }
 }

@@ -71,7 +71,7 @@ pub struct Scene {
     /// The material of the body, except of the elements that `materials` name.
     #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
     pub material: Option<MaterialSpec>,
-    /// The materials of parts of the body, by groups of elements or regions.
+    /// The materials of parts of the body, by groups of the mesh file or by boxes.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<MaterialPartSpec>,
     /// Temperature above that of the body without stress.
