@@ -78,9 +78,9 @@ pub trait Obstacle: Debug + Send + Sync {
         self.row([0, 1, 2].map(|axis| point[axis] - shift * approach[axis]))
     }
 
-    /// The dimensionless unit normal [x, y, z] of the surface, into the obstacle, at the point where the row of a node at `point` meets it, with the obstacle
-    /// moved by `shift`. It is the normal of the row, unless rows lie along the approach direction for any surface; `None` if the
-    /// obstacle does not reach there.
+    /// The dimensionless unit normal [x, y, z] of the surface, into the obstacle, at the point where the row of a node
+    /// at `point` meets it, with the obstacle moved by `shift`. It is the normal of the row, unless rows lie along the
+    /// approach direction for any surface; `None` if the obstacle does not reach there.
     fn surface_normal(&self, point: [f64; 3], shift: f64) -> Option<[f64; 3]> {
         Some(self.shifted_row(point, shift).ok()??.normal)
     }
