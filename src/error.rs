@@ -4,18 +4,19 @@ use std::path::PathBuf;
 
 use crate::solution::Solution;
 
-/// All errors between a file and a certified answer.
+/// All errors between a file and a certified answer: faulty input, problems without an answer, and answers that were
+/// not certified. Each has a [`code`](Self::code), and one sentence for a reader.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A vector with a length that does not fit the rest of the problem.
     #[error("{name} has length {found}, but there are {expected} {of}")]
     Length {
-        /// Name of the vector.
+        /// The vector in words, as `load vector`.
         name: &'static str,
-        /// Its length.
+        /// Number of its entries.
         found: usize,
-        /// The length that fits.
+        /// Number of entries that it must have.
         expected: usize,
         /// The unit of the fitting length, such as `dofs`.
         of: &'static str,
@@ -23,7 +24,7 @@ pub enum Error {
     /// A matrix with a shape that does not fit the rest of the problem.
     #[error("{name} is {} x {}, but it must be {} x {}", found.0, found.1, expected.0, expected.1)]
     Shape {
-        /// Name of the matrix.
+        /// The matrix in words, as `contact matrix`.
         name: &'static str,
         /// Rows and columns that it has.
         found: (usize, usize),
@@ -33,13 +34,13 @@ pub enum Error {
     /// An entry outside its matrix.
     #[error("entry ({row}, {column}) lies outside a matrix of {rows} rows and {columns} columns (indices from 0)")]
     IndexOutOfRange {
-        /// Row of the entry, from 0.
+        /// Row of the entry, counted from 0.
         row: usize,
-        /// Column of the entry, from 0.
+        /// Column of the entry, counted from 0.
         column: usize,
-        /// Rows of the matrix.
+        /// Number of rows that the matrix has.
         rows: usize,
-        /// Columns of the matrix.
+        /// Number of columns that the matrix has.
         columns: usize,
     },
     /// Compressed columns that form no matrix.
@@ -51,11 +52,11 @@ pub enum Error {
     /// A number that is not finite, at a place that needs a finite one.
     #[error("{name} has the value {value} at {at} (indices from 0); it must be {allowed}")]
     NotFinite {
-        /// Name of the vector or matrix.
+        /// The vector or matrix in words.
         name: &'static str,
-        /// Place in it.
+        /// Index of the entry, or row and column in parentheses, from 0.
         at: String,
-        /// The value.
+        /// The number found: NaN or an infinity, or one that overflows.
         value: f64,
         /// The values allowed there.
         allowed: &'static str,
@@ -66,19 +67,19 @@ pub enum Error {
          (indices from 0); give both triangles alike, or declare one"
     )]
     NotSymmetric {
-        /// Row, from 0.
+        /// Row of the entry below the diagonal, from 0.
         row: usize,
-        /// Column, from 0.
+        /// Column of the entry below the diagonal, from 0.
         column: usize,
-        /// Entry (row, column).
+        /// Value of entry (row, column), in the unit of the matrix.
         value: f64,
-        /// Entry (column, row).
+        /// Value of entry (column, row), in the unit of the matrix.
         mirrored: f64,
     },
     /// A stiffness with a negative eigenvalue: the problem has no unique minimum.
     #[error("the stiffness is not positive semidefinite ({evidence}): the problem is not convex")]
     NotConvex {
-        /// The evidence, in words.
+        /// The evidence for it in words, such as a pivot or a direction.
         evidence: String,
     },
     /// Contact rows that no displacement satisfies together.
@@ -86,28 +87,29 @@ pub enum Error {
     Infeasible {
         /// The rows and the length by which they overlap, in words.
         reason: String,
-        /// Contact rows that contradict each other, from 0.
+        /// Indices of the contact rows that contradict each other, from 0.
         rows: Vec<usize>,
-        /// Farkas' weights of these rows, `>= 0`, under which they cancel; empty if the rows would contradict each other only
-        /// as equalities.
+        /// Farkas' weights, one for each of `rows`, dimensionless, `>= 0`, under which they cancel; empty if the rows
+        /// would contradict each other only as equalities.
         weights: Vec<f64>,
-        /// The length by which they overlap, for the largest weight 1.
+        /// The length by which they overlap, in the problem's unit of length, for the largest weight 1.
         overlap: f64,
     },
     /// The load moves the body away without end.
     #[error("unbounded: the load drives a motion that neither supports nor obstacle stop: {mode}")]
     Unbounded {
-        /// The mode in words.
+        /// The rigid-body mode, or the direction, in words.
         mode: String,
-        /// The escape direction d, one entry per dof: `K d = 0`, `B d <= 0`, `f'd > 0`.
+        /// The escape direction d, one entry per dof, without a unit and up to a positive factor: `K d = 0`,
+        /// `B d <= 0`, `f'd > 0`.
         direction: Vec<f64>,
     },
     /// A mode without energy and without work of the load, which no row stops: the answer is not unique.
     #[error("a rigid-body motion is held by neither supports nor obstacle: {mode}")]
     UnderHeld {
-        /// The mode in words.
+        /// The rigid-body mode, or the direction, in words.
         mode: String,
-        /// The free direction, one entry per dof.
+        /// The free direction d, one entry per dof, without a unit and up to a factor of either sign.
         direction: Vec<f64>,
     },
     /// A step that cannot be interrupted, such as a factorisation, would take longer than the time that is left.
@@ -126,9 +128,9 @@ pub enum Error {
     NotCertified {
         /// The best answer, with its certificate.
         solution: Box<Solution>,
-        /// The worst condition.
+        /// Name of the worst condition, as `stationarity`.
         condition: &'static str,
-        /// Its value.
+        /// Relative violation of this condition, dimensionless.
         value: f64,
         /// The tolerance that was requested.
         tolerance: f64,
@@ -136,11 +138,11 @@ pub enum Error {
     /// A setting outside its range.
     #[error("{name} is {value}; it must be {allowed}")]
     Setting {
-        /// Name of the setting.
+        /// The setting in words, as `threads`.
         name: &'static str,
-        /// The value given.
+        /// The number that was given for it.
         value: f64,
-        /// The range.
+        /// The range in words, as `positive and finite`.
         allowed: &'static str,
     },
     /// A step that needs a condensed problem.
@@ -148,7 +150,7 @@ pub enum Error {
         "{step} needs a problem that is condensed onto its contact dofs and held by its supports; solve point by point"
     )]
     NotCondensed {
-        /// Name of the step.
+        /// The step that was requested, in words, as `the exact path`.
         step: &'static str,
     },
     /// A scene or a problem that needs more memory than it may take.
@@ -161,9 +163,9 @@ pub enum Error {
     TooLarge {
         /// Number of unknowns.
         dofs: f64,
-        /// Entries of the stiffness, both triangles.
+        /// Number of entries of the stiffness, both triangles.
         stiffness_entries: f64,
-        /// Values of its Cholesky factor.
+        /// Number of values of its Cholesky factor.
         factor_entries: f64,
         /// Memory for everything, estimated, in bytes.
         bytes: f64,
@@ -185,9 +187,9 @@ pub enum Error {
     /// A library step that failed for its own reason.
     #[error("{step} failed: {reason}")]
     Numerical {
-        /// Name of the step.
+        /// The step in words, as `sparse Cholesky factorisation`.
         step: &'static str,
-        /// The reason.
+        /// The cause, as the library states it.
         reason: String,
     },
     /// Nodes and elements that form no mesh.
@@ -201,9 +203,9 @@ pub enum Error {
     SceneSyntax {
         /// The file, or `scene` if it came as text.
         source_name: String,
-        /// Line, from 1.
+        /// Line of the fault in the text, from 1.
         line: usize,
-        /// Column, from 1.
+        /// Column of the fault in its line, from 1.
         column: usize,
         /// JSON path of the field.
         path: String,
@@ -233,7 +235,7 @@ pub enum Error {
     /// A matrix or mesh file that does not have the right form.
     #[error("{}:{line}: {message}", file.display())]
     FileSyntax {
-        /// The file.
+        /// Path of the faulty file, as it was given.
         file: PathBuf,
         /// Line, from 1; in a binary mesh the line at which the section begins.
         line: usize,
@@ -243,7 +245,7 @@ pub enum Error {
     /// A binary file, such as an STL file, that does not have the right form.
     #[error("{}, byte {byte}: {message}", file.display())]
     FileBytes {
-        /// The file.
+        /// Path of the faulty file, as it was given.
         file: PathBuf,
         /// Offset of the fault, from 0.
         byte: usize,
@@ -255,7 +257,7 @@ pub enum Error {
     File {
         /// `read`, `write` or `make the folder`.
         action: &'static str,
-        /// Path of the file or folder.
+        /// Path of the file or folder at which the system refused.
         path: PathBuf,
         /// The system's reason.
         source: std::io::Error,
@@ -322,7 +324,7 @@ impl Error {
 pub enum Failure {
     /// The input, a file, or a number on the way is faulty.
     BadInput,
-    /// The problem has no solution.
+    /// The problem is shown to have no solution, or more than one: it is infeasible, unbounded, or not held.
     NoSolution,
     /// There may be a solution; none was certified.
     NotCertified,

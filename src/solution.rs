@@ -157,7 +157,7 @@ pub struct Certificate {
     pub part_error_bound: f64,
     /// The same over the bounds that exceed the possible effect of rounding the displacement to double precision.
     pub energy_error_excess: f64,
-    /// Number of parts.
+    /// Number of connected components of K and B, of which each has its own scale.
     pub parts: usize,
     /// `true` if the bound uses a measured eigenvalue, because K was not factorised: half the least Ritz value of K with its
     /// multigrid cycle.
@@ -215,7 +215,7 @@ impl Certificate {
     }
 }
 
-/// The goal that an answer must meet.
+/// The goal that an answer must meet: a tolerance of all conditions, or an accuracy in energy instead.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Goal {
     /// Relative tolerance of the conditions.
@@ -287,7 +287,7 @@ impl Serialize for ProvenSet {
     }
 }
 
-/// Wall-clock seconds spent on an answer.
+/// Wall-clock seconds spent on an answer, by stage; the stages are parts of `solve`, and do not add up to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seconds {
     /// Symbolic and numeric factorisations.
@@ -300,7 +300,7 @@ pub struct Seconds {
     pub solve: f64,
 }
 
-/// One iteration of a method: its contact set and its penalty.
+/// One iteration of a method: the contact set that it tried, and the penalty of its springs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Iteration {
     /// The closed rows in this iteration; a report has their number.
@@ -345,7 +345,7 @@ pub struct Expected {
 /// A way that was tried in addition to the one that gave the answer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Attempt {
-    /// The method, as in [`Solution::method`].
+    /// Name of the method with its variant, as in [`Solution::method`].
     pub method: String,
     /// Wall-clock seconds that it took.
     pub seconds: f64,
@@ -358,7 +358,7 @@ pub struct Attempt {
 /// A report has its numbers without the vectors, which go into their own files.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Solution {
-    /// Displacement u, one entry per dof, in the problem's unit of length.
+    /// Displacement u, one entry per dof, in the problem's unit of length, along the positive axes.
     #[serde(skip)]
     pub displacement: Vec<f64>,
     /// Contact multiplier lambda, one entry per contact row, in the problem's unit of force, `<= 0` in compression.

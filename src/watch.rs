@@ -11,16 +11,18 @@ use std::time::{Duration, Instant};
 /// factorisations, iterations and steps, and ends with the best answer so far.
 ///
 /// ```
-/// use signorini::{Error, Settings, solve};
-/// # use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
-/// # let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)])?)?;
-/// # let contact = SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)])?;
-/// # let problem = ContactProblem::new(stiffness, vec![3.0], contact, vec![1.0])?;
+/// use signorini::{ContactProblem, Error, Settings, SparseMatrix, SymmetricMatrix, Watch, solve};
+///
+/// // A spring of stiffness 1, pushed with force 3 against a wall at distance 1.
+/// let one = || SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]);
+/// let problem = ContactProblem::new(SymmetricMatrix::from_lower(one()?)?, vec![3.0], one()?, vec![1.0])?;
 ///
 /// let settings = Settings::default();
 /// let watch = settings.watch.clone();
 /// std::thread::spawn(move || watch.stop()).join().unwrap();
 /// assert!(matches!(solve(&problem, &settings), Err(Error::Interrupted)));
+/// // Under a new watch the same settings solve it: the wall takes 3 - 1 x 1.
+/// assert_eq!(solve(&problem, &settings.watched(&Watch::default()))?.multiplier, [-2.0]);
 /// # Ok::<(), Error>(())
 /// ```
 #[derive(Clone, Debug, Default)]
@@ -144,7 +146,7 @@ impl Watch {
         self.shared.noticed.load(Ordering::SeqCst)
     }
 
-    /// The current activity.
+    /// The part, step and iteration that run at present.
     pub fn activity(&self) -> Activity {
         self.shared.activity.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }

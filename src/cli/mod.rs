@@ -35,7 +35,7 @@ use options::{Arguments, Command};
 use outcome::{Ending, Outcome, Pictures, warn};
 use progress::Progress;
 
-/// Runs the program with `arguments`; the first one is its name.
+/// Runs the program with `arguments`, of which the first is its name, prints its report, and returns its exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,

@@ -6,16 +6,18 @@ use crate::fem::element::{Part, PerNode, QuadraturePoint, ReferenceElement, Tabu
 use crate::fem::geometry::{Symmetric, trace};
 use crate::fem::material::Law;
 
-/// An exact solution at one point.
+/// An exact solution at one point, with which [`error_norms`](crate::fem::error_norms) compares a discrete one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactState {
-    /// Displacement [x, y, z], in length.
+    /// Displacement [x, y, z], in length, along the positive axes; zero beyond the dimension of the model.
     pub displacement: [f64; 3],
-    /// Strain [xx, yy, zz, xy, yz, zx], with the tensor's shear components.
+    /// Strain [xx, yy, zz, xy, yz, zx], dimensionless, extension positive, with the tensor's shear components (half of
+    /// the engineering ones).
     pub strain: Symmetric,
 }
 
-/// The relative error of a discrete solution against the exact one.
+/// The error of a discrete solution against the exact one, in two norms, each relative to the norm of the exact
+/// solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorNorms {
     /// `sqrt(integral of sigma(e) : eps(e))` over the same of the exact solution.

@@ -84,7 +84,7 @@ impl Integrator {
         Ok(Integrator { problem, step, scheme: prepared, load_times, state, before: None, watch, longest: 0.0 })
     }
 
-    /// Advances by one step.
+    /// Advances by one step, and returns the state at its end.
     ///
     /// # Errors Those of a contact solve; [`Error::Numerical`] if the motion grows without bound; [`Error::Interrupted`] if the watch of
     /// the settings ends the run, in the state after the last whole step.
@@ -110,7 +110,7 @@ impl Integrator {
         Ok(&self.state)
     }
 
-    /// The current state.
+    /// The state after the last whole step, or the initial state.
     pub fn state(&self) -> &State {
         &self.state
     }
@@ -149,12 +149,12 @@ impl Integrator {
         self.state.steps as f64 * self.step
     }
 
-    /// The step, in time.
+    /// Length of each step, in time, positive.
     pub fn step(&self) -> f64 {
         self.step
     }
 
-    /// The problem.
+    /// The motion to be integrated, with its mass, loads and initial state.
     pub fn problem(&self) -> &DynamicProblem {
         &self.problem
     }

@@ -68,7 +68,8 @@ impl DynamicProblem {
         Ok(self)
     }
 
-    /// The same with one more load (length n, in force), multiplied by a factor that changes with time.
+    /// The same with one more load (length n, in force, along the positive axes), multiplied by a factor that changes
+    /// with time.
     ///
     /// # Errors
     /// As [`TimeFunction::check`]; [`Error::Length`] and [`Error::NotFinite`] for a load of another length or not finite.
@@ -109,22 +110,23 @@ impl DynamicProblem {
         &self.statics
     }
 
-    /// The mass M (n x n).
+    /// The mass M (n x n), symmetric, in mass.
     pub fn mass(&self) -> &SymmetricMatrix {
         &self.mass
     }
 
-    /// The coefficients `[c_m, c_k]` of the damping.
+    /// The coefficients `[c_m, c_k]` of the damping `C = c_m M + c_k K`: the first in one over time, the second in
+    /// time.
     pub fn damping(&self) -> [f64; 2] {
         self.damping
     }
 
-    /// The initial displacement, length n.
+    /// The initial displacement, length n, in length, along the positive axes.
     pub fn displacement(&self) -> &[f64] {
         &self.displacement
     }
 
-    /// The initial velocity, length n.
+    /// The initial velocity, length n, in length over time, along the positive axes.
     pub fn velocity(&self) -> &[f64] {
         &self.velocity
     }
@@ -135,7 +137,7 @@ impl DynamicProblem {
         (dot(v, &self.mass.mul(v)) + dot(u, &self.statics.stiffness().mul(u))) / 2.0
     }
 
-    /// The load at time `t`, length n.
+    /// The load at time `t`, length n, in force, along the positive axes.
     pub fn load_at(&self, t: f64) -> Vec<f64> {
         let mut load = self.statics.load().to_vec();
         for (factor, of_factor) in &self.loads {
@@ -145,12 +147,12 @@ impl DynamicProblem {
         load
     }
 
-    /// Dofs without mass, increasing.
+    /// The dofs without mass: their indices, from 0, increasing.
     pub fn massless(&self) -> Vec<usize> {
         (0..).zip(self.mass.diagonal()).filter(|entry| entry.1 == 0.0).map(|(dof, _)| dof).collect()
     }
 
-    /// The deepest penetration, `max(B u - g, 0)`, in length.
+    /// The deepest penetration, `max(B u - g, 0)`, in length, at a displacement u of length n, in length.
     pub fn penetration(&self, displacement: &[f64]) -> f64 {
         self.remaining_gap(displacement).into_iter().fold(0.0, |deepest, gap| (-gap).max(deepest))
     }

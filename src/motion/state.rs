@@ -9,7 +9,7 @@ use crate::solution::ContactSet;
 pub struct State {
     /// Steps so far.
     pub steps: usize,
-    /// Displacement u, one entry per dof, in length.
+    /// Displacement u, one entry per dof, in length, along the positive axes.
     pub displacement: Vec<f64>,
     /// Velocity v, one entry per dof, in length over time; for a dof without mass, the mean over the last step.
     pub velocity: Vec<f64>,
@@ -34,31 +34,32 @@ pub struct State {
     pub(crate) middle: Vec<f64>,
 }
 
-/// The numbers of a state.
+/// The numbers of a state: force, penetration and energies, as a line of a history shows them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Observation {
-    /// Time.
+    /// Time of this state since the start of the motion: the number of steps times their length.
     pub time: f64,
-    /// Total contact force of the last step, `-sum(lambda)`, `>= 0`.
+    /// Total contact force of the last step, `-sum(lambda)`, in force, `>= 0`.
     pub force: f64,
     /// Closed rows of the last step.
     pub closed: usize,
     /// Deepest penetration, in length.
     pub penetration: f64,
-    /// Kinetic energy, `v'M v / 2`.
+    /// Kinetic energy, `v'M v / 2`, in force times length.
     pub kinetic: f64,
-    /// Strain energy, `u'K u / 2` if nothing but zero is prescribed.
+    /// Strain energy, `u'K u / 2` if nothing but zero is prescribed, in force times length.
     pub strain: f64,
-    /// Potential of the loads, `-f'u`.
+    /// Potential of the loads, `-f'u`, in force times length.
     pub potential: f64,
-    /// Work of the loads since the start.
+    /// Work of the loads since the start, in force times length.
     pub work: f64,
     /// Penalties that the last step tried; 0 in schemes without a loop over penalties.
     pub penalties: usize,
 }
 
 impl Observation {
-    /// The sum of the three energies: constant if the loads are constant and there is no damping.
+    /// The sum of the three energies, in force times length: constant if the loads are constant and there is no
+    /// damping.
     pub fn energy(&self) -> f64 {
         self.kinetic + self.strain + self.potential
     }

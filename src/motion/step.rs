@@ -36,16 +36,16 @@ pub(super) struct About {
 /// Prepares the steps of a scheme: the motion, the step, the parameter, the settings of the contact problem of a step.
 pub(super) type Prepare = fn(&DynamicProblem, f64, f64, &Settings) -> Result<Box<dyn Advance>, Error>;
 
-/// The parameter of a scheme.
+/// The parameter of a scheme: its name, its range, and the value that a scene may leave out.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
-    /// Its name in scenes.
+    /// The field of a scene that holds the value, as `alpha`.
     pub name: &'static str,
-    /// The value if a scene leaves it out.
+    /// The value if a scene leaves it out, dimensionless.
     pub default: f64,
     /// Returns `true` if a value is in its range.
     pub allows: fn(f64) -> bool,
-    /// The range in words.
+    /// The range in words, for messages.
     pub range: &'static str,
 }
 

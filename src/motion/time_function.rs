@@ -4,30 +4,31 @@ use std::f64::consts::{PI, TAU};
 
 use crate::error::Error;
 
-/// A factor that changes with time.
+/// A factor, without a unit, that changes with time and multiplies one load of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TimeFunction {
-    /// Straight lines between points `(time, factor)`; constant before the first and after the last.
+    /// Straight lines between points `(time, factor)`, times strictly increasing; constant before the first and after
+    /// the last.
     Table(Vec<(f64, f64)>),
     /// `sin(2 pi frequency t + phase)`.
     Sine {
-        /// In one over time.
+        /// Number of periods in a unit of time.
         frequency: f64,
-        /// In radians.
+        /// Angle at time 0, in radians.
         phase: f64,
     },
     /// 0 until `start`, a straight line to 1 at `end`, 1 from there on.
     Ramp {
-        /// Its start, in time.
+        /// Time up to which the factor is 0.
         start: f64,
-        /// Its end, in time.
+        /// Time from which the factor is 1.
         end: f64,
     },
     /// Half a sine wave from `start` to `end`, 0 before and after.
     Pulse {
-        /// Its start, in time.
+        /// Time at which the half wave begins.
         start: f64,
-        /// Its end, in time.
+        /// Time at which the half wave is over.
         end: f64,
     },
 }

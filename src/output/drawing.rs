@@ -39,12 +39,12 @@ impl Drawing {
         self.millimetres.is_some()
     }
 
-    /// Width in pixels.
+    /// Width of the whole drawing, in pixels.
     pub fn width(&self) -> f64 {
         self.width
     }
 
-    /// Height in pixels.
+    /// Height of the whole drawing, in pixels.
     pub fn height(&self) -> f64 {
         self.height
     }

@@ -78,7 +78,7 @@ pub fn write_picture(folder: &Path, stem: &str, drawing: &Drawing) -> Result<[Pa
     Ok(paths)
 }
 
-/// Writes named texts into `folder`.
+/// Writes named texts into `folder`, one file each, from the first to the last.
 ///
 /// # Errors
 /// [`Error::File`] if the system refuses; the files before the one that failed are complete.

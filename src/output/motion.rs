@@ -47,7 +47,8 @@ const MOST_POINTS: usize = 4000;
 const SCALE: f64 = 0.5;
 const MILLISECONDS: u16 = 80;
 
-/// The folder of a run.
+/// The folder of a run: a history of each step, fields for ParaView, and a checkpoint from which the run can be
+/// resumed.
 #[derive(Debug)]
 pub struct MotionFolder {
     folder: PathBuf,

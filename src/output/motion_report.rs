@@ -11,12 +11,12 @@ use crate::study::{MotionSummary, RunSeconds, Status};
 /// The interval over which the force is averaged.
 const WINDOW: &str = "a fifth of the time that a pressure wave takes through the body";
 
-/// The request and the result of a run.
+/// The request and the result of a run: [`text`](Self::text) prints both.
 #[derive(Debug)]
 pub struct MotionReport<'a> {
     /// The scene at rest.
     pub model: &'a Model,
-    /// Its motion.
+    /// The motion with its scheme, its step and its number of steps.
     pub dynamics: &'a Dynamics,
     /// Method of the contact problem of every step.
     pub method: Method,

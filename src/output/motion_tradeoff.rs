@@ -10,7 +10,7 @@ use crate::study::{MotionPoint, MotionTradeoff};
 const HEADING: [&str; 8] =
     ["scheme", "step", "steps", "seconds", "displacement error", "impulse error", "energy change", "penetration"];
 
-/// The table; a star marks the Pareto front.
+/// The table of a trade-off of motions, one line for each scheme and step; a star marks the Pareto front.
 pub fn motion_tradeoff_text(title: &str, tradeoff: &MotionTradeoff) -> String {
     let mut table = vec![HEADING.map(String::from).to_vec()];
     table.extend(tradeoff.points.iter().map(|point| {
@@ -36,7 +36,7 @@ pub fn motion_tradeoff_text(title: &str, tradeoff: &MotionTradeoff) -> String {
     )
 }
 
-/// The points as comma-separated values, with a heading.
+/// The points of a trade-off of motions as comma-separated values, one line each under a heading.
 pub fn motion_tradeoff_csv(tradeoff: &MotionTradeoff) -> String {
     let heading = "scheme,step,steps,seconds,displacement_error,impulse_error,energy_change,penetration,best\n";
     let row = |p: &MotionPoint| {
@@ -56,7 +56,7 @@ pub fn motion_tradeoff_csv(tradeoff: &MotionTradeoff) -> String {
     heading.to_string() + &tradeoff.points.iter().map(row).collect::<String>()
 }
 
-/// Error over time, a line for each scheme.
+/// A picture of the error over the seconds of a run, a line for each scheme, on logarithmic axes.
 pub fn motion_tradeoff_plot(title: &str, tradeoff: &MotionTradeoff) -> Drawing {
     motion_tradeoff_plot_for(Medium::Screen, title, tradeoff)
 }

@@ -20,24 +20,25 @@ const MARKER_DISTANCE: f64 = 16.0;
 /// Space between a legend and the frame.
 const INSET: f64 = 14.0;
 
-/// One line of a plot.
+/// One line of a plot: points that are joined in their order, with a name for the legend.
 #[derive(Clone, Debug, Default)]
 pub struct Series {
-    /// Its name in the legend.
+    /// Its name in the legend; empty for none.
     pub name: String,
-    /// Its points `[x, y]` in the order in which they are joined; the line is interrupted if a coordinate is not
-    /// finite, or not positive on a logarithmic axis.
+    /// Its points `[x, y]`, in the units of the two axes, in the order in which they are joined; the line is
+    /// interrupted if a coordinate is not finite, or not positive on a logarithmic axis.
     pub points: Vec<[f64; 2]>,
 }
 
 impl Series {
-    /// A named line through points `[x, y]`.
+    /// A named line through points `[x, y]`, in the units of the two axes, in the order in which they are joined.
     pub fn new(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
         Series { name: name.into(), points }
     }
 }
 
-/// One panel: axes and the lines in them.
+/// One panel of a picture: its two axes and the lines in them. [`line_plots`](crate::output::line_plots) draws several
+/// side by side.
 #[derive(Clone, Debug, Default)]
 pub struct Plot {
     /// A heading over the panel; empty for none.
@@ -48,7 +49,7 @@ pub struct Plot {
     pub y: Quantity,
     /// Scales of the horizontal and the vertical axis.
     pub scales: [Scale; 2],
-    /// The lines. A legend names them if there are several.
+    /// The lines, in the order of the legend, which names them if there are several.
     pub series: Vec<Series>,
     /// The linear vertical axis begins, or ends, at zero.
     pub y_from_zero: bool,

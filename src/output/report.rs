@@ -32,7 +32,7 @@ const LONGEST_REASON: usize = 50;
 /// Length of a line beside its name, in characters.
 const LONGEST_LINE: usize = 84;
 
-/// The report of one answer, in lines of at most 100 characters.
+/// The report of one answer, in lines of at most 100 characters: contact, certificate, sizes, seconds and warnings.
 pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
     let Summary { solution, contact, model, seconds, .. } = summary;
     let mesh = match (model.nodes, model.elements) {
@@ -282,7 +282,8 @@ fn certificate_text(certificate: &Certificate, goal: Goal) -> String {
     entry("certificate", &verdict) + &lines.map(|line| entry("", &line)).collect::<String>()
 }
 
-/// The report of a verification.
+/// The report of a verification, in lines of at most 100 characters: sizes, total force, every condition with its
+/// value, and the bound.
 pub fn verify_text(title: &str, verification: &Verification) -> String {
     let Verification { model, contact, .. } = verification;
     let mut text = format!("{}\n", printable(title));
@@ -295,7 +296,7 @@ pub fn verify_text(title: &str, verification: &Verification) -> String {
 /// Events of a sweep that its text shows; the rest is in the JSON form.
 pub(super) const MOST_EVENTS: usize = 40;
 
-/// The table of a sweep, and the events between its gaps.
+/// The table of a sweep, one line for each gap or force, and the events between its gaps.
 pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
     let is_of_forces = sweep.points.first().is_some_and(|point| point.force.is_some());
     // Outside plane strain and plane stress a contact has an area.
@@ -352,7 +353,7 @@ fn in_unit(name: &str, unit: &str) -> String {
     if unit.is_empty() { name.to_string() } else { format!("{name} [{}]", printable(unit)) }
 }
 
-/// The table of a comparison, and the line that says whether the methods agree.
+/// The table of a comparison, one line for each method with its differences from the QP, and a line on their agreement.
 pub fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Agreement, units: &Units) -> String {
     let zero = |value: f64| if value == 0.0 { "0".to_string() } else { format!("{value:.1e}") };
     let [qp, active_set, penalty] = summaries;

@@ -1,6 +1,6 @@
 //! Ranges of axes, their ticks at round numbers, and readable numbers.
 
-/// Quantity of an axis or a colour bar.
+/// The quantity of an axis or a colour bar: the words and the unit of its label.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Quantity {
     /// Its name, with the symbol: `contact pressure p`.
@@ -57,7 +57,7 @@ pub(crate) fn amount(value: f64, unit: &str) -> String {
     }
 }
 
-/// The map from numbers to lengths on an axis.
+/// The map from numbers to lengths on an axis, linear or logarithmic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scale {
     /// Equal steps for equal differences.
@@ -78,13 +78,14 @@ impl Scale {
         if self == Scale::Linear { value } else { value.log10() }
     }
 
-    /// Position of `value` between the ends of `range`: 0 at its start and 1 at its end.
+    /// Position of `value` between the ends `[from, to]` of a range, in the same unit: 0 at its start and 1 at its end.
     pub fn fraction(self, value: f64, [from, to]: [f64; 2]) -> f64 {
         let [from, to] = [self.along(from), self.along(to)];
         (self.along(value) - from) / (to - from)
     }
 
-    /// The range of the values that can be shown, widened by `margin` of itself at both ends.
+    /// The range `[from, to]` of the values that can be shown, in their unit, widened by `margin` of itself at both
+    /// ends.
     ///
     /// Always an increasing range: `[0, 1]` (logarithmic: `[1, 10]`) if there is no value, and something around
     /// the value if there is only one.

@@ -6,31 +6,31 @@ use super::typeface::escape;
 use crate::error::Error;
 use crate::fem::ElementKind;
 
-/// Named values, one entry per point or per cell.
+/// Named values in any unit, one entry per point or per cell, in the order of the mesh.
 #[derive(Clone, Copy, Debug)]
 pub enum Array<'a> {
-    /// One number per entry.
+    /// One number per entry, in any unit, after the name.
     Scalars(&'a str, &'a [f64]),
-    /// A vector per entry, order `[x0, y0, z0, x1, ...]`.
+    /// Three components per entry, order `[x0, y0, z0, x1, ...]`, in any unit, after the name.
     Vectors(&'a str, &'a [f64]),
-    /// A symmetric tensor per entry, six components in the order xx, yy, zz, xy, yz, xz.
+    /// A symmetric tensor per entry, in any unit: six components in the order xx, yy, zz, xy, yz, xz, after the name.
     Tensors(&'a str, &'a [f64]),
-    /// A flag per entry, written as 0 or 1.
+    /// A flag per entry, written as 0 or 1, after the name.
     Flags(&'a str, &'a [bool]),
 }
 
-/// A mesh with its data, as plain data.
+/// A mesh with its data, as plain arrays, to be written as a `.vtu` file for ParaView.
 #[derive(Clone, Copy, Debug)]
 pub struct Unstructured<'a> {
-    /// Coordinates x, y, z of the nodes.
+    /// Coordinates [x, y, z] of each node, in length; zero beyond the dimension.
     pub nodes: &'a [[f64; 3]],
     /// The nodes of every cell in the order of its type, indices from 0.
     pub elements: &'a [Vec<usize>],
-    /// The type of each cell; one for each element.
+    /// The kind of each cell; one entry for each of `elements`, in their order.
     pub cell_types: &'a [ElementKind],
-    /// Values at the nodes.
+    /// Values at the nodes: named arrays with one entry per node each.
     pub point_data: &'a [Array<'a>],
-    /// Values in the elements.
+    /// Values in the elements: named arrays with one entry per element each.
     pub cell_data: &'a [Array<'a>],
 }
 

@@ -13,7 +13,7 @@ use crate::watch::Watch;
 /// penalty.
 const PENETRATION: f64 = 100.0;
 
-/// The method that finds the contact set, with its own options.
+/// The method that finds the contact set, with its own options; every method ends with the same certificate.
 ///
 /// ```
 /// use signorini::{Method, Penalty};
@@ -72,14 +72,14 @@ pub enum Condense {
     Never,
 }
 
-/// Precision of the sparse factor; everything else is in double precision.
+/// Precision of the sparse factor; matrices, answers and certificates are always in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Precision {
     /// Double, unless [`Method::Auto`] has an accuracy that single precision reaches in less time.
     #[default]
     Auto,
-    /// Double precision.
+    /// 8 bytes for each value of the factor, and no refinement.
     Double,
     /// Single precision with half the memory, and an answer refined in double precision; if the problem is not condensed, or
     /// too ill-conditioned, the factor is in double precision after all.
@@ -89,11 +89,21 @@ pub enum Precision {
 /// Settings of a solve; start from [`Settings::default`] or [`Settings::with_method`] and change what differs.
 ///
 /// ```
-/// use signorini::{Method, Settings};
+/// use signorini::{ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, solve};
+///
+/// // A spring of stiffness 2, pushed with force 3 against a wall at distance 1, which takes 3 - 2 x 1.
+/// let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]);
+/// let stiffness = SymmetricMatrix::from_lower(one(2.0)?)?;
+/// let problem = ContactProblem::new(stiffness, vec![3.0], one(1.0)?, vec![1.0])?;
 ///
 /// // Two threads for the factorisation; the answer is the same, bit by bit, as with one.
 /// let settings = Settings::with_method(Method::ActiveSet).with_tolerance(1e-12).with_threads(2).with_proof();
-/// assert_eq!((settings.tolerance, settings.threads), (1e-12, 2));
+/// let solution = solve(&problem, &settings)?;
+/// assert_eq!(solution.multiplier, [-1.0]);
+/// assert_eq!(solve(&problem, &settings.with_threads(1))?.multiplier, solution.multiplier);
+/// // The one row is proven closed, because its force of 1 exceeds its error bound.
+/// assert!(solution.proven.is_some_and(|proven| proven.closed.contains(0)));
+/// # Ok::<(), signorini::Error>(())
 /// ```
 ///
 /// A setting changes what `Ok` promises, or how the answer is found:
@@ -116,7 +126,7 @@ pub enum Precision {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Settings {
-    /// The method.
+    /// The method that finds the contact set; the program chooses it by default.
     pub method: Method,
     /// The rule for condensing the problem onto its contact dofs.
     pub condense: Condense,

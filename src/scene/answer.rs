@@ -36,23 +36,30 @@ pub struct Answer {
     resultants: OnceLock<Vec<Resultant>>,
 }
 
-/// The forces on the nodes of a model, in force, length `dim * n_nodes` each.
+/// The forces on all nodes of a model, sorted by their source.
+///
+/// Each array has length `dim * n_nodes`, order `[f_x0, f_y0, f_x1, ...]`, in force, along the positive axes on the
+/// body.
+///
+/// Each array has length `dim * n_nodes`, order `[f_x0, f_y0, f_x1, ...]`, in force, along the positive axes on the
+/// body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Forces {
-    /// Contact forces, as [`Model::contact_forces`].
+    /// Contact forces on the body, length `dim * n_nodes`, in force, as [`Model::contact_forces`].
     pub contact: Vec<f64>,
-    /// Support reactions, as [`Model::reactions`].
+    /// Reactions of supports on the body, length `dim * n_nodes`, in force, as [`Model::reactions`].
     pub reactions: Vec<f64>,
-    /// The forces of springs.
+    /// Forces of springs on the body, length `dim * n_nodes`, in force.
     pub springs: Vec<f64>,
-    /// The forces of rigid faces.
+    /// Forces of rigid faces on the body, length `dim * n_nodes`, in force.
     pub rigid_faces: Vec<f64>,
-    /// The imbalance of loads, reactions, springs, rigid faces and contact forces, as [`Model::force_balance`].
+    /// The imbalance of loads, reactions, springs, rigid faces and contact forces, relative, as
+    /// [`Model::force_balance`].
     pub balance: f64,
 }
 
 impl Answer {
-    /// The answer of a solver.
+    /// The answer of a solver, with its displacement, multiplier and closed rows.
     ///
     /// # Errors
     /// [`Error::Length`] if it is not an answer to this model.
@@ -91,12 +98,13 @@ impl Answer {
         })
     }
 
-    /// The model.
+    /// The discretised scene to which the answer belongs.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }
 
-    /// Nodal displacements, length `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in length.
+    /// Nodal displacements, length `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in length, along the positive
+    /// axes.
     pub fn displacement(&self) -> &[f64] {
         &self.displacement
     }
@@ -112,7 +120,7 @@ impl Answer {
         self.model.obstacles()[obstacle].shift(self.model.gap()) - self.travel(obstacle).unwrap_or(0.0)
     }
 
-    /// The remaining gap at the node of each row, in length, `>= 0` up to rounding.
+    /// The remaining gap at the node of each row, one entry per contact row, in length, `>= 0` up to rounding.
     pub fn remaining_gaps(&self) -> Vec<f64> {
         let dimension = self.model.body().dimension();
         let moved = |row: &ContactRow| -> f64 {
@@ -129,7 +137,7 @@ impl Answer {
         self.model.rows().iter().map(|row| row.gap - moved(row) - travelled(row)).collect()
     }
 
-    /// The multiplier of each row, in force, `<= 0`.
+    /// The multiplier of each row, one entry per contact row, in force, `<= 0` in compression.
     pub fn multiplier(&self) -> &[f64] {
         &self.multiplier
     }
@@ -139,12 +147,13 @@ impl Answer {
         &self.contact_set
     }
 
-    /// Contact pressure of each row, in force per area, `>= 0` in compression.
+    /// Contact pressure of each row, one entry per contact row, in force per area, `>= 0` in compression.
     pub fn pressure(&self) -> &[f64] {
         &self.pressure
     }
 
-    /// The stress in the displaced body, per element and per node.
+    /// The stress in the displaced body, per element and per node, in force per area, tension positive; computed at the
+    /// first call.
     ///
     /// # Errors
     /// As [`Model::stress`].
@@ -152,7 +161,7 @@ impl Answer {
         once(&self.stress, || recovery::stress(self.model.body(), &self.displacement))
     }
 
-    /// The forces on the nodes.
+    /// The forces on all nodes by their source; computed at the first call.
     ///
     /// # Errors
     /// As [`Model::reactions`].
@@ -212,7 +221,8 @@ fn once<T>(cell: &OnceLock<T>, find: impl FnOnce() -> Result<T, Error>) -> Resul
 }
 
 impl Model {
-    /// Nodal support reactions on the body, in force; zero along free dofs, so that a roller pushes along its normal.
+    /// Nodal support reactions on the body, length `dim * n_nodes`, in force, along the positive axes; zero along free
+    /// dofs, so that a roller pushes along its normal. `multiplier` has one entry per contact row, in force, `<= 0`.
     ///
     /// They are the internal forces at the supported dofs, minus load and contact force there. The multiplier enters because a contact
     /// row may press on a supported dof.
@@ -223,10 +233,10 @@ impl Model {
         Ok(self.forces(&self.nodal_displacement(displacement)?, multiplier)?.reactions)
     }
 
-    /// The imbalance of loads, support reactions and contact forces on each body: the largest of the virtual works
-    /// on its unit rigid-body modes (the resultant forces, and the resultant moments over half its size), relative
-    /// to the sum of all force magnitudes. A body of revolution has one rigid-body mode, and its forces count along the
-    /// axis.
+    /// The imbalance of loads, support reactions and contact forces on each body: the largest of the virtual works on
+    /// its unit rigid-body modes (the resultant forces, and the resultant moments over half its size), relative to the
+    /// sum of all force magnitudes. A body of revolution has one rigid-body mode, and its forces count along the axis.
+    /// `multiplier` has one entry per contact row, in force, `<= 0`.
     ///
     /// # Errors
     /// As [`Model::reactions`].
@@ -234,7 +244,7 @@ impl Model {
         Ok(self.forces(&self.nodal_displacement(displacement)?, multiplier)?.balance)
     }
 
-    /// The stress in the displaced body, per element and per node.
+    /// The stress in the displaced body, per element and per node, in force per area, tension positive.
     ///
     /// # Errors
     /// As [`Model::nodal_displacement`].

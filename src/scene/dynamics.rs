@@ -36,16 +36,16 @@ const COURANT: [f64; 2] = [0.5, 0.9];
 /// force of a single step contains them.
 const WINDOW: f64 = 0.2;
 
-/// A motion to be computed: the problem, the scheme, the steps.
+/// A motion to be computed: the problem, the scheme, its steps, and the times and points of its output.
 #[derive(Clone, Debug)]
 pub struct Dynamics {
     /// Mass, damping, loads in time, initial state.
     pub problem: DynamicProblem,
-    /// The scheme.
+    /// Scheme of time integration, with the value of its parameter.
     pub scheme: Scheme,
-    /// The step, in time.
+    /// Length of each step, in time, positive.
     pub step: f64,
-    /// Number of steps.
+    /// Number of steps to the end of the motion.
     pub steps: usize,
     /// Number of states to be written, besides the first.
     pub frames: usize,

@@ -183,17 +183,17 @@ impl Model {
         &self.parts
     }
 
-    /// The title of the scene.
+    /// The title of the scene, as reports and pictures print it.
     pub fn title(&self) -> &str {
         &self.parts.title
     }
 
-    /// Names of the units.
+    /// Names of the units of length and force, for tables and pictures.
     pub fn units(&self) -> &Units {
         &self.parts.units
     }
 
-    /// The scene-wide gap: the shift of every obstacle along its approach direction.
+    /// The scene-wide gap, in length: the shift of every obstacle along its approach direction; negative into the body.
     pub fn gap(&self) -> f64 {
         self.gap
     }
@@ -203,7 +203,7 @@ impl Model {
         &self.parts.body
     }
 
-    /// The mesh.
+    /// The mesh of all bodies, further bodies after the first.
     pub fn mesh(&self) -> &Mesh {
         self.parts.body.mesh()
     }
@@ -218,8 +218,8 @@ impl Model {
         &self.parts.obstacles
     }
 
-    /// The surface of obstacle `obstacle` at this model's gap, as [`PlacedObstacle::outline`]; empty if there is no such
-    /// obstacle.
+    /// The surface of obstacle `obstacle` at this model's gap as a polyline [x, y], in length, as
+    /// [`PlacedObstacle::outline`]; empty if there is no such obstacle.
     pub fn obstacle_outline(&self, obstacle: usize, segments: usize) -> Vec<[f64; 2]> {
         self.parts
             .obstacles
@@ -248,7 +248,8 @@ impl Model {
         &self.problem
     }
 
-    /// Nodal displacements, in length, from those of the free dofs; supports have their prescribed values.
+    /// Nodal displacements, length `dim * n_nodes`, in length, from those of the free dofs; supports have their
+    /// prescribed values.
     ///
     /// # Errors
     /// [`Error::Length`] if `displacement` does not have one entry per free dof.
@@ -266,8 +267,8 @@ impl Model {
         Ok(self.parts.unknowns.travel(obstacle).map(|unknown| displacement[unknown]))
     }
 
-    /// Contact pressure of each row, `-lambda` over the tributary area projected along the row, in force per area, `>= 0` in
-    /// compression.
+    /// Contact pressure of each row, `-lambda` over the tributary area projected along the row, in force per area,
+    /// `>= 0` in compression. `multiplier` has one entry per contact row, in force.
     ///
     /// The end of a quadratic edge on an axis of revolution has no tributary area, or next to none if the edge is
     /// curved; it shows the pressure of the candidate next to it.
@@ -296,8 +297,10 @@ impl Model {
         Ok(self.rows.iter().enumerate().map(pressure).collect())
     }
 
-    /// Nodal contact forces, `lambda n`, in force; with two bodies the opposite forces on the other body. On quadratic faces in space
-    /// they are those of the shape functions: zero or negative at corners under a uniform pressure.
+    /// Nodal contact forces on the body, `lambda n`, length `dim * n_nodes`, in force, along the positive axes; with
+    /// two bodies the opposite forces on the other body. `multiplier` has one entry per contact row, in force, `<= 0`.
+    /// On quadratic faces in space they are those of the shape functions: zero or negative at corners under a uniform
+    /// pressure.
     ///
     /// # Errors
     /// As [`Model::pressure`].
@@ -315,7 +318,8 @@ impl Model {
         Ok(forces)
     }
 
-    /// External loads at all nodes, in force, length `dim * n_nodes`.
+    /// External loads at all nodes, length `dim * n_nodes`, order `[f_x0, f_y0, f_x1, ...]`, in force, along the
+    /// positive axes.
     pub fn nodal_load(&self) -> &[f64] {
         &self.parts.load
     }

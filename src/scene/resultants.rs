@@ -18,7 +18,7 @@ use crate::fem::geometry::{cross, dot, length, minus};
 /// Forces that cancel to this share of the sum of their magnitudes leave only rounding, which has no line of action.
 const CANCELS: f64 = 1e-10;
 
-/// The resultant of all forces of one kind on the body.
+/// The resultant of all forces of one kind on the body: force, moment, and a point on the line of action.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Resultant {
     /// The source of the forces: `obstacles[0]`; `pair[0]` for the first obstacle that is another body; `supports[0]`; `loads`.
@@ -31,14 +31,14 @@ pub struct Resultant {
     pub rule: Option<Rule>,
     /// Number of nodes on which the forces act.
     pub nodes: usize,
-    /// The force on the body, a component for each coordinate. In an axisymmetric model the radial component is summed around the circle
-    /// and cancels.
+    /// The force on the body, one component for each coordinate, in force, along the positive axes. In an axisymmetric
+    /// model the radial component is summed around the circle and cancels.
     pub force: Vec<f64>,
-    /// The moment about the origin, in force times length, of the undeformed body: about z in the plane, three components in space, empty
-    /// on a line and in an axisymmetric model.
+    /// The moment about the origin, in force times length, counterclockwise positive, of the undeformed body: about z
+    /// in the plane, three components in space, empty on a line and in an axisymmetric model.
     pub moment: Vec<f64>,
-    /// A point on the line of action: the force at this point gives the moment above, except its part along the force. For parallel
-    /// forces it is their centre. `None` if the forces cancel.
+    /// A point on the line of action, one coordinate for each axis, in length: the force at this point gives the moment
+    /// above, except its part along the force. For parallel forces it is their centre. `None` if the forces cancel.
     pub centre: Option<Vec<f64>>,
     /// Displacement of an obstacle that a force presses, against its approach direction, in length.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -137,7 +137,8 @@ pub(super) fn without_rounding(all: &mut [Resultant]) {
 }
 
 impl Model {
-    /// The resultants of the contact forces, obstacle by obstacle, from the multipliers of all rows.
+    /// The resultants of the contact forces, obstacle by obstacle, from the multipliers of all rows (one entry per
+    /// contact row, in force, `<= 0`).
     ///
     /// # Errors
     /// [`Error::Length`] if `multiplier` does not have one entry per contact row.

@@ -13,13 +13,13 @@ use crate::qp::linear::SparseMatrix;
 /// One contact row: `normal . u <= gap` at a node, or `normal . (u - u_partner) <= gap` between two nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactRow {
-    /// The node.
+    /// Index of the node in the mesh, from 0.
     pub node: usize,
-    /// The node opposite to it, if the obstacle is another body.
+    /// Index of the node opposite to it, if the obstacle is another body.
     pub partner: Option<usize>,
     /// The obstacle, numbered from 0 in the order of the scene.
     pub obstacle: usize,
-    /// Unit vector [x, y, z] into the obstacle; zero beyond the dimension of the model.
+    /// Dimensionless unit vector [x, y, z] into the obstacle; zero beyond the dimension of the model.
     pub normal: [f64; 3],
     /// Signed distance of the undeformed node to the obstacle, or to its partner, along `normal`, in length; negative inside.
     ///
@@ -35,8 +35,8 @@ pub struct ContactRow {
 }
 
 impl ContactRow {
-    /// The tributary area projected along `normal`: a pressure times this area is the force of the row. The area itself if the boundary
-    /// faces away from the obstacle, where there is no force.
+    /// The tributary area projected along `normal`, in area: a pressure times this area is the force of the row. The
+    /// area itself if the boundary faces away from the obstacle, where there is no force.
     pub fn projected_area(&self) -> f64 {
         let facing = dot(self.normal, self.outward);
         if facing > 0.0 { self.tributary_area * facing.min(1.0) } else { self.tributary_area }

@@ -16,45 +16,46 @@ use crate::fem::geometry::{cross, distance, dot, length, minus};
 /// Least cosine of the angle between the direction from an inner node to the last closed one and the direction to the open one.
 const AHEAD: f64 = 0.5;
 
-/// The extent of a contact, estimated from the pressures next to its edge, with its uncertainty.
+/// The extent of a contact, estimated between the nodes from the pressures next to its edge, with its uncertainty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ContactExtent {
-    /// Half of the difference of the largest pressure from the mean over its node and the closed nodes around; the pressure itself if
-    /// only open nodes are around.
+    /// Half of the difference of the largest pressure from the mean over its node and the closed nodes around, in force
+    /// per area; the pressure itself if only open nodes are around.
     pub pressure_uncertainty: f64,
-    /// Estimated area; thickness or circumference included.
+    /// Estimated area of the contact, in area; thickness or circumference included.
     pub area: f64,
-    /// Half of the area that lies in cells at the edge.
+    /// Half of the area that lies in cells at the edge, in area.
     pub area_uncertainty: f64,
-    /// Estimated length along the boundary, if the model is plane or axisymmetric.
+    /// Estimated length along the boundary, in length, if the model is plane or axisymmetric.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width: Option<f64>,
-    /// Half of the length that lies in cells at the edge.
+    /// Half of the length that lies in cells at the edge, in length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width_uncertainty: Option<f64>,
 }
 
-/// Connected closed rows of one obstacle on its boundary.
+/// Connected closed rows of one obstacle on its boundary: one piece of the contact, with its force and its extent.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Segment {
     /// The obstacle, numbered from 0 in the order of the scene.
     pub obstacle: usize,
-    /// The closed nodes, in the order of the boundary.
+    /// Indices of the closed nodes in the mesh, from 0, in the order of the boundary.
     pub nodes: Vec<usize>,
-    /// The force on the body, a component for each coordinate.
+    /// The force of the obstacle on the body, one component for each coordinate, in force, along the positive axes.
     pub force: Vec<f64>,
-    /// A point on its line of action, as in [`Resultant`](super::Resultant).
+    /// A point on its line of action, one coordinate for each axis, in length, as in [`Resultant`](super::Resultant).
     pub centre: Option<Vec<f64>>,
-    /// The largest pressure.
+    /// The largest pressure among its nodes, in force per area, `>= 0`.
     pub pressure_max: f64,
-    /// The extent of the segment.
+    /// Estimated area and width of the contact, with their uncertainty.
     #[serde(flatten)]
     pub extent: ContactExtent,
     /// The node of the largest pressure, if it is next to an open node although other closed nodes are not: an edge of the obstacle,
     /// where the exact pressure is unbounded.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub edge_peak: Option<usize>,
-    /// The estimated ends [x, y] on the undeformed boundary, if the model is plane or axisymmetric and there are two ends.
+    /// The two estimated ends, `[x, y]` each, in length, on the undeformed boundary, if the model is plane or
+    /// axisymmetric and there are two ends.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ends: Option<[Vec<f64>; 2]>,
 }

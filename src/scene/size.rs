@@ -13,13 +13,13 @@ const DENSE_SHARE: f64 = 0.4;
 /// factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Size {
-    /// Nodes.
+    /// Number of nodes of the mesh, estimated as the others are.
     pub nodes: f64,
-    /// Unknowns, as if nothing were supported.
+    /// Number of unknowns, as if nothing were supported.
     pub dofs: f64,
-    /// Entries of the stiffness, both triangles.
+    /// Number of entries of the stiffness, both triangles.
     pub stiffness_entries: f64,
-    /// Values of its Cholesky factor.
+    /// Number of values of its Cholesky factor.
     pub factor_entries: f64,
     /// Upper bound of the memory, in bytes.
     pub bytes: f64,

@@ -14,9 +14,9 @@ pub enum Warning {
         ElementKind::of_mean_dilatation("or").to_lowercase()
     )]
     NearlyIncompressible {
-        /// The ratio.
+        /// Poisson's ratio of the material, near 0.5.
         poisson: f64,
-        /// The element, as `Q4`.
+        /// Short name of the element that locks, as `Q4`.
         element: &'static str,
     },
     /// The materials of one body differ much in stiffness.
@@ -33,7 +33,7 @@ pub enum Warning {
         stiff: f64,
         /// The smallest modulus, in force per area.
         soft: f64,
-        /// Their ratio.
+        /// The largest modulus over the smallest.
         ratio: f64,
     },
     /// No node of the candidate boundary faces the obstacle.
@@ -53,9 +53,9 @@ pub enum Warning {
     HeldCandidates {
         /// Number of the obstacle, from 0.
         obstacle: usize,
-        /// Number of held candidates.
+        /// Number of candidate nodes with supports in all directions.
         held: usize,
-        /// Number of all candidates.
+        /// Number of all candidate nodes of the obstacle.
         of: usize,
     },
     /// Two obstacles make the same rows.
@@ -92,7 +92,7 @@ pub enum Warning {
          across it"
     )]
     FreeSymmetry {
-        /// The boundary.
+        /// Name of the boundary at the plane of symmetry.
         boundary: String,
     },
     /// Nodes of one body have the same place.
@@ -101,11 +101,11 @@ pub enum Warning {
          the mesher, unless a slit is meant"
     )]
     CoincidentNodes {
-        /// A node.
+        /// Index of one such node in the mesh, from 0.
         first: usize,
-        /// Another node at the same place.
+        /// Index of another node at the same place, from 0.
         second: usize,
-        /// Number of such nodes.
+        /// Number of nodes that share their place with a node before them.
         count: usize,
     },
     /// The scheme can gain energy.
@@ -114,7 +114,7 @@ pub enum Warning {
          `contact-stabilised` for answers"
     )]
     GainsEnergy {
-        /// The scheme, as `trapezoidal`.
+        /// Its name in scenes, as `trapezoidal`.
         scheme: &'static str,
     },
 }

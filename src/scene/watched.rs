@@ -5,17 +5,19 @@ use super::entry::{PLACE_TOLERANCE, number, point, vector, wrong};
 use super::schema::WatchSpec;
 use crate::error::Error;
 
-/// A point with output at every step.
+/// A point with output at every step: a node, or any place inside an element.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedPoint {
     /// Its name in a table, as `node 12` or `point (0.5 1)`.
     pub name: String,
-    /// The nodes around it with their weights, which add up to one: the shape functions of its element; a node has only itself.
+    /// The nodes around it as `(node, weight)`, in any order: index from 0, and a dimensionless weight. The weights are
+    /// the shape functions of its element and add up to one; a node has only itself.
     pub nodes: Vec<(usize, f64)>,
 }
 
 impl WatchedPoint {
-    /// The value at the point of a nodal vector, length `dimension * n_nodes`, one entry for each coordinate.
+    /// The value at the point of a nodal vector (length `dimension * n_nodes`, order `[x_0, y_0, x_1, ...]`), one entry
+    /// for each coordinate, in the same unit.
     pub fn value(&self, nodal: &[f64], dimension: usize) -> Vec<f64> {
         let along =
             |axis: usize| self.nodes.iter().map(|&(node, weight)| weight * nodal[dimension * node + axis]).sum();

@@ -22,16 +22,16 @@ pub const WEAKLY_ACTIVE: f64 = 1e-9;
 /// Rounding of an energy norm that is recomputed.
 const NORM_ROUNDING: f64 = 1e-12;
 
-/// The answer of one method.
+/// The answer of one of the three methods of a comparison, whether or not it meets the tolerance.
 #[derive(Clone, Debug)]
 pub struct MethodAnswer {
     /// The answer, certified or not.
     pub solution: Solution,
-    /// `true` if it is certified.
+    /// `true` if it meets the tolerance of the comparison.
     pub certified: bool,
 }
 
-/// The difference of an answer from that of the QP.
+/// The difference of an answer from that of the QP, in displacements, multipliers, closed rows and energy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Difference {
     /// Largest difference of displacements, relative to the largest displacement.
@@ -44,7 +44,8 @@ pub struct Difference {
     pub energy: f64,
 }
 
-/// The agreement of the methods.
+/// The agreement of the methods of a comparison: whether two exact methods give one answer, and the penalty loop one
+/// within its own bound.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Agreement {
     /// QP and active set: certified both, same contact set, displacement to 1e-8, multiplier to 1e-7.
@@ -64,16 +65,16 @@ impl Agreement {
     }
 }
 
-/// Answers of the QP, the active-set loop and the penalty loop, in this order, and their agreement.
+/// Answers of the QP, the active-set loop and the penalty loop to one problem, in this order, and their agreement.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// The three answers.
+    /// The answers of the QP, the active-set loop and the penalty loop, in this order.
     pub answers: [MethodAnswer; 3],
-    /// Their agreement.
+    /// The differences between the three, and the verdict.
     pub agreement: Agreement,
 }
 
-/// Solves `problem` by all three methods.
+/// Solves `problem` by the QP, the active-set loop and the penalty loop, and compares their answers.
 ///
 /// # Errors
 /// As [`solve`], but an answer that is not certified is an answer here; [`Error::Interrupted`] if not all three answers were computed.

@@ -18,37 +18,38 @@ const MOST_GROWTH: f64 = 0.01;
 pub struct MotionSummary {
     /// Steps so far.
     pub steps: usize,
-    /// Time so far.
+    /// Time from the start of the motion to the last step.
     pub time: f64,
     /// Time at which the first contact force acted, at the middle of its step; `None` if nothing touched.
     pub first_contact: Option<f64>,
     /// Time at which the last contact force acted.
     pub last_contact: Option<f64>,
-    /// Time with a contact force.
+    /// Sum of the lengths of all steps with a contact force, in time.
     pub contact_time: f64,
-    /// Largest contact force of a single step; it does not converge in a mesh that oscillates behind a wave front.
+    /// Largest total contact force of a single step, in force, `>= 0`; it does not converge in a mesh that oscillates
+    /// behind a wave front.
     pub force_max: f64,
     /// Mean of the contact force over a window of time, and its largest value.
     force_mean: MovingMean,
-    /// Integral of the contact force over time.
+    /// Integral of the total contact force over time, in force times time, `>= 0`.
     pub impulse: f64,
     /// Deepest penetration, in length.
     pub penetration_max: f64,
-    /// Kinetic, strain and potential energy at the start.
+    /// Kinetic, strain and potential energy at the start, in this order, in force times length.
     pub energy_first: [f64; 3],
-    /// The same at present.
+    /// Kinetic, strain and potential energy after the last step, in this order, in force times length.
     pub energy_last: [f64; 3],
-    /// Smallest and largest sum of the three.
+    /// Smallest and largest sum of the three energies so far, in this order, in force times length.
     pub energy_range: [f64; 2],
-    /// Largest sum of kinetic and strain energy: the reference for energies.
+    /// Largest sum of kinetic and strain energy, in force times length: the reference for energies.
     pub energy_scale: f64,
     /// Total number of penalties in all steps, and the largest number in one step; 0 in schemes without a loop over penalties.
     pub penalties: [usize; 2],
-    /// Work of the loads since the start.
+    /// Work of the loads since the start, in force times length.
     pub work: f64,
-    /// The largest work so far, `>= 0`.
+    /// The largest work of the loads so far, in force times length, `>= 0`.
     pub work_max: f64,
-    /// The largest excess of kinetic and strain energy over the work of the loads, `>= 0`, in energy.
+    /// The largest excess of kinetic and strain energy over the work of the loads, `>= 0`, in force times length.
     pub excess_max: f64,
 }
 
@@ -108,7 +109,8 @@ impl MotionSummary {
         self.energy_first[0] + self.energy_first[1]
     }
 
-    /// Present and largest kinetic and strain energy over the initial one; `None` for a motion that starts with zero energy.
+    /// Present and largest kinetic and strain energy, in this order, over the initial one, relative; `None` for a
+    /// motion that starts with zero energy.
     pub fn over_initial(&self) -> Option<[f64; 2]> {
         let initial = self.initial_energy();
         (initial > 0.0).then(|| [self.energy_last[0] + self.energy_last[1], self.energy_scale].map(|now| now / initial))

@@ -21,14 +21,14 @@ const REFERENCE: usize = 32;
 /// Numbers of steps of the explicit scheme over the smallest stable number.
 const EXPLICIT: [usize; 2] = [1, 2];
 
-/// One scheme at one step.
+/// One scheme at one length of its step, with its seconds and its errors against a reference of smaller steps.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MotionPoint {
-    /// The scheme.
+    /// Name of the scheme in scenes, as `midpoint`.
     pub scheme: &'static str,
-    /// The step, in time.
+    /// Length of each step, in time.
     pub step: f64,
-    /// Number of steps.
+    /// Number of steps to the end of the motion.
     pub steps: usize,
     /// Seconds from the assembled problem to the last step.
     pub seconds: f64,
@@ -44,14 +44,14 @@ pub struct MotionPoint {
     pub best: bool,
 }
 
-/// A motion computed by every scheme.
+/// A motion computed by every scheme at several steps, each compared with a reference of smaller steps.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MotionTradeoff {
-    /// Unknown displacements.
+    /// Number of unknown displacements n.
     pub dofs: usize,
-    /// Step of the reference, which uses the scheme `midpoint`.
+    /// Length of each step of the reference, in time, which uses the scheme `midpoint`.
     pub reference_step: f64,
-    /// The points, scheme by scheme.
+    /// One entry for each scheme and length of a step, scheme by scheme.
     pub points: Vec<MotionPoint>,
 }
 

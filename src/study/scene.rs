@@ -94,12 +94,12 @@ fn contact_width(model: &Model, closed: &ContactSet) -> Option<f64> {
     }
 }
 
-/// One gap, or one force, of a sweep.
+/// One gap, or one force, of a sweep: the answer there, with its certificate and its summary.
 #[derive(Clone, Debug, Serialize)]
 pub struct SweepPoint {
-    /// The scene-wide gap.
+    /// The scene-wide gap, in length; negative if it moves the obstacles into the body.
     pub gap: f64,
-    /// The force on the obstacle, in a sweep over forces.
+    /// The force that presses the obstacle, in force, `>= 0`, in a sweep over forces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force: Option<f64>,
     /// The solution with its numbers.
@@ -119,14 +119,15 @@ impl SweepPoint {
     }
 }
 
-/// A row that touches or releases between the first and the last gap of a sweep.
+/// A row that touches or releases at a gap between the first and the last one of a sweep. The gap is exact, because the
+/// answer is linear in it between two events.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SweepEvent {
-    /// The exact gap.
+    /// Scene-wide gap at which it happens, in length, exact up to rounding.
     pub gap: f64,
-    /// The contact row.
+    /// Index of the contact row in the problem, from 0.
     pub row: usize,
-    /// Its node.
+    /// Index of the node of the row in the mesh, from 0.
     pub node: usize,
     /// `true` if the node touches, `false` if it releases.
     pub touches: bool,
@@ -135,23 +136,23 @@ pub struct SweepEvent {
 /// A corner of the polylines over the gap. At a change of the contact set there are two, before and after.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SweepCorner {
-    /// The gap.
+    /// Scene-wide gap, in length; negative if it moves the obstacles into the body.
     pub gap: f64,
-    /// Total contact force.
+    /// Total contact force `-sum(lambda)`, in force, `>= 0`.
     pub force: f64,
-    /// Length of the boundary in contact, if the model has a thickness.
+    /// Length of the boundary in contact, in length, if the model has a thickness.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width: Option<f64>,
-    /// Area of the boundary in contact.
+    /// Area of the boundary in contact, in area.
     pub area: f64,
-    /// Largest contact pressure.
+    /// Largest contact pressure, in force per area, `>= 0`.
     pub pressure_max: f64,
 }
 
-/// A scene at several gaps, or forces.
+/// A scene at several gaps, or forces: the answer at each, and the exact events in between.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Sweep {
-    /// The answers at the requested gaps or forces.
+    /// The answers at the requested gaps or forces, in their order.
     pub points: Vec<SweepPoint>,
     /// The events between the first and the last gap; empty if the rows do not move on straight lines.
     pub events: Vec<SweepEvent>,
@@ -163,7 +164,8 @@ pub struct Sweep {
     pub(crate) path: Option<ExactPath>,
 }
 
-/// Solves a scene at every one of `gaps`; an answer that is not certified counts as an answer here.
+/// Solves a scene at every one of `gaps`, in length, negative into the body; an answer that is not certified counts as
+/// an answer here.
 ///
 /// The stiffness is factorised once, or a hierarchy is built once, and every solve starts from the last contact set. If the body is
 /// condensed and the rows move on straight lines (rows along the approach direction do), all events between the first and the last gap
@@ -203,8 +205,8 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
 }
 
 impl Sweep {
-    /// Solves a scene at every one of `forces`, 0 or positive, of the one obstacle that a force presses. At the force 0 the obstacle
-    /// stands where it first touches the body.
+    /// Solves a scene at every one of `forces`, in force, 0 or positive, of the one obstacle that a force presses. At
+    /// the force 0 the obstacle stands where it first touches the body.
     ///
     /// # Errors
     /// [`Error::Scene`] if a force presses no obstacle or several, or for a force that is negative or not finite; as [`solve`];

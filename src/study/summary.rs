@@ -7,7 +7,7 @@ use crate::qp::problem::ContactProblem;
 use crate::scene::{ContactExtent, Resultant, Segment};
 use crate::solution::{Certificate, Goal, Seconds, Solution};
 
-/// The judgement of an answer.
+/// The judgement of an answer against its goal, and of a motion by its energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
@@ -37,7 +37,7 @@ impl FromIterator<Status> for Status {
     }
 }
 
-/// An answer with its judgement and the numbers that its model adds.
+/// An answer with its judgement and the numbers that its model adds: everything that a report prints.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     /// The judgement against the goal.
@@ -45,7 +45,7 @@ pub struct Summary {
     /// The goal against which the certificate was judged.
     #[serde(flatten)]
     pub goal: Goal,
-    /// The answer.
+    /// The certified or best answer of the solver, without the meaning of its rows.
     #[serde(flatten)]
     pub solution: Solution,
     /// Warnings about these numbers.
@@ -68,26 +68,26 @@ pub struct Summary {
     /// The strain energy of the body, in force times length; only in a scene, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strain_energy: Option<f64>,
-    /// Sizes of the model.
+    /// Number of unknowns, rows and matrix entries, and the mesh of a scene.
     pub model: ModelSize,
     /// Its cost in time.
     pub seconds: RunSeconds,
 }
 
-/// Closed rows and forces of an answer.
+/// Closed rows and forces of an answer, and in a scene its pressures, widths and areas.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct ContactSummary {
     /// Number of closed rows.
     pub count: usize,
-    /// Total contact force `-sum(lambda)`.
+    /// Total contact force `-sum(lambda)`, in force, `>= 0`.
     pub force: f64,
-    /// Largest contact pressure; only in a scene, because only a scene has areas.
+    /// Largest contact pressure, in force per area, `>= 0`; only in a scene, because only a scene has areas.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pressure_max: Option<f64>,
-    /// Length of the boundary that belongs to closed rows; only in a scene in plane strain or plane stress.
+    /// Length of the boundary that belongs to closed rows, in length; only in a scene in plane strain or plane stress.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width: Option<f64>,
-    /// Area of the boundary that belongs to closed rows; only in a scene.
+    /// Area of the boundary that belongs to closed rows, in area; only in a scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub area: Option<f64>,
     /// Estimates between the nodes; only in a scene with a contact of some extent.
@@ -98,14 +98,14 @@ pub struct ContactSummary {
     pub force_balance: Option<f64>,
 }
 
-/// Sizes of the model that was solved.
+/// Sizes of the model that was solved: unknowns, contact rows, entries of the matrix, and the mesh if there is one.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct ModelSize {
-    /// Unknown displacements.
+    /// Number of unknown displacements n, before the problem is condensed.
     pub dofs: usize,
-    /// Contact rows.
+    /// Number m of rows of B, those that can never close included.
     pub contact_rows: usize,
-    /// Number of unknowns of the method.
+    /// Number of unknowns of the method: fewer than `dofs` if the problem was condensed.
     pub condensed_dofs: usize,
     /// Entries of the stiffness, both triangles.
     pub stiffness_entries: usize,
@@ -117,20 +117,20 @@ pub struct ModelSize {
     pub elements: Option<usize>,
 }
 
-/// Wall-clock seconds from the file to the answer.
+/// Wall-clock seconds from the file to the answer, by stages that do not overlap, and their sum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct RunSeconds {
-    /// Reading, meshing and assembly.
+    /// Seconds of reading, meshing and assembly.
     pub assemble: f64,
     /// Factorisations, including the analysis of the pattern; in a motion those before its first step.
     pub factor: f64,
     /// The solve without its factorisations and its proof, including the certificate; in a motion all steps, including writing.
     pub solve: f64,
-    /// The part of `solve` for the certificate.
+    /// The part of `solve` that recomputes the conditions and the bound.
     pub certificate: f64,
-    /// The proof which rows are open and closed.
+    /// The proof of the rows that are open and closed, outside `solve`.
     pub proof: f64,
-    /// The sum.
+    /// The sum of `assemble`, `factor`, `solve` and `proof`.
     pub total: f64,
 }
 
@@ -196,7 +196,7 @@ impl Summary {
     }
 }
 
-/// The certificate of an answer from another source.
+/// The certificate of an answer from another source, recomputed from the problem and judged by a tolerance.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verification {
     /// The judgement against the tolerance.
@@ -207,7 +207,7 @@ pub struct Verification {
     pub contact: ContactSummary,
     /// The recomputed conditions.
     pub certificate: Certificate,
-    /// Sizes of the model.
+    /// Number of unknowns, rows and matrix entries of the problem.
     pub model: ModelSize,
     /// Warnings about these numbers.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -215,7 +215,8 @@ pub struct Verification {
 }
 
 impl Verification {
-    /// Judges `certificate` by `tolerance`.
+    /// Judges `certificate` by `tolerance`; the multiplier (one entry per contact row, in force, `<= 0` in compression)
+    /// gives the total force.
     pub fn new(certificate: Certificate, multiplier: &[f64], model: ModelSize, tolerance: f64) -> Self {
         let warnings = opposite_sign(&certificate, multiplier, tolerance).into_iter().collect();
         let force = -multiplier.iter().sum::<f64>();

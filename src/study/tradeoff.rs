@@ -50,7 +50,7 @@ const ERROR_ROUNDING: f64 = 1e-12;
 /// The QP whose contact set is settled by active-set steps.
 const POLISHED: &str = "qp, polished";
 
-/// The varied parameters and the effort of the timing.
+/// The varied parameters of a trade-off and the effort of its timing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TradeoffGrid {
     /// Number of meshes besides the scene's own, each with half the cell size of the previous one.
@@ -69,14 +69,14 @@ impl Default for TradeoffGrid {
     }
 }
 
-/// One mesh of a trade-off.
+/// One mesh of a trade-off, by the divisions of the scene's own mesh, its sizes and its estimated error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TradeoffMesh {
     /// Number of parts into which each edge of the scene's mesh is divided.
     pub divided_by: usize,
-    /// Unknown displacements.
+    /// Number of unknown displacements on this mesh.
     pub dofs: usize,
-    /// Contact rows.
+    /// Number of candidate nodes with a row of B.
     pub contact_rows: usize,
     /// Estimated discretisation error, relative in energy; a problem directory has no mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -86,7 +86,7 @@ pub struct TradeoffMesh {
 /// One method with its settings: its time, and the errors against the exact answer of its mesh.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TradeoffPoint {
-    /// Index of the mesh.
+    /// Index into [`Tradeoff::meshes`], from 0.
     pub mesh: usize,
     /// `qp`, `qp, polished`, `active-set`, `mprgp` or `penalty`.
     pub method: &'static str,
@@ -99,9 +99,9 @@ pub struct TradeoffPoint {
     pub mixed: bool,
     /// The fastest run, in seconds, from the checked problem to the answer at the tolerance of the method.
     pub seconds: f64,
-    /// Seconds for its certificate.
+    /// Wall-clock time of recomputing the conditions and the bound, in seconds; not part of `seconds`.
     pub certificate_seconds: f64,
-    /// Seconds for its proof of the contact set.
+    /// Wall-clock time of proving the contact set, in seconds; not part of `seconds`.
     pub proof_seconds: f64,
     /// `true` if the two fastest runs are within 3 % of each other.
     pub is_repeated: bool,
@@ -118,13 +118,14 @@ pub struct TradeoffPoint {
     pub pressure_error: Option<f64>,
     /// Misclassified rows: closed in one contact set and open in the other.
     pub rows_wrong: usize,
-    /// Bound of the energy error by the certificate.
+    /// Upper bound of `energy_error` that the certificate states; infinite if none is known.
     pub energy_error_bound: f64,
     /// `true` if the point is on the Pareto front of its mesh: no other point is both faster and more accurate.
     pub best: bool,
 }
 
-/// The recommended choice.
+/// The recommended choice for a goal: the point that reaches an accuracy in the least time, or the best accuracy in a
+/// time.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Advice {
     /// The energy error to reach on the scene's own mesh.
@@ -139,16 +140,16 @@ pub struct Advice {
     pub point: Option<usize>,
 }
 
-/// A scene solved by all methods.
+/// A scene solved by all methods on several meshes: the time and the errors of each, and the recommended choice.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tradeoff {
-    /// The meshes, the scene's own first.
+    /// The meshes, the scene's own first, then each finer one.
     pub meshes: Vec<TradeoffMesh>,
-    /// The points, mesh by mesh.
+    /// One entry for each mesh and method with its settings, mesh by mesh.
     pub points: Vec<TradeoffPoint>,
     /// The recommended choices on the scene's own mesh, then on any of the meshes.
     pub advice: Vec<Advice>,
-    /// Runs of each point.
+    /// Least number of runs for each point; the fastest run counts.
     pub runs: usize,
 }
 

@@ -80,6 +80,20 @@ fn licences_of_all_dependencies_are_allowed_and_all_come_from_the_registry() {
 }
 
 #[test]
+fn every_exception_for_an_advisory_names_a_crate_that_is_still_locked() {
+    let text = fs::read_to_string(root().join("deny.toml")).unwrap();
+    let exceptions: Vec<&str> = text.lines().filter(|line| line.contains("\"RUSTSEC-")).collect();
+    assert!(!exceptions.is_empty());
+    let locked: Vec<String> =
+        ["Cargo.lock", "python/Cargo.lock"].map(|name| fs::read_to_string(root().join(name)).unwrap()).into();
+    for exception in exceptions {
+        let reason = exception.split_once("reason = \"").unwrap_or_else(|| panic!("no reason in {exception}")).1;
+        let name = format!("\nname = \"{}\"\n", reason.split(' ').next().unwrap());
+        assert!(locked.iter().any(|lock| lock.contains(&name)), "no lock file has the crate of {exception}");
+    }
+}
+
+#[test]
 fn expressions_of_licences_are_evaluated_with_and_or_and_parentheses() {
     let allowed: Vec<String> = ["MIT", "Unicode-3.0"].map(String::from).into();
     for (expression, expected) in [

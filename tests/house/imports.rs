@@ -87,6 +87,16 @@ impl House {
         found
     }
 
+    /// The file that defines what a path from the crate root names.
+    pub fn file_of(&self, path: &[String]) -> Module {
+        self.defining(path, 0)
+    }
+
+    /// The file that defines `name` as a file of `module` means it.
+    pub fn origin(&self, module: &Module, name: &str) -> Module {
+        self.files[module].names.get(name).map_or_else(|| module.clone(), |path| self.defining(path, 0))
+    }
+
     /// The file that defines what a path names.
     fn defining(&self, path: &[String], followed: usize) -> Module {
         let mut length = path.len();

@@ -7,6 +7,7 @@ mod oracles;
 
 mod architecture;
 mod dependencies;
+mod documentation;
 mod documents;
 mod errors;
 mod examples;

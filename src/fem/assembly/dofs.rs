@@ -45,7 +45,8 @@ pub struct Along {
 }
 
 impl DofMap {
-    /// From one entry per nodal dof: the prescribed displacement, or `None` for a free dof.
+    /// From one entry per nodal dof, length `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`: the prescribed
+    /// displacement, in length along the positive axis, or `None` for a free dof.
     ///
     /// # Errors
     /// [`Error::NotFinite`] for a prescribed displacement that is not finite.
@@ -70,7 +71,8 @@ impl DofMap {
         Ok(DofMap { prescribed, number, free, dimension: 1, frames, basis })
     }
 
-    /// From one entry per dof, `dimension` per node; those of the nodes in `frames` are local: along the axes of their frame.
+    /// From one entry per dof, `dimension` per node, in length; those of the nodes in `frames` are local: along the
+    /// axes of their frame.
     ///
     /// # Errors
     /// As [`DofMap::new`]; [`Error::Mesh`] for a frame of a node that the mesh does not have.
@@ -116,14 +118,15 @@ impl DofMap {
         DofMap { dimension, basis, ..self }
     }
 
-    /// The coefficient at a node of a function with these values at the nodes: the gap of its contact row. It is the value itself, except
-    /// at mid-side nodes of [contact faces](Self::with_contact_faces).
+    /// The coefficient at a node of a function with these values at the nodes, in their unit: the gap of its contact
+    /// row. It is the value itself, except at mid-side nodes of [contact faces](Self::with_contact_faces).
     pub fn coefficient(&self, node: usize, value: impl Fn(usize) -> f64) -> f64 {
         self.basis.coefficient(node, value)
     }
 
-    /// The tributary areas of contact rows from those of the nodes of a boundary, in its order: the integrals of the shape functions of
-    /// their dofs. They are the areas themselves, except on [contact faces](Self::with_contact_faces).
+    /// The tributary areas of contact rows from those of the nodes of a boundary: `(node, area)` in the order of the
+    /// boundary, in area. They are the integrals of the shape functions of their dofs: the areas themselves, except on
+    /// [contact faces](Self::with_contact_faces).
     pub fn row_areas(&self, of_nodes: &[(usize, f64)]) -> Vec<(usize, f64)> {
         let mut areas: BTreeMap<usize, f64> = BTreeMap::new();
         if !self.basis.is_nodal() {
@@ -138,7 +141,8 @@ impl DofMap {
         &self.basis
     }
 
-    /// All dofs of `mesh` free, except those of the nodes of `boundaries`: they move by `displacement(point)`.
+    /// All dofs of `mesh` free, except those of the nodes of `boundaries`: they move by `displacement(point)`. Point
+    /// and displacement have the order [x, y, z], in length; entries beyond the dimension are ignored.
     ///
     /// # Errors
     /// As [`DofMap::new`]; [`Error::Mesh`] for a boundary that the mesh does not have.
@@ -172,8 +176,9 @@ impl DofMap {
         self.frames.get(&node)
     }
 
-    /// The displacement of `node` along `vector`, which has one entry per coordinate, in terms of the free dofs: the form of a contact
-    /// row or of a measured displacement. At a mid-side node with a coefficient it is the coefficient.
+    /// The displacement of `node` along `vector`, which has one entry per coordinate and no unit, in terms of the free
+    /// dofs: the form of a contact row or of a measured displacement. At a mid-side node with a coefficient it is the
+    /// coefficient.
     pub fn along(&self, node: usize, vector: &[f64]) -> Along {
         let mut local = vector.to_vec();
         if let Some(frame) = self.frame(node) {
@@ -203,24 +208,25 @@ impl DofMap {
         sum
     }
 
-    /// The nodal dof of each free dof, increasing.
+    /// The nodal dof of each free dof, increasing: entry i is the index, from 0, among the `dim * n_nodes` nodal dofs.
     pub fn free(&self) -> &[usize] {
         &self.free
     }
 
-    /// The number of nodal dof `dof` among the free dofs; `None` if it is supported.
+    /// The number of nodal dof `dof` among the free dofs, from 0; `None` if it is supported.
     #[inline]
     pub fn number(&self, dof: usize) -> Option<usize> {
         self.number.get(dof).copied().filter(|&number| number != SUPPORTED)
     }
 
-    /// The displacement of nodal dof `dof` if it is supported.
+    /// The displacement of nodal dof `dof`, in length, if it is supported.
     pub fn prescribed(&self, dof: usize) -> Option<f64> {
         let supported = self.number.get(dof) == Some(&SUPPORTED);
         self.prescribed.get(dof).copied().filter(|_| supported)
     }
 
-    /// Nodal displacements from those of the free dofs; supported dofs take their prescribed values.
+    /// Nodal displacements, length `dim * n_nodes`, in length, from those of the free dofs (`free`, one entry per free
+    /// dof, in length); supported dofs take their prescribed values.
     ///
     /// # Errors
     /// [`Error::Length`] if `free` does not have one entry per free dof.
@@ -228,7 +234,8 @@ impl DofMap {
         self.expand_with(free, |dof| self.prescribed(dof).unwrap_or(0.0))
     }
 
-    /// A nodal motion from that of the free dofs; supported dofs stay at zero.
+    /// A nodal motion, length `dim * n_nodes`, from that of the free dofs (`free`, one entry per free dof), both in
+    /// length, or in length over time; supported dofs stay at zero.
     ///
     /// # Errors
     /// As [`DofMap::expand`].
@@ -248,7 +255,8 @@ impl DofMap {
         Ok(nodal)
     }
 
-    /// The entries of nodal forces at the free dofs.
+    /// The entries of nodal forces (`nodal`, length `dim * n_nodes`, in force) at the free dofs: one entry per free
+    /// dof, in force.
     ///
     /// # Errors
     /// [`Error::Length`] if `nodal` does not have one entry per nodal dof.
@@ -257,7 +265,8 @@ impl DofMap {
         Ok(self.free.iter().map(|&dof| local[dof]).collect())
     }
 
-    /// The part of nodal forces along the supported dofs: the reactions among the forces on all nodes.
+    /// The part of nodal forces (`nodal`, length `dim * n_nodes`, in force) along the supported dofs, of the same
+    /// length: the reactions among the forces on all nodes.
     ///
     /// # Errors
     /// As [`DofMap::restrict`].

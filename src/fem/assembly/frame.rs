@@ -13,8 +13,8 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The frame of a node in `dimension` coordinates with first axes `given`: unit vectors [x, y, z] at right
-    /// angles, zero beyond the dimension.
+    /// The frame of a node in `dimension` coordinates with first axes `given`: dimensionless unit vectors [x, y, z] at
+    /// right angles, zero beyond the dimension.
     ///
     /// # Errors
     /// [`Error::Setting`] if they are not, or if there are more axes than coordinates.

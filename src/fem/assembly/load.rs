@@ -178,8 +178,9 @@ fn add_force_at(body: &ElasticBody, table: &Tabulated, field: impl Fn(usize, [f6
     }
 }
 
-/// The load of the free dofs: the nodal load (length `dim * n_nodes`) at the free dofs, minus the internal forces of the prescribed
-/// displacements, temperatures and initial stresses.
+/// The load of the free dofs, one entry per free dof, in force: the nodal load (`nodal`, length `dim * n_nodes`, in
+/// force) at the free dofs, minus the internal forces of the prescribed displacements, temperatures and initial
+/// stresses.
 ///
 /// # Errors
 /// [`Error::Length`] if load or dofs do not belong to the mesh.

@@ -7,7 +7,7 @@ use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::element::Tabulated;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
-/// The form of a mass matrix.
+/// The form of a mass matrix: it decides on the waves in the mesh, and on the inertia of nodes in contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MassForm {
     /// Consistent: from the shape functions.
@@ -24,7 +24,8 @@ pub enum MassForm {
     Redistributed,
 }
 
-/// The mass matrix of the free dofs, from the densities of the materials; `contact_nodes` lose their mass if it is redistributed.
+/// The mass matrix of the free dofs (n x n), in mass, from the densities of the materials; `contact_nodes`, node
+/// indices from 0 in any order, lose their mass if it is redistributed.
 ///
 /// The quadrature has five points in each direction: exact on straight elements of both orders, also in bodies of revolution.
 ///

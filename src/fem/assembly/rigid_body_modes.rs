@@ -3,8 +3,8 @@
 use super::DofMap;
 use crate::fem::body::ElasticBody;
 
-/// The rigid-body modes at the free dofs, one vector each: the translations, then the rotations about the centre of the mesh, divided by
-/// half its size so that all are dimensionless and of order one.
+/// The rigid-body modes at the free dofs, one vector each, one entry per free dof: the translations, then the rotations
+/// about the centre of the mesh, divided by half its size so that all are dimensionless and of order one.
 ///
 /// A body of revolution is treated as its half plane: the distance from the axis is ignored.
 pub fn rigid_body_modes(body: &ElasticBody, dofs: &DofMap) -> Vec<Vec<f64>> {

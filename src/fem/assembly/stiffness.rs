@@ -33,7 +33,7 @@ impl<'a> FreeAxes<'a> {
     }
 }
 
-/// The stiffness K of the free dofs, in force per length; only its lower triangle is ever built.
+/// The stiffness K of the free dofs (n x n), in force per length; only its lower triangle is ever built.
 ///
 /// # Errors
 /// [`Error::Length`] if `dofs` does not belong to the mesh, [`Error::NotFinite`] if the stiffness overflows.

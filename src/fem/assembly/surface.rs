@@ -79,8 +79,9 @@ fn sense(kind: FacetKind, facet: &[usize], face: &[usize], number: usize) -> f64
     if alike { 1.0 } else { -1.0 }
 }
 
-/// The nodes of a boundary in its order, each with its tributary area: the integral of its shape function over the
-/// boundary, thickness, cross-section or circumference included. The areas add up to the area of the boundary.
+/// The nodes of a boundary in its order, each as `(node, area)` with its tributary area: the integral of its shape
+/// function over the boundary, in area, thickness, cross-section or circumference included. The areas add up to the
+/// area of the boundary.
 pub fn tributary_areas(body: &ElasticBody, boundary: &Boundary) -> Vec<(usize, f64)> {
     let nodes = boundary.nodes();
     let mut area = vec![0.0; body.mesh().nodes().len()];

@@ -21,7 +21,7 @@ use crate::fem::mesh::{Boundary, Mesh};
 /// Radii of a body of revolution that are negative by less than this times its size are rounding of zero.
 const ON_THE_AXIS: f64 = 1e-12;
 
-/// The integration of the stiffness of an element.
+/// The integration of the stiffness of an element: in full, or with a dilatation that cannot lock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema), schemars(rename = "IntegrationSpec"))]
 #[serde(rename_all = "kebab-case")]
@@ -177,22 +177,23 @@ impl ElasticBody {
         Ok(self)
     }
 
-    /// The mesh.
+    /// The mesh with the elements of all regions, region by region.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    /// The bodies that it consists of: one, except after [`ElasticBody::beside`].
+    /// The bodies that it consists of, in the order in which they were joined: one, except after
+    /// [`ElasticBody::beside`].
     pub fn regions(&self) -> &[Region] {
         &self.regions
     }
 
-    /// The formulation.
+    /// The dimension of the model and its assumption across the plane or the bar.
     pub fn formulation(&self) -> &Formulation {
         &self.formulation
     }
 
-    /// The integration of the stiffness.
+    /// The rule by which the stiffness is integrated over an element.
     pub fn integration(&self) -> Integration {
         self.integration
     }

@@ -6,7 +6,7 @@ use crate::fem::geometry::Symmetric;
 use crate::fem::material::Material;
 
 impl ElasticBody {
-    /// The same body with another material in some elements, numbered from 0.
+    /// The same body with another material in some `elements`: their indices, from 0, in any order.
     ///
     /// # Errors
     /// As [`ElasticBody::new`] for the material; [`Error::Mesh`] for an element that does not exist, for a body of several regions, for
@@ -18,8 +18,9 @@ impl ElasticBody {
         Ok(body)
     }
 
-    /// The same body with some elements, numbered from 0, warmer than the stress-free state: by `value` at the origin (degrees) and
-    /// `gradient` (x, y, z; degrees per length) from there. It replaces an earlier temperature of an element.
+    /// The same body with some `elements` (indices from 0, in any order) warmer than the stress-free state: by `value`
+    /// at the origin (degrees) and `gradient` (x, y, z; degrees per length) from there. It replaces an earlier
+    /// temperature of an element.
     ///
     /// # Errors
     /// [`Error::Setting`] for a material without coefficients of expansion, or numbers that are not finite; [`Error::Mesh`] as
@@ -29,8 +30,8 @@ impl ElasticBody {
         self.with_phase(elements, |phase| phase.clone().with_temperature(temperature))
     }
 
-    /// The same body with a stress `[xx, yy, zz, xy, yz, zx]` (force per area, tension positive) in some elements, numbered from 0, that
-    /// acts without strain. It replaces an earlier initial stress of an element.
+    /// The same body with a stress `[xx, yy, zz, xy, yz, zx]` (force per area, tension positive) in some `elements`
+    /// (indices from 0, in any order) that acts without strain. It replaces an earlier initial stress of an element.
     ///
     /// # Errors
     /// [`Error::Setting`] for a component that is not finite, or that the formulation does not have; [`Error::Mesh`] as
@@ -91,7 +92,7 @@ impl ElasticBody {
         &self.phases[first..=last]
     }
 
-    /// The materials of a region.
+    /// The materials of the elements of a region: one, unless parts of the region have their own.
     pub fn materials(&self, region: &Region) -> impl Iterator<Item = &Material> {
         self.phases_of(region).iter().map(Phase::material)
     }

@@ -25,17 +25,17 @@ impl Region {
         Region { name: name.into(), nodes, elements }
     }
 
-    /// Its name; empty for the first.
+    /// Its name, the prefix of its boundaries; empty for the first.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Its nodes.
+    /// Indices of its nodes in the mesh of the body, from 0, without gaps.
     pub fn nodes(&self) -> Range<usize> {
         self.nodes.clone()
     }
 
-    /// Its elements.
+    /// Indices of its elements in the mesh of the body, from 0, without gaps.
     pub fn elements(&self) -> Range<usize> {
         self.elements.clone()
     }

@@ -38,7 +38,7 @@ use t6::T6;
 use tet4::TET4;
 use tet10::TET10;
 
-/// The elements of which a mesh can consist.
+/// The elements of which a mesh can consist, by the number of their nodes: a letter for the shape and the count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ElementKind {
     /// Bar of two nodes.
@@ -72,7 +72,7 @@ impl ElementKind {
     #[cfg(feature = "cli")]
     pub(crate) const LINEAR_TETRAHEDRON: ElementKind = ElementKind::Tet4;
 
-    /// All elements.
+    /// All nine elements, in the order of the variants.
     pub const ALL: [ElementKind; 9] = [
         ElementKind::Line2,
         ElementKind::T3,
@@ -85,7 +85,7 @@ impl ElementKind {
         ElementKind::Hex20,
     ];
 
-    /// The reference cell.
+    /// The reference cell: its nodes, faces, shape functions and quadrature.
     pub fn reference(self) -> &'static ReferenceElement {
         match self {
             ElementKind::Line2 => &LINE2,
@@ -100,7 +100,7 @@ impl ElementKind {
         }
     }
 
-    /// The kind of a face of the element.
+    /// The kind of each face; all faces of one element are alike.
     pub fn facet(self) -> FacetKind {
         self.reference().facet
     }
@@ -110,7 +110,7 @@ impl ElementKind {
         self.reference().name
     }
 
-    /// Number of nodes of one element.
+    /// Number of nodes of one element, corners and mid-sides.
     pub fn nodes(self) -> usize {
         self.reference().nodes.len()
     }
@@ -158,7 +158,7 @@ impl ElementKind {
 }
 
 impl FacetKind {
-    /// The reference cell.
+    /// The reference cell: its nodes, shape functions and quadrature.
     pub fn reference(self) -> &'static ReferenceElement {
         match self {
             FacetKind::Point1 => &POINT1,
@@ -171,7 +171,7 @@ impl FacetKind {
         }
     }
 
-    /// Number of nodes of one facet.
+    /// Number of nodes of one facet, corners and mid-sides.
     pub fn nodes(self) -> usize {
         self.reference().nodes.len()
     }

@@ -102,7 +102,7 @@ impl ReferenceElement {
     }
 }
 
-/// The faces of elements.
+/// The faces of elements: points in a bar, edges in the plane, triangles and quadrilaterals in space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FacetKind {
     /// The end of a bar.

@@ -40,8 +40,8 @@ impl Material {
         Ok(Material { elasticity: Elasticity::Isotropic { young, poisson }, density: None, expansion: None })
     }
 
-    /// The orthotropic material of Young's moduli `[E1, E2, E3]`, Poisson's ratios `[nu12, nu23, nu13]` and shear moduli
-    /// `[G12, G23, G13]` along the coordinate axes.
+    /// The orthotropic material of Young's moduli `[E1, E2, E3]` (force per area), Poisson's ratios
+    /// `[nu12, nu23, nu13]` and shear moduli `[G12, G23, G13]` (force per area) along the coordinate axes.
     ///
     /// Tension along i contracts the material along j by nu_ij times its extension, and `nu_ij / E_i = nu_ji / E_j`.
     ///
@@ -52,8 +52,9 @@ impl Material {
         Ok(Material { elasticity, density: None, expansion: None })
     }
 
-    /// The same material with its first axis along a vector, and its second one in the plane of both vectors (x, y, z; of any
-    /// length but zero) and at right angles to the first. An isotropic material has no axes, and stays as it is.
+    /// The same material with its first axis along a vector, and its second one in the plane of both vectors and at
+    /// right angles to the first. The vectors have the order [x, y, z], no unit, and any length but zero. An isotropic
+    /// material has no axes, and stays as it is.
     ///
     /// # Errors
     /// [`Error::Setting`] for vectors that span no plane.
@@ -76,8 +77,8 @@ impl Material {
         Ok(Material { density: Some(density), ..self })
     }
 
-    /// The same material with coefficients of thermal expansion (strain per degree) along its axes, for an isotropic material along x, y
-    /// and z; temperatures need them.
+    /// The same material with three coefficients of thermal expansion, in strain per degree, along its axes, for an isotropic
+    /// material along x, y and z; temperatures need them.
     ///
     /// # Errors
     /// [`Error::Setting`] for a coefficient that is not finite.
@@ -102,7 +103,8 @@ impl Material {
         self.density
     }
 
-    /// The smallest and the largest Young's modulus; they are equal in an isotropic material.
+    /// The smallest and the largest Young's modulus, in this order, in force per area; they are equal in an isotropic
+    /// material.
     pub fn young(&self) -> [f64; 2] {
         match &self.elasticity {
             Elasticity::Isotropic { young, .. } => [*young; 2],

@@ -4,18 +4,19 @@ use serde::{Deserialize, Serialize};
 
 use super::MAX_NODES;
 
-/// One axis of a structured mesh.
+/// One axis of a structured mesh: intervals between breakpoints, each cut into cells of equal or graded size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema), schemars(rename = "AxisSpec"))]
 #[serde(deny_unknown_fields)]
 pub struct Axis {
-    /// Breakpoints, at least two, increasing.
+    /// Breakpoints, at least two, strictly increasing, in length.
     #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
     pub points: Vec<f64>,
-    /// Cells of each interval between breakpoints, at least 1.
+    /// Number of cells of each interval between breakpoints, one entry fewer than `points`, at least 1 each.
     #[cfg_attr(feature = "cli", schemars(extend("minItems" = 1, "items" = {"type": "integer", "format": "uint", "minimum": 1})))]
     pub divisions: Vec<usize>,
-    /// Last cell size over first cell size of each interval, positive; all 1 if left out.
+    /// Last cell size over first cell size of each interval, one entry fewer than `points`, dimensionless and positive;
+    /// all 1 if left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[cfg_attr(feature = "cli", schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0})))]
     pub ratios: Vec<f64>,
@@ -32,7 +33,8 @@ pub struct AxisError {
 }
 
 impl Axis {
-    /// The coordinates of the mesh lines, strictly increasing; breakpoints are met exactly.
+    /// The coordinates of the mesh lines, one for each line, strictly increasing, in length; breakpoints are met
+    /// exactly.
     ///
     /// # Errors
     /// `AxisError` for fewer than two points, points that do not increase, lengths that do not fit, zero

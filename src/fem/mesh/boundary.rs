@@ -5,9 +5,9 @@ use crate::fem::element::FacetKind;
 /// A named part of the mesh's surface: the ends of a bar, edges of a plane mesh, faces of a mesh in space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Boundary {
-    /// Its name, as `top`.
+    /// Its name in scenes, as `top`; no two boundaries of a mesh share one.
     pub name: String,
-    /// The kind of its facets.
+    /// The element that each of its facets is, as `Line2` for straight edges.
     pub kind: FacetKind,
     /// The nodes of facet 0, then of facet 1, ..., each in the order of its reference cell; edges are in their order along the boundary
     /// if they form a line.
@@ -15,22 +15,23 @@ pub struct Boundary {
 }
 
 impl Boundary {
-    /// The boundary called `name` of facets of one kind.
+    /// The boundary called `name` of facets of one kind: `connectivity` lists the nodes of facet 0, then of facet 1,
+    /// ..., indices from 0.
     pub fn new(name: impl Into<String>, kind: FacetKind, connectivity: Vec<usize>) -> Self {
         Boundary { name: name.into(), kind, connectivity }
     }
 
-    /// Number of facets.
+    /// Number of facets: the length of `connectivity` over the nodes of a facet.
     pub fn facet_count(&self) -> usize {
         self.connectivity.len() / self.kind.nodes()
     }
 
-    /// The nodes of each facet.
+    /// The node indices of each facet, from 0, in the order of `connectivity`.
     pub fn facets(&self) -> impl Iterator<Item = &[usize]> + '_ {
         self.connectivity.chunks_exact(self.kind.nodes())
     }
 
-    /// The nodes, each once, in the order of their first appearance along the facets.
+    /// The node indices, each once, from 0, in the order of their first appearance along the facets.
     pub fn nodes(&self) -> Vec<usize> {
         let along = self.kind.reference().along;
         let mut seen = vec![false; self.connectivity.iter().max().map_or(0, |&last| last + 1)];

@@ -113,12 +113,12 @@ impl Mesh {
         self.check_facets()
     }
 
-    /// Coordinates x, y, z of every node; those beyond the dimension are zero.
+    /// Coordinates [x, y, z] of every node, length `n_nodes`, in length; those beyond the dimension are zero.
     pub fn nodes(&self) -> &[[f64; 3]] {
         &self.nodes
     }
 
-    /// The kind of the elements.
+    /// The one kind that all elements have.
     pub fn kind(&self) -> ElementKind {
         self.kind
     }
@@ -128,12 +128,12 @@ impl Mesh {
         self.kind.dimension()
     }
 
-    /// Number of elements.
+    /// Number of elements, of all bodies in the mesh.
     pub fn element_count(&self) -> usize {
         self.connectivity.len() / self.kind.nodes()
     }
 
-    /// The nodes of each element, in the order of [`ElementKind`].
+    /// The node indices of each element, from 0, in the order of [`ElementKind`].
     pub fn elements(&self) -> impl Iterator<Item = &[usize]> + '_ {
         self.connectivity.chunks_exact(self.kind.nodes())
     }
@@ -148,7 +148,7 @@ impl Mesh {
         &self.connectivity[element * each..(element + 1) * each]
     }
 
-    /// All named boundaries.
+    /// All named boundaries, in the order in which they were given.
     pub fn boundaries(&self) -> &[Boundary] {
         &self.boundaries
     }
@@ -215,7 +215,7 @@ impl Mesh {
         Ok(self)
     }
 
-    /// The smallest and the largest coordinates, `([x_min, y_min, z_min], [x_max, y_max, z_max])`.
+    /// The smallest and the largest coordinates, `([x_min, y_min, z_min], [x_max, y_max, z_max])`, in length.
     pub fn extent(&self) -> ([f64; 3], [f64; 3]) {
         extent(&self.nodes)
     }
@@ -226,7 +226,8 @@ impl Mesh {
         distance(low, high)
     }
 
-    /// The node nearest to `point` and its distance; `None` in a mesh without nodes.
+    /// The index of the node nearest to `point` ([x, y, z], in length), from 0, and its distance, in length; `None` in
+    /// a mesh without nodes.
     pub fn nearest_node(&self, point: [f64; 3]) -> Option<(usize, f64)> {
         let away = |&node: &[f64; 3]| distance(node, point);
         self.nodes.iter().map(away).enumerate().min_by(|a, b| a.1.total_cmp(&b.1))

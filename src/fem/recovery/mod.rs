@@ -41,7 +41,7 @@ pub struct Stress {
 }
 
 impl Stress {
-    /// The stress with the given components in the plane and normal to it.
+    /// The stress with the given components in the plane and normal to it, in force per area, tension positive.
     pub fn new(sigma_xx: f64, sigma_yy: f64, sigma_xy: f64, sigma_zz: f64) -> Self {
         let centre = (sigma_xx + sigma_yy) / 2.0;
         let radius = ((sigma_xx - sigma_yy) / 2.0).hypot(sigma_xy);
@@ -52,7 +52,7 @@ impl Stress {
         Stress { sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx, sigma_1, sigma_2, sigma_3, von_mises }
     }
 
-    /// The stress with the components `[xx, yy, zz, xy, yz, zx]` in space.
+    /// The stress with the components `[xx, yy, zz, xy, yz, zx]` in space, in force per area, tension positive.
     pub fn in_space([sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx]: Symmetric) -> Self {
         let tensor =
             Matrix3::new(sigma_xx, sigma_xy, sigma_zx, sigma_xy, sigma_yy, sigma_yz, sigma_zx, sigma_yz, sigma_zz);
@@ -67,12 +67,13 @@ impl Stress {
     }
 }
 
-/// The stress of a displaced body.
+/// The stress of a displaced body, at the centroid of each element and, averaged, at each node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StressField {
-    /// One per element, at its centroid.
+    /// One stress per element, at its centroid, in the order of the mesh.
     pub elements: Vec<Stress>,
-    /// One per node: extrapolated from the quadrature points, averaged over the elements around the node, of all materials.
+    /// One stress per node, in the order of the mesh: extrapolated from the quadrature points, averaged over the
+    /// elements around the node, of all materials.
     pub nodes: Vec<Stress>,
     /// The average over the elements of each phase, by node and phase, where several phases meet: there the stress jumps.
     sides: BTreeMap<(usize, u32), Stress>,
@@ -101,7 +102,8 @@ fn interfaces(body: &ElasticBody) -> BTreeSet<usize> {
     found
 }
 
-/// The stress in `body` at the nodal displacement `displacement` (length `dim * n_nodes`, order `[x_0, y_0, ...]`).
+/// The stress in `body` (force per area, tension positive) at the nodal displacement `displacement` (length
+/// `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in length).
 ///
 /// Exact where the displacement is linear. In each element the nodes take the linear function (multilinear in
 /// quadrilaterals and hexahedra) that fits the stresses at the quadrature points by least squares.

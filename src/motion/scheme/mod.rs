@@ -20,7 +20,7 @@ use super::step::{About, Parameter, Prepare};
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
 
-/// The schemes to choose from.
+/// The schemes to choose from, without the values of their parameters: the names that a scene uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -73,7 +73,7 @@ impl SchemeSpec {
         self.about().name
     }
 
-    /// The parameter, if the scheme has one.
+    /// Name, range and default of the parameter; `None` if the scheme has none.
     pub fn parameter(self) -> Option<Parameter> {
         self.about().parameter
     }
@@ -134,7 +134,7 @@ pub enum Scheme {
     ///
     /// **Gains energy** at an impact as the trapezoidal rule does, and damps it afterwards.
     Hht {
-        /// From -1/3 (most damping) to 0 (the trapezoidal rule).
+        /// Dimensionless, from -1/3 (most damping) to 0 (the trapezoidal rule).
         alpha: f64,
     },
     /// The trapezoidal rule with closed rows as springs in every step: `(K_eff + eps C) u = f_eff + eps C g` until C
@@ -174,7 +174,7 @@ impl Scheme {
         }
     }
 
-    /// The value of the parameter; 0 if the scheme has none.
+    /// The value of the parameter, dimensionless; 0 if the scheme has none.
     pub fn value(self) -> f64 {
         match self {
             Scheme::Midpoint | Scheme::Trapezoidal | Scheme::ContactStabilised => 0.0,
@@ -200,7 +200,7 @@ impl Scheme {
         self.spec().about().penetrates
     }
 
-    /// The preferred form of the mass.
+    /// The form of the mass that a motion takes if its scene names none.
     pub fn mass_form(self) -> MassForm {
         self.spec().about().masses[0]
     }

@@ -28,8 +28,9 @@ const MOST_CYCLES: usize = 20;
 const MOST_WORK: f64 = 2e9;
 
 impl ContactProblem {
-    /// The rows for which an answer proves, by its distance and force, that they are open or closed in the exact answer; `None`
-    /// if K is not positive definite by itself and no bound is known.
+    /// The rows for which an answer (u of length n, in m; lambda of length m, in N, `<= 0` in compression) proves, by
+    /// its distance and force, that they are open or closed in the exact answer; `None` if K is not positive definite
+    /// by itself and no bound is known.
     ///
     /// # Errors
     /// As [`ContactProblem::certify`].

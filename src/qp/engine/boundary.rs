@@ -16,7 +16,7 @@ pub struct BoundarySolution {
     pub multiplier: Vec<f64>,
     /// The closed rows.
     pub contact_set: ContactSet,
-    /// Iterations of the method.
+    /// Linear solves of the method, or its interior-point steps, as in [`Solution::iterations`].
     pub iterations: usize,
     /// The certificate of the *condensed* problem, in its dimensionless units: its conditions are recomputed from the condensed
     /// stiffness, load and rows, not from the problem itself, which would need the displacement of the body.

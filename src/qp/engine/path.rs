@@ -34,12 +34,13 @@ pub struct Path {
 }
 
 impl Path {
-    /// The rows that touch or release on the way, in order.
+    /// The rows that touch or release on the way, in the order of their place t.
     pub fn events(&self) -> &[Event] {
         &self.walk.events
     }
 
-    /// The corners of all polylines: the beginning, every event, the end.
+    /// The corners of all polylines: the places t of the beginning, of every event and of the end, dimensionless,
+    /// increasing from 0 to 1.
     pub fn corners(&self) -> Vec<f64> {
         let mut corners: Vec<f64> = self.walk.pieces.iter().map(|piece| piece.from).collect();
         corners.extend(self.walk.pieces.last().map(|piece| piece.to));
@@ -61,13 +62,13 @@ impl Path {
         self.walk.to_rows.contact_set(&piece.contact_set)
     }
 
-    /// The gaps at `t`, length m.
+    /// The gaps at `t`, length m, in the problem's unit of length; negative if the obstacle starts inside the body.
     pub fn gap(&self, t: f64) -> Vec<f64> {
         let mix = |(&from, &to): (&f64, &f64)| if from == to { from } else { (1.0 - t) * from + t * to };
         self.from.iter().zip(&self.to).map(mix).collect()
     }
 
-    /// The multipliers at `t`, length m, in force.
+    /// The multipliers at `t`, length m, in the problem's unit of force, `<= 0` in compression.
     pub fn multiplier(&self, t: f64) -> Vec<f64> {
         self.piece(t).map_or_else(Vec::new, |piece| self.multiplier_on(piece, t))
     }
@@ -101,7 +102,8 @@ impl Path {
 }
 
 impl Prepared {
-    /// The exact path of the answer while the gaps move from `from` to `to` (length m each) on a straight line.
+    /// The exact path of the answer while the gaps move from `from` to `to` (length m each, in the problem's unit of
+    /// length, negative inside the body) on a straight line.
     ///
     /// # Errors
     /// As [`Prepared::solve`] for both ends; [`Error::Interrupted`]; [`Error::NotCondensed`] for a problem that was not

@@ -111,7 +111,7 @@ impl Prepared {
         Ok(Prepared { engine, settings, start, load, why: None })
     }
 
-    /// The same problem under another load, length n, in N; a factor is swept once for it.
+    /// The same problem under another load, length n, in N, along the positive axes; a factor is swept once for it.
     ///
     /// # Errors
     /// [`Error::Length`] and [`Error::NotFinite`] for a load that does not fit.
@@ -125,7 +125,7 @@ impl Prepared {
         Prepared { start: start.into(), ..self.clone() }
     }
 
-    /// Solves with these gaps, one per contact row, in m.
+    /// Solves with these gaps, one per contact row, in m; negative if the obstacle starts inside the body.
     ///
     /// # Errors
     /// As [`solve`](crate::solve()); [`Error::Length`] and [`Error::NotFinite`] for gaps that do not fit or, with a factor, that
@@ -137,7 +137,8 @@ impl Prepared {
         with_solution(solved, |solution| Solution { why: self.why.as_deref().cloned(), ..solution })
     }
 
-    /// Solves with another load, length n, in N, and the gaps of the problem that was prepared.
+    /// Solves with another load, length n, in N, along the positive axes, and the gaps of the problem that was
+    /// prepared.
     ///
     /// # Errors
     /// As [`Prepared::with_load`] and [`Prepared::solve`].
@@ -145,8 +146,9 @@ impl Prepared {
         self.with_load(load)?.solve(self.engine.problem().gap())
     }
 
-    /// Contact set, multipliers and forces with these gaps. The displacement of the body is not computed, so that a condensed
-    /// problem costs only the solve on its contact boundary.
+    /// Contact set, multipliers and forces with these gaps, one per contact row, in the problem's unit of length,
+    /// negative inside the body. The displacement of the body is not computed, so that a condensed problem costs only
+    /// the solve on its contact boundary.
     ///
     /// # Errors
     /// As [`Prepared::solve`]; the certificate of the condensed problem must meet the tolerance.
@@ -177,7 +179,7 @@ impl Prepared {
         self.engine.factor().map_or(0, |factor| factor.entries)
     }
 
-    /// Bytes of these values.
+    /// Memory of the values of the factor, in bytes: 8 for each, 4 in single precision.
     pub fn factor_bytes(&self) -> usize {
         self.factor_entries() * if self.is_single() { size_of::<f32>() } else { size_of::<f64>() }
     }

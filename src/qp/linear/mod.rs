@@ -195,17 +195,17 @@ impl SparseMatrix {
         SparseMatrix { rows: self.rows, pattern: self.pattern.clone(), values: Arc::new(values) }
     }
 
-    /// Number of rows.
+    /// Number of rows, empty ones included.
     pub fn rows(&self) -> usize {
         self.rows
     }
 
-    /// Number of columns.
+    /// Number of columns, empty ones included.
     pub fn columns(&self) -> usize {
         self.pattern.column_starts.len() - 1
     }
 
-    /// Number of stored entries.
+    /// Number of stored entries, explicit zeros included.
     pub fn entries(&self) -> usize {
         self.values.len()
     }
@@ -215,12 +215,12 @@ impl SparseMatrix {
         &self.pattern.column_starts
     }
 
-    /// Row of each entry, column by column.
+    /// Row of each entry, column by column, from 0, length [`entries`](Self::entries).
     pub fn row_indices(&self) -> &[usize] {
         &self.pattern.row_indices
     }
 
-    /// Value of each entry, column by column.
+    /// Value of each entry, column by column, in the order of [`row_indices`](Self::row_indices).
     pub fn values(&self) -> &[f64] {
         &self.values
     }
@@ -263,7 +263,7 @@ impl SparseMatrix {
         (0..self.columns()).map(|column| self.column(column).map(|(row, value)| value * y[row]).sum()).collect()
     }
 
-    /// The product |A| |x|, entry by entry: the scale of rounding in A x.
+    /// The product |A| |x|, length `rows`, entry by entry: the scale of rounding in A x; `x` has length `columns`.
     pub fn mul_abs(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; self.rows];
         for (row, column, value) in self.triplets() {
@@ -298,7 +298,7 @@ impl SparseMatrix {
         Self::from_parts(self.columns(), starts, row_indices, values)
     }
 
-    /// The matrix diag(left) A diag(right).
+    /// The matrix diag(left) A diag(right); `left` has length `rows`, `right` has length `columns`.
     pub fn scaled(&self, left: &[f64], right: &[f64]) -> Self {
         self.with_values(self.triplets().map(|(row, column, value)| left[row] * value * right[column]).collect())
     }

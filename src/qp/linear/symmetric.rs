@@ -13,7 +13,7 @@ const PART: usize = 250_000;
 /// Largest number of parts of a product: each may need its own vector.
 const MOST_PARTS: usize = 8;
 
-/// A symmetric matrix; only its lower triangle is stored.
+/// A symmetric matrix, such as a stiffness or a mass; only its lower triangle is stored. Clones share their memory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SymmetricMatrix {
     lower: SparseMatrix,
@@ -138,20 +138,20 @@ impl SymmetricMatrix {
         self.lower.transposed()
     }
 
-    /// The diagonal, length `dim`.
+    /// The diagonal, length `dim`, zero at places without an entry.
     pub fn diagonal(&self) -> Vec<f64> {
         (0..self.dim())
             .map(|column| self.lower.column(column).next().filter(|entry| entry.0 == column).map_or(0.0, |e| e.1))
             .collect()
     }
 
-    /// The product A x.
+    /// The product A x, length `dim`; `x` has length `dim`.
     pub fn mul(&self, x: &[f64]) -> Vec<f64> {
         self.product(x, |value| value)
     }
 
-    /// The product A x on this number of threads. The sums run over parts of the columns that depend on the matrix alone, so that
-    /// the result does not depend on the threads.
+    /// The product A x, length `dim`, on this number of threads; `x` has length `dim`. The sums run over parts of the
+    /// columns that depend on the matrix alone, so that the result does not depend on the threads.
     pub fn mul_on(&self, threads: usize, x: &[f64]) -> Vec<f64> {
         let starts = self.lower.column_starts();
         let entries = self.lower.entries();
@@ -201,7 +201,7 @@ impl SymmetricMatrix {
         y
     }
 
-    /// The product |A| |x|, entry by entry: the scale of rounding in A x.
+    /// The product |A| |x|, length `dim`, entry by entry: the scale of rounding in A x; `x` has length `dim`.
     pub fn mul_abs(&self, x: &[f64]) -> Vec<f64> {
         let magnitude: Vec<f64> = x.iter().map(|value| value.abs()).collect();
         self.product(&magnitude, f64::abs)

@@ -145,7 +145,8 @@ pub fn streamed_files<'a>(problem: &'a ContactProblem) -> Vec<Streamed<'a>> {
     files
 }
 
-/// Reads a vector of finite numbers: one column, or one row.
+/// Reads a vector of finite numbers from a Matrix Market file of one column, or of one row; its length and unit are
+/// those of the file.
 ///
 /// # Errors
 /// [`Error::File`] and [`Error::FileSyntax`].
@@ -168,7 +169,8 @@ fn vector(file: &Path, values: Values) -> Result<Vec<f64>, Error> {
     Ok(vector)
 }
 
-/// Name and text of the files of a problem.
+/// Name and text of the four Matrix Market files of a problem, in this order: `K.mtx` (lower triangle), `f.mtx`,
+/// `B.mtx`, `g.mtx`.
 pub fn problem_files(problem: &ContactProblem) -> [(&'static str, String); 4] {
     [
         (STIFFNESS, format_symmetric(problem.stiffness())),
@@ -178,7 +180,8 @@ pub fn problem_files(problem: &ContactProblem) -> [(&'static str, String); 4] {
     ]
 }
 
-/// Name and text of the files of an answer.
+/// Name and text of the two Matrix Market files of an answer: `u.mtx` (displacement, length n) and `lambda.mtx`
+/// (multiplier, length m).
 pub fn solution_files(solution: &Solution) -> [(&'static str, String); 2] {
     [("u.mtx", format_vector(&solution.displacement)), ("lambda.mtx", format_vector(&solution.multiplier))]
 }

@@ -28,7 +28,8 @@ const UNIT_CORRECTIONS: usize = 4;
 /// Number of steps after which more do not help: on ill-conditioned data the residuals stall while the barrier parameter falls.
 const MAX_STEPS: u32 = 50;
 
-/// Options of [`Method::Qp`](crate::Method::Qp).
+/// Options of [`Method::Qp`](crate::Method::Qp): its tolerance, and whether the active-set loop settles its contact
+/// set.
 ///
 /// ```
 /// use signorini::{InteriorPoint, Method, Settings};

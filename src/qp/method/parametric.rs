@@ -35,12 +35,12 @@ pub struct Compliance {
     slope: Vec<f64>,
 }
 
-/// A row that changes sides.
+/// A row that changes sides on the way between two gaps: it touches, or it releases.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
-    /// Its place t on the path.
+    /// Its place t on the path, from 0 to 1.
     pub at: f64,
-    /// The row.
+    /// Index of the contact row in the problem, from 0.
     pub row: usize,
     /// `true` if the row touches, `false` if it releases.
     pub touches: bool,

@@ -10,10 +10,19 @@ use crate::solution::{ContactSet, Solution};
 /// from either; the interior-point method of Clarabel has no warm start, but its polish starts from the set.
 ///
 /// ```
-/// use signorini::{ContactSet, Start};
+/// use signorini::{ContactProblem, Prepared, Settings, SparseMatrix, Start, SymmetricMatrix};
 ///
-/// let closed = ContactSet::from_fn(3, |row| row == 1);
-/// assert_ne!(Start::from(&closed), Start::default());
+/// // A spring of stiffness 2, pushed with force 3 towards a wall at distance 1, then at distance 0.5.
+/// let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]);
+/// let stiffness = SymmetricMatrix::from_lower(one(2.0)?)?;
+/// let problem = ContactProblem::new(stiffness, vec![3.0], one(1.0)?, vec![1.0])?;
+/// let prepared = Prepared::new(&problem, &Settings::default())?;
+/// let first = prepared.solve(&[1.0])?;
+///
+/// // The contact set of the first answer starts the second solve, in which the wall takes 3 - 2 x 0.5.
+/// let start = Start::from(&first.contact_set);
+/// assert_eq!(prepared.starting_from(start).solve(&[0.5])?.multiplier, [-2.0]);
+/// # Ok::<(), signorini::Error>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Start {
@@ -54,7 +63,7 @@ impl Start {
         Ok(())
     }
 
-    /// A displacement near the answer, one entry per dof.
+    /// A displacement near the answer, one entry per dof, in the problem's unit of length, along the positive axes.
     pub fn near(displacement: Vec<f64>) -> Self {
         Start { displacement: Some(displacement), contact_set: None }
     }

@@ -22,6 +22,23 @@ use crate::qp::linear::{Accumulator, SparseMatrix, SymmetricMatrix};
 ///
 /// Shapes, finite values and symmetry are checked once, when it is built. The solve finds out whether K is positive
 /// semidefinite, and whether supports and obstacle hold the body.
+///
+/// ```
+/// use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
+///
+/// // Two springs of stiffness 2 and 1 in a row, pushed with the forces 2 and 3; the end meets a wall at distance 1.
+/// let stiffness = SparseMatrix::from_triplets(2, 2, &[(0, 0, 3.0), (1, 0, -1.0), (1, 1, 1.0)])?;
+/// let contact = SparseMatrix::from_triplets(1, 2, &[(0, 1, 1.0)])?;
+/// let problem = ContactProblem::new(SymmetricMatrix::from_lower(stiffness)?, vec![2.0, 3.0], contact, vec![1.0])?;
+///
+/// assert_eq!((problem.dofs(), problem.rows()), (2, 1));
+/// // At u = (1, 4) the end is 3 inside the wall.
+/// assert_eq!(problem.violation(&[1.0, 4.0]), [3.0]);
+/// // At u = (1, 1) the forces are in balance if the wall pushes back with 3: K u = (2, 0) = f + B' lambda.
+/// assert!(problem.certify(&[1.0, 1.0], &[-3.0])?.meets(1e-12));
+/// assert!(!problem.certify(&[1.0, 1.0], &[-2.0])?.meets(1e-2));
+/// # Ok::<(), signorini::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactProblem {
     pub(in crate::qp) stiffness: SymmetricMatrix,
@@ -65,10 +82,9 @@ fn with_infinite(mut gap: Vec<f64>) -> Vec<f64> {
 }
 
 impl ContactProblem {
-    /// The problem of stiffness K (n x n, N/m), load f (n, N), contact rows B (m x n) and initial gaps g (m, m).
-    ///
-    /// A row of B is positive towards the obstacle. A gap is negative if the obstacle starts inside the body and
-    /// `f64::INFINITY`, or exactly 1e20 or 1e30, without an obstacle.
+    /// The problem of stiffness K (n x n, in N/m), load f (length n, in N, along the positive axes), contact rows B (m x n,
+    /// dimensionless) and initial gaps g (length m, in m). A row of B is positive towards the obstacle. A gap is negative if
+    /// the obstacle starts inside the body and `f64::INFINITY`, or exactly 1e20 or 1e30, without an obstacle.
     ///
     /// # Errors
     /// [`Error::Length`] and [`Error::Shape`] for sizes that do not fit, [`Error::NotFinite`] for a load that is not
@@ -128,7 +144,7 @@ impl ContactProblem {
         &self.stiffness
     }
 
-    /// The external load f, length n, in N.
+    /// The external load f, length n, in N, along the positive axes.
     pub fn load(&self) -> &[f64] {
         &self.load
     }
@@ -143,7 +159,7 @@ impl ContactProblem {
         &self.gap
     }
 
-    /// The same body and obstacle with other gaps.
+    /// The same body and obstacle with other gaps, length m, in m; negative if the obstacle starts inside the body.
     ///
     /// # Errors
     /// As [`ContactProblem::new`].
@@ -151,7 +167,7 @@ impl ContactProblem {
         self.with(self.load.clone(), gap)
     }
 
-    /// The same body and obstacle under another load.
+    /// The same body and obstacle under another load, length n, in N, along the positive axes.
     ///
     /// # Errors
     /// As [`ContactProblem::new`].
@@ -159,7 +175,8 @@ impl ContactProblem {
         self.with(load, self.gap.clone())
     }
 
-    /// The same body and contact rows with another load and other gaps; the matrices are shared.
+    /// The same body and contact rows with another load (length n, in N) and other gaps (length m, in m, negative
+    /// inside the body); the matrices are shared.
     ///
     /// # Errors
     /// As [`ContactProblem::new`].
@@ -184,7 +201,8 @@ impl ContactProblem {
         self.parts.get_or_find(|| Parts::of(&self.stiffness, self.diagonal(), &self.contact, &self.gap))
     }
 
-    /// The violation B u - g of each row, length m: positive is penetration; `-inf` without an obstacle.
+    /// The violation B u - g of each row, length m, in m: positive is penetration; `-inf` without an obstacle. The
+    /// displacement u has length n, in m.
     pub fn violation(&self, displacement: &[f64]) -> Vec<f64> {
         let mut violation = self.contact.mul(displacement);
         for (value, gap) in violation.iter_mut().zip(&self.gap) {

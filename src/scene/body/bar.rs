@@ -52,7 +52,8 @@ impl BodyShape for BarSpec {
     }
 }
 
-/// The bar with nodes at `x` (coordinates, strictly increasing, at least two); its boundaries are `left` and `right`.
+/// The bar with nodes at `x` (coordinates, in length, strictly increasing, at least two); its boundaries are `left` and
+/// `right`.
 ///
 /// # Errors
 /// [`Error::Mesh`] for fewer than two nodes, coordinates that do not increase, or more than

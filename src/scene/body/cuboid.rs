@@ -74,8 +74,8 @@ impl BodyShape for BoxSpec {
     }
 }
 
-/// The mesh of the lines `x`, `y`, `z` (coordinates, strictly increasing, at least two each),
-/// of an element in space.
+/// The mesh of the lines `x`, `y`, `z` (coordinates, in length, strictly increasing, at least two each), of an element
+/// in space.
 ///
 /// Nodes are numbered along x first, then along y. Each cell is one brick or six tetrahedra; nodes in the middle of
 /// edges follow the others. The boundaries are `left`,

@@ -71,8 +71,8 @@ impl BodyShape for DiscSpec {
     }
 }
 
-/// The disc of `radius` about `centre`, of a plane element, graded towards its lowest and its highest point; with [`Sides::Beyond`] only
-/// the part right of the centre, which in an axisymmetric model is a ball.
+/// The disc of `radius` about `centre` ([x, y], in length), of a plane element, graded towards its lowest and its
+/// highest point; with [`Sides::Beyond`] only the part right of the centre, which in an axisymmetric model is a ball.
 ///
 /// The boundaries are `lower` and `upper`, the halves of the circle, and, with [`Sides::Beyond`], `symmetry-x` (x = centre).
 ///

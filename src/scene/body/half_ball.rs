@@ -96,8 +96,8 @@ impl BodyShape for HalfBallSpec {
     }
 }
 
-/// The lower half of the ball of `radius` about `centre`, of bricks, graded towards its lowest point; with
-/// [`Sides::Beyond`] along x or y a quarter or an eighth of the ball.
+/// The lower half of the ball of `radius` about `centre` ([x, y, z], in length), of bricks, graded towards its lowest
+/// point; with [`Sides::Beyond`] along x or y a quarter or an eighth of the ball.
 ///
 /// The boundaries are `cut` (the flat side, z = centre), `round` and, with [`Sides::Beyond`], `symmetry-x` (x = centre) and
 /// `symmetry-y` (y = centre).

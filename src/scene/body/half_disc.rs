@@ -74,8 +74,8 @@ impl BodyShape for HalfDiscSpec {
     }
 }
 
-/// The lower half of the disc of `radius` about `centre`, of a plane element, graded towards its lowest point; with
-/// [`Sides::Beyond`] only the part right of the centre.
+/// The lower half of the disc of `radius` about `centre` ([x, y], in length), of a plane element, graded towards its
+/// lowest point; with [`Sides::Beyond`] only the part right of the centre.
 ///
 /// The boundaries are `cut` (the flat side, y = centre), `arc` and, with [`Sides::Beyond`], `symmetry-x` (x = centre). Quadratic elements
 /// have their mid-sides on the arc.

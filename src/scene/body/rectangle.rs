@@ -55,7 +55,8 @@ impl BodyShape for RectangleSpec {
     }
 }
 
-/// The mesh of the lines `x` and `y` (coordinates, strictly increasing, at least two each), of a plane element.
+/// The mesh of the lines `x` and `y` (coordinates, in length, strictly increasing, at least two each), of a plane
+/// element.
 ///
 /// Nodes are numbered along x first; quadratic elements have nodes at mid-sides too. Triangles come from cutting each cell from its lower
 /// left to its upper right corner. The boundaries are `left`, `right`, `bottom` and `top`, their edges in the direction of growing

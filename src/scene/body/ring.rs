@@ -63,8 +63,8 @@ impl BodyShape for RingSpec {
     }
 }
 
-/// The mesh of the circles of radius `radii` and the rays at `angles` (degrees, counterclockwise from x) about
-/// `centre`, of a plane element, the mid-sides on the circles.
+/// The mesh of the circles of radius `radii` (in length) and the rays at `angles` (degrees, counterclockwise from x),
+/// both strictly increasing, about `centre` ([x, y], in length), of a plane element, the mid-sides on the circles.
 ///
 /// The boundaries are `inner` and `outer`, and, if the ring is not closed, `start` (first angle) and `end` (last angle). It is closed if
 /// the angles span 360 degrees.

@@ -91,7 +91,7 @@ impl Site<'_> {
 /// The meshed part of a round body along an axis through its centre.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sides {
-    /// Both sides of the centre.
+    /// The whole body, on both sides of the centre.
     Both,
     /// The part beyond the centre, which ends at a plane of symmetry.
     Beyond,

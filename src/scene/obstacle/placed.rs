@@ -19,7 +19,7 @@ const NO_COMPONENT: f64 = 1e-14;
 /// A given normal is of unit length to within this rounding.
 const UNIT: f64 = 1e-9;
 
-/// An obstacle of a model: rigid, or the surface of another body.
+/// An obstacle of a model: a rigid shape, or the surface of another body, with the boundary that may touch it.
 #[derive(Clone, Debug)]
 pub struct PlacedObstacle {
     boundary: String,
@@ -133,7 +133,8 @@ impl PlacedObstacle {
         gap + self.gap
     }
 
-    /// The force that presses it against its approach direction; `None` for an obstacle that stands still.
+    /// The force that presses it against its approach direction, in force, `>= 0`; `None` for an obstacle that stands
+    /// still.
     pub fn force(&self) -> Option<f64> {
         self.force
     }
@@ -143,19 +144,20 @@ impl PlacedObstacle {
         self.rule
     }
 
-    /// The approach direction [x, y, z], of length 1: from the body to the obstacle.
+    /// The approach direction [x, y, z], a dimensionless vector of length 1: from the body to the obstacle.
     pub fn approach(&self) -> [f64; 3] {
         self.approach
     }
 
-    /// The candidate nodes, in the order of the boundary, each with its tributary area.
+    /// The candidate nodes as `(node, area)`, in the order of the boundary: index from 0, and tributary area.
     pub fn candidates(&self) -> &[(usize, f64)] {
         &self.candidates
     }
 
-    /// The surface as a polyline [x, y] for pictures: over the body's extent and a margin, shifted by `gap` along the approach direction,
-    /// in `segments` pieces (10,000 at most), with exact corners. The obstacle lies on the side to which [`approach`](Self::approach)
-    /// points. Empty if the surface does not reach over the body, for another body, and outside the plane.
+    /// The surface as a polyline [x, y] for pictures, in length: over the body's extent and a margin, shifted by `gap`
+    /// along the approach direction, in `segments` pieces (10,000 at most), with exact corners. The obstacle lies on
+    /// the side to which [`approach`](Self::approach) points. Empty if the surface does not reach over the body, for
+    /// another body, and outside the plane.
     pub fn outline(&self, gap: f64, segments: usize) -> Vec<[f64; 2]> {
         self.rigid().map_or_else(Vec::new, |obstacle| obstacle.outline(gap, segments))
     }

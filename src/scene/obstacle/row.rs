@@ -2,10 +2,11 @@
 
 use std::fmt::Debug;
 
-/// The contact row of a node, `normal . u <= gap`.
+/// The contact row `normal . u <= gap` of a node: the statement of an [`Obstacle`](super::Obstacle) at the place of the
+/// node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObstacleRow {
-    /// Unit vector [x, y, z] into the obstacle; zero beyond the dimension of the model.
+    /// Dimensionless unit vector [x, y, z] into the obstacle; zero beyond the dimension of the model.
     pub normal: [f64; 3],
     /// Signed distance from the undeformed node to the obstacle along `normal`, in length; negative inside.
     pub gap: f64,
@@ -57,12 +58,12 @@ impl ObstacleRow {
 /// # Ok::<(), signorini::Error>(())
 /// ```
 pub trait Obstacle: Debug + Send + Sync {
-    /// The approach direction: a unit vector [x, y, z] from the body to the obstacle. The gap of a scene shifts the
-    /// obstacle along it.
+    /// The approach direction: a dimensionless unit vector [x, y, z] from the body to the obstacle. The gap of a scene
+    /// shifts the obstacle along it.
     fn approach(&self) -> [f64; 3];
 
-    /// The row of a node at `point` [x, y, z], zero beyond the dimension of the model; `None` if the obstacle does not
-    /// reach there.
+    /// The row of a node at `point` ([x, y, z], in length, zero beyond the dimension of the model); `None` if the
+    /// obstacle does not reach there.
     ///
     /// # Errors
     /// The fault of the node, as it follows "node 7 at (0, 1)" in a message: "lies deeper in the circle than its centre".
@@ -77,9 +78,9 @@ pub trait Obstacle: Debug + Send + Sync {
         self.row([0, 1, 2].map(|axis| point[axis] - shift * approach[axis]))
     }
 
-    /// The unit normal of the surface, into the obstacle, at the point where the row of a node at `point` meets it, with the obstacle
-    /// moved by `shift`. It is the normal of the row, unless rows lie along the approach direction for any surface; `None` if the
-    /// obstacle does not reach there.
+    /// The dimensionless unit normal [x, y, z] of the surface, into the obstacle, at the point where the row of a node
+    /// at `point` meets it, with the obstacle moved by `shift`. It is the normal of the row, unless rows lie along the
+    /// approach direction for any surface; `None` if the obstacle does not reach there.
     fn surface_normal(&self, point: [f64; 3], shift: f64) -> Option<[f64; 3]> {
         Some(self.shifted_row(point, shift).ok()??.normal)
     }
@@ -92,7 +93,8 @@ pub trait Obstacle: Debug + Send + Sync {
         None
     }
 
-    /// The surface in the plane as a polyline [x, y] for pictures, moved by `shift`, in `segments` pieces; empty if it has no outline.
+    /// The surface in the plane as a polyline [x, y] for pictures, in length, moved by `shift`, in `segments` pieces;
+    /// empty if it has no outline.
     fn outline(&self, _shift: f64, _segments: usize) -> Vec<[f64; 2]> {
         Vec::new()
     }

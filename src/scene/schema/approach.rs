@@ -52,7 +52,7 @@ impl Approach {
     }
 }
 
-/// The rule for the contact row of a candidate node.
+/// The rule for the contact row of a candidate node: its direction, and the point of the obstacle that it meets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]

@@ -65,13 +65,13 @@ pub struct Scene {
     #[serde(default = "one")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub thickness: f64,
-    /// The elastic body.
+    /// The shape and the mesh of the elastic body.
     #[serde(deserialize_with = "choice")]
     pub body: BodySpec,
     /// The material of the body, except of the elements that `materials` name.
     #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
     pub material: Option<MaterialSpec>,
-    /// The materials of its parts.
+    /// The materials of parts of the body, by groups of the mesh file or by boxes.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<MaterialPartSpec>,
     /// Temperature above that of the body without stress.
@@ -123,14 +123,15 @@ fn one() -> f64 {
     1.0
 }
 
-/// Names of the units.
+/// Names of the units of length and force, for tables and pictures. They convert no number of a scene, which may have
+/// any consistent system.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Units {
-    /// Unit of length, as `m`.
+    /// Name of the unit of all coordinates and displacements, as `m`.
     pub length: String,
-    /// Unit of force, as `N`.
+    /// Name of the unit of all forces and multipliers, as `N`.
     pub force: String,
 }
 

@@ -57,7 +57,7 @@ use crate::error::Error;
 use crate::file::{MOST_OF_TABLE, read_capped};
 
 impl GmshFile {
-    /// Reads a file.
+    /// Reads a mesh file of Gmsh of format 4.1 or 2.2, as text or binary.
     ///
     /// # Errors
     /// [`Error::File`] for a file that cannot be read, and as [`GmshFile::parse`].

@@ -17,7 +17,7 @@ pub struct NearNullSpace {
 }
 
 impl NearNullSpace {
-    /// From its vectors, length `dofs` each.
+    /// From its vectors, length `dofs` each: displacements without a unit, of either sign, as only their span counts.
     ///
     /// # Errors
     /// [`Error::Length`] for a vector of another length, [`Error::NotFinite`], [`Error::Setting`] for no vector, more
@@ -58,8 +58,9 @@ impl NearNullSpace {
         (dofs > 0 && vectors.iter().all(|vector| vector.len() == dofs)).then_some(NearNullSpace { vectors })
     }
 
-    /// The rigid-body modes of nodes with free dofs that follow each other: translations and rotations, as displacements of
-    /// [x_0, y_0, x_1, ...]. One vector of coordinates for each axis, 1 to 3; its length is the number of nodes.
+    /// The rigid-body modes of nodes with free dofs that follow each other: translations and rotations, as
+    /// displacements in the order `[x_0, y_0, x_1, ...]`. One vector of coordinates for each axis, 1 to 3, in any unit;
+    /// its length is the number of nodes.
     ///
     /// # Errors
     /// As [`NearNullSpace::new`]; [`Error::Setting`] for another number of axes, [`Error::Length`] for axes that do not fit each
@@ -86,12 +87,13 @@ impl NearNullSpace {
         Self::new((0..size).map(vector).collect(), matrix.dim())
     }
 
-    /// The vectors.
+    /// The vectors, one for each mode, length [`dofs`](Self::dofs) each, in the order given: displacements without a
+    /// unit, as only their span counts.
     pub fn vectors(&self) -> &[Vec<f64>] {
         &self.vectors
     }
 
-    /// Number of vectors.
+    /// Number of vectors, and so of modes; at least 1.
     pub fn count(&self) -> usize {
         self.vectors.len()
     }
