@@ -16,6 +16,7 @@ singular, springs on the pressing rows replace the missing supports.
 
 import numpy as np
 
+from parts import Parts
 from problem import NO_LIMIT
 from ranks import PETSc, fetch, generic, larger
 
@@ -41,6 +42,9 @@ LOOKED = 25
 NEGATIVE = 1e-12
 """Negative energy below this share of the sum of K_ii x_i^2 is a rounding error."""
 
+OF_ENERGY, LEAST = 1e-31, 1e-28
+"""Of the rounding of a strain energy: the share that may be missing from it, and the least error for its square root."""
+
 CHUNK = 20_000
 """Number of rows that are summed at once in extended precision."""
 
@@ -50,15 +54,18 @@ def certify(problem, bounds, hierarchy, u, multiplier, tolerance):
     answer = Answer(problem, u, multiplier)
     numbers = answer.conditions()
     bound, cycles = answer.bound(bounds, hierarchy)
-    numbers |= answer.judged(bound)
+    numbers |= answer.judged(*bound)
     held = ("stationarity_excess", "penetration", "adhesion", "complementarity", "duality_gap", "energy_error_excess")
-    is_certified = all(numbers[name] <= tolerance for name in held) and np.isfinite(bound)
+    is_certified = all(numbers[name] <= tolerance for name in held) and np.isfinite(bound[0])
     return numbers, is_certified, cycles
 
 
 def accurate_product(ranks, matrix, vector):
-    """Returns M v and |M| |v| for this rank's rows; the first in extended precision if the machine has it."""
-    starts, columns, values = matrix.getValuesCSR()
+    """Returns M v and |M| |v| for this rank's rows; the first in extended precision if the machine has it.
+
+    `matrix` are this rank's rows in compressed form: starts, columns and values.
+    """
+    starts, columns, values = matrix
     rows = len(starts) - 1
     sums, terms = np.zeros(rows, dtype=np.longdouble), np.zeros(rows)
     for start in range(0, int(ranks.max(float(rows))), CHUNK):
@@ -84,8 +91,16 @@ def at_columns(vector, columns):
     return values
 
 
-def relative(value, scale):
-    return 0.0 if value == 0.0 else (value / scale if scale > 0.0 else np.inf)
+def relative(values, scales):
+    """Returns values / scales: 0 for a value of 0, infinity for another value with a scale of 0."""
+    values, scales = np.asarray(values, dtype=float), np.asarray(scales, dtype=float)
+    shares = np.where(values == 0.0, 0.0, np.inf)
+    return np.divide(values, scales, out=shares, where=(values != 0.0) & (scales > 0.0))
+
+
+def worst(values, scales):
+    """Returns the largest relative value over all parts."""
+    return float(relative(values, scales).max())
 
 
 class Answer:
@@ -94,13 +109,13 @@ class Answer:
     def __init__(self, problem, u, multiplier):
         self.problem, self.ranks = problem, problem.ranks
         self.u, self.multiplier = u, multiplier
-        stiffness, rows = problem.stiffness, problem.contact
+        stiffness, rows = problem.stiffness, problem.contact.getValuesCSR()
         self.diagonal = stiffness.getDiagonal().array_r.copy()
         self.load, self.gap, force = problem.load.array_r, problem.gap.array_r, multiplier.array_r
         own_u = u.array_r.astype(np.longdouble)
 
         # Magnitudes of the contact rows of this rank.
-        starts, columns, values = rows.getValuesCSR()
+        starts, columns, values = rows
         row_of = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
         root = problem.load.duplicate()
         root.array[:] = np.sqrt(self.diagonal)
@@ -119,20 +134,31 @@ class Answer:
         self.violation = np.where(limited, (moved - np.where(limited, self.gap, 0.0)).astype(float), -np.inf)
         self.counts = limited | (force != 0.0)
 
-        transposed = rows.transpose(PETSc.Mat())
+        transposed = problem.contact.transpose(PETSc.Mat()).getValuesCSR()
         contact, self.contact_terms = accurate_product(self.ranks, transposed, multiplier)
         self.contact = contact.astype(float)
+        stiffness = stiffness.getValuesCSR()
         forces, self.terms = accurate_product(self.ranks, stiffness, u)
+        if problem.parts is None:
+            problem.parts = Parts(problem, *stiffness[:2])
+        del stiffness
         self.residual = (self.load - forces + contact).astype(float)
-        self.strain, self.rounding, load_work, gap_work = self.ranks.sum(
-            np.dot(own_u, forces), np.dot(np.abs(u.array_r), self.terms), np.dot(u.array_r, self.load),
-            np.dot(np.where(limited, self.gap, 0.0), force))
+        self._scale(np.asarray(own_u * forces, dtype=float), np.where(limited, self.gap, 0.0) * force)
+
+    def _scale(self, strain, gap_work):
+        """The size, force and energy of each part, from the strain energy of the places and the work of the gaps."""
+        parts = self.parts = self.problem.parts
+        self.part, self.part_of_row = parts.of_place, parts.of_rows(self.problem)
+        self.strain, self.rounding, load_work, gap_work = parts.sums(
+            (strain, self.part), (np.abs(self.u.array_r) * self.terms, self.part),
+            (self.u.array_r * self.load, self.part), (gap_work, self.part_of_row))
         self.softness = 1.0 / np.sqrt(self.diagonal)
         largest = np.maximum(np.abs(self.load), np.abs(self.contact)) * self.softness
-        self.force = self.ranks.max(larger(largest))
-        self.norm = np.sqrt(max(self.strain, 0.0))
-        self.size = max(self.norm, AT_REST * self.force)
-        self.energy = max(self.norm**2 / 2.0, abs(load_work), abs(gap_work), AT_REST * self.force**2 / 2.0)
+        self.force = parts.largest(largest, self.part)
+        self.norm = np.sqrt(np.maximum(self.strain, 0.0))
+        self.size = np.maximum(self.norm, AT_REST * self.force)
+        self.energy = np.maximum.reduce((self.norm**2 / 2.0, np.abs(load_work), np.abs(gap_work),
+                                         AT_REST * self.force**2 / 2.0))
 
     def conditions(self):
         force = self.multiplier.array_r
@@ -141,25 +167,27 @@ class Answer:
         explained = (force == 0.0) | (np.abs(self.violation) <= ENTRY_ROUNDING * self.lengths)
         work = np.where(explained, 0.0, force * np.where(np.isfinite(self.violation), self.violation, -np.inf))
         work = np.where(force == 0.0, 0.0, work)
-        scale = np.maximum(self.lengths, np.maximum(np.where(self.gap < NO_LIMIT, np.abs(self.gap), 0.0), self.size * self.reach))
+        scale = np.maximum(self.lengths, np.maximum(np.where(self.gap < NO_LIMIT, np.abs(self.gap), 0.0), self.size[self.part_of_row] * self.reach))
         depth = np.maximum(self.violation, 0.0)
         penetration = np.divide(depth, scale, out=np.where(depth > 0.0, np.inf, 0.0), where=scale > 0.0)
-        table = self.ranks.gather((
-            larger(self.residual * self.softness), larger(excess * self.softness),
-            larger(penetration[self.counts]), larger((np.maximum(force, 0.0) * self.reach)[self.counts]),
-            larger(work[self.counts]), np.dot(-self.u.array_r, excess) + work.sum()))
-        stationarity, without_rounding, penetration, adhesion, work = table[:, :5].max(axis=0)
+        parts, counts = self.parts, self.counts
+        pull = np.maximum(force, 0.0) * self.reach
+        gaps = parts.sums((-self.u.array_r * excess, self.part), (work, self.part_of_row)).sum(axis=0)
         return {
-            "stationarity": relative(stationarity, self.force),
-            "stationarity_excess": relative(without_rounding, self.force),
-            "penetration": float(penetration),
-            "adhesion": relative(adhesion, self.force),
-            "complementarity": relative(work, self.energy),
-            "duality_gap": relative(abs(table[:, 5].sum()), self.energy),
+            "stationarity": worst(parts.largest(self.residual * self.softness, self.part), self.force),
+            "stationarity_excess": worst(parts.largest(excess * self.softness, self.part), self.force),
+            "penetration": float(self.ranks.max(larger(penetration[counts]))),
+            "adhesion": worst(parts.largest(pull[counts], self.part_of_row[counts]), self.force),
+            "complementarity": worst(parts.largest(work[counts], self.part_of_row[counts]), self.energy),
+            "duality_gap": worst(np.abs(gaps), self.energy),
         }
 
     def bound(self, bounds, hierarchy):
-        """Returns an upper bound on |u - u*|_K, infinite if none is found, and the number of cycles."""
+        """Returns upper bounds on |u - u*|_K, of the whole and of each part, and the number of cycles.
+
+        The bounds are infinite if none is found.
+        """
+        nothing = np.inf, np.full(self.parts.count, np.inf)
         force = self.multiplier.array_r
         residual = self.problem.load.duplicate()
         residual.array[:] = self.residual
@@ -176,24 +204,26 @@ class Answer:
         if hierarchy.coarsest.is_singular:
             looked = LOOKED
             if not is_semidefinite(bounds, hierarchy):
-                return np.inf, looked
+                return nothing, looked
             springs = self._springs()
             product = self._product_with(springs, bounds)
-        dual, cycles = dual_norm(self.ranks, product, hierarchy, residual)
+        dual, cycles = dual_norm(self.parts, product, hierarchy, residual, self.diagonal)
         left = ROUNDED_BOUND * dual
         if springs is not None:
-            fails = (springs > 0.0) & ~(-force >= 2.0 * np.sqrt(springs) * left)
-            if not np.isfinite(left) or self.ranks.max(float(fails.any())) > 0.0 or self.ranks.max(larger(springs)) == 0.0:
-                return np.inf, looked + cycles
+            fails = (springs > 0.0) & ~(-force >= 2.0 * np.sqrt(springs) * np.sqrt((left**2).sum()))
+            if not np.all(np.isfinite(left)) or self.ranks.max(float(fails.any())) > 0.0 \
+                    or self.ranks.max(larger(springs)) == 0.0:
+                return nothing, looked + cycles
         touching = (self.violation > 0.0) | ((force < 0.0) & (self.violation != 0.0))
-        moved = self.ranks.sum(np.dot(self.along[touching], np.abs(self.violation[touching])))
-        return 2.0 * ROUNDED_BOUND * moved + left, looked + cycles
+        lengths = self.along[touching] * np.abs(self.violation[touching])
+        moved = 2.0 * ROUNDED_BOUND * self.parts.sums((lengths, self.part_of_row[touching]))[0]
+        return (moved.sum() + np.sqrt((left**2).sum()), moved + left), looked + cycles
 
     def _springs(self):
         """Returns a spring for each pressing row: its stiffness when all dofs outside the row are fixed."""
         force = -self.multiplier.array_r
         stiffness = np.divide(1.0, self.compliance, out=np.zeros_like(self.compliance), where=self.compliance > 0.0)
-        presses = (force > PRESSING * np.sqrt(stiffness) * self.norm) & (force * self.compliance >= -self.violation)
+        presses = (force > PRESSING * np.sqrt(stiffness) * self.norm[self.part_of_row]) & (force * self.compliance >= -self.violation)
         return np.where(presses & (force > 0.0), stiffness, 0.0)
 
     def _product_with(self, springs, bounds):
@@ -210,14 +240,17 @@ class Answer:
 
         return product
 
-    def judged(self, bound):
-        """Returns the bound relative to the energy norm. A bound that rounding of u explains has no excess."""
-        least = 1e-28 * np.sqrt(self.rounding)
-        size = max(np.sqrt(max(self.strain - 1e-31 * self.rounding, 0.0)), AT_REST * self.force)
-        error = bound + least
-        explained = error <= ENTRY_ROUNDING * np.sqrt(self.rounding)
+    def judged(self, whole, of_parts):
+        """Returns the bounds relative to the energy norms. A bound that rounding of u explains has no excess."""
+        strain, rounding = np.r_[self.strain.sum(), self.strain], np.r_[self.rounding.sum(), self.rounding]
+        force = np.r_[self.force.max(), self.force]
+        sure = np.maximum(strain - OF_ENERGY * rounding, 0.0)
+        size = np.maximum(np.sqrt(sure), AT_REST * force)
+        error = np.r_[whole, of_parts] + LEAST * np.sqrt(rounding)
         share = relative(error, size)
-        return {"energy_error_bound": share, "energy_error_excess": 0.0 if explained else share, "bound_is_measured": True}
+        excess = np.where(error <= ENTRY_ROUNDING * np.sqrt(rounding), 0.0, share)
+        return {"energy_error_bound": float(share[0]), "part_error_bound": float(share.max()),
+                "energy_error_excess": float(excess.max()), "bound_is_measured": True, "parts": self.parts.count}
 
 
 def is_semidefinite(bounds, hierarchy):
@@ -241,36 +274,45 @@ def is_semidefinite(bounds, hierarchy):
     return True
 
 
-def dual_norm(ranks, product, hierarchy, force):
-    """Returns an upper bound on sqrt(r' K^-1 r), infinite if the Ritz value does not converge, and the number of cycles."""
+def dual_norm(parts, product, hierarchy, force, diagonal):
+    """Returns upper bounds on sqrt(r_p' K^-1 r_p) of each part p, and the number of cycles.
+
+    The bounds are infinite if the Ritz value does not converge. The conjugate gradients work on the forces of all parts at
+    once, scaled to the same size: otherwise the Ritz value would not see the parts with small forces.
+    """
+    part = parts.of_place
+    sizes = np.sqrt(parts.sums((force.array_r**2 / diagonal, part))[0])
+    sizes[sizes == 0.0] = 1.0
+    force = force.copy()
+    force.array[:] /= sizes[part]
     rest, solution = force.copy(), force.duplicate()
     solution.zeroEntries()
     p, moved, step = None, force.duplicate(), force.duplicate()
     lengths, shares, ritz, energy = [], [], np.inf, 1.0
     for cycles in range(1, MOST_CYCLES + 1):
         hierarchy.cycle(rest, step)
-        known, in_cycle, along, left = ranks.sum(
-            np.dot(solution.array_r, force.array_r) + np.dot(solution.array_r, rest.array_r),
-            np.dot(rest.array_r, step.array_r), np.dot(step.array_r, moved.array_r), np.abs(rest.array_r).sum())
-        if left == 0.0:
-            return np.sqrt(max(known, 0.0)), cycles - 1
+        known, in_cycle, along, left = parts.sums(
+            (solution.array_r * (force.array_r + rest.array_r), part), (rest.array_r * step.array_r, part),
+            (step.array_r * moved.array_r, part), (np.abs(rest.array_r), part))
+        if left.sum() == 0.0:
+            return sizes * np.sqrt(np.maximum(known, 0.0)), cycles - 1
         if p is None:
             p = step.copy()
         else:
             earlier, ritz = ritz, least_eigenvalue(lengths, shares)
             unknown = in_cycle / (SAFETY * ritz)
-            if unknown <= REST_SHARE * known and ritz >= (1.0 - SETTLED_RITZ) * earlier:
-                return np.sqrt(max(known + unknown, 0.0)), cycles
-            shares.append(-along / energy)
+            if unknown.sum() <= REST_SHARE * known.sum() and ritz >= (1.0 - SETTLED_RITZ) * earlier:
+                return sizes * np.sqrt(np.maximum(known + unknown, 0.0)), cycles
+            shares.append(-along.sum() / energy)
             p.aypx(shares[-1], step)
         product(p, moved)
-        energy, work = ranks.sum(np.dot(p.array_r, moved.array_r), np.dot(p.array_r, rest.array_r))
+        energy, work = parts.ranks.sum(np.dot(p.array_r, moved.array_r), np.dot(p.array_r, rest.array_r))
         if not (energy > 0.0 and work > 0.0):
             break
         lengths.append(work / energy)
         solution.axpy(lengths[-1], p)
         rest.axpy(-lengths[-1], moved)
-    return np.inf, cycles
+    return np.full(parts.count, np.inf), cycles
 
 
 def least_eigenvalue(lengths, shares):

@@ -37,6 +37,8 @@ class Problem:
         """Index set: the places of the free dofs, in the order of u.mtx."""
         self.modes = modes
         """Vectors: displacements with next to no energy (rigid body modes)."""
+        self.parts = None
+        """The sets of nodes that K couples; found when they are first needed."""
         self.first, self.last = stiffness.getOwnershipRange()
         self.is_free = np.zeros(self.last - self.first, dtype=bool)
         mark = load.duplicate()

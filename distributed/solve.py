@@ -114,7 +114,7 @@ def run(ranks, options):
     ranks.say(f"{problem.dofs} dofs, {problem.rows} contact rows on {ranks.size} ranks: {cycles} cycles, {int(closed)} closed "
               f"rows, force {-multiplier.sum():.6e}")
     ranks.say(f"{certified}: stationarity {numbers['stationarity']:.1e}, penetration {numbers['penetration']:.1e}, duality gap "
-              f"{numbers['duality_gap']:.1e}, energy error at most {numbers['energy_error_bound']:.1e}, measured")
+              f"{numbers['duality_gap']:.1e}, energy error at most {numbers['part_error_bound']:.1e}, measured")
     ranks.say("seconds: " + ", ".join(f"{name} {value:.2f}" for name, value in seconds.items())
               + f"; memory of all ranks: {memory / 1e9:.2f} GB")
     return 0 if is_certified else NOT_CERTIFIED

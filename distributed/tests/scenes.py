@@ -44,6 +44,16 @@ def on_an_inclined_support():
     return scene(box(5), supports[:1] + supports[2:] + [{"on": {"point": [0, 0, 0]}, "y": 0}], [SPHERE], gap=-0.01)
 
 
+def a_stiff_and_a_soft_body():
+    """Two blocks that nothing couples; the second one has a 1e5th of the stiffness."""
+    soft = box(4)
+    soft["box"]["x"] = {"points": [2, 3], "divisions": [4]}
+    sphere = {"sphere": {"apex": [2.5, 0.5, 1], "radius": 2}}
+    return scene(box(5), CLAMPED + [{"on": {"boundary": "soft.bottom"}, "x": 0, "y": 0, "z": 0}],
+                 [SPHERE, SPHERE | {"boundary": "soft.top", "shape": sphere}], gap=-0.01) | {
+        "further-bodies": [{"name": "soft", "body": soft, "material": {"young": 1e2, "poisson": 0.3}}]}
+
+
 def held_by_contact():
     """A box without supports, which a load pushes into the corner of three walls."""
     walls = [plane("bottom", "-z", [0, 0, -1]), plane("left", "-x", [-1, 0, 0]), plane("front", "-y", [0, -1, 0])]

@@ -30,6 +30,7 @@ import hierarchy as hierarchies
 import problem as problems
 from bounds import Bounds
 from hierarchy import Hierarchy, built
+from parts import components
 from problem import in_rows
 
 SIGNORINI = os.environ.get("SIGNORINI", "signorini")
@@ -277,9 +278,34 @@ class Memory(Case):
         self.assertLess(held[1], MORE * held[0])
 
 
+class Components(unittest.TestCase):
+    def test_components_of_random_graphs_are_those_of_a_plain_search(self):
+        random = np.random.default_rng(7)
+        for _ in range(200):
+            count, edges = random.integers(1, 40), random.integers(0, 50)
+            one, other = random.integers(0, count, (2, edges))
+            label, is_changed = np.arange(count), True
+            while is_changed:
+                before = label.copy()
+                for a, b in zip(one, other):
+                    label[[a, b]] = min(label[a], label[b])
+                is_changed = np.any(label != before)
+            nodes = np.r_[one, other]
+            order = np.argsort(nodes, kind="stable")
+            found = components(count, nodes[order], np.r_[other, one][order])
+            np.testing.assert_array_equal(found, label)
+
+
 class Certificates(Case):
     def test_the_certificate_has_the_numbers_of_signorini_verify(self):
-        problem = self.exported(scenes.pressed_by_sphere(6))
+        self.compare(scenes.pressed_by_sphere(6), 1)
+
+    def test_the_certificate_of_uncoupled_bodies_has_the_numbers_of_signorini_verify(self):
+        self.compare(scenes.a_stiff_and_a_soft_body(), 2)
+
+    def compare(self, scene, parts):
+        """Compares the certificates of a good and of a bad answer with those of signorini verify."""
+        problem = self.exported(scene)
         out = self.solved(2, problem)
         u, forces = array(out / "u.mtx"), array(out / "lambda.mtx")
         # An answer with every fault: unbalanced forces, a force that pulls, rows that penetrate.
@@ -293,12 +319,14 @@ class Certificates(Case):
             theirs = json.loads(done.stdout)["certificate"]
             for ranks in (1, 3):
                 ours = json.loads(mpi(ranks, "verify.py", problem, *files, check=False).stdout)["certificate"]
+                self.assertEqual((ours["parts"], theirs.get("parts", 1)), (parts, parts))
                 for name in ("stationarity", "stationarity_excess", "penetration", "adhesion", "complementarity", "duality_gap"):
                     self.assertLessEqual(abs(ours[name] - theirs[name]), SUMMED * theirs[name] + LAST, name)
-                ratio = ours["energy_error_bound"] / theirs["energy_error_bound"]
-                self.assertGreater(ratio, 1.0 / MEASURED)
-                if answer == out:
-                    self.assertLess(ratio, MEASURED)
+                for name in ("energy_error_bound", "part_error_bound"):
+                    ratio = ours[name] / theirs.get(name, theirs["energy_error_bound"])
+                    self.assertGreater(ratio, 1.0 / MEASURED, name)
+                    if answer == out:
+                        self.assertLess(ratio, MEASURED, name)
 
     def test_a_wrong_answer_is_not_certified(self):
         problem = self.exported(scenes.pressed_by_sphere(4))
@@ -307,6 +335,21 @@ class Certificates(Case):
         done = mpi(2, "verify.py", problem, self.folder / "u.mtx", out / "lambda.mtx", check=False)
         self.assertEqual(done.returncode, 4)
         self.assertEqual(json.loads(done.stdout)["status"], "not_certified")
+
+    def test_an_error_in_a_soft_body_is_not_hidden_by_the_energy_of_a_stiff_one(self):
+        problem = self.exported(scenes.a_stiff_and_a_soft_body())
+        out = self.solved(1, problem)
+        u = array(out / "u.mtx")
+        with (problem / "dofs.csv").open() as stream:
+            soft = np.array([float(line["x"]) > 1.5 for line in csv.DictReader(stream)])
+        # The bound of the whole allows this: the soft body has a 1e5th of the energy.
+        u[soft] *= 1.0 + 1e-4
+        written(self.folder / "u.mtx", u.tolist())
+        done = mpi(3, "verify.py", problem, self.folder / "u.mtx", out / "lambda.mtx", "--tolerance", "1e-5", check=False)
+        numbers = json.loads(done.stdout)["certificate"]
+        self.assertEqual(done.returncode, 4)
+        self.assertGreater(numbers["part_error_bound"], 1e-5)
+        self.assertLess(numbers["energy_error_bound"], 1e-5)
 
     def test_an_answer_of_another_problem_is_refused(self):
         problem = self.exported(scenes.pressed_by_sphere(4))
