@@ -197,7 +197,7 @@ pub enum Error {
         message: String,
     },
     /// A scene with JSON of the wrong form or with a wrong value, at its place in the text.
-    #[error("{source_name}:{line}:{column}: at `{path}`: {message}")]
+    #[error("{source_name}:{line}:{column}: at {}: {message}", place_in_scene(path))]
     SceneSyntax {
         /// The file, or `scene` if it came as text.
         source_name: String,
@@ -205,7 +205,7 @@ pub enum Error {
         line: usize,
         /// Column, from 1.
         column: usize,
-        /// JSON path of the field.
+        /// JSON path of the field; `.` for the scene itself.
         path: String,
         /// A sentence on what is wrong, and what is allowed.
         message: String,
@@ -351,6 +351,11 @@ fn lost_digits(solution: &Solution) -> String {
     )
 }
 
+/// A JSON path in words; `.` is the scene itself.
+fn place_in_scene(path: &str) -> String {
+    if path == "." { "the top level".to_string() } else { format!("`{path}`") }
+}
+
 /// Bytes in readable units.
 pub(crate) fn memory(bytes: f64) -> String {
     if bytes < 1e9 { format!("{:.0} MB", bytes / 1e6) } else { format!("{:.1} GB", bytes / 1e9) }
@@ -360,11 +365,16 @@ pub(crate) fn memory(bytes: f64) -> String {
 const LONGEST_NAME: usize = 100;
 
 /// `; did you mean ...?` for a name that differs from one of `names` by a few letters, otherwise nothing.
+pub(crate) fn nearly<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+    nearest(name, names).map_or_else(String::new, |other| format!("; did you mean `{other}`?"))
+}
+
+/// The nearest of `names` if it differs from `name` by a few letters.
 ///
 /// One letter in three may be replaced, missing, added, or exchanged with its neighbour.
-pub(crate) fn nearly<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+pub(crate) fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if name.len() > LONGEST_NAME {
-        return String::new();
+        return None;
     }
     let length = name.chars().count();
     let most = length.max(3) / 3;
@@ -374,5 +384,5 @@ pub(crate) fn nearly<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -
     let near = others.map(|other| (away(other), other));
     // A name of one letter that differs has no letter in common.
     let near = near.filter(|(away, other)| *away <= most && *away < length.max(other.chars().count()));
-    near.min_by_key(|(away, _)| *away).map_or_else(String::new, |(_, other)| format!("; did you mean `{other}`?"))
+    near.min_by_key(|(away, _)| *away).map(|(_, other)| other)
 }

@@ -19,6 +19,7 @@ mod solve;
 mod sweep;
 mod total_error;
 mod tradeoff;
+mod usage;
 mod verify;
 
 use std::ffi::OsString;
@@ -34,12 +35,15 @@ use interrupt::INTERRUPTED;
 use options::{Arguments, Command};
 use outcome::{Ending, Outcome, Pictures, warn};
 use progress::Progress;
+use usage::with_nearest_option;
 
 /// Runs the program with `arguments`; the first one is its name.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let given: Vec<OsString> = arguments.into_iter().collect();
+    let arguments = match Arguments::try_parse_from(&given) {
         Ok(arguments) => arguments,
         Err(help) => {
+            let help = with_nearest_option(help, &given);
             // With a closed pipe there is no reader for an error.
             let _ = help.print();
             return ExitCode::from(help.exit_code() as u8);

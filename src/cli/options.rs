@@ -16,7 +16,7 @@ use crate::qp::{Method, Precision};
 #[derive(Debug, Parser)]
 #[command(name = "signorini", version, arg_required_else_help = true)]
 #[command(after_help = "\
-Exit codes: 0 certified, 1 bad input or file, 2 usage, 3 infeasible, unbounded or under-held,
+Exit codes: 0 certified, 1 bad input or file, 2 usage, 3 infeasible, unbounded or not held,
             4 not certified or an unstable motion, 130 interrupted, with what was found until then.
 
 Example: signorini compare examples/indentation.json --out indentation")]
@@ -33,8 +33,8 @@ pub(super) struct Arguments {
 
 /// The meaning of three similar options.
 const KNOBS: &str = "\
---tolerance is how well the conditions of contact hold, --accuracy how far off the displacement may be,
---time when the program must be done.";
+--tolerance bounds the violation of the contact conditions, --accuracy the error of the displacement,
+--time the seconds of the program.";
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
@@ -61,7 +61,7 @@ Example: signorini sweep examples/indentation.json --gaps -0.01:-0.10:10 --out s
 
 A problem directory is swept from g.mtx and f.mtx to g1.mtx and f1.mtx, on a straight line.")]
     Sweep(Sweep),
-    /// Solve a scene or a problem directory in every way, and say what each digit costs
+    /// Solve a scene or a problem directory by every method, and print the seconds that each digit costs
     #[command(after_help = "Example: signorini tradeoff examples/indentation.json --refinements 2 --time 60")]
     Tradeoff(Tradeoff),
     /// Write the problem of a scene as Matrix Market or PETSc files
@@ -69,14 +69,14 @@ A problem directory is swept from g.mtx and f.mtx to g1.mtx and f1.mtx, on a str
 Example: signorini export examples/ball.json ball
          signorini export examples/ball.json ball --format petsc
 
-The bytes that it writes are told on standard error before it begins; they go to the files piece by piece.")]
+Before it begins it prints the number of bytes that it writes on standard error; they go to the files piece by piece.")]
     Export(Export),
-    /// Certify an answer that came from elsewhere
+    /// Certify an answer of another program
     #[command(after_help = "\
 Example: signorini verify problem --displacement u.mtx --multiplier lambda.mtx
 
 The energy error is bounded with a factor of the stiffness if that fits into the memory and the time; else by multigrid,
-and the bound is then `measured`.")]
+and the bound then rests on a measured eigenvalue.")]
     Verify(Verify),
     /// Print the JSON Schema of a scene
     #[command(after_help = "\
@@ -123,7 +123,7 @@ fn parse_picture(text: &str) -> Result<Picture, String> {
     match path.extension().map(|ending| ending.to_ascii_lowercase()) {
         Some(ending) if ending == "png" => Ok(Picture::Png(path)),
         Some(ending) if ending == "svg" => Ok(Picture::Svg(path)),
-        _ => Err("the name must end in .png or .svg".to_string()),
+        _ => Err("the name of the picture must end in .png or .svg".to_string()),
     }
 }
 
@@ -175,7 +175,7 @@ impl ValueEnum for Pictures {
     fn to_possible_value(&self) -> Option<PossibleValue> {
         let (name, help) = match self {
             Pictures::None => ("none", "No picture"),
-            Pictures::Answer => ("answer", "What the command ends with"),
+            Pictures::Answer => ("answer", "The final answer of the command"),
             Pictures::All => ("all", "Each iteration, penalty, gap and force as well"),
         };
         Some(PossibleValue::new(name).help(help))
@@ -210,16 +210,16 @@ pub(super) struct Solve {
     /// Method that finds the contact set
     #[arg(long, value_enum, default_value_t = Method::Auto)]
     pub method: Method,
-    /// Relative error in the energy norm that is good enough, certified; or `exact`: the linear solve with the settled contact set
+    /// Allowed relative error in the energy norm, certified; or `exact`: the linear solve with the final contact set
     #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = parse_accuracy)]
     pub accuracy: Option<Accuracy>,
     /// Seconds after which the best answer so far is returned, or a motion ends
     #[arg(long, visible_alias = "time-limit", value_name = "T", allow_negative_numbers = true, value_parser = parse_seconds)]
     pub time: Option<f64>,
-    /// Tell what was weighed when the method was chosen, and what decided
+    /// Print the estimated seconds and memory of each method, and the reason for the choice
     #[arg(long)]
     pub explain: bool,
-    /// Start from the answer that an earlier --out left in this folder (u.mtx, lambda.mtx)
+    /// Start from the answer that an earlier run with --out wrote into this folder (u.mtx, lambda.mtx)
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["total_error", "resume"])]
     pub start: Option<PathBuf>,
     /// Precision of the sparse factor
@@ -231,15 +231,15 @@ pub(super) struct Solve {
     /// Extrapolate the penalty answer to an infinite penalty
     #[arg(long)]
     pub extrapolate: bool,
-    /// Refine the mesh until the error against the continuum, relative in the energy norm, is below: guaranteed in the plane, else
-    /// estimated
+    /// Refine the mesh until the error against the continuum, relative in the energy norm, is below E: guaranteed in the plane,
+    /// estimated elsewhere
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_total_error,
           conflicts_with_all = ["accuracy", "extrapolate", "resume"])]
     pub total_error: Option<f64>,
-    /// And until the contact force is guaranteed to be within this relative error
+    /// Refine further until the contact force is guaranteed to this relative error
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_total_error, requires = "total_error")]
     pub force_error: Option<f64>,
-    /// Go on with the motion that stands in the folder of --out, to a longer duration if the scene now says so
+    /// Continue the motion in the folder of --out; the scene may have a longer duration than before
     #[arg(long, requires = "out")]
     pub resume: bool,
     #[command(flatten)]
@@ -275,7 +275,7 @@ pub(super) struct Sweep {
     /// Forces on the obstacle that a force presses, from the first to the last, and their number, as 0:10e3:11
     #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_forces)]
     pub forces: Option<Gaps>,
-    /// Points on the way of a problem directory, both ends included
+    /// Number of points between the two ends of a problem directory, both ends included
     #[arg(long, value_name = "COUNT", value_parser = parse_points)]
     pub points: Option<usize>,
     /// Method that finds the contact sets
@@ -431,7 +431,7 @@ pub(super) struct Common {
     /// Pictures in that folder [default: answer; of compare and sweep: all]
     #[arg(long, value_enum, value_name = "WHICH")]
     pub pictures: Option<Pictures>,
-    /// What the pictures are for
+    /// Use of the pictures: on a screen, or printed on paper
     #[arg(long, value_enum, default_value_t = Medium::Screen)]
     pub style: Medium,
     /// Form of the report
@@ -441,12 +441,12 @@ pub(super) struct Common {
 
 #[derive(Debug, Args)]
 pub(super) struct Tradeoff {
-    /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx), whose algebra alone is measured
+    /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx; it has no mesh to refine)
     pub input: PathBuf,
     /// Finer meshes beside the scene's own, each with half the cells; 1 if neither this nor --time is given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=8))]
     pub refinements: Option<u8>,
-    /// Begin no finer mesh that would end later than this many seconds after the start; without --refinements as many as that allows
+    /// Begin no finer mesh that would end later than T seconds after the start; without --refinements the time alone limits the meshes
     #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_seconds)]
     pub time: Option<f64>,
     /// Runs of each point, of which the fastest counts
@@ -463,7 +463,7 @@ pub(super) struct Tradeoff {
     /// Pictures in that folder; answer and all are the same here
     #[arg(long, value_enum, value_name = "WHICH", default_value_t = Pictures::Answer)]
     pub pictures: Pictures,
-    /// What the pictures are for
+    /// Use of the pictures: on a screen, or printed on paper
     #[arg(long, value_enum, default_value_t = Medium::Screen)]
     pub style: Medium,
     /// Form of the report

@@ -42,6 +42,9 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
     let mut text = format!("{}\n", printable(title));
     let mut line = |name: &str, content: String| text += &entry(name, &content);
     line("model", format!("{mesh}{} dofs, {}", model.dofs, plural(model.contact_rows, "contact row")));
+    if let Some(overlap) = &summary.initial_overlap {
+        wrapped(&printable(overlap)).into_iter().for_each(|overlap| line("", overlap));
+    }
     let unknowns = match model.condensed_dofs {
         all if all == model.dofs => ", on all dofs".to_string(),
         condensed => format!(", condensed to {condensed} dofs"),

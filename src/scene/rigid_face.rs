@@ -62,8 +62,10 @@ impl Scene {
             let face = RigidFace::of(spec, &path, body)?;
             for &node in &face.nodes {
                 if let Some(other) = owner.insert(node, index) {
-                    let message =
-                        format!("node {node} belongs to rigid-faces[{other}] too; a node moves with one face");
+                    let at = point(&body.mesh().nodes()[node][..body.dimension()]);
+                    let message = format!(
+                        "node {node} at {at} belongs to rigid-faces[{other}] too; each node may move with one face only"
+                    );
                     return Err(wrong(format!("{path}.boundary"), message));
                 }
                 face.release(node, body.mesh().nodes()[node], held, &path)?;

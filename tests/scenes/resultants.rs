@@ -151,7 +151,7 @@ fn what_forces_are_those_of_is_said() {
     let clamp = json!([{"on": {"boundary": "bottom"}, "x": 0, "y": 0}]);
     assert_eq!(basis(&|scene| scene["supports"] = clamp.clone()), "per metre");
     // Rollers on flat sides may be planes of symmetry.
-    assert_eq!(basis(&|_| {}), "per metre, of the modelled part");
+    assert_eq!(basis(&|_| {}), "per metre, of the meshed part: a plane of symmetry at a sliding support doubles it");
     assert_eq!(
         basis(&|scene| (scene["supports"], scene["thickness"]) = (clamp.clone(), json!(0.1))),
         "of a thickness of 0.1 m"

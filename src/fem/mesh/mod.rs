@@ -90,7 +90,10 @@ impl Mesh {
         let mut used = vec![false; nodes.len()];
         self.connectivity.iter().for_each(|&node| used[node] = true);
         match used.iter().position(|used| !used) {
-            Some(node) => fail(format!("node {node} belongs to no element")),
+            Some(node) => fail(format!(
+                "node {node} belongs to no element; it lies at {:?}: remove it",
+                &nodes[node][..self.dimension()]
+            )),
             None => Ok(()),
         }
     }
