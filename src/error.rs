@@ -62,8 +62,8 @@ pub enum Error {
     },
     /// A stiffness given with both triangles, which differ.
     #[error(
-        "the stiffness is not symmetric: entry ({row}, {column}) is {value:e}, entry ({column}, {row}) is {mirrored:e} \
-         (indices from 0); give both triangles alike, or declare one"
+        "the stiffness is not symmetric: entry ({row}, {column}) is {value:e}, entry ({column}, {row}) is \
+         {mirrored:e} (indices from 0); give both triangles with equal entries, or only the lower one"
     )]
     NotSymmetric {
         /// Row, from 0.
@@ -153,8 +153,8 @@ pub enum Error {
     },
     /// A scene or a problem that needs more memory than it may take.
     #[error(
-        "it needs about {} of memory, but {} are allowed: about {dofs:.0e} dofs, {stiffness_entries:.0e} entries \
-         of the stiffness, {factor_entries:.0e} of its factor; take larger cells, or allow more",
+        "the problem needs about {} of memory, but {} are allowed: about {dofs:.0e} dofs, {stiffness_entries:.0e} \
+         entries of the stiffness, {factor_entries:.0e} of its factor; take larger cells, or allow more memory",
         memory(*bytes),
         memory(*allowed)
     )]
@@ -223,9 +223,9 @@ pub enum Error {
         message: String,
     },
     /// A scene with values that do not describe a problem.
-    #[error("scene, at `{path}`: {message}")]
+    #[error("{} `{path}`: {message}", if path.starts_with("--") { "option" } else { "scene, at" })]
     Scene {
-        /// JSON path of the value.
+        /// JSON path of the value, or the option of the program.
         path: String,
         /// A sentence on what is wrong, and what is allowed.
         message: String,
@@ -332,12 +332,13 @@ fn no_room(factor: f64, multigrid: f64, allowed: f64, ended: Option<&str>) -> St
     let [factor, multigrid, allowed] = [factor, multigrid, allowed].map(memory);
     match ended {
         None => format!(
-            "neither way fits into {allowed}: with a factor of the stiffness it takes about {factor}, with multigrid about \
-             {multigrid}; take larger cells, or allow more"
+            "the problem does not fit into {allowed} of memory: a factor of the stiffness takes about {factor}, \
+             multigrid about {multigrid}; take larger cells, or allow more memory"
         ),
         Some(ended) => format!(
-            "no way within {allowed} gives a certified answer: multigrid, of about {multigrid}, ended where {ended}, and \
-             with a factor of the stiffness it takes about {factor}; allow more"
+            "no method gives a certified answer within {allowed} of memory: multigrid, which takes about \
+             {multigrid}, ended because {ended}, and a factor of the stiffness takes about {factor}; allow more \
+             memory"
         ),
     }
 }
@@ -346,8 +347,9 @@ fn no_room(factor: f64, multigrid: f64, allowed: f64, ended: Option<&str>) -> St
 fn lost_digits(solution: &Solution) -> String {
     let Some(pivot) = solution.lost_pivot else { return String::new() };
     format!(
-        "; the stiffness has lost its digits (smallest pivot {pivot:.0e} of its diagonal), as slender bodies in bending do: take \
-         fewer elements along the thickness, quadratic elements, or a beam; or hold the body by more supports"
+        "; the stiffness has lost digits to rounding (smallest pivot {pivot:.0e} of its diagonal), as in slender \
+         bodies in bending: take fewer elements along the thickness, quadratic elements, or a beam; or hold the \
+         body by more supports"
     )
 }
 

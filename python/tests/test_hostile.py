@@ -161,7 +161,7 @@ HOSTILE: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "load of another length": (lambda: sg.prepare(two_springs()).solve(f=[1.0]), ValueError, "length 1"),
     "gap of text": (lambda: sg.prepare(two_springs()).solve(["a"]), TypeError, "g is"),
     "scene of a number": (lambda: sg.Scene(3), TypeError, "not of a int"),  # type: ignore[arg-type]
-    "scene of nothing": (lambda: sg.Scene({}), sg.SceneError, "missing field"),
+    "scene of nothing": (lambda: sg.Scene({}), sg.SceneError, "is missing"),
     "scene that is no JSON": (lambda: sg.Scene({"body": {1, 2}}), TypeError, "no place for a set"),
     "scene in itself": (lambda: sg.Scene(circle()), ValueError, "JSON"),
     "scene without a file": (lambda: sg.Scene("nowhere.json"), OSError, "cannot read nowhere.json"),

@@ -49,7 +49,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             return ExitCode::from(help.exit_code() as u8);
         }
     };
-    let watch = if arguments.progress { progress::told() } else { Watch::default() };
+    let watch = if arguments.progress { progress::printed() } else { Watch::default() };
     interrupt::listen(&watch);
     watch.step("assembly", 0);
     let line = || (!arguments.progress && !arguments.quiet).then(|| Progress::of(&watch));

@@ -17,7 +17,7 @@ use crate::qp::{Method, Precision};
 #[command(name = "signorini", version, arg_required_else_help = true)]
 #[command(after_help = "\
 Exit codes: 0 certified, 1 bad input or file, 2 usage, 3 infeasible, unbounded or not held,
-            4 not certified or an unstable motion, 130 interrupted, with what was found until then.
+            4 not certified or an unstable motion, 130 interrupted, with the results so far.
 
 Example: signorini compare examples/indentation.json --out indentation")]
 pub(super) struct Arguments {
@@ -159,7 +159,7 @@ impl ValueEnum for Precision {
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
         let (name, help) = match self {
-            Precision::Auto => ("auto", "Double, unless an accuracy is asked for that single precision reaches sooner"),
+            Precision::Auto => ("auto", "Double, unless single precision reaches the requested --accuracy sooner"),
             Precision::Double => ("double", "Double precision"),
             Precision::Mixed => ("mixed", "Single precision, half the memory, refined in double precision"),
         };
@@ -269,10 +269,10 @@ pub(super) struct Sweep {
     /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, or the same as .petsc, and g1.mtx or f1.mtx or
     /// both for its other end)
     pub scene: PathBuf,
-    /// Gaps from the first to the last, and their number, as -0.01:-0.10:10
+    /// Gaps from the first to the last, and their number, such as -0.01:-0.10:10
     #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_gaps)]
     pub gaps: Option<Gaps>,
-    /// Forces on the obstacle that a force presses, from the first to the last, and their number, as 0:10e3:11
+    /// Forces on the obstacle that a force presses, from the first to the last, and their number, such as 0:10e3:11
     #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_forces)]
     pub forces: Option<Gaps>,
     /// Number of points between the two ends of a problem directory, both ends included
@@ -297,7 +297,7 @@ pub(super) struct Gaps {
 const MOST_GAPS: usize = 10_000;
 
 fn parse_gaps(text: &str) -> Result<Gaps, String> {
-    parse_range(text, "gap", "it must be FIRST:LAST:COUNT, as -0.01:-0.10:10")
+    parse_range(text, "gap", "it must be FIRST:LAST:COUNT, such as -0.01:-0.10:10")
 }
 
 fn parse_points(text: &str) -> Result<usize, String> {
@@ -308,7 +308,7 @@ fn parse_points(text: &str) -> Result<usize, String> {
 }
 
 fn parse_forces(text: &str) -> Result<Gaps, String> {
-    let form = "it must be FIRST:LAST:COUNT, as 0:10e3:11";
+    let form = "it must be FIRST:LAST:COUNT, such as 0:10e3:11";
     let forces = parse_range(text, "force", form)?;
     match forces.first.min(forces.last) {
         least if least < 0.0 => Err(format!("{least} would pull the obstacle away: forces are 0 or positive; {form}")),
@@ -337,7 +337,7 @@ fn parse_range(text: &str, of: &str, form: &str) -> Result<Gaps, String> {
 fn parse_seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        _ => Err("it must be a positive number of seconds, as 2.5".to_string()),
+        _ => Err("it must be a positive number of seconds, such as 2.5".to_string()),
     }
 }
 
@@ -347,16 +347,16 @@ const LARGEST_TOLERANCE: f64 = 0.1;
 fn parse_tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value <= LARGEST_TOLERANCE => Ok(value),
-        _ => {
-            Err(format!("it must be a number above 0 and at most {LARGEST_TOLERANCE}, as 1e-9: it is a relative error"))
-        }
+        _ => Err(format!(
+            "it must be a number above 0 and at most {LARGEST_TOLERANCE}, such as 1e-9: it is a relative error"
+        )),
     }
 }
 
 fn parse_total_error(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
-        _ => Err("it must be a number above 0 and below 1, as 1e-2: it is a relative error".to_string()),
+        _ => Err("it must be a number above 0 and below 1, such as 1e-2: it is a relative error".to_string()),
     }
 }
 
@@ -372,9 +372,9 @@ pub(super) enum Accuracy {
 fn parse_accuracy(text: &str) -> Result<Accuracy, String> {
     match text {
         "exact" => Ok(Accuracy::Exact),
-        number => parse_tolerance(number)
-            .map(Accuracy::Within)
-            .map_err(|_| format!("it must be a number above 0 and at most {LARGEST_TOLERANCE}, as 1e-3, or `exact`")),
+        number => parse_tolerance(number).map(Accuracy::Within).map_err(|_| {
+            format!("it must be a number above 0 and at most {LARGEST_TOLERANCE}, such as 1e-3, or `exact`")
+        }),
     }
 }
 
@@ -391,7 +391,7 @@ fn parse_threads(text: &str) -> Result<usize, String> {
 /// Limits of memory and files for a scene or a problem.
 #[derive(Debug, Args)]
 pub(super) struct Limits {
-    /// Refuse what needs more memory, as 500MB or 1.5GB [default: what the machine has available]
+    /// Refuse a problem that needs more memory, such as 500MB or 1.5GB [default: what the machine has available]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<f64>,
     /// Let the scene read files of meshes and surfaces that lie outside its own folder
@@ -512,7 +512,7 @@ pub(super) struct Verify {
     /// Threads of the factorisation and of multigrid
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = parse_threads)]
     pub threads: usize,
-    /// Refuse what needs more memory, as 500MB or 1.5GB [default: what the machine has available]
+    /// Refuse a problem that needs more memory, such as 500MB or 1.5GB [default: what the machine has available]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<f64>,
     /// Form of the report

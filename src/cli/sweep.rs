@@ -24,12 +24,15 @@ pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
         (true, None) => {
             let given = if options.gaps.is_some() { "--gaps" } else { "--forces" };
             let name = options.scene.display();
-            let message = format!("{name} is a problem directory, whose other end is g1.mtx, f1.mtx: give --points");
+            let message = format!(
+                "{name} is a problem directory, which is swept from g.mtx, f.mtx to g1.mtx, f1.mtx; give --points \
+                 instead"
+            );
             Err(Error::Scene { path: given.into(), message })
         }
         (false, Some(_)) => {
             let name = options.scene.display();
-            let message = format!("{name} is no problem directory; a scene is swept over --gaps or --forces");
+            let message = format!("{name} is not a problem directory; a scene is swept over --gaps or --forces");
             Err(Error::Scene { path: "--points".into(), message })
         }
         (false, None) => of_scene(options, watch),

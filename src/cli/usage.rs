@@ -32,6 +32,7 @@ fn nearest_option(unknown: &str, given: &[OsString]) -> Option<String> {
     let is_given = |command: &&Command| given.iter().skip(1).any(|word| word == command.get_name());
     let command = program.get_subcommands().find(is_given);
     let options = program.get_arguments().chain(command.into_iter().flat_map(Command::get_arguments));
-    let names: Vec<&str> = options.flat_map(|option| option.get_long_and_visible_aliases().unwrap_or_default()).collect();
+    let names: Vec<&str> =
+        options.flat_map(|option| option.get_long_and_visible_aliases().unwrap_or_default()).collect();
     nearest(unknown.trim_start_matches('-'), names).map(|name| format!("--{name}"))
 }

@@ -63,7 +63,7 @@ impl Field {
         }
     }
 
-    /// Outlines of the region where the field is at least `level`; of the whole mesh for minus infinity.
+    /// Outlines of the region with a field of at least `level`; of the whole mesh for minus infinity.
     pub fn at_least(&self, level: f64) -> Vec<Vec<[f64; 2]>> {
         let mut pieces = Vec::new();
         for triangle in &self.triangles {

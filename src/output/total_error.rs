@@ -103,7 +103,9 @@ fn force_text(found: &TotalError, units: &Units) -> String {
 
 /// The unknowns that the goal would need, from the rate of the last meshes.
 fn needed(found: &TotalError) -> String {
-    let [.., before, last] = &found.levels[..] else { return "a second mesh would tell what the goal takes".into() };
+    let [.., before, last] = &found.levels[..] else {
+        return "a second mesh is needed to estimate the unknowns for the goal".into();
+    };
     let rate = (before.bound / last.bound).ln() / (last.dofs as f64 / before.dofs as f64).ln();
     unknowns_needed(rate, last.bound / found.goal.total_error, last.dofs)
 }
@@ -112,8 +114,8 @@ fn needed(found: &TotalError) -> String {
 pub(super) fn unknowns_needed(rate: f64, times: f64, dofs: usize) -> String {
     let more = times.powf(1.0 / rate);
     match rate > 0.0 && more.is_finite() {
-        true => format!("the goal would take about {:.1e} unknowns", more.max(1.0) * dofs as f64),
-        false => "the last meshes do not tell what the goal would take".into(),
+        true => format!("the goal needs about {:.1e} unknowns", more.max(1.0) * dofs as f64),
+        false => "the last meshes do not give an estimate of the unknowns for the goal".into(),
     }
 }
 

@@ -20,9 +20,8 @@ const NO_PROBLEM: &str = "the folder has neither K.mtx nor K.petsc; a problem di
 pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     match forms(directory) {
         [true, true] => {
-            let both = format!("{} and {} both stand there", matrix_market::STIFFNESS, petsc::STIFFNESS);
-            let source =
-                io::Error::new(io::ErrorKind::InvalidInput, format!("{both}; take the files of one form away"));
+            let both = format!("the folder has both {} and {}", matrix_market::STIFFNESS, petsc::STIFFNESS);
+            let source = io::Error::new(io::ErrorKind::InvalidInput, format!("{both}; remove the files of one form"));
             Err(Error::File { action: "read", path: directory.to_path_buf(), source })
         }
         [false, true] => petsc::read_problem(directory),

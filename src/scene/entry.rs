@@ -67,13 +67,14 @@ pub(super) fn six_digits(value: f64) -> f64 {
 pub(super) fn vector(path: &str, entries: &[f64], dimension: usize) -> Result<[f64; 3], Error> {
     if entries.len() != dimension {
         let entry = if entries.len() == 1 { "entry" } else { "entries" };
-        let (room, names) = [
-            ("a bar", "[x]"),
-            ("a plane or axisymmetric model", "[x, y]"),
-            ("a model in space", "[x, y, z]"),
-        ][dimension - 1];
+        let (room, names) =
+            [("a bar", "[x]"), ("a plane or axisymmetric model", "[x, y]"), ("a model in space", "[x, y, z]")]
+                [dimension - 1];
         let found = entries.len();
-        return Err(wrong(path, format!("the array has {found} {entry}, but must have {dimension} in {room}: {names}")));
+        return Err(wrong(
+            path,
+            format!("the array has {found} {entry}, but must have {dimension} in {room}: {names}"),
+        ));
     }
     let mut vector = [0.0; 3];
     for (index, (place, &entry)) in vector.iter_mut().zip(entries).enumerate() {

@@ -36,7 +36,7 @@ pub struct ContactRow {
 
 impl ContactRow {
     /// The tributary area projected along `normal`: a pressure times this area is the force of the row. The area itself if the boundary
-    /// faces away from the obstacle, where there is no force.
+    /// faces away from the obstacle and carries no force.
     pub fn projected_area(&self) -> f64 {
         let facing = dot(self.normal, self.outward);
         if facing > 0.0 { self.tributary_area * facing.min(1.0) } else { self.tributary_area }

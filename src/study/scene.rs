@@ -205,7 +205,7 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
 
 impl Sweep {
     /// Solves a scene at every one of `forces`, 0 or positive, of the one obstacle that a force presses. At the force 0 the obstacle
-    /// stands where it first touches the body.
+    /// stands at its first contact with the body.
     ///
     /// # Errors
     /// [`Error::Scene`] if a force presses no obstacle or several, or for a force that is negative or not finite; as [`solve`];

@@ -144,7 +144,7 @@ fn across_approach(answer: &Answer) -> Option<AnswerWarning> {
     Some(AnswerWarning { code: "across-approach", message })
 }
 
-/// Warns that the body penetrates an obstacle between its nodes, where no row exists.
+/// Warns that the body penetrates an obstacle between its nodes: only nodes have rows.
 fn between_nodes(answer: &Answer) -> Option<AnswerWarning> {
     let model = answer.model();
     let (nodes, dimension) = (model.mesh().nodes(), model.mesh().dimension());
@@ -215,7 +215,7 @@ fn written(gap: f64) -> String {
     }
 }
 
-/// Warns that rows along the approach direction carry force where the surface is inclined: the force of a frictionless contact is along
+/// Warns that rows along the approach direction carry force on an inclined surface: the force of a frictionless contact is along
 /// its normal.
 fn leaning_normals(answer: &Answer) -> Option<AnswerWarning> {
     let model = answer.model();
@@ -273,7 +273,10 @@ fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<AnswerWarning> 
         reasons.push(match small {
             1 => format!("a contact of obstacles[{}] closes only {nodes}", first.obstacle),
             _ => {
-                format!("{small} contacts close one or two nodes each, such as {nodes} of obstacles[{}]", first.obstacle)
+                format!(
+                    "{small} contacts close one or two nodes each, such as {nodes} of obstacles[{}]",
+                    first.obstacle
+                )
             }
         });
     }

@@ -119,8 +119,8 @@ fn line_ends_and_blank_lines_do_not_matter() {
 fn faults_of_files_have_their_line() {
     let cases = [
         (String::new(), 1, "without a section `$MeshFormat`"),
-        ("hello".into(), 1, "it is no mesh of Gmsh"),
-        (text(&V2[8..]), 1, "it is no mesh of Gmsh"),
+        ("hello".into(), 1, "this is not a mesh of Gmsh"),
+        (text(&V2[8..]), 1, "this is not a mesh of Gmsh"),
         (
             with(&V2, 2, "2.2 1 8"),
             2,
@@ -191,7 +191,7 @@ fn elements_that_make_no_body_are_refused_at_their_line() {
         (with(&V2, 22, "5 2 2 2 1 10 40 30"), 22, "element 5: the Jacobian determinant is"),
         (with(&V2, 22, "5 2 2 2 1 10 20 10"), 22, "element 5: the Jacobian determinant is 0e0"),
         (with(&V2, 12, "40 0 1 0.5"), 12, "node 40 has z = 0.5"),
-        (with(&V2, 19, "2 1 2 1 1 20 40"), 19, "element 2 of the physical group `floor` is no face of the body"),
+        (with(&V2, 19, "2 1 2 1 1 20 40"), 19, "element 2 of the physical group `floor` is not a face of the body"),
         (with(&V2, 19, "2 8 2 1 1 10 20 30"), 19, "one of three-node lines, but the faces of T3 have 2 nodes"),
     ];
     for (text, line, phrase) in cases {
@@ -212,7 +212,7 @@ fn kinds_that_no_body_is_made_of_are_refused_with_the_reason() {
         );
         check(&text, if number == 15 { 37 } else { 36 }, phrase);
     };
-    refused(12, 27, "quadratic bricks have 20 nodes here (in Gmsh, `Mesh.SecondOrderIncomplete = 1`)");
+    refused(12, 27, "quadratic bricks must have 20 nodes (in Gmsh, `Mesh.SecondOrderIncomplete = 1`)");
     refused(10, 9, "`Mesh.SecondOrderIncomplete = 1`");
     refused(6, 6, "six-node prisms are refused");
     refused(7, 5, "five-node pyramids are refused");

@@ -33,9 +33,13 @@ const STRESS: Formulation = Formulation::PlaneStress { thickness: 1.0 };
 
 #[test]
 fn elements_of_another_dimension_are_refused() {
-    refused(rectangle(&LINES, &LINES, ElementKind::Hex8), "mesh", &["a rectangle is no mesh of Hex8"]);
-    refused(ring([0.0; 2], &[1.0, 2.0], &[0.0, 90.0], ElementKind::Tet4), "mesh", &["a ring is no mesh of Tet4"]);
-    refused(cuboid(&LINES, &LINES, &LINES, ElementKind::Q4), "mesh", &["a box is no mesh of Q4"]);
+    refused(rectangle(&LINES, &LINES, ElementKind::Hex8), "mesh", &["a rectangle cannot have a mesh of Hex8"]);
+    refused(
+        ring([0.0; 2], &[1.0, 2.0], &[0.0, 90.0], ElementKind::Tet4),
+        "mesh",
+        &["a ring cannot have a mesh of Tet4"],
+    );
+    refused(cuboid(&LINES, &LINES, &LINES, ElementKind::Q4), "mesh", &["a box cannot have a mesh of Q4"]);
     refused(body(square(ElementKind::Q4), Formulation::Space), "mesh", &["a mesh of Q4 does not fit"]);
     refused(body(bar(&LINES).unwrap(), STRAIN), "mesh", &["a mesh of Line2 does not fit plane strain"]);
 }

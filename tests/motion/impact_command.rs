@@ -150,7 +150,7 @@ fn values_that_describe_no_motion_are_refused_in_a_sentence_and_nothing_is_writt
     let cases: Vec<(Value, &[&str])> = vec![
         (with("step", json!(0)), &["at `analysis.dynamic.step`", "0 is not allowed", "positive"]),
         (with("step", json!(-0.1)), &["at `analysis.dynamic.step`", "-0.1", "positive"]),
-        (with("step", json!(null)), &["analysis.dynamic.step", "null", "expected a number"]),
+        (with("step", json!(null)), &["analysis.dynamic.step", "null", "must be a number"]),
         (with("step", json!(3)), &["at `analysis.dynamic.step`", "longer than the duration 2"]),
         (
             of_explicit("step", json!(0.02)),
@@ -196,7 +196,7 @@ fn values_that_describe_no_motion_are_refused_in_a_sentence_and_nothing_is_writt
     }
     desk.write("scene.json", bar().to_string().replace("\"duration\":2", "\"duration\":2,\"step\":NaN"));
     desk.run(&["solve", "scene.json", "--out", "out"])
-        .fails_with(1, &["scene.json:1:", "at `analysis.dynamic.step`", "expected a JSON value"]);
+        .fails_with(1, &["scene.json:1:", "at `analysis.dynamic.step`", "expected a value of JSON"]);
     assert!(!desk.path("out").exists());
     let mut mass = with("scheme", json!("trapezoidal"));
     mass["analysis"]["dynamic"]["mass"] = json!("redistributed");
@@ -205,7 +205,7 @@ fn values_that_describe_no_motion_are_refused_in_a_sentence_and_nothing_is_writt
     for command in
         [&["compare", "scene.json"][..], &["sweep", "scene.json", "--gaps", "0:1:2"], &["export", "scene.json", "d"]]
     {
-        desk.run(command).fails_with(1, &["at `analysis`", "the scene moves"]);
+        desk.run(command).fails_with(1, &["at `analysis`", "the scene is a motion"]);
     }
 }
 

@@ -9,10 +9,10 @@ fn exit_code_1_means_bad_input() {
     let desk = Desk::new();
     desk.write("bad.json", "{}");
     desk.run(&["solve", "nowhere.json"]).fails_with(1, &["cannot read nowhere.json"]);
-    desk.run(&["solve", "bad.json"]).fails_with(1, &["bad.json:1:2", "missing field `body`"]);
-    desk.run(&["compare", "bad.json"]).fails_with(1, &["missing field `body`"]);
-    desk.run(&["sweep", "bad.json", "--gaps", "0:1:2"]).fails_with(1, &["missing field `body`"]);
-    desk.run(&["export", "bad.json", "p"]).fails_with(1, &["missing field `body`"]);
+    desk.run(&["solve", "bad.json"]).fails_with(1, &["bad.json:1:2", "the key `body` is missing"]);
+    desk.run(&["compare", "bad.json"]).fails_with(1, &["the key `body` is missing"]);
+    desk.run(&["sweep", "bad.json", "--gaps", "0:1:2"]).fails_with(1, &["the key `body` is missing"]);
+    desk.run(&["export", "bad.json", "p"]).fails_with(1, &["the key `body` is missing"]);
     assert!(!desk.path("p").exists(), "nothing is written of a scene that fails");
 }
 

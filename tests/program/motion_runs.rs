@@ -95,13 +95,13 @@ fn a_motion_is_resumed_from_its_own_files_only() {
     fs::write(desk.path("foreign.csv"), &foreign).unwrap();
     fs::remove_file(&history).unwrap();
     std::os::unix::fs::symlink("../foreign.csv", &history).unwrap();
-    refused("it is no regular file");
+    refused("it is not a regular file");
     assert_eq!(fs::read_to_string(desk.path("foreign.csv")).unwrap(), foreign);
     fs::remove_file(&history).unwrap();
     fs::write(&history, &foreign).unwrap();
-    refused("it is no history of a motion");
+    refused("it is not a history of a motion");
     assert_eq!(fs::read_to_string(&history).unwrap(), foreign);
     fs::remove_file(&history).unwrap();
     assert!(Command::new("mkfifo").arg(&history).status().unwrap().success());
-    refused("it is no regular file");
+    refused("it is not a regular file");
 }

@@ -68,5 +68,5 @@ fn a_first_scene_lists_what_the_file_has_and_guesses_its_unit() {
 fn lines_of_comment_leave_the_places_of_errors_alone() {
     let desk = Desk::new();
     desk.write("scene.json", "// a comment\n{\n  // another\n  \"Gap\": 1\n}\n");
-    desk.run(&["solve", "scene.json"]).fails_with(1, &["scene.json:4:", "unknown field `Gap`"]);
+    desk.run(&["solve", "scene.json"]).fails_with(1, &["scene.json:4:", "unknown key `Gap`"]);
 }

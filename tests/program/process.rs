@@ -208,7 +208,7 @@ fn an_interrupted_solve_tells_the_best_answer_that_it_has() {
     let report = run.json();
     assert!(report["certificate"]["energy_error_bound"].as_f64().is_some_and(|bound| bound > 0.0), "{report}");
     assert!(report["contact"]["force"].as_f64().is_some_and(|force| force > 0.0), "{report}");
-    assert!(run.stderr.ends_with("interrupted: the report is of what was found until then\n"), "{}", run.stderr);
+    assert!(run.stderr.ends_with("interrupted: the report has the results up to there\n"), "{}", run.stderr);
     // Answer with its tables, and report; pictures would take too long.
     assert_eq!(whole(&desk.path("o")), 6);
 }

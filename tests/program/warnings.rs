@@ -54,7 +54,7 @@ fn a_body_that_touches_nothing_is_told_its_smallest_remaining_gap() {
     scene["gap"] = json!(0.25);
     scene["loads"] = json!([]);
     let message = warned(&solved(&scene), "nothing-touches");
-    assert_eq!(message, "nothing touches; the smallest remaining gap is 0.25 m at node 12");
+    assert_eq!(message, "nothing touches; the smallest remaining gap is 0.25 m at node 12 at (0.5, 1)");
     scene["obstacles"] = json!([]);
     assert_eq!(warned(&solved(&scene), "nothing-touches"), "nothing touches: the scene has no obstacle");
 }
@@ -274,7 +274,10 @@ fn nodes_that_were_not_merged_are_warned_of() {
     let report = desk.run(&["solve", "scene.json", "--format", "json"]).ends_with(0).json();
     let text = desk.run(&["solve", "scene.json"]).ends_with(0).stdout;
     let message = warned(&(report, text), "coincident-nodes");
-    assert!(message.starts_with("2 nodes of the mesh stand where others do, as nodes 0 and 4"), "{message}");
+    assert!(
+        message.starts_with("2 nodes of the mesh have the place of another node, such as nodes 0 and 4 at ["),
+        "{message}"
+    );
 }
 
 #[test]

@@ -217,7 +217,7 @@ fn what_does_not_fit_the_dimension_is_refused_at_its_path() {
         (
             with(line(), "/model", json!("space")),
             "body.bar",
-            "a bar is no body of the model `space`; there it is a box",
+            "a bar does not fit the model `space`; a body of this model is a box",
         ),
         (with(space(), "/model", json!("plane-strain")), "body.box", "there it is a rectangle"),
         (with(ring(), "/model", json!("bar")), "body.rectangle", "there it is a bar or gmsh"),
@@ -231,7 +231,11 @@ fn what_does_not_fit_the_dimension_is_refused_at_its_path() {
             "axis of revolution",
         ),
         (with(ring(), "/body/rectangle/x/points", json!([-1, 0, 1])), "body.rectangle", "radius x = -1e0"),
-        (with(ring(), "/loads", force.clone()), "loads[0].force.at", "has 3 entries; in this model it has 2: [x, y]"),
+        (
+            with(ring(), "/loads", force.clone()),
+            "loads[0].force.at",
+            "has 3 entries, but must have 2 in a plane or axisymmetric model: [x, y]",
+        ),
         (with(space(), "/loads", json!([{"body-force": [1]}])), "loads[0].body-force", "[x, y, z]"),
         (with(ring(), "/obstacles/0/approach", json!("+z")), "obstacles[0].approach", "which has x and y"),
         (with(space(), "/obstacles/0/shape", circle.clone()), "obstacles[0].shape", "`circle` is a shape of the plane"),

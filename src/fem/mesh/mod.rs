@@ -80,7 +80,7 @@ impl Mesh {
         if !self.connectivity.len().is_multiple_of(each) {
             let length = self.connectivity.len();
             return fail(format!(
-                "the connectivity has length {length}, no multiple of the {each} nodes of an element"
+                "the connectivity has length {length}, which is not a multiple of the {each} nodes of an element"
             ));
         }
         let of_facets = self.boundaries.iter().flat_map(|boundary| &boundary.connectivity);

@@ -93,7 +93,7 @@ impl GmshFile {
     /// highest dimension. Coordinates are multiplied by `scale`.
     ///
     /// Nodes that no element of the body uses are left out; the others keep the order of the file. A plane mesh lies in any plane z =
-    /// const, a bar along x. Elements that run clockwise are turned, if all of them do. Facets of a boundary have one orientation: the
+    /// const, a bar along x. Elements that run clockwise are turned, if all elements do. Facets of a boundary have one orientation: the
     /// body is on the left of edges; in space facets are counterclockwise seen from outside. With a `domain`, groups elsewhere are left
     /// out.
     ///
