@@ -195,7 +195,7 @@ impl Dynamics {
     /// R = M a + C v + K u - f(t) - B' lambda
     /// ```
     ///
-    /// where a is the acceleration at the end of the step in schemes of Newmark's kind, and the mean of the step in others. So contact
+    /// Schemes of Newmark's kind take the acceleration a at the end of the step, others its mean over the step. So contact
     /// forces, reactions and loads add up to the change of momentum. Before the first step, and between a resume and the next step, this
     /// balance does not exist, and the supports are left out.
     ///

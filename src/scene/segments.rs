@@ -50,8 +50,8 @@ pub struct Segment {
     /// The extent of the segment.
     #[serde(flatten)]
     pub extent: ContactExtent,
-    /// The node of the largest pressure, if it is next to an open node although other closed nodes are not: an edge of the obstacle,
-    /// where the exact pressure is unbounded.
+    /// The node of the largest pressure, if it is next to an open node although other closed nodes are not: an edge of the
+    /// obstacle, where the exact pressure is unbounded.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub edge_peak: Option<usize>,
     /// The estimated ends [x, y] on the undeformed boundary, if the model is plane or axisymmetric and there are two ends.

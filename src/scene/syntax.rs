@@ -20,7 +20,7 @@ const WHOLE: [(&str, &str); 13] = [
     ("recursion limit exceeded", "more than 127 arrays and objects lie inside each other; that is not allowed"),
     ("invalid type: map, expected enum", "must be an object with a single key, but is empty"),
     ("control character (\\u0000-\\u001F) found while parsing a string", CONTROL_CHARACTER),
-    ("expected ident", "a value begins like `true`, `false` or `null`, but is none of these three"),
+    ("expected ident", "this value must be spelt `true`, `false` or `null`"),
 ];
 
 const INVALID_HEXADECIMAL: &str = "`\\u` in a string must be followed by four hexadecimal digits of a character";
@@ -102,6 +102,7 @@ impl Fault<'_> {
         match (quoted, rest.chars().next()) {
             (Some(inside), _) if inside.chars().count() <= QUOTED => format!("`\"{inside}\"`"),
             _ if !word.is_empty() => format!("`{word}`"),
+            (_, Some(c)) if c.is_control() => format!("`{}`", c.escape_default()),
             (_, Some(c)) => format!("`{c}`"),
             (_, None) => "the end of the text".to_string(),
         }
@@ -117,7 +118,10 @@ impl Fault<'_> {
             "expected `,` or `]`" => format!("expected a comma or `]` after an entry of an array, but found {found}"),
             "expected `:`" => format!("expected a colon after a key, but found {found}"),
             "trailing comma" => format!("no comma may stand before {found}; remove the comma{of_key}"),
-            "expected value" => format!("expected a value of JSON, but found {found}"),
+            "expected value" => format!(
+                "expected a value of JSON (a number such as 0.5, a string in double quotes, true, false, an array or an \
+                 object), but found {found}"
+            ),
             "trailing characters" if self.path == "." => {
                 format!("there is more text after the end of the scene: {found}; remove it")
             }
@@ -131,7 +135,7 @@ impl Fault<'_> {
         let starts = starts_of_entries(self.text, &self.path)?;
         let right = match message {
             // The parser stops at the first entry beyond the last.
-            "trailing characters" => starts.iter().filter(|start| **start <= self.offset()).count(),
+            "trailing characters" => starts.iter().filter(|start| **start < self.offset()).count(),
             _ => message.rsplit_once("expected an array of length ")?.1.parse().ok()?,
         };
         let entries = plural(starts.len());

@@ -57,7 +57,8 @@ fn every_malformed_file_is_refused_with_its_code_and_its_sentence() {
             let _ = writeln!(wrong, "line {}: {line} is accepted", number + 1);
             continue;
         };
-        let sentence = error.to_string().replace(&format!("{}/", desk.path().display()), "");
+        let place = desk.path().display().to_string();
+        let sentence = error.to_string().replace(&format!("{place}/"), "").replace(&place, ".");
         let found = (error.code().to_string(), sentence);
         if (word(3), word(4)) != (found.0.as_str(), found.1.as_str()) {
             let _ = writeln!(wrong, "line {}: {found:?}\n   kept: {:?}", number + 1, (word(3), word(4)));

@@ -109,14 +109,18 @@ impl Axis {
             let found = self.divisions.len();
             return fail(
                 "divisions".into(),
-                format!("{found} entries, but the points make {intervals} intervals; give one entry for each"),
+                format!(
+                    "the array has length {found}, but must have {intervals}: one entry for each interval between points"
+                ),
             );
         }
         if !self.ratios.is_empty() && self.ratios.len() != intervals {
             let found = self.ratios.len();
             return fail(
                 "ratios".into(),
-                format!("{found} entries, but the points make {intervals} intervals; give one entry for each"),
+                format!(
+                    "the array has length {found}, but must have {intervals}: one entry for each interval between points"
+                ),
             );
         }
         if let Some(index) = self.ratios.iter().position(|ratio| !(ratio.is_finite() && *ratio > 0.0)) {

@@ -209,7 +209,7 @@ function sweepTable(page, { sweep, units }) {
   element(
     "summary",
     more,
-    `${counted(sweep.events.length, "event")}${shownEvents.length < sweep.events.length ? ", the first 200 of them" : ""}`,
+    `${counted(sweep.events.length, "event")}${shownEvents.length < sweep.events.length ? ", the first 200 shown" : ""}`,
   );
   table(
     more,
