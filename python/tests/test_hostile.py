@@ -174,7 +174,7 @@ HOSTILE: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "sweep of half a point": (lambda: sg.sweep(two_springs(), g1=[2.0], points=2.5), ValueError, "points is 2.5"),
     "sweep over no gaps": (lambda: sg.sweep(plane_scene(), []), ValueError, "gaps is empty"),
     "sweep over a force that pulls": (lambda: sg.sweep(plane_scene(force=1.0), forces=[-2.0]), sg.SceneError, "-2 would pull"),
-    "sweep over a force that presses nothing": (lambda: sg.sweep(plane_scene(), forces=[1.0]), sg.SceneError, "0 of them have"),
+    "sweep over a force that presses nothing": (lambda: sg.sweep(plane_scene(), forces=[1.0]), sg.SceneError, "no obstacle is pressed"),
     "sweep of a scene to other gaps": (lambda: sg.sweep(plane_scene(), g1=[1.0]), ValueError, "a scene is swept over gaps or forces"),
     "tradeoff of nothing": (lambda: sg.tradeoff(K), TypeError, "a Problem or a Scene"),
     "tradeoff refined backwards": (lambda: sg.tradeoff(two_springs(), refinements=-1), ValueError, "refinements is -1"),

@@ -51,7 +51,7 @@ Example: signorini solve examples/ball.json --accuracy 1e-3 --time 10 --out ball
 
 {KNOBS}"))]
     Solve(Solve),
-    /// Solve by all three methods and say whether they agree
+    /// Solve by three methods and print their differences
     #[command(after_help = "Example: signorini compare examples/indentation.json --out indentation")]
     Compare(Compare),
     /// Solve a scene at several gaps or forces, or a problem directory on the way to another end

@@ -137,7 +137,7 @@ fn plot(medium: Medium, title: &str, found: &Estimated) -> Drawing {
     let line = |name: &str, value: &dyn Fn(&EstimatedLevel) -> f64| {
         Series::new(name, found.levels.iter().map(|level| [level.dofs as f64, value(level)]).collect())
     };
-    let series = vec![line("estimated", &|level| level.total_error), line("asked for", &|_| found.goal.total_error)];
+    let series = vec![line("estimated", &|level| level.total_error), line("goal", &|_| found.goal.total_error)];
     let (x, y) = (Quantity::new("unknowns", ""), Quantity::new("total error, relative", ""));
     line_plots_for(medium, title, &[Plot { scales: [Scale::Logarithmic; 2], ..Plot::new(x, y, series) }])
 }

@@ -74,8 +74,8 @@ pub(super) fn percent(share: f64) -> String {
 
 /// The statement that an error meets its goal or not.
 pub(super) fn verdict(error: f64, goal: f64) -> String {
-    let is_met = if error <= goal { "as asked for" } else { "NOT as asked for" };
-    format!("{is_met}: {}", percent(goal))
+    let is_met = if error <= goal { "within the goal" } else { "ABOVE the goal" };
+    format!("{is_met} of {}", percent(goal))
 }
 
 fn row(level: &TotalErrorLevel) -> Vec<String> {
@@ -203,10 +203,8 @@ fn plot(medium: Medium, title: &str, found: &TotalError) -> Drawing {
         let point = |level: &TotalErrorLevel| Some([level.dofs as f64, value(level)?]);
         Series::new(name, found.levels.iter().filter_map(point).collect())
     };
-    let goal = Series::new(
-        "asked for",
-        found.levels.iter().map(|level| [level.dofs as f64, found.goal.total_error]).collect(),
-    );
+    let goal =
+        Series::new("goal", found.levels.iter().map(|level| [level.dofs as f64, found.goal.total_error]).collect());
     let series = vec![
         line("displacement", &|level| Some(level.bound)),
         line("mean stress", &|level| Some(level.mean_stress_bound)),

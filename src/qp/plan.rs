@@ -484,7 +484,7 @@ impl Tried {
         };
         let method = self.method.name();
         format!(
-            "of such methods {method}, {on}, by the rules fitted for {multiplications:.1e} multiplications of a factor"
+            "of such methods {method}, {on}: by rules fitted to measured times, for {multiplications:.1e} multiplications of a factor"
         )
     }
 

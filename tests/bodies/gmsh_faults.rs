@@ -129,7 +129,7 @@ fn faults_of_files_have_their_line() {
         (with(&V2, 2, "2.2 1 4"), 2, "the data size is 4"),
         (with(&V2, 2, "2.2 2 8"), 2, "the file type is 2; it must be 0 for ASCII or 1 for binary"),
         (text(&["$MeshFormat", "4.1 1 8", "\u{1}"]), 2, "the file ends after this line"),
-        (with(&V2, 2, "4 0 8"), 2, "version 4 of the format is not read; versions 4.1 and 2.2"),
+        (with(&V2, 2, "4 0 8"), 2, "version 4 of the format is not supported; save the mesh in version 4.1 or 2.2"),
         (with(&V2, 2, "3.0 0 8"), 2, "version 3"),
         (with(&V2, 2, "two 0 8"), 2, "is `two`"),
         (with(&V2, 3, "$Nodes"), 3, "`$EndMeshFormat` should stand"),

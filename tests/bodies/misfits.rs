@@ -47,7 +47,7 @@ fn elements_of_another_dimension_are_refused() {
 #[test]
 fn bodies_of_two_kinds_do_not_stand_beside_each_other() {
     let one = || body(square(ElementKind::Q4), STRAIN).unwrap();
-    let phrases = ["one formulation and cross-section", "plane strain and plane stress"];
+    let phrases = ["the same formulation and cross-section", "plane strain and plane stress"];
     refused(one().beside(&body(square(ElementKind::Q4), STRESS).unwrap(), "base"), "mesh", &phrases);
     refused(one().beside(&body(square(ElementKind::T3), STRAIN).unwrap(), "base"), "mesh", &["here Q4 and T3"]);
     refused(square(ElementKind::T6).beside(&square(ElementKind::Q8), "base"), "mesh", &["here T6 and Q8"]);

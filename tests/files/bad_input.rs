@@ -56,7 +56,7 @@ fn scenes_that_describe_no_problem() {
         (with("/material", json!([1e7, 0.3])), 1, &["at `material`", "array", "must be an object"]),
         (with("/supports", json!({})), 1, &["at `supports`", "object", "must be an array of objects"]),
         (with("/loads", json!(null)), 1, &["at `loads`", "null", "must be an array"]),
-        (with("/body", json!([])), 1, &["at `body`", "array", "expected an object with a single key"]),
+        (with("/body", json!([])), 1, &["at `body`", "must be an object with a single key", "an array"]),
         (with("/body", json!({})), 1, &["at `body`", "empty", "a single key"]),
         (with("/body", json!({"blob": {}})), 1, &["at `body.blob`", "unknown choice `blob`", "`rectangle`"]),
         (with("/supports/0/on", json!("bottom")), 1, &["at `supports[0].on`", "\"bottom\"", "single key"]),
@@ -88,14 +88,14 @@ fn scenes_that_describe_no_problem() {
         (with("/material/poisson", json!(0.5)), 1, &["at `material.poisson`", "0.5", "below 0.5"]),
         (with("/material/poisson", json!(-1)), 1, &["at `material.poisson`", "-1", "above -1"]),
         (plane_stress(with("/material/poisson", json!(0.51))), 1, &["at `material.poisson`", "0.51", "at most 0.5"]),
-        (with("/supports/0/x", json!(null)), 1, &["at `supports[0].x`", "null is no number", "leave the field out"]),
+        (with("/supports/0/x", json!(null)), 1, &["at `supports[0].x`", "null is not a number", "remove the key"]),
         (with("/supports/0", json!({"on": {"boundary": "bottom"}})), 1, &["at `supports[0]`", "holds nothing"]),
         (with("/supports/0/normal", json!([0, 0])), 1, &["at `supports[0].normal`", "(0, 0) has no direction"]),
         (with("/supports/0/normal", json!([1])), 1, &["at `supports[0].normal`", "has 1 entries", "[x, y]"]),
         (with("/supports/0/normal", json!([1, 2, 3])), 1, &["at `supports[0].normal`", "has 3 entries"]),
         (with("/supports/0/normal", json!(null)), 1, &["at `supports[0].normal`", "null", "must be an array"]),
         (with("/supports/0/normal", json!(["1", 0])), 1, &["at `supports[0].normal[0]`", "must be a number"]),
-        (with("/supports/0/value", json!(1)), 1, &["at `supports[0].value`", "give the normal too"]),
+        (with("/supports/0/value", json!(1)), 1, &["at `supports[0].value`", "give `normal` too"]),
         (
             with("/supports/0", json!({"on": {"boundary": "bottom"}, "x": 0, "y": 0, "normal": [1, 1], "value": 0.1})),
             1,
@@ -163,9 +163,9 @@ fn files_that_are_no_scene() {
     let garbage: Vec<u8> = (0..5000_u32).map(|k| (k.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
     let utf_16: Vec<u8> = right.encode_utf16().flat_map(u16::to_le_bytes).collect();
     let cases: Vec<(Vec<u8>, &[&str])> = vec![
-        (b"".to_vec(), &["scene.json:1:1", "the text ends within a value"]),
-        (b" \n\n".to_vec(), &["the text ends within a value"]),
-        (right.as_bytes()[..right.len() / 2].to_vec(), &["scene.json:1:", "the text ends within"]),
+        (b"".to_vec(), &["scene.json:1:1", "the text ends before a value"]),
+        (b" \n\n".to_vec(), &["the text ends before a value"]),
+        (right.as_bytes()[..right.len() / 2].to_vec(), &["scene.json:1:", "the text ends inside"]),
         (garbage, &["cannot read scene.json", "UTF-8"]),
         (b"\0\x01\x02\x03".to_vec(), &["scene.json:1:1", "expected a value of JSON"]),
         (b"{\"title\": \"\xff\xfe\"}".to_vec(), &["cannot read scene.json", "UTF-8"]),
@@ -188,9 +188,9 @@ fn files_that_are_no_scene() {
         ),
         (format!("{},}}", &right[..right.len() - 1]).into_bytes(), &["no comma may stand before `}`"]),
         (change("\"gap\":-0.01", "/* deep */ \"gap\":-0.01"), &["scene.json:1:", "key must be a string"]),
-        (format!("{right}{right}").into_bytes(), &["more text behind the scene"]),
+        (format!("{right}{right}").into_bytes(), &["more text after the end of the scene"]),
         (b"null".to_vec(), &["null, expected an object"]),
-        (b"\"body\"".to_vec(), &["string \"body\", expected an object"]),
+        (b"\"body\"".to_vec(), &["must be an object, but is the string \"body\""]),
     ];
     let desk = Desk::new();
     for (bytes, phrases) in cases {

@@ -150,7 +150,7 @@ fn unknowns_without_a_node_are_refused_and_so_is_a_directory_of_both_forms() {
     desk.write("pressed.json", pressed.to_string());
     desk.run(&["export", "pressed.json", "p"]).ends_with(0);
     let refused = desk.run(&["export", "pressed.json", "q", "--format", "petsc"]);
-    refused.fails_with(1, &["`--format`", "blocks for nodes alone", "take matrix-market"]);
+    refused.fails_with(1, &["`--format`", "only the unknowns of nodes", "take --format matrix-market"]);
     assert!(!desk.path("q").exists());
     desk.write("scene.json", scene().to_string());
     desk.run(&["export", "scene.json", "p", "--format", "petsc"]).ends_with(0);

@@ -35,7 +35,7 @@ fn exit_code_2_means_usage_and_says_what_is_expected() {
         (&["solve", "block.json", "--out", ""], "--out <DIR>"),
         (&["compare"], "<INPUT>"),
         (&["sweep", "block.json"], "--gaps <FIRST:LAST:COUNT>"),
-        (&["sweep", "block.json", "--gaps", "-0.01:-0.10"], "FIRST:LAST:COUNT, as -0.01:-0.10:10"),
+        (&["sweep", "block.json", "--gaps", "-0.01:-0.10"], "FIRST:LAST:COUNT, such as -0.01:-0.10:10"),
         (&["sweep", "block.json", "--gaps", "a:1:2"], "`a` is not a finite number"),
         (&["sweep", "block.json", "--gaps", "0:inf:2"], "`inf` is not a finite number"),
         (&["sweep", "block.json", "--gaps", "0:1:0"], "whole number from 1 to 10000"),

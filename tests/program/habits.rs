@@ -102,7 +102,7 @@ fn the_help_of_every_command_has_an_example_that_the_program_takes() {
 #[test]
 fn the_help_of_solve_tells_three_knobs_apart() {
     let help = Desk::new().run(&["solve", "--help"]).ends_with(0).stdout;
-    let words = ["--tolerance is how well", "--accuracy how far off", "--time when"];
+    let words = ["--tolerance bounds the violation", "--accuracy the error", "--time the seconds"];
     for word in words {
         assert!(help.contains(word), "{help}");
     }
@@ -205,6 +205,23 @@ fn a_name_that_is_nearly_right_is_answered_with_the_one_that_is_meant() {
 }
 
 #[test]
+fn an_unknown_option_is_answered_with_the_nearest_one_and_never_with_two_dashes() {
+    let desk = Desk::new();
+    for (unknown, near) in [
+        ("--toleranse", Some("'--tolerance'")),
+        ("--timlimt", Some("'--time-limit'")),
+        ("--max-memry", Some("'--max-memory'")),
+        ("--meshsize", None),
+    ] {
+        let run = desk.run(&["solve", "scene.json", unknown, "1"]).ends_with(2);
+        assert!(run.stderr.contains(&format!("unexpected argument '{unknown}'")), "{}", run.stderr);
+        assert!(!run.stderr.contains("-- --"), "{}", run.stderr);
+        assert_eq!(near.is_some(), run.stderr.contains("a similar argument exists"), "{}", run.stderr);
+        assert!(near.is_none_or(|near| run.stderr.contains(near)), "{}", run.stderr);
+    }
+}
+
+#[test]
 fn a_group_that_is_nearly_right_is_answered_with_the_one_that_is_meant() {
     let desk = Desk::new();
     let mesh = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/two-parts-q8.msh");
@@ -292,7 +309,7 @@ fn what_a_sweep_of_a_problem_directory_lacks_is_named() {
     desk.run(&["sweep", "p", "--points", "3"]).fails_with(1, &["p/g1.mtx", "it is missing, and so is f1.mtx"]);
     desk.run(&["sweep", "p", "--gaps", "0:1:2"]).fails_with(1, &["--gaps", "problem directory", "give --points"]);
     desk.write("block.json", scene().to_string());
-    desk.run(&["sweep", "block.json", "--points", "3"]).fails_with(1, &["--points", "no problem directory"]);
+    desk.run(&["sweep", "block.json", "--points", "3"]).fails_with(1, &["--points", "not a problem directory"]);
     desk.run(&["sweep", "p"]).ends_with(2);
     desk.run(&["sweep", "p", "--points", "1"]).ends_with(2);
     desk.run(&["sweep", "p", "--points", "3", "--gaps", "0:1:2"]).ends_with(2);
@@ -343,7 +360,7 @@ fn a_start_that_does_not_fit_is_refused() {
     moving["analysis"] = json!({"dynamic": {"duration": 1e-4}});
     desk.write("moving.json", moving.to_string());
     desk.run(&["solve", "moving.json", "--start", "o"])
-        .fails_with(1, &["--start", "a motion starts from its initial state"]);
+        .fails_with(1, &["--start", "a motion starts from its `initial` state"]);
 }
 
 #[test]

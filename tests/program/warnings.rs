@@ -31,6 +31,24 @@ fn warned((report, text): &(Value, String), code: &str) -> String {
     message.to_string()
 }
 
+/// A negative gap prescribes an indentation: the report names its depth and place, but warns of nothing.
+#[test]
+fn an_overlap_before_contact_is_named_with_its_depth_and_place() {
+    let mut scene = scene();
+    scene["loads"] = json!([]);
+    let overlap = |scene: &Value| {
+        let (report, text) = solved(scene);
+        let line = text.lines().find(|line| line.contains("before contact node ")).map(|line| line.trim().to_string());
+        (report["warnings"].to_string().contains("before contact"), line)
+    };
+    scene["gap"] = json!(0.25);
+    assert_eq!(overlap(&scene), (false, None));
+    scene["gap"] = json!(-0.01);
+    let (is_warning, line) = overlap(&scene);
+    let line = line.expect("a line on the overlap");
+    assert!(!is_warning && line.ends_with("lies 1.000e-2 m inside obstacles[0]"), "{line}");
+}
+
 /// The block lies below its obstacle, which is said to come from above: at its closed nodes it would pull.
 #[test]
 fn an_obstacle_that_pulls_is_refused() {
@@ -54,7 +72,7 @@ fn a_body_that_touches_nothing_is_told_its_smallest_remaining_gap() {
     scene["gap"] = json!(0.25);
     scene["loads"] = json!([]);
     let message = warned(&solved(&scene), "nothing-touches");
-    assert_eq!(message, "nothing touches; the smallest remaining gap is 0.25 m at node 12 at (0.5, 1)");
+    assert_eq!(message, "nothing touches; the smallest remaining gap is 0.25 m at node 12 at (0.5, 0.5)");
     scene["obstacles"] = json!([]);
     assert_eq!(warned(&solved(&scene), "nothing-touches"), "nothing touches: the scene has no obstacle");
 }

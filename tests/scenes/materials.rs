@@ -203,7 +203,7 @@ fn materials_that_are_none_are_refused_where_they_stand() {
         (
             changed(&orthotropic(&[]), "/body/rectangle/integration", json!("mean-dilatation")),
             "body.rectangle.integration".into(),
-            "isotropic materials alone",
+            "isotropic materials only",
         ),
     ];
     for (scene, path, phrase) in cases {

@@ -126,7 +126,7 @@ fn faces_that_cannot_move_so_are_refused_where_they_stand() {
             scene["rigid-faces"][0] = face;
         }
     };
-    refused(&face(json!({"x": 0, "force": [1, 0]})), &["rigid-faces[0].x", "give one of them"]);
+    refused(&face(json!({"x": 0, "force": [1, 0]})), &["rigid-faces[0].x", "give only one"]);
     refused(&face(json!({"z": 0})), &["rigid-faces[0].z", "no such motion"]);
     refused(&face(json!({"rotation": {"x": 0}})), &["rigid-faces[0].rotation.x", "no such motion"]);
     refused(&face(json!({"moment": [1, 2]})), &["rigid-faces[0].moment", "2 entries"]);

@@ -332,7 +332,7 @@ fn bodies_that_do_not_fit_are_refused() {
     refused(
         &change("/further-bodies/0/body/half-disc/integration", json!("mean-dilatation")),
         further,
-        &["one integration"],
+        &["the same integration"],
     );
     refused(&change("/further-bodies/0/name", json!("")), "further-bodies[0].name", &["a name"]);
     refused(&change("/further-bodies/0/material/young", json!(-1)), "further-bodies[0].material.young", &["positive"]);
