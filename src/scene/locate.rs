@@ -129,7 +129,7 @@ impl Scanner<'_> {
 
     fn skip_space(&mut self) {
         while self.peek().is_some_and(|byte| byte.is_ascii_whitespace())
-            || self.bytes[self.place..].starts_with(b"\xef\xbb\xbf")
+            || self.bytes.get(self.place..).is_some_and(|rest| rest.starts_with(b"\xef\xbb\xbf"))
         {
             self.place += if self.peek() == Some(0xef) { 3 } else { 1 };
         }

@@ -29,7 +29,7 @@ const CONTROL_CHARACTER: &str = "a string may contain no line break and no other
                                  missing, or write \\n or \\t";
 
 /// Words of the parser, and those of JSON; the order matters.
-const WORDS: [(&str, &str); 14] = [
+const WORDS: [(&str, &str); 15] = [
     ("invalid type: map", "invalid type: an object"),
     ("invalid type: sequence", "invalid type: an array"),
     ("invalid type: string", "invalid type: the string"),
@@ -42,6 +42,7 @@ const WORDS: [(&str, &str); 14] = [
     ("expected u32", "expected a whole number that is not negative"),
     ("expected a sequence", "expected an array"),
     ("expected string or map", "expected a string or an object"),
+    ("trailing characters", "the array has too many entries"),
     ("unknown field", "unknown key"),
     ("unknown variant", "unknown choice"),
 ];

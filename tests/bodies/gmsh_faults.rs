@@ -155,7 +155,7 @@ fn faults_of_files_have_their_line() {
         (with(&V2, 21, "4 2 2 2 1 10 20"), 21, "the line ends where the tag of a node should stand"),
         (with(&V2, 21, "4 2 2 2 1 10 20 30 40"), 21, "`40` is one field too many"),
         (with(&V2, 21, "4 2 99999999999 2 1 10 20 30"), 21, "the line ends where a tag of an element"),
-        (with(&V2, 21, "4 93 2 2 1 10 20 30"), 21, "the element type 93 is not known"),
+        (with(&V2, 21, "4 93 2 2 1 10 20 30"), 21, "the element type 93 is not supported"),
         (with(&V2, 16, "$Nodes"), 16, "a second section `$Nodes`"),
         (text(&V2[..13]), 13, "the file ends where node 4 of 4"),
         (text(&V2[..15]), 15, "the file ends without a section `$Elements`"),
@@ -216,7 +216,7 @@ fn kinds_that_no_body_is_made_of_are_refused_with_the_reason() {
     refused(10, 9, "`Mesh.SecondOrderIncomplete = 1`");
     refused(6, 6, "six-node prisms are refused");
     refused(7, 5, "five-node pyramids are refused");
-    refused(8, 3, "a bar has two nodes");
+    refused(8, 3, "a bar element must have two nodes");
     refused(15, 1, "no elements beyond points");
 }
 

@@ -49,7 +49,11 @@ fn bodies_of_two_kinds_do_not_stand_beside_each_other() {
     let one = || body(square(ElementKind::Q4), STRAIN).unwrap();
     let phrases = ["the same formulation and cross-section", "plane strain and plane stress"];
     refused(one().beside(&body(square(ElementKind::Q4), STRESS).unwrap(), "base"), "mesh", &phrases);
-    refused(one().beside(&body(square(ElementKind::T3), STRAIN).unwrap(), "base"), "mesh", &["here Q4 and T3"]);
+    refused(
+        one().beside(&body(square(ElementKind::T3), STRAIN).unwrap(), "base"),
+        "mesh",
+        &["here they have Q4 and T3"],
+    );
     refused(square(ElementKind::T6).beside(&square(ElementKind::Q8), "base"), "mesh", &["here T6 and Q8"]);
     assert!(one().beside(&one(), "base").is_ok());
 }
@@ -136,7 +140,11 @@ fn triangles_of_a_full_matrix_are_compared_entry_by_entry() {
         assert_eq!(with(&zeros).unwrap().mul(&[1.0, 2.0, 3.0]), [-1.0, 2.0, 8.0]);
     }
     for (row, column) in [(1, 0), (0, 1), (2, 1), (1, 2)] {
-        refused(with(&[(row, column, 0.5)]), "not-symmetric", &["5e-1", "0e0", "give both triangles alike"]);
+        refused(
+            with(&[(row, column, 0.5)]),
+            "not-symmetric",
+            &["5e-1", "0e0", "give both triangles with equal entries"],
+        );
     }
     refused(with(&[(2, 0, -0.5)]), "not-symmetric", &["-1.5e0", "-1e0"]);
 }

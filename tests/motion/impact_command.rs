@@ -122,7 +122,7 @@ fn only_a_run_of_the_same_scene_is_resumed() {
     desk.run(&["solve", "bar.json", "--out", "out"]).ends_with(0);
     desk.run(&["solve", "other.json", "--out", "out", "--resume"]).fails_with(1, &["belongs to another scene"]);
     desk.write("still.json", scene().to_string());
-    desk.run(&["solve", "still.json", "--out", "out", "--resume"]).fails_with(1, &["nothing to resume"]);
+    desk.run(&["solve", "still.json", "--out", "out", "--resume"]).fails_with(1, &["no motion to resume"]);
     desk.run(&["solve", "bar.json", "--resume"]).ends_with(2);
 }
 

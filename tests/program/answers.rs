@@ -146,7 +146,7 @@ fn an_exact_accuracy_is_the_linear_solve_of_the_settled_set() {
     let warned = desk.run(&[&solve[..], &["--method", "mprgp"]].concat()).ends_with(0);
     assert!(warned.stderr.contains("--accuracy exact changes nothing: the method is mprgp"), "{}", warned.stderr);
     let refused = desk.run(&["solve", &scene, "--accuracy", "exactly"]).ends_with(2).stderr;
-    assert!(refused.contains("at most 0.1, as 1e-3, or `exact`"), "{refused}");
+    assert!(refused.contains("at most 0.1, such as 1e-3, or `exact`"), "{refused}");
 }
 
 /// GOAL: what a proof costs stands by itself, and it is left out where it is not wanted.

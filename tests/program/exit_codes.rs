@@ -27,10 +27,10 @@ fn exit_code_2_means_usage_and_says_what_is_expected() {
         (&["solve", "block.json", "other.json"], "unexpected argument 'other.json'"),
         (&["solve", "block.json", "--method", "newton"], "auto, qp, active-set, penalty"),
         (&["solve", "block.json", "--format", "yaml"], "text, json"),
-        (&["solve", "block.json", "--tolerance", "tiny"], "at most 0.1, as 1e-9"),
-        (&["solve", "block.json", "--tolerance", "-1"], "at most 0.1, as 1e-9"),
-        (&["compare", "block.json", "--tolerance", "0"], "at most 0.1, as 1e-9"),
-        (&["sweep", "block.json", "--gaps", "0:1:2", "--tolerance", "nan"], "at most 0.1, as 1e-9"),
+        (&["solve", "block.json", "--tolerance", "tiny"], "at most 0.1, such as 1e-9"),
+        (&["solve", "block.json", "--tolerance", "-1"], "at most 0.1, such as 1e-9"),
+        (&["compare", "block.json", "--tolerance", "0"], "at most 0.1, such as 1e-9"),
+        (&["sweep", "block.json", "--gaps", "0:1:2", "--tolerance", "nan"], "at most 0.1, such as 1e-9"),
         (&["verify", "p", "--displacement", "u", "--multiplier", "l", "--tolerance", "inf"], "at most 0.1"),
         (&["solve", "block.json", "--out", ""], "--out <DIR>"),
         (&["compare"], "<INPUT>"),
@@ -90,7 +90,7 @@ fn exit_code_4_means_an_answer_that_is_not_certified() {
     // What is left of the error is rounding of the displacement to doubles, and the report says so.
     let strict = strict.ends_with(0);
     assert!(strict.stdout.contains("certified to 1.0e-30"), "{}", strict.stdout);
-    assert!(strict.stdout.contains("explained by rounding the displacement to double precision"), "{}", strict.stdout);
+    assert!(strict.stdout.contains("due to the rounding of the displacement to double precision"), "{}", strict.stdout);
     let loose = ["--method", "penalty", "--tolerance", "1e-12"];
     let loose = desk.run(&[&["solve", &example("indentation")][..], &loose].concat());
     let loose = loose.fails_with(4, &["not certified: ", "above the tolerance 1.0e-12"]);

@@ -45,7 +45,7 @@ fn a_resumed_motion_goes_on_to_a_longer_duration_bit_for_bit() {
     assert_eq!(end(&desk, "parts"), end(&desk, "whole"));
     // Neither back in time, nor to another scene.
     let back = desk.run(&["solve", "short.json", "--out", "parts", "--resume"]);
-    back.fails_with(1, &["at `analysis.dynamic.duration`", "step 205 already"]);
+    back.fails_with(1, &["at `analysis.dynamic.duration`", "already reached step 205"]);
     let mut other = bar(1.7034, 12);
     other["material"]["young"] = json!(901);
     desk.write("other.json", other.to_string());
@@ -84,7 +84,7 @@ fn a_motion_is_resumed_from_its_own_files_only() {
         desk.write("secret", secret);
         fs::remove_file(desk.path("run/checkpoint.json")).unwrap();
         std::os::unix::fs::symlink("../secret", desk.path("run/checkpoint.json")).unwrap();
-        let run = resumed(&desk).fails_with(1, &["checkpoint.json:1", "it is no checkpoint of a motion"]);
+        let run = resumed(&desk).fails_with(1, &["checkpoint.json:1", "it is not a checkpoint of a motion"]);
         assert!(!run.stderr.contains("hunter2"), "{}", run.stderr);
     }
     let history = desk.path("run/history.csv");

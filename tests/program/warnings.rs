@@ -243,7 +243,7 @@ fn an_obstacle_on_a_clamped_boundary_is_warned_of() {
 fn a_load_that_goes_into_a_support_is_warned_of() {
     let loaded = pressed(|scene| scene["loads"] = json!([{"traction": {"boundary": "bottom", "value": [0, 5]}}]));
     let message = warned(&solved(&loaded), "load-on-support");
-    assert!(message.starts_with("loads[0] acts where supports hold the body"), "{message}");
+    assert!(message.starts_with("loads[0] acts only on nodes that supports hold"), "{message}");
 }
 
 #[test]

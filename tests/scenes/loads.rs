@@ -351,7 +351,7 @@ fn loads_that_are_none_are_refused_at_their_path() {
         (
             plane(json!({"force": {"at": [1, 1], "boundary": "top", "value": [1, 0]}})),
             "loads[0].force",
-            "give one of them",
+            "give only one",
         ),
         (
             plane(json!({"moment": {"boundary": "roof", "value": [1]}})),

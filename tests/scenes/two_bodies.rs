@@ -328,7 +328,7 @@ fn bodies_that_do_not_fit_are_refused() {
         facing,
         &["node", "aside", "pair up"],
     );
-    refused(&change("/further-bodies/0/body/half-disc/element", json!("q8")), further, &["one kind", "Q4 and Q8"]);
+    refused(&change("/further-bodies/0/body/half-disc/element", json!("q8")), further, &["the same kind", "Q4 and Q8"]);
     refused(
         &change("/further-bodies/0/body/half-disc/integration", json!("mean-dilatation")),
         further,
