@@ -63,8 +63,8 @@ pub enum Error {
     },
     /// A stiffness given with both triangles, which differ.
     #[error(
-        "the stiffness is not symmetric: entry ({row}, {column}) is {value:e}, entry ({column}, {row}) is {mirrored:e} \
-         (indices from 0); give both triangles alike, or declare one"
+        "the stiffness is not symmetric: entry ({row}, {column}) is {value:e}, entry ({column}, {row}) is \
+         {mirrored:e} (indices from 0); give both triangles with equal entries, or only the lower one"
     )]
     NotSymmetric {
         /// Row of the entry below the diagonal, from 0.
@@ -155,8 +155,8 @@ pub enum Error {
     },
     /// A scene or a problem that needs more memory than it may take.
     #[error(
-        "it needs about {} of memory, but {} are allowed: about {dofs:.0e} dofs, {stiffness_entries:.0e} entries \
-         of the stiffness, {factor_entries:.0e} of its factor; take larger cells, or allow more",
+        "the problem needs about {} of memory, but {} are allowed: about {dofs:.0e} dofs, {stiffness_entries:.0e} \
+         entries of the stiffness, {factor_entries:.0e} of its factor; take larger cells, or allow more memory",
         memory(*bytes),
         memory(*allowed)
     )]
@@ -199,7 +199,7 @@ pub enum Error {
         message: String,
     },
     /// A scene with JSON of the wrong form or with a wrong value, at its place in the text.
-    #[error("{source_name}:{line}:{column}: at `{path}`: {message}")]
+    #[error("{source_name}:{line}:{column}: at {}: {message}", place_in_scene(path))]
     SceneSyntax {
         /// The file, or `scene` if it came as text.
         source_name: String,
@@ -207,7 +207,7 @@ pub enum Error {
         line: usize,
         /// Column of the fault in its line, from 1.
         column: usize,
-        /// JSON path of the field.
+        /// JSON path of the field; `.` for the scene itself.
         path: String,
         /// A sentence on what is wrong, and what is allowed.
         message: String,
@@ -225,9 +225,9 @@ pub enum Error {
         message: String,
     },
     /// A scene with values that do not describe a problem.
-    #[error("scene, at `{path}`: {message}")]
+    #[error("{} `{path}`: {message}", if path.starts_with("--") { "option" } else { "scene, at" })]
     Scene {
-        /// JSON path of the value.
+        /// JSON path of the value, or the option of the program.
         path: String,
         /// A sentence on what is wrong, and what is allowed.
         message: String,
@@ -334,12 +334,13 @@ fn no_room(factor: f64, multigrid: f64, allowed: f64, ended: Option<&str>) -> St
     let [factor, multigrid, allowed] = [factor, multigrid, allowed].map(memory);
     match ended {
         None => format!(
-            "neither way fits into {allowed}: with a factor of the stiffness it takes about {factor}, with multigrid about \
-             {multigrid}; take larger cells, or allow more"
+            "the problem does not fit into {allowed} of memory: a factor of the stiffness takes about {factor}, \
+             multigrid about {multigrid}; take larger cells, or allow more memory"
         ),
         Some(ended) => format!(
-            "no way within {allowed} gives a certified answer: multigrid, of about {multigrid}, ended where {ended}, and \
-             with a factor of the stiffness it takes about {factor}; allow more"
+            "no method gives a certified answer within {allowed} of memory: multigrid, which takes about \
+             {multigrid}, ended because {ended}, and a factor of the stiffness takes about {factor}; allow more \
+             memory"
         ),
     }
 }
@@ -348,9 +349,15 @@ fn no_room(factor: f64, multigrid: f64, allowed: f64, ended: Option<&str>) -> St
 fn lost_digits(solution: &Solution) -> String {
     let Some(pivot) = solution.lost_pivot else { return String::new() };
     format!(
-        "; the stiffness has lost its digits (smallest pivot {pivot:.0e} of its diagonal), as slender bodies in bending do: take \
-         fewer elements along the thickness, quadratic elements, or a beam; or hold the body by more supports"
+        "; the stiffness has lost digits to rounding (smallest pivot {pivot:.0e} of its diagonal), as in slender \
+         bodies in bending: take fewer elements along the thickness, quadratic elements, or a beam; or hold the \
+         body by more supports"
     )
+}
+
+/// A JSON path in words; `.` is the scene itself.
+fn place_in_scene(path: &str) -> String {
+    if path == "." { "the top level".to_string() } else { format!("`{path}`") }
 }
 
 /// Bytes in readable units.
@@ -362,11 +369,16 @@ pub(crate) fn memory(bytes: f64) -> String {
 const LONGEST_NAME: usize = 100;
 
 /// `; did you mean ...?` for a name that differs from one of `names` by a few letters, otherwise nothing.
+pub(crate) fn nearly<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+    nearest(name, names).map_or_else(String::new, |other| format!("; did you mean `{other}`?"))
+}
+
+/// The nearest of `names` if it differs from `name` by a few letters.
 ///
 /// One letter in three may be replaced, missing, added, or exchanged with its neighbour.
-pub(crate) fn nearly<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+pub(crate) fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if name.len() > LONGEST_NAME {
-        return String::new();
+        return None;
     }
     let length = name.chars().count();
     let most = length.max(3) / 3;
@@ -376,5 +388,5 @@ pub(crate) fn nearly<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -
     let near = others.map(|other| (away(other), other));
     // A name of one letter that differs has no letter in common.
     let near = near.filter(|(away, other)| *away <= most && *away < length.max(other.chars().count()));
-    near.min_by_key(|(away, _)| *away).map_or_else(String::new, |(_, other)| format!("; did you mean `{other}`?"))
+    near.min_by_key(|(away, _)| *away).map(|(_, other)| other)
 }

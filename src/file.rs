@@ -97,7 +97,7 @@ pub fn open_regular(path: &Path) -> Result<(File, u64), Error> {
         if about.is_file() {
             return Ok((file, about.len()));
         }
-        Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file, whose length is known"))
+        Err(io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file, whose length is known"))
     });
     opened.map_err(|source| Error::File { action: "read", path: path.into(), source })
 }
@@ -122,7 +122,7 @@ fn is_named_pipe(_: &Path) -> bool {
 /// As [`read_capped`], and for bytes that are not UTF-8.
 pub fn read_text_capped(path: &Path, most: u64) -> Result<String, Error> {
     String::from_utf8(read_capped(path, most)?).map_err(|_| {
-        let source = io::Error::new(io::ErrorKind::InvalidData, "stream did not contain valid UTF-8");
+        let source = io::Error::new(io::ErrorKind::InvalidData, "its text is not valid UTF-8");
         Error::File { action: "read", path: path.into(), source }
     })
 }

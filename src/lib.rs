@@ -39,7 +39,7 @@
 //! |---|---|---|
 //! | K, f, B and g | [`ContactProblem`] and [`solve_qp`] or [`solve`] | a certified [`Solution`] |
 //! | a scene in JSON | [`Scene`] and its [`Model`] | the problem, and stresses and pressures of an answer |
-//! | many gaps or loads | [`Prepared`] | one factorisation for all of them, and the exact [`Path`] between two gaps |
+//! | many gaps or loads | [`Prepared`] | one factorisation for all, and the exact [`Path`] between two gaps |
 //! | an accuracy, a time, threads, a method | [`Settings`] | what [`solve`] and [`Prepared`] keep to |
 //! | a button that cancels | [`Watch`] | an end from another thread, with the best answer so far |
 //!
@@ -86,7 +86,7 @@ pub use scene::{Model, Scene};
 pub use solution::{Attempt, Certificate, ContactSet, Goal, Iteration, ProvenSet, Seconds, Solution};
 pub use watch::Watch;
 
-/// What the tests of this crate look at beside its interface; it may change at any time.
+/// Internals for the tests and tools of this crate; they may change at any time.
 #[doc(hidden)]
 pub mod internals {
     pub use crate::fem::element::{Cell, MAX_NODES, QuadraturePoint, Rule, Tabulated};

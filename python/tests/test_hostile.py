@@ -161,7 +161,7 @@ HOSTILE: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "load of another length": (lambda: sg.prepare(two_springs()).solve(f=[1.0]), ValueError, "length 1"),
     "gap of text": (lambda: sg.prepare(two_springs()).solve(["a"]), TypeError, "g is"),
     "scene of a number": (lambda: sg.Scene(3), TypeError, "not of a int"),  # type: ignore[arg-type]
-    "scene of nothing": (lambda: sg.Scene({}), sg.SceneError, "missing field"),
+    "scene of nothing": (lambda: sg.Scene({}), sg.SceneError, "is missing"),
     "scene that is no JSON": (lambda: sg.Scene({"body": {1, 2}}), TypeError, "no place for a set"),
     "scene in itself": (lambda: sg.Scene(circle()), ValueError, "JSON"),
     "scene without a file": (lambda: sg.Scene("nowhere.json"), OSError, "cannot read nowhere.json"),
@@ -174,7 +174,7 @@ HOSTILE: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "sweep of half a point": (lambda: sg.sweep(two_springs(), g1=[2.0], points=2.5), ValueError, "points is 2.5"),
     "sweep over no gaps": (lambda: sg.sweep(plane_scene(), []), ValueError, "gaps is empty"),
     "sweep over a force that pulls": (lambda: sg.sweep(plane_scene(force=1.0), forces=[-2.0]), sg.SceneError, "-2 would pull"),
-    "sweep over a force that presses nothing": (lambda: sg.sweep(plane_scene(), forces=[1.0]), sg.SceneError, "0 of them have"),
+    "sweep over a force that presses nothing": (lambda: sg.sweep(plane_scene(), forces=[1.0]), sg.SceneError, "no obstacle is pressed"),
     "sweep of a scene to other gaps": (lambda: sg.sweep(plane_scene(), g1=[1.0]), ValueError, "a scene is swept over gaps or forces"),
     "tradeoff of nothing": (lambda: sg.tradeoff(K), TypeError, "a Problem or a Scene"),
     "tradeoff refined backwards": (lambda: sg.tradeoff(two_springs(), refinements=-1), ValueError, "refinements is -1"),

@@ -249,7 +249,7 @@ def test_errors_in_a_scene_name_path_line_and_column(tmp_path: Path) -> None:
     with pytest.raises(sg.SceneError) as raised:
         sg.Scene(scene).solve()
     assert raised.value.path == "material.young" and raised.value.line is None
-    with pytest.raises(sg.SceneError, match="unknown field"):
+    with pytest.raises(sg.SceneError, match="unknown key"):
         sg.Scene({**block(), "friction": 0.3})
 
 

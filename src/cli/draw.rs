@@ -16,5 +16,5 @@ pub(super) fn run(options: &Draw) -> Result<Outcome, Error> {
         Picture::Svg(file) => (file, drawing.svg().into_bytes()),
     };
     write_atomically(file, &bytes)?;
-    Ok(Outcome::done(format!("{}: the scene as it is before it is solved\n", file.display())))
+    Ok(Outcome::done(format!("{}: a picture of the scene before it is solved\n", file.display())))
 }

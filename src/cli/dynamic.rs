@@ -109,12 +109,21 @@ impl<'a> Run<'a> {
         let wrong = |field: &str, message: String| Error::Scene { path: format!("analysis.dynamic.{field}"), message };
         let (folder, state, summary) = MotionFolder::resume(path, scene, model, &dynamics.watched)?;
         if state.steps > dynamics.steps {
-            let message = format!("the run in the folder has gone on to step {} already, beyond it", state.steps);
+            let message = format!(
+                "the motion in the folder of --out has already reached step {}, beyond this duration; give a longer \
+                 one",
+                state.steps
+            );
             return Err(wrong("duration", message));
         }
         integrator.resume(state)?;
         if integrator.time() != summary.time {
-            return Err(wrong("step", "the run in the folder has another step; its duration was less than one".into()));
+            return Err(wrong(
+                "step",
+                "the motion in the folder of --out has another step, because its duration was shorter than one \
+                 step; start it anew"
+                    .into(),
+            ));
         }
         Ok(Run { model, dynamics, integrator, summary, folder: Some(folder) })
     }

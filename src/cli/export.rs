@@ -46,8 +46,8 @@ pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
 /// The places of the dofs of a model in PETSc's files.
 fn layout_of(model: &Model) -> Result<petsc::Layout, Error> {
     if model.meanings().any(|meaning| !matches!(meaning, Meaning::Node { .. })) {
-        let message = "petsc has blocks for nodes alone, but the scene has rigid faces or obstacles that a force presses, which \
-                       have unknowns of their own; take matrix-market";
+        let message = "the form petsc has only the unknowns of nodes, but rigid faces and obstacles that a force \
+                       presses have further unknowns; take --format matrix-market";
         return Err(Error::Scene { path: "--format".into(), message: message.into() });
     }
     Ok(petsc::Layout::of(model.body().dimension(), model.dofs().free(), model.mesh().nodes()))

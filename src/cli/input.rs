@@ -130,7 +130,8 @@ pub(super) fn rests(scene: &Scene) -> Result<(), Error> {
     if scene.analysis.is_none() {
         return Ok(());
     }
-    let message = "the scene moves; only `solve` and `tradeoff` can do with that: leave the analysis out for its rest";
+    let message = "the scene is a motion, which only the commands `solve` and `tradeoff` compute; remove `analysis` \
+                   for its equilibrium";
     Err(Error::Scene { path: "analysis".into(), message: message.into() })
 }
 

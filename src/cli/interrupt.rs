@@ -68,5 +68,5 @@ fn end() -> ! {
 /// The message on standard error about an outcome after an interrupt.
 pub(super) fn sentence(watch: &Watch) -> String {
     let place = watch.activity().part.map_or_else(String::new, |part| format!(" in {part}"));
-    format!("interrupted{place}: the report is of what was found until then\n")
+    format!("interrupted{place}: the report has the results up to there\n")
 }

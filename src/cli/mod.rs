@@ -19,6 +19,7 @@ mod solve;
 mod sweep;
 mod total_error;
 mod tradeoff;
+mod usage;
 mod verify;
 
 use std::ffi::OsString;
@@ -34,18 +35,21 @@ use interrupt::INTERRUPTED;
 use options::{Arguments, Command};
 use outcome::{Ending, Outcome, Pictures, warn};
 use progress::Progress;
+use usage::with_nearest_option;
 
 /// Runs the program with `arguments`, of which the first is its name, prints its report, and returns its exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let given: Vec<OsString> = arguments.into_iter().collect();
+    let arguments = match Arguments::try_parse_from(&given) {
         Ok(arguments) => arguments,
         Err(help) => {
+            let help = with_nearest_option(help, &given);
             // With a closed pipe there is no reader for an error.
             let _ = help.print();
             return ExitCode::from(help.exit_code() as u8);
         }
     };
-    let watch = if arguments.progress { progress::told() } else { Watch::default() };
+    let watch = if arguments.progress { progress::printed() } else { Watch::default() };
     interrupt::listen(&watch);
     watch.step("assembly", 0);
     let line = || (!arguments.progress && !arguments.quiet).then(|| Progress::of(&watch));

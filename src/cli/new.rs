@@ -17,7 +17,7 @@ pub(super) fn run(options: &New) -> Result<Outcome, Error> {
     match &options.out {
         Some(file) => {
             write_atomically(file, text.as_bytes())?;
-            Ok(Outcome::done(format!("{}: a scene to begin with; solve it, then change it\n", file.display())))
+            Ok(Outcome::done(format!("{}: written as a first scene; solve it, then change it\n", file.display())))
         }
         None => Ok(Outcome::done(text)),
     }

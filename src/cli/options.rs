@@ -16,8 +16,8 @@ use crate::qp::{Method, Precision};
 #[derive(Debug, Parser)]
 #[command(name = "signorini", version, arg_required_else_help = true)]
 #[command(after_help = "\
-Exit codes: 0 certified, 1 bad input or file, 2 usage, 3 infeasible, unbounded or under-held,
-            4 not certified or an unstable motion, 130 interrupted, with what was found until then.
+Exit codes: 0 certified, 1 bad input or file, 2 usage, 3 infeasible, unbounded or not held,
+            4 not certified or an unstable motion, 130 interrupted, with the results so far.
 
 Example: signorini compare examples/indentation.json --out indentation")]
 pub(super) struct Arguments {
@@ -33,8 +33,8 @@ pub(super) struct Arguments {
 
 /// The meaning of three similar options.
 const KNOBS: &str = "\
---tolerance is how well the conditions of contact hold, --accuracy how far off the displacement may be,
---time when the program must be done.";
+--tolerance bounds the violation of the contact conditions, --accuracy the error of the displacement,
+--time the seconds of the program.";
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
@@ -51,7 +51,7 @@ Example: signorini solve examples/ball.json --accuracy 1e-3 --time 10 --out ball
 
 {KNOBS}"))]
     Solve(Solve),
-    /// Solve by all three methods and say whether they agree
+    /// Solve by three methods and print their differences
     #[command(after_help = "Example: signorini compare examples/indentation.json --out indentation")]
     Compare(Compare),
     /// Solve a scene at several gaps or forces, or a problem directory on the way to another end
@@ -61,7 +61,7 @@ Example: signorini sweep examples/indentation.json --gaps -0.01:-0.10:10 --out s
 
 A problem directory is swept from g.mtx and f.mtx to g1.mtx and f1.mtx, on a straight line.")]
     Sweep(Sweep),
-    /// Solve a scene or a problem directory in every way, and say what each digit costs
+    /// Solve a scene or a problem directory by every method, and print the seconds that each digit costs
     #[command(after_help = "Example: signorini tradeoff examples/indentation.json --refinements 2 --time 60")]
     Tradeoff(Tradeoff),
     /// Write the problem of a scene as Matrix Market or PETSc files
@@ -69,14 +69,14 @@ A problem directory is swept from g.mtx and f.mtx to g1.mtx and f1.mtx, on a str
 Example: signorini export examples/ball.json ball
          signorini export examples/ball.json ball --format petsc
 
-The bytes that it writes are told on standard error before it begins; they go to the files piece by piece.")]
+Before it begins it prints the number of bytes that it writes on standard error; they go to the files piece by piece.")]
     Export(Export),
-    /// Certify an answer that came from elsewhere
+    /// Certify an answer of another program
     #[command(after_help = "\
 Example: signorini verify problem --displacement u.mtx --multiplier lambda.mtx
 
 The energy error is bounded with a factor of the stiffness if that fits into the memory and the time; else by multigrid,
-and the bound is then `measured`.")]
+and the bound then rests on a measured eigenvalue.")]
     Verify(Verify),
     /// Print the JSON Schema of a scene
     #[command(after_help = "\
@@ -123,7 +123,7 @@ fn parse_picture(text: &str) -> Result<Picture, String> {
     match path.extension().map(|ending| ending.to_ascii_lowercase()) {
         Some(ending) if ending == "png" => Ok(Picture::Png(path)),
         Some(ending) if ending == "svg" => Ok(Picture::Svg(path)),
-        _ => Err("the name must end in .png or .svg".to_string()),
+        _ => Err("the name of the picture must end in .png or .svg".to_string()),
     }
 }
 
@@ -159,7 +159,7 @@ impl ValueEnum for Precision {
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
         let (name, help) = match self {
-            Precision::Auto => ("auto", "Double, unless an accuracy is asked for that single precision reaches sooner"),
+            Precision::Auto => ("auto", "Double, unless single precision reaches the requested --accuracy sooner"),
             Precision::Double => ("double", "Double precision"),
             Precision::Mixed => ("mixed", "Single precision, half the memory, refined in double precision"),
         };
@@ -175,7 +175,7 @@ impl ValueEnum for Pictures {
     fn to_possible_value(&self) -> Option<PossibleValue> {
         let (name, help) = match self {
             Pictures::None => ("none", "No picture"),
-            Pictures::Answer => ("answer", "What the command ends with"),
+            Pictures::Answer => ("answer", "The final answer of the command"),
             Pictures::All => ("all", "Each iteration, penalty, gap and force as well"),
         };
         Some(PossibleValue::new(name).help(help))
@@ -210,16 +210,16 @@ pub(super) struct Solve {
     /// Method that finds the contact set
     #[arg(long, value_enum, default_value_t = Method::Auto)]
     pub method: Method,
-    /// Relative error in the energy norm that is good enough, certified; or `exact`: the linear solve with the settled contact set
+    /// Allowed relative error in the energy norm, certified; or `exact`: the linear solve with the final contact set
     #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = parse_accuracy)]
     pub accuracy: Option<Accuracy>,
     /// Seconds after which the best answer so far is returned, or a motion ends
     #[arg(long, visible_alias = "time-limit", value_name = "T", allow_negative_numbers = true, value_parser = parse_seconds)]
     pub time: Option<f64>,
-    /// Tell what was weighed when the method was chosen, and what decided
+    /// Print the estimated seconds and memory of each method, and the reason for the choice
     #[arg(long)]
     pub explain: bool,
-    /// Start from the answer that an earlier --out left in this folder (u.mtx, lambda.mtx)
+    /// Start from the answer that an earlier run with --out wrote into this folder (u.mtx, lambda.mtx)
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["total_error", "resume"])]
     pub start: Option<PathBuf>,
     /// Precision of the sparse factor
@@ -231,15 +231,15 @@ pub(super) struct Solve {
     /// Extrapolate the penalty answer to an infinite penalty
     #[arg(long)]
     pub extrapolate: bool,
-    /// Refine the mesh until the error against the continuum, relative in the energy norm, is below: guaranteed in the plane, else
-    /// estimated
+    /// Refine the mesh until the error against the continuum, relative in the energy norm, is below E: guaranteed in the plane,
+    /// estimated elsewhere
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_total_error,
           conflicts_with_all = ["accuracy", "extrapolate", "resume"])]
     pub total_error: Option<f64>,
-    /// And until the contact force is guaranteed to be within this relative error
+    /// Refine further until the contact force is guaranteed to this relative error
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_total_error, requires = "total_error")]
     pub force_error: Option<f64>,
-    /// Go on with the motion that stands in the folder of --out, to a longer duration if the scene now says so
+    /// Continue the motion in the folder of --out; the scene may have a longer duration than before
     #[arg(long, requires = "out")]
     pub resume: bool,
     #[command(flatten)]
@@ -269,13 +269,13 @@ pub(super) struct Sweep {
     /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, or the same as .petsc, and g1.mtx or f1.mtx or
     /// both for its other end)
     pub scene: PathBuf,
-    /// Gaps from the first to the last, and their number, as -0.01:-0.10:10
+    /// Gaps from the first to the last, and their number, such as -0.01:-0.10:10
     #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_gaps)]
     pub gaps: Option<Gaps>,
-    /// Forces on the obstacle that a force presses, from the first to the last, and their number, as 0:10e3:11
+    /// Forces on the obstacle that a force presses, from the first to the last, and their number, such as 0:10e3:11
     #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_forces)]
     pub forces: Option<Gaps>,
-    /// Points on the way of a problem directory, both ends included
+    /// Number of points between the two ends of a problem directory, both ends included
     #[arg(long, value_name = "COUNT", value_parser = parse_points)]
     pub points: Option<usize>,
     /// Method that finds the contact sets
@@ -297,7 +297,7 @@ pub(super) struct Gaps {
 const MOST_GAPS: usize = 10_000;
 
 fn parse_gaps(text: &str) -> Result<Gaps, String> {
-    parse_range(text, "gap", "it must be FIRST:LAST:COUNT, as -0.01:-0.10:10")
+    parse_range(text, "gap", "it must be FIRST:LAST:COUNT, such as -0.01:-0.10:10")
 }
 
 fn parse_points(text: &str) -> Result<usize, String> {
@@ -308,7 +308,7 @@ fn parse_points(text: &str) -> Result<usize, String> {
 }
 
 fn parse_forces(text: &str) -> Result<Gaps, String> {
-    let form = "it must be FIRST:LAST:COUNT, as 0:10e3:11";
+    let form = "it must be FIRST:LAST:COUNT, such as 0:10e3:11";
     let forces = parse_range(text, "force", form)?;
     match forces.first.min(forces.last) {
         least if least < 0.0 => Err(format!("{least} would pull the obstacle away: forces are 0 or positive; {form}")),
@@ -337,7 +337,7 @@ fn parse_range(text: &str, of: &str, form: &str) -> Result<Gaps, String> {
 fn parse_seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        _ => Err("it must be a positive number of seconds, as 2.5".to_string()),
+        _ => Err("it must be a positive number of seconds, such as 2.5".to_string()),
     }
 }
 
@@ -347,16 +347,16 @@ const LARGEST_TOLERANCE: f64 = 0.1;
 fn parse_tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value <= LARGEST_TOLERANCE => Ok(value),
-        _ => {
-            Err(format!("it must be a number above 0 and at most {LARGEST_TOLERANCE}, as 1e-9: it is a relative error"))
-        }
+        _ => Err(format!(
+            "it must be a number above 0 and at most {LARGEST_TOLERANCE}, such as 1e-9: it is a relative error"
+        )),
     }
 }
 
 fn parse_total_error(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
-        _ => Err("it must be a number above 0 and below 1, as 1e-2: it is a relative error".to_string()),
+        _ => Err("it must be a number above 0 and below 1, such as 1e-2: it is a relative error".to_string()),
     }
 }
 
@@ -372,9 +372,9 @@ pub(super) enum Accuracy {
 fn parse_accuracy(text: &str) -> Result<Accuracy, String> {
     match text {
         "exact" => Ok(Accuracy::Exact),
-        number => parse_tolerance(number)
-            .map(Accuracy::Within)
-            .map_err(|_| format!("it must be a number above 0 and at most {LARGEST_TOLERANCE}, as 1e-3, or `exact`")),
+        number => parse_tolerance(number).map(Accuracy::Within).map_err(|_| {
+            format!("it must be a number above 0 and at most {LARGEST_TOLERANCE}, such as 1e-3, or `exact`")
+        }),
     }
 }
 
@@ -391,7 +391,7 @@ fn parse_threads(text: &str) -> Result<usize, String> {
 /// Limits of memory and files for a scene or a problem.
 #[derive(Debug, Args)]
 pub(super) struct Limits {
-    /// Refuse what needs more memory, as 500MB or 1.5GB [default: what the machine has available]
+    /// Refuse a problem that needs more memory, such as 500MB or 1.5GB [default: what the machine has available]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<f64>,
     /// Let the scene read files of meshes and surfaces that lie outside its own folder
@@ -431,7 +431,7 @@ pub(super) struct Common {
     /// Pictures in that folder [default: answer; of compare and sweep: all]
     #[arg(long, value_enum, value_name = "WHICH")]
     pub pictures: Option<Pictures>,
-    /// What the pictures are for
+    /// Use of the pictures: on a screen, or printed on paper
     #[arg(long, value_enum, default_value_t = Medium::Screen)]
     pub style: Medium,
     /// Form of the report
@@ -441,12 +441,12 @@ pub(super) struct Common {
 
 #[derive(Debug, Args)]
 pub(super) struct Tradeoff {
-    /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx), whose algebra alone is measured
+    /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx; it has no mesh to refine)
     pub input: PathBuf,
     /// Finer meshes beside the scene's own, each with half the cells; 1 if neither this nor --time is given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=8))]
     pub refinements: Option<u8>,
-    /// Begin no finer mesh that would end later than this many seconds after the start; without --refinements as many as that allows
+    /// Begin no finer mesh that would end later than T seconds after the start; without --refinements the time alone limits the meshes
     #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_seconds)]
     pub time: Option<f64>,
     /// Runs of each point, of which the fastest counts
@@ -463,7 +463,7 @@ pub(super) struct Tradeoff {
     /// Pictures in that folder; answer and all are the same here
     #[arg(long, value_enum, value_name = "WHICH", default_value_t = Pictures::Answer)]
     pub pictures: Pictures,
-    /// What the pictures are for
+    /// Use of the pictures: on a screen, or printed on paper
     #[arg(long, value_enum, default_value_t = Medium::Screen)]
     pub style: Medium,
     /// Form of the report
@@ -512,7 +512,7 @@ pub(super) struct Verify {
     /// Threads of the factorisation and of multigrid
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = parse_threads)]
     pub threads: usize,
-    /// Refuse what needs more memory, as 500MB or 1.5GB [default: what the machine has available]
+    /// Refuse a problem that needs more memory, such as 500MB or 1.5GB [default: what the machine has available]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<f64>,
     /// Form of the report

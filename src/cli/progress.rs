@@ -28,7 +28,7 @@ const TELLING_PARTS: usize = 5;
 const WIDTH: usize = 79;
 
 /// A watch that writes each step on a line of its own as it begins.
-pub(super) fn told() -> Watch {
+pub(super) fn printed() -> Watch {
     Watch::observed(|watch| warn(&format!("progress: {}\n", watch.activity())))
 }
 
@@ -55,7 +55,8 @@ impl Progress {
                 if start.elapsed() >= QUIET && !is_pending {
                     is_shown = true;
                     let line = if watch.is_noticed() {
-                        "interrupted: it ends with what there is, at once if interrupted again".to_string()
+                        "interrupted: the program ends with the results so far; interrupt it again to end at once"
+                            .to_string()
                     } else {
                         line(&activity, start.elapsed(), left)
                     };

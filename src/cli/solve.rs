@@ -41,7 +41,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
         let Source::Scene(scene, _) = &source else {
             let name = options.input.display();
             let message =
-                format!("{name} is a problem directory: it has no continuum, so that its total error is unknown");
+                format!("{name} is a problem directory, which has no mesh to refine; a total error needs a scene");
             return Err(Error::Scene { path: "--total-error".into(), message });
         };
         let goal = TotalErrorGoal { total_error: bound, force_error: options.force_error };
@@ -49,7 +49,10 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     }
     if options.resume {
         let path = "analysis".into();
-        return Err(Error::Scene { path, message: "nothing moves here, so that there is nothing to resume".into() });
+        return Err(Error::Scene {
+            path,
+            message: "the scene has no `analysis`, so that there is no motion to resume; leave --resume out".into(),
+        });
     }
     let input = match source {
         Source::Scene(scene, read_seconds) => Input::of_scene(&scene, &options.input, read_seconds)?,
@@ -64,7 +67,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
         Some(Accuracy::Exact) => {
             let method = settings.method.name();
             warn(&format!(
-                "warning: --accuracy exact changes nothing: the method is {method}; it goes with --method auto\n"
+                "warning: --accuracy exact changes nothing: the method is {method}; it needs --method auto\n"
             ));
         }
         None => {}
@@ -78,9 +81,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     let solution = best_of(&input, start, &settings)?;
     if options.extrapolate && !matches!(settings.method, Method::Penalty(_)) {
         let method = &solution.method;
-        warn(&format!(
-            "warning: --extrapolate changes nothing: the method is {method}; it goes with --method penalty\n"
-        ));
+        warn(&format!("warning: --extrapolate changes nothing: the method is {method}; it needs --method penalty\n"));
     }
     reported(&input, solution, settings.goal(), (about, options), watch)
 }
@@ -88,11 +89,12 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
 /// The motion of a scene, without the options of a single solve.
 fn motion(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outcome, Error> {
     if options.start.is_some() {
-        let message = "a motion starts from its initial state, not from an answer; --resume goes on with one";
+        let message =
+            "a motion starts from its `initial` state, not from an earlier answer; --resume continues a motion";
         return Err(Error::Scene { path: "--start".into(), message: message.into() });
     }
     if options.explain {
-        warn("warning: --explain tells nothing of a motion: it is of one solve\n");
+        warn("warning: --explain has no effect on a motion: it explains a single solve\n");
     }
     dynamic::run(options, scene, watch)
 }
@@ -161,7 +163,7 @@ fn reported(
     report.write(&folder)?;
     let outcome = report.outcome(common.format, status);
     if watch.is_over() && !watch.is_stopped() {
-        warn("warning: no fields and no pictures: the time is over\n");
+        warn("warning: no fields and no pictures are written: the time of --time is over\n");
         return Ok(outcome);
     }
     let Some(answer) = answer else {

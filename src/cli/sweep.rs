@@ -11,6 +11,7 @@ use crate::output::page::write_sweep_page;
 use crate::output::{draw_problem_sweep, problem_sweep_text, sweep_text, write_points};
 use crate::qp::is_problem_directory;
 use crate::qp::matrix_market::read_other_end;
+use crate::scene::Scene;
 use crate::study::scene::even_gaps;
 use crate::study::{self, sweep, sweep_problem};
 use crate::watch::Watch;
@@ -23,12 +24,15 @@ pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
         (true, None) => {
             let given = if options.gaps.is_some() { "--gaps" } else { "--forces" };
             let name = options.scene.display();
-            let message = format!("{name} is a problem directory, whose other end is g1.mtx, f1.mtx: give --points");
+            let message = format!(
+                "{name} is a problem directory, which is swept from g.mtx, f.mtx to g1.mtx, f1.mtx; give --points \
+                 instead"
+            );
             Err(Error::Scene { path: given.into(), message })
         }
         (false, Some(_)) => {
             let name = options.scene.display();
-            let message = format!("{name} is no problem directory; a scene is swept over --gaps or --forces");
+            let message = format!("{name} is not a problem directory; a scene is swept over --gaps or --forces");
             Err(Error::Scene { path: "--points".into(), message })
         }
         (false, None) => of_scene(options, watch),
@@ -44,7 +48,8 @@ fn of_scene(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let settings = settings(options.method, common, watch);
     let even = |range: &Gaps| even_gaps(range.first, range.last, range.count);
     let swept = match (&options.gaps, &options.forces) {
-        (_, Some(forces)) => study::Sweep::over_forces(&model, &even(forces), &settings)?,
+        (_, Some(forces)) => study::Sweep::over_forces(&model, &even(forces), &settings)
+            .map_err(|error| Scene::located(error, &options.scene))?,
         (gaps, None) => sweep(&model, &gaps.as_ref().map_or_else(Vec::new, even), &settings)?,
     };
     watch.step("report", 0);

@@ -38,7 +38,7 @@ pub(super) fn run(options: &Solve, scene: &Scene, goal: TotalErrorGoal, watch: &
     match total_error(scene, &model, goal, &settings).map_err(|error| model.explain(error))? {
         Found::Guaranteed(found) => {
             if options.explain {
-                warn("warning: --explain tells nothing of a guaranteed error: it is for one solve\n");
+                warn("warning: --explain has no effect with a guaranteed error: it explains a single solve\n");
             }
             let report = Report::new(&found, total_error_text(&title, &found, &units))?;
             if let Some(folder) = &options.common.out {

@@ -39,8 +39,9 @@ impl Bracket<'_> {
         match defects.iter().find(|defect| defect.size.is_nan() || defect.size > defect.allowed) {
             None => Ok(defects.iter().fold(0.0, |worst, defect| f64::max(worst, defect.size))),
             Some(Defect { what, size, allowed }) => {
-                let reason =
-                    format!("{what} by {size:.1e}; at most {allowed:.0e} is rounding, so that nothing is guaranteed");
+                let reason = format!(
+                    "{what} by {size:.1e}, but at most {allowed:.0e} is allowed as rounding; nothing is guaranteed"
+                );
                 Err(Error::Numerical { step: "the guaranteed bound", reason })
             }
         }
@@ -55,7 +56,7 @@ impl Bracket<'_> {
             defect("the stress is out of balance", strained(Self::imbalance), OUT_OF_BALANCE),
             defect("the obstacle pulls", strained(Self::adhesion), OUT_OF_BALANCE),
             defect("the displacement goes into an obstacle", self.penetration(), PENETRATION),
-            defect("J - D misses the sum of its shares", strained(Self::lost), LOST),
+            defect("J - D differs from the sum of its shares", strained(Self::lost), LOST),
         ]
     }
 

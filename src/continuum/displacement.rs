@@ -76,7 +76,7 @@ impl<'a> Displacements<'a> {
             match unknowns.held[unknown] {
                 Some(held) if sense * held > gap => {
                     let overlap = sense * held - gap;
-                    let reason = format!("a support holds the boundary {overlap:.3e} inside of obstacles[{number}]");
+                    let reason = format!("a support holds the boundary {overlap:.3e} inside obstacles[{number}]");
                     return Err(Error::Infeasible { reason, rows: Vec::new(), weights: Vec::new(), overlap });
                 }
                 Some(_) => {}

@@ -137,7 +137,7 @@ impl Bracket<'_> {
         ([(low - radius * length) / (1.0 + test.beyond), high + most], length / (2.0 * radius))
     }
 
-    /// The pair with these rows held; rows of the wrong sign are bonded or released until there are none.
+    /// The pair with these rows held; rows of the wrong sign are bonded or released until every row has the right sign.
     fn test(&self, bonded: &mut [bool], pressed: &mut [bool], blocks: &Blocks) -> Result<Option<Test>, Error> {
         let Some(displacement) = self.bonded_displacement(bonded, &blocks.displacement)? else {
             return Ok(None);

@@ -52,7 +52,7 @@ const HALVINGS: usize = 12;
 /// use signorini::scene::rectangle;
 /// use signorini::fem::{ExactState, error_norms};
 ///
-/// // u_x = x on one cell; the answer is nine tenths of it at every node.
+/// // u_x = x on one cell; the answer is 0.9 u_x at every node.
 /// let mesh = rectangle(&[0.0, 1.0], &[0.0, 1.0], ElementKind::Q4)?;
 /// let nodal: Vec<f64> = mesh.nodes().iter().flat_map(|at| [0.9 * at[0], 0.0]).collect();
 /// let body = ElasticBody::new(mesh, Material::new(1.0, 0.3)?, Formulation::PlaneStrain { thickness: 1.0 })?;

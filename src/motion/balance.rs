@@ -8,7 +8,7 @@ use super::State;
 /// M a + C v + K u = w_0 f(t_0) + w_1 f(t_1) + B' lambda
 /// ```
 ///
-/// Each scheme evaluates u, v, a and the times where it balances the forces: at the middle of a step, at its end, or between.
+/// Each scheme evaluates u, v, a and the times at which it balances the forces: at the middle of a step, at its end, or between.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Balance {
     /// Displacement u, one entry for each requested dof, in length.

@@ -11,7 +11,7 @@ use crate::qp::{Method, Settings};
 use crate::solution::ContactSet;
 use crate::watch::Watch;
 
-/// Rounding of the displacement and the gaps, relative to the largest of them: below this there is no penetration at the start.
+/// Rounding of the displacement and the gaps, relative to the largest entry: below this there is no penetration at the start.
 const GAP_ROUNDING: f64 = 1e-12;
 
 /// A motion with its scheme and its step.

@@ -43,14 +43,14 @@ fn notes(certificate: &Certificate, goal: Goal) -> Vec<String> {
     let mut notes = Vec::new();
     if certificate.parts > 1 {
         let worst = certificate.part_error_bound;
-        notes.push(format!("of {} parts the worst is at most {worst:.1e} off", certificate.parts));
+        notes.push(format!("of {} parts the largest error is at most {worst:.1e}", certificate.parts));
     }
     if goal.is_met_by(certificate) && certificate.part_error_bound > goal.tolerance {
-        let rounding = "what is above the tolerance is explained by rounding the displacement to double precision";
+        let rounding = "values above the tolerance are due to the rounding of the displacement to double precision";
         notes.push(rounding.to_string());
     }
     if certificate.energy_error_bound.is_infinite() {
-        let unknown = "no error bound: the conditions alone do not tell how far off the displacement is";
+        let unknown = "no error bound: the conditions alone do not bound the error of the displacement";
         notes.push(unknown.to_string());
     }
     notes

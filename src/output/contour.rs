@@ -1,7 +1,7 @@
 //! Outlines of the regions in which a nodal field exceeds a level, to be painted one over the other.
 //!
-//! The field is linear on triangles: an element with more than three corners is a fan of triangles around its centre,
-//! which carries the mean of the corners. Inside the region `value >= level` two neighbours see the same piece of
+//! The field is linear on triangles: an element with more than three corners is a fan of triangles around its
+//! centre, which carries the mean of the corners. Inside the region `value >= level` two neighbours see the same piece of
 //! their common edge, so the outline consists of the level line within the triangles and of pieces of the boundary of
 //! the mesh. Only these are written, which keeps a picture small however fine the mesh is.
 
@@ -63,7 +63,7 @@ impl Field {
         }
     }
 
-    /// Outlines of the region where the field is at least `level`; of the whole mesh for minus infinity.
+    /// Outlines of the region with a field of at least `level`; of the whole mesh for minus infinity.
     pub fn at_least(&self, level: f64) -> Vec<Vec<[f64; 2]>> {
         let mut pieces = Vec::new();
         for triangle in &self.triangles {

@@ -37,7 +37,9 @@ pub(crate) fn estimated_error_text(title: &str, found: &Estimated, answer: &Summ
         Ended::Goal => {}
         Ended::Time => text += &entry("ended", &format!("no time for a finer mesh; {}", needed(found))),
         Ended::Memory => text += &entry("ended", &format!("no memory for a finer mesh; {}", needed(found))),
-        Ended::Mesh => text += &entry("ended", "the mesh of a file has no finer one; mesh the body with smaller cells"),
+        Ended::Mesh => {
+            text += &entry("ended", "a mesh from a file cannot be refined here; mesh the body with smaller cells")
+        }
     }
     text += &entry("seconds", &format!("{:.3}", found.seconds));
     text.push('\n');
@@ -68,7 +70,9 @@ fn row(level: &EstimatedLevel) -> Vec<String> {
 
 /// The unknowns that the goal would need, from the rate of the last meshes.
 fn needed(found: &Estimated) -> String {
-    let [.., before, last] = &found.levels[..] else { return "a second mesh would tell what the goal takes".into() };
+    let [.., before, last] = &found.levels[..] else {
+        return "a second mesh is needed to estimate the unknowns for the goal".into();
+    };
     let rate = (before.total_error / last.total_error).ln() / (last.dofs as f64 / before.dofs as f64).ln();
     super::total_error::unknowns_needed(rate, last.total_error / found.goal.total_error, last.dofs)
 }
@@ -133,7 +137,7 @@ fn plot(medium: Medium, title: &str, found: &Estimated) -> Drawing {
     let line = |name: &str, value: &dyn Fn(&EstimatedLevel) -> f64| {
         Series::new(name, found.levels.iter().map(|level| [level.dofs as f64, value(level)]).collect())
     };
-    let series = vec![line("estimated", &|level| level.total_error), line("asked for", &|_| found.goal.total_error)];
+    let series = vec![line("estimated", &|level| level.total_error), line("goal", &|_| found.goal.total_error)];
     let (x, y) = (Quantity::new("unknowns", ""), Quantity::new("total error, relative", ""));
     line_plots_for(medium, title, &[Plot { scales: [Scale::Logarithmic; 2], ..Plot::new(x, y, series) }])
 }

@@ -64,7 +64,7 @@ pub(super) fn iterations(model: &Arc<Model>, history: &[Iteration]) -> Result<Ve
             false => format!("iteration {number} of {}", steps.len()),
         };
         if chosen.len() < steps.len() {
-            what += &format!(" ({} of them drawn)", chosen.len());
+            what += &format!(" ({} drawn)", chosen.len());
         }
         let answer = Answer::new(model.clone(), &displacement, &multiplier, &step.contact_set)?;
         shown.push(Step { index, name: format!("{name}-{number}"), what, answer });

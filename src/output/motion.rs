@@ -131,7 +131,7 @@ impl MotionFolder {
         let found: Checkpoint =
             serde_json::from_str(&text).map_err(|error| not_ours(&path, "checkpoint of a motion", &error))?;
         if found.scene != scene && undated(&found.scene) != undated(&scene) {
-            return Err(wrong("it belongs to another scene; take its own, or another folder".into()));
+            return Err(wrong("it belongs to another scene; give that scene, or another folder".into()));
         }
         let history = MotionTable::resume(folder.join(HISTORY), HEADING, found.history_bytes)?;
         let resultants = folder.join(RESULTANTS);
@@ -396,7 +396,7 @@ fn watch_heading(model: &Model, watched: &[WatchedPoint]) -> Option<String> {
 
 /// Error for a file that is not the output of a run; it quotes no content, which may be private.
 fn not_ours(path: &Path, what: &str, error: &serde_json::Error) -> Error {
-    let message = format!("it is no {what} (column {})", error.column());
+    let message = format!("it is not a {what} (column {})", error.column());
     Error::FileSyntax { file: path.into(), line: error.line().max(1), message }
 }
 

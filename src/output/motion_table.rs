@@ -65,13 +65,13 @@ fn cut(path: &Path, expected: &str, bytes: u64) -> std::io::Result<()> {
     let wrong = |message: &str| Err(IoError::new(ErrorKind::InvalidData, message));
     // Opening a named pipe waits for a reader, and the target of a link is outside this folder.
     if !path.symlink_metadata()?.is_file() {
-        return wrong("it is no regular file");
+        return wrong("it is not a regular file");
     }
     let mut file = OpenOptions::new().read(true).write(true).open(path)?;
     let mut heading = Vec::new();
     (&mut file).take(expected.len() as u64).read_to_end(&mut heading)?;
     if heading != expected.as_bytes() {
-        return wrong("it is no history of a motion");
+        return wrong("it is not a history of a motion");
     }
     if file.metadata()?.len() < bytes {
         return wrong("it is shorter than its checkpoint says");

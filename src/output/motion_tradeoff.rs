@@ -27,8 +27,8 @@ pub fn motion_tradeoff_text(title: &str, tradeoff: &MotionTradeoff) -> String {
         ]
     }));
     format!(
-        "{}\n\n{} dofs; errors against `midpoint` on the same mesh with the step {:.3e}\n{}\nA star: no other way is faster \
-         and as accurate.\n",
+        "{}\n\n{} dofs; errors against `midpoint` on the same mesh with the step {:.3e}\n{}\nA star: no other row \
+         is both faster and as accurate.\n",
         printable(title),
         tradeoff.dofs,
         tradeoff.reference_step,

@@ -21,7 +21,7 @@ const MOST_PIXELS: f64 = 1e8;
 pub(super) fn painted(sides: [f64; 2], shapes: &[Shape], scale: f64) -> Result<Pixmap, Error> {
     let [width, height] = sides.map(|side| (side * scale).round());
     if !(scale > 0.0 && width >= 1.0 && height >= 1.0 && width * height <= MOST_PIXELS) {
-        let allowed = "positive, and an image of at least one and at most 1e8 pixels must come of it";
+        let allowed = "positive, and such that the image has at least one and at most 1e8 pixels";
         return Err(Error::Setting { name: "scale of the picture", value: scale, allowed });
     }
     let reason = format!("no image of {width} x {height} pixels");

@@ -42,6 +42,9 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
     let mut text = format!("{}\n", printable(title));
     let mut line = |name: &str, content: String| text += &entry(name, &content);
     line("model", format!("{mesh}{} dofs, {}", model.dofs, plural(model.contact_rows, "contact row")));
+    if let Some(overlap) = &summary.initial_overlap {
+        wrapped(&printable(overlap)).into_iter().for_each(|overlap| line("", overlap));
+    }
     let unknowns = match model.condensed_dofs {
         all if all == model.dofs => ", on all dofs".to_string(),
         condensed => format!(", condensed to {condensed} dofs"),
@@ -237,19 +240,23 @@ fn mesh_text(summary: &Summary, units: &Units) -> String {
         let unit = format!("{} {}", units.force, units.length);
         entry("energy", format!("strain energy {energy:.6e} {}", printable(&unit)).trim_end())
     });
-    let mut text = energy + &entry("mesh", &format!("about {of_mesh:.1e} of the energy norm off, by its stresses"));
+    let mut text = energy
+        + &entry(
+            "mesh",
+            &format!("relative error in the energy norm about {of_mesh:.1e}, estimated from the stresses"),
+        );
     let bound = summary.solution.certificate.energy_error_bound;
     if !of_mesh.is_finite() || !bound.is_finite() {
         let reason = match bound.is_finite() {
             false => "the answer has no error bound",
             true => "the error of the mesh could not be estimated",
         };
-        return text + &entry("", &format!("tolerance or mesh first? none: {reason}"));
+        return text + &entry("", &format!("no advice on tolerance and mesh: {reason}"));
     }
     if bound < of_mesh * FAR_BELOW {
-        text += &entry("", "the solver is far below that: more of its digits buy nothing, a finer mesh does");
+        text += &entry("", "the error of the solver is far smaller: only a finer mesh improves the answer");
     } else if bound.is_finite() && bound > of_mesh {
-        text += &entry("", "the solver may be further off: a tighter tolerance comes before a finer mesh");
+        text += &entry("", "the error of the solver may be larger: tighten the tolerance before the mesh is refined");
     }
     text
 }

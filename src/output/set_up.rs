@@ -38,7 +38,7 @@ const SPRING: Colour = PALETTE[3];
 const FACE: Colour = PALETTE[5];
 const LOAD: Colour = PALETTE[1];
 
-/// Draws the scene of a model as it is before it is solved.
+/// Draws the scene of a model before it is solved.
 ///
 /// # Errors
 /// [`Error::Scene`] for a bar, which has no such picture.

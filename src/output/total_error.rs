@@ -74,8 +74,8 @@ pub(super) fn percent(share: f64) -> String {
 
 /// The statement that an error meets its goal or not.
 pub(super) fn verdict(error: f64, goal: f64) -> String {
-    let is_met = if error <= goal { "as asked for" } else { "NOT as asked for" };
-    format!("{is_met}: {}", percent(goal))
+    let is_met = if error <= goal { "within the goal" } else { "ABOVE the goal" };
+    format!("{is_met} of {}", percent(goal))
 }
 
 fn row(level: &TotalErrorLevel) -> Vec<String> {
@@ -103,7 +103,9 @@ fn force_text(found: &TotalError, units: &Units) -> String {
 
 /// The unknowns that the goal would need, from the rate of the last meshes.
 fn needed(found: &TotalError) -> String {
-    let [.., before, last] = &found.levels[..] else { return "a second mesh would tell what the goal takes".into() };
+    let [.., before, last] = &found.levels[..] else {
+        return "a second mesh is needed to estimate the unknowns for the goal".into();
+    };
     let rate = (before.bound / last.bound).ln() / (last.dofs as f64 / before.dofs as f64).ln();
     unknowns_needed(rate, last.bound / found.goal.total_error, last.dofs)
 }
@@ -112,8 +114,8 @@ fn needed(found: &TotalError) -> String {
 pub(super) fn unknowns_needed(rate: f64, times: f64, dofs: usize) -> String {
     let more = times.powf(1.0 / rate);
     match rate > 0.0 && more.is_finite() {
-        true => format!("the goal would take about {:.1e} unknowns", more.max(1.0) * dofs as f64),
-        false => "the last meshes do not tell what the goal would take".into(),
+        true => format!("the goal needs about {:.1e} unknowns", more.max(1.0) * dofs as f64),
+        false => "the last meshes do not give an estimate of the unknowns for the goal".into(),
     }
 }
 
@@ -201,10 +203,8 @@ fn plot(medium: Medium, title: &str, found: &TotalError) -> Drawing {
         let point = |level: &TotalErrorLevel| Some([level.dofs as f64, value(level)?]);
         Series::new(name, found.levels.iter().filter_map(point).collect())
     };
-    let goal = Series::new(
-        "asked for",
-        found.levels.iter().map(|level| [level.dofs as f64, found.goal.total_error]).collect(),
-    );
+    let goal =
+        Series::new("goal", found.levels.iter().map(|level| [level.dofs as f64, found.goal.total_error]).collect());
     let series = vec![
         line("displacement", &|level| Some(level.bound)),
         line("mean stress", &|level| Some(level.mean_stress_bound)),

@@ -32,10 +32,10 @@ pub fn tradeoff_text(title: &str, tradeoff: &Tradeoff) -> String {
     for (index, mesh) in tradeoff.meshes.iter().enumerate() {
         let cells = match mesh.divided_by {
             1 => "mesh of the scene".to_string(),
-            times => format!("cells cut into {times} along each edge"),
+            times => format!("each edge of the scene's cells divided into {times}"),
         };
         let (cells, off) = match mesh.discretisation_error {
-            Some(error) => (cells, format!("; the mesh itself is about {error:.1e} of the energy norm off")),
+            Some(error) => (cells, format!("; the relative error of the mesh in the energy norm is about {error:.1e}")),
             None => ("matrices".to_string(), String::new()),
         };
         text += &format!("\n{cells}: {} dofs, {}{off}\n", mesh.dofs, plural(mesh.contact_rows, "contact row"));
@@ -44,15 +44,16 @@ pub fn tradeoff_text(title: &str, tradeoff: &Tradeoff) -> String {
         text += &columns(&table);
     }
     text += &format!(
-        "\nEach time is the fastest of at least {}, to the answer at the setting; certificate and proof stand beside it.\n\
+        "\nEach time is the fastest of at least {}, from the data to the answer; certificate and proof have \
+         columns of their own.\n\
          A setting is the tolerance of the interior point, the accuracy of multigrid or of a mixed factor, the last penalty over the \
-         local stiffness.\nA star: no other way is faster and as accurate.\n",
+         local stiffness.\nA star: no other row is both faster and as accurate.\n",
         plural(tradeoff.runs, "run")
     );
     let unsettled = tradeoff.points.iter().filter(|point| !point.is_repeated).count();
     if unsettled > 0 && tradeoff.runs > 1 {
         let of = tradeoff.points.len();
-        text += &format!("Of {of} times {unsettled} were not met again to 3 %: other work runs on this machine.\n");
+        text += &format!("{unsettled} of {of} times could not be repeated to 3 %: other work runs on this machine.\n");
     }
     text + &advice(tradeoff)
 }
@@ -85,13 +86,13 @@ fn precision(point: &TradeoffPoint) -> &'static str {
 
 /// A method with its settings in words.
 fn way(point: &TradeoffPoint) -> String {
-    let told = match (point.method, point.knob) {
+    let named = match (point.method, point.knob) {
         (_, None) => String::new(),
         ("penalty", Some(knob)) => format!(" up to {knob:.0e} times the stiffness"),
         (_, Some(knob)) => format!(" to {knob:.0e}"),
     };
     let mixed = if point.mixed { ", mixed precision" } else { "" };
-    format!("{}{told} on {} dofs{mixed}", point.method, unknowns(point))
+    format!("{}{named} on {} dofs{mixed}", point.method, unknowns(point))
 }
 
 fn advice(tradeoff: &Tradeoff) -> String {
@@ -121,7 +122,8 @@ fn advice_of_meshes(tradeoff: &Tradeoff) -> String {
     if tradeoff.advice.iter().all(|advice| !advice.chooses_mesh) {
         return String::new();
     }
-    let mut text = "\nWhich mesh and which method, the error of the mesh estimated and included:\n".to_string();
+    let mut text =
+        "\nMesh and method for a total error (the error of the mesh is estimated and included):\n".to_string();
     for advice in tradeoff.advice.iter().filter(|advice| advice.chooses_mesh) {
         let wanted = match (advice.total_error, advice.seconds) {
             (Some(total), _) => format!("for {:.0} %", 100.0 * total),
@@ -146,7 +148,7 @@ fn losses(points: &[TradeoffPoint]) -> String {
         let own = points.iter().filter(|point| point.mesh == 0 && point.method == method && good(point));
         own.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     };
-    let told = |point: &TradeoffPoint| {
+    let named = |point: &TradeoffPoint| {
         let lost = match point.force_error {
             error if error <= LEAST_LOST => "nothing".to_string(),
             error => format!("{:.1e} % of the force", 100.0 * error),
@@ -155,7 +157,7 @@ fn losses(points: &[TradeoffPoint]) -> String {
     };
     let Some(exact) = cheapest("active-set", &|point| point.knob.is_none()) else { return String::new() };
     let loose = |method| cheapest(method, &|point| point.energy_error <= LOOSE);
-    let compared = |method| loose(method).map(|loose| format!("  {}; {}\n", told(loose), told(exact)));
+    let compared = |method| loose(method).map(|loose| format!("  {}; {}\n", named(loose), named(exact)));
     ["penalty", "qp", "mprgp"].into_iter().filter_map(compared).collect()
 }
 

@@ -82,7 +82,8 @@ impl Estimate {
         let slower = 1.0 / ratio;
         let reason = match self.smooth {
             Smooth::Unknown => {
-                "with a factor: nothing tells multigrid which motions cost next to no energy".to_string()
+                "with a factor: multigrid has no near-null space, which names the motions of almost no energy"
+                    .to_string()
             }
             _ if self.multigrid_bytes > most_bytes => {
                 let [of_multigrid, allowed] = [self.multigrid_bytes, most_bytes].map(written);
@@ -166,7 +167,7 @@ pub(super) fn is_bounded_by_factor(problem: &ContactProblem, seconds: f64, setti
 
 /// The reason for a method that the user chose.
 pub(super) fn by_name(method: Method) -> Why {
-    let reason = format!("by {}: it was asked for", method.name());
+    let reason = format!("by {}: it was requested", method.name());
     Why { chosen: method.name().to_string(), reason, considered: Vec::new() }
 }
 
@@ -483,7 +484,7 @@ impl Tried {
         };
         let method = self.method.name();
         format!(
-            "of such methods {method}, {on}, by the rules fitted for {multiplications:.1e} multiplications of a factor"
+            "of such methods {method}, {on}: by rules fitted to measured times, for {multiplications:.1e} multiplications of a factor"
         )
     }
 

@@ -71,7 +71,7 @@ impl Answer {
     /// row, in force) and the closed rows.
     ///
     /// # Errors
-    /// [`Error::Length`] if one of them does not fit the model.
+    /// [`Error::Length`] if a vector does not fit the model.
     pub fn new(
         model: Arc<Model>,
         displacement: &[f64],

@@ -92,14 +92,14 @@ impl Scene {
                 components.push(Component { direction, value, by: by("normal") });
             }
             (None, Some(_)) => {
-                let message = "a value is that along a normal; give the normal too, or x, y or z instead";
+                let message = "`value` is the displacement along `normal`; give `normal` too, or x, y or z instead";
                 return Err(wrong(format!("{path}.value"), message));
             }
             (None, None) => {}
         }
         if components.is_empty() {
             let names =
-                ["x", "x or y, or both, or a normal", "x, y or z, or several of them, or a normal"][dimension - 1];
+                ["x", "at least one of x and y, or a normal", "at least one of x, y and z, or a normal"][dimension - 1];
             return Err(wrong(path, format!("holds nothing; give {names}")));
         }
         Ok(components)

@@ -26,8 +26,8 @@ impl Scene {
     pub(crate) fn check_continuum(&self) -> Result<(), Error> {
         match self.loads.iter().position(LoadSpec::is_at_point) {
             Some(index) if self.model.dimension() > 1 => {
-                let message = "a force at a point makes a displacement without end in a continuum, so that there is no \
-                               total error; spread it over a boundary";
+                let message = "a force at a point makes an infinite displacement in a continuum, so that there is \
+                               no total error; spread it over a boundary";
                 Err(wrong(format!("loads[{index}].force"), message))
             }
             _ => Ok(()),
@@ -52,18 +52,19 @@ impl Scene {
             ("rigid-faces", !self.rigid_faces.is_empty()),
         ] {
             if is_there {
-                return Err(wrong(field, "they have no guaranteed bound: supports alone have one"));
+                return Err(wrong(field, "they have no guaranteed bound: only supports have one"));
             }
         }
         let [_] = body.regions() else {
             return Err(wrong(
                 "further-bodies",
-                "several bodies have no guaranteed bound: only one body before rigid obstacles has one",
+                "several bodies have no guaranteed bound: only one body with rigid obstacles has one",
             ));
         };
         if body.has_own_stress() {
             let path = if self.temperature.is_empty() { "initial-stress" } else { "temperature" };
-            let message = "a body with stress before any strain has no guaranteed bound: only one without has";
+            let message = "a body with temperatures or initial stresses has no guaranteed bound: only one without \
+                           them has";
             return Err(wrong(path, message));
         }
         let [phase] = body.phases() else {

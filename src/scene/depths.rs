@@ -1,4 +1,4 @@
-//! The depth of a displaced body in rigid obstacles between its nodes, where no row holds it.
+//! The depth of a displaced body in rigid obstacles between its nodes, at which no row holds it.
 
 use super::answer::Answer;
 use crate::error::Error;

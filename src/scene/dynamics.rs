@@ -31,7 +31,7 @@ const COURANT: [f64; 2] = [0.5, 0.9];
 
 /// Contact forces are averaged over this share of the time in which a pressure wave crosses the body.
 ///
-/// An impact lasts at least two such times, so this is at most a tenth of it: the mean over it reduces the peak of half a sine wave by
+/// An impact lasts at least two such times, so this is at most a tenth of an impact: the mean over it reduces the peak of half a sine wave by
 /// 0.4 %. The oscillations of a mesh behind a wave front are shorter the finer the cells are, and disappear from this mean; the largest
 /// force of a single step contains them.
 const WINDOW: f64 = 0.2;
@@ -75,7 +75,7 @@ impl Scene {
         if !model.dofs().basis().is_nodal() {
             let kind = model.mesh().kind();
             let message = format!(
-                "{} elements carry contact in equilibria alone; take {} for a motion",
+                "contact of {} elements is for equilibria only; take {} for a motion",
                 kind.name(),
                 kind.linear().name()
             );
@@ -95,14 +95,14 @@ impl Scene {
         if !scheme.allows(form) {
             let message = match scheme.is_explicit() {
                 true => "central differences need a lumped mass",
-                false => "a redistributed mass leaves dofs without mass, which only the scheme `midpoint` knows",
+                false => "a redistributed mass leaves dofs without mass, which only the scheme `midpoint` allows",
             };
             return Err(wrong(format!("{PATH}.mass"), message));
         }
         if scheme.is_unstable_in_contact(form) && !model.rows().is_empty() {
             let message = format!(
-                "`{}` leaves mass on the contact nodes, and with the scheme `{}` the energy then grows at blows: only \
-                 `redistributed` is allowed, or take the scheme `contact-stabilised`",
+                "`{}` leaves mass on the contact nodes, and with the scheme `{}` the energy then grows at impacts: \
+                 only `redistributed` is allowed, or take the scheme `contact-stabilised`",
                 spec.mass.map_or("", MassSpec::word),
                 scheme.name()
             );
@@ -195,7 +195,7 @@ impl Dynamics {
     /// R = M a + C v + K u - f(t) - B' lambda
     /// ```
     ///
-    /// where a is the acceleration at the end of the step in schemes of Newmark's kind, and the mean of the step in others. So contact
+    /// Schemes of Newmark's kind take the acceleration a at the end of the step, others its mean over the step. So contact
     /// forces, reactions and loads add up to the change of momentum. Before the first step, and between a resume and the next step, this
     /// balance does not exist, and the supports are left out.
     ///
@@ -253,7 +253,8 @@ impl DynamicSpec {
             }
             let others = SchemeSpec::ALL.into_iter().filter(|&scheme| named(scheme, name));
             let others: Vec<String> = others.map(|scheme| format!("`{}`", scheme.name())).collect();
-            let message = format!("only the scheme {} has it; this is `{}`", others.join(" or "), self.scheme.name());
+            let message =
+                format!("only the scheme {} has this key; the scheme is `{}`", others.join(" or "), self.scheme.name());
             return Err(wrong(format!("{PATH}.{name}"), message));
         }
         Ok(())
@@ -265,7 +266,7 @@ impl DynamicSpec {
         let share = if problem.statics().rows() > 0 { MOST_IN_CONTACT } else { 1.0 };
         let counted = |step: f64, count: f64| {
             if count > MOST_STEPS {
-                let message = format!("{count:.2e} steps of {} never end; take a longer step", number(step));
+                let message = format!("{count:.2e} steps of {} are too many; take a longer step", number(step));
                 return Err(wrong(format!("{PATH}.step"), message));
             }
             Ok((step, (count as usize).max(1)))

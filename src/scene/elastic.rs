@@ -110,7 +110,7 @@ impl DescribedBody<'_> {
         let about = self.spec.about();
         if about.dimension.is_some_and(|dimension| dimension != model.dimension()) {
             let (body, fitting, model) = (about.name, BodySpec::fitting(model.dimension()), model.name());
-            let message = format!("a {body} is no body of the model `{model}`; there it is a {fitting}");
+            let message = format!("a {body} does not fit the model `{model}`; a body of this model is a {fitting}");
             return Err(wrong(self.path(""), message));
         }
         let formulation = match model {

@@ -58,11 +58,23 @@ pub(super) fn point(at: &[f64]) -> String {
     format!("({})", coordinates.join(", "))
 }
 
+/// Rounded to six significant digits: computed places are not known to more.
+pub(super) fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
 /// A point or vector of a scene in `dimension` coordinates; those beyond are zero.
 pub(super) fn vector(path: &str, entries: &[f64], dimension: usize) -> Result<[f64; 3], Error> {
     if entries.len() != dimension {
-        let (found, names) = (entries.len(), ["[x]", "[x, y]", "[x, y, z]"][dimension - 1]);
-        return Err(wrong(path, format!("the array has {found} entries; in this model it has {dimension}: {names}")));
+        let entry = if entries.len() == 1 { "entry" } else { "entries" };
+        let (room, names) =
+            [("a bar", "[x]"), ("a plane or axisymmetric model", "[x, y]"), ("a model in space", "[x, y, z]")]
+                [dimension - 1];
+        let found = entries.len();
+        return Err(wrong(
+            path,
+            format!("the array has {found} {entry}, but must have {dimension} in {room}: {names}"),
+        ));
     }
     let mut vector = [0.0; 3];
     for (index, (place, &entry)) in vector.iter_mut().zip(entries).enumerate() {

@@ -1,8 +1,8 @@
 //! Errors of the solvers in the words of the scene: rigid-body modes by name, rows by node and obstacle.
 
 use super::Model;
-use super::entry::{number, point};
-use super::rigid_body_modes::{RigidBodyModes, advice};
+use super::entry::{number, point, six_digits};
+use super::rigid_body_modes::RigidBodyModes;
 use crate::error::Error;
 
 /// More nodes than this are counted, not listed.
@@ -16,12 +16,12 @@ impl Model {
     pub fn explain(&self, error: Error) -> Error {
         match error {
             Error::Unbounded { mode, direction } => {
-                let mode = self.name_of(&direction).unwrap_or(mode);
+                let mode = self.named(&direction).map_or(mode, |(name, _)| name);
                 Error::Unbounded { mode, direction }
             }
             Error::UnderHeld { mode, direction } => {
-                let named = self.name_of(&direction).map(|name| format!("{name}: {}", advice(self.rows())));
-                Error::UnderHeld { mode: named.unwrap_or(mode), direction }
+                let mode = self.named(&direction).map_or(mode, |(name, advice)| format!("{name}: {advice}"));
+                Error::UnderHeld { mode, direction }
             }
             Error::Infeasible { reason, rows, weights, overlap } => {
                 let length = &self.units().length;
@@ -34,10 +34,24 @@ impl Model {
         }
     }
 
-    fn name_of(&self, direction: &[f64]) -> Option<String> {
+    /// A node with its coordinates, as `node 5 at (0.25, 1)`.
+    pub(crate) fn node_in_words(&self, node: usize) -> String {
+        format!("node {node} at {}", self.place_in_words(node))
+    }
+
+    /// The coordinates of a node to six digits.
+    pub(crate) fn place_in_words(&self, node: usize) -> String {
+        let at = self.mesh().nodes()[node].map(six_digits);
+        point(&at[..self.mesh().dimension()])
+    }
+
+    /// The name of a rigid-body motion, and the advice against it.
+    fn named(&self, direction: &[f64]) -> Option<(String, String)> {
         let parts = self.parts();
-        let mode = parts.dofs.expand_motion(&parts.unknowns.motion(direction).ok()?).ok()?;
-        RigidBodyModes::of(&parts.body).name_of(parts.body.mesh().nodes(), &mode)
+        let motion = parts.dofs.expand_motion(&parts.unknowns.motion(direction).ok()?).ok()?;
+        let modes = RigidBodyModes::of(&parts.body);
+        let amplitudes = modes.closest(parts.body.mesh().nodes(), &motion)?;
+        Some((modes.name_of(&amplitudes), modes.advice(parts, self.rows(), &[amplitudes])))
     }
 
     fn describe_rows(&self, rows: &[usize]) -> Option<String> {
@@ -63,7 +77,7 @@ impl Model {
             format!("obstacles[{}] (gap {})", row.obstacle, number(row.gap))
         };
         let dimension = self.mesh().dimension();
-        let at = point(&self.mesh().nodes()[node][..dimension]);
+        let at = self.place_in_words(node);
         let names: Vec<String> = rows.iter().map(obstacle).collect();
         let supported = (0..dimension).all(|axis| self.parts().dofs.number(dimension * node + axis).is_none());
         match names.as_slice() {

@@ -1,5 +1,6 @@
 //! The files that a scene names.
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 use super::entry::wrong;
@@ -19,14 +20,21 @@ impl Files<'_> {
     /// scene may read outside.
     pub fn named(&self, name: &str, path: String) -> Result<PathBuf, Error> {
         let file = self.folder.join(name);
+        let real = match file.canonicalize() {
+            Ok(real) if real.is_dir() => Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder, not a file")),
+            found => found,
+        };
+        let real = real.map_err(|source| {
+            let named = Named { reason: source.to_string(), scene: "the scene".into(), path: path.clone() };
+            let full = std::path::absolute(&file).unwrap_or_else(|_| file.clone());
+            Error::File { action: "read", path: full, source: io::Error::new(source.kind(), named) }
+        })?;
         if self.reads_outside {
             return Ok(file);
         }
-        let real = |path: &Path| {
-            path.canonicalize().map_err(|source| Error::File { action: "read", path: path.into(), source })
-        };
-        let home = real(if self.folder.as_os_str().is_empty() { Path::new(".") } else { self.folder })?;
-        if !real(&file)?.starts_with(home) {
+        let home = if self.folder.as_os_str().is_empty() { Path::new(".") } else { self.folder };
+        let home = home.canonicalize().map_err(|source| Error::File { action: "read", path: home.into(), source })?;
+        if !real.starts_with(home) {
             let message = format!(
                 "the file {} lies outside the folder of the scene; copy it there, or allow it (--allow-outside)",
                 file.display()
@@ -40,4 +48,16 @@ impl Files<'_> {
     pub fn length(&self, name: &str) -> f64 {
         std::fs::metadata(self.folder.join(name)).map_or(0.0, |about| about.len() as f64)
     }
+}
+
+/// The reason why a file that a scene names cannot be read, with the place of its name.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{reason}; {scene} names it at `{path}`")]
+pub(super) struct Named {
+    /// The reason of the system.
+    pub reason: String,
+    /// The scene, with line and column of the name if they are known.
+    pub scene: String,
+    /// JSON path of the name.
+    pub path: String,
 }

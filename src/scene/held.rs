@@ -11,7 +11,7 @@ use crate::fem::mesh::Mesh;
 /// A normal depends on the earlier ones if the sine of its angle to their span is below this: the rounding of written components.
 const DEPENDENT_NORMAL: f64 = 1e-9;
 
-/// Dependent normals must agree in their values to within this, relative to the largest of them.
+/// Dependent normals must agree in their values to within this, relative to the largest value.
 const AGREEING: f64 = 1e-9;
 
 /// A component of a unit normal below this is rounding.

@@ -131,7 +131,7 @@ impl PlacedLoad<'_> {
                 Ok(())
             }
             (None, None) => Err(wrong(&*self.path, "acts nowhere; give `at`, a point, or a `boundary`")),
-            (Some(_), Some(_)) => Err(wrong(&*self.path, "acts at a point and on a boundary; give one of them")),
+            (Some(_), Some(_)) => Err(wrong(&*self.path, "acts at a point and on a boundary; give only one")),
         }
     }
 
@@ -164,7 +164,8 @@ impl PlacedLoad<'_> {
         add_moment(self.body, boundary, moment, load).ok_or_else(|| {
             let name = &boundary.name;
             let message = format!(
-                "no turning traction on `{name}` has this moment: its facets lie on a straight line, or its size is beyond all numbers"
+                "no turning traction on `{name}` has this moment: its facets lie on a straight line, or its size is \
+                 not finite"
             );
             wrong(self.at("boundary"), message)
         })

@@ -1,8 +1,10 @@
 //! The position of a value in the text of a scene, by its JSON path.
 
+use std::io;
 use std::path::Path;
 
 use super::Scene;
+use super::files::Named;
 use crate::error::Error;
 use crate::file::{MOST_OF_SCENE, read_text_capped};
 
@@ -24,6 +26,18 @@ impl Scene {
                 let found = place_of(&path).map(|(line, column)| format!("{}:{line}:{column}: ", file.display()));
                 Error::Refused { code, place: found.unwrap_or(place), path, message }
             }
+            Error::File { action, path, source } => {
+                let named = source.get_ref().and_then(|reason| reason.downcast_ref::<Named>()).cloned();
+                let place = named.as_ref().and_then(|named| place_of(&named.path));
+                let source = match (named, place) {
+                    (Some(named), Some((line, column))) => {
+                        let scene = format!("{}:{line}:{column}", file.display());
+                        io::Error::new(source.kind(), Named { scene, ..named })
+                    }
+                    _ => source,
+                };
+                Error::File { action, path, source }
+            }
             other => other,
         }
     }
@@ -32,6 +46,14 @@ impl Scene {
 /// Line and column, from 1, of the value at `path` as `supports[0].on.boundary`; if it is missing, of the value that should contain it.
 /// `None` if the text is not valid JSON up to there.
 fn position(text: &str, path: &str) -> Option<(usize, usize)> {
+    let before = &text[..start_of(text, path)?];
+    let line = before.matches('\n').count() + 1;
+    let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count()) + 1;
+    Some((line, column))
+}
+
+/// The place of the value at `path`, in bytes, as [`position`].
+fn start_of(text: &str, path: &str) -> Option<usize> {
     let mut at = Scanner { bytes: text.as_bytes(), place: 0 };
     at.skip_space();
     let keys = path.split(['.', '[']).map(|key| key.trim_end_matches(']')).filter(|key| !key.is_empty());
@@ -42,10 +64,56 @@ fn position(text: &str, path: &str) -> Option<(usize, usize)> {
             None => break,
         }
     }
-    let before = &text[..at.place];
-    let line = before.matches('\n').count() + 1;
-    let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count()) + 1;
-    Some((line, column))
+    Some(at.place)
+}
+
+/// The places of the entries of the array at `path`, in bytes; `None` if there is no array.
+pub(super) fn starts_of_entries(text: &str, path: &str) -> Option<Vec<usize>> {
+    let mut at = Scanner { bytes: text.as_bytes(), place: start_of(text, path)? };
+    let mut starts = Vec::new();
+    if at.peek()? != b'[' {
+        return None;
+    }
+    at.place += 1;
+    loop {
+        at.skip_space();
+        match at.peek()? {
+            b']' => return Some(starts),
+            b',' => at.place += 1,
+            _ => {
+                starts.push(at.place);
+                at.skip_value()?;
+            }
+        }
+    }
+}
+
+/// The last key before a place (in bytes) in the object that contains the place; `None` if an array contains it.
+pub(super) fn key_before(text: &str, place: usize) -> Option<&str> {
+    let mut open: Vec<Option<&str>> = Vec::new();
+    let (mut string, mut from) = ("", None);
+    let mut is_escaped = false;
+    for (at, byte) in text.bytes().enumerate().take(place) {
+        match (byte, from) {
+            _ if is_escaped => is_escaped = false,
+            (b'\\', Some(_)) => is_escaped = true,
+            (b'"', None) => from = Some(at + 1),
+            (b'"', Some(start)) => {
+                string = &text[start..at];
+                from = None;
+            }
+            (_, Some(_)) => {}
+            (b'{' | b'[', None) => open.push(None),
+            (b'}' | b']', None) => drop(open.pop()),
+            (b':', None) => {
+                if let Some(key) = open.last_mut() {
+                    *key = Some(string);
+                }
+            }
+            _ => {}
+        }
+    }
+    open.last().copied().flatten()
 }
 
 /// A position in a JSON text.
@@ -61,7 +129,7 @@ impl Scanner<'_> {
 
     fn skip_space(&mut self) {
         while self.peek().is_some_and(|byte| byte.is_ascii_whitespace())
-            || self.bytes[self.place..].starts_with(b"\xef\xbb\xbf")
+            || self.bytes.get(self.place..).is_some_and(|rest| rest.starts_with(b"\xef\xbb\xbf"))
         {
             self.place += if self.peek() == Some(0xef) { 3 } else { 1 };
         }

@@ -88,7 +88,7 @@ impl BodyMaterials<'_> {
         };
         let at = centroids(body)[first];
         let message = format!(
-            "{count} elements have no material, the first of them{named} with its centroid at {}; name them in `materials`, or give a \
+            "{count} elements have no material, the first one{named} with its centroid at {}; name them in `materials`, or give a \
              `material` for all the rest",
             point(&at[..body.dimension()])
         );
@@ -103,7 +103,10 @@ impl BodyMaterials<'_> {
             (None, None, Some(orthotropic)) => self.orthotropic(orthotropic, path)?,
             (None, None, None) => return Err(wrong(path, "needs `young` and `poisson`, or `orthotropic`; give them")),
             (_, _, Some(_)) => {
-                return Err(wrong(path, "has `orthotropic` beside `young` or `poisson`; give the one or the others"));
+                return Err(wrong(
+                    path,
+                    "has `orthotropic` beside `young` or `poisson`; give either the one or the others",
+                ));
             }
             (young, ..) => {
                 let [missing, given] = if young.is_none() { ["young", "poisson"] } else { ["poisson", "young"] };
@@ -112,7 +115,7 @@ impl BodyMaterials<'_> {
         };
         let material = match spec.expansion {
             Some(_) if spec.orthotropic.as_ref().is_some_and(|own| own.expansion.is_some()) => {
-                return Err(wrong(path, "has an `expansion` beside that of `orthotropic`; give one of them"));
+                return Err(wrong(path, "has an `expansion` beside that of `orthotropic`; give only one"));
             }
             Some(along) => material.with_expansion([along; 3]).map_err(at)?,
             None => material,

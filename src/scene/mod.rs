@@ -57,6 +57,7 @@ mod springs;
 mod start;
 mod suspect;
 mod symmetry;
+mod syntax;
 mod unknowns;
 mod unstrained;
 mod warning;

@@ -111,6 +111,11 @@ impl Model {
         Some(force)
     }
 
+    /// Returns `true` if a force presses the obstacle.
+    pub(crate) fn is_pressed(&self, obstacle: usize) -> bool {
+        self.parts.unknowns.travel(obstacle).is_some()
+    }
+
     /// The force on each obstacle that a force presses.
     #[cfg(feature = "pictures")]
     pub(crate) fn pressing_forces(&self) -> Vec<f64> {
@@ -128,8 +133,12 @@ impl Model {
     pub(crate) fn pressed_by(&self, force: f64) -> Result<Self, Error> {
         let parts = &self.parts;
         let &[obstacle] = parts.unknowns.pressed() else {
-            let count = parts.unknowns.pressed().len();
-            let message = format!("{count} of them have a `force`; a sweep over forces needs one that has");
+            let message = match parts.unknowns.pressed().len() {
+                0 => "no obstacle is pressed by a force; a sweep over forces needs the key `force` in one obstacle, such as \
+                      \"force\": 100"
+                    .to_string(),
+                count => format!("{count} obstacles have the key `force`; a sweep over forces needs exactly one"),
+            };
             return Err(wrong("obstacles", message));
         };
         let path = || format!("obstacles[{obstacle}].force");

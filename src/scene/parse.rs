@@ -6,7 +6,8 @@ use std::path::Path;
 
 use super::Scene;
 use super::schema::json::object;
-use crate::error::{Error, nearly};
+use super::syntax::Fault;
+use crate::error::Error;
 use crate::file::{MOST_OF_SCENE, read_text_capped};
 
 impl Scene {
@@ -20,16 +21,13 @@ impl Scene {
         let mut json = serde_json::Deserializer::from_str(&text);
         let mut track = serde_path_to_error::Track::new();
         let scene = object(serde_path_to_error::Deserializer::new(&mut json, &mut track));
-        let fail = |path: String, trailing: &str, error: serde_json::Error| Error::SceneSyntax {
-            source_name: source_name.into(),
-            line: error.line(),
-            column: error.column().max(1),
-            path,
-            message: in_words(&error).replace("trailing characters", trailing),
+        let fail = |path: String, error: serde_json::Error| {
+            let (line, column) = (error.line(), error.column().max(1));
+            let (path, message) = Fault { text: &text, path, error }.in_words();
+            Error::SceneSyntax { source_name: source_name.into(), line, column, path, message }
         };
-        // The parser has one message for an array that is too long and for text after the end.
-        let scene = scene.map_err(|error| fail(known_path(track), "the array has too many entries", error))?;
-        json.end().map_err(|error| fail(".".into(), "there is more text behind the scene", error))?;
+        let scene = scene.map_err(|error| fail(known_path(track), error))?;
+        json.end().map_err(|error| fail(".".into(), error))?;
         Ok(scene)
     }
 
@@ -64,37 +62,4 @@ fn known_path(track: serde_path_to_error::Track) -> String {
         "" => ".".into(),
         path => path.into(),
     }
-}
-
-/// The parser's message without its position, in the terms of JSON instead of those of Rust.
-fn in_words(error: &serde_json::Error) -> String {
-    const WORDS: [(&str, &str); 10] = [
-        ("invalid type: map, expected enum", "the object is empty, expected a single key"),
-        ("invalid type: map", "invalid type: object"),
-        ("invalid type: sequence", "invalid type: array"),
-        ("expected f64", "expected a number"),
-        ("expected usize", "expected a whole number that is not negative"),
-        ("expected a sequence", "expected an array"),
-        ("unknown variant", "unknown choice"),
-        ("EOF while parsing", "the text ends within"),
-        ("expected string or map", "expected a string or an object"),
-        ("expected value", "expected a JSON value"),
-    ];
-    let position = format!(" at line {} column {}", error.line(), error.column());
-    let mut message = error.to_string().replace(&position, "");
-    for (rust, json) in WORDS {
-        message = message.replace(rust, json);
-    }
-    let meant = meant(&message);
-    message + &meant
-}
-
-/// A suggestion for an unknown field or choice; the parser's message names all known ones.
-fn meant(message: &str) -> String {
-    let unknown = ["unknown field `", "unknown choice `"].iter().find_map(|start| message.strip_prefix(start));
-    let Some((name, known)) = unknown.and_then(|unknown| unknown.split_once("`, expected ")) else {
-        return String::new();
-    };
-    // Between the quotation marks, every second piece is a name.
-    nearly(name, known.split('`').skip(1).step_by(2))
 }

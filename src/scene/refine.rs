@@ -11,7 +11,7 @@ impl Scene {
     /// [`Error::Scene`] for `times` 0, and for a body from a mesh file, which cannot be refined.
     pub fn refined(&self, times: usize) -> Result<Scene, Error> {
         if times == 0 {
-            return Err(wrong("body", "cells cannot be cut into 0"));
+            return Err(wrong("body", "each edge of the cells must be divided into at least 1 part, not 0"));
         }
         let mut scene = self.clone();
         if times == 1 {

@@ -18,6 +18,9 @@ use crate::fem::geometry::{cross, dot, length, minus};
 /// Forces that cancel to this share of the sum of their magnitudes leave only rounding, which has no line of action.
 const CANCELS: f64 = 1e-10;
 
+/// The basis of the forces if a sliding support may be a plane of symmetry.
+const MESHED_PART: &str = "of the meshed part: a plane of symmetry at a sliding support doubles it";
+
 /// The resultant of all forces of one kind on the body: force, moment, and a point on the line of action.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Resultant {
@@ -283,7 +286,7 @@ impl Model {
         (regions.len() > 1).then(|| if region.name().is_empty() { "body".into() } else { region.name().into() })
     }
 
-    /// The reference of the forces in a report, as `per metre, of the modelled part`; empty if they are those of the whole body.
+    /// The reference of the forces in a report, as `per metre, of the whole body, 2 times the meshed part`; empty if they are those of the whole body.
     ///
     /// With planes of symmetry the report gives the forces of the whole, a multiple of the modelled part. Without them the body counts as a
     /// part if a support lets a flat boundary slide along itself and prescribes nothing else: that may be a plane of symmetry.
@@ -303,8 +306,8 @@ impl Model {
             Formulation::Bar { .. } | Formulation::Space => None,
         };
         let part = match self.parts_of_whole() {
-            1.0 => self.parts().is_part.then(|| "of the modelled part".to_string()),
-            parts => Some(format!("of the whole, which is {parts} times the modelled part")),
+            1.0 => self.parts().is_part.then(|| MESHED_PART.to_string()),
+            parts => Some(format!("of the whole body, {parts} times the meshed part")),
         };
         across.into_iter().chain(part).collect::<Vec<_>>().join(", ")
     }

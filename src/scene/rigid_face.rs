@@ -53,7 +53,7 @@ impl Scene {
     /// not have, and for a node at which a support or a plane of symmetry contradicts the motion of its face.
     pub(super) fn rigid_faces(&self, body: &ElasticBody, held: &mut Held) -> Result<Vec<RigidFace>, Error> {
         if !self.rigid_faces.is_empty() && self.analysis.is_some() {
-            return Err(wrong("rigid-faces", "rigid faces are for equilibria; a motion has supports alone"));
+            return Err(wrong("rigid-faces", "rigid faces are for equilibria only; a motion has only supports"));
         }
         let mut owner: BTreeMap<usize, usize> = BTreeMap::new();
         let mut faces = Vec::with_capacity(self.rigid_faces.len());
@@ -62,8 +62,10 @@ impl Scene {
             let face = RigidFace::of(spec, &path, body)?;
             for &node in &face.nodes {
                 if let Some(other) = owner.insert(node, index) {
-                    let message =
-                        format!("node {node} belongs to rigid-faces[{other}] too; a node moves with one face");
+                    let at = point(&body.mesh().nodes()[node][..body.dimension()]);
+                    let message = format!(
+                        "node {node} at {at} belongs to rigid-faces[{other}] too; each node may move with one face only"
+                    );
                     return Err(wrong(format!("{path}.boundary"), message));
                 }
                 face.release(node, body.mesh().nodes()[node], held, &path)?;
@@ -139,7 +141,9 @@ impl RigidFace {
                     point(&at),
                     motion.name()
                 ),
-                None => format!("node {node} at {} is held by {by} otherwise than the face moves it", point(&at)),
+                None => {
+                    format!("node {node} at {} is held by {by} in another direction than the face moves it", point(&at))
+                }
             };
             return Err(wrong(path, message));
         }
@@ -187,7 +191,7 @@ impl RigidFaceSpec {
             };
             finite(format!("{path}.{}", if kind < 3 { "force" } else { "moment" }), along)?;
             if prescribed.is_some() && along != 0.0 {
-                return Err(wrong(field, "is prescribed, so that a force along it does nothing; give one of them"));
+                return Err(wrong(field, "is prescribed, so that a force along it does nothing; give only one"));
             }
             // As a rigid body, a ring about its axis does not widen.
             let prescribed = if revolved && kind == 0 { Some(prescribed.unwrap_or(0.0)) } else { prescribed };

@@ -50,8 +50,8 @@ pub struct Segment {
     /// Estimated area and width of the contact, with their uncertainty.
     #[serde(flatten)]
     pub extent: ContactExtent,
-    /// The node of the largest pressure, if it is next to an open node although other closed nodes are not: an edge of the obstacle,
-    /// where the exact pressure is unbounded.
+    /// The node of the largest pressure, if it is next to an open node although other closed nodes are not: an edge of the
+    /// obstacle, where the exact pressure is unbounded.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub edge_peak: Option<usize>,
     /// The two estimated ends, `[x, y]` each, in length, on the undeformed boundary, if the model is plane or
@@ -61,7 +61,7 @@ pub struct Segment {
 }
 
 impl ContactExtent {
-    /// The extent of all segments together; `None` if there are none.
+    /// The extent of all segments together; `None` without segments.
     pub(crate) fn of(segments: &[Segment]) -> Option<Self> {
         let peak = segments.iter().max_by(|a, b| a.pressure_max.total_cmp(&b.pressure_max))?;
         let extents = || segments.iter().map(|segment| &segment.extent);
@@ -273,7 +273,7 @@ impl Patch<'_> {
     }
 
     /// Half of the difference of the pressure at a closed node from the mean over it and the closed nodes around. If only open nodes
-    /// are around, the area of the contact is unknown, and so is the pressure: all of it.
+    /// are around, the area of the contact is unknown, and so is the whole pressure.
     fn spread(&self, node: usize) -> f64 {
         let around: BTreeSet<usize> = self.around(node).collect();
         let mut near: BTreeSet<usize> = around.iter().copied().filter(|&other| self.is_closed(other)).collect();
@@ -319,7 +319,7 @@ impl Patch<'_> {
             Some(inner) => {
                 let (last, before) = (self.pressure(closed).powi(2), self.pressure(inner).powi(2));
                 let reach = last / (before - last) * distance(from, self.place(inner)) / length(way);
-                // Pressures that rise towards the edge give no estimate of it.
+                // Pressures that rise towards the edge give no estimate of the edge.
                 if before > last { reach.min(1.0) } else { 0.5 }
             }
             None => 0.5,

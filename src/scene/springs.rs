@@ -14,7 +14,7 @@ impl Scene {
     /// [`Error::Scene`] for springs without a direction, a positive stiffness or a place.
     pub(super) fn springs(&self, body: &ElasticBody) -> Result<Vec<Springs>, Error> {
         if !self.springs.is_empty() && self.analysis.is_some() {
-            return Err(wrong("springs", "springs are for equilibria; a motion has supports alone"));
+            return Err(wrong("springs", "springs are for equilibria only; a motion has only supports"));
         }
         let placed = |(index, spec): (usize, &SpringSpec)| spec.placed(&format!("springs[{index}]"), body);
         self.springs.iter().enumerate().map(placed).collect()

@@ -76,10 +76,13 @@ fn coincident_nodes(body: &ElasticBody) -> Option<Warning> {
                 continue;
             };
             found = Some(match found {
-                Some(Warning::CoincidentNodes { first, second, count }) => {
-                    Warning::CoincidentNodes { first, second, count: count + 1 }
+                Some(Warning::CoincidentNodes { first, second, at, count }) => {
+                    Warning::CoincidentNodes { first, second, at, count: count + 1 }
                 }
-                _ => Warning::CoincidentNodes { first, second: node, count: 1 },
+                _ => {
+                    let at = nodes[node][..body.dimension()].to_vec();
+                    Warning::CoincidentNodes { first, second: node, at, count: 1 }
+                }
             });
         }
     }

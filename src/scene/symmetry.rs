@@ -25,7 +25,7 @@ impl Scene {
         let rounding = COORDINATE_ROUNDING * body.mesh().size();
         let mut symmetry = Symmetry { planes: Vec::new(), rounding };
         if !self.symmetry.is_empty() && self.analysis.is_some() {
-            return Err(wrong("symmetry", "planes of symmetry are for equilibria; a motion has supports alone"));
+            return Err(wrong("symmetry", "planes of symmetry are for equilibria only; a motion has only supports"));
         }
         for (index, plane) in self.symmetry.iter().enumerate() {
             let (path, name, axis) = (format!("symmetry[{index}]"), plane.name(), plane.axis());
@@ -33,7 +33,7 @@ impl Scene {
                 return Err(wrong(path, format!("the model `{}` has no {name}", self.model.name())));
             }
             if self.model == ModelSpec::Axisymmetric && *plane == SymmetryPlane::X {
-                return Err(wrong(path, "x is the radius, about which the body is symmetric as it is"));
+                return Err(wrong(path, "x is the radius: an axisymmetric body needs no plane across it; leave x out"));
             }
             if self.symmetry[..index].contains(plane) {
                 return Err(wrong(path, format!("`{name}` is named twice")));
@@ -56,7 +56,8 @@ fn flat_end(body: &ElasticBody, axis: usize, rounding: f64) -> Result<f64, Strin
     match ends[..] {
         [end] => Ok(end),
         [] => Err(format!(
-            "the body does not end flat at {name} = {} or {name} = {}, so that it is no part of one that is symmetric there",
+            "the body does not end flat at {name} = {} or {name} = {}, so that it cannot be a part of a symmetric \
+             body",
             number(low[axis]),
             number(high[axis])
         )),

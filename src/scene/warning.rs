@@ -60,8 +60,8 @@ pub enum Warning {
     },
     /// Two obstacles make the same rows.
     #[error(
-        "obstacles[{first}] and obstacles[{second}] make the same rows: how their force is shared among the two says nothing; leave one \
-         of them out"
+        "obstacles[{first}] and obstacles[{second}] make the same rows: the shares of the force between the two \
+         have no meaning; leave one obstacle out"
     )]
     DoubledObstacle {
         /// Number of the obstacle, from 0.
@@ -71,7 +71,8 @@ pub enum Warning {
     },
     /// A load acts on supported dofs only.
     #[error(
-        "loads[{load}] acts where supports hold the body: it goes into them and moves nothing; load another boundary"
+        "loads[{load}] acts only on nodes that supports hold: the supports take it and nothing moves; load another \
+         boundary"
     )]
     LoadOnSupport {
         /// Number of the load, from 0.
@@ -88,8 +89,8 @@ pub enum Warning {
     },
     /// A body is cut at a plane of symmetry, but nothing holds the cut.
     #[error(
-        "no support holds the boundary `{boundary}`: the body is free at its cut, and not half of a symmetric one; hold the component \
-         across it"
+        "no support holds the boundary `{boundary}`: the body can move across this cut, so that it is not half of a \
+         symmetric body; hold the component across the cut"
     )]
     FreeSymmetry {
         /// Name of the boundary at the plane of symmetry.
@@ -97,20 +98,22 @@ pub enum Warning {
     },
     /// Nodes of one body have the same place.
     #[error(
-        "{count} nodes of the mesh stand where others do, as nodes {first} and {second}: its parts are not joined there; merge them in \
-         the mesher, unless a slit is meant"
+        "{count} nodes of the mesh have the place of another node, such as nodes {first} and {second} at {at:?}: the parts of the mesh \
+         are not joined there; merge these nodes in the mesher, unless a slit is meant"
     )]
     CoincidentNodes {
         /// Index of one such node in the mesh, from 0.
         first: usize,
         /// Index of another node at the same place, from 0.
         second: usize,
+        /// Coordinates of the node, `dim` of them, in length.
+        at: Vec<f64>,
         /// Number of nodes that share their place with a node before them.
         count: usize,
     },
     /// The scheme can gain energy.
     #[error(
-        "the scheme `{scheme}` can gain energy at every blow: it is there for comparison; take `midpoint` or \
+        "the scheme `{scheme}` can gain energy at every impact: it is for comparison only; take `midpoint` or \
          `contact-stabilised` for answers"
     )]
     GainsEnergy {

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::exact_path::ExactPath;
 #[cfg(feature = "cli")]
 use super::warnings::untouched;
-use super::warnings::{check_approach, of_scene, point_support};
+use super::warnings::{check_approach, initial_overlap, of_scene, point_support};
 use super::{ModelSize, Summary};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
@@ -59,6 +59,7 @@ pub fn scene_summary(
     summary.resultants = answer.resultants()?.to_vec();
     summary.warnings.extend(point_support(mesh.dimension(), &summary.resultants));
     summary.force_basis = model.basis_of_forces();
+    summary.initial_overlap = initial_overlap(model);
     summary.segments = segments;
     Ok(summary)
 }

@@ -62,6 +62,9 @@ pub struct Summary {
     /// The reference of all forces, as `per metre`; left out if they are those of the whole body.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub force_basis: String,
+    /// The deepest overlap of the undeformed body with an obstacle, in words, for the text of a report; `None` without an overlap.
+    #[serde(skip)]
+    pub initial_overlap: Option<String>,
     /// The estimated discretisation error, relative in energy; only in a scene, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub discretisation_error: Option<f64>,
@@ -182,6 +185,7 @@ impl Summary {
             resultants: Vec::new(),
             segments: Vec::new(),
             force_basis: String::new(),
+            initial_overlap: None,
             discretisation_error: None,
             strain_energy: None,
             model: ModelSize { condensed_dofs: solution.condensed_dofs, ..model },

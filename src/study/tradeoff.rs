@@ -367,7 +367,7 @@ struct Timed {
     second: f64,
 }
 
-/// The answer of each way, certified or not, and the seconds of its fastest runs. All ways run once before any of them runs
+/// The answer of each way, certified or not, and the seconds of its fastest runs. All ways run once before any runs
 /// again, so that other work on the machine affects them equally.
 ///
 /// The answer is `None` if the precision does not suffice, if multigrid cannot solve the problem, or if `watch` was asked to stop

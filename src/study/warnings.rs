@@ -11,6 +11,9 @@ use crate::qp::problem::ContactProblem;
 use crate::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, refused, straight_cells};
 use crate::solution::{Certificate, Solution};
 
+/// Overlaps below this share of the size of the mesh are rounding of coordinates.
+const ROUNDING_OF_PLACES: f64 = 1e-12;
+
 /// Strains above this are no longer small, as the equations assume.
 const LARGE_STRAIN: f64 = 0.1;
 
@@ -132,16 +135,16 @@ fn across_approach(answer: &Answer) -> Option<AnswerWarning> {
     let lean = |row: &ContactRow| dot(row.normal, row.outward);
     let row = loaded.into_iter().min_by(|a, b| lean(a).total_cmp(&lean(b))).filter(|row| lean(row) < ASIDE)?;
     let message = format!(
-        "at node {} the direction into obstacles[{}] and the outward normal of the body make an angle of {:.0} degrees, and the node carries \
+        "at {} the direction into obstacles[{}] and the outward normal of the body make an angle of {:.0} degrees, and the node carries \
          force: the obstacle drags the boundary along itself; name the boundary that faces the obstacle, or turn `approach`",
-        row.node,
+        answer.model().node_in_words(row.node),
         row.obstacle,
         lean(row).clamp(-1.0, 1.0).acos().to_degrees()
     );
     Some(AnswerWarning { code: "across-approach", message })
 }
 
-/// Warns that the body penetrates an obstacle between its nodes, where no row exists.
+/// Warns that the body penetrates an obstacle between its nodes: only nodes have rows.
 fn between_nodes(answer: &Answer) -> Option<AnswerWarning> {
     let model = answer.model();
     let (nodes, dimension) = (model.mesh().nodes(), model.mesh().dimension());
@@ -212,7 +215,7 @@ fn written(gap: f64) -> String {
     }
 }
 
-/// Warns that rows along the approach direction carry force where the surface is inclined: the force of a frictionless contact is along
+/// Warns that rows along the approach direction carry force on an inclined surface: the force of a frictionless contact is along
 /// its normal.
 fn leaning_normals(answer: &Answer) -> Option<AnswerWarning> {
     let model = answer.model();
@@ -244,8 +247,9 @@ fn leaning_normals(answer: &Answer) -> Option<AnswerWarning> {
         }
     }
     let (angle, node, index) = worst.filter(|(angle, ..)| *angle > LEANING)?;
+    let place = model.node_in_words(node);
     let message = format!(
-        "the surface of obstacles[{index}] leans by {angle:.0} degrees from the approach direction at node {node}, which carries force; rule \
+        "the surface of obstacles[{index}] leans by {angle:.0} degrees from the approach direction at {place}, which carries force; rule \
          `approach` takes that force along the approach direction, and keeps the node from sliding along the surface. Take rule \
          `closest-point`, whose rows follow the normals"
     );
@@ -264,14 +268,16 @@ fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<AnswerWarning> 
     let mut reasons = Vec::new();
     let small = segments.iter().filter(is_small).count();
     if let Some(first) = segments.iter().find(is_small) {
-        let nodes: Vec<String> = first.nodes.iter().map(usize::to_string).collect();
-        let (word, nodes) = (if nodes.len() == 1 { "node" } else { "nodes" }, nodes.join(" and "));
+        let nodes: Vec<String> = first.nodes.iter().map(|&node| model.node_in_words(node)).collect();
+        let nodes = nodes.join(" and ");
         reasons.push(match small {
-            1 => format!("a contact of obstacles[{}] closes only {word} {nodes}", first.obstacle),
-            _ => format!(
-                "{small} contacts close one or two nodes each, as {word} {nodes} of obstacles[{}]",
-                first.obstacle
-            ),
+            1 => format!("a contact of obstacles[{}] closes only {nodes}", first.obstacle),
+            _ => {
+                format!(
+                    "{small} contacts close one or two nodes each, such as {nodes} of obstacles[{}]",
+                    first.obstacle
+                )
+            }
         });
     }
     let peak = segments.iter().max_by(|a, b| a.pressure_max.total_cmp(&b.pressure_max))?;
@@ -284,7 +290,8 @@ fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<AnswerWarning> 
     }
     if let Some(node) = peak.edge_peak {
         reasons.push(format!(
-            "the peak pressure stands at the edge of the contact, node {node}: at an edge of the obstacle it grows with every refinement"
+            "the peak pressure stands at the edge of the contact, {}: at an edge of the obstacle it grows with every refinement",
+            model.node_in_words(node)
         ));
     }
     let (first, others) = reasons.split_first()?;
@@ -294,6 +301,18 @@ fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<AnswerWarning> 
     Some(AnswerWarning { code: "mesh-dependent", message })
 }
 
+/// The deepest place of the undeformed body in an obstacle, in words; `None` if it lies in none. An obstacle that a force presses moves
+/// to the body first.
+pub(super) fn initial_overlap(model: &Model) -> Option<String> {
+    let stands = |row: usize| !model.is_pressed(model.rows()[row].obstacle);
+    let gaps = model.problem().gap().iter().copied().enumerate().filter(|&(row, _)| stands(row));
+    let (row, gap) = gaps.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let (unit, row) = (&model.units().length, &model.rows()[row]);
+    let place = model.node_in_words(row.node);
+    let sentence = format!("before contact {place} lies {:.3e} {unit} inside obstacles[{}]", -gap, row.obstacle);
+    (gap < -ROUNDING_OF_PLACES * model.mesh().size()).then(|| sentence.replace("  ", " "))
+}
+
 /// Warns that no row is closed and none carries a force; names the nearest row.
 fn nothing_touches(model: &Model, solution: &Solution) -> Option<AnswerWarning> {
     if is_touched(solution) {
@@ -301,9 +320,9 @@ fn nothing_touches(model: &Model, solution: &Solution) -> Option<AnswerWarning> 
     }
     let message = match nearest(model.problem(), solution) {
         Some((row, gap)) => {
-            let (node, unit) = (model.rows()[row].node, &model.units().length);
+            let (node, unit) = (model.node_in_words(model.rows()[row].node), &model.units().length);
             let gap = written(gap);
-            format!("nothing touches; the smallest remaining gap is {gap} {unit} at node {node}").replace("  ", " ")
+            format!("nothing touches; the smallest remaining gap is {gap} {unit} at {node}").replace("  ", " ")
         }
         None if model.obstacles().is_empty() => "nothing touches: the scene has no obstacle".to_string(),
         None => "nothing touches: no obstacle faces a node of its boundary".to_string(),
@@ -313,13 +332,14 @@ fn nothing_touches(model: &Model, solution: &Solution) -> Option<AnswerWarning> 
 
 /// Warns that strains are too large for the equations of small strains.
 fn large_strain(answer: &Answer) -> Option<AnswerWarning> {
-    let body = answer.model().body();
+    let (model, body) = (answer.model(), answer.model().body());
     let (element, strain) = largest_strain(body, answer.displacement())?;
     if strain <= LARGE_STRAIN {
         return None;
     }
+    let corner = model.place_in_words(*body.elements().nth(element)?.nodes.first()?);
     let message = format!(
-        "the largest strain is {:.0} %, in element {element}: the equations hold for small strains, below about {:.0} %. Check the \
+        "the largest strain is {:.0} %, in element {element} with a corner at {corner}: the equations hold for small strains, below about {:.0} %. Check the \
          gap, the loads and their units; bodies that overlap at the start are strained by that",
         100.0 * strain,
         100.0 * LARGE_STRAIN
@@ -346,9 +366,9 @@ pub(super) fn check_approach(model: &Model, multiplier: &[f64]) -> Result<(), Er
     let worst = loaded_rows(model, multiplier).into_iter().min_by(|a, b| lean(a).total_cmp(&lean(b)));
     let Some(row) = worst.filter(|row| lean(row) < -SIDEWAYS) else { return Ok(()) };
     let message = format!(
-        "the obstacle pulls the body: at node {} the direction into the obstacle and the outward normal of `{}` make an angle of {:.0} \
+        "the obstacle pulls the body: at {} the direction into the obstacle and the outward normal of `{}` make an angle of {:.0} \
          degrees, and the node carries force; turn `approach` around, or name the boundary that faces the obstacle",
-        row.node,
+        model.node_in_words(row.node),
         model.obstacles()[row.obstacle].boundary(),
         lean(row).clamp(-1.0, 1.0).acos().to_degrees()
     );

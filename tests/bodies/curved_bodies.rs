@@ -212,7 +212,10 @@ fn values_out_of_their_range_are_refused_by_name() {
         (disc(1.0, Zone { growth: f64::INFINITY, ..zone }), "zone.growth is inf"),
         (disc(1.0, Zone { width: 1e-7, growth: 1.0, ..zone }), "zone.growth is 1"),
         (disc(1.0, Zone { width: 1e-3, divisions: 100, growth: 1.0 }), "nodes that are allowed"),
-        (half_disc([0.0; 2], 1.0, &zone, Sides::Both, ElementKind::Hex8).unwrap_err(), "no mesh of Hex8"),
+        (
+            half_disc([0.0; 2], 1.0, &zone, Sides::Both, ElementKind::Hex8).unwrap_err(),
+            "a half disc cannot have a mesh of Hex8",
+        ),
         (half_disc([f64::NAN, 0.0], 1.0, &zone, Sides::Both, ElementKind::T3).unwrap_err(), "must be finite"),
         (half_ball([0.0; 3], -1.0, &zone, [Sides::Both; 2]).unwrap_err(), "radius is -1"),
         (

@@ -173,7 +173,7 @@ fn facets_that_do_not_match_their_mesh_are_refused() {
     };
     assert!(square(Boundary::new("side", FacetKind::Line2, vec![1, 0])).is_ok());
     for (boundary, phrase) in [
-        (Boundary::new("across", FacetKind::Line2, vec![0, 2]), "facet 0 (nodes [0, 2], from 0) is no face"),
+        (Boundary::new("across", FacetKind::Line2, vec![0, 2]), "facet 0 (nodes [0, 2], from 0) is not a face"),
         (Boundary::new("curved", FacetKind::Line3, vec![0, 1, 2]), "faces of Q4 are Line2"),
         (Boundary::new("odd", FacetKind::Line2, vec![0, 1, 2]), "3 node numbers"),
     ] {

@@ -42,7 +42,7 @@ fn faults_of_version_4_have_the_byte_of_their_record() {
     check("Entities", (32, 36), &nan, "a coordinate of an entity is NaN");
     check("Nodes", (0, 0), &many, "18446744073709551615 blocks are announced, but at most 50000000 are allowed");
     check("Nodes", (0, 8), &[5], "5 nodes are announced, but the blocks hold 4");
-    check("Nodes", (32, 32), &[7], "the dimension of the entity is 7; at most 3 is one");
+    check("Nodes", (32, 32), &[7], "the dimension of the entity is 7; it must be at most 3");
     check("Nodes", (32, 32), &[255; 4], "the dimension of the entity is `-1`; it must be a whole number that is not");
     check("Nodes", (32, 40), &[2], "the sign for parametric coordinates is 2; it must be 0 or 1");
     check("Nodes", (32, 44), &many, "18446744073709551615 nodes in the block are announced");
@@ -51,7 +51,7 @@ fn faults_of_version_4_have_the_byte_of_their_record() {
     check("Nodes", (112, 104), &[10], "node 10 is given twice");
     check("Elements", (0, 8), &[4], "4 elements are announced, but the blocks hold 3");
     check("Elements", (32, 36), &[9], "there is no entity 9 of dimension 1 in `$Entities`");
-    check("Elements", (32, 40), &[93], "the element type 93 is not known here");
+    check("Elements", (32, 40), &[93], "the element type 93 is not supported");
     check("Elements", (32, 40), &[255; 4], "the type of the elements is `-1`");
     check("Elements", (52, 60), &[99], "element 2 names node 99, which does not exist");
     check("Elements", (52, 60), &many, "element 2 names node 18446744073709551615, which does not exist");
@@ -66,7 +66,7 @@ fn faults_of_version_2_have_the_byte_of_their_record() {
     check("Nodes", (30, 30), &[1], "node 1 is given twice");
     check("Elements", (2, 6), &[0], "the number of elements of one type is 0; it must be 1 to 3, which are left");
     check("Elements", (2, 6), &[255, 255, 255, 127], "the number of elements of one type is 2147483647; it must be 1");
-    check("Elements", (14, 2), &[93], "the element type 93 is not known here");
+    check("Elements", (14, 2), &[93], "the element type 93 is not supported");
     check("Elements", (14, 10), &[255, 255, 255, 127], "the file ends where a tag of an element should stand");
     check("Elements", (14, 26), &[99], "element 1 names node 99, which does not exist");
 }

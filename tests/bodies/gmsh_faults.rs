@@ -119,8 +119,8 @@ fn line_ends_and_blank_lines_do_not_change_the_mesh() {
 fn faults_of_files_are_reported_with_their_line() {
     let cases = [
         (String::new(), 1, "without a section `$MeshFormat`"),
-        ("hello".into(), 1, "it is no mesh of Gmsh"),
-        (text(&V2[8..]), 1, "it is no mesh of Gmsh"),
+        ("hello".into(), 1, "this is not a mesh of Gmsh"),
+        (text(&V2[8..]), 1, "this is not a mesh of Gmsh"),
         (
             with(&V2, 2, "2.2 1 8"),
             2,
@@ -129,7 +129,7 @@ fn faults_of_files_are_reported_with_their_line() {
         (with(&V2, 2, "2.2 1 4"), 2, "the data size is 4"),
         (with(&V2, 2, "2.2 2 8"), 2, "the file type is 2; it must be 0 for ASCII or 1 for binary"),
         (text(&["$MeshFormat", "4.1 1 8", "\u{1}"]), 2, "the file ends after this line"),
-        (with(&V2, 2, "4 0 8"), 2, "version 4 of the format is not read; versions 4.1 and 2.2"),
+        (with(&V2, 2, "4 0 8"), 2, "version 4 of the format is not supported; save the mesh in version 4.1 or 2.2"),
         (with(&V2, 2, "3.0 0 8"), 2, "version 3"),
         (with(&V2, 2, "two 0 8"), 2, "is `two`"),
         (with(&V2, 3, "$Nodes"), 3, "`$EndMeshFormat` should stand"),
@@ -155,7 +155,7 @@ fn faults_of_files_are_reported_with_their_line() {
         (with(&V2, 21, "4 2 2 2 1 10 20"), 21, "the line ends where the tag of a node should stand"),
         (with(&V2, 21, "4 2 2 2 1 10 20 30 40"), 21, "`40` is one field too many"),
         (with(&V2, 21, "4 2 99999999999 2 1 10 20 30"), 21, "the line ends where a tag of an element"),
-        (with(&V2, 21, "4 93 2 2 1 10 20 30"), 21, "the element type 93 is not known"),
+        (with(&V2, 21, "4 93 2 2 1 10 20 30"), 21, "the element type 93 is not supported"),
         (with(&V2, 16, "$Nodes"), 16, "a second section `$Nodes`"),
         (text(&V2[..13]), 13, "the file ends where node 4 of 4"),
         (text(&V2[..15]), 15, "the file ends without a section `$Elements`"),
@@ -191,7 +191,7 @@ fn elements_that_do_not_form_a_body_are_refused_with_their_line() {
         (with(&V2, 22, "5 2 2 2 1 10 40 30"), 22, "element 5: the Jacobian determinant is"),
         (with(&V2, 22, "5 2 2 2 1 10 20 10"), 22, "element 5: the Jacobian determinant is 0e0"),
         (with(&V2, 12, "40 0 1 0.5"), 12, "node 40 has z = 0.5"),
-        (with(&V2, 19, "2 1 2 1 1 20 40"), 19, "element 2 of the physical group `floor` is no face of the body"),
+        (with(&V2, 19, "2 1 2 1 1 20 40"), 19, "element 2 of the physical group `floor` is not a face of the body"),
         (with(&V2, 19, "2 8 2 1 1 10 20 30"), 19, "one of three-node lines, but the faces of T3 have 2 nodes"),
     ];
     for (text, line, phrase) in cases {
@@ -212,11 +212,11 @@ fn element_types_that_no_body_supports_are_refused_with_the_reason() {
         );
         check(&text, if number == 15 { 37 } else { 36 }, phrase);
     };
-    refused(12, 27, "quadratic bricks have 20 nodes here (in Gmsh, `Mesh.SecondOrderIncomplete = 1`)");
+    refused(12, 27, "quadratic bricks must have 20 nodes (in Gmsh, `Mesh.SecondOrderIncomplete = 1`)");
     refused(10, 9, "`Mesh.SecondOrderIncomplete = 1`");
     refused(6, 6, "six-node prisms are refused");
     refused(7, 5, "five-node pyramids are refused");
-    refused(8, 3, "a bar has two nodes");
+    refused(8, 3, "a bar element must have two nodes");
     refused(15, 1, "no elements beyond points");
 }
 

@@ -33,9 +33,13 @@ const STRESS: Formulation = Formulation::PlaneStress { thickness: 1.0 };
 
 #[test]
 fn elements_of_another_dimension_are_refused() {
-    refused(rectangle(&LINES, &LINES, ElementKind::Hex8), "mesh", &["a rectangle is no mesh of Hex8"]);
-    refused(ring([0.0; 2], &[1.0, 2.0], &[0.0, 90.0], ElementKind::Tet4), "mesh", &["a ring is no mesh of Tet4"]);
-    refused(cuboid(&LINES, &LINES, &LINES, ElementKind::Q4), "mesh", &["a box is no mesh of Q4"]);
+    refused(rectangle(&LINES, &LINES, ElementKind::Hex8), "mesh", &["a rectangle cannot have a mesh of Hex8"]);
+    refused(
+        ring([0.0; 2], &[1.0, 2.0], &[0.0, 90.0], ElementKind::Tet4),
+        "mesh",
+        &["a ring cannot have a mesh of Tet4"],
+    );
+    refused(cuboid(&LINES, &LINES, &LINES, ElementKind::Q4), "mesh", &["a box cannot have a mesh of Q4"]);
     refused(body(square(ElementKind::Q4), Formulation::Space), "mesh", &["a mesh of Q4 does not fit"]);
     refused(body(bar(&LINES).unwrap(), STRAIN), "mesh", &["a mesh of Line2 does not fit plane strain"]);
 }
@@ -43,9 +47,13 @@ fn elements_of_another_dimension_are_refused() {
 #[test]
 fn bodies_of_different_kinds_cannot_be_combined() {
     let one = || body(square(ElementKind::Q4), STRAIN).unwrap();
-    let phrases = ["one formulation and cross-section", "plane strain and plane stress"];
+    let phrases = ["the same formulation and cross-section", "plane strain and plane stress"];
     refused(one().beside(&body(square(ElementKind::Q4), STRESS).unwrap(), "base"), "mesh", &phrases);
-    refused(one().beside(&body(square(ElementKind::T3), STRAIN).unwrap(), "base"), "mesh", &["here Q4 and T3"]);
+    refused(
+        one().beside(&body(square(ElementKind::T3), STRAIN).unwrap(), "base"),
+        "mesh",
+        &["here they have Q4 and T3"],
+    );
     refused(square(ElementKind::T6).beside(&square(ElementKind::Q8), "base"), "mesh", &["here T6 and Q8"]);
     assert!(one().beside(&one(), "base").is_ok());
 }
@@ -132,7 +140,11 @@ fn triangles_of_a_full_matrix_are_compared_entry_by_entry() {
         assert_eq!(with(&zeros).unwrap().mul(&[1.0, 2.0, 3.0]), [-1.0, 2.0, 8.0]);
     }
     for (row, column) in [(1, 0), (0, 1), (2, 1), (1, 2)] {
-        refused(with(&[(row, column, 0.5)]), "not-symmetric", &["5e-1", "0e0", "give both triangles alike"]);
+        refused(
+            with(&[(row, column, 0.5)]),
+            "not-symmetric",
+            &["5e-1", "0e0", "give both triangles with equal entries"],
+        );
     }
     refused(with(&[(2, 0, -0.5)]), "not-symmetric", &["-1.5e0", "-1e0"]);
 }

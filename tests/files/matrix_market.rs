@@ -89,5 +89,5 @@ fn faults_are_reported_with_their_line_and_what_is_allowed() {
 fn a_missing_file_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let message = qp::read_problem(folder.path()).unwrap_err().to_string();
-    assert!(message.starts_with("cannot read ") && message.contains("K.mtx: "), "{message}");
+    assert!(message.starts_with("cannot read ") && message.contains("neither K.mtx nor K.petsc"), "{message}");
 }

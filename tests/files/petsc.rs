@@ -150,11 +150,11 @@ fn unknowns_without_a_node_and_a_directory_of_both_forms_are_refused() {
     desk.write("pressed.json", pressed.to_string());
     desk.run(&["export", "pressed.json", "p"]).ends_with(0);
     let refused = desk.run(&["export", "pressed.json", "q", "--format", "petsc"]);
-    refused.fails_with(1, &["`--format`", "blocks for nodes alone", "take matrix-market"]);
+    refused.fails_with(1, &["`--format`", "only the unknowns of nodes", "take --format matrix-market"]);
     assert!(!desk.path("q").exists());
     desk.write("scene.json", scene().to_string());
     desk.run(&["export", "scene.json", "p", "--format", "petsc"]).ends_with(0);
-    desk.run(&["solve", "p"]).fails_with(1, &["cannot read p: K.mtx and K.petsc both stand there"]);
+    desk.run(&["solve", "p"]).fails_with(1, &["cannot read p: the folder has both K.mtx and K.petsc"]);
     fs::remove_file(desk.path("p/K.mtx")).unwrap();
     desk.run(&["solve", "p"]).ends_with(0);
 }

@@ -107,5 +107,5 @@ fn the_program_names_the_byte_of_a_damaged_petsc_file() {
     desk.run(&["compare", "p"]).fails_with(1, phrases);
     fs::remove_file(desk.path("p/K.petsc")).unwrap();
     fs::create_dir(desk.path("p/K.petsc")).unwrap();
-    desk.run(&["solve", "p"]).fails_with(1, &["cannot read p/K.petsc: it is no regular file"]);
+    desk.run(&["solve", "p"]).fails_with(1, &["cannot read p/K.petsc: it is not a regular file"]);
 }

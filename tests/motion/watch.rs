@@ -102,7 +102,7 @@ fn unknown_nodes_and_points_are_refused_with_the_existing_ones() {
             &["at `analysis.dynamic.watch[1].point`", "(12.5) lies in no element", "nearest node, 20 at (10), is 2.5"],
         ),
         (watch(json!({"point": [1, 2]})), &["at `analysis.dynamic.watch[1].point`", "2 entries", "[x]"]),
-        (watch(json!({"point": [1], "node": 1})), &["analysis.dynamic.watch[1]", "a second key"]),
+        (watch(json!({"point": [1], "node": 1})), &["analysis.dynamic.watch[1]", "a second one"]),
         (watch(json!({"edge": 1})), &["analysis.dynamic.watch[1]", "edge", "node"]),
     ] {
         let desk = Desk::new();

@@ -67,7 +67,7 @@ fn a_problem_too_large_for_factor_and_multigrid_is_refused_with_both_estimates()
     for bytes in [estimate.direct_bytes, estimate.multigrid_bytes] {
         assert!(sentence.contains(&megabytes(bytes)), "{sentence}");
     }
-    assert!(sentence.starts_with("neither way fits into "), "{sentence}");
+    assert!(sentence.starts_with("the problem does not fit into "), "{sentence}");
     assert!(matches!(refused, Error::NoRoom { allowed, .. } if allowed == 0.5 * estimate.multigrid_bytes));
     let negative = solve(&problem, &within(-1.0)).unwrap_err().to_string();
     assert_eq!(negative, "memory is -1; it must be positive");

@@ -150,7 +150,7 @@ fn an_exact_accuracy_chooses_the_active_set_and_warns_if_the_method_is_given() {
     let warned = desk.run(&[&solve[..], &["--method", "mprgp"]].concat()).ends_with(0);
     assert!(warned.stderr.contains("--accuracy exact changes nothing: the method is mprgp"), "{}", warned.stderr);
     let refused = desk.run(&["solve", &scene, "--accuracy", "exactly"]).ends_with(2).stderr;
-    assert!(refused.contains("at most 0.1, as 1e-3, or `exact`"), "{refused}");
+    assert!(refused.contains("at most 0.1, such as 1e-3, or `exact`"), "{refused}");
 }
 
 /// GOAL: the time of the proof is reported separately, and the proof can be omitted.

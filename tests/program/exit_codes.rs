@@ -9,10 +9,10 @@ fn exit_code_1_means_bad_input() {
     let desk = Desk::new();
     desk.write("bad.json", "{}");
     desk.run(&["solve", "nowhere.json"]).fails_with(1, &["cannot read nowhere.json"]);
-    desk.run(&["solve", "bad.json"]).fails_with(1, &["bad.json:1:2", "missing field `body`"]);
-    desk.run(&["compare", "bad.json"]).fails_with(1, &["missing field `body`"]);
-    desk.run(&["sweep", "bad.json", "--gaps", "0:1:2"]).fails_with(1, &["missing field `body`"]);
-    desk.run(&["export", "bad.json", "p"]).fails_with(1, &["missing field `body`"]);
+    desk.run(&["solve", "bad.json"]).fails_with(1, &["bad.json:1:2", "the key `body` is missing"]);
+    desk.run(&["compare", "bad.json"]).fails_with(1, &["the key `body` is missing"]);
+    desk.run(&["sweep", "bad.json", "--gaps", "0:1:2"]).fails_with(1, &["the key `body` is missing"]);
+    desk.run(&["export", "bad.json", "p"]).fails_with(1, &["the key `body` is missing"]);
     assert!(!desk.path("p").exists(), "a scene that fails writes no file");
 }
 
@@ -27,15 +27,15 @@ fn exit_code_2_means_wrong_usage_and_the_message_names_what_is_expected() {
         (&["solve", "block.json", "other.json"], "unexpected argument 'other.json'"),
         (&["solve", "block.json", "--method", "newton"], "auto, qp, active-set, penalty"),
         (&["solve", "block.json", "--format", "yaml"], "text, json"),
-        (&["solve", "block.json", "--tolerance", "tiny"], "at most 0.1, as 1e-9"),
-        (&["solve", "block.json", "--tolerance", "-1"], "at most 0.1, as 1e-9"),
-        (&["compare", "block.json", "--tolerance", "0"], "at most 0.1, as 1e-9"),
-        (&["sweep", "block.json", "--gaps", "0:1:2", "--tolerance", "nan"], "at most 0.1, as 1e-9"),
+        (&["solve", "block.json", "--tolerance", "tiny"], "at most 0.1, such as 1e-9"),
+        (&["solve", "block.json", "--tolerance", "-1"], "at most 0.1, such as 1e-9"),
+        (&["compare", "block.json", "--tolerance", "0"], "at most 0.1, such as 1e-9"),
+        (&["sweep", "block.json", "--gaps", "0:1:2", "--tolerance", "nan"], "at most 0.1, such as 1e-9"),
         (&["verify", "p", "--displacement", "u", "--multiplier", "l", "--tolerance", "inf"], "at most 0.1"),
         (&["solve", "block.json", "--out", ""], "--out <DIR>"),
         (&["compare"], "<INPUT>"),
         (&["sweep", "block.json"], "--gaps <FIRST:LAST:COUNT>"),
-        (&["sweep", "block.json", "--gaps", "-0.01:-0.10"], "FIRST:LAST:COUNT, as -0.01:-0.10:10"),
+        (&["sweep", "block.json", "--gaps", "-0.01:-0.10"], "FIRST:LAST:COUNT, such as -0.01:-0.10:10"),
         (&["sweep", "block.json", "--gaps", "a:1:2"], "`a` is not a finite number"),
         (&["sweep", "block.json", "--gaps", "0:inf:2"], "`inf` is not a finite number"),
         (&["sweep", "block.json", "--gaps", "0:1:0"], "whole number from 1 to 10000"),
@@ -90,7 +90,7 @@ fn exit_code_4_means_an_answer_that_is_not_certified() {
     // The remaining error is rounding of the displacement to doubles, and the report says so.
     let strict = strict.ends_with(0);
     assert!(strict.stdout.contains("certified to 1.0e-30"), "{}", strict.stdout);
-    assert!(strict.stdout.contains("explained by rounding the displacement to double precision"), "{}", strict.stdout);
+    assert!(strict.stdout.contains("due to the rounding of the displacement to double precision"), "{}", strict.stdout);
     let loose = ["--method", "penalty", "--tolerance", "1e-12"];
     let loose = desk.run(&[&["solve", &example("indentation")][..], &loose].concat());
     let loose = loose.fails_with(4, &["not certified: ", "above the tolerance 1.0e-12"]);

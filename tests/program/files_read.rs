@@ -71,7 +71,7 @@ fn no_error_quotes_a_file_that_is_not_a_mesh() {
     for secret in secrets {
         desk.write("secret", secret);
         desk.write("scene.json", with_mesh("secret"));
-        let run = desk.run(&["solve", "scene.json"]).fails_with(1, &["secret:", "it is no mesh of Gmsh"]);
+        let run = desk.run(&["solve", "scene.json"]).fails_with(1, &["secret:", "this is not a mesh of Gmsh"]);
         assert!(!run.stderr.contains("hunter2"), "{}", run.stderr);
     }
 }

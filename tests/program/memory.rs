@@ -77,8 +77,7 @@ fn the_memory_limit_named_in_a_refusal_suffices() {
     let solve = ["solve", "strip.json", "--format", "json"];
     let free = desk.run(&solve).ends_with(0).json();
     let refused = desk.run(&[&solve[..], &["--max-memory", "50MB"]].concat()).ends_with(1).stderr;
-    let named =
-        refused.split_once("a factor of the stiffness it takes about ").unwrap_or_else(|| panic!("{refused}")).1;
+    let named = refused.split_once("a factor of the stiffness takes about ").unwrap_or_else(|| panic!("{refused}")).1;
     let megabytes = named.split(' ').next().unwrap().parse::<f64>().unwrap() + 1.0;
     let limit = format!("{megabytes}MB");
     let (code, said, peak) = measured(&desk, &[&solve[..], &["--max-memory", &limit]].concat());

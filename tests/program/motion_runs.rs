@@ -45,7 +45,7 @@ fn a_resumed_motion_goes_on_to_a_longer_duration_bit_for_bit() {
     assert_eq!(end(&desk, "parts"), end(&desk, "whole"));
     // A motion is resumed neither to an earlier time nor with another scene.
     let back = desk.run(&["solve", "short.json", "--out", "parts", "--resume"]);
-    back.fails_with(1, &["at `analysis.dynamic.duration`", "step 205 already"]);
+    back.fails_with(1, &["at `analysis.dynamic.duration`", "already reached step 205"]);
     let mut other = bar(1.7034, 12);
     other["material"]["young"] = json!(901);
     desk.write("other.json", other.to_string());
@@ -84,7 +84,7 @@ fn a_motion_is_resumed_only_from_files_that_it_wrote() {
         desk.write("secret", secret);
         fs::remove_file(desk.path("run/checkpoint.json")).unwrap();
         std::os::unix::fs::symlink("../secret", desk.path("run/checkpoint.json")).unwrap();
-        let run = resumed(&desk).fails_with(1, &["checkpoint.json:1", "it is no checkpoint of a motion"]);
+        let run = resumed(&desk).fails_with(1, &["checkpoint.json:1", "it is not a checkpoint of a motion"]);
         assert!(!run.stderr.contains("hunter2"), "{}", run.stderr);
     }
     let history = desk.path("run/history.csv");
@@ -95,13 +95,13 @@ fn a_motion_is_resumed_only_from_files_that_it_wrote() {
     fs::write(desk.path("foreign.csv"), &foreign).unwrap();
     fs::remove_file(&history).unwrap();
     std::os::unix::fs::symlink("../foreign.csv", &history).unwrap();
-    refused("it is no regular file");
+    refused("it is not a regular file");
     assert_eq!(fs::read_to_string(desk.path("foreign.csv")).unwrap(), foreign);
     fs::remove_file(&history).unwrap();
     fs::write(&history, &foreign).unwrap();
-    refused("it is no history of a motion");
+    refused("it is not a history of a motion");
     assert_eq!(fs::read_to_string(&history).unwrap(), foreign);
     fs::remove_file(&history).unwrap();
     assert!(Command::new("mkfifo").arg(&history).status().unwrap().success());
-    refused("it is no regular file");
+    refused("it is not a regular file");
 }

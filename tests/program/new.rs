@@ -68,5 +68,5 @@ fn a_first_scene_lists_the_groups_of_the_file_and_guesses_its_unit() {
 fn comment_lines_do_not_change_the_line_numbers_of_errors() {
     let desk = Desk::new();
     desk.write("scene.json", "// a comment\n{\n  // another\n  \"Gap\": 1\n}\n");
-    desk.run(&["solve", "scene.json"]).fails_with(1, &["scene.json:4:", "unknown field `Gap`"]);
+    desk.run(&["solve", "scene.json"]).fails_with(1, &["scene.json:4:", "unknown key `Gap`"]);
 }

@@ -209,7 +209,7 @@ fn an_interrupted_solve_reports_its_best_answer() {
     let report = run.json();
     assert!(report["certificate"]["energy_error_bound"].as_f64().is_some_and(|bound| bound > 0.0), "{report}");
     assert!(report["contact"]["force"].as_f64().is_some_and(|force| force > 0.0), "{report}");
-    assert!(run.stderr.ends_with("interrupted: the report is of what was found until then\n"), "{}", run.stderr);
+    assert!(run.stderr.ends_with("interrupted: the report has the results up to there\n"), "{}", run.stderr);
     // The answer with its tables, and the report; pictures would take too long.
     assert_eq!(whole(&desk.path("o")), 6);
 }

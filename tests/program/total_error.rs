@@ -320,7 +320,7 @@ fn a_file_of_other_elements_has_no_finer_mesh() {
     scene["body"] = json!({"gmsh": {"file": "box.msh"}});
     desk.write("scene.json", scene.to_string());
     let run = desk.run(&["solve", "scene.json", "--total-error", "0.01"]);
-    assert!(run.code == 4 && run.stdout.contains("has no finer one"), "{} {}", run.stdout, run.stderr);
+    assert!(run.code == 4 && run.stdout.contains("cannot be refined here"), "{} {}", run.stdout, run.stderr);
 }
 
 /// A short form of `cargo run --release --example guarantee`.

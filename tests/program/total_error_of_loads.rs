@@ -101,7 +101,7 @@ fn materials_without_a_guaranteed_bound_are_estimated_with_the_reason() {
     for (key, value, reason) in [
         ("materials", other, "several materials in one body"),
         ("material", json!({"orthotropic": orthotropic}), "an orthotropic material"),
-        ("temperature", json!([{"value": 10}]), "a body with stress before any strain"),
+        ("temperature", json!([{"value": 10}]), "a body with temperatures or initial stresses"),
     ] {
         let mut scene = classical(0.3);
         scene["material"]["expansion"] = json!(1e-5);

@@ -111,5 +111,5 @@ fn verify_without_a_factor_takes_only_the_memory_of_the_hierarchy_and_refuses_a_
     let peak = desk.peak(&WITHOUT_FACTOR) - signorini::internals::bytes::START;
     assert!(peak < 2.4 * file, "{:.2} times the file of the stiffness", peak / file);
     let refused = desk.run(&[&WITHOUT_FACTOR[..], &["--max-memory", "30MB"]].concat());
-    refused.fails_with(1, &["neither way fits into 30 MB"]);
+    refused.fails_with(1, &["the problem does not fit into 30 MB of memory"]);
 }

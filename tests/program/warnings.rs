@@ -32,6 +32,24 @@ fn warned((report, text): &(Value, String), code: &str) -> String {
     message.to_string()
 }
 
+/// A negative gap prescribes an indentation: the report names its depth and place, but warns of nothing.
+#[test]
+fn an_overlap_before_contact_is_named_with_its_depth_and_place() {
+    let mut scene = scene();
+    scene["loads"] = json!([]);
+    let overlap = |scene: &Value| {
+        let (report, text) = solved(scene);
+        let line = text.lines().find(|line| line.contains("before contact node ")).map(|line| line.trim().to_string());
+        (report["warnings"].to_string().contains("before contact"), line)
+    };
+    scene["gap"] = json!(0.25);
+    assert_eq!(overlap(&scene), (false, None));
+    scene["gap"] = json!(-0.01);
+    let (is_warning, line) = overlap(&scene);
+    let line = line.expect("a line on the overlap");
+    assert!(!is_warning && line.ends_with("lies 1.000e-2 m inside obstacles[0]"), "{line}");
+}
+
 /// The block lies below its obstacle, but the scene says that the obstacle approaches from above: its closed nodes
 /// would be in tension.
 #[test]
@@ -56,7 +74,7 @@ fn a_body_without_contact_is_warned_of_with_its_smallest_remaining_gap() {
     scene["gap"] = json!(0.25);
     scene["loads"] = json!([]);
     let message = warned(&solved(&scene), "nothing-touches");
-    assert_eq!(message, "nothing touches; the smallest remaining gap is 0.25 m at node 12");
+    assert_eq!(message, "nothing touches; the smallest remaining gap is 0.25 m at node 12 at (0.5, 0.5)");
     scene["obstacles"] = json!([]);
     assert_eq!(warned(&solved(&scene), "nothing-touches"), "nothing touches: the scene has no obstacle");
 }
@@ -229,7 +247,7 @@ fn an_obstacle_on_a_clamped_boundary_is_warned_of() {
 fn a_load_on_a_supported_boundary_is_warned_of() {
     let loaded = pressed(|scene| scene["loads"] = json!([{"traction": {"boundary": "bottom", "value": [0, 5]}}]));
     let message = warned(&solved(&loaded), "load-on-support");
-    assert!(message.starts_with("loads[0] acts where supports hold the body"), "{message}");
+    assert!(message.starts_with("loads[0] acts only on nodes that supports hold"), "{message}");
 }
 
 #[test]
@@ -278,7 +296,10 @@ fn nodes_that_were_not_merged_are_warned_of() {
     let report = desk.run(&["solve", "scene.json", "--format", "json"]).ends_with(0).json();
     let text = desk.run(&["solve", "scene.json"]).ends_with(0).stdout;
     let message = warned(&(report, text), "coincident-nodes");
-    assert!(message.starts_with("2 nodes of the mesh stand where others do, as nodes 0 and 4"), "{message}");
+    assert!(
+        message.starts_with("2 nodes of the mesh have the place of another node, such as nodes 0 and 4 at ["),
+        "{message}"
+    );
 }
 
 #[test]

@@ -357,7 +357,7 @@ fn invalid_loads_are_refused_at_their_path() {
         (
             plane(json!({"force": {"at": [1, 1], "boundary": "top", "value": [1, 0]}})),
             "loads[0].force",
-            "give one of them",
+            "give only one",
         ),
         (
             plane(json!({"moment": {"boundary": "roof", "value": [1]}})),
@@ -384,7 +384,7 @@ fn invalid_loads_are_refused_at_their_path() {
             "no area",
         ),
         (plane(json!({"gravity": [0, -9.81]})), "material", "loads[0].gravity needs a `density`"),
-        (plane(json!({"gravity": [-9.81]})), "loads[0].gravity", "1 entries"),
+        (plane(json!({"gravity": [-9.81]})), "loads[0].gravity", "1 entry"),
         (plane(json!({"centrifugal": {"omega": 1}})), "material", "loads[0].centrifugal needs a `density`"),
         (plane(json!({"centrifugal": {"omega": 1, "axis": [0, 0, 1]}})), "loads[0].centrifugal.axis", "leave it out"),
         (plane(json!({"centrifugal": {"omega": 1, "point": [0]}})), "loads[0].centrifugal.point", "[x, y]"),

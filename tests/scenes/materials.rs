@@ -204,7 +204,7 @@ fn invalid_materials_are_refused_at_their_path() {
         (
             changed(&orthotropic(&[]), "/body/rectangle/integration", json!("mean-dilatation")),
             "body.rectangle.integration".into(),
-            "isotropic materials alone",
+            "isotropic materials only",
         ),
     ];
     for (scene, path, phrase) in cases {

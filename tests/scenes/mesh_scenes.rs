@@ -273,7 +273,7 @@ fn invalid_bodies_are_refused_at_their_path() {
     let cases = [
         (on("plane-strain", gmsh(json!({"scale": 0}))), "body.gmsh.scale", "positive and finite"),
         (on("plane-strain", gmsh(json!({"group": "bulk"}))), "body.gmsh", "bottom, right, top, left, body"),
-        (on("space", gmsh(json!({}))), "body.gmsh.file", "the mesh is plane, which is no body of the model `space`"),
+        (on("space", gmsh(json!({}))), "body.gmsh.file", "the mesh is plane, which does not fit the model `space`"),
         (on("plane-strain", gmsh(json!({"file": "box-hex8.msh"}))), "body.gmsh.file", "in space"),
         (on("plane-strain", gmsh(json!({"integration": "mean-dilatation"}))), "body.gmsh.integration", "T3"),
         (on("plane-strain", ball(1.0)), "body.half-ball", "half-disc, ring or gmsh"),

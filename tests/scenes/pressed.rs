@@ -130,6 +130,16 @@ fn two_plates_on_a_ring_have_equal_travel_as_for_a_thin_ring() {
 }
 
 #[test]
+fn a_sweep_over_forces_without_a_pressed_obstacle_names_the_key_that_is_missing() {
+    let desk = Desk::new();
+    let body = json!({"rectangle": {"x": axis(2), "y": axis(2)}});
+    let scene = block(body, false, "approach", json!({"circle": {"apex": [0.5, 1], "radius": 1}}));
+    desk.write("scene.json", scene.to_string());
+    let phrases = ["scene.json:1:", "at `obstacles`: no obstacle is pressed by a force", "\"force\": 100"];
+    desk.run(&["sweep", "scene.json", "--forces", "0:2e4:5"]).fails_with(1, &phrases);
+}
+
+#[test]
 fn a_sweep_over_forces_begins_at_the_travel_of_first_contact() {
     let desk = Desk::new();
     let mut scene = block(
@@ -162,7 +172,7 @@ fn invalid_forces_of_a_sweep_are_refused() {
         let error = Sweep::over_forces(&built(scene).unwrap(), &[1.0, force], &Settings::default()).unwrap_err();
         assert!(error.to_string().contains(phrase), "{error}");
     };
-    refused(&scene, 1.0, "0 of them have a `force`");
+    refused(&scene, 1.0, "no obstacle is pressed by a force");
     scene["obstacles"][0]["force"] = 1.into();
     refused(&scene, -2.0, "-2 would pull the obstacle away");
     refused(&scene, f64::NAN, "NaN is not finite");

@@ -155,7 +155,7 @@ fn the_basis_of_forces_names_thickness_and_modelled_part() {
     let clamp = json!([{"on": {"boundary": "bottom"}, "x": 0, "y": 0}]);
     assert_eq!(basis(&|scene| scene["supports"] = clamp.clone()), "per metre");
     // Flat sides on rollers may be planes of symmetry.
-    assert_eq!(basis(&|_| {}), "per metre, of the modelled part");
+    assert_eq!(basis(&|_| {}), "per metre, of the meshed part: a plane of symmetry at a sliding support doubles it");
     assert_eq!(
         basis(&|scene| (scene["supports"], scene["thickness"]) = (clamp.clone(), json!(0.1))),
         "of a thickness of 0.1 m"
@@ -308,16 +308,20 @@ fn missing_advice_on_tolerance_and_mesh_names_its_reason() {
     let mut summary = scene_summary(&answer, solution, 1e-9, 0.0).unwrap();
     let advice = |summary: &Summary| solve_text("block", summary, &Units::default());
     summary.discretisation_error = Some(0.1);
-    assert!(advice(&summary).contains("a finer mesh does"));
+    assert!(advice(&summary).contains("only a finer mesh improves the answer"));
     summary.solution.certificate.energy_error_bound = 0.5;
-    assert!(advice(&summary).contains("a tighter tolerance comes before a finer mesh"));
+    assert!(advice(&summary).contains("tighten the tolerance before the mesh is refined"));
     summary.solution.certificate.energy_error_bound = f64::INFINITY;
     assert!(
-        advice(&summary).contains("tolerance or mesh first? none: the answer has no error bound"),
+        advice(&summary).contains("no advice on tolerance and mesh: the answer has no error bound"),
         "{}",
         advice(&summary)
     );
     summary.solution.certificate.energy_error_bound = 1e-12;
     summary.discretisation_error = Some(f64::NAN);
-    assert!(advice(&summary).contains("none: the error of the mesh could not be estimated"), "{}", advice(&summary));
+    assert!(
+        advice(&summary).contains("no advice on tolerance and mesh: the error of the mesh could not be estimated"),
+        "{}",
+        advice(&summary)
+    );
 }

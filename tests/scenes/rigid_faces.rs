@@ -128,11 +128,11 @@ fn invalid_motions_of_rigid_faces_are_refused_at_their_path() {
             scene["rigid-faces"][0] = face;
         }
     };
-    refused(&face(json!({"x": 0, "force": [1, 0]})), &["rigid-faces[0].x", "give one of them"]);
+    refused(&face(json!({"x": 0, "force": [1, 0]})), &["rigid-faces[0].x", "give only one"]);
     refused(&face(json!({"z": 0})), &["rigid-faces[0].z", "no such motion"]);
     refused(&face(json!({"rotation": {"x": 0}})), &["rigid-faces[0].rotation.x", "no such motion"]);
     refused(&face(json!({"moment": [1, 2]})), &["rigid-faces[0].moment", "2 entries"]);
-    refused(&face(json!({"force": [1]})), &["rigid-faces[0].force", "1 entries"]);
+    refused(&face(json!({"force": [1]})), &["rigid-faces[0].force", "1 entry"]);
     let overlapping = |scene: &mut Value| scene["supports"] = json!([{"on": {"boundary": "bottom"}, "x": 0, "y": 0}]);
     refused(&overlapping, &["rigid-faces[0]", "held by supports[0]", "prescribe `x` too"]);
     let twice = |scene: &mut Value| {

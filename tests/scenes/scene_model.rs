@@ -279,7 +279,9 @@ fn unbounded_motions_are_explained_in_words() {
         }
     };
     let mode = free_of_supports(&|[x, y]| [-y, x - 0.25]);
-    assert_eq!(mode, "rotation about z through (0.25, 0): a frictionless obstacle does not hold it, add a guide");
+    let expected = "rotation about z through (0.25, 0): a frictionless obstacle does not hold it, add a guide, such as \
+                    {\"on\": {\"boundary\": \"left\"}, \"x\": 0, \"y\": 0} in `supports`";
+    assert_eq!(mode, expected);
 }
 
 #[test]

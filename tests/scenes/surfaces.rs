@@ -404,10 +404,10 @@ fn a_file_without_a_closed_surface_is_refused_with_the_place_of_the_fault() {
     let stl = json!({"file": "die.stl"});
     let obj = json!({"file": "die.obj"});
     for (surface, content, phrases) in [
-        (&stl, without(1).binary_stl(), vec!["/die.stl, byte 184", "not closed", "3 edges", "from [", "welded"]),
+        (&stl, without(1).binary_stl(), vec!["/die.stl, byte 184", "not closed", "3 edges", "from [", "merged"]),
         (&stl, without(3).ascii_stl().into_bytes(), vec!["/die.stl:", "not closed", "7 edges"]),
         (&obj, without(1).obj().into_bytes(), vec!["/die.obj:", "3 edges"]),
-        (&obj, apart.obj().into_bytes(), vec!["/die.obj:", "not closed", "4 edges", "welded"]),
+        (&obj, apart.obj().into_bytes(), vec!["/die.obj:", "not closed", "4 edges", "merged"]),
         (&obj, flipped.obj().into_bytes(), vec!["/die.obj:", "3 edges", "in the same direction", "orient"]),
         (&obj, crowded.obj().into_bytes(), vec!["/die.obj:", "more than two triangles"]),
         (&obj, sheet.obj().into_bytes(), vec!["/die.obj:1:", "encloses no volume"]),
@@ -415,7 +415,7 @@ fn a_file_without_a_closed_surface_is_refused_with_the_place_of_the_fault() {
         (&stl, b"solid nothing\nendsolid\n".to_vec(), vec!["/die.stl:1:", "no triangle"]),
         (&obj, b"v 0 0 0\n".to_vec(), vec!["/die.obj:1:", "no triangle"]),
         (&obj, Vec::new(), vec!["/die.obj:1:", "no triangle"]),
-        (&stl, Vec::new(), vec!["/die.stl, byte 0", "no STL", "0 bytes"]),
+        (&stl, Vec::new(), vec!["/die.stl, byte 0", "not an STL file", "0 bytes"]),
         (&stl, nan, vec!["/die.stl, byte 158", "NaN", "finite"]),
         (&stl, long, vec!["/die.stl, byte 80", "4294967295 triangles", "214748364834 bytes", "684"]),
         (&stl, cube.binary_stl()[..300].to_vec(), vec!["/die.stl, byte 80", "12 triangles", "300"]),

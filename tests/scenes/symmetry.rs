@@ -90,7 +90,7 @@ fn the_report_names_the_whole_as_the_basis_of_forces() {
     let desk = Desk::new();
     desk.write("scene.json", block("hex8", &["x", "y"]).to_string());
     let report = desk.run(&["solve", "scene.json", "--format", "json"]).ends_with(0).json();
-    assert_eq!(report["force_basis"], "of the whole, which is 4 times the modelled part");
+    assert_eq!(report["force_basis"], "of the whole body, 4 times the meshed part");
     assert!((report["contact"]["force"].as_f64().unwrap() - 40.0).abs() < 1e-8);
     // The mesh is coarse, which is warned of; cuts without supports cause no warning.
     let codes: Vec<_> = report["warnings"].as_array().unwrap().iter().map(|warning| warning["code"].clone()).collect();

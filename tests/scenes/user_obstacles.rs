@@ -114,7 +114,7 @@ fn an_invalid_row_of_a_users_obstacle_is_refused_with_its_node() {
         (with(|_| row([0.0, 2.0, 0.0], 1.0)), "has a row whose normal has the length 2; it must be 1"),
         (with(|_| row([0.0, f64::NAN, 0.0], 1.0)), "has a row whose normal has the length NaN"),
         (with(|_| row([0.0, 0.0, 1.0], 1.0)), "has a row whose normal leads out of the model"),
-        (with(|_| row([0.0, 1.0, 0.0], f64::NAN)), "has no distance that could be computed"),
+        (with(|_| row([0.0, 1.0, 0.0], f64::NAN)), "has a distance that is not a number"),
         (with(|_| Err("is not mine".into())), "is not mine; move the obstacle away from it"),
     ] {
         let error = built.unwrap_err().to_string();

@@ -129,10 +129,9 @@ impl Redistribution {
             middles.push(middle);
         }
         let too_coarse = || Error::Mesh {
-            message:
-                "it is too coarse for a redistributed mass: behind its contact nodes it needs nodes enough to keep \
-                      mass and centre; take smaller cells, or a consistent or lumped mass"
-                    .into(),
+            message: "it is too coarse for a redistributed mass: mass and centre of mass can only be kept with more \
+                      nodes behind the contact nodes; take smaller cells, or a consistent or lumped mass"
+                .into(),
         };
         let correction = matrix.clone().svd(true, true).solve(&missing, 1e-12).map_err(|_| too_coarse())?;
         if (&matrix * &correction - missing).amax() > MASS_TOLERANCE * total {
@@ -167,8 +166,8 @@ fn heirs(body: &ElasticBody, elements: &[ElementMass], massless: &[usize]) -> Re
         let ring: Vec<usize> =
             left.iter().copied().filter(|&node| shared[node].iter().any(|&(other, _)| !waiting[other])).collect();
         if ring.is_empty() {
-            let message = "every node of a body is a contact node, so that none is left to carry its mass; take smaller \
-                           cells, or a consistent or lumped mass";
+            let message = "every node of a body is a contact node, so that no other node can carry its mass; take \
+                           smaller cells, or a consistent or lumped mass";
             return Err(Error::Mesh { message: message.into() });
         }
         for &node in &ring {

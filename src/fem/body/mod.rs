@@ -109,7 +109,8 @@ impl ElasticBody {
                 return Err(Error::Mesh { message });
             }
             if !self.formulation.can_lock() {
-                let message = "mean dilatation does nothing in plane stress, where no element locks".into();
+                let message =
+                    "mean dilatation has no effect in plane stress, because no element locks; take `standard`".into();
                 return Err(Error::Mesh { message });
             }
         }
@@ -122,7 +123,7 @@ impl ElasticBody {
     fn check_integration(&self) -> Result<(), Error> {
         let is_general = |phase: &Phase| matches!(phase.law().stiffness(), Stiffness::General(_));
         match self.integration == Integration::MeanDilatation && self.phases.iter().any(is_general) {
-            true => Err(Error::Mesh { message: "mean dilatation is for isotropic materials alone".into() }),
+            true => Err(Error::Mesh { message: "mean dilatation is for isotropic materials only".into() }),
             false => Ok(()),
         }
     }
@@ -137,15 +138,20 @@ impl ElasticBody {
         let fail = |message| Err(Error::Mesh { message });
         if self.formulation != other.formulation {
             let (one, two) = (self.formulation.name(), other.formulation.name());
-            return fail(format!("bodies of one model have one formulation and cross-section; here {one} and {two}"));
+            return fail(format!(
+                "all bodies of a model must have the same formulation and cross-section; here they have {one} and \
+                 {two}"
+            ));
         }
         let (kind, other_kind) = (self.mesh.kind(), other.mesh.kind());
         if kind != other_kind {
             let (one, two) = (kind.name(), other_kind.name());
-            return fail(format!("bodies of one model have one kind of element; here {one} and {two}"));
+            return fail(format!(
+                "all bodies of a model must have the same kind of element; here they have {one} and {two}"
+            ));
         }
         if self.integration != other.integration {
-            return fail("bodies of one model have one integration".into());
+            return fail("all bodies of a model must have the same integration".into());
         }
         let (nodes, elements) = (self.mesh.nodes().len(), self.mesh.element_count());
         self.mesh = self.mesh.beside(&other.mesh, name)?;

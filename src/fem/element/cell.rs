@@ -5,7 +5,10 @@ use crate::fem::geometry::{cross, dot};
 
 /// The Jacobian of an element that is inverted or has no volume.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("the Jacobian determinant is {value:e} at its local node or quadrature point {point}; it must be positive")]
+#[error(
+    "the Jacobian determinant is {value:e} at its local node or quadrature point {point}; it must be positive: the \
+     element is flat, folded or turned over"
+)]
 pub struct NonPositiveJacobian {
     /// The smallest determinant, relative to the element's size to the power of its dimension.
     pub value: f64,

@@ -53,7 +53,7 @@ impl Tabulated {
         Self::fine_in(reference, Part::WHOLE)
     }
 
-    /// Tabulates `reference` at five points in each direction of a part of it.
+    /// Tabulates a part of `reference` at five points in each direction.
     pub fn fine_in(reference: &'static ReferenceElement, part: Part) -> Self {
         Self::with_rule(reference, quadrature::fine(reference.form, reference.dimension, part))
     }

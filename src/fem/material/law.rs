@@ -27,7 +27,7 @@ pub enum Stiffness {
 /// A stiffness without symmetries, and its inverse.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matrices {
-    /// From engineering strain to stress, in force per area: zero where the formulation has no stress.
+    /// From engineering strain to stress, in force per area: zero for components that the formulation leaves out.
     pub stiffness: Matrix,
     /// From stress to engineering strain, for the components whose strain the formulation has; zero elsewhere.
     pub compliance: Matrix,

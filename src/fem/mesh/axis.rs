@@ -66,7 +66,7 @@ impl Axis {
         self.divisions.iter().fold(0, |sum: usize, &cells| sum.saturating_add(cells))
     }
 
-    /// From the first point to the last; 0 if there are none.
+    /// From the first point to the last; 0 without points.
     pub(crate) fn length(&self) -> f64 {
         match (self.points.first(), self.points.last()) {
             (Some(first), Some(last)) => last - first,
@@ -109,11 +109,21 @@ impl Axis {
         let intervals = points.len() - 1;
         if self.divisions.len() != intervals {
             let found = self.divisions.len();
-            return fail("divisions".into(), format!("length {found}, but the points make {intervals} intervals"));
+            return fail(
+                "divisions".into(),
+                format!(
+                    "the array has length {found}, but must have {intervals}: one entry for each interval between points"
+                ),
+            );
         }
         if !self.ratios.is_empty() && self.ratios.len() != intervals {
             let found = self.ratios.len();
-            return fail("ratios".into(), format!("length {found}, but the points make {intervals} intervals"));
+            return fail(
+                "ratios".into(),
+                format!(
+                    "the array has length {found}, but must have {intervals}: one entry for each interval between points"
+                ),
+            );
         }
         if let Some(index) = self.ratios.iter().position(|ratio| !(ratio.is_finite() && *ratio > 0.0)) {
             let message =

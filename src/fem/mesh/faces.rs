@@ -55,7 +55,7 @@ impl Mesh {
         found
     }
 
-    /// All faces of these elements that no two of them share, seen from outside; edges in the order in which they follow each other.
+    /// All faces that belong to one of these elements only, seen from outside; edges in the order in which they follow each other.
     pub(crate) fn surface(&self, elements: Range<usize>) -> Boundary {
         let faces = self.kind().reference().faces;
         let of_element = |element: usize| {
@@ -76,7 +76,7 @@ impl Mesh {
             if let Some(index) = self.faces_of(boundary).iter().position(Option::is_none) {
                 let facet: Vec<usize> = boundary.facets().nth(index).unwrap_or_default().to_vec();
                 return fail(format!(
-                    "boundary `{}`: facet {index} (nodes {facet:?}, from 0) is no face of any element",
+                    "boundary `{}`: facet {index} (nodes {facet:?}, from 0) is not a face of any element",
                     boundary.name
                 ));
             }

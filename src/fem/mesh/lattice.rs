@@ -31,8 +31,8 @@ impl<K: Copy + Eq + Hash> Lattice<K> {
         &self.keys
     }
 
-    /// Adds the elements of a plane cell. `key` gives the key at half steps 0, 1, 2 in the two directions of the cell,
-    /// which turn counterclockwise; triangles are cut from (0, 0) to (2, 2).
+    /// Adds the elements of a plane cell. `key` gives the key at half steps 0, 1, 2 in the two directions of the
+    /// cell, which turn counterclockwise; triangles are cut from (0, 0) to (2, 2).
     pub fn add_cell(&mut self, kind: ElementKind, key: impl Fn(usize, usize) -> K, connectivity: &mut Vec<usize>) {
         const QUADRILATERAL: [&[[usize; 2]]; 1] = [&[[0, 0], [2, 0], [2, 2], [0, 2]]];
         const TRIANGLES: [&[[usize; 2]]; 2] = [&[[0, 0], [2, 0], [2, 2]], &[[0, 0], [2, 2], [0, 2]]];

@@ -80,7 +80,7 @@ impl Mesh {
         if !self.connectivity.len().is_multiple_of(each) {
             let length = self.connectivity.len();
             return fail(format!(
-                "the connectivity has length {length}, no multiple of the {each} nodes of an element"
+                "the connectivity has length {length}, which is not a multiple of the {each} nodes of an element"
             ));
         }
         let of_facets = self.boundaries.iter().flat_map(|boundary| &boundary.connectivity);
@@ -90,7 +90,10 @@ impl Mesh {
         let mut used = vec![false; nodes.len()];
         self.connectivity.iter().for_each(|&node| used[node] = true);
         match used.iter().position(|used| !used) {
-            Some(node) => fail(format!("node {node} belongs to no element")),
+            Some(node) => fail(format!(
+                "node {node} belongs to no element; it lies at {:?}: remove it",
+                &nodes[node][..self.dimension()]
+            )),
             None => Ok(()),
         }
     }

@@ -45,7 +45,9 @@ impl TrianglePieces {
                 let [Some(a), Some(b), Some(c)] = piece.map(|node| numbers[node]) else { continue };
                 let [[ax, ay], [bx, by], [cx, cy]] = [a, b, c].map(|node: usize| nodes[node]);
                 if (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) <= 0.0 {
-                    return fail(format!("the edges of element {index} are so curved that straight pieces of it fold"));
+                    return fail(format!(
+                        "the edges of element {index} are so curved that its straight pieces fold; take smaller cells there"
+                    ));
                 }
                 triangles.push([a, b, c]);
                 elements.push(index);

@@ -58,7 +58,7 @@ impl ClosedSurface {
         let has_area = |&triangle: &u32| place(&facets.corners[triangle as usize]).area_normal() != [0.0; 3];
         let numbers: Vec<u32> = (0..facets.corners.len() as u32).filter(has_area).collect();
         if numbers.is_empty() {
-            return Err(facets.fault(0, "it holds no triangle with an area"));
+            return Err(facets.fault(0, "it has no triangle with a positive area"));
         }
         let tree = Tree::new(&numbers, |triangle| limits(place(&facets.corners[triangle as usize])));
         let [low, high] = tree.limits();
@@ -138,19 +138,20 @@ fn check_edges(facets: &Facets, around: &Around) -> Result<(), Error> {
         (Some(found), _, _) => {
             let many = if found.count == 1 { "belongs" } else { "belong" };
             let message = format!(
-                "the surface is not closed, vertices of equal coordinates welded: {} {many} to one triangle only, but an \
-                 obstacle needs an inside",
+                "the surface is not closed after vertices of equal coordinates are merged: {} {many} to one \
+                 triangle only, but an obstacle needs an inside",
                 edges(found.count)
             );
             (found, message)
         }
-        (None, Some(found), _) => {
-            (found, "more than two triangles meet at an edge, so that inside and outside are not told apart".into())
-        }
+        (None, Some(found), _) => (
+            found,
+            "more than two triangles meet at an edge, so that inside and outside cannot be distinguished".into(),
+        ),
         (None, None, Some(found)) => {
             let message = format!(
-                "triangles on both sides of {} run along them in the same direction, so that one of them faces inwards; \
-                 orient them alike",
+                "triangles on both sides of {} run along them in the same direction, so that one triangle faces \
+                 inwards; orient all triangles alike",
                 edges(found.count / 2)
             );
             (found, message)

@@ -46,7 +46,7 @@ impl ClosedSurface {
         let against = |outward: [f64; 3]| -dot(outward, towards);
         let nearest = feet.iter().fold(f64::INFINITY, |nearest: f64, foot| nearest.min(foot.distance));
         if nearest <= tolerance {
-            // At an edge or a corner several triangles have a foot; for one of them it may still lie inside by rounding.
+            // At an edge or a corner several triangles have a foot; for one triangle it may still lie inside by rounding.
             let sharpest = feet.iter().max_by_key(|foot| foot.part.rank());
             let outward = sharpest.map_or([0.0; 3], |foot| self.pseudonormal(foot));
             let outward = if outward == [0.0; 3] { towards.map(|part| -part) } else { outward };

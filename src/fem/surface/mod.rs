@@ -38,7 +38,7 @@ impl ClosedSurface {
             Some("stl") => stl::read,
             Some("obj") => obj::read,
             _ => {
-                let message = "its name must end in `.stl` or `.obj`, which says what it holds".to_string();
+                let message = "its name must end in `.stl` or `.obj`, the form of its content".to_string();
                 return Err(Error::FileSyntax { file: file.into(), line: 1, message });
             }
         };

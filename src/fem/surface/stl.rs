@@ -33,7 +33,10 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Facets, Error> {
             );
             fault(HEADER - 4, message)
         }
-        _ => fault(0, format!("it is no STL: it has {} bytes, the header alone {HEADER}", bytes.len())),
+        _ => fault(
+            0,
+            format!("it is not an STL file: it has {} bytes, but the header alone takes {HEADER}", bytes.len()),
+        ),
     }
 }
 
@@ -57,7 +60,7 @@ fn binary(file: &Path, bytes: &[u8]) -> Result<Facets, Error> {
 fn ascii(file: &Path, bytes: &[u8]) -> Result<Facets, Error> {
     let text = String::from_utf8_lossy(bytes);
     let mut facets = Facets::new(file, Unit::Lines);
-    // The line where a facet begins, and its corners so far.
+    // The line that begins a facet, and its corners so far.
     let mut open: Option<(usize, Vec<u32>)> = None;
     let mut last = 1;
     for (index, line) in text.lines().enumerate() {
@@ -86,8 +89,8 @@ fn ascii(file: &Path, bytes: &[u8]) -> Result<Facets, Error> {
             ("vertex" | "endfacet", None) => return Err(facets.fault(last, "it stands outside any facet")),
             ("solid" | "endsolid", None) | ("outer" | "endloop", Some(_)) => {}
             _ => {
-                let message = "an ASCII STL has lines of solid, facet, outer loop, vertex, endloop, endfacet and endsolid, \
-                               one in the other; this is none, or stands elsewhere";
+                let message = "an ASCII STL has lines of solid, facet, outer loop, vertex, endloop, endfacet and \
+                               endsolid in this order; this line begins with another word, or breaks the order";
                 return Err(facets.fault(last, message));
             }
         }

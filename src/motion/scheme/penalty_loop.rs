@@ -72,8 +72,8 @@ impl Advance for PenaltyLoop {
             left = norm / scale;
         }
         let reason = format!(
-            "in step {} the last of {PENALTIES} penalties leaves a penetration of {left:.1e} of the largest displacement, above the \
-             threshold {:e}; take a larger one",
+            "in step {} the last of {PENALTIES} penalties leaves a penetration of {left:.1e} of the largest \
+             displacement, above the threshold {:e}; take a larger threshold",
             state.steps + 1,
             self.threshold
         );

@@ -8,7 +8,7 @@ function levelsSection(page, data, still) {
     interval = ends => (ends ? ends.map(end => shown(end, 8)).join(" to ") : "-");
   list(own, [
     ["total error", `guaranteed at most ${percent(report.total_error.bound)} of the displacement, in the energy norm`],
-    ["asked for", percent(goal.total_error)],
+    ["goal", percent(goal.total_error)],
     ["mean stress", `guaranteed at most ${percent(report.mean_stress_error.bound)}`],
     ["contact force", `${inUnit(report.contact_force, units.force, 7)} of this answer`],
     [
@@ -32,7 +32,7 @@ function levelsSection(page, data, still) {
   const { dofs: first } = levels[0],
     { dofs: last } = levels.at(-1);
   const asked = {
-    name: "asked for",
+    name: "goal",
     colour: "var(--soft)",
     dash: "6 5",
     points: [first, last].map(dofs => [dofs, goal.total_error, ""]),

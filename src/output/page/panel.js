@@ -62,7 +62,7 @@ class Panel {
       table: data.colours.field.map(channels),
       label,
       paint: (view, brush) => this.paint(view, brush),
-      asked: vertex => this.told(vertex),
+      asked: vertex => this.described(vertex),
     });
     this.view.coloured = true;
     this.view.mesh = shape.lines.length < MOST_LINES;
@@ -187,10 +187,10 @@ class Panel {
       }
     paintScale(view, brush, data.units.length);
     if (dashed && data.question.obstacles.length)
-      paintText(view, brush, "the obstacle stands where it is without magnification", 10, 18, view.ink("soft"));
+      paintText(view, brush, "the obstacle keeps its place; only the body is magnified", 10, 18, view.ink("soft"));
   }
 
-  told(vertex) {
+  described(vertex) {
     const { shape, data, field, frame } = this,
       { units } = data,
       components = field.stress.length / shape.count,
@@ -264,9 +264,9 @@ class Panel {
     const slider = element("label", controls, "displacement × ", "slider");
     this.scale = Object.assign(element("input", slider), { type: "range", min: 0, max: 2, value: 1 });
     this.scale.setAttribute("aria-label", "scale of the displacement");
-    const told = element("output", slider, "1");
+    const output = element("output", slider, "1");
     const moved = () => {
-      told.textContent = shown(Number(this.scale.value), 3);
+      output.textContent = shown(Number(this.scale.value), 3);
       again();
     };
     this.scale.addEventListener("input", moved);

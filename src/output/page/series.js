@@ -7,10 +7,10 @@ function slider(host, label, { min, max, step, value }, moved) {
   const range = Object.assign(element("input", line), { type: "range", min, max, step, value });
   range.id = `slider-${label.replace(/\W+/g, "-")}`;
   name.htmlFor = range.id;
-  const told = element("output", line);
-  told.setAttribute("for", range.id);
+  const output = element("output", line);
+  output.setAttribute("for", range.id);
   range.addEventListener("input", () => moved(Number(range.value)));
-  return { line, range, told };
+  return { line, range, output };
 }
 
 /** Pressure along each obstacle of a plane body; returns a function that shows another frame. */
@@ -89,7 +89,7 @@ function sweepSection(page, data, shape, notes) {
     now = at;
     const frame = exact ? exactFrame(data, at) : pointFrame(data, at),
       { force, width, area, pressure_max, count } = frame.facts;
-    control.told.textContent = inUnit(frame.at, unit, 9);
+    control.output.textContent = inUnit(frame.at, unit, 9);
     if (exact) control.field.value = String(at);
     const extent =
       width !== undefined && width !== null
@@ -209,7 +209,7 @@ function sweepTable(page, { sweep, units }) {
   element(
     "summary",
     more,
-    `${counted(sweep.events.length, "event")}${shownEvents.length < sweep.events.length ? ", the first 200 of them" : ""}`,
+    `${counted(sweep.events.length, "event")}${shownEvents.length < sweep.events.length ? ", the first 200 shown" : ""}`,
   );
   table(
     more,
@@ -260,7 +260,7 @@ function motionSection(page, data, shape, notes) {
     let line = 0;
     while (line + 1 < count && motion.history[columns * (line + 1)] <= frame.time * (1 + 1e-12)) line++;
     const at = k => motion.history[columns * line + k];
-    control.told.textContent = `t = ${shown(frame.time, 6)}`;
+    control.output.textContent = `t = ${shown(frame.time, 6)}`;
     facts.textContent = `${counted(frame.rows.length, "closed row")}, force ${inUnit(at(1), units.force)}; energies: kinetic ${shown(at(4))}, strain ${shown(at(5))}, potential ${shown(at(6))}, total ${shown(at(7), 9)} ${work}`;
     panel.show(frame);
     force.mark(frame.time);
@@ -321,7 +321,7 @@ function searchSection(page, data, shape) {
         closes += flag > before.set[row] ? 1 : 0;
         opens += flag < before.set[row] ? 1 : 0;
       });
-    control.told.textContent = `${step.number} of ${search.count}`;
+    control.output.textContent = `${step.number} of ${search.count}`;
     facts.textContent = `${counted(step.closed, "closed row")}${before ? `: ${closes} more close, ${opens} open` : ""}${step.penalty ? `; penalty ${shown(step.penalty, 2)} times the local stiffness` : ""}${step.state ? "" : "; the body is that of the answer"}`;
     panel.show(frames[value - 1]);
   };

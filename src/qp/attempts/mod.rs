@@ -74,7 +74,7 @@ fn in_one_piece_from(start: Start, problem: &ContactProblem, settings: &Settings
         Err(Error::OutOfTime { needed, time }) => Err(out_of_time(problem, needed, time)?),
         found => found,
     };
-    with_solution(found, |solution| attempts.told(solution))
+    with_solution(found, |solution| attempts.with_attempts(solution))
 }
 
 /// The attempts so far.
@@ -124,7 +124,7 @@ impl Attempts {
                     if estimate.multigrid_bytes > allowed || !watch.allows(estimate.hierarchy_seconds) {
                         return Err(error);
                     }
-                    format!("by multigrid: a factorisation would take about {needed:.1e} s, {time:.1e} s are left")
+                    format!("by multigrid: a factorisation would take about {needed:.1e} s, but {time:.1e} s are left")
                 }
                 decided => return decided,
             },
@@ -250,7 +250,7 @@ impl Attempts {
     }
 
     /// The answer with the other attempts, and the time of all.
-    fn told(self, mut solution: Solution) -> Solution {
+    fn with_attempts(self, mut solution: Solution) -> Solution {
         solution.seconds.factor += self.factor_seconds;
         solution.seconds.solve = self.clock.elapsed().as_secs_f64();
         Solution { attempts: self.made, ..solution }

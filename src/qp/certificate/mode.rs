@@ -69,7 +69,7 @@ impl NullMode {
         entries.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
         let named: Vec<String> = entries.iter().take(3).filter(|e| e.1 != 0.0).map(|e| e.0.to_string()).collect();
         format!(
-            "most of it at dof {} (indices from 0); its forces K d vanish to {:.0e} of their terms",
+            "mainly at dof {} (indices from 0); its forces K d vanish to {:.0e} of their terms",
             named.join(", "),
             self.resistance
         )
@@ -139,7 +139,7 @@ mod tests {
             NullMode { direction, approach: Vec::new(), work: 0.0, resistance: 1e-28 }.in_words()
         };
         let named = |dofs: &str| {
-            format!("most of it at dof {dofs} (indices from 0); its forces K d vanish to 1e-28 of their terms")
+            format!("mainly at dof {dofs} (indices from 0); its forces K d vanish to 1e-28 of their terms")
         };
         assert_eq!(in_words(&[0.25, 0.0, -1.0, 0.5, 0.125]), named("2, 3, 0"));
         assert_eq!(in_words(&[0.0, 1.0, 0.0, 0.0]), named("1"));

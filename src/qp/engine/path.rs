@@ -19,7 +19,7 @@ use crate::solution::{ContactSet, Solution};
 /// let problem = ContactProblem::new(stiffness, vec![0.0, 0.0, 0.0, 3.0], contact, vec![4.0])?;
 ///
 /// let path = Prepared::new(&problem, &Settings::default())?.path(&[4.0], &[2.0])?;
-/// // Half way the wall is at 3, where the end touches it; a quarter later it is at 2.5 and takes 0.5.
+/// // Half way the wall is at 3, and the end touches it; a quarter later it is at 2.5 and takes 0.5.
 /// assert!(path.events().len() == 1 && (path.events()[0].at - 0.5).abs() < 1e-12);
 /// assert!((path.multiplier(0.75)[0] + 0.5).abs() < 1e-12);
 /// assert_eq!((path.multiplier(0.25), path.contact_set(1.0).count()), (vec![0.0], 1));

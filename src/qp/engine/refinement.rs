@@ -66,7 +66,8 @@ impl Factored {
                 refined.contraction = refined.contraction.max(ratio);
             }
             if refined.contraction > LARGEST_CONTRACTION {
-                let reason = "the stiffness is too ill-conditioned for it; take double precision".to_string();
+                let reason =
+                    "the stiffness is too ill-conditioned for single precision; take double precision".to_string();
                 return Err(Error::Numerical { step: "refinement of a factor in single precision", reason });
             }
             let good_enough = settings

@@ -1,7 +1,7 @@
 //! The lower triangle of a symmetric matrix given with both triangles, in one pass.
 //!
-//! The columns are walked from the first to the last. An entry (r, c) above the diagonal, r < c, has its mirror image in column r,
-//! which was walked before. As c grows, the mirror images of row r come in the order of column r: only a cursor for each column must be
+//! The columns are walked from the first to the last. An entry (r, c) above the diagonal, r < c, has its mirror image in column
+//! r, which was walked before. As c grows, the mirror images of row r come in the order of column r: only a cursor for each column must be
 //! kept.
 
 use super::SparseMatrix;

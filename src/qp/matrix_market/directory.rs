@@ -78,7 +78,10 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
     match rows.find(|(_, (first, last))| first.is_finite() != last.is_finite()) {
         Some((row, (first, last))) => Err(fault(
             gap_file,
-            format!("the gap of row {row} goes from {first} to {last}; a row without an obstacle stays one on the way"),
+            format!(
+                "the gap of row {row} goes from {first} to {last}; a row must have a finite gap at both ends, or an \
+                 infinite gap at both"
+            ),
         )),
         None => Ok(last),
     }
@@ -107,8 +110,9 @@ fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Err
         let (nodes, dimension) = (content.rows, content.columns);
         if !(1..=3).contains(&dimension) || nodes.checked_mul(dimension) != Some(dofs) {
             let message = format!(
-                "it is {nodes} x {dimension}, which makes {} dofs, but there are {dofs}; it must have a row for each node \
-                 and a column for each coordinate, 1 to 3 (where supports have taken dofs out, use near_null.mtx)",
+                "it is {nodes} x {dimension}, which makes {} dofs, but there are {dofs}; it must have a row for \
+                 each node and a column for each coordinate, 1 to 3 (if supports have removed dofs, use \
+                 near_null.mtx)",
                 nodes.saturating_mul(dimension)
             );
             return Err(fault(file, message));
@@ -208,7 +212,7 @@ fn check_filled(file: &Path, content: &Content, lines: usize) -> Result<(), Erro
         return Ok(());
     }
     let (rows, columns, entries) = (content.rows, content.columns, content.entries.len());
-    let message = format!("{rows} x {columns} with {entries} entries is almost empty; write the size that it has");
+    let message = format!("a matrix of {rows} x {columns} with {entries} entries is almost empty; correct its size");
     Err(Error::FileSyntax { file: file.to_path_buf(), line: content.line, message })
 }
 

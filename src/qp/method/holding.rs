@@ -62,7 +62,7 @@ pub(super) fn where_largest(direction: &[f64]) -> String {
     let mut entries: Vec<(usize, f64)> = direction.iter().copied().enumerate().collect();
     entries.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
     let named: Vec<String> = entries.iter().take(3).filter(|e| e.1 != 0.0).map(|e| e.0.to_string()).collect();
-    format!("most of it at dof {} (indices from 0)", named.join(", "))
+    format!("mainly at dof {} (indices from 0)", named.join(", "))
 }
 
 impl ScaledProblem<'_> {

@@ -111,7 +111,7 @@ impl Source {
     fn bytes<const COUNT: usize>(&mut self) -> Result<[u8; COUNT], Error> {
         let mut bytes = [0; COUNT];
         self.reader.read_exact(&mut bytes).map_err(|source| match source.kind() {
-            io::ErrorKind::UnexpectedEof => self.fault(self.length, "the file ends here, before its sizes do"),
+            io::ErrorKind::UnexpectedEof => self.fault(self.length, "the file ends here, but its sizes announce more"),
             _ => Error::File { action: "read", path: self.path.clone(), source },
         })?;
         self.byte += COUNT as u64;
@@ -131,7 +131,7 @@ impl Source {
         if self.length == end {
             return Ok(());
         }
-        let what = if self.length < end { "the file ends here" } else { "the file goes on here" };
+        let what = if self.length < end { "the file ends here" } else { "the file is longer" };
         let byte = self.length.min(end);
         let message = format!("{what}, after {} bytes; {} takes {end} bytes", self.length, holds());
         Err(self.fault(byte, message))

@@ -86,7 +86,7 @@ impl BodyShape for BoxSpec {
 /// [`Error::Mesh`] for an element of lower dimension, fewer than two lines, lines that do not increase, or more than `MAX_NODES` nodes.
 pub fn cuboid(x: &[f64], y: &[f64], z: &[f64], kind: ElementKind) -> Result<Mesh, Error> {
     if kind.dimension() != 3 {
-        return fail(format!("a box is no mesh of {}", kind.name()));
+        return fail(format!("a box cannot have a mesh of {}", kind.name()));
     }
     if kind.is_quadratic() {
         return cuboid(x, y, z, kind.linear())?.elevated(kind);

@@ -51,8 +51,8 @@ impl BodyShape for GmshSpec {
         if self.group.is_none() && bodies.len() > 1 && !site.names_groups {
             let names = bodies.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
             let message = format!(
-                "the mesh has {} groups of elements, {names}; without `group` they would be one body of one material: name the one \
-                 that is meant, or give them `materials`",
+                "the mesh has {} groups of elements, {names}; without `group` they would be one body of one \
+                 material; choose one by `group`, or give `materials`",
                 bodies.len()
             );
             return Err(refused("several-groups", format!("{}.group", site.path), message));
@@ -61,7 +61,7 @@ impl BodyShape for GmshSpec {
         let (found, model) = (mesh.dimension(), site.model.name());
         if found != site.model.dimension() {
             let body = ["a bar", "plane", "in space"][found - 1];
-            let message = format!("the mesh is {body}, which is no body of the model `{model}`");
+            let message = format!("the mesh is {body}, which does not fit the model `{model}`");
             return Err(wrong(format!("{}.file", site.path), message));
         }
         Ok(mesh)
@@ -75,6 +75,6 @@ impl BodyShape for GmshSpec {
     }
 
     fn refine(&mut self, _: usize) -> Result<(), Error> {
-        Err(wrong("body.gmsh", "a mesh from a file has no finer one; mesh the body again with smaller cells"))
+        Err(wrong("body.gmsh", "a mesh from a file cannot be refined here; mesh the body again with smaller cells"))
     }
 }

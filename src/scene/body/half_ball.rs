@@ -69,7 +69,7 @@ impl BodyShape for HalfBallSpec {
             .map(|axis| if self.symmetric.contains(&axis) { Sides::Beyond } else { Sides::Both });
         let kind = self.element.kind();
         if !kind.is_product() {
-            let message = format!("a half ball is not cut into {}; take `hex8` or `hex20`", kind.name());
+            let message = format!("a half ball cannot have a mesh of {}; take `hex8` or `hex20`", kind.name());
             return Err(wrong(format!("{}.element", site.path), message));
         }
         let mut lower = half_ball(self.centre, self.radius, &self.zone, sides)?;

@@ -96,7 +96,7 @@ impl BodyShape for HalfDiscSpec {
 /// [`Error::Setting`] for a radius or a zone out of its range.
 pub fn half_disc(centre: [f64; 2], radius: f64, zone: &Zone, sides: Sides, kind: ElementKind) -> Result<Mesh, Error> {
     if kind.dimension() != 2 {
-        return fail(format!("a half disc is no mesh of {}", kind.name()));
+        return fail(format!("a half disc cannot have a mesh of {}", kind.name()));
     }
     let graded = Grading::new(radius, zone)?;
     let across = match sides {

@@ -69,16 +69,16 @@ const ALL: [About; 8] = [
 impl BodySpec {
     /// The name of the shape and the models that allow it.
     pub(super) fn about(&self) -> About {
-        self.told().0
+        self.described().0
     }
 
     /// The shape of any kind.
     pub(super) fn shape(&self) -> &dyn BodyShape {
-        self.told().1
+        self.described().1
     }
 
     /// The name and the models of the shape, and the shape of any kind.
-    fn told(&self) -> (About, &dyn BodyShape) {
+    fn described(&self) -> (About, &dyn BodyShape) {
         match self {
             BodySpec::Rectangle(spec) => (rectangle::ABOUT, spec),
             BodySpec::Bar(spec) => (bar::ABOUT, spec),

@@ -67,7 +67,7 @@ impl BodyShape for RectangleSpec {
 /// `MAX_NODES` nodes.
 pub fn rectangle(x: &[f64], y: &[f64], kind: ElementKind) -> Result<Mesh, Error> {
     if kind.dimension() != 2 {
-        return fail(format!("a rectangle is no mesh of {}", kind.name()));
+        return fail(format!("a rectangle cannot have a mesh of {}", kind.name()));
     }
     let step = if kind.is_quadratic() { 2 } else { 1 };
     check_lines(&[("x", x), ("y", y)], step)?;

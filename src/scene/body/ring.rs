@@ -75,7 +75,7 @@ impl BodyShape for RingSpec {
 /// `MAX_NODES` nodes.
 pub fn ring(centre: [f64; 2], radii: &[f64], angles: &[f64], kind: ElementKind) -> Result<Mesh, Error> {
     if kind.dimension() != 2 {
-        return fail(format!("a ring is no mesh of {}", kind.name()));
+        return fail(format!("a ring cannot have a mesh of {}", kind.name()));
     }
     check_lines(&[("radius", radii), ("angle", angles)], if kind.is_quadratic() { 2 } else { 1 })?;
     if radii[0] <= 0.0 {
@@ -83,7 +83,7 @@ pub fn ring(centre: [f64; 2], radii: &[f64], angles: &[f64], kind: ElementKind) 
     }
     let span = angles[angles.len() - 1] - angles[0];
     if span > 360.0 {
-        return fail(format!("the angles span {span} degrees; at most 360 are a ring"));
+        return fail(format!("the angles span {span} degrees; at most 360 are allowed"));
     }
     if let Some(wide) = angles.windows(2).find(|pair| pair[1] - pair[0] >= 180.0) {
         return fail(format!("a cell from {} to {} degrees is too wide; it must be below 180", wide[0], wide[1]));

@@ -81,7 +81,7 @@ impl Site<'_> {
     pub fn check_estimate(&self, block: &Block) -> Result<(), Error> {
         let cells: f64 = block.cells.iter().product();
         if cells > 4.0 * MAX_NODES as f64 {
-            let message = format!("some {cells:.0e} cells make more than the {MAX_NODES} nodes that are allowed");
+            let message = format!("about {cells:.0e} cells make more than the {MAX_NODES} nodes that are allowed");
             return Err(wrong(self.path.clone(), message));
         }
         Ok(())

@@ -97,7 +97,7 @@ impl Search<'_> {
             Way { aside, pair: Pair { partner, normal, mean, distance } }
         });
         let nearest = match rule {
-            // The nearest of the nodes straight across; if there is none, the node with the smallest offset.
+            // The nearest of the nodes straight across; without such a node, the node with the smallest offset.
             Rule::Approach => ways.min_by(|a, b| {
                 let straight = |way: &Way| way.aside.max(self.tolerance);
                 let far = |way: &Way| way.pair.distance.abs();

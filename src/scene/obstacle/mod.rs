@@ -94,16 +94,16 @@ const ALL: [About; 12] = [
 impl ShapeSpec {
     /// The name of the shape and the models that allow it.
     fn about(&self) -> About {
-        self.told().0
+        self.described().0
     }
 
     /// The shape of any kind.
     pub(super) fn shape(&self) -> &dyn ObstacleShape {
-        self.told().1
+        self.described().1
     }
 
     /// The name and the models of the shape, and the shape of any kind.
-    fn told(&self) -> (About, &dyn ObstacleShape) {
+    fn described(&self) -> (About, &dyn ObstacleShape) {
         match self {
             ShapeSpec::Plane(spec) => (plane::ABOUT, spec),
             ShapeSpec::Parabola(spec) => (parabola::ABOUT, spec),

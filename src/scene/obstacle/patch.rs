@@ -14,7 +14,7 @@ const NEWTON_STEPS: usize = 3;
 /// the result of the search is used.
 const LONG_STEP: f64 = 1e-3;
 
-/// A search that ends at an edge is within this distance of it, in the cell's own coordinates.
+/// A search that ends at an edge is within this distance of the edge, in the cell's own coordinates.
 const AT_EDGE: f64 = 1e-7;
 
 /// A point of a cell that is closer to a node than its neighbourhood in the cell.

@@ -200,7 +200,7 @@ impl PlacedObstacle {
         };
         let Some(row) = row else { return Ok(None) };
         if row.gap.is_nan() {
-            return Err(away("has no distance that could be computed"));
+            return Err(away("has a distance that is not a number"));
         }
         if !row.gap.is_finite() {
             return Ok(None);
@@ -223,7 +223,7 @@ fn pressing(spec: &ObstacleSpec, path: &str) -> Result<(f64, Option<f64>), Error
             return Err(wrong(format!("{path}.force"), message));
         }
         if spec.gap.is_some() {
-            return Err(wrong(path, "gives both gap and force; the force finds the gap, so give one of them"));
+            return Err(wrong(path, "gives both gap and force; the force determines the gap, so give only one"));
         }
     }
     Ok((spec.gap.unwrap_or(0.0), spec.force))

@@ -166,8 +166,8 @@ impl Site<'_> {
                 let (centre, approach) = (self.point("centre", &centre)?, self.direction());
                 Ok([0, 1, 2].map(|axis| centre[axis] - radius * approach[axis]))
             }
-            (Some(_), Some(_)) => Err(wrong(self.path.as_str(), "gives both centre and apex; give one of them")),
-            (None, None) => Err(wrong(self.path.as_str(), "gives neither centre nor apex; give one of them")),
+            (Some(_), Some(_)) => Err(wrong(self.path.as_str(), "has both `centre` and `apex`; give only one")),
+            (None, None) => Err(wrong(self.path.as_str(), "has neither `centre` nor `apex`; give one")),
         }
     }
 }

@@ -10,7 +10,7 @@ use super::rows::ContactRow;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::qp::linear::dot;
-use unit::{NAMED, Sense, UnitMotions};
+use unit::{AXES, NAMED, Sense, UnitMotions};
 
 /// A motion is held if its singular value exceeds this times the largest. A free motion has zero up to rounding, 1e-16, and any intended
 /// support or normal gives a value far above.
@@ -133,7 +133,8 @@ impl RigidBodyModes {
             self.obstacles.iter().position(|&other| other == obstacle).map_or(0.0, |place| travels[place])
         };
         let direction = parts.unknowns.of_motion(of_free, travel);
-        Err(Error::UnderHeld { mode: format!("{}: {}", names.join(", "), advice(rows)), direction })
+        let advice = self.advice(parts, rows, &free);
+        Err(Error::UnderHeld { mode: format!("{}: {advice}", names.join(", ")), direction })
     }
 
     /// Returns `true` if the supports without contact hold all bodies.
@@ -189,8 +190,8 @@ impl RigidBodyModes {
         basis
     }
 
-    /// The name of the rigid-body mode closest to a nodal motion (length `dim * n_nodes`), if every body moves rigidly.
-    pub fn name_of(&self, nodes: &[[f64; 3]], motion: &[f64]) -> Option<String> {
+    /// The rigid-body mode closest to a nodal motion (length `dim * n_nodes`), if every body moves rigidly.
+    pub fn closest(&self, nodes: &[[f64; 3]], motion: &[f64]) -> Option<Vec<f64>> {
         if !motion.iter().all(|value| value.is_finite()) {
             return None;
         }
@@ -202,7 +203,42 @@ impl RigidBodyModes {
             rest = rest.hypot(away);
         }
         let whole = dot(motion, motion).sqrt();
-        (rest <= NAMED * whole && whole > 0.0).then(|| self.describe(&amplitudes, Sense::Told))
+        (rest <= NAMED * whole && whole > 0.0).then_some(amplitudes)
+    }
+
+    /// The name of a motion with its sense.
+    pub fn name_of(&self, amplitudes: &[f64]) -> String {
+        self.describe(amplitudes, Sense::Signed)
+    }
+
+    /// The advice for bodies with these free motions.
+    pub fn advice(&self, parts: &Parts, rows: &[ContactRow], free: &[Vec<f64>]) -> String {
+        let advice =
+            if rows.is_empty() { "add a support" } else { "a frictionless obstacle does not hold it, add a guide" };
+        match self.support_against(parts, free) {
+            Some(support) => format!("{advice}, such as {support} in `supports`"),
+            None => advice.to_string(),
+        }
+    }
+
+    /// A support of the first moving body against its free motions, as a scene writes it.
+    fn support_against(&self, parts: &Parts, free: &[Vec<f64>]) -> Option<String> {
+        let moves = |(place, _): &(usize, &UnitMotions)| {
+            free.iter().any(|motion| motion[6 * place..6 * (place + 1)].iter().any(|part| part.abs() > NAMED))
+        };
+        let (place, body) = self.bodies.iter().enumerate().find(moves)?;
+        let is_free = |axis: usize| {
+            // A translation along the axis, or a rotation about one of the two others.
+            let moving = [axis, 3 + (axis + 1) % 3, 3 + (axis + 2) % 3];
+            free.iter().any(|motion| moving.iter().any(|part| motion[6 * place + part].abs() > NAMED))
+        };
+        let is_touched = |name: &str| parts.obstacles.iter().any(|obstacle| obstacle.boundary() == name);
+        let of_body = |nodes: Vec<usize>| !nodes.is_empty() && nodes.iter().all(|node| body.nodes.contains(node));
+        let boundaries = parts.body.mesh().boundaries().iter().filter(|boundary| of_body(boundary.nodes()));
+        let boundary = boundaries.map(|boundary| boundary.name.as_str()).find(|name| !is_touched(name))?;
+        let held: Vec<String> =
+            (0..self.dimension).filter(|&axis| is_free(axis)).map(|axis| format!("\"{}\": 0", AXES[axis])).collect();
+        Some(format!("{{\"on\": {{\"boundary\": \"{boundary}\"}}, {}}}", held.join(", ")))
     }
 
     /// The name of a motion, body by body if there are several.
@@ -258,9 +294,4 @@ fn translations_first(motions: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mixed = |column: usize| (0..amplitudes).map(|place| part(column, place)).collect();
     // Singular values decrease: the motion with the least rotation comes last.
     (0..motions.len()).rev().map(mixed).collect()
-}
-
-/// The advice for a free motion.
-pub(super) fn advice(rows: &[ContactRow]) -> &'static str {
-    if rows.is_empty() { "add a support" } else { "a frictionless obstacle does not hold it, add a guide" }
 }

@@ -7,12 +7,13 @@ use nalgebra::DMatrix;
 use crate::fem::body::{ElasticBody, Region};
 use crate::fem::mesh::extent;
 use crate::qp::linear::dot;
-use crate::scene::entry::point;
+use crate::scene::entry::{point, six_digits};
 
 /// A part of a motion below this, relative to the whole, is left out of its name.
 pub(super) const NAMED: f64 = 1e-6;
 
-const AXES: [&str; 3] = ["x", "y", "z"];
+/// The names of the axes.
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Translations along x, y, z, and rotations about axes through the centre along x, y, z, as multiples of unit motions: a rotation is
 /// measured by the displacement at the distance `size` from the axis.
@@ -21,7 +22,7 @@ pub(super) type Amplitudes = [f64; 6];
 /// The form of the name of a motion: with or without its sense.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sense {
-    Told,
+    Signed,
     Either,
 }
 
@@ -107,7 +108,7 @@ impl UnitMotions {
     pub fn describe(&self, &[x, y, z, a, b, c]: &Amplitudes, sense: Sense) -> String {
         let (shift, turn) = ([x, y, z], [a, b, c]);
         let (distance, angle) = (dot(&shift, &shift).sqrt(), dot(&turn, &turn).sqrt());
-        let sign = |part: f64| if sense == Sense::Told && part < 0.0 { "-" } else { "" };
+        let sign = |part: f64| if sense == Sense::Signed && part < 0.0 { "-" } else { "" };
         if angle <= NAMED * distance.hypot(angle) {
             return match along_one_axis(shift) {
                 Some(axis) => format!("translation along {}{}", sign(shift[axis]), AXES[axis]),
@@ -150,9 +151,4 @@ fn direction(vector: &[f64]) -> String {
     let three_digits = |part: &f64| (part / length * 1e3).round() / 1e3 + 0.0;
     let components: Vec<String> = vector.iter().map(|part| format!("{:.3}", three_digits(part))).collect();
     format!("({})", components.join(", "))
-}
-
-/// Rounded to six significant digits: the position of a pole is computed.
-fn six_digits(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
 }

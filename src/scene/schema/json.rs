@@ -4,7 +4,7 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{Error as _, IgnoredAny, IntoDeserializer, MapAccess, SeqAccess, Visitor};
+use serde::de::{Error as _, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 /// The format of scenes that this program reads.
@@ -35,9 +35,11 @@ pub(in crate::scene) fn choice<'de, D: Deserializer<'de>, T: Deserialize<'de>>(d
         }
         fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<T, A::Error> {
             let chosen = T::deserialize(MapAccessDeserializer::new(&mut map))?;
-            match map.next_key::<IgnoredAny>()? {
+            match map.next_key::<String>()? {
                 None => Ok(chosen),
-                Some(_) => Err(A::Error::custom("a second key, expected an object with a single key")),
+                Some(second) => Err(A::Error::custom(format_args!(
+                    "must be an object with a single key, but has a second one, `{second}`"
+                ))),
             }
         }
     }
@@ -118,7 +120,7 @@ pub(in crate::scene) fn objects<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
 pub(in crate::scene) fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
     match Option::<f64>::deserialize(deserializer)? {
         Some(value) => Ok(Some(value)),
-        None => Err(D::Error::custom("null is no number; leave the field out to leave the direction free")),
+        None => Err(D::Error::custom("null is not a number; remove the key to leave the direction free")),
     }
 }
 

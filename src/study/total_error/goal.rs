@@ -112,7 +112,7 @@ mod tests {
     fn the_last_mesh_is_no_finer_than_the_goal_asks() {
         let mut answering = Answering::new();
         assert_eq!(answering.share(0.4, 0.095), MARKED);
-        // Half of the square was refined, and three quarters of it were removed: to reach 0.1 / 0.95, less than that is needed.
+        // Half of the square was refined, and three quarters of the square were removed: to reach 0.1 / 0.95, less than that is needed.
         let goal = 0.1 / AIM;
         let share = answering.share(0.2, goal);
         assert_eq!(share, MARKED);

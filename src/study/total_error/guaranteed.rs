@@ -200,7 +200,7 @@ impl Search<'_> {
         })
     }
 
-    /// The answer on the scene's own mesh; `None` if there is none.
+    /// The answer on the scene's own mesh; `None` without an answer.
     fn own_answer(&self) -> Option<Answer> {
         let solution = solve(self.model.problem(), &self.settings).ok()?;
         Answer::of(self.model.clone(), &solution).ok()

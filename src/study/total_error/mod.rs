@@ -41,7 +41,7 @@ pub(crate) fn total_error(
             Ok(Found::Guaranteed(Box::new(found)))
         }
         Err(Error::Scene { path, message }) if goal.force_error.is_some() => {
-            let message = format!("{message}; without one no bound of the force is known: leave out --force-error");
+            let message = format!("{message}; without it the force has no bound: leave out --force-error");
             Err(Error::Scene { path, message })
         }
         Err(Error::Scene { path, message }) => {

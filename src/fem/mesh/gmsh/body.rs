@@ -154,7 +154,7 @@ fn kind(file: &GmshFile, elements: &[Element]) -> Result<ElementKind, Error> {
         [(cell, _, line)] => accepted(cell).map_err(|reason| file.fault(line, reason)),
         [_, (.., line), ..] => {
             let found: Vec<String> = counts.iter().map(|(cell, count, _)| format!("{count} {}", cell.plural)).collect();
-            Err(file.fault(line, format!("the body mixes {}; it must be of one kind of element", found.join(", "))))
+            Err(file.fault(line, format!("the body mixes {}; it must have one kind of element", found.join(", "))))
         }
     }
 }
@@ -166,10 +166,10 @@ fn accepted(cell: &CellType) -> Result<ElementKind, String> {
         return Ok(kind);
     }
     match cell.number {
-        10 => refused("quadratic quadrilaterals have eight nodes here (in Gmsh, `Mesh.SecondOrderIncomplete = 1`)"),
-        12 => refused("quadratic bricks have 20 nodes here (in Gmsh, `Mesh.SecondOrderIncomplete = 1`)"),
-        8 => refused("a bar has two nodes here (in Gmsh, `Mesh.ElementOrder = 1`)"),
-        _ => refused("bodies in space are of tetrahedra (four or ten nodes) or bricks (eight or 20 nodes) here"),
+        10 => refused("quadratic quadrilaterals must have eight nodes (in Gmsh, `Mesh.SecondOrderIncomplete = 1`)"),
+        12 => refused("quadratic bricks must have 20 nodes (in Gmsh, `Mesh.SecondOrderIncomplete = 1`)"),
+        8 => refused("a bar element must have two nodes (in Gmsh, `Mesh.ElementOrder = 1`)"),
+        _ => refused("bodies in space must consist of tetrahedra (four or ten nodes) or bricks (eight or 20 nodes)"),
     }
 }
 

@@ -34,7 +34,7 @@ pub(super) fn of(file: &GmshFile, mesh: &Mesh, numbers: &Numbers, off_body: &Off
                 None if matches!(off_body, OffBody::LeftOut) => {}
                 None => {
                     let message =
-                        format!("element {} of the physical group `{name}` is no face of the body", facet.tag);
+                        format!("element {} of the physical group `{name}` is not a face of the body", facet.tag);
                     return Err(file.fault(facet.line, message));
                 }
             }

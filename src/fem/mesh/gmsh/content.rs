@@ -41,8 +41,8 @@ impl Content {
         }
         let Some(cell) = cell_type(number) else {
             let message = format!(
-                "the element type {number} is not known here; elements of first and second order are \
-                 (in Gmsh, `Mesh.ElementOrder = 1` or 2)"
+                "the element type {number} is not supported; save elements of first or second order (in Gmsh, \
+                 `Mesh.ElementOrder = 1` or 2)"
             );
             return Err(record.fault(message));
         };

@@ -18,7 +18,9 @@ pub(super) fn names(source: &mut Source, groups: &mut Vec<PhysicalGroup>) -> Res
         let tag = line.integer("the tag of a physical group")?.unsigned_abs();
         let name = quoted(&line)?;
         if dimension > 3 {
-            return Err(line.fault(format!("the physical group `{name}` has dimension {dimension}; at most 3 is one")));
+            return Err(
+                line.fault(format!("the physical group `{name}` has dimension {dimension}; it must be at most 3"))
+            );
         }
         if groups.iter().any(|group| (group.dimension, group.tag) == (dimension, tag)) {
             return Err(line.fault(format!("the physical group {tag} of dimension {dimension} is named twice")));

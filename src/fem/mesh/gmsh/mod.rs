@@ -69,8 +69,8 @@ impl GmshFile {
     /// Reads the content of a file, a text or bytes; `file` is named in errors.
     ///
     /// # Errors
-    /// [`Error::FileSyntax`] with the line; in a binary file with the line in which the section begins, and with the byte, from 0, at
-    /// which the node, element or other record begins: for a version other than 4.1 and 2.2, an unknown byte order or data size, a
+    /// [`Error::FileSyntax`] with the line; in a binary file with the line in which the section begins, and with the byte, from 0,
+    /// at which the node, element or other record begins: for a version other than 4.1 and 2.2, an unknown byte order or data size, a
     /// section that is missing or ends early or announces another number of lines than it has, a number of the wrong kind, coordinates
     /// that are not finite, an unknown element type, an element whose node does not exist, a group without elements.
     pub fn parse(content: impl AsRef<[u8]>, file: impl AsRef<Path>) -> Result<Self, Error> {
@@ -93,7 +93,7 @@ impl GmshFile {
     /// highest dimension. Coordinates are multiplied by `scale`.
     ///
     /// Nodes that no element of the body uses are left out; the others keep the order of the file. A plane mesh lies in any plane z =
-    /// const, a bar along x. Elements that run clockwise are turned, if all of them do. Facets of a boundary have one orientation: the
+    /// const, a bar along x. Elements that run clockwise are turned, if all elements do. Facets of a boundary have one orientation: the
     /// body is on the left of edges; in space facets are counterclockwise seen from outside. With a `domain`, groups elsewhere are left
     /// out.
     ///

@@ -16,7 +16,7 @@ pub(super) struct Record<'s, 'a> {
 }
 
 enum Numbers<'a> {
-    /// The whole line, and the part of it that has not been read.
+    /// The whole line, and its part that has not been read.
     Words {
         line: &'a [u8],
         rest: &'a [u8],

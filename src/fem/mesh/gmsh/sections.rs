@@ -17,7 +17,7 @@ enum Version {
 }
 
 /// Error for a file without a mesh header; it quotes no content, which may be private.
-const NO_MESH: &str = "it is no mesh of Gmsh: a section `$MeshFormat` should begin here, which tells the version";
+const NO_MESH: &str = "this is not a mesh of Gmsh: the section `$MeshFormat`, with the version, must begin here";
 
 /// The sections that are read; each appears once in a file.
 const ONCE: [&str; 5] = ["MeshFormat", "PhysicalNames", "Entities", "Nodes", "Elements"];
@@ -82,7 +82,8 @@ fn format(source: &mut Source) -> Result<Version, Error> {
         (Version::V2, TagWidth::Int)
     } else {
         let message = format!(
-            "version {number} of the format is not read; versions 4.1 and 2.2 are (in Gmsh, `Mesh.MshFileVersion = 4.1`)"
+            "version {number} of the format is not supported; save the mesh in version 4.1 or 2.2 (in Gmsh, \
+             `Mesh.MshFileVersion = 4.1`)"
         );
         return Err(line.fault(message));
     };
@@ -110,12 +111,13 @@ fn byte_order(source: &mut Source) -> Result<ByteOrder, Error> {
         Some([0, 0, 0, 1]) => Ok(ByteOrder::Big),
         Some([a, b, c, d]) => {
             let message = format!(
-                "the bytes after this line are {a:02x} {b:02x} {c:02x} {d:02x}; in a binary file they must be 01 00 00 00 or 00 00 00 01, \
-                 the number 1, which tells the byte order"
+                "the bytes after this line are {a:02x} {b:02x} {c:02x} {d:02x}; in a binary file they must be 01 00 \
+                 00 00 or 00 00 00 01, the number 1, which shows the byte order"
             );
             Err(source.fault(message))
         }
-        None => Err(source
-            .fault("the file ends after this line; in a binary file the number 1 follows, which tells the byte order")),
+        None => Err(source.fault(
+            "the file ends after this line; in a binary file the number 1 must follow, which shows the byte order",
+        )),
     }
 }

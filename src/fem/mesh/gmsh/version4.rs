@@ -139,6 +139,6 @@ fn counts(record: &mut Record, what: &str) -> Result<(usize, usize), Error> {
 fn dimension(record: &mut Record) -> Result<usize, Error> {
     match record.code("the dimension of the entity")? {
         dimension @ 0..=3 => Ok(dimension),
-        other => Err(record.fault(format!("the dimension of the entity is {other}; at most 3 is one"))),
+        other => Err(record.fault(format!("the dimension of the entity is {other}; it must be at most 3"))),
     }
 }

@@ -16,7 +16,7 @@
 //! |v - u*|_K^2 + sum |mu_i| s_i <= a |v - u*|_{K_D},     |v - u*|_{K_D}^2 = |v - u*|_K^2 + sum D_i s_i^2
 //! ```
 //!
-//! which gives `|v - u*|_K <= a` as long as a is below every `|mu_i| / sqrt(D_i)`; [`Springs::hold`] asks for half of that.
+//! and therefore `|v - u*|_K <= a` as long as a is below every `|mu_i| / sqrt(D_i)`; [`Springs::hold`] asks for half of that.
 
 mod boundary;
 mod cycles;

@@ -273,7 +273,7 @@ mod tests {
         let at_gap = [Aim::AtGap, Aim::WithinGap];
         assert_eq!(put([25.0, -1.0], at_gap), Some(vec![22.0, 0.0]));
         assert_eq!(put([-25.0, -1.0], at_gap), Some(vec![22.0, 0.0]));
-        // Open rows stay where they are, unless they have to be at their gaps.
+        // Open rows keep their values, unless they have to be at their gaps.
         assert_eq!(put([-25.0, -1.0], [Aim::WithinGap; 2]), Some(vec![0.0, 0.0]));
         assert_eq!(put([25.0, 1.0], at_gap), None);
     }

@@ -1,0 +1,38 @@
+//! Errors of the arguments: an unknown option is answered with the option of the nearest name.
+
+use std::ffi::OsString;
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Command, CommandFactory, Error};
+
+use super::options::Arguments;
+use crate::error::nearest;
+
+/// The error without the tip to pass an unknown option as a value behind `--`, and with the option of the nearest name.
+pub(super) fn with_nearest_option(mut error: Error, given: &[OsString]) -> Error {
+    if error.kind() != ErrorKind::UnknownArgument {
+        return error;
+    }
+    let Some(ContextValue::String(unknown)) = error.get(ContextKind::InvalidArg).cloned() else { return error };
+    if !unknown.starts_with("--") {
+        return error;
+    }
+    error.remove(ContextKind::Suggested);
+    if error.get(ContextKind::SuggestedArg).is_none()
+        && let Some(near) = nearest_option(&unknown, given)
+    {
+        error.insert(ContextKind::SuggestedArg, ContextValue::String(near));
+    }
+    error
+}
+
+/// The option of the nearest name among those of the command that was given.
+fn nearest_option(unknown: &str, given: &[OsString]) -> Option<String> {
+    let program = Arguments::command();
+    let is_given = |command: &&Command| given.iter().skip(1).any(|word| word == command.get_name());
+    let command = program.get_subcommands().find(is_given);
+    let options = program.get_arguments().chain(command.into_iter().flat_map(Command::get_arguments));
+    let names: Vec<&str> =
+        options.flat_map(|option| option.get_long_and_visible_aliases().unwrap_or_default()).collect();
+    nearest(unknown.trim_start_matches('-'), names).map(|name| format!("--{name}"))
+}
