@@ -16,6 +16,9 @@ use crate::scene::{Answer, Model};
 /// Pieces of the line of an obstacle.
 pub(super) const OUTLINE_SEGMENTS: usize = 200;
 
+/// Largest number of pieces of the line of a magnified obstacle between two nodes.
+const BETWEEN_NODES: usize = 10;
+
 /// The largest displacement is drawn at about this share of the size of the body.
 const SEEN: f64 = 0.05;
 
@@ -44,7 +47,7 @@ pub(super) struct PlaneScene {
 struct Outline {
     line: Vec<[f64; 2]>,
     inside: [f64; 2],
-    /// Positions of the candidates in the order of the boundary, each with the vector to the obstacle.
+    /// Positions of the candidates, and places between them, in the order of the boundary, each with the vector to the obstacle.
     over: Vec<[[f64; 2]; 2]>,
 }
 
@@ -264,17 +267,35 @@ fn outlines(answer: &Answer) -> Vec<Outline> {
     let rigid = (0..model.obstacles().len()).filter(|&index| model.obstacles()[index].rigid().is_some());
     let outline = |index: usize| {
         let [x, y, _] = model.obstacles()[index].approach();
-        let over = ways_to_obstacle(answer, index).into_iter().map(|(node, way)| {
-            let [at_x, at_y, _] = model.mesh().nodes()[node];
-            [[at_x, at_y], [way[0], way[1]]]
-        });
         Outline {
             line: model.obstacles()[index].outline(answer.shift(index), OUTLINE_SEGMENTS),
             inside: [x, y],
-            over: over.collect(),
+            over: over(answer, index),
         }
     };
     rigid.map(outline).collect()
+}
+
+/// Places along the candidates of an obstacle, each with the vector to the obstacle: the candidates, and places between two neighbours, so
+/// that a round obstacle is not drawn as a polygon of the mesh.
+fn over(answer: &Answer, index: usize) -> Vec<[[f64; 2]; 2]> {
+    let (model, ways) = (answer.model(), ways_to_obstacle(answer, index));
+    let at = |node: usize| model.mesh().nodes()[node];
+    let pieces = (OUTLINE_SEGMENTS / ways.len().max(1)).clamp(1, BETWEEN_NODES);
+    let between = |from: usize, to: usize, piece: usize| {
+        let share = piece as f64 / pieces as f64;
+        let place = [0, 1, 2].map(|axis| (1.0 - share) * at(from)[axis] + share * at(to)[axis]);
+        let row = model.obstacles()[index].rigid()?.shifted_row(place, answer.shift(index)).ok()??;
+        Some([[place[0], place[1]], [row.gap * row.normal[0], row.gap * row.normal[1]]])
+    };
+    let mut over = Vec::new();
+    for (number, (node, way)) in ways.iter().enumerate() {
+        over.push([[at(*node)[0], at(*node)[1]], [way[0], way[1]]]);
+        if let Some((next, _)) = ways.get(number + 1) {
+            over.extend((1..pieces).filter_map(|piece| between(*node, *next, piece)));
+        }
+    }
+    over
 }
 
 /// The nodes of the rows of an obstacle, each with the vector from its undeformed position to the present position of the obstacle.

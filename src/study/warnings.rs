@@ -301,14 +301,36 @@ fn nothing_touches(model: &Model, solution: &Solution) -> Option<AnswerWarning> 
     }
     let message = match nearest(model.problem(), solution) {
         Some((row, gap)) => {
-            let (node, unit) = (model.rows()[row].node, &model.units().length);
-            let gap = written(gap);
-            format!("nothing touches; the smallest remaining gap is {gap} {unit} at node {node}").replace("  ", " ")
+            let (row, unit) = (&model.rows()[row], &model.units().length);
+            let (gap, place) = (written(gap), place(model, row.node));
+            let nearest = format!("the smallest remaining gap is {gap} {unit} at node {}, {place}", row.node);
+            format!("nothing touches; {}{}", nearest.replace("  ", " "), behind(model, row))
         }
         None if model.obstacles().is_empty() => "nothing touches: the scene has no obstacle".to_string(),
         None => "nothing touches: no obstacle faces a node of its boundary".to_string(),
     };
     Some(AnswerWarning { code: "nothing-touches", message })
+}
+
+/// The undeformed place of a node, as a person would write it.
+fn place(model: &Model, node: usize) -> String {
+    // Six digits: a mesh file may have 0.30000000000000004.
+    let short = |value: &f64| format!("{value:.5e}").parse().unwrap_or(*value).to_string();
+    let mesh = model.mesh();
+    let parts: Vec<String> = mesh.nodes()[node][..mesh.dimension()].iter().map(short).collect();
+    format!("({})", parts.join(", "))
+}
+
+/// The remark that the obstacle of an open row lies behind the boundary, if its direction points into the body.
+fn behind(model: &Model, row: &ContactRow) -> String {
+    if dot(row.normal, row.outward) >= -SIDEWAYS {
+        return String::new();
+    }
+    let (index, boundary) = (row.obstacle, model.obstacles()[row.obstacle].boundary());
+    format!(
+        ". The direction into obstacles[{index}] points into the body there: the obstacle lies behind `{boundary}`; turn `approach` \
+         around, or name the boundary that faces the obstacle"
+    )
 }
 
 /// Warns that strains are too large for the equations of small strains.

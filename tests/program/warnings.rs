@@ -54,7 +54,7 @@ fn a_body_that_touches_nothing_is_told_its_smallest_remaining_gap() {
     scene["gap"] = json!(0.25);
     scene["loads"] = json!([]);
     let message = warned(&solved(&scene), "nothing-touches");
-    assert_eq!(message, "nothing touches; the smallest remaining gap is 0.25 m at node 12");
+    assert_eq!(message, "nothing touches; the smallest remaining gap is 0.25 m at node 12, (0.5, 0.5)");
     scene["obstacles"] = json!([]);
     assert_eq!(warned(&solved(&scene), "nothing-touches"), "nothing touches: the scene has no obstacle");
 }
