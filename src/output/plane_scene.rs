@@ -399,7 +399,31 @@ pub(super) fn pressing_amounts(model: &Model) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::Outline;
+    use std::sync::Arc;
+
+    use super::{Outline, outlines};
+    use crate::qp::{Settings, solve};
+    use crate::scene::{Answer, Scene};
+
+    /// Four cells before a circle: its magnified line turns a little at many points, not much at five.
+    #[test]
+    fn a_magnified_circle_is_round_between_the_nodes() {
+        let text = r#"{
+            "body": {"rectangle": {"x": {"points": [0, 4], "divisions": [4]}, "y": {"points": [0, 2], "divisions": [2]}}},
+            "material": {"young": 100, "poisson": 0.3},
+            "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+            "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"circle": {"apex": [2, 1.9], "radius": 4}}}]
+        }"#;
+        let scene: Scene = serde_json::from_str(text).unwrap();
+        let model = Arc::new(scene.build().unwrap());
+        let solution = solve(model.problem(), &Settings::default()).unwrap();
+        let answer = Answer::of(model, &solution).unwrap();
+        let line = outlines(&answer)[0].magnified(5.0);
+        let slopes: Vec<f64> =
+            line.windows(2).map(|ends| ((ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0])).atan()).collect();
+        let sharpest = slopes.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        assert!(sharpest < 0.2, "{sharpest}");
+    }
 
     #[test]
     fn of_a_closed_boundary_the_half_that_looks_away_has_no_obstacle_before_it() {

@@ -198,10 +198,13 @@ fn displacement_text(summary: &Summary, units: &Units) -> String {
     let Some(LargestDisplacement { value, axis, node, place }) = &summary.largest_displacement else {
         return String::new();
     };
+    if *value == 0.0 {
+        return entry("displacement", "0 everywhere");
+    }
     let (value, axis) = (quantity(*value, &units.length), ["x", "y", "z"][*axis]);
     let scale = place.iter().fold(0.0, |scale: f64, part| scale.max(part.abs()));
     let at = format!("{} {}", rounded(place, scale), printable(&units.length));
-    listed("displacement", vec![format!("at most {value} along {axis}, at node {node}, {}", at.trim_end())])
+    listed("displacement", vec![format!("largest {value} along {axis}, at node {node}, {}", at.trim_end())])
 }
 
 /// Sentences beside a name, the first ones of many.

@@ -414,3 +414,20 @@ fn entries<'a>(
     }
     entries
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{APART, Gathered, merged};
+
+    #[test]
+    fn loads_on_both_sides_of_a_border_between_squares_share_an_arrow() {
+        let at = |x: f64| {
+            let mut gathered = Gathered::default();
+            gathered.add([x, 0.0], [0.0, -1.0], [0.0, 1.0]);
+            gathered
+        };
+        let arrows = merged([APART - 1.0, APART + 1.0, 2.0 * APART].map(at).into_iter());
+        assert_eq!(arrows.len(), 2);
+        assert_eq!((arrows[0].place(), arrows[0].force, arrows[1].weight), ([APART, 0.0], [0.0, -2.0], 1.0));
+    }
+}

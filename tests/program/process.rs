@@ -213,6 +213,20 @@ fn an_interrupted_solve_tells_the_best_answer_that_it_has() {
     assert_eq!(whole(&desk.path("o")), 6);
 }
 
+/// A mesh of the search takes longer than an interrupt waits: the report of the mesh before is kept.
+#[test]
+fn an_interrupted_total_error_tells_the_best_bound() {
+    let desk = Desk::new();
+    desk.write("block.json", block(200, 100).to_string());
+    let arguments = ["solve", "block.json", "--total-error", "1e-9", "--format", "json"];
+    let run = interrupted(&desk, &arguments, "mesh, iteration 2", |_| true);
+    let report = run.json();
+    assert!(report["status"] == "not_certified" && report["ended"] == "time", "{report}");
+    assert!(report["levels"].as_array().unwrap().len() >= 2, "{report}");
+    assert!(report["total_error"]["bound"].as_f64().is_some_and(|bound| bound < 0.5), "{report}");
+    assert!(run.stderr.ends_with("interrupted: the report is of what was found until then\n"), "{}", run.stderr);
+}
+
 #[test]
 fn an_interrupted_sweep_tells_the_gaps_that_were_done() {
     let desk = Desk::new();

@@ -375,3 +375,27 @@ fn a_circle_narrower_than_the_boundary_before_it_has_a_bound() {
     // A larger roller presses more.
     assert!(forces[0][1] < forces[1][0] && forces[1][1] < forces[2][0], "{forces:?}");
 }
+
+/// However short the time is, the end of the first mesh is not told as a fault of the bound.
+#[test]
+fn a_first_mesh_that_is_cut_short_is_no_failed_check() {
+    let mut scene = classical(0.3);
+    scene["body"]["rectangle"]["x"]["divisions"] = json!([64]);
+    scene["body"]["rectangle"]["y"]["divisions"] = json!([32]);
+    for milliseconds in (2..40).map(|step| 10 * step) {
+        let time = format!("{}", f64::from(milliseconds) / 1e3);
+        let (code, _, message) = solved(&scene, &["--total-error", "1e-6", "--time-limit", &time]);
+        assert_eq!(code, 4, "{time} s: {message}");
+    }
+}
+
+/// The text says in words that nothing is pressed.
+#[test]
+fn a_body_that_touches_nothing_has_no_force() {
+    let mut scene = classical(0.3);
+    scene["gap"] = json!(1);
+    let desk = Desk::new();
+    desk.write("scene.json", scene.to_string());
+    let text = desk.run(&["solve", "scene.json", "--total-error", "0.1"]).ends_with(0).stdout;
+    assert!(text.contains("contact force 0: nothing touches"), "{text}");
+}
