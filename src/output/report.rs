@@ -7,9 +7,7 @@ use crate::scene::{Resultant, Rule, Segment, Units};
 #[cfg(feature = "cli")]
 use crate::solution::Why;
 use crate::solution::{Certificate, Goal, ProvenSet};
-use crate::study::{
-    Agreement, AnswerWarning, ContactSummary, LargestDisplacement, Summary, Sweep, SweepEvent, SweepPoint, Verification,
-};
+use crate::study::{Agreement, AnswerWarning, ContactSummary, Summary, Sweep, SweepEvent, SweepPoint, Verification};
 
 /// Text on one line, without control characters of a terminal.
 pub fn printable(text: &str) -> String {
@@ -195,13 +193,12 @@ fn resultants_text(summary: &Summary, units: &Units) -> String {
 
 /// The largest component of the displacement, with its place.
 fn displacement_text(summary: &Summary, units: &Units) -> String {
-    let Some(LargestDisplacement { value, axis, node, place }) = &summary.largest_displacement else {
-        return String::new();
-    };
-    if *value == 0.0 {
+    let Some(largest) = &summary.largest_displacement else { return String::new() };
+    if largest.value == 0.0 {
         return entry("displacement", "0 everywhere");
     }
-    let (value, axis) = (quantity(*value, &units.length), ["x", "y", "z"][*axis]);
+    let (node, place) = (largest.node, &largest.place);
+    let (value, axis) = (quantity(largest.value, &units.length), ["x", "y", "z"][largest.axis]);
     let scale = place.iter().fold(0.0, |scale: f64, part| scale.max(part.abs()));
     let at = format!("{} {}", rounded(place, scale), printable(&units.length));
     listed("displacement", vec![format!("largest {value} along {axis}, at node {node}, {}", at.trim_end())])

@@ -6,10 +6,11 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::exact_path::ExactPath;
+use super::summary::LargestDisplacement;
 #[cfg(feature = "cli")]
 use super::warnings::untouched;
 use super::warnings::{check_approach, of_scene, point_support};
-use super::{LargestDisplacement, ModelSize, Summary};
+use super::{ModelSize, Summary};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
 #[cfg(feature = "cli")]
