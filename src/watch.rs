@@ -39,6 +39,8 @@ struct Shared {
     noticed: AtomicBool,
     activity: Mutex<Activity>,
     pace: Mutex<Option<f64>>,
+    #[cfg(feature = "cli")]
+    kept: Mutex<Option<String>>,
     observer: Observer,
 }
 
@@ -144,6 +146,19 @@ impl Watch {
     /// Returns `true` if the work has noticed the request to stop. A factorisation, for example, does not notice it.
     pub fn is_noticed(&self) -> bool {
         self.shared.noticed.load(Ordering::SeqCst)
+    }
+
+    /// Keeps the report of the best answer so far, for a program that ends before the work notices.
+    #[cfg(feature = "cli")]
+    pub(crate) fn keep(&self, report: String) {
+        *self.shared.kept.lock().unwrap_or_else(PoisonError::into_inner) = Some(report);
+    }
+
+    /// Calls `last` with the kept report, and forgets it. Any other caller waits until `last` returns.
+    #[cfg(feature = "cli")]
+    pub(crate) fn with_kept<T>(&self, last: impl FnOnce(Option<String>) -> T) -> T {
+        let mut kept = self.shared.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        last(kept.take())
     }
 
     /// The part, step and iteration that run at present.

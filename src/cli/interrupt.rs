@@ -1,5 +1,6 @@
 //! An interrupt, or a request to terminate: the first asks the work to end with what it has, the second ends the program.
 
+use std::io::{self, Write};
 use std::time::Duration;
 
 use super::outcome::warn;
@@ -11,12 +12,15 @@ pub(super) const INTERRUPTED: u8 = 130;
 /// The time in which the work must notice the request, so that the program ends within a second.
 const PATIENCE: Duration = Duration::from_millis(800);
 
+/// The message if there is a report.
+const UNTIL_THEN: &str = "interrupted: the report has the results up to there\n";
+
 /// Bytes of the stack of a thread that waits for a signal or a moment: the default of 2 MB would count against a limit of
 /// the address space.
 const STACK: usize = 64 << 10;
 
 /// Lets interrupts stop the work that `watch` observes. A factorisation cannot be stopped: work that does not notice in time is ended
-/// at once. Files remain complete, because every file is written as a whole or not at all.
+/// at once, with the report of the best answer if one is kept. Files remain complete, because every file is written as a whole or not at all.
 pub(super) fn listen(watch: &Watch) {
     let watch = watch.clone();
     let mut is_second = false;
@@ -29,7 +33,7 @@ pub(super) fn listen(watch: &Watch) {
         let patience = std::thread::Builder::new().stack_size(STACK).spawn(move || {
             std::thread::sleep(PATIENCE);
             if !watch.is_noticed() {
-                end();
+                end_with_kept(&watch);
             }
         });
         if patience.is_err() {
@@ -60,6 +64,17 @@ fn on_request(handler: impl FnMut() + Send + 'static) {
     let _ = ctrlc::set_handler(handler);
 }
 
+/// Ends with the report of the best answer so far, if one is kept. The work that ends meanwhile waits, and prints nothing.
+fn end_with_kept(watch: &Watch) -> ! {
+    watch.with_kept(|report| {
+        let Some(report) = report else { end() };
+        warn(UNTIL_THEN);
+        // With a closed pipe there is no reader.
+        let _ = io::stdout().write_all(report.as_bytes()).and_then(|()| io::stdout().flush());
+        std::process::exit(INTERRUPTED.into())
+    })
+}
+
 fn end() -> ! {
     warn("interrupted\n");
     std::process::exit(INTERRUPTED.into())
@@ -67,6 +82,8 @@ fn end() -> ! {
 
 /// The message on standard error about an outcome after an interrupt.
 pub(super) fn sentence(watch: &Watch) -> String {
-    let place = watch.activity().part.map_or_else(String::new, |part| format!(" in {part}"));
-    format!("interrupted{place}: the report has the results up to there\n")
+    match watch.activity().part {
+        Some(part) => UNTIL_THEN.replacen("interrupted", &format!("interrupted in {part}"), 1),
+        None => UNTIL_THEN.into(),
+    }
 }

@@ -69,6 +69,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Schema => Ok(Outcome::done(format!("{:#}\n", Scene::json_schema()))),
     };
     drop(shown);
+    // If the program is being ended with a kept report, it waits here.
+    watch.with_kept(drop);
     if watch.is_stopped() && outcome.is_ok() {
         warn(&interrupt::sentence(&watch));
     }

@@ -69,12 +69,17 @@ impl Report {
         write_files(folder, &[(name, &self.text), ("report.json", &self.json)])
     }
 
-    /// The outcome of a command that prints the report in this form and certifies nothing.
-    pub fn printed(self, format: Format) -> Outcome {
-        Outcome::done(match format {
+    /// The report in this form.
+    pub fn formatted(self, format: Format) -> String {
+        match format {
             Format::Text => self.text,
             Format::Json => self.json,
-        })
+        }
+    }
+
+    /// The outcome of a command that prints the report in this form and certifies nothing.
+    pub fn printed(self, format: Format) -> Outcome {
+        Outcome::done(self.formatted(format))
     }
 
     /// The outcome of a command that prints the report in this form; its answers have this status.

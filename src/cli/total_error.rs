@@ -19,7 +19,7 @@ use crate::output::{
 use crate::qp::Settings;
 use crate::scene::Scene;
 use crate::solution::Goal;
-use crate::study::total_error::{Estimated, Found, TotalErrorGoal, total_error};
+use crate::study::total_error::{Estimated, Found, TotalError, TotalErrorGoal, total_error};
 use crate::study::{Summary, scene_summary};
 use crate::watch::Watch;
 
@@ -35,7 +35,12 @@ pub(super) fn run(options: &Solve, scene: &Scene, goal: TotalErrorGoal, watch: &
     let wanted = options.common.wanted(Pictures::Answer);
     let (title, units) = (scene_title(&model, &options.input), model.units().clone());
     let about = about(&title, "solve", &options.input, options.common.out.as_ref(), options.common.threads);
-    match total_error(scene, &model, goal, &settings).map_err(|error| model.explain(error))? {
+    let keep = |found: &TotalError| {
+        if let Ok(report) = Report::new(found, total_error_text(&title, found, &units)) {
+            watch.keep(report.formatted(options.common.format));
+        }
+    };
+    match total_error(scene, &model, goal, &settings, &keep).map_err(|error| model.explain(error))? {
         Found::Guaranteed(found) => {
             if options.explain {
                 warn("warning: --explain has no effect with a guaranteed error: it explains a single solve\n");

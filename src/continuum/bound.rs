@@ -68,6 +68,7 @@ impl Side {
         start: Option<ContactSet>,
         settings: &Settings,
     ) -> Result<Self, Error> {
+        let is_later_mesh = start.is_some();
         let from_start = start.map(|closed| {
             let prepared = Prepared::for_gaps(problem, 1, settings)?.starting_from(closed);
             prepared.solve(problem.gap())
@@ -76,6 +77,10 @@ impl Side {
             Some(Ok(solution)) => solution,
             // If the start makes the solve fail, it is repeated without a start.
             Some(Err(_)) | None => match solve(problem, settings) {
+                // The answer of the previous mesh is better than an interrupted one.
+                Err(Error::NotCertified { .. }) if is_later_mesh && settings.watch.is_over() => {
+                    return Err(Error::Interrupted);
+                }
                 // The check of the bracket judges both answers.
                 Err(Error::NotCertified { solution, .. }) => *solution,
                 other => other?,
@@ -90,7 +95,7 @@ impl<'a> Bracket<'a> {
     /// Solves both problems on a mesh, and checks their properties. Both start from the given touching nodes.
     ///
     /// # Errors
-    /// Those of [`solve`]; [`Error::Numerical`] if the check finds a defect beyond rounding: then there is no guarantee.
+    /// Those of [`solve`]; [`Error::Interrupted`] if no time is left for a bound; [`Error::Numerical`] if the check finds a defect beyond rounding: then there is no guarantee.
     pub fn new(
         problem: &'a PlaneProblem,
         mesh: &'a Triangulation,
@@ -135,7 +140,9 @@ impl<'a> Bracket<'a> {
             defect: 0.0,
         };
         bracket.measure();
-        bracket.defect = bracket.check()?;
+        // An interrupted solve may leave too little for a bound.
+        let judge = |error| if settings.watch.is_over() { Error::Interrupted } else { error };
+        bracket.defect = bracket.check().map_err(judge)?;
         Ok(bracket)
     }
 

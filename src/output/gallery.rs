@@ -160,10 +160,10 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep, wanted: Wanted) -> Result<(), E
     let contact = |point: &SweepPoint| point.summary.contact.clone();
     let extent = if first.summary.contact.width.is_some() {
         let width = |point: &SweepPoint| contact(point).width.unwrap_or(0.0);
-        over_gap("contact width", &units.length, &width, &|corner| corner.width.unwrap_or(0.0))
+        over_gap("width of the cells of closed nodes", &units.length, &width, &|corner| corner.width.unwrap_or(0.0))
     } else {
         let area = |point: &SweepPoint| contact(point).area.unwrap_or(0.0);
-        over_gap("contact area", &format!("{}²", units.length), &area, &|corner| corner.area)
+        over_gap("area of the cells of closed nodes", &format!("{}²", units.length), &area, &|corner| corner.area)
     };
     let force_or_travel = match first.force {
         Some(_) => over_gap("travel d", &units.length, &|point| point.travel().unwrap_or(0.0), &|_| 0.0),

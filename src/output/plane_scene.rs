@@ -16,6 +16,9 @@ use crate::scene::{Answer, Model};
 /// Pieces of the line of an obstacle.
 pub(super) const OUTLINE_SEGMENTS: usize = 200;
 
+/// Largest number of pieces of the line of a magnified obstacle between two nodes.
+const BETWEEN_NODES: usize = 10;
+
 /// The largest displacement is drawn at about this share of the size of the body.
 const SEEN: f64 = 0.05;
 
@@ -44,7 +47,7 @@ pub(super) struct PlaneScene {
 struct Outline {
     line: Vec<[f64; 2]>,
     inside: [f64; 2],
-    /// Positions of the candidates in the order of the boundary, each with the vector to the obstacle.
+    /// Positions of the candidates, and places between them, in the order of the boundary, each with the vector to the obstacle.
     over: Vec<[[f64; 2]; 2]>,
 }
 
@@ -264,17 +267,35 @@ fn outlines(answer: &Answer) -> Vec<Outline> {
     let rigid = (0..model.obstacles().len()).filter(|&index| model.obstacles()[index].rigid().is_some());
     let outline = |index: usize| {
         let [x, y, _] = model.obstacles()[index].approach();
-        let over = ways_to_obstacle(answer, index).into_iter().map(|(node, way)| {
-            let [at_x, at_y, _] = model.mesh().nodes()[node];
-            [[at_x, at_y], [way[0], way[1]]]
-        });
         Outline {
             line: model.obstacles()[index].outline(answer.shift(index), OUTLINE_SEGMENTS),
             inside: [x, y],
-            over: over.collect(),
+            over: over(answer, index),
         }
     };
     rigid.map(outline).collect()
+}
+
+/// Places along the candidates of an obstacle, each with the vector to the obstacle: the candidates, and places between two neighbours, so
+/// that a round obstacle is not drawn as a polygon of the mesh.
+fn over(answer: &Answer, index: usize) -> Vec<[[f64; 2]; 2]> {
+    let (model, ways) = (answer.model(), ways_to_obstacle(answer, index));
+    let at = |node: usize| model.mesh().nodes()[node];
+    let pieces = (OUTLINE_SEGMENTS / ways.len().max(1)).clamp(1, BETWEEN_NODES);
+    let between = |from: usize, to: usize, piece: usize| {
+        let share = piece as f64 / pieces as f64;
+        let place = [0, 1, 2].map(|axis| (1.0 - share) * at(from)[axis] + share * at(to)[axis]);
+        let row = model.obstacles()[index].rigid()?.shifted_row(place, answer.shift(index)).ok()??;
+        Some([[place[0], place[1]], [row.gap * row.normal[0], row.gap * row.normal[1]]])
+    };
+    let mut over = Vec::new();
+    for (number, (node, way)) in ways.iter().enumerate() {
+        over.push([[at(*node)[0], at(*node)[1]], [way[0], way[1]]]);
+        if let Some((next, _)) = ways.get(number + 1) {
+            over.extend((1..pieces).filter_map(|piece| between(*node, *next, piece)));
+        }
+    }
+    over
 }
 
 /// The nodes of the rows of an obstacle, each with the vector from its undeformed position to the present position of the obstacle.
@@ -378,7 +399,31 @@ pub(super) fn pressing_amounts(model: &Model) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::Outline;
+    use std::sync::Arc;
+
+    use super::{Outline, outlines};
+    use crate::qp::{Settings, solve};
+    use crate::scene::{Answer, Scene};
+
+    /// Four cells before a circle: its magnified line turns a little at many points, not much at five.
+    #[test]
+    fn a_magnified_circle_is_round_between_the_nodes() {
+        let text = r#"{
+            "body": {"rectangle": {"x": {"points": [0, 4], "divisions": [4]}, "y": {"points": [0, 2], "divisions": [2]}}},
+            "material": {"young": 100, "poisson": 0.3},
+            "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+            "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"circle": {"apex": [2, 1.9], "radius": 4}}}]
+        }"#;
+        let scene: Scene = serde_json::from_str(text).unwrap();
+        let model = Arc::new(scene.build().unwrap());
+        let solution = solve(model.problem(), &Settings::default()).unwrap();
+        let answer = Answer::of(model, &solution).unwrap();
+        let line = outlines(&answer)[0].magnified(5.0);
+        let slopes: Vec<f64> =
+            line.windows(2).map(|ends| ((ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0])).atan()).collect();
+        let sharpest = slopes.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        assert!(sharpest < 0.2, "{sharpest}");
+    }
 
     #[test]
     fn of_a_closed_boundary_the_half_that_looks_away_has_no_obstacle_before_it() {

@@ -77,6 +77,7 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
         line("", format!("loads, reactions and contact forces balance to {balance:.1e}"));
     }
     text += &resultants_text(summary, units);
+    text += &displacement_text(summary, units);
     text += &certificate_text(&solution.certificate, summary.goal);
     text += &warnings_text(&summary.warnings);
     text += &mesh_text(summary, units);
@@ -133,6 +134,13 @@ const SHOWN: f64 = 1e-11;
 /// Resultants and segments that are shown; the JSON report has all.
 const MOST_LINES: usize = 12;
 
+/// Components as a text; those that are rounding beside `scale` are zero.
+fn rounded(values: &[f64], scale: f64) -> String {
+    let part = |&value: &f64| if value.abs() <= SHOWN * scale { "0".into() } else { format!("{value:.4e}") };
+    let parts: Vec<String> = values.iter().map(part).collect();
+    if parts.len() == 1 { parts.concat() } else { format!("({})", parts.join(", ")) }
+}
+
 /// The resultants, one in a line, and the contact segments if there are several.
 fn resultants_text(summary: &Summary, units: &Units) -> String {
     let largest = |of: fn(&Resultant) -> &[f64]| {
@@ -141,12 +149,6 @@ fn resultants_text(summary: &Summary, units: &Units) -> String {
     };
     let force_scale = largest(|resultant| &resultant.force);
     let length_scale = largest(|resultant| resultant.centre.as_deref().unwrap_or_default());
-    // Values that are rounding beside the largest are shown as zero.
-    let rounded = |values: &[f64], scale: f64| {
-        let part = |&value: &f64| if value.abs() <= SHOWN * scale { "0".into() } else { format!("{value:.4e}") };
-        let parts: Vec<String> = values.iter().map(part).collect();
-        if parts.len() == 1 { parts.concat() } else { format!("({})", parts.join(", ")) }
-    };
     let (force, place) = (|values: &[f64]| rounded(values, force_scale), |at: &[f64]| rounded(at, length_scale));
     let moment_unit = format!("{} {}", units.force, units.length);
     let resultant = |resultant: &Resultant| {
@@ -190,6 +192,19 @@ fn resultants_text(summary: &Summary, units: &Units) -> String {
         text += &listed("segments", summary.segments.iter().map(segment).collect());
     }
     text
+}
+
+/// The largest component of the displacement, with its place.
+fn displacement_text(summary: &Summary, units: &Units) -> String {
+    let Some(largest) = &summary.largest_displacement else { return String::new() };
+    if largest.value == 0.0 {
+        return entry("displacement", "0 everywhere");
+    }
+    let (node, place) = (largest.node, &largest.place);
+    let (value, axis) = (quantity(largest.value, &units.length), ["x", "y", "z"][largest.axis]);
+    let scale = place.iter().fold(0.0, |scale: f64, part| scale.max(part.abs()));
+    let at = format!("{} {}", rounded(place, scale), printable(&units.length));
+    listed("displacement", vec![format!("largest {value} along {axis}, at node {node}, {}", at.trim_end())])
 }
 
 /// Sentences beside a name, the first ones of many.
@@ -309,8 +324,11 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
     // Outside plane strain and plane stress a contact has an area.
     let has_width = sweep.points.first().is_none_or(|point| point.summary.contact.width.is_some());
     let extent = match has_width {
-        true => in_unit("width", &units.length),
-        false => in_unit("area", &if units.length.is_empty() { String::new() } else { format!("{}²", units.length) }),
+        true => in_unit("estimated width", &units.length),
+        false => in_unit(
+            "estimated area",
+            &if units.length.is_empty() { String::new() } else { format!("{}²", units.length) },
+        ),
     };
     let header = [
         if is_of_forces { in_unit("travel", &units.length) } else { in_unit("gap", &units.length) },
@@ -330,9 +348,13 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
             contact.count.to_string(),
             format!("{:.9e}", contact.force),
             format!("{:.6e}", contact.pressure_max.unwrap_or(0.0)),
-            match (contact.width, contact.area) {
-                (Some(width), _) => format!("{width:.6}"),
-                (None, Some(area)) => format!("{area:.6e}"),
+            match (contact.width, contact.area, &contact.estimate) {
+                (Some(_), _, estimate) => {
+                    format!("{:.6}", estimate.and_then(|estimate| estimate.width).unwrap_or(0.0))
+                }
+                (None, Some(area), estimate) => {
+                    format!("{:.6e}", estimate.map_or(area, |estimate| estimate.area))
+                }
                 _ => "-".to_string(),
             },
             conditions(&solution.certificate)[5].2.clone(),

@@ -10,9 +10,9 @@ use super::{
     mark::Candidate,
     medium::Medium,
     obstacle::{self, ObstacleLine},
-    plane_scene::{OUTLINE_SEGMENTS, axes, pressing_amounts},
+    plane_scene::{OUTLINE_SEGMENTS, axes, pressing_amounts, state},
     space_scene::space_set_up,
-    ticks::{Scale, brief, common_exponent},
+    ticks::{Scale, amount, brief, common_exponent},
     typeface::{self, Weight},
 };
 use crate::error::Error;
@@ -43,7 +43,7 @@ const LOAD: Colour = PALETTE[1];
 /// # Errors
 /// [`Error::Scene`] for a bar, which has no such picture.
 pub(crate) fn set_up_picture(model: &Model) -> Result<Drawing, Error> {
-    let title = format!("{}, set-up", headline(model));
+    let title = title(model);
     match model.mesh().dimension() {
         1 => {
             let message =
@@ -76,6 +76,18 @@ pub(crate) fn set_up_picture(model: &Model) -> Result<Drawing, Error> {
     frame.draw_axes(&mut drawing, Labels::Both);
     legend::draw_rows(&mut drawing, &entries, [0.5 * width, below], available);
     Ok(drawing)
+}
+
+/// Scene, forces of obstacles, and the smallest gap with its place: the gap of the scene says little if the shapes have another one.
+fn title(model: &Model) -> String {
+    let smallest = model.rows().iter().min_by(|a, b| a.gap.total_cmp(&b.gap));
+    let Some(row) = smallest else { return format!("{}, set-up", headline(model)) };
+    let mesh = model.mesh();
+    let place: Vec<String> = mesh.nodes()[row.node][..mesh.dimension()].iter().map(|&part| brief(part)).collect();
+    let gap = format!("smallest gap {} at ({})", amount(row.gap, &model.units().length), place.join(", "));
+    let forces = if pressing_amounts(model).is_empty() { String::new() } else { state(model) };
+    let parts = [model.title(), &forces, &gap, "set-up"];
+    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
 /// The content of the picture, as plain data.
@@ -190,9 +202,24 @@ fn arrows(model: &Model, shown: &Shown, frame: &Frame) -> Vec<[[f64; 2]; 2]> {
             squares.entry(square).or_default().add(place, [load[0], load[1]], *out);
         }
     }
-    let longest = squares.values().map(Gathered::length).fold(0.0, f64::max);
-    let shown = squares.values().filter(|gathered| gathered.length() > SHORTEST * longest);
+    let gathered = merged(squares.into_values());
+    let longest = gathered.iter().map(Gathered::length).fold(0.0, f64::max);
+    let shown = gathered.iter().filter(|gathered| gathered.length() > SHORTEST * longest);
     shown.map(|gathered| gathered.arrow(LONGEST / longest)).collect()
+}
+
+/// The same loads; those closer to each other than half a square, on both sides of a border between squares, share an arrow.
+fn merged(squares: impl Iterator<Item = Gathered>) -> Vec<Gathered> {
+    let mut merged: Vec<Gathered> = Vec::new();
+    for one in squares {
+        let [x, y] = one.place();
+        let is_near = |other: &&mut Gathered| (other.place()[0] - x).hypot(other.place()[1] - y) < 0.5 * APART;
+        match merged.iter_mut().find(is_near) {
+            Some(other) => other.join(&one),
+            None => merged.push(one),
+        }
+    }
+    merged
 }
 
 /// The sum of the loads of several nodes.
@@ -214,12 +241,26 @@ impl Gathered {
         self.outwards += force[0] * out[0] + force[1] * out[1];
     }
 
+    fn join(&mut self, other: &Gathered) {
+        (0..2).for_each(|axis| {
+            self.force[axis] += other.force[axis];
+            self.moment[axis] += other.moment[axis];
+        });
+        self.weight += other.weight;
+        self.outwards += other.outwards;
+    }
+
+    /// The centre of the loads, in pixels.
+    fn place(&self) -> [f64; 2] {
+        self.moment.map(|part| part / self.weight)
+    }
+
     fn length(&self) -> f64 {
         self.force[0].hypot(self.force[1])
     }
 
     fn arrow(&self, pixels: f64) -> [[f64; 2]; 2] {
-        let place = self.moment.map(|part| part / self.weight);
+        let place = self.place();
         // Pixels count downwards.
         let along = [pixels * self.force[0], -pixels * self.force[1]];
         match self.outwards < 0.0 {
@@ -372,4 +413,21 @@ fn entries<'a>(
         entries.push(Entry { name: format!("obstacle {}{seen}", place.trim_end()), key, key_width: 30.0 });
     }
     entries
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{APART, Gathered, merged};
+
+    #[test]
+    fn loads_on_both_sides_of_a_border_between_squares_share_an_arrow() {
+        let at = |x: f64| {
+            let mut gathered = Gathered::default();
+            gathered.add([x, 0.0], [0.0, -1.0], [0.0, 1.0]);
+            gathered
+        };
+        let arrows = merged([APART - 1.0, APART + 1.0, 2.0 * APART].map(at).into_iter());
+        assert_eq!(arrows.len(), 2);
+        assert_eq!((arrows[0].place(), arrows[0].force, arrows[1].weight), ([APART, 0.0], [0.0, -2.0], 1.0));
+    }
 }

@@ -6,6 +6,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::exact_path::ExactPath;
+use super::summary::LargestDisplacement;
 #[cfg(feature = "cli")]
 use super::warnings::untouched;
 use super::warnings::{check_approach, initial_overlap, of_scene, point_support};
@@ -20,6 +21,9 @@ use crate::solution::{ContactSet, Goal, Solution};
 
 /// Gaps at the middle that differ by more than this from the mean of the ends, relative, are not on a straight line.
 const STRAIGHT_LINE: f64 = 1e-12;
+
+/// Displacements that differ by less, relative, are the same up to the rounding of a solve, as those of symmetric nodes.
+const SAME: f64 = 1e-9;
 
 /// The numbers of `solution`, the solution behind `answer`: with pressures, the width of the contact, and the balance of all forces.
 ///
@@ -56,12 +60,23 @@ pub fn scene_summary(
     if mesh.dimension() > 1 {
         contact.estimate = ContactExtent::of(&segments);
     }
+    summary.largest_displacement = largest_displacement(answer);
     summary.resultants = answer.resultants()?.to_vec();
     summary.warnings.extend(point_support(mesh.dimension(), &summary.resultants));
     summary.force_basis = model.basis_of_forces();
     summary.initial_overlap = initial_overlap(model);
     summary.segments = segments;
     Ok(summary)
+}
+
+/// The component of the displacement with the largest magnitude; of several that agree up to rounding, the first.
+fn largest_displacement(answer: &Answer) -> Option<LargestDisplacement> {
+    let (mesh, values) = (answer.model().mesh(), answer.displacement());
+    let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let number = values.iter().position(|value| value.abs() >= (1.0 - SAME) * largest)?;
+    let (node, axis) = (number / mesh.dimension(), number % mesh.dimension());
+    let place = mesh.nodes().get(node)?[..mesh.dimension()].to_vec();
+    Some(LargestDisplacement { value: values[number], axis, node, place })
 }
 
 /// The numbers of `solution` to a problem without a scene.

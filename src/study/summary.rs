@@ -71,10 +71,26 @@ pub struct Summary {
     /// The strain energy of the body, in force times length; only in a scene, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strain_energy: Option<f64>,
+    /// The largest component of the displacement; only in a scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_displacement: Option<LargestDisplacement>,
     /// Number of unknowns, rows and matrix entries, and the mesh of a scene.
     pub model: ModelSize,
     /// Its cost in time.
     pub seconds: RunSeconds,
+}
+
+/// The component of a displacement with the largest magnitude of all nodes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LargestDisplacement {
+    /// The component, in length, with its sign.
+    pub value: f64,
+    /// Its axis, 0 for x.
+    pub axis: usize,
+    /// The node.
+    pub node: usize,
+    /// The undeformed place of the node, a coordinate for each axis, in length.
+    pub place: Vec<f64>,
 }
 
 /// Closed rows and forces of an answer, and in a scene its pressures, widths and areas.
@@ -188,6 +204,7 @@ impl Summary {
             initial_overlap: None,
             discretisation_error: None,
             strain_energy: None,
+            largest_displacement: None,
             model: ModelSize { condensed_dofs: solution.condensed_dofs, ..model },
             seconds: RunSeconds::of(assemble_seconds, solution.seconds),
             solution,

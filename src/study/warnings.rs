@@ -320,14 +320,27 @@ fn nothing_touches(model: &Model, solution: &Solution) -> Option<AnswerWarning> 
     }
     let message = match nearest(model.problem(), solution) {
         Some((row, gap)) => {
-            let (node, unit) = (model.node_in_words(model.rows()[row].node), &model.units().length);
-            let gap = written(gap);
-            format!("nothing touches; the smallest remaining gap is {gap} {unit} at {node}").replace("  ", " ")
+            let (row, unit) = (&model.rows()[row], &model.units().length);
+            let (gap, node) = (written(gap), model.node_in_words(row.node));
+            let nearest = format!("the smallest remaining gap is {gap} {unit} at {node}").replace("  ", " ");
+            format!("nothing touches; {nearest}{}", behind(model, row))
         }
         None if model.obstacles().is_empty() => "nothing touches: the scene has no obstacle".to_string(),
         None => "nothing touches: no obstacle faces a node of its boundary".to_string(),
     };
     Some(AnswerWarning { code: "nothing-touches", message })
+}
+
+/// The remark that the obstacle of an open row lies behind the boundary, if its direction points into the body.
+fn behind(model: &Model, row: &ContactRow) -> String {
+    if dot(row.normal, row.outward) >= -SIDEWAYS {
+        return String::new();
+    }
+    let (index, boundary) = (row.obstacle, model.obstacles()[row.obstacle].boundary());
+    format!(
+        ". The direction into obstacles[{index}] points into the body there: the obstacle lies behind `{boundary}`; turn `approach` \
+         around, or name the boundary that faces the obstacle"
+    )
 }
 
 /// Warns that strains are too large for the equations of small strains.

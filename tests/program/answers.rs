@@ -202,3 +202,30 @@ fn exported_problems_give_the_answer_of_their_scene_bit_for_bit() {
         assert_eq!(of_scene["contact"]["force"], of_files["contact"]["force"]);
     }
 }
+
+/// The parabola is pressed 0.01 into the block at the middle of its top: nothing moves more.
+#[test]
+fn the_largest_displacement_has_its_place() {
+    let desk = Desk::new();
+    desk.write("block.json", scene().to_string());
+    let report = desk.run(&["solve", "block.json", "--format", "json"]).ends_with(0).json();
+    let largest = &report["largest_displacement"];
+    assert_eq!((&largest["axis"], &largest["node"], &largest["place"]), (&json!(1), &json!(12), &json!([0.5, 0.5])));
+    assert!((largest["value"].as_f64().unwrap() + 0.01).abs() < 1e-12, "{largest}");
+    let text = desk.run(&["solve", "block.json"]).ends_with(0).stdout;
+    let line = "  displacement  largest -1.000000e-2 m along y, at node 12, (5.0000e-1, 5.0000e-1) m\n";
+    assert!(text.contains(line), "{text}");
+}
+
+#[test]
+fn solve_and_sweep_tell_the_same_width() {
+    let desk = Desk::new();
+    let mut block = scene();
+    block["body"]["rectangle"]["x"]["divisions"] = json!([40]);
+    desk.write("block.json", block.to_string());
+    let report = desk.run(&["solve", "block.json", "--format", "json"]).ends_with(0).json();
+    let width = report["contact"]["estimate"]["width"].as_f64().unwrap();
+    let table = desk.run(&["sweep", "block.json", "--gaps", "-0.01:-0.01:1"]).ends_with(0).stdout;
+    assert!(table.contains("estimated width [m]") && table.contains(&format!(" {width:.6} ")), "{width} {table}");
+    assert!((width - report["contact"]["width"].as_f64().unwrap()).abs() > 1e-3, "{report}");
+}

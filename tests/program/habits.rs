@@ -375,7 +375,7 @@ fn a_scene_is_drawn_before_it_is_solved() {
     desk.run(&["draw", "block.json", "--out", "set-up.svg"]).ends_with(0);
     let svg = std::fs::read_to_string(desk.path("set-up.svg")).unwrap();
     for words in [
-        "Small block, gap −0.01 m, set-up",
+        "Small block, smallest gap −0.01 m at (0.5, 0.5), set-up",
         "held along one direction",
         "held in both directions",
         "spring",
@@ -387,6 +387,13 @@ fn a_scene_is_drawn_before_it_is_solved() {
     }
     desk.run(&["draw", "block.json", "--out", "set-up.PNG"]).ends_with(0);
     assert!(std::fs::read(desk.path("set-up.PNG")).unwrap().starts_with(b"\x89PNG"));
+    // A clearance in the shape counts as one in the gap.
+    scene["obstacles"][0]["shape"]["parabola"]["apex"] = json!([0.75, 0.6]);
+    scene["gap"] = json!(0);
+    desk.write("block.json", scene.to_string());
+    desk.run(&["draw", "block.json", "--out", "set-up.svg"]).ends_with(0);
+    let svg = std::fs::read_to_string(desk.path("set-up.svg")).unwrap();
+    assert!(svg.contains("Small block, smallest gap 0.1 m at (0.75, 0.5), set-up"));
     // The legend omits what the scene does not contain.
     scene["loads"] = json!([]);
     scene.as_object_mut().unwrap().remove("springs");

@@ -214,6 +214,20 @@ fn an_interrupted_solve_reports_its_best_answer() {
     assert_eq!(whole(&desk.path("o")), 6);
 }
 
+/// A mesh of the search takes longer than an interrupt waits: the report of the mesh before is kept.
+#[test]
+fn an_interrupted_total_error_tells_the_best_bound() {
+    let desk = Desk::new();
+    desk.write("block.json", block(200, 100).to_string());
+    let arguments = ["solve", "block.json", "--total-error", "1e-9", "--format", "json"];
+    let run = interrupted(&desk, &arguments, "mesh, iteration 2", |_| true);
+    let report = run.json();
+    assert!(report["status"] == "not_certified" && report["ended"] == "time", "{report}");
+    assert!(report["levels"].as_array().unwrap().len() >= 2, "{report}");
+    assert!(report["total_error"]["bound"].as_f64().is_some_and(|bound| bound < 0.5), "{report}");
+    assert!(run.stderr.ends_with("interrupted: the report has the results up to there\n"), "{}", run.stderr);
+}
+
 #[test]
 fn an_interrupted_sweep_reports_the_gaps_solved_so_far() {
     let desk = Desk::new();

@@ -353,3 +353,50 @@ fn the_output_folder_has_fields_meshes_and_pictures() {
     let table = std::fs::read_to_string(desk.path("out/meshes.csv")).unwrap();
     assert!(table.starts_with("triangles,dofs,stress_dofs,bound,"), "{table}");
 }
+
+/// A pad of 40 under a roller that is narrower than the pad: its vertical sides lie above the top. It first missed the bound by far,
+/// because a parabola through three heights says nothing about a vertical side.
+#[test]
+fn a_circle_narrower_than_the_boundary_before_it_has_a_bound() {
+    let scene = |radius: f64| {
+        json!({
+            "body": {"rectangle": {"x": {"points": [0, 40], "divisions": [40]}, "y": {"points": [0, 20], "divisions": [20]}}},
+            "material": {"young": 6, "poisson": 0.45}, "gap": -0.5,
+            "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+            "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"circle": {"apex": [20, 20], "radius": radius}}}]
+        })
+    };
+    let forces = [15.0, 19.0, 21.0].map(|radius| {
+        let (code, report, message) = solved(&scene(radius), &["--total-error", "0.02"]);
+        assert_eq!(code, 0, "{radius}: {message}");
+        let [low, high] = [0, 1].map(|end| report["force_interval"][end].as_f64().unwrap());
+        assert!(low > 0.99 * high, "{radius}: {low} {high}");
+        [low, high]
+    });
+    // A larger roller presses more.
+    assert!(forces[0][1] < forces[1][0] && forces[1][1] < forces[2][0], "{forces:?}");
+}
+
+/// However short the time is, the end of the first mesh is not told as a fault of the bound.
+#[test]
+fn a_first_mesh_that_is_cut_short_is_no_failed_check() {
+    let mut scene = classical(0.3);
+    scene["body"]["rectangle"]["x"]["divisions"] = json!([64]);
+    scene["body"]["rectangle"]["y"]["divisions"] = json!([32]);
+    for milliseconds in (2..40).map(|step| 10 * step) {
+        let time = format!("{}", f64::from(milliseconds) / 1e3);
+        let (code, _, message) = solved(&scene, &["--total-error", "1e-6", "--time-limit", &time]);
+        assert_eq!(code, 4, "{time} s: {message}");
+    }
+}
+
+/// The text says in words that nothing is pressed.
+#[test]
+fn a_body_that_touches_nothing_has_no_force() {
+    let mut scene = classical(0.3);
+    scene["gap"] = json!(1);
+    let desk = Desk::new();
+    desk.write("scene.json", scene.to_string());
+    let text = desk.run(&["solve", "scene.json", "--total-error", "0.1"]).ends_with(0).stdout;
+    assert!(text.contains("contact force 0: nothing touches"), "{text}");
+}

@@ -79,6 +79,21 @@ fn a_body_without_contact_is_warned_of_with_its_smallest_remaining_gap() {
     assert_eq!(warned(&solved(&scene), "nothing-touches"), "nothing touches: the scene has no obstacle");
 }
 
+/// Without a force of contact nothing pulls, so that the scene is not refused.
+#[test]
+fn an_open_obstacle_behind_the_boundary_is_warned_of() {
+    let mut scene = scene();
+    scene["loads"] = json!([]);
+    scene["gap"] = json!(0.25);
+    for (approach, normal, is_behind) in [("+y", 1, false), ("-y", -1, true)] {
+        scene["obstacles"][0] = json!({"boundary": "top", "approach": approach, "shape": {"plane": {"point": [0, 0.5], "normal": [0, normal]}}});
+        let message = warned(&solved(&scene), "nothing-touches");
+        assert!(message.contains("the smallest remaining gap is 0.25 m at node 10, (0, 0.5)"), "{message}");
+        let words = ["points into the body", "obstacles[0] ", "lies behind `top`", "turn `approach` around"];
+        assert!(words.iter().all(|words| message.contains(words) == is_behind), "{approach}: {message}");
+    }
+}
+
 #[test]
 fn a_body_compressed_by_half_is_warned_of_with_its_strain() {
     let mut scene = scene();

@@ -93,8 +93,8 @@ function sweepSection(page, data, shape, notes) {
     if (exact) control.field.value = String(at);
     const extent =
       width !== undefined && width !== null
-        ? `width ${inUnit(width, units.length)}`
-        : `area ${inUnit(area, `${units.length}²`)}`;
+        ? `cells of closed nodes ${inUnit(width, units.length)} wide`
+        : `cells of closed nodes ${inUnit(area, `${units.length}²`)}`;
     facts.textContent = `${counted(count, "closed row")}, force ${inUnit(force, units.force, 10)}, peak pressure ${inUnit(pressure_max, units.pressure, 10)}, ${extent}${frame.travel !== undefined ? `, travel ${inUnit(frame.travel, units.length)}` : ""}`;
     panel.show(frame);
     profile(frame);
@@ -159,8 +159,8 @@ function sweepPlots(page, data) {
       ? [`travel [${units.length}]`, point => point.travel, () => NaN]
       : [`contact force [${units.force}]`, point => point.contact.force, corner => corner.force],
     hasWidth
-      ? [`contact width [${units.length}]`, point => point.contact.width, corner => corner.width]
-      : [`contact area [${units.length}²]`, point => point.contact.area, corner => corner.area],
+      ? [`width of the cells of closed nodes [${units.length}]`, point => point.contact.width, corner => corner.width]
+      : [`area of the cells of closed nodes [${units.length}²]`, point => point.contact.area, corner => corner.area],
     [`peak pressure [${units.pressure}]`, point => point.contact.pressure_max, corner => corner.pressure_max],
   ];
   const exact = { name: "exact path", colour: colours.lines[0] },

@@ -65,15 +65,15 @@ impl Surface for Circle {
         (along.abs() <= self.radius).then(|| along * (along / (self.radius + rest.max(0.0).sqrt())))
     }
 
-    /// The error of the interpolation at both ends and in the middle of a stretch of half length k is at most `|h'''| k^3/(9 sqrt 3)`.
+    /// The quadratic function through both ends and the middle, or the tangent in the middle if that is closer: towards a vertical side the
+    /// derivatives grow without limit.
     fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])> {
-        let heights = self.heights(from, to)?;
-        let (furthest, half) = (from.abs().max(to.abs()), (to - from).abs() / 2.0);
-        let rest = (self.radius - furthest) * (self.radius + furthest);
-        let third = 3.0 * self.radius.powi(2) * furthest / rest.max(0.0).powf(2.5);
-        let remainder = if half == 0.0 { 0.0 } else { third * half.powi(3) / (9.0 * 3.0_f64.sqrt()) };
-        // Heights lie between 0 and R, and so the quadratic function between -R and 2 R.
-        Some((heights, [remainder.min(2.0 * self.radius); 2]))
+        let remainder = self.remainder(from, to);
+        match self.tangent(from, to)? {
+            (values, spread) if spread < 2.0 * remainder => Some((values, [0.0, spread])),
+            // Heights lie between 0 and R, and so the quadratic function between -R and 2 R.
+            _ => Some((self.heights(from, to)?, [remainder.min(2.0 * self.radius); 2])),
+        }
     }
 
     /// Distance to the centre minus the radius; a node behind the centre has no closest point on the facing half.
@@ -100,6 +100,26 @@ impl Surface for Circle {
     }
 }
 
+impl Circle {
+    /// The error of the interpolation at both ends and in the middle of a stretch of half length k: at most `|h'''| k^3/(9 sqrt 3)`.
+    fn remainder(&self, from: f64, to: f64) -> f64 {
+        let (furthest, half) = (from.abs().max(to.abs()), (to - from).abs() / 2.0);
+        let rest = (self.radius - furthest) * (self.radius + furthest);
+        let third = 3.0 * self.radius.powi(2) * furthest / rest.max(0.0).powf(2.5);
+        if half == 0.0 { 0.0 } else { third * half.powi(3) / (9.0 * 3.0_f64.sqrt()) }
+    }
+
+    /// The tangent in the middle of a stretch, at its ends and there, and the largest height above it. The circle is convex: it lies
+    /// above each tangent, and farthest from it at an end.
+    fn tangent(&self, from: f64, to: f64) -> Option<([f64; 3], f64)> {
+        let [first, middle, last] = self.heights(from, to)?;
+        let place = (from + to) / 2.0;
+        let slope = place / ((self.radius - place) * (self.radius + place)).sqrt();
+        let [start, end] = [from, to].map(|along| middle + slope * (along - place));
+        Some(([start, middle, end], (first - start).max(last - end).max(0.0)))
+    }
+}
+
 /// The outside of a circle with its apex at the origin and its centre at (0, -R): as a graph, the mirror image of the circle.
 #[derive(Debug)]
 struct Hollow(Circle);
@@ -109,9 +129,14 @@ impl Surface for Hollow {
         self.0.height(along).map(|height| 0.0 - height)
     }
 
+    /// As for the circle, with the chord.
     fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])> {
-        let (_, [below, above]) = self.0.enclosed(from, to)?;
-        Some((self.heights(from, to)?, [above, below]))
+        let ([first, middle, last], remainder) = (self.heights(from, to)?, self.0.remainder(from, to));
+        match self.0.tangent(from, to)? {
+            // The chord lies below the surface, and the surface below the tangent.
+            (_, spread) if spread < 2.0 * remainder => Some(([first, (first + last) / 2.0, last], [0.0, spread])),
+            _ => Some(([first, middle, last], [remainder.min(2.0 * self.0.radius); 2])),
+        }
     }
 
     /// The radius minus the distance to the centre, in all directions; from the centre along the approach direction.
@@ -128,5 +153,31 @@ impl Surface for Hollow {
 
     fn range(&self) -> (f64, f64) {
         self.0.range()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Stretches at the apex, beside it and up to the vertical side.
+    #[test]
+    fn both_enclosures_hold_and_are_narrow_up_to_the_vertical_side() {
+        let radius = 2.0;
+        for side in [Side::Outside, Side::Inside] {
+            let surface = round(radius, side);
+            for (from, to) in [(-0.1, 0.1), (1.0, 1.1), (1.9, 1.99), (1.9, 2.0), (-2.0, -1.5), (1.999999, 2.0)] {
+                let ([first, middle, last], [below, above]) = surface.enclosed(from, to).unwrap();
+                let fall = (surface.height(from).unwrap() - surface.height(to).unwrap()).abs();
+                assert!(below.max(above) <= fall.max(1e-4), "{from} {to}: {below} {above}");
+                for step in 0..=100 {
+                    let s = f64::from(step) / 100.0;
+                    let height = surface.height((from + s * (to - from)).clamp(-radius, radius)).unwrap();
+                    let [a, b, c] = [(1.0 - s) * (1.0 - 2.0 * s), 4.0 * s * (1.0 - s), s * (2.0 * s - 1.0)];
+                    let off = height - (a * first + b * middle + c * last);
+                    assert!(-below - 1e-12 <= off && off <= above + 1e-12, "{from} {to} at {s}: {off}");
+                }
+            }
+        }
     }
 }

@@ -18,8 +18,8 @@ pub(in crate::scene) trait Surface: Debug + Send + Sync {
     /// The height towards the obstacle, or `None` beyond the surface's reach.
     fn height(&self, along: f64) -> Option<f64>;
 
-    /// The heights at both ends of a stretch within reach and in its middle, and the largest distances `[below, above]` of the surface
-    /// from the quadratic function through these.
+    /// The values of a quadratic function at both ends of a stretch within reach and in its middle, and the largest distances
+    /// `[below, above]` of the surface from it.
     fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])>;
 
     /// The foot closest to `node`, or `None` if no part of the surface faces it; lengths below `tolerance` are rounding.

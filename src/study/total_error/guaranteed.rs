@@ -99,6 +99,9 @@ pub(crate) struct TotalError {
     pub meshes: Vec<Triangulation>,
 }
 
+/// A function that is called with what was found, after each mesh but the last.
+pub(crate) type Keep<'a> = &'a dyn Fn(&TotalError);
+
 /// Refines the mesh of a plane problem until its total error is small enough, or time or memory end.
 ///
 /// # Errors
@@ -109,6 +112,7 @@ pub(super) fn total_error(
     model: &Arc<Model>,
     goal: TotalErrorGoal,
     settings: &Settings,
+    keep: Keep,
 ) -> Result<TotalError, Error> {
     if goal.force_error.is_some() && !problem.has_one_direction() {
         let message =
@@ -118,7 +122,7 @@ pub(super) fn total_error(
     // A stress in balance requires a linear solve with a settled contact set; other methods do not give one.
     let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
     let search =
-        Search { problem, model, goal, settings: Settings { method, ..settings.clone() }, clock: Instant::now() };
+        Search { problem, model, goal, settings: Settings { method, ..settings.clone() }, keep, clock: Instant::now() };
     search.run(mesh)
 }
 
@@ -128,76 +132,84 @@ struct Search<'a> {
     model: &'a Arc<Model>,
     goal: TotalErrorGoal,
     settings: Settings,
+    keep: Keep<'a>,
     clock: Instant,
 }
 
 impl Search<'_> {
     fn run(&self, first: Triangulation) -> Result<TotalError, Error> {
-        let (mut meshes, mut levels) = (vec![first], Vec::<TotalErrorLevel>::new());
-        let mut best: Option<(PlaneAnswer, f64, [f64; 2])> = None;
-        let (mut own, mut own_mesh, mut touching) = (None, None, None);
+        let mut found: Option<TotalError> = None;
+        let (mut next, mut own, mut touching) = (first, None, None);
         let mut answering = Answering::new();
-        let (mut ended, mut next_triangles) = (Ended::Goal, None);
-        while let Some(mesh) = meshes.last() {
-            self.settings.watch.step("mesh", levels.len());
-            let bracket = match Bracket::new(self.problem, mesh, touching.as_deref(), &self.settings) {
-                Err(error) if best.is_some() && shortage(&error).is_some() => {
-                    (ended, next_triangles) = (shortage(&error).unwrap_or(Ended::Time), Some(mesh.triangles.len()));
-                    meshes.pop();
-                    break;
-                }
-                other => other?,
+        loop {
+            let mesh = next;
+            self.settings.watch.step("mesh", found.as_ref().map_or(0, |found| found.levels.len()));
+            let bracket = match Bracket::new(self.problem, &mesh, touching.as_deref(), &self.settings) {
+                Ok(bracket) => bracket,
+                Err(error) => return self.cut_short(found, error, mesh.triangles.len()),
             };
             let level = self.level(&bracket)?;
-            let taken = level.seconds - levels.last().map_or(0.0, |last| last.seconds);
-            let is_met = self.is_met(&level);
-            levels.push(level);
-            let energies = [bracket.energy_of_stress(), bracket.energy_of_displacement()];
-            best = Some((bracket.answer(), bracket.defect, energies));
-            if levels.len() == 1 {
+            let before = found.as_ref().and_then(|found| found.levels.last()).map_or(0.0, |last| last.seconds);
+            let is_late = !self.settings.watch.allows(GROWTH * (level.seconds - before));
+            let (is_first, is_met) = (found.is_none(), self.is_met(&level));
+            let mut now = self.with_level(found, &bracket, level);
+            if is_first {
                 own = self.own_answer();
             }
-            let is_late = !self.settings.watch.allows(GROWTH * taken);
             // The answer on the scene's own mesh belongs to the polygon of the first mesh.
-            let is_same = levels.len() == 1 || !self.problem.has_circles();
-            if levels.len() == 1 || is_same && (is_met || is_late) {
-                own_mesh = own.as_ref().map(|own| self.own_mesh(own, &bracket)).transpose()?;
+            if is_first || !self.problem.has_circles() && (is_met || is_late) {
+                now.own_mesh = own.as_ref().map(|own| self.own_mesh(own, &bracket)).transpose()?;
             }
+            now.seconds = self.clock.elapsed().as_secs_f64();
             if is_met {
-                break;
+                now.meshes.push(mesh);
+                return Ok(TotalError { status: Status::Certified, ended: Ended::Goal, ..now });
             }
             // The force converges at its own rate.
             let goal = if self.goal.force_error.is_some() { 0.0 } else { self.goal.total_error };
             let share = answering.share(bracket.bound(), goal);
-            let finer = self.problem.refined(mesh, &marked(&bracket.shares, share));
+            next = self.problem.refined(&mesh, &marked(&bracket.shares, share));
+            touching = Some(next.carried(bracket.touching()));
+            now.next_triangles = Some(next.triangles.len());
+            now.meshes.push(mesh);
             if is_late {
-                (ended, next_triangles) = (Ended::Time, Some(finer.triangles.len()));
-                break;
+                return Ok(now);
             }
-            touching = Some(finer.carried(bracket.touching()));
-            meshes.push(finer);
+            (self.keep)(&now);
+            found = Some(now);
         }
-        let (Some((answer, defect, potential_energy)), Some(last)) = (best, levels.last()) else {
-            return Err(Error::Interrupted);
-        };
-        Ok(TotalError {
-            status: if ended == Ended::Goal { Status::Certified } else { Status::NotCertified },
+    }
+
+    /// What was found before an error that tells a shortage; any other error.
+    fn cut_short(&self, found: Option<TotalError>, error: Error, triangles: usize) -> Result<TotalError, Error> {
+        let (Some(found), Some(ended)) = (found, shortage(&error)) else { return Err(error) };
+        let seconds = self.clock.elapsed().as_secs_f64();
+        Ok(TotalError { ended, next_triangles: Some(triangles), seconds, ..found })
+    }
+
+    /// What is found with one mesh more, as if the time ended with it; without that mesh itself.
+    fn with_level(&self, found: Option<TotalError>, bracket: &Bracket, level: TotalErrorLevel) -> TotalError {
+        let (own_mesh, mut levels, meshes) =
+            found.map_or_else(Default::default, |found| (found.own_mesh, found.levels, found.meshes));
+        levels.push(level.clone());
+        TotalError {
+            status: Status::NotCertified,
             goal: self.goal,
-            ended,
+            ended: Ended::Time,
             domain: if self.problem.has_circles() { Domain::LastPolygon } else { Domain::FirstPolygon },
-            total_error: Bound { bound: last.bound, guaranteed: true },
-            mean_stress_error: Bound { bound: last.mean_stress_bound, guaranteed: true },
-            potential_energy,
-            contact_force: last.contact_force,
-            force_interval: last.force_interval,
-            defect,
-            next_triangles,
+            total_error: Bound { bound: level.bound, guaranteed: true },
+            mean_stress_error: Bound { bound: level.mean_stress_bound, guaranteed: true },
+            potential_energy: [bracket.energy_of_stress(), bracket.energy_of_displacement()],
+            contact_force: level.contact_force,
+            force_interval: level.force_interval,
+            defect: bracket.defect,
+            next_triangles: None,
             own_mesh,
-            seconds: self.clock.elapsed().as_secs_f64(),
+            seconds: level.seconds,
             levels,
-            answer,
+            answer: bracket.answer(),
             meshes,
-        })
+        }
     }
 
     /// The answer on the scene's own mesh; `None` without an answer.

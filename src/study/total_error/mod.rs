@@ -6,7 +6,7 @@ mod guaranteed;
 
 pub(crate) use estimated::{Estimated, EstimatedLevel};
 pub(crate) use goal::{Ended, TotalErrorGoal};
-pub(crate) use guaranteed::{Domain, TotalError, TotalErrorLevel, half_width};
+pub(crate) use guaranteed::{Domain, Keep, TotalError, TotalErrorLevel, half_width};
 pub use guaranteed::{Examined, examined};
 
 use std::sync::Arc;
@@ -23,7 +23,8 @@ pub(crate) enum Found {
     Estimated(Box<Estimated>),
 }
 
-/// Refines the mesh of a scene, given with its model, until its total error is small enough, or time or memory end.
+/// Refines the mesh of a scene, given with its model, until its total error is small enough, or time or memory end. `keep` is called
+/// with what was found after each mesh that has a guaranteed bound, but not after the last.
 ///
 /// # Errors
 /// [`Error::Scene`] for a scene without an answer in the continuum, and for a bound of the force without a guarantee; those of
@@ -33,11 +34,12 @@ pub(crate) fn total_error(
     model: &Arc<Model>,
     goal: TotalErrorGoal,
     settings: &Settings,
+    keep: Keep,
 ) -> Result<Found, Error> {
     scene.check_continuum()?;
     match scene.plane_problem(model) {
         Ok((problem, mesh)) => {
-            let found = guaranteed::total_error(&problem, mesh, model, goal, settings)?;
+            let found = guaranteed::total_error(&problem, mesh, model, goal, settings, keep)?;
             Ok(Found::Guaranteed(Box::new(found)))
         }
         Err(Error::Scene { path, message }) if goal.force_error.is_some() => {
