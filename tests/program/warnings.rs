@@ -88,7 +88,7 @@ fn an_open_obstacle_behind_the_boundary_is_warned_of() {
     for (approach, normal, is_behind) in [("+y", 1, false), ("-y", -1, true)] {
         scene["obstacles"][0] = json!({"boundary": "top", "approach": approach, "shape": {"plane": {"point": [0, 0.5], "normal": [0, normal]}}});
         let message = warned(&solved(&scene), "nothing-touches");
-        assert!(message.contains("the smallest remaining gap is 0.25 m at node 10, (0, 0.5)"), "{message}");
+        assert!(message.contains("the smallest remaining gap is 0.25 m at node 10 at (0, 0.5)"), "{message}");
         let words = ["points into the body", "obstacles[0] ", "lies behind `top`", "turn `approach` around"];
         assert!(words.iter().all(|words| message.contains(words) == is_behind), "{approach}: {message}");
     }
