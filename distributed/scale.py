@@ -11,21 +11,21 @@ CYCLES = (15, 17, 19)
 
 MEASURED_DOFS = 811_200
 
-CYCLE, SET_UP, CERTIFICATE = 0.38e-6, 15.7e-6, 10.5e-6
-"""Seconds of one processor per dof: of a cycle with all that an iteration does beside it, of set-up, of the certificate."""
+CYCLE, SET_UP, CERTIFICATE = 0.32e-6, 16.1e-6, 6.5e-6
+"""Seconds of one processor per dof: one iteration with its cycle, the set-up, and the certificate."""
 
-BYTES = 6.9e3
-"""Of the peak, per dof, as eight ranks had it."""
+BYTES = 5.0e3
+"""Peak of memory per dof, measured with eight ranks."""
 
 OVERHEAD = 1.3e-3
-"""Seconds of a cycle that do not shrink with the rows of a rank: calls from Python."""
+"""Seconds of a cycle that do not depend on the rows of a rank: calls from Python."""
 
 PRODUCTS, REDUCTIONS, LEVELS = 7, 5, 4
-"""Of an iteration: products with K, which exchange a halo each; gathers of a few numbers by all ranks; levels below the first,
-each with as many exchanges of its own and two more."""
+"""In an iteration: products with K, with one exchange of halos each; sums of a few numbers over all ranks; levels below the
+first. Each of these levels has as many exchanges as there are products, and two more."""
 
 LATENCY, BANDWIDTH = 2e-6, 1e9
-"""Assumed of the network: seconds of a message, bytes per second of a rank."""
+"""Assumed for the network: seconds for a message, bytes per second for a rank."""
 
 
 def cycles(dofs):
