@@ -93,7 +93,7 @@ fn row(level: &TotalErrorLevel) -> Vec<String> {
 
 fn force_text(found: &TotalError, units: &Units) -> String {
     if found.contact_force == 0.0 {
-        return "0: nothing touches; `signorini solve` without --total-error tells the smallest gap".into();
+        return "0: nothing touches; `signorini solve` without --total-error reports the smallest gap".into();
     }
     let force = quantity(found.contact_force, &units.force);
     match (found.force_interval, found.levels.last().and_then(half_width)) {

@@ -180,14 +180,14 @@ impl Search<'_> {
         }
     }
 
-    /// What was found before an error that tells a shortage; any other error.
+    /// The result before an error for lack of memory or time; any other error.
     fn cut_short(&self, found: Option<TotalError>, error: Error, triangles: usize) -> Result<TotalError, Error> {
         let (Some(found), Some(ended)) = (found, shortage(&error)) else { return Err(error) };
         let seconds = self.clock.elapsed().as_secs_f64();
         Ok(TotalError { ended, next_triangles: Some(triangles), seconds, ..found })
     }
 
-    /// What is found with one mesh more, as if the time ended with it; without that mesh itself.
+    /// The result after one more mesh, as if the time ended with it, without the mesh itself.
     fn with_level(&self, found: Option<TotalError>, bracket: &Bracket, level: TotalErrorLevel) -> TotalError {
         let (own_mesh, mut levels, meshes) =
             found.map_or_else(Default::default, |found| (found.own_mesh, found.levels, found.meshes));
