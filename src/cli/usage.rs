@@ -1,6 +1,7 @@
-//! Errors of the arguments: an unknown option is answered with the option of the nearest name.
+//! Errors of the arguments: an unknown option is answered with the nearest one, a scene without a command with `solve`.
 
 use std::ffi::OsString;
+use std::path::Path;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, CommandFactory, Error};
@@ -10,6 +11,9 @@ use crate::error::nearest;
 
 /// The error without the tip to pass an unknown option as a value behind `--`, and with the option of the nearest name.
 pub(super) fn with_nearest_option(mut error: Error, given: &[OsString]) -> Error {
+    if error.kind() == ErrorKind::InvalidSubcommand {
+        return with_solve(error);
+    }
     if error.kind() != ErrorKind::UnknownArgument {
         return error;
     }
@@ -22,6 +26,16 @@ pub(super) fn with_nearest_option(mut error: Error, given: &[OsString]) -> Error
         && let Some(near) = nearest_option(&unknown, given)
     {
         error.insert(ContextKind::SuggestedArg, ContextValue::String(near));
+    }
+    error
+}
+
+/// The error about a scene in place of a command, with the command that solves it.
+fn with_solve(mut error: Error) -> Error {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand).cloned() else { return error };
+    if Path::new(&word).extension().is_some() {
+        let tip = format!("to solve the scene `{word}`, run: signorini solve {word}");
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
     }
     error
 }

@@ -429,7 +429,7 @@ pub fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Agreement
     }
     text += &columns(&table);
     text += &format!("\n{}\n", verdict(summaries, agreement));
-    text
+    text + &warnings_text(&qp.warnings)
 }
 
 fn verdict(summaries: &[Summary; 3], agreement: &Agreement) -> String {

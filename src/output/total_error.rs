@@ -10,7 +10,7 @@ use super::{
     mesh_series::{MeshPanel, mesh_series},
     msh::msh,
     plot::line_plots_for,
-    report::{columns, entry, plural, printable, quantity},
+    report::{columns, entry, plural, printable, quantity, warnings_text},
     write_files, write_picture,
 };
 use crate::continuum::{PlaneAnswer, Triangulation};
@@ -27,7 +27,9 @@ pub(crate) fn total_error_text(title: &str, found: &TotalError, units: &Units) -
         &entry("total error", &format!("guaranteed at most {}, {}", percent(bound), verdict(bound, goal.total_error)));
     text += &entry("", "of the displacement, against the continuum, in the energy norm");
     text += &entry("", &format!("guaranteed at most {} for the mean stress", percent(found.mean_stress_error.bound)));
-    text += &entry("contact force", &force_text(found, units));
+    for (line, name) in force_lines(found, units).iter().zip(["contact force", ""]) {
+        text += &entry(name, line);
+    }
     if let Some(wanted) = goal.force_error {
         let half = found.levels.last().and_then(half_width).unwrap_or(f64::INFINITY);
         text += &entry("", &verdict(half, wanted));
@@ -56,6 +58,7 @@ pub(crate) fn total_error_text(title: &str, found: &TotalError, units: &Units) -
         Ended::Time => text += &entry("ended", &format!("the time is up;{next} {}", needed(found))),
         Ended::Memory => text += &entry("ended", &format!("memory does not suffice;{next} {}", needed(found))),
     }
+    text += &warnings_text(&found.warnings);
     text += &entry("seconds", &format!("{:.3}", found.seconds));
     text.push('\n');
     let heading =
@@ -91,17 +94,22 @@ fn row(level: &TotalErrorLevel) -> Vec<String> {
     ]
 }
 
-fn force_text(found: &TotalError, units: &Units) -> String {
+/// The force and what carries it, then its interval.
+fn force_lines(found: &TotalError, units: &Units) -> [String; 2] {
     if found.contact_force == 0.0 {
-        return "0: nothing touches; `signorini solve` without --total-error reports the smallest gap".into();
+        return [
+            "0: nothing touches".into(),
+            "`signorini solve` without --total-error reports the smallest gap".into(),
+        ];
     }
-    let force = quantity(found.contact_force, &units.force);
-    match (found.force_interval, found.levels.last().and_then(half_width)) {
+    let force = format!("{} {}", quantity(found.contact_force, &units.force), found.force_basis);
+    let interval = match (found.force_interval, found.levels.last().and_then(half_width)) {
         (Some([low, high]), Some(half)) => {
-            format!("{force}, guaranteed between {low:.7e} and {high:.7e}: within {:.1e} %", 100.0 * half)
+            format!("guaranteed between {low:.7e} and {high:.7e}: within {:.1e} %", 100.0 * half)
         }
-        _ => format!("{force}; no guaranteed interval"),
-    }
+        _ => "no guaranteed interval".into(),
+    };
+    [force.trim_end().into(), interval]
 }
 
 /// The unknowns that the goal would need, from the rate of the last meshes.

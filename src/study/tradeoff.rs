@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use super::warnings::check_approach;
 use crate::error::Error;
 use crate::qp::linear::dot;
 use crate::qp::problem::ContactProblem;
@@ -175,6 +176,7 @@ pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tra
         let measured = Measured { problem: model.problem(), peak: &peak, mesh: refinement };
         let exact = measured.all(grid, watch, &mut result.points).map_err(|error| model.explain(error))?;
         let Some(exact) = exact else { break };
+        check_approach(&model, &exact.multiplier)?;
         let discretisation_error = Some(Answer::of(model.clone(), &exact)?.discretisation_error()?);
         result.meshes.push(TradeoffMesh { discretisation_error, ..TradeoffMesh::of(model.problem(), divided_by) });
         let now = clock.elapsed().as_secs_f64();

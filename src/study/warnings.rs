@@ -48,6 +48,10 @@ const FEW_NODES: usize = 2;
 /// A peak depends on the mesh if half of its difference to the mean around it, relative to the peak, is larger than this.
 const SCATTER: f64 = 0.2;
 
+/// Codes of the warnings that a finer mesh settles.
+#[cfg(feature = "cli")]
+const OF_MESH: [&str; 2] = ["mesh-dependent", "between-nodes"];
+
 /// A fact about an answer that its reader should know, certified or not.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct AnswerWarning {
@@ -103,6 +107,33 @@ pub(super) fn of_scene(answer: &Answer, solution: &Solution, segments: &[Segment
         between_nodes(answer),
     ];
     of_model.chain(of_answer.into_iter().flatten()).collect()
+}
+
+/// The warnings about an answer on a first mesh that is refined further.
+///
+/// # Errors
+/// [`Error::Refused`] for an obstacle that pulls.
+#[cfg(feature = "cli")]
+pub(super) fn of_refined(answer: &Answer, solution: &Solution) -> Result<Vec<AnswerWarning>, Error> {
+    check_approach(answer.model(), &solution.multiplier)?;
+    let warnings = of_scene(answer, solution, &[]);
+    Ok(warnings.into_iter().filter(|warning| !OF_MESH.contains(&warning.code)).collect())
+}
+
+/// Refuses a displacement of this energy if it is rounding only: no load acts, and no obstacle reaches into the body.
+///
+/// # Errors
+/// [`Error::Scene`].
+#[cfg(feature = "cli")]
+pub(super) fn check_motion(model: &Model, energy: f64) -> Result<(), Error> {
+    let is_loaded = model.problem().load().iter().any(|&force| force != 0.0);
+    let is_pressed = (0..model.obstacles().len()).any(|obstacle| model.is_pressed(obstacle));
+    if energy == 0.0 || is_loaded || is_pressed || initial_overlap(model).is_some() {
+        return Ok(());
+    }
+    let message = "nothing moves, so that there is no error to reduce: no load acts, and no obstacle reaches into the body; a \
+                   negative `gap` presses an obstacle into it";
+    Err(Error::Scene { path: "gap".into(), message: message.into() })
 }
 
 /// Warns that a support on a single node carries a force.
@@ -319,6 +350,10 @@ fn nothing_touches(model: &Model, solution: &Solution) -> Option<AnswerWarning> 
         return None;
     }
     let message = match nearest(model.problem(), solution) {
+        Some((row, gap)) if gap.abs() <= ROUNDING_OF_PLACES * model.mesh().size() => {
+            let node = model.node_in_words(model.rows()[row].node);
+            format!("nothing presses: an obstacle just touches {node}; a negative `gap` moves it into the body")
+        }
         Some((row, gap)) => {
             let (row, unit) = (&model.rows()[row], &model.units().length);
             let (gap, node) = (written(gap), model.node_in_words(row.node));

@@ -400,3 +400,39 @@ fn a_body_that_touches_nothing_has_no_force() {
     let text = desk.run(&["solve", "scene.json", "--total-error", "0.1"]).ends_with(0).stdout;
     assert!(text.contains("contact force 0: nothing touches"), "{text}");
 }
+
+/// Without a load the displacement is rounding, whose relative error no mesh reduces.
+#[test]
+fn a_body_that_an_obstacle_just_touches_has_nothing_to_refine() {
+    let mut scene = classical(0.3);
+    scene["obstacles"][0]["shape"] = json!({"circle": {"apex": [0.5, 0.5], "radius": 0.25}});
+    let (code, _, message) = solved(&scene, &["--total-error", "0.1", "--time-limit", "20"]);
+    assert_eq!(code, 1, "{message}");
+    assert!(message.contains("nothing moves") && message.contains("a negative `gap` presses"), "{message}");
+}
+
+#[test]
+fn a_guaranteed_error_does_not_hide_an_obstacle_on_the_wrong_side() {
+    let mut scene = classical(0.3);
+    let shape = json!({"circle": {"apex": [0.5, 0.5], "radius": 0.25}});
+    scene["obstacles"][0] = json!({"boundary": "top", "approach": "-y", "rule": "approach", "shape": shape});
+    scene["gap"] = json!(-0.02);
+    let (code, _, message) = solved(&scene, &["--total-error", "0.1"]);
+    assert_eq!(code, 1, "{message}");
+    assert!(message.contains("the obstacle pulls the body"), "{message}");
+}
+
+#[test]
+fn a_guaranteed_error_warns_of_large_strains() {
+    let mut scene = classical(0.3);
+    scene["gap"] = json!(-0.2);
+    let desk = Desk::new();
+    desk.write("scene.json", scene.to_string());
+    let text = desk.run(&["solve", "scene.json", "--total-error", "0.3"]).ends_with(0).stdout;
+    assert!(text.contains("warning       the largest strain is"), "{text}");
+    let json = desk.run(&["solve", "scene.json", "--total-error", "0.3", "--format", "json"]).ends_with(0).stdout;
+    let report: Value = serde_json::from_str(&json).unwrap();
+    let codes: Vec<&str> =
+        report["warnings"].as_array().unwrap().iter().filter_map(|one| one["code"].as_str()).collect();
+    assert!(codes.contains(&"large-strain") && !codes.contains(&"mesh-dependent"), "{codes:?}");
+}

@@ -215,10 +215,14 @@ impl RigidBodyModes {
     pub fn advice(&self, parts: &Parts, rows: &[ContactRow], free: &[Vec<f64>]) -> String {
         let advice =
             if rows.is_empty() { "add a support" } else { "a frictionless obstacle does not hold it, add a guide" };
-        match self.support_against(parts, free) {
+        let advice = match self.support_against(parts, free) {
             Some(support) => format!("{advice}, such as {support} in `supports`"),
             None => advice.to_string(),
-        }
+        };
+        let is_free = parts.supports == 0 && parts.springs.is_empty();
+        let first =
+            if is_free { ". The scene has no supports: first hold the side where the body is fixed" } else { "" };
+        advice + first
     }
 
     /// A support of the first moving body against its free motions, as a scene writes it.

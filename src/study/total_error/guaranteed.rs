@@ -10,7 +10,8 @@ use crate::continuum::{Bracket, Judged, PlaneAnswer, PlaneProblem, Triangulation
 use crate::error::Error;
 use crate::qp::{Method, Settings, solve};
 use crate::scene::{Answer, Model, Scene};
-use crate::study::Status;
+use crate::study::warnings::{check_motion, of_refined};
+use crate::study::{AnswerWarning, Status};
 
 /// The seconds of the next mesh over those of this one, approximately.
 const GROWTH: f64 = 2.2;
@@ -79,6 +80,8 @@ pub(crate) struct TotalError {
     pub potential_energy: [f64; 2],
     /// The sum of the contact forces of v.
     pub contact_force: f64,
+    /// The part of the body that carries the force, as "per metre".
+    pub force_basis: String,
     /// The interval that contains the exact contact force; `None` if obstacles come from several directions.
     pub force_interval: Option<[f64; 2]>,
     /// The largest relative defect found by the check of balance, signs and distances: rounding.
@@ -87,6 +90,8 @@ pub(crate) struct TotalError {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub own_mesh: Option<OwnMesh>,
     pub levels: Vec<TotalErrorLevel>,
+    /// Warnings about the answer on the scene's own mesh that no finer mesh settles.
+    pub warnings: Vec<AnswerWarning>,
     /// Triangles of the next mesh, if it was not made.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next_triangles: Option<usize>,
@@ -148,13 +153,16 @@ impl Search<'_> {
                 Ok(bracket) => bracket,
                 Err(error) => return self.cut_short(found, error, mesh.triangles.len()),
             };
+            if found.is_none() {
+                check_motion(self.model, bracket.energy)?;
+            }
             let level = self.level(&bracket)?;
             let before = found.as_ref().and_then(|found| found.levels.last()).map_or(0.0, |last| last.seconds);
             let is_late = !self.settings.watch.allows(GROWTH * (level.seconds - before));
             let (is_first, is_met) = (found.is_none(), self.is_met(&level));
             let mut now = self.with_level(found, &bracket, level);
-            if is_first {
-                own = self.own_answer();
+            if let Some((answer, warnings)) = if is_first { self.own_answer()? } else { None } {
+                (own, now.warnings) = (Some(answer), warnings);
             }
             // The answer on the scene's own mesh belongs to the polygon of the first mesh.
             if is_first || !self.problem.has_circles() && (is_met || is_late) {
@@ -189,8 +197,8 @@ impl Search<'_> {
 
     /// The result after one more mesh, as if the time ended with it, without the mesh itself.
     fn with_level(&self, found: Option<TotalError>, bracket: &Bracket, level: TotalErrorLevel) -> TotalError {
-        let (own_mesh, mut levels, meshes) =
-            found.map_or_else(Default::default, |found| (found.own_mesh, found.levels, found.meshes));
+        let (own_mesh, mut levels, meshes, warnings) =
+            found.map_or_else(Default::default, |found| (found.own_mesh, found.levels, found.meshes, found.warnings));
         levels.push(level.clone());
         TotalError {
             status: Status::NotCertified,
@@ -201,7 +209,9 @@ impl Search<'_> {
             mean_stress_error: Bound { bound: level.mean_stress_bound, guaranteed: true },
             potential_energy: [bracket.energy_of_stress(), bracket.energy_of_displacement()],
             contact_force: level.contact_force,
+            force_basis: self.model.basis_of_forces(),
             force_interval: level.force_interval,
+            warnings,
             defect: bracket.defect,
             next_triangles: None,
             own_mesh,
@@ -212,10 +222,15 @@ impl Search<'_> {
         }
     }
 
-    /// The answer on the scene's own mesh; `None` without an answer.
-    fn own_answer(&self) -> Option<Answer> {
-        let solution = solve(self.model.problem(), &self.settings).ok()?;
-        Answer::of(self.model.clone(), &solution).ok()
+    /// The answer on the scene's own mesh and its warnings; `None` without an answer.
+    ///
+    /// # Errors
+    /// Those of [`of_refined`].
+    fn own_answer(&self) -> Result<Option<(Answer, Vec<AnswerWarning>)>, Error> {
+        let Ok(solution) = solve(self.model.problem(), &self.settings) else { return Ok(None) };
+        let Ok(answer) = Answer::of(self.model.clone(), &solution) else { return Ok(None) };
+        let warnings = of_refined(&answer, &solution)?;
+        Ok(Some((answer, warnings)))
     }
 
     /// Judges that answer by a bracket.
