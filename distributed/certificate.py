@@ -167,7 +167,8 @@ class Answer:
         explained = (force == 0.0) | (np.abs(self.violation) <= ENTRY_ROUNDING * self.lengths)
         work = np.where(explained, 0.0, force * np.where(np.isfinite(self.violation), self.violation, -np.inf))
         work = np.where(force == 0.0, 0.0, work)
-        scale = np.maximum(self.lengths, np.maximum(np.where(self.gap < NO_LIMIT, np.abs(self.gap), 0.0), self.size[self.part_of_row] * self.reach))
+        gap = np.where(self.gap < NO_LIMIT, np.abs(self.gap), 0.0)
+        scale = np.maximum.reduce((self.lengths, gap, self.size[self.part_of_row] * self.reach))
         depth = np.maximum(self.violation, 0.0)
         penetration = np.divide(depth, scale, out=np.where(depth > 0.0, np.inf, 0.0), where=scale > 0.0)
         parts, counts = self.parts, self.counts
@@ -223,7 +224,8 @@ class Answer:
         """Returns a spring for each pressing row: its stiffness when all dofs outside the row are fixed."""
         force = -self.multiplier.array_r
         stiffness = np.divide(1.0, self.compliance, out=np.zeros_like(self.compliance), where=self.compliance > 0.0)
-        presses = (force > PRESSING * np.sqrt(stiffness) * self.norm[self.part_of_row]) & (force * self.compliance >= -self.violation)
+        least = PRESSING * np.sqrt(stiffness) * self.norm[self.part_of_row]
+        presses = (force > least) & (force * self.compliance >= -self.violation)
         return np.where(presses & (force > 0.0), stiffness, 0.0)
 
     def _product_with(self, springs, bounds):

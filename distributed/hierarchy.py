@@ -209,8 +209,8 @@ class Hierarchy:
         matrices = [multigrid.getMGSmoother(level).getOperators()[0] for level in range(count - 2, -1, -1)]
         prolongators = [multigrid.getMGInterpolation(level) for level in range(count - 1, 0, -1)]
         multigrid.destroy()
-        matrices = [self.stiffness] + [released(matrix) for matrix in matrices[::-1]][::-1]
-        prolongators = [released(prolongator) for prolongator in prolongators[::-1]][::-1]
+        matrices = [self.stiffness] + [released(matrix) for matrix in matrices]
+        prolongators = [released(prolongator) for prolongator in prolongators]
         self.levels = [Level(matrix, prolongator) for matrix, prolongator in zip(matrices, prolongators)]
         self.coarsest = Coarsest(matrices[-1])
         self.is_singular = self.coarsest.is_singular

@@ -50,7 +50,7 @@ const SCATTER: f64 = 0.2;
 
 /// Codes of the warnings that a finer mesh settles.
 #[cfg(feature = "cli")]
-const OF_MESH: [&str; 2] = ["mesh-dependent", "between-nodes"];
+const OF_MESH: [&str; 3] = ["nothing-touches", "mesh-dependent", "between-nodes"];
 
 /// A fact about an answer that its reader should know, certified or not.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -120,15 +120,17 @@ pub(super) fn of_refined(answer: &Answer, solution: &Solution) -> Result<Vec<Ans
     Ok(warnings.into_iter().filter(|warning| !OF_MESH.contains(&warning.code)).collect())
 }
 
-/// Refuses a displacement of this energy if it is rounding only: no load acts, and no obstacle reaches into the body.
+/// Refuses a displacement whose largest component is `largest`, in length, if it is rounding only: no load acts, and no obstacle
+/// reaches into the body.
 ///
 /// # Errors
 /// [`Error::Scene`].
 #[cfg(feature = "cli")]
-pub(super) fn check_motion(model: &Model, energy: f64) -> Result<(), Error> {
+pub(super) fn check_motion(model: &Model, largest: f64) -> Result<(), Error> {
+    let is_rounding = largest > 0.0 && largest <= ROUNDING_OF_PLACES * model.mesh().size();
     let is_loaded = model.problem().load().iter().any(|&force| force != 0.0);
     let is_pressed = (0..model.obstacles().len()).any(|obstacle| model.is_pressed(obstacle));
-    if energy == 0.0 || is_loaded || is_pressed || initial_overlap(model).is_some() {
+    if !is_rounding || is_loaded || is_pressed {
         return Ok(());
     }
     let message = "nothing moves, so that there is no error to reduce: no load acts, and no obstacle reaches into the body; a \

@@ -436,3 +436,15 @@ fn a_guaranteed_error_warns_of_large_strains() {
         report["warnings"].as_array().unwrap().iter().filter_map(|one| one["code"].as_str()).collect();
     assert!(codes.contains(&"large-strain") && !codes.contains(&"mesh-dependent"), "{codes:?}");
 }
+
+/// The nodes of the scene see no contact, those of finer meshes do.
+#[test]
+fn a_circle_between_the_nodes_of_the_first_mesh_is_found_and_not_warned_of() {
+    let mut scene = classical(0.3);
+    scene["obstacles"][0]["shape"] = json!({"circle": {"apex": [0.5625, 0.5], "radius": 0.1}});
+    scene["gap"] = json!(-0.005);
+    let (code, report, message) = solved(&scene, &["--total-error", "0.2"]);
+    assert_eq!(code, 0, "{message}");
+    assert!(report["contact_force"].as_f64().unwrap() > 1e3, "{report}");
+    assert_eq!(report["warnings"], json!([]));
+}

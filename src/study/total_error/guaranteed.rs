@@ -153,14 +153,14 @@ impl Search<'_> {
                 Ok(bracket) => bracket,
                 Err(error) => return self.cut_short(found, error, mesh.triangles.len()),
             };
-            if found.is_none() {
-                check_motion(self.model, bracket.energy)?;
-            }
             let level = self.level(&bracket)?;
             let before = found.as_ref().and_then(|found| found.levels.last()).map_or(0.0, |last| last.seconds);
             let is_late = !self.settings.watch.allows(GROWTH * (level.seconds - before));
             let (is_first, is_met) = (found.is_none(), self.is_met(&level));
             let mut now = self.with_level(found, &bracket, level);
+            // An obstacle that just touches presses less from mesh to mesh.
+            let components = now.answer.displacement.iter().flatten();
+            check_motion(self.model, components.fold(0.0, |largest: f64, part| largest.max(part.abs())))?;
             if let Some((answer, warnings)) = if is_first { self.own_answer()? } else { None } {
                 (own, now.warnings) = (Some(answer), warnings);
             }
