@@ -44,6 +44,11 @@ def on_an_inclined_support():
     return scene(box(5), supports[:1] + supports[2:] + [{"on": {"point": [0, 0, 0]}, "y": 0}], [SPHERE], gap=-0.01)
 
 
+def pressed_against_a_plane():
+    loads = [{"traction": {"boundary": "top", "value": [2e4, 3e4, 1e5]}}]
+    return scene(box(4), CLAMPED, [plane("top", "+z", [0, 0, 1], (0, 0, 1))], loads=loads)
+
+
 def a_stiff_and_a_soft_body():
     """Two blocks that nothing couples; the second one has a 1e5th of the stiffness."""
     soft = box(4)

@@ -303,6 +303,23 @@ class Certificates(Case):
     def test_the_certificate_of_uncoupled_bodies_has_the_numbers_of_signorini_verify(self):
         self.compare(scenes.a_stiff_and_a_soft_body(), 2)
 
+    def test_penetration_of_rows_without_gap_is_judged_as_by_signorini_verify(self):
+        problem = self.exported(scenes.pressed_against_a_plane())
+        out = self.solved(2, problem)
+        u = array(out / "u.mtx")
+        written(self.folder / "u.mtx", (u + 1e-9 * np.abs(u).max()).tolist())
+        files = self.folder / "u.mtx", out / "lambda.mtx"
+        theirs, ours = self.verified(problem, files), json.loads(mpi(3, "verify.py", problem, *files, check=False).stdout)
+        penetration = theirs["penetration"]
+        self.assertGreater(penetration, 0.0)
+        self.assertLessEqual(abs(ours["certificate"]["penetration"] - penetration), SUMMED * penetration)
+
+    def verified(self, problem, files):
+        """The certificate of `signorini verify`."""
+        done = subprocess.run([SIGNORINI, "verify", problem, "--displacement", files[0], "--multiplier", files[1], "--format", "json"],
+                              capture_output=True, text=True, env=ENVIRONMENT)
+        return json.loads(done.stdout)["certificate"]
+
     def compare(self, scene, parts):
         """Compares the certificates of a good and of a bad answer with those of signorini verify."""
         problem = self.exported(scene)
@@ -314,9 +331,7 @@ class Certificates(Case):
         written(self.folder / "lambda.mtx", forces.tolist())
         for answer in (out, self.folder):
             files = answer / "u.mtx", answer / "lambda.mtx"
-            done = subprocess.run([SIGNORINI, "verify", problem, "--displacement", files[0], "--multiplier", files[1],
-                                   "--format", "json"], capture_output=True, text=True, env=ENVIRONMENT)
-            theirs = json.loads(done.stdout)["certificate"]
+            theirs = self.verified(problem, files)
             for ranks in (1, 3):
                 ours = json.loads(mpi(ranks, "verify.py", problem, *files, check=False).stdout)["certificate"]
                 self.assertEqual((ours["parts"], theirs.get("parts", 1)), (parts, parts))
