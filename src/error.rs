@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::solution::Solution;
+use crate::solution::{Cancellation, Solution};
 
 /// All errors between a file and a certified answer: faulty input, problems without an answer, and answers that were
 /// not certified. Each has a [`code`](Self::code), and one sentence for a reader.
@@ -124,7 +124,7 @@ pub enum Error {
     #[error("interrupted before there was an answer")]
     Interrupted,
     /// An answer was found, but it does not meet the tolerance.
-    #[error("not certified: {condition} is {value:.3e}, above the tolerance {tolerance:.1e} ({} after {} iterations){}", solution.method, solution.iterations, lost_digits(solution))]
+    #[error("not certified: {condition} is {value:.3e}, above the tolerance {tolerance:.1e} ({} after {} iterations){}{}", solution.method, solution.iterations, cancelled(solution, *tolerance), lost_digits(solution))]
     NotCertified {
         /// The best answer, with its certificate.
         solution: Box<Solution>,
@@ -344,6 +344,26 @@ fn no_room(factor: f64, multigrid: f64, allowed: f64, ended: Option<&str>) -> St
         ),
     }
 }
+
+/// The tolerance that the answer does meet, and the forces that cancel each other if these are why it meets no smaller one.
+fn cancelled(solution: &Solution, tolerance: f64) -> String {
+    let certificate = &solution.certificate;
+    let reached = certificate.reached();
+    let mut words = if reached < 1.0 { format!("; certified to {reached:.1e}") } else { String::new() };
+    let Cancellation { dof, forces, left } = certificate.cancellation;
+    let digits = certificate.cancellation.digits_left();
+    let is_balanced = certificate.backward_error < BALANCED && certificate.has_bound();
+    if is_balanced && digits < -tolerance.log10() {
+        words += &format!(
+            ": forces of {forces:.1e} cancel down to {left:.1e} at dof {dof} (from 0); doubles hold 16 digits of the one and \
+             {digits:.0} of the other; take the load off the closed row, or give the dof its gap as a support"
+        );
+    }
+    words
+}
+
+/// An answer whose data need no larger change than this, entry by entry, is as exact as its method could make it.
+const BALANCED: f64 = 1e-12;
 
 /// The cause of lost digits and the remedy, if the stiffness has a pivot near rounding.
 fn lost_digits(solution: &Solution) -> String {

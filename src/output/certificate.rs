@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::solution::{Certificate, Goal};
+use crate::solution::{Certificate, Goal, Met};
 
 /// A number in two digits.
 pub(super) fn number(value: f64) -> String {
@@ -14,7 +14,7 @@ pub(super) fn number(value: f64) -> String {
 pub(crate) struct CertificateWords {
     /// The goal, and the statement that the answer meets it or not.
     pub verdict: String,
-    /// Name, formula and value of each condition; empty if an accuracy alone decides.
+    /// Name, formula and value of each condition.
     pub conditions: Vec<(&'static str, &'static str, String)>,
     /// Notes for the reader of these values.
     pub notes: Vec<String>,
@@ -22,53 +22,61 @@ pub(crate) struct CertificateWords {
 
 impl CertificateWords {
     pub fn of(certificate: &Certificate, goal: Goal) -> Self {
-        let certified = goal.is_met_by(certificate);
-        let verdict = if certified { "certified to" } else { "NOT certified to" };
-        let bound = certificate.energy_error_bound;
-        if let Some(accuracy) = goal.accuracy.filter(|_| bound.is_finite()) {
-            let measured = if certificate.bound_is_measured { ", measured" } else { "" };
-            let verdict =
-                format!("{verdict} {accuracy:.1e} of the energy norm: the error is at most {bound:.1e}{measured}");
-            return CertificateWords { verdict, conditions: Vec::new(), notes: Vec::new() };
-        }
-        CertificateWords {
-            verdict: format!("{verdict} {:.1e}, each relative:", goal.tolerance),
-            conditions: conditions(certificate).to_vec(),
-            notes: notes(certificate, goal),
-        }
+        let tolerance = goal.required();
+        let verdict = match certificate.judged(goal).met {
+            Some(Met::Tolerance) if certificate.at_rest => "certified at rest, each relative:".to_string(),
+            Some(Met::Tolerance) => format!("certified to {tolerance:.1e}, each relative:"),
+            Some(Met::Rounding) => match certificate.met_tolerance {
+                met if met.is_finite() => format!("certified as exact as doubles can hold u: {met:.1e}; each relative:"),
+                _ => "certified as exact as doubles can hold u; each relative:".to_string(),
+            },
+            None => format!("NOT certified to {tolerance:.1e}, each relative:"),
+        };
+        CertificateWords { verdict, conditions: conditions(certificate).to_vec(), notes: notes(certificate) }
     }
 }
 
-fn notes(certificate: &Certificate, goal: Goal) -> Vec<String> {
+fn notes(certificate: &Certificate) -> Vec<String> {
     let mut notes = Vec::new();
-    if certificate.parts > 1 {
+    let (parts, resting) = (certificate.parts, certificate.parts_at_rest);
+    if resting > 0 {
+        let of_parts = if parts > 1 { format!("{resting} of {parts} parts at rest: ") } else { String::new() };
+        notes.push(format!(
+            "{of_parts}|u - u*|_K is at most {} of what the forces could do to a single dof;",
+            number(certificate.rest_error)
+        ));
+        notes.push("no relative error exists at rest".to_string());
+    }
+    if parts > resting && parts > 1 {
         let worst = certificate.part_error_bound;
-        notes.push(format!("of {} parts the largest error is at most {worst:.1e}", certificate.parts));
+        let moving = if resting > 0 { "that move " } else { "" };
+        notes.push(format!("of {} parts {moving}the largest error is at most {worst:.1e}", parts - resting));
     }
-    if goal.is_met_by(certificate) && certificate.part_error_bound > goal.tolerance {
-        let rounding = "values above the tolerance are due to the rounding of the displacement to double precision";
-        notes.push(rounding.to_string());
-    }
-    if certificate.energy_error_bound.is_infinite() {
+    if !certificate.has_bound() {
         let unknown = "no error bound: the conditions alone do not bound the error of the displacement";
         notes.push(unknown.to_string());
     }
     notes
 }
 
+/// The bound on the energy error, in two digits and words.
+fn bound(certificate: &Certificate) -> String {
+    match certificate.energy_error_bound {
+        _ if !certificate.has_bound() => "unknown".to_string(),
+        bound if !bound.is_finite() => "none: at rest".to_string(),
+        bound if certificate.bound_is_measured => format!("{}, measured", number(bound)),
+        bound => number(bound),
+    }
+}
+
 /// Name, formula and value of each condition.
 pub(super) fn conditions(certificate: &Certificate) -> [(&'static str, &'static str, String); 6] {
-    let bound = match certificate.energy_error_bound {
-        bound if bound.is_finite() && certificate.bound_is_measured => format!("{}, measured", number(bound)),
-        bound if bound.is_finite() => number(bound),
-        _ => "unknown".to_string(),
-    };
     [
         ("stationarity", "|K u - f - B' lambda|", number(certificate.stationarity)),
         ("penetration", "max (B u - g)", number(certificate.penetration)),
         ("adhesion", "max lambda", number(certificate.adhesion)),
         ("complementarity", "|lambda (B u - g)|", number(certificate.complementarity)),
         ("duality gap", "u'K u - f'u - lambda'g", number(certificate.duality_gap)),
-        ("energy error", "|u - u*|_K / |u|_K is at most", bound),
+        ("energy error", "|u - u*|_K / |u|_K is at most", bound(certificate)),
     ]
 }

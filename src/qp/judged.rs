@@ -32,10 +32,11 @@ pub(super) fn answer(outcome: Outcome, name: &str, certificate: Certificate) -> 
 /// # Errors
 /// [`Error::NotCertified`] with the solution, and the condition that decides.
 pub(super) fn judged(solution: Solution, goal: Goal) -> Result<Solution, Error> {
+    let solution = Solution { certificate: solution.certificate.judged(goal), ..solution };
     if goal.is_met_by(&solution.certificate) {
         return Ok(solution);
     }
-    let (condition, value, tolerance) = goal.decisive(&solution.certificate);
+    let (condition, value, tolerance) = solution.certificate.decisive(goal.required());
     Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance })
 }
 

@@ -188,7 +188,8 @@ impl Summary {
     /// The report of `solution` to a raw problem; a scene adds its data to `contact` and `model`.
     pub fn new(solution: Solution, model: ModelSize, goal: impl Into<Goal>, assemble_seconds: f64) -> Self {
         let goal = goal.into();
-        let is_met = goal.is_met_by(&solution.certificate);
+        let solution = Solution { certificate: solution.certificate.judged(goal), ..solution };
+        let is_met = solution.certificate.met.is_some();
         Summary {
             status: if is_met { Status::Certified } else { Status::NotCertified },
             goal,
@@ -243,7 +244,8 @@ impl Verification {
         let force = -multiplier.iter().sum::<f64>();
         let count = multiplier.iter().filter(|&&lambda| lambda != 0.0).count();
         let contact = ContactSummary { count, force, ..ContactSummary::default() };
-        let status = if certificate.meets(tolerance) { Status::Certified } else { Status::NotCertified };
+        let certificate = certificate.judged(tolerance.into());
+        let status = if certificate.met.is_some() { Status::Certified } else { Status::NotCertified };
         Verification { status, tolerance, contact, certificate, model, warnings }
     }
 

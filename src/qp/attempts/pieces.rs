@@ -25,7 +25,6 @@ pub(super) fn solved(
     let of_whole = bytes::of_problem(problem.dofs() as f64, problem.stiffness().entries() as f64);
     let settings = &Settings { memory: settings.memory.map(|most| most - of_whole), ..settings.clone() };
     let mut answers = Vec::with_capacity(pieces.count());
-    let mut errors = Vec::with_capacity(pieces.count());
     for piece in 0..pieces.count() {
         let own = pieces.problem(problem, piece)?;
         let in_whole = |direction: Vec<f64>| pieces.join_dofs((0..piece).map(|_| &[][..]).chain([&direction[..]]));
@@ -39,13 +38,17 @@ pub(super) fn solved(
             }
             ended => ended?,
         };
-        errors.push(own.error_of(&answer));
         answers.push(answer);
     }
     let displacement = pieces.join_dofs(answers.iter().map(|answer| &answer.displacement[..]));
     let multiplier = pieces.join_rows(answers.iter().map(|answer| &answer.multiplier[..]));
-    let certificates: Vec<_> = answers.iter().map(|answer| answer.certificate).collect();
-    let certificate = problem.certify_pieces(&certificates, &errors, &displacement, &multiplier)?;
+    let in_whole = |(piece, answer): (usize, &Solution)| {
+        let mut certificate = answer.certificate;
+        certificate.cancellation.dof = pieces.dof(piece, certificate.cancellation.dof);
+        certificate
+    };
+    let certificates: Vec<_> = answers.iter().enumerate().map(in_whole).collect();
+    let certificate = problem.certify_pieces(&certificates, &displacement, &multiplier)?;
     let mut names: Vec<&str> = answers.iter().map(|answer| answer.method.as_str()).collect();
     names.sort_unstable();
     names.dedup();

@@ -2,23 +2,14 @@
 
 use super::EnergyNorm;
 use super::bound::{Answer, ErrorBound, Measured};
-use super::scales::{Forces, Scales, larger, relative};
+use super::scales::{OfPart, Scales, larger, relative};
+use super::units::Units;
 use crate::error::Error;
 use crate::qp::linear::Accumulator;
 use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::problem::ContactProblem;
-use crate::solution::{Certificate, Solution};
+use crate::solution::{Cancellation, Certificate};
 use crate::watch::Watch;
-
-/// Rounding moves an entry of u or lambda by half a unit in the last place. The sum of such errors is excused twice: once for
-/// the rounding and once for the arithmetic that made the entry.
-const ENTRY_ROUNDING: f64 = f64::EPSILON;
-
-/// Relative error of sums with twice the working precision stays below this share of their terms: no bound is smaller.
-const LEAST: f64 = 1e-28;
-
-/// Rounding of an energy computed with twice the working precision, as a share of its terms.
-const OF_ENERGY: f64 = 1e-31;
 
 /// The means by which the error is bounded in energy.
 #[derive(Clone, Copy)]
@@ -38,12 +29,14 @@ impl<'a> Bounding<'a> {
 pub(crate) struct Examined {
     pub certificate: Certificate,
     pub evidence: Option<Evidence>,
+    /// The parts that move in the answer, with an error so large that they may rest in the exact one.
+    pub may_rest: Vec<usize>,
 }
 
 impl Examined {
-    /// A certificate alone.
-    pub fn without_evidence(certificate: Certificate) -> Self {
-        Examined { certificate, evidence: None }
+    /// The same in the units of the problem, without the evidence.
+    fn in_own_units(self, units: &Units) -> Self {
+        Examined { certificate: units.in_own(self.certificate), evidence: None, ..self }
     }
 }
 
@@ -63,6 +56,8 @@ pub(crate) struct Evidence {
 struct Balance {
     /// `f + B' lambda - K u`.
     residual: Vec<f64>,
+    /// `|K u|`.
+    elastic: Vec<f64>,
     /// `u' K u`.
     strain: f64,
     /// `|K| |u|`, the scale of rounding in it.
@@ -80,12 +75,22 @@ impl ContactProblem {
     /// # Errors
     /// [`Error::Length`] for vectors that do not fit, [`Error::Numerical`] if the factorisation of K fails for lack of memory.
     pub fn certify(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Certificate, Error> {
+        Ok(self.examine(displacement, multiplier)?.certificate)
+    }
+
+    /// As [`ContactProblem::certify`], with the evidence.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::certify`].
+    pub(crate) fn examine(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Examined, Error> {
         self.check_answer(displacement, multiplier)?;
         if let Some(units) = self.far_units(displacement) {
-            return self.in_units(&units)?.certify(&units.displacement(displacement), &units.force(multiplier));
+            let in_units = self.in_units(&units)?;
+            let examined = in_units.examine(&units.displacement(displacement), &units.force(multiplier))?;
+            return Ok(examined.in_own_units(&units));
         }
         let norm = self.energy_norm(displacement, multiplier)?;
-        self.certify_in(norm.as_ref(), displacement, multiplier)
+        self.examine_in(norm.as_ref(), displacement, multiplier)
     }
 
     /// As [`ContactProblem::certify`], in an energy norm that is already available.
@@ -118,7 +123,7 @@ impl ContactProblem {
         let (norm, problem) = (norm.map(|norm| units.norm(norm)), self.in_units(&units)?);
         let bounding = Bounding::by(norm.as_ref());
         let in_units = problem.recomputed(bounding, &units.displacement(displacement), &units.force(multiplier));
-        Ok(Examined::without_evidence(in_units.certificate))
+        Ok(in_units.in_own_units(&units))
     }
 
     /// As [`ContactProblem::certify`], with the energy bound by the cycles of the hierarchy of K, which needs no factor and
@@ -137,7 +142,7 @@ impl ContactProblem {
     ) -> Result<Examined, Error> {
         self.check_answer(displacement, multiplier)?;
         if multigrid.unknowns().len() <= 1 {
-            return self.certify(displacement, multiplier).map(Examined::without_evidence);
+            return self.examine(displacement, multiplier);
         }
         if self.far_units(displacement).is_some() {
             return self.examine_in(None, displacement, multiplier);
@@ -146,102 +151,119 @@ impl ContactProblem {
     }
 
     /// The certificate of an answer that was put together from answers of pieces without coupling. The conditions are
-    /// recomputed; the bounds are those of the pieces, with an upper bound on `|u - u*|_K` of each in `errors`.
+    /// recomputed; the bounds are those of the pieces.
     ///
     /// # Errors
     /// [`Error::Length`] for vectors that do not fit.
     pub(crate) fn certify_pieces(
         &self,
         pieces: &[Certificate],
-        errors: &[f64],
         displacement: &[f64],
         multiplier: &[f64],
     ) -> Result<Certificate, Error> {
         let certificate = self.certify_in(None, displacement, multiplier)?;
-        let largest = |of: fn(&Certificate) -> f64| worst(pieces.iter().map(of));
-        let whole = errors.iter().map(|error| error * error).sum::<f64>().sqrt();
-        let energy_error_bound = relative(whole, self.size_of(displacement, multiplier));
-        Ok(Certificate {
-            energy_error_bound,
-            part_error_bound: larger(energy_error_bound, largest(|piece| piece.part_error_bound)),
-            energy_error_excess: largest(|piece| piece.energy_error_excess),
-            bound_is_measured: pieces.iter().any(|piece| piece.bound_is_measured),
-            ..certificate
-        })
+        Ok(certificate.with_bounds_of(pieces, self.certain_norm(displacement)))
     }
 
-    /// The upper bound on `|u - u*|_K` of an answer with its certificate.
-    pub(crate) fn error_of(&self, answer: &Solution) -> f64 {
-        let bound = answer.certificate.energy_error_bound;
-        if bound == 0.0 { 0.0 } else { bound * self.size_of(&answer.displacement, &answer.multiplier) }
+    /// The part of the energy norm of a displacement that is certain.
+    fn certain_norm(&self, displacement: &[f64]) -> f64 {
+        let Balance { strain, terms, .. } = self.accurate_balance(displacement, &[]);
+        let terms = displacement.iter().zip(&terms).map(|(u, terms)| u.abs() * terms).sum();
+        OfPart { strain, terms, ..OfPart::default() }.certain_norm()
     }
 
-    /// The energy norm that the bound of an answer is relative to.
-    fn size_of(&self, displacement: &[f64], multiplier: &[f64]) -> f64 {
-        let Balance { strain, terms, .. } = self.accurate_balance(displacement, &[multiplier]);
-        let contact = self.contact.mul_transposed(multiplier);
-        let scales = Scales::of(self, self.parts(), &Forces { displacement, multiplier, contact: &contact, strain });
-        let sum = displacement.iter().zip(&terms).map(|(u, terms)| u.abs() * terms).sum();
-        sure_size(&scales, strain, sum)
+    /// The displacement u with those parts at rest that may rest, if its certificate is better for it. A method leaves the
+    /// rounding of forces as a displacement of a part at rest, which is wrong by all of it.
+    ///
+    /// # Errors
+    /// Those of `examine`, which makes the certificate of a displacement.
+    pub(crate) fn resting(
+        &self,
+        u: Vec<f64>,
+        examined: Examined,
+        examine: impl Fn(&[f64]) -> Result<Examined, Error>,
+    ) -> Result<(Vec<f64>, Examined), Error> {
+        if examined.may_rest.is_empty() {
+            return Ok((u, examined));
+        }
+        let rests = |dof: usize| examined.may_rest.contains(&self.parts().of_dof(dof));
+        let at_rest: Vec<f64> = u.iter().enumerate().map(|(dof, &u)| if rests(dof) { 0.0 } else { u }).collect();
+        let of_rest = examine(&at_rest)?;
+        let is_better = of_rest.certificate.improves_on(&examined.certificate, 1.0);
+        Ok(if is_better { (at_rest, of_rest) } else { (u, examined) })
     }
 
     fn recomputed(&self, bounding: Bounding, u: &[f64], lambda: &[f64]) -> Examined {
-        let parts = self.parts();
-        let contact = self.contact.mul_transposed(lambda);
-        let Balance { residual, strain, terms } = self.accurate_balance(u, &[lambda]);
+        let Balance { residual, elastic, strain, terms } = self.accurate_balance(u, &[lambda]);
         let violation = self.accurate_violation(u);
         let (contact_terms, lengths) = (self.contact.mul_abs_transposed(lambda), self.contact.mul_abs(u));
-        let scales =
-            Scales::of(self, parts, &Forces { displacement: u, multiplier: lambda, contact: &contact, strain });
+        let forces: Vec<f64> = self.load.iter().zip(&contact_terms).map(|(f, contact)| f.abs() + contact).collect();
+        let scales = Scales::of(self, u, &forces, strain, &terms);
 
-        let is_rounding = |dof: usize| residual[dof].abs() <= ENTRY_ROUNDING * (terms[dof] + contact_terms[dof]);
-        let excess = |dof: usize| if is_rounding(dof) { 0.0 } else { residual[dof] };
-        let own = |dof: usize| larger(self.load[dof].abs(), contact[dof].abs());
-        // A row without obstacle carries no multiplier; a violation within the rounding of u does no work.
-        let work = |row: usize| {
-            if lambda[row] == 0.0 || violation[row].abs() <= ENTRY_ROUNDING * lengths[row] {
-                0.0
-            } else {
-                lambda[row] * violation[row]
-            }
+        let share = |dof: usize, force: f64| relative(force.abs(), terms[dof] + forces[dof]);
+        let mut shares_of_rows = vec![0.0; self.rows()];
+        for (row, dof, b) in self.contact.triplets().filter(|entry| lambda[entry.0] != 0.0) {
+            shares_of_rows[row] = larger(share(dof, b * lambda[row]), shares_of_rows[row]);
+        }
+        let length = |row: usize| {
+            let of_part = scales.norm[scales.part_of_row(row)] * scales.reach[row];
+            larger(lengths[row], larger(self.gap[row].abs(), of_part))
         };
-        let penetration = |row: usize| {
-            let scale = larger(
-                lengths[row],
-                larger(self.gap[row].abs(), scales.size(scales.part_of_row(row)) * scales.reach[row]),
-            );
-            relative(violation[row].max(0.0), scale)
-        };
-        let adhesion = |row: usize| {
-            let force = lambda[row].max(0.0) * scales.reach[row];
-            relative(force, scales.force[scales.part_of_row(row)])
-        };
-        let mut gaps = parts.sums(|dof| -u[dof] * excess(dof));
-        (0..self.rows()).for_each(|row| gaps[scales.part_of_row(row)] += work(row));
         let rows = || (0..self.rows()).filter(|&row| self.gap[row].is_finite() || lambda[row] != 0.0);
+        // A row without obstacle carries no multiplier.
+        let work = |row: usize| if lambda[row] == 0.0 { 0.0 } else { lambda[row] * violation[row] };
+        let over_distance = |row: usize| match lambda[row] != 0.0 && violation[row] < 0.0 {
+            true => shares_of_rows[row].min(relative(violation[row].abs(), length(row))),
+            false => 0.0,
+        };
+        let stationarity = worst((0..u.len()).map(|dof| share(dof, residual[dof])));
+        let penetration = worst(rows().map(|row| relative(violation[row].max(0.0), length(row))));
+        let adhesion = worst(rows().filter(|&row| lambda[row] > 0.0).map(|row| shares_of_rows[row]));
+        let gap = u.iter().zip(&residual).map(|(u, r)| -u * r).chain(rows().map(work)).sum::<f64>();
+        let open_force = worst(rows().map(over_distance));
         let mut certificate = Certificate {
-            stationarity: scales.largest_force(parts, |dof| residual[dof], own),
-            stationarity_excess: scales.largest_force(parts, excess, own),
-            penetration: worst(rows().map(penetration)),
-            adhesion: worst(rows().map(adhesion)),
-            complementarity: worst(rows().map(|row| relative(work(row), scales.energy[scales.part_of_row(row)]))),
-            duality_gap: worst(gaps.iter().zip(&scales.energy).map(|(&gap, &energy)| relative(gap, energy))),
+            stationarity,
+            penetration,
+            adhesion,
+            complementarity: relative(worst(rows().map(work)), strain.max(0.0)),
+            duality_gap: relative(gap.abs(), strain.max(0.0)),
+            backward_error: worst([stationarity, penetration, adhesion, open_force]),
+            energy_error: f64::INFINITY,
             energy_error_bound: f64::INFINITY,
             part_error_bound: f64::INFINITY,
             energy_error_excess: f64::INFINITY,
-            parts: parts.count(),
+            met_tolerance: f64::INFINITY,
+            met: None,
+            at_rest: false,
+            parts: self.parts().count(),
+            parts_at_rest: 0,
+            rest_error: 0.0,
+            cancellation: Cancellation { dof: 0, forces: 0.0, left: 0.0 },
             bound_is_measured: matches!(bounding, Bounding::Cycles(..)),
         };
         let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
-        let (bound, measured) = match bounding {
-            Bounding::Nothing => return Examined::without_evidence(certificate),
-            Bounding::Factor(norm) => (self.energy_error_bound(norm, &answer), None),
-            Bounding::Cycles(multigrid, watch) => self.energy_error_bound_by(multigrid, &answer, watch),
+        let (bound, measured, loss) = match bounding {
+            Bounding::Nothing => (ErrorBound::none(), None, 1.0),
+            Bounding::Factor(norm) => (self.energy_error_bound(norm, &answer), None, norm.loss()),
+            Bounding::Cycles(multigrid, watch) => {
+                let (bound, measured) = self.energy_error_bound_by(multigrid, &answer, watch);
+                (bound, measured, measured.map_or(1.0, |measured| 1.0 / measured.ritz.min(1.0)))
+            }
         };
-        let rounding = parts.sums(|dof| u[dof].abs() * terms[dof]);
-        certificate.judge(&bound, &scales, strain, &rounding);
+        let part = certificate.take_in(&bound, &scales, strain, loss);
+        certificate.cancellation = self.cancellation(&forces, &elastic, part);
         let Answer { residual, .. } = answer;
-        Examined { certificate, evidence: Some(Evidence { residual, violation, error: bound.whole, measured }) }
+        let has_bound = !matches!(bounding, Bounding::Nothing);
+        let evidence = has_bound.then(|| Evidence { residual, violation, error: bound.whole, measured });
+        Examined { certificate, evidence, may_rest: scales.may_rest(&bound) }
+    }
+
+    /// The dof of a part, or of all, at which the `forces` lose most digits to what is left as elastic force.
+    fn cancellation(&self, forces: &[f64], elastic: &[f64], part: Option<usize>) -> Cancellation {
+        let is_in = |dof: &usize| part.is_none_or(|part| self.parts().of_dof(*dof) == part);
+        let all = (0..forces.len()).filter(is_in).map(|dof| Cancellation { dof, forces: forces[dof], left: elastic[dof] });
+        let fewer = |a: Cancellation, b: Cancellation| if b.forces * a.left > a.forces * b.left { b } else { a };
+        all.filter(|at| at.forces > 0.0).reduce(fewer).unwrap_or(Cancellation { dof: 0, forces: 0.0, left: 0.0 })
     }
 
     /// Checks that the vectors of an answer have the lengths of the problem.
@@ -270,13 +292,14 @@ impl ContactProblem {
         let mut sums = Accumulator::new(&vec![0.0; self.dofs()]);
         let terms = sums.add_matrix_product(|column| self.stiffness.lower().column(column), u);
         let strain = sums.products_by(u, |_| 0, 1)[0];
+        let elastic = sums.sums().map(f64::abs).collect();
         for (dof, &load) in self.load.iter().enumerate() {
             sums.add_product(dof, load, -1.0);
             for lambda in multipliers {
                 self.contact.column(dof).for_each(|(row, b)| sums.add_product(dof, b, -lambda[row]));
             }
         }
-        Balance { residual: sums.sums().map(|sum| -sum).collect(), strain, terms }
+        Balance { residual: sums.sums().map(|sum| -sum).collect(), elastic, strain, terms }
     }
 
     /// `B u - g` of the given doubles, with twice the working precision; `-inf` for a row without obstacle.
@@ -309,35 +332,6 @@ impl ContactProblem {
         let mut sums = Accumulator::new(&vec![0.0; u.len()]);
         sums.add_matrix_product(within, u);
         sums
-    }
-}
-
-/// The part of the energy norm that is certain: a body that moves far and does not bend has only energy from rounding of `sum`,
-/// the sum of `|u_i| (|K| |u|)_i`.
-fn sure_size(scales: &Scales, strain: f64, sum: f64) -> f64 {
-    scales.size_of_whole((strain - OF_ENERGY * sum).max(0.0))
-}
-
-impl Certificate {
-    /// Takes in a bound on the error: of the whole and of each part, relative to its own energy norm. An error within the
-    /// rounding, with `rounding` the sum of `|u_i| (|K| |u|)_i` of each part, is no excess.
-    fn judge(&mut self, bound: &ErrorBound, scales: &Scales, strain: f64, rounding: &[f64]) {
-        let explained = |sum: f64| ENTRY_ROUNDING * sum.sqrt();
-        let unexplained =
-            |error: f64, size: f64, sum: f64| if error <= explained(sum) { 0.0 } else { relative(error, size) };
-        let sum = rounding.iter().sum::<f64>();
-        let whole = sure_size(scales, strain, sum);
-        let of_whole = bound.whole + LEAST * sum.sqrt();
-        self.energy_error_bound = relative(of_whole, whole);
-        (self.part_error_bound, self.energy_error_excess) =
-            (self.energy_error_bound, unexplained(of_whole, whole, sum));
-        if let Some(of_parts) = &bound.of_parts {
-            for (part, &error) in of_parts.iter().enumerate().filter(|entry| scales.is_stiff[entry.0]) {
-                let (size, error) = (scales.size(part), error + LEAST * rounding[part].sqrt());
-                self.part_error_bound = larger(relative(error, size), self.part_error_bound);
-                self.energy_error_excess = larger(unexplained(error, size, rounding[part]), self.energy_error_excess);
-            }
-        }
     }
 }
 

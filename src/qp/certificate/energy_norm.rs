@@ -44,8 +44,20 @@ pub(crate) struct EnergyNorm {
     widening: f64,
     /// The springs that made a singular K definite.
     springs: Option<Arc<Springs>>,
+    /// The dofs without stiffness, if these made K singular.
+    loose: Option<Arc<Loose>>,
     /// Time limit of the bounds in this norm.
     watch: Watch,
+}
+
+/// Dofs without stiffness, on which no force is out of balance. The energy does not see them: they have a stiffness of one here, on
+/// which no force may act.
+#[derive(Clone, Debug)]
+pub(super) struct Loose {
+    /// The dofs.
+    pub dofs: Vec<usize>,
+    /// `true` for each row that acts on one of them.
+    pub rows: Vec<bool>,
 }
 
 /// The contact dofs t, eliminated last: their block of the factor is that of the Schur complement.
@@ -91,7 +103,7 @@ impl EnergyNorm {
         let values = last.len().saturating_mul(last.len());
         let worth = !last.is_empty() && values <= FEW_VALUES.max(cholesky.entries());
         let boundary = worth.then(|| Arc::new(Boundary { block: cholesky.trailing_block(), dofs: last }));
-        EnergyNorm { cholesky, equilibration, boundary, widening: 1.0, springs: None, watch: Watch::default() }
+        EnergyNorm { cholesky, equilibration, boundary, widening: 1.0, springs: None, loose: None, watch: Watch::default() }
     }
 
     /// The energy norm of the equilibrated stiffness itself.
@@ -164,7 +176,12 @@ impl EnergyNorm {
     }
 
     /// `sqrt(r' K^-1 r)`: the energy norm of the displacement that the force r causes.
+    ///
+    /// Infinite if the force acts on a dof without stiffness.
     pub(super) fn of_force(&self, force: &[f64]) -> f64 {
+        if self.loose.as_ref().is_some_and(|loose| loose.dofs.iter().any(|&dof| force[dof] != 0.0)) {
+            return f64::INFINITY;
+        }
         // K^-1 = c D (c D K D)^-1 D
         ldexp(self.cholesky.inverse_product(&self.scaled(force)), self.equilibration.factor).max(0.0).sqrt()
     }
@@ -179,6 +196,21 @@ impl EnergyNorm {
     /// The same norm, of a matrix that contains these springs.
     pub(super) fn with_springs(self, springs: Springs) -> Self {
         EnergyNorm { springs: Some(Arc::new(springs)), ..self }
+    }
+
+    /// The same norm, of a matrix in which these dofs without stiffness have a stiffness of one.
+    pub(super) fn with_loose(self, loose: Loose) -> Self {
+        EnergyNorm { loose: Some(Arc::new(loose)), ..self }
+    }
+
+    /// Returns `true` if some dofs have no stiffness: the energy does not see where they are.
+    pub(super) fn has_loose_dofs(&self) -> bool {
+        self.loose.is_some()
+    }
+
+    /// Returns `true` if a row acts on a dof without stiffness.
+    pub(super) fn is_on_loose_dof(&self, row: usize) -> bool {
+        self.loose.as_ref().is_some_and(|loose| loose.rows[row])
     }
 
     /// The springs that made a singular K definite, if there are any.

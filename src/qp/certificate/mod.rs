@@ -13,6 +13,7 @@ mod reach;
 mod scales;
 mod springs;
 mod units;
+mod verdict;
 
 pub(crate) use conditions::Examined;
 pub(crate) use energy_norm::EnergyNorm;

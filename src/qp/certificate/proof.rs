@@ -53,6 +53,9 @@ impl ContactProblem {
             let (problem, norm) = (self.in_units(&units).ok()?, units.norm(norm));
             return problem.prove_in(&norm, &units.displacement(displacement), &units.force(multiplier), None);
         }
+        if norm.has_loose_dofs() {
+            return None;
+        }
         let rows = self.rows();
         let Evidence { residual, violation, error, .. } =
             evidence.or_else(|| self.examine_in(Some(norm), displacement, multiplier).ok()?.evidence)?;

@@ -4,6 +4,7 @@ use super::EnergyNorm;
 use crate::error::Error;
 use crate::qp::linear::{SymmetricMatrix, exponent, largest, ldexp};
 use crate::qp::problem::ContactProblem;
+use crate::solution::{Cancellation, Certificate};
 
 /// Forces and energies beyond 2 to plus or minus this power are near the ends of double precision.
 const FAR: i32 = 800;
@@ -27,6 +28,20 @@ impl Units {
     /// A force in these units.
     pub fn force(&self, force: &[f64]) -> Vec<f64> {
         force.iter().map(|&value| ldexp(value, -self.stiffness - self.length)).collect()
+    }
+
+    /// A certificate that was computed in these units, in those of the problem.
+    pub fn in_own(&self, certificate: Certificate) -> Certificate {
+        // An energy norm has the unit of sqrt(stiffness) times length.
+        let root = if self.stiffness % 2 == 0 { 1.0 } else { std::f64::consts::SQRT_2 };
+        let norm = |value: f64| ldexp(root * value, self.stiffness.div_euclid(2) + self.length);
+        let force = |value: f64| ldexp(value, self.stiffness + self.length);
+        let Cancellation { dof, forces, left } = certificate.cancellation;
+        Certificate {
+            energy_error: norm(certificate.energy_error),
+            cancellation: Cancellation { dof, forces: force(forces), left: force(left) },
+            ..certificate
+        }
     }
 
     /// An energy norm in these units of stiffness.

@@ -77,7 +77,7 @@ pub(super) fn answer(
         before_last = moved;
         for (displacement, multiplier) in without_rounding(problem, &added, &centre, &found.multiplier) {
             let certificate = problem.certify(&displacement, &multiplier)?;
-            if best.as_ref().is_none_or(|best| certificate.worst().1 < 0.5 * best.certificate.worst().1) {
+            if best.as_ref().is_none_or(|best| certificate.improves_on(&best.certificate, 0.5)) {
                 let reason = Some(format!("by {step} steps with K + rho E, since the stiffness is singular: {before}"));
                 let answer = Solution { displacement, multiplier, certificate, reason, lost_pivot, ..found.clone() };
                 best = Some(answer);

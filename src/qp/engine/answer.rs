@@ -11,7 +11,7 @@ use crate::qp::judged::{answer, judged};
 use crate::qp::method::{Outcome, ScaledProblem};
 use crate::qp::problem::ContactProblem;
 use crate::qp::settings::Settings;
-use crate::solution::{Certificate, ContactSet, Iteration, Seconds, Solution};
+use crate::solution::{ContactSet, Iteration, Seconds, Solution};
 use crate::watch::Watch;
 
 /// Largest number of repairs of an answer: the second removes the rounding of the first.
@@ -26,14 +26,11 @@ impl Factored {
         if goal.is_met_by(&best.1.certificate) {
             return Ok(best);
         }
-        let miss = |solution: &Solution| {
-            let (_, value, _) = goal.decisive(&solution.certificate);
-            if value.is_nan() { f64::INFINITY } else { value }
-        };
+        let (_, miss, _) = best.1.certificate.decisive(goal.required());
         let other = self.second_attempt(&best.0, settings)?;
-        if let Some(other) = other.filter(|_| self.resolved(settings).allows_last_resort(miss(&best.1))) {
+        if let Some(other) = other.filter(|_| self.resolved(settings).allows_last_resort(miss)) {
             let solution = self.whole(&other, settings)?;
-            if miss(&solution) < miss(&best.1) {
+            if solution.certificate.improves_on(&best.1.certificate, 1.0) {
                 best = (other, solution);
             }
         }
@@ -79,12 +76,9 @@ impl Factored {
         let norm = self.norm_of(found, settings);
         let multiplier = self.expand_multiplier(&outcome.multiplier, *unit);
         let problem = self.problem.with(loading.load.clone(), gap.clone())?;
-        let Examined { certificate, evidence } = match &norm {
-            Some(norm) => problem.examine_in(Some(norm), &displacement, &multiplier)?,
-            None => {
-                Examined::without_evidence(self.certificate(&problem, &displacement, &multiplier, &settings.watch)?)
-            }
-        };
+        let (displacement, examined) =
+            self.examined(&problem, norm.as_ref(), (displacement, &multiplier), settings)?;
+        let Examined { certificate, evidence, .. } = examined;
         let judging = before_certificate.elapsed().as_secs_f64();
         // A factor that was made for the certificate alone is freed to make room for those of a refinement.
         let norm = norm.filter(|_| self.reduction.is_norm_at_hand());
@@ -110,7 +104,7 @@ impl Factored {
         if !self.is_single() && self.resolved(settings).wants_best() {
             solution = self.corrected(solution, &problem, settings)?;
             if let Some(norm) = &norm {
-                solution = repaired(solution, norm, &problem, settings)?;
+                solution = self.repaired(solution, norm, &problem, settings)?;
             }
         }
         let may_prove = settings.prove && !settings.watch.is_stopped() && settings.watch.allows(self.proof_seconds);
@@ -127,59 +121,68 @@ impl Factored {
         Ok(solution)
     }
 
-    /// The certificate of an answer to `problem`, this one under some load and gaps, with the bound that the time allows.
-    pub(super) fn certificate(
+    /// The certificate of an answer to `problem`, this one under some load and gaps: in `norm`, or with the bound that the time
+    /// allows. If the best answer is wanted, parts that may rest are put at rest.
+    pub(super) fn examined(
         &self,
         problem: &ContactProblem,
-        displacement: &[f64],
-        multiplier: &[f64],
-        watch: &Watch,
-    ) -> Result<Certificate, Error> {
-        let finishing = watch.finishing();
-        match self.norm_within(&finishing) {
-            None if finishing.allows(self.norm_seconds) => problem.certify(displacement, multiplier),
-            norm => problem.certify_in(norm.as_ref(), displacement, multiplier),
+        norm: Option<&EnergyNorm>,
+        (displacement, multiplier): (Vec<f64>, &[f64]),
+        settings: &Settings,
+    ) -> Result<(Vec<f64>, Examined), Error> {
+        let in_time = settings.watch.finishing().allows(self.norm_seconds);
+        let examine = |displacement: &[f64]| match norm {
+            None if in_time => problem.examine(displacement, multiplier),
+            norm => problem.examine_in(norm, displacement, multiplier),
+        };
+        let examined = examine(&displacement)?;
+        match self.resolved(settings).wants_best() {
+            true => problem.resting(displacement, examined, examine),
+            false => Ok((displacement, examined)),
         }
     }
 
     /// The energy norm of a stiffness that is definite by itself, with bounds that end when `watch` says so; `None` also if
     /// there is no time to make it.
-    fn norm_within(&self, watch: &Watch) -> Option<EnergyNorm> {
+    pub(super) fn norm_within(&self, watch: &Watch) -> Option<EnergyNorm> {
         let in_time = self.reduction.is_norm_at_hand() || watch.allows(self.norm_seconds);
         if in_time { self.reduction.norm().map(|norm| norm.watched(watch)) } else { None }
     }
-}
 
-/// A solution that falls short, improved by the repair of its own bound as long as that brings it closer to its goal. This
-/// helps if rows hold many dofs, or no dof except for rounding: then a step of the method has nothing left to improve.
-///
-/// # Errors
-/// Those of the certificate.
-fn repaired(
-    mut solution: Solution,
-    norm: &EnergyNorm,
-    problem: &ContactProblem,
-    settings: &Settings,
-) -> Result<Solution, Error> {
-    for _ in 0..MOST_REPAIRS {
-        if settings.goal().is_met_by(&solution.certificate) || settings.watch.is_over() {
-            break;
+    /// A solution that falls short, improved by the repair of its own bound as long as that brings it closer to its goal. This
+    /// helps if rows hold many dofs, or no dof except for rounding, and if forces cancel almost all of each other: then a step
+    /// of the method has nothing left to improve.
+    ///
+    /// # Errors
+    /// Those of the certificate.
+    fn repaired(
+        &self,
+        mut solution: Solution,
+        norm: &EnergyNorm,
+        problem: &ContactProblem,
+        settings: &Settings,
+    ) -> Result<Solution, Error> {
+        for _ in 0..MOST_REPAIRS {
+            if settings.goal().is_met_by(&solution.certificate) || settings.watch.is_over() {
+                break;
+            }
+            let clock = Instant::now();
+            let Some((displacement, multiplier)) = problem.repaired(norm, &solution.displacement, &solution.multiplier)
+            else {
+                break;
+            };
+            let (displacement, examined) =
+                self.examined(problem, Some(norm), (displacement, &multiplier), settings)?;
+            let certificate = examined.certificate;
+            if !certificate.improves_on(&solution.certificate, 1.0) {
+                break;
+            }
+            let contact_set: ContactSet = multiplier.iter().map(|&force| force < 0.0).collect();
+            let seconds = Seconds { solve: solution.seconds.solve + clock.elapsed().as_secs_f64(), ..solution.seconds };
+            let refinements = Some(solution.refinements.unwrap_or(0) + 1);
+            solution =
+                Solution { displacement, multiplier, certificate, contact_set, seconds, refinements, ..solution };
         }
-        let clock = Instant::now();
-        let Some((displacement, multiplier)) = problem.repaired(norm, &solution.displacement, &solution.multiplier)
-        else {
-            break;
-        };
-        let certificate = problem.certify_in(Some(norm), &displacement, &multiplier)?;
-        let (before, after) = (solution.certificate.worst().1, certificate.worst().1);
-        if after.is_nan() || after >= before {
-            break;
-        }
-        let closed: ContactSet = multiplier.iter().map(|&force| force < 0.0).collect();
-        let seconds = Seconds { solve: solution.seconds.solve + clock.elapsed().as_secs_f64(), ..solution.seconds };
-        let refinements = Some(solution.refinements.unwrap_or(0) + 1);
-        solution =
-            Solution { displacement, multiplier, certificate, contact_set: closed, seconds, refinements, ..solution };
+        Ok(solution)
     }
-    Ok(solution)
 }

@@ -9,7 +9,7 @@ use crate::qp::cost::{Kept, NEAR_CYCLES, check_memory, check_time, seconds};
 use crate::qp::judged::{answer, judged};
 use crate::qp::linear::multigrid::{Multigrid, NearNullSpace};
 use crate::qp::method::mprgp::{Limits, Mprgp};
-use crate::qp::method::{Outcome, Solver, Start};
+use crate::qp::method::{Solver, Start};
 use crate::qp::plan::Tried;
 use crate::qp::problem::{ContactProblem, check_gap};
 use crate::qp::settings::{Method, Settings};
@@ -73,9 +73,9 @@ impl Hierarchical {
     }
 
     /// The certificate of what was found for `problem`, with the bound that the time allows.
-    fn examine(&self, problem: &ContactProblem, found: &Outcome, watch: &Watch) -> Result<Examined, Error> {
+    fn examine(&self, problem: &ContactProblem, u: &[f64], lambda: &[f64], watch: &Watch) -> Result<Examined, Error> {
         watch.step("certificate", 0);
-        problem.examine_by_cycles(&self.multigrid, &watch.finishing(), &found.displacement, &found.multiplier)
+        problem.examine_by_cycles(&self.multigrid, &watch.finishing(), u, lambda)
     }
 }
 
@@ -147,15 +147,18 @@ impl Engine for Hierarchical {
         };
         let mut found = solve(tolerance, most_cycles, start.clone())?;
         let mut judging = 0.0;
-        let Examined { certificate, evidence } = loop {
+        let Examined { certificate, evidence, .. } = loop {
             let before = Instant::now();
-            let examined = self.examine(&problem, &found, &settings.watch)?;
+            let examine = |displacement: &[f64]| self.examine(&problem, displacement, &found.multiplier, &settings.watch);
+            let examined = examine(&found.displacement)?;
+            let (displacement, examined) = problem.resting(found.displacement.clone(), examined, examine)?;
+            found.displacement = displacement;
             judging += before.elapsed().as_secs_f64();
             let certificate = &examined.certificate;
             most_cycles = settings.max_iterations.saturating_sub(found.iterations);
             let bound = certificate.energy_error_bound;
             tolerance *= match settings.accuracy {
-                Some(accuracy) if bound.is_finite() => (AIM * accuracy / bound).clamp(NEXT, AIM),
+                Some(accuracy) if bound.is_finite() && bound > 0.0 => (AIM * accuracy / bound).clamp(NEXT, AIM),
                 _ => NEXT,
             };
             let met = goal.is_met_by(certificate);

@@ -155,10 +155,11 @@ impl Factored {
             let moved = self.expand(&step.loading, step.unit, &step.outcome.displacement);
             let displacement: Vec<f64> = displacement.iter().zip(&moved).map(|(u, d)| u + d).collect();
             let multiplier = self.expand_multiplier(&step.outcome.multiplier, step.unit);
-            let certificate = self.certificate(problem, &displacement, &multiplier, &settings.watch)?;
-            let (before, after) = (solution.certificate.worst().1, certificate.worst().1);
-            if after.is_nan() || after > GAIN * before || (solution.certificate.has_bound() && !certificate.has_bound())
-            {
+            let norm = self.norm_within(&settings.watch.finishing());
+            let (displacement, examined) =
+                self.examined(problem, norm.as_ref(), (displacement, &multiplier), settings)?;
+            let certificate = examined.certificate;
+            if !certificate.improves_on(&solution.certificate, GAIN) {
                 break;
             }
             solution.contact_set = self.expand_set(&step.outcome.contact_set);

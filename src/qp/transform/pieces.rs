@@ -36,6 +36,11 @@ impl Pieces {
         self.dofs.len()
     }
 
+    /// The dof of the whole that is number `dof` of a piece; the first for a piece without dofs.
+    pub fn dof(&self, piece: usize, dof: usize) -> usize {
+        self.dofs[piece].get(dof).copied().unwrap_or(0)
+    }
+
     /// One piece of `problem`.
     ///
     /// # Errors

@@ -1,0 +1,151 @@
+//! From a bound on the error to the numbers that decide: relative to the energy norm of each part, or to the forces on a part
+//! that rests.
+
+use super::bound::ErrorBound;
+use super::scales::{OfPart, Scales, larger, relative};
+use crate::solution::Certificate;
+
+/// An error up to this multiple of `eps sqrt(|u|'|K||u|)` is what rounding u to doubles does: half a unit in the last place of
+/// each entry, once for the rounding of u and once for the rounding of the bound.
+const AS_ROUNDED: f64 = f64::EPSILON;
+
+/// An error of a part that rests is rounding of its forces up to this multiple of these forces and of the loss of the factor.
+const FORCES_ROUNDED: f64 = f64::EPSILON;
+
+/// Relative error of sums with twice the working precision stays below this share of their terms: no bound is smaller.
+const LEAST: f64 = 1e-28;
+
+/// Rounding of an energy computed with twice the working precision, as a share of its terms.
+const OF_ENERGY: f64 = 1e-31;
+
+impl OfPart {
+    /// The part of the energy norm that is certain: a body that moves far and does not bend has only energy from rounding of
+    /// its terms.
+    pub fn certain_norm(&self) -> f64 {
+        (self.strain - OF_ENERGY * self.terms).max(0.0).sqrt()
+    }
+
+    /// What rounding the displacement to doubles does to its energy norm.
+    fn rounding(&self) -> f64 {
+        AS_ROUNDED * self.terms.sqrt()
+    }
+
+    /// The bound with the rounding of sums in twice the working precision.
+    fn widened(&self, error: f64) -> f64 {
+        error + LEAST * self.terms.sqrt()
+    }
+
+    /// Returns `true` if an error of a part without displacement is rounding of its forces, in a factor that amplifies rounding
+    /// by `loss`.
+    fn is_rest(&self, error: f64, loss: f64) -> bool {
+        !self.moves && error <= FORCES_ROUNDED * loss * self.force_squares.sqrt()
+    }
+}
+
+/// The numbers that decide, gathered over the whole and the parts.
+#[derive(Default)]
+struct Worst {
+    relative: f64,
+    excess: f64,
+    part: Option<usize>,
+    resting: usize,
+    of_rest: f64,
+}
+
+impl Worst {
+    /// Takes in an error of a part, or of the whole, that moves.
+    fn moving(&mut self, error: f64, of: &OfPart, part: Option<usize>) {
+        let share = relative(error, of.certain_norm());
+        self.relative = larger(share, self.relative);
+        let excess = if error <= of.rounding() { 0.0 } else { share };
+        if self.part.is_none() || excess.is_nan() || excess > self.excess {
+            self.part = part;
+        }
+        self.excess = larger(excess, self.excess);
+    }
+}
+
+impl Certificate {
+    /// Takes in a bound on the error of an answer with this `strain` u'K u, in a norm whose factor amplifies rounding by `loss`.
+    /// Returns the part that is farthest from its goal, or `None` if that is the whole.
+    pub(super) fn take_in(&mut self, bound: &ErrorBound, scales: &Scales, strain: f64, loss: f64) -> Option<usize> {
+        let parts = &scales.of_parts;
+        let whole = OfPart {
+            is_stiff: true,
+            moves: parts.iter().any(|part| part.moves),
+            strain,
+            terms: parts.iter().map(|part| part.terms).sum(),
+            force: parts.iter().fold(0.0, |largest, part| larger(part.force, largest)),
+            force_squares: parts.iter().map(|part| part.force_squares).sum(),
+        };
+        let mut worst = Worst::default();
+        let of_parts = bound.of_parts.as_deref().unwrap_or(std::slice::from_ref(&bound.whole));
+        let each = if of_parts.len() == parts.len() { &parts[..] } else { std::slice::from_ref(&whole) };
+        for (number, (of, &error)) in each.iter().zip(of_parts).enumerate().filter(|(_, (of, _))| of.is_stiff) {
+            let error = of.widened(error);
+            if of.is_rest(error, loss) {
+                worst.resting += 1;
+                worst.of_rest = larger(relative(error, of.force), worst.of_rest);
+            } else {
+                worst.moving(error, of, Some(number));
+            }
+        }
+        let error = whole.widened(bound.whole);
+        self.energy_error = error;
+        self.energy_error_bound = relative(error, whole.certain_norm());
+        // A part that rests has no relative error, so that the whole has none beside it.
+        if worst.resting == 0 {
+            worst.moving(error, &whole, None);
+        }
+        (self.part_error_bound, self.energy_error_excess) = (worst.relative, worst.excess);
+        (self.parts_at_rest, self.rest_error) = (worst.resting, worst.of_rest);
+        self.at_rest = worst.resting > 0 && worst.resting == each.iter().filter(|of| of.is_stiff).count();
+        self.met_tolerance = self.reached_without_excuse();
+        worst.part
+    }
+
+    /// The certificate with the bounds of pieces without coupling, for a whole with this energy `norm`.
+    pub(super) fn with_bounds_of(self, pieces: &[Certificate], norm: f64) -> Self {
+        let largest = |of: fn(&Certificate) -> f64| pieces.iter().fold(0.0, |worst, piece| larger(of(piece), worst));
+        let energy_error = pieces.iter().map(|piece| piece.energy_error.powi(2)).sum::<f64>().sqrt();
+        let energy_error_bound = relative(energy_error, norm);
+        let parts_at_rest = pieces.iter().map(|piece| piece.parts_at_rest).sum();
+        let of_whole = if parts_at_rest == 0 { energy_error_bound } else { 0.0 };
+        let farthest = |a: &&Certificate, b: &&Certificate| a.energy_error_excess.total_cmp(&b.energy_error_excess);
+        let mut whole = Certificate {
+            energy_error,
+            energy_error_bound,
+            part_error_bound: larger(of_whole, largest(|piece| piece.part_error_bound)),
+            energy_error_excess: largest(|piece| piece.energy_error_excess),
+            at_rest: !pieces.is_empty() && pieces.iter().all(|piece| piece.at_rest),
+            parts_at_rest,
+            rest_error: largest(|piece| piece.rest_error),
+            bound_is_measured: pieces.iter().any(|piece| piece.bound_is_measured),
+            cancellation: pieces.iter().max_by(farthest).map_or(self.cancellation, |piece| piece.cancellation),
+            ..self
+        };
+        whole.met_tolerance = whole.reached_without_excuse();
+        whole
+    }
+
+    /// The tolerance that is met without the excuse of rounding or, if none is, with it.
+    fn reached_without_excuse(&self) -> f64 {
+        match self.penetration.max(self.part_error_bound) {
+            _ if self.adhesion != 0.0 => f64::INFINITY,
+            met if met.is_finite() => met,
+            _ => self.reached(),
+        }
+    }
+}
+
+impl Scales {
+    /// The parts that move in the answer, with an error so large that they may rest in the exact one.
+    pub fn may_rest(&self, bound: &ErrorBound) -> Vec<usize> {
+        let errors = bound.of_parts.as_deref().unwrap_or(std::slice::from_ref(&bound.whole));
+        let may_rest = |of: &OfPart, error: f64| {
+            of.moves && error.is_finite() && error >= of.certain_norm() && error > of.rounding()
+        };
+        let each = self.of_parts.iter().zip(errors).enumerate();
+        each.filter(|(_, (of, error))| may_rest(of, **error)).map(|(part, _)| part).collect()
+    }
+}
