@@ -352,7 +352,7 @@ fn cancelled(solution: &Solution, tolerance: f64) -> String {
     let mut words = if reached < 1.0 { format!("; certified to {reached:.1e}") } else { String::new() };
     let Cancellation { dof, forces, left } = certificate.cancellation;
     let digits = certificate.cancellation.digits_left();
-    let is_balanced = certificate.backward_error < BALANCED && certificate.has_bound();
+    let is_balanced = certificate.conditions_hold(BALANCED) && certificate.has_bound();
     if is_balanced && digits < -tolerance.log10() {
         words += &format!(
             ": forces of {forces:.1e} cancel down to {left:.1e} at dof {dof} (from 0); doubles hold 16 digits of the one and \
@@ -362,7 +362,7 @@ fn cancelled(solution: &Solution, tolerance: f64) -> String {
     words
 }
 
-/// An answer whose data need no larger change than this, entry by entry, is as exact as its method could make it.
+/// An answer whose conditions hold to this is as exact as its method could make it.
 const BALANCED: f64 = 1e-12;
 
 /// The cause of lost digits and the remedy, if the stiffness has a pivot near rounding.

@@ -83,7 +83,7 @@ pub use qp::{
     SparseMatrix, Start, SymmetricMatrix, solve, solve_qp,
 };
 pub use scene::{Model, Scene};
-pub use solution::{Attempt, Cancellation, Certificate, ContactSet, Goal, Iteration, Met, ProvenSet, Seconds, Solution};
+pub use solution::{Attempt, Certificate, ContactSet, Goal, Iteration, ProvenSet, Seconds, Solution};
 pub use watch::Watch;
 
 /// Internals for the tests and tools of this crate; they may change at any time.

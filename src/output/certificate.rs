@@ -52,6 +52,10 @@ fn notes(certificate: &Certificate) -> Vec<String> {
         let moving = if resting > 0 { "that move " } else { "" };
         notes.push(format!("of {} parts {moving}the largest error is at most {worst:.1e}", parts - resting));
     }
+    if certificate.loose_dofs > 0 {
+        let loose = "dofs without stiffness and force: the energy error does not see where they are";
+        notes.push(format!("{} {loose}", certificate.loose_dofs));
+    }
     if !certificate.has_bound() {
         let unknown = "no error bound: the conditions alone do not bound the error of the displacement";
         notes.push(unknown.to_string());

@@ -36,8 +36,13 @@ pub(super) fn judged(solution: Solution, goal: Goal) -> Result<Solution, Error> 
     if goal.is_met_by(&solution.certificate) {
         return Ok(solution);
     }
+    Err(fallen_short(solution, goal))
+}
+
+/// The error of a solution that is not certified, with the condition that decides.
+pub(super) fn fallen_short(solution: Solution, goal: Goal) -> Error {
     let (condition, value, tolerance) = solution.certificate.decisive(goal.required());
-    Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance })
+    Error::NotCertified { solution: Box::new(solution), condition, value, tolerance }
 }
 
 /// The same ending with `change` applied to its solution, also to one that falls short.

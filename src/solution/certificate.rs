@@ -8,7 +8,7 @@ use serde::{Serialize, Serializer};
 /// Significant digits that a double holds.
 const DIGITS_OF_DOUBLES: f64 = 16.0;
 
-/// What can be said of an answer (u, lambda), recomputed from the original problem by
+/// The conditions of an answer (u, lambda) and a bound on its error, recomputed from the original problem by
 /// [`ContactProblem::certify`](crate::ContactProblem::certify), independently of the method.
 ///
 /// Every measure is taken in its own scale, and no force is in the scale of the error. A *part* is a connected component of K
@@ -21,21 +21,22 @@ const DIGITS_OF_DOUBLES: f64 = 16.0;
 ///
 /// Residuals `r = f + B' lambda - K u` and distances `B u - g` are summed with twice the working precision.
 ///
-/// An answer is certified to a tolerance T if no row pulls, `penetration <= T`, and for the whole and every part that moves
-/// `E_p <= T N_p`, or E_p is no more than rounding u to doubles does: `eps sqrt(|u_p|'|K||u_p|)`. A part *rests* if its
-/// displacement is zero: no relative error exists then, and E_p must be rounding of the forces that are in balance on it.
+/// An answer is certified to a tolerance T if no row pulls, its other conditions hold to T, and for the whole and every part
+/// that moves `E_p <= T N_p`, or E_p is no more than rounding u to doubles does: `eps sqrt(|u_p|'|K||u_p|)`. A part *rests* if
+/// its displacement is zero: no relative error exists then, and E_p must be rounding of the forces that are in balance on it.
 ///
 /// | field | formula, the largest over all dofs, rows or parts | decides |
 /// |---|---|---|
 /// | `energy_error` | E, infinite if no bound is known | |
-/// | `energy_error_bound` | `E / N` | yes |
-/// | `part_error_bound` | `E_p / N_p` of the whole and of each part that moves | yes |
-/// | `penetration` | `(B u - g)_i+ / max(abs(B_i) abs(u), abs(g_i), b_i N_p)` | yes |
-/// | `adhesion` | `abs(B_ij) (lambda_i)_+ / t_j` | yes: it must be zero |
+/// | `energy_error_bound` | `E / N` | of u |
+/// | `part_error_bound` | `E_p / N_p` of the whole and of each part that moves | of u |
+/// | `penetration` | `(B u - g)_i+ / d_i`, with `d_i = max(abs(B_i) abs(u), abs(g_i), b_i N_p)` | of u |
+/// | `adhesion` | `abs(B_ij) (lambda_i)_+ / t_j` | of lambda: it must be zero |
+/// | `imbalance` | `abs(r_j) / sqrt(K_jj)` above rounding, relative to the largest `t_k / sqrt(K_kk)` of the part | of lambda |
+/// | `open_force` | the smaller of `abs(B_ij lambda_i) / t_j` and `(g - B u)_i+ / d_i` | of lambda |
 /// | `stationarity` | `abs(r_j) / t_j` | no |
 /// | `complementarity` | `abs(lambda_i (B u - g)_i) / N^2` | no |
 /// | `duality_gap` | `abs(u'Ku - f'u - lambda'g) / N^2` | no |
-/// | `backward_error` | largest of stationarity, penetration, adhesion, and a force that acts over an open distance | no |
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Certificate {
     /// Imbalance of forces, as a share of its terms. It explains an error and does not bound it.
@@ -48,9 +49,10 @@ pub struct Certificate {
     pub complementarity: f64,
     /// Difference of the primal and the dual energy, relative to twice the strain energy; infinite for a body at rest.
     pub duality_gap: f64,
-    /// The answer is exact for data that are changed by about this share, entry by entry. It does not bound the error.
-    #[serde(skip)]
-    pub backward_error: f64,
+    /// Imbalance of forces, relative to the largest force on the part: the error of the multipliers, which E does not bound.
+    pub imbalance: f64,
+    /// Relative force over a relative open distance, the smaller of the two: a row that presses without touching.
+    pub open_force: f64,
     /// Upper bound E on the error of the displacement in the energy norm, in the square root of the problem's unit of energy;
     /// infinite if none is known.
     pub energy_error: f64,
@@ -65,19 +67,23 @@ pub struct Certificate {
     pub met_tolerance: f64,
     /// The way in which it meets the goal that it was judged by; `None` if it does not, or was not judged yet.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub met: Option<Met>,
+    pub(crate) met: Option<Met>,
     /// `true` if all parts with a stiffness rest: no relative error exists.
     pub at_rest: bool,
     /// Number of connected components of K and B, of which each has its own scale.
     pub parts: usize,
-    /// Number of parts that rest.
+    /// Parts, of all these, without any displacement.
     pub parts_at_rest: usize,
+    /// Number of dofs without stiffness, load and contact force: the energy does not see where they are. Only without a factor of
+    /// K itself.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub loose_dofs: usize,
     /// The largest `E_p / F_p` over the parts that rest; F_p is the largest `|F_i| / sqrt(K_ii)` over the loads, contact forces
     /// and couplings on the part: the energy norm that they could give a single dof.
     pub rest_error: f64,
-    /// The dof at which most digits cancel in the balance of forces.
+    /// The place at which most digits cancel in the balance of forces.
     #[serde(flatten)]
-    pub cancellation: Cancellation,
+    pub(crate) cancellation: Cancellation,
     /// `true` if the bound uses a measured eigenvalue, because K was not factorised: half the least Ritz value of K with its
     /// multigrid cycle.
     #[serde(skip_serializing_if = "Not::not")]
@@ -87,7 +93,7 @@ pub struct Certificate {
 /// The way in which an answer meets its goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Met {
+pub(crate) enum Met {
     /// Its error is at most the tolerance.
     Tolerance,
     /// Its error is at most what rounding the displacement to doubles does, which is more than the tolerance.
@@ -96,7 +102,7 @@ pub enum Met {
 
 /// The dof at which loads and contact forces cancel most digits of what is left for the elastic force.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cancellation {
+pub(crate) struct Cancellation {
     /// The dof, from 0.
     pub dof: usize,
     /// `(|B|'|lambda| + |f|)_i`, the forces that cancel, in the problem's unit of force.
@@ -123,7 +129,30 @@ impl Serialize for Cancellation {
     }
 }
 
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
 impl Certificate {
+    /// The dof, from 0, at which loads and contact forces cancel most digits of the elastic force.
+    pub fn worst_dof(&self) -> usize {
+        self.cancellation.dof
+    }
+
+    /// Digits of the elastic force that doubles can hold at that dof, from 0 to 16.
+    pub fn digits_left(&self) -> f64 {
+        self.cancellation.digits_left()
+    }
+
+    /// `tolerance` if the answer meets the goal that it was judged by with its error, `rounding` if its error is more than that, but
+    /// no more than rounding the displacement to doubles does; `None` if it does not meet the goal.
+    pub fn met(&self) -> Option<&'static str> {
+        self.met.map(|met| match met {
+            Met::Tolerance => "tolerance",
+            Met::Rounding => "rounding",
+        })
+    }
+
     /// The conditions with their names, in the order of the fields.
     pub fn conditions(&self) -> [(&'static str, f64); 5] {
         [
@@ -140,55 +169,66 @@ impl Certificate {
         self.energy_error.is_finite()
     }
 
-    /// Returns `true` if the answer is exact for data that are changed by the share `tolerance`, entry by entry. This says
-    /// nothing about the error of the displacement.
-    pub fn conditions_hold(&self, tolerance: f64) -> bool {
-        self.backward_error <= tolerance
+    /// The conditions that decide, beside the bound on the error, with their names.
+    fn deciding(&self) -> [(&'static str, f64); 4] {
+        [
+            ("imbalance", self.imbalance),
+            ("penetration", self.penetration),
+            ("adhesion", self.adhesion),
+            ("open_force", self.open_force),
+        ]
     }
 
-    /// Returns `true` if the answer is certified to `tolerance`: no row pulls, no row is violated by more than `tolerance`, and
-    /// the error of the whole and of every part that moves is at most `tolerance`, or explained by rounding the displacement to
-    /// double precision.
+    /// Returns the worst of the numbers that decide, with its name; NaN is the worst of all. The bound on the error counts if
+    /// there is one and it is more than rounding.
+    pub fn worst(&self) -> (&'static str, f64) {
+        let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
+        let is_of_part = self.part_error_bound > self.energy_error_bound || self.parts_at_rest > 0;
+        let name = if is_of_part { "energy_error_bound of a part" } else { "energy_error_bound" };
+        let bound = self.has_bound().then_some((name, self.energy_error_excess));
+        let all = bound.into_iter().chain(self.deciding());
+        all.max_by(|a, b| rank(a.1).total_cmp(&rank(b.1))).unwrap_or(("imbalance", 0.0))
+    }
+
+    /// Returns `true` if all conditions hold to `tolerance`. This says nothing about the error of the displacement.
+    pub fn conditions_hold(&self, tolerance: f64) -> bool {
+        self.deciding().iter().all(|&(_, value)| value <= tolerance)
+    }
+
+    /// Returns `true` if the answer is certified to `tolerance`: no row pulls, all conditions hold to `tolerance`, and the error
+    /// of the whole and of every part that moves is at most `tolerance`, or explained by rounding the displacement to double
+    /// precision.
     pub fn meets(&self, tolerance: f64) -> bool {
         self.adhesion == 0.0
-            && self.penetration <= tolerance
+            && self.conditions_hold(tolerance)
             && self.has_bound()
             && self.energy_error_excess <= tolerance
     }
 
     /// The condition that decides whether the answer is certified, its value, and the value allowed for it.
     pub fn decisive(&self, tolerance: f64) -> (&'static str, f64, f64) {
-        let excess = self.energy_error_excess;
-        match self.part_error_bound > self.energy_error_bound {
+        match self.worst() {
             _ if self.adhesion != 0.0 => ("adhesion", self.adhesion, 0.0),
-            _ if !self.has_bound() => ("energy_error_bound, of which none is known,", f64::INFINITY, tolerance),
-            _ if self.penetration.is_nan() || self.penetration > excess => {
-                ("penetration", self.penetration, tolerance)
+            _ if self.conditions_hold(tolerance) && !self.has_bound() => {
+                ("energy_error_bound, of which none is known,", f64::INFINITY, tolerance)
             }
-            true => ("energy_error_bound of a part", excess, tolerance),
-            false => ("energy_error_bound", excess, tolerance),
+            (condition, value) => (condition, value, tolerance),
         }
     }
 
     /// The smallest tolerance to which the answer is certified; infinite if there is none.
     pub fn reached(&self) -> f64 {
-        let reached = self.penetration.max(self.energy_error_excess);
+        let (_, reached) = self.worst();
         if self.meets(reached) { reached } else { f64::INFINITY }
     }
 
     /// Returns `true` if this certificate falls short by less than `share` of what `before` falls short by. One with a bound is
-    /// better than one without; without a bound, the backward error is compared.
+    /// better than one without.
     pub(crate) fn improves_on(&self, before: &Certificate, share: f64) -> bool {
-        match (self.has_bound(), before.has_bound()) {
-            (true, true) => self.shortfall() < share * before.shortfall(),
-            (false, false) => self.backward_error < share * before.backward_error,
-            (has_bound, _) => has_bound,
+        match self.has_bound() == before.has_bound() {
+            true => self.worst().1 < share * before.worst().1,
+            false => self.has_bound(),
         }
-    }
-
-    /// The largest of the numbers that decide.
-    fn shortfall(&self) -> f64 {
-        self.penetration.max(self.adhesion).max(self.energy_error_excess)
     }
 
     /// The certificate judged by `goal`.

@@ -5,7 +5,8 @@
 mod certificate;
 mod contact_set;
 
-pub use certificate::{Cancellation, Certificate, Goal, Met};
+pub(crate) use certificate::{Cancellation, Met};
+pub use certificate::{Certificate, Goal};
 pub use contact_set::ContactSet;
 
 use serde::ser::SerializeStruct;

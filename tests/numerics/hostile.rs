@@ -216,10 +216,12 @@ fn cases() -> Vec<(String, Dense, Ending)> {
 /// double precision are first scaled to order one by powers of two.
 fn check(name: &str, dense: &Dense, solution: &Solution) {
     let size = |values: &[f64]| values.iter().filter(|v| v.is_finite()).fold(0.0, |size: f64, v| size.max(v.abs()));
-    let (k, length) = (size(dense.stiffness.as_slice()), size(&solution.displacement).max(f64::MIN_POSITIVE));
+    let (k, moved) = (size(dense.stiffness.as_slice()), size(&solution.displacement));
     if k == 0.0 || dense.load.is_empty() {
         return;
     }
+    // A body at rest has the displacement that its loads would cause as its scale.
+    let length = if moved > 0.0 { moved } else { (size(dense.load.as_slice()) / k).max(f64::MIN_POSITIVE) };
     let to_one =
         |value: f64| if value == 0.0 { 1.0 } else { 2.0_f64.powi(value.log2().floor().clamp(-1000.0, 1000.0) as i32) };
     let (k, length) = (to_one(k), to_one(length));

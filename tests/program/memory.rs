@@ -112,7 +112,7 @@ fn a_limit_of_memory_tries_methods_that_fit_and_names_those_that_failed() {
                 assert!(factor > allowed);
                 assert_eq!(multigrid > allowed, ended.is_none());
                 if let Some(ended) = ended {
-                    assert!(ended.starts_with("stationarity is "), "{ended}");
+                    assert!(ended.starts_with("imbalance is "), "{ended}");
                     refused_after_multigrid += 1;
                 }
             }

@@ -4,12 +4,17 @@ use super::EnergyNorm;
 use super::bound::{Answer, ErrorBound, Measured};
 use super::scales::{OfPart, Scales, larger, relative};
 use super::units::Units;
+use super::verdict::FORCES_ROUNDED;
 use crate::error::Error;
 use crate::qp::linear::Accumulator;
 use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::problem::ContactProblem;
 use crate::solution::{Cancellation, Certificate};
 use crate::watch::Watch;
+
+/// Rounding moves an entry of u or lambda by half a unit in the last place: once for the rounding and once for the arithmetic
+/// that made the entry, their sum is excused.
+const ENTRY_ROUNDING: f64 = f64::EPSILON;
 
 /// The means by which the error is bounded in energy.
 #[derive(Clone, Copy)]
@@ -207,27 +212,31 @@ impl ContactProblem {
         }
         let length = |row: usize| {
             let of_part = scales.norm[scales.part_of_row(row)] * scales.reach[row];
-            larger(lengths[row], larger(self.gap[row].abs(), of_part))
+            let gap = if self.gap[row].is_finite() { self.gap[row].abs() } else { 0.0 };
+            larger(lengths[row], larger(gap, of_part))
         };
         let rows = || (0..self.rows()).filter(|&row| self.gap[row].is_finite() || lambda[row] != 0.0);
         // A row without obstacle carries no multiplier.
         let work = |row: usize| if lambda[row] == 0.0 { 0.0 } else { lambda[row] * violation[row] };
-        let over_distance = |row: usize| match lambda[row] != 0.0 && violation[row] < 0.0 {
-            true => shares_of_rows[row].min(relative(violation[row].abs(), length(row))),
-            false => 0.0,
-        };
         let stationarity = worst((0..u.len()).map(|dof| share(dof, residual[dof])));
-        let penetration = worst(rows().map(|row| relative(violation[row].max(0.0), length(row))));
+        // Rounding of u moves a row, and a part that rests is known only to the rounding of its forces.
+        let is_rounding = |row: usize| {
+            let rest = scales.rest_of_row(row, |of| FORCES_ROUNDED * of.force_squares.sqrt());
+            violation[row].abs() <= ENTRY_ROUNDING * lengths[row] + rest
+        };
+        let distance = |row: usize| if is_rounding(row) { 0.0 } else { relative(violation[row], length(row)) };
+        let penetration = worst(rows().map(|row| distance(row).max(0.0)));
         let adhesion = worst(rows().filter(|&row| lambda[row] > 0.0).map(|row| shares_of_rows[row]));
         let gap = u.iter().zip(&residual).map(|(u, r)| -u * r).chain(rows().map(work)).sum::<f64>();
-        let open_force = worst(rows().map(over_distance));
         let mut certificate = Certificate {
             stationarity,
             penetration,
             adhesion,
             complementarity: relative(worst(rows().map(work)), strain.max(0.0)),
             duality_gap: relative(gap.abs(), strain.max(0.0)),
-            backward_error: worst([stationarity, penetration, adhesion, open_force]),
+            imbalance: self.imbalance(&residual, |dof| terms[dof] + forces[dof]),
+            loose_dofs: if let Bounding::Factor(norm) = bounding { norm.loose_dofs() } else { 0 },
+            open_force: worst(rows().map(|row| shares_of_rows[row].min((-distance(row)).max(0.0)))),
             energy_error: f64::INFINITY,
             energy_error_bound: f64::INFINITY,
             part_error_bound: f64::INFINITY,
@@ -256,6 +265,25 @@ impl ContactProblem {
         let has_bound = !matches!(bounding, Bounding::Nothing);
         let evidence = has_bound.then(|| Evidence { residual, violation, error: bound.whole, measured });
         Examined { certificate, evidence, may_rest: scales.may_rest(&bound) }
+    }
+
+    /// The largest imbalance of forces above rounding, relative to the largest of the forces that balance on the part; on a dof without
+    /// stiffness, to those on the dof.
+    fn imbalance(&self, residual: &[f64], terms: impl Fn(usize) -> f64) -> f64 {
+        let (parts, roots) = (self.parts(), &self.diagonal().roots);
+        let (mut left, mut largest, mut without_stiffness) = (vec![0.0; parts.count()], vec![0.0; parts.count()], 0.0);
+        for (dof, &root) in roots.iter().enumerate() {
+            let (part, terms) = (parts.of_dof(dof), terms(dof));
+            let excess = if residual[dof].abs() <= ENTRY_ROUNDING * terms { 0.0 } else { residual[dof].abs() };
+            if root > 0.0 {
+                left[part] = larger(excess / root, left[part]);
+                largest[part] = larger(terms / root, largest[part]);
+            } else {
+                without_stiffness = larger(relative(excess, terms), without_stiffness);
+            }
+        }
+        let of_parts = left.iter().zip(&largest).map(|(&left, &largest)| relative(left, largest));
+        larger(without_stiffness, worst(of_parts))
     }
 
     /// The dof of a part, or of all, at which the `forces` lose most digits to what is left as elastic force.
@@ -353,17 +381,16 @@ mod tests {
     }
 
     #[test]
-    fn the_error_of_an_answer_is_its_bound_in_the_unit_of_energy() {
+    fn the_energy_error_is_in_the_unit_of_energy_and_relative_to_the_energy_norm() {
         let problem = parts();
-        let mut answer = solve(&problem, &Settings::default()).unwrap();
+        let answer = solve(&problem, &Settings::default()).unwrap();
         assert_eq!((&answer.displacement[..], &answer.multiplier[..]), (&[1.0, 2.0][..], &[-4.0, -16.0][..]));
-        assert!(problem.error_of(&answer) < ROUNDED);
+        assert!(answer.certificate.energy_error < ROUNDED);
         // The first dof is off by 3e-3, of stiffness 4; the second by 2e-3, of stiffness 16.
-        answer.displacement = vec![1.003, 2.002];
-        answer.certificate = problem.certify(&answer.displacement, &answer.multiplier).unwrap();
-        assert!((problem.error_of(&answer) / 1e-2 - 1.0).abs() < ROUNDED, "{:e}", problem.error_of(&answer));
-        answer.certificate.energy_error_bound = 0.0;
-        assert_eq!(problem.error_of(&answer), 0.0);
+        let certificate = problem.certify(&[1.003, 2.002], &answer.multiplier).unwrap();
+        assert!((certificate.energy_error / 1e-2 - 1.0).abs() < ROUNDED, "{certificate:?}");
+        let norm = (4.0 * 1.003_f64.powi(2) + 16.0 * 2.002_f64.powi(2)).sqrt();
+        assert!((certificate.energy_error_bound * norm / 1e-2 - 1.0).abs() < ROUNDED, "{certificate:?}");
     }
 
     #[test]
@@ -371,16 +398,81 @@ mod tests {
         let problem = parts();
         let (u, lambda) = ([1.0, 2.0], [-4.0, -16.0]);
         let mut pieces = [0; 2].map(|_| problem.certify(&u, &lambda).unwrap());
+        (pieces[0].energy_error, pieces[1].energy_error) = (3e-3, 4e-3);
         (pieces[0].part_error_bound, pieces[1].part_error_bound) = (0.25, 7.0);
         (pieces[0].energy_error_excess, pieces[1].energy_error_excess) = (5.0, 0.5);
-        let whole = problem.certify_pieces(&pieces, &[3e-3, 4e-3], &u, &lambda).unwrap();
+        pieces[0].cancellation.dof = 1;
+        let whole = problem.certify_pieces(&pieces, &u, &lambda).unwrap();
         // The energy norm is sqrt(4 1^2 + 16 2^2).
         let bound = 5e-3 / 68_f64.sqrt();
         assert!((whole.energy_error_bound / bound - 1.0).abs() < ROUNDED, "{whole:?}");
         assert_eq!((whole.part_error_bound, whole.energy_error_excess, whole.bound_is_measured), (7.0, 5.0, false));
+        assert_eq!((whole.met_tolerance, whole.cancellation.dof), (7.0, 1));
         pieces[1].bound_is_measured = true;
         (pieces[0].part_error_bound, pieces[1].part_error_bound) = (0.0, 0.0);
-        let whole = problem.certify_pieces(&pieces, &[3e-3, 4e-3], &u, &lambda).unwrap();
+        let whole = problem.certify_pieces(&pieces, &u, &lambda).unwrap();
         assert!(whole.bound_is_measured && whole.part_error_bound == whole.energy_error_bound, "{whole:?}");
+        // Beside a part at rest the whole has no relative error, only the part that moves.
+        pieces[0].parts_at_rest = 1;
+        pieces[1].part_error_bound = 1e-11;
+        let whole = problem.certify_pieces(&pieces, &u, &lambda).unwrap();
+        assert_eq!((whole.part_error_bound, whole.parts_at_rest, whole.at_rest), (1e-11, 1, false));
+    }
+
+    #[test]
+    fn a_load_on_the_wall_is_no_scale_of_the_error_beside_it() {
+        let matrix = |entries: &[(usize, usize, f64)]| SparseMatrix::from_triplets(2, 2, entries).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(matrix(&[(0, 0, 1.0), (1, 0, -0.5), (1, 1, 1.0)])).unwrap();
+        let wall = SparseMatrix::from_triplets(1, 2, &[(0, 0, 1.0)]).unwrap();
+        let problem = ContactProblem::new(stiffness, vec![1e9, 1.0], wall, vec![1.0]).unwrap();
+        // At the wall the second dof is at 3/2; an answer with 0 there is wrong by sqrt(9/4).
+        let wrong = problem.certify(&[1.0, 0.0], &[-(1e9 - 1.0)]).unwrap();
+        assert!(!wrong.meets(1.0) && wrong.energy_error >= 1.5 && wrong.energy_error_bound >= 1.5, "{wrong:?}");
+        let right = problem.certify(&[1.0, 1.5], &[-(1e9 - 0.25)]).unwrap();
+        assert!(right.meets(1e-9) && right.cancellation.dof == 0, "{right:?}");
+        // 2e9 cancel down to a quarter.
+        assert!((right.cancellation.digits_left() - (16.0 - 8e9_f64.log10())).abs() < ROUNDED, "{right:?}");
+    }
+
+    #[test]
+    fn a_part_at_rest_is_certified_by_its_forces_and_any_displacement_of_it_is_not() {
+        let matrix = |entries: &[(usize, usize, f64)]| SparseMatrix::from_triplets(2, 2, entries).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(matrix(&[(0, 0, 4.0), (1, 1, 16.0)])).unwrap();
+        let walls = matrix(&[(0, 0, 1.0), (1, 1, 1.0)]);
+        let problem = ContactProblem::new(stiffness, vec![0.3, 48.0], walls, vec![0.0, 2.0]).unwrap();
+        let rests = problem.certify(&[0.0, 2.0], &[-0.3, -16.0]).unwrap();
+        assert!(rests.meets(1e-12) && !rests.at_rest, "{rests:?}");
+        assert_eq!((rests.parts, rests.parts_at_rest), (2, 1));
+        // The bound is that of the displacement; a wrong force is seen in the balance.
+        let off = problem.certify(&[0.0, 2.0], &[-0.3 * (1.0 - 1e-6), -16.0]).unwrap();
+        assert!(off.meets(1e-6) && !off.meets(1e-7) && off.parts_at_rest == 1, "{off:?}");
+        // The first part rests; a displacement of 1e-17 is wrong by all of it.
+        let moved = problem.certify(&[-1e-17, 2.0], &[-0.3, -16.0]).unwrap();
+        assert!(!moved.meets(0.5) && moved.parts_at_rest == 0, "{moved:?}");
+        let found = solve(&problem, &Settings::default()).unwrap();
+        assert_eq!((found.displacement[0], found.certificate.parts_at_rest), (0.0, 1));
+    }
+
+    #[test]
+    fn a_row_that_pulls_is_never_certified() {
+        let problem = parts();
+        let pulled = problem.certify(&[2.0, 3.0], &[1e-20, 0.0]).unwrap();
+        assert!(!pulled.meets(1e9) && pulled.met_tolerance.is_infinite(), "{pulled:?}");
+        assert_eq!(pulled.decisive(1e-9).0, "adhesion");
+    }
+
+    #[test]
+    fn dofs_without_stiffness_or_force_out_of_balance_do_not_hide_the_bound() {
+        // A dof of stiffness 4 under a force of 8 before a wall at 1, and a loose dof between two walls without clearance.
+        let stiffness = SparseMatrix::from_triplets(2, 2, &[(0, 0, 4.0)]).unwrap();
+        let rows = SparseMatrix::from_triplets(3, 2, &[(0, 0, 1.0), (1, 1, 1.0), (2, 1, -1.0)]).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(stiffness).unwrap();
+        let problem = ContactProblem::new(stiffness, vec![8.0, 0.0], rows, vec![1.0, 0.0, 0.0]).unwrap();
+        let right = problem.certify(&[1.0, 0.0], &[-4.0, 0.0, 0.0]).unwrap();
+        assert!(right.meets(1e-12), "{right:?}");
+        let off = problem.certify(&[0.75, 0.0], &[-5.0, 0.0, 0.0]).unwrap();
+        assert!((off.energy_error / 0.5 - 1.0).abs() < ROUNDED, "{off:?}");
+        // A force on the loose dof that no row takes has no bound, and neither has one that rows take with another force.
+        assert!(!problem.certify(&[1.0, 0.0], &[-4.0, -1e-30, 0.0]).unwrap().has_bound());
     }
 }

@@ -50,7 +50,7 @@ pub(crate) struct EnergyNorm {
     watch: Watch,
 }
 
-/// Dofs without stiffness, on which no force is out of balance. The energy does not see them: they have a stiffness of one here, on
+/// Dofs without stiffness, load and contact force. The energy does not see them: in the norm they have a stiffness of one, on
 /// which no force may act.
 #[derive(Clone, Debug)]
 pub(super) struct Loose {
@@ -203,9 +203,9 @@ impl EnergyNorm {
         EnergyNorm { loose: Some(Arc::new(loose)), ..self }
     }
 
-    /// Returns `true` if some dofs have no stiffness: the energy does not see where they are.
-    pub(super) fn has_loose_dofs(&self) -> bool {
-        self.loose.is_some()
+    /// Number of dofs without stiffness that the energy does not see.
+    pub(super) fn loose_dofs(&self) -> usize {
+        self.loose.as_ref().map_or(0, |loose| loose.dofs.len())
     }
 
     /// Returns `true` if a row acts on a dof without stiffness.

@@ -53,7 +53,7 @@ impl ContactProblem {
             let (problem, norm) = (self.in_units(&units).ok()?, units.norm(norm));
             return problem.prove_in(&norm, &units.displacement(displacement), &units.force(multiplier), None);
         }
-        if norm.has_loose_dofs() {
+        if norm.loose_dofs() > 0 {
             return None;
         }
         let rows = self.rows();

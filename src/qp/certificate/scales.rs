@@ -80,6 +80,13 @@ impl Scales {
     pub fn part_of_row(&self, row: usize) -> usize {
         self.part_of_row[row]
     }
+
+    /// The distance by which an error in the energy norm, of a part that rests, could move a single dof of a row; zero for a
+    /// part that moves.
+    pub fn rest_of_row(&self, row: usize, error: impl Fn(&OfPart) -> f64) -> f64 {
+        let part = &self.of_parts[self.part_of_row[row]];
+        if part.moves || !part.is_stiff { 0.0 } else { self.reach[row] * error(part) }
+    }
 }
 
 impl ContactProblem {

@@ -36,11 +36,17 @@ impl Springs {
         residual.iter().zip(contact.mul_transposed(&pull)).map(|(r, spring)| r + spring).collect()
     }
 
-    /// Returns `true` if every spring is on a row at its gap and the force mu of the row exceeds twice the force that `left(row)`,
-    /// the dual norm of the forces left over on its part and of their rounding, could take off.
-    pub fn hold(&self, multiplier: &[f64], at_gap: &[bool], left: impl Fn(usize) -> f64) -> bool {
+    /// Returns `true` if every spring is on a row at its gap and the force mu of the row exceeds its possible error: `rounding`
+    /// of each row, and twice the force that `left(row)`, the dual norm of the forces left over on its part, could take off.
+    pub fn hold(
+        &self,
+        multiplier: &[f64],
+        at_gap: &[bool],
+        rounding: impl Fn(usize) -> f64,
+        left: impl Fn(usize) -> f64,
+    ) -> bool {
         let is_held = |(row, (&stiffness, (&mu, &at_gap))): (usize, (&f64, (&f64, &bool)))| {
-            stiffness == 0.0 || (at_gap && -mu > 2.0 * stiffness.sqrt() * left(row))
+            stiffness == 0.0 || (at_gap && -mu > rounding(row) + 2.0 * stiffness.sqrt() * left(row))
         };
         self.stiffness.iter().zip(multiplier.iter().zip(at_gap)).enumerate().all(is_held)
     }

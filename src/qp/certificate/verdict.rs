@@ -10,7 +10,7 @@ use crate::solution::Certificate;
 const AS_ROUNDED: f64 = f64::EPSILON;
 
 /// An error of a part that rests is rounding of its forces up to this multiple of these forces and of the loss of the factor.
-const FORCES_ROUNDED: f64 = f64::EPSILON;
+pub(super) const FORCES_ROUNDED: f64 = f64::EPSILON;
 
 /// Relative error of sums with twice the working precision stays below this share of their terms: no bound is smaller.
 const LEAST: f64 = 1e-28;
@@ -130,7 +130,7 @@ impl Certificate {
 
     /// The tolerance that is met without the excuse of rounding or, if none is, with it.
     fn reached_without_excuse(&self) -> f64 {
-        match self.penetration.max(self.part_error_bound) {
+        match self.imbalance.max(self.penetration).max(self.open_force).max(self.part_error_bound) {
             _ if self.adhesion != 0.0 => f64::INFINITY,
             met if met.is_finite() => met,
             _ => self.reached(),

@@ -23,15 +23,14 @@ impl Factored {
         let goal = settings.goal();
         let solution = self.whole(&found, settings)?;
         let mut best = (found, solution);
-        if goal.is_met_by(&best.1.certificate) {
-            return Ok(best);
-        }
-        let (_, miss, _) = best.1.certificate.decisive(goal.required());
-        let other = self.second_attempt(&best.0, settings)?;
-        if let Some(other) = other.filter(|_| self.resolved(settings).allows_last_resort(miss)) {
-            let solution = self.whole(&other, settings)?;
-            if solution.certificate.improves_on(&best.1.certificate, 1.0) {
-                best = (other, solution);
+        if !goal.is_met_by(&best.1.certificate) {
+            let (_, miss, _) = best.1.certificate.decisive(goal.required());
+            let other = self.second_attempt(&best.0, settings)?;
+            if let Some(other) = other.filter(|_| self.resolved(settings).allows_last_resort(miss)) {
+                let solution = self.whole(&other, settings)?;
+                if solution.certificate.improves_on(&best.1.certificate, 1.0) {
+                    best = (other, solution);
+                }
             }
         }
         let (found, solution) = best;

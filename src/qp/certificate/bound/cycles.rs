@@ -57,7 +57,7 @@ impl ContactProblem {
         let of_rows = if are_apart { self.parts_of_rows(parts) } else { vec![0; self.rows()] };
         // Every row that presses is put at its gap below.
         let at_gap = vec![true; self.rows()];
-        if springs.is_some_and(|springs| !springs.hold(answer.multiplier, &at_gap, |row| left[of_rows[row]])) {
+        if springs.is_some_and(|springs| !springs.hold(answer.multiplier, &at_gap, |_| 0.0, |row| left[of_rows[row]])) {
             return (ErrorBound::none(), None);
         }
         let of_residual = left.iter().map(|left| left * left).sum::<f64>().sqrt();

@@ -29,7 +29,7 @@ use super::EnergyNorm;
 use super::energy_norm::Loose;
 use super::springs::Springs;
 use crate::error::Error;
-use crate::qp::linear::SparseMatrix;
+use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 use crate::qp::problem::{ContactProblem, Parts};
 
 /// An answer (u, lambda) and what its certificate has computed for it.
@@ -211,9 +211,9 @@ impl ContactProblem {
 const PRESSING: f64 = 1e-8;
 
 impl ContactProblem {
-    /// The energy norm of K; if K is semidefinite, that of K without the dofs that have neither stiffness nor a force out of
-    /// balance, or of K with springs on the rows that press. `None` if these do not hold the body, or if K has a negative
-    /// eigenvalue, which springs would hide.
+    /// The energy norm of K; if K is semidefinite, that of K with springs on the rows that press, without the dofs that have
+    /// neither stiffness nor a force. `None` if the springs do not hold the body, or if K has a negative eigenvalue, which
+    /// springs would hide.
     ///
     /// # Errors
     /// As [`EnergyNorm::of`].
@@ -221,36 +221,46 @@ impl ContactProblem {
         if let Some(norm) = EnergyNorm::of(&self.stiffness, &self.contact)? {
             return Ok(Some(norm));
         }
-        if let Some(loose) = self.loose_dofs(displacement, multiplier) {
-            let entries: Vec<_> = loose.dofs.iter().enumerate().map(|(row, &dof)| (row, dof, 1.0)).collect();
-            let rows = SparseMatrix::from_triplets(entries.len(), self.dofs(), &entries)?;
-            let held = self.stiffness.plus_squares(&rows, &vec![1.0; entries.len()])?;
-            if let Some(norm) = EnergyNorm::of(&held, &self.contact)? {
-                return Ok(Some(norm.with_loose(loose)));
-            }
-        }
+        let Some(loose) = self.loose_dofs(multiplier) else {
+            return self.energy_norm_with_springs(&self.stiffness, displacement, multiplier);
+        };
+        let entries: Vec<_> = loose.dofs.iter().enumerate().map(|(row, &dof)| (row, dof, 1.0)).collect();
+        let rows = SparseMatrix::from_triplets(entries.len(), self.dofs(), &entries)?;
+        let held = self.stiffness.plus_squares(&rows, &vec![1.0; entries.len()])?;
+        let norm = match EnergyNorm::of(&held, &self.contact)? {
+            Some(norm) => Some(norm),
+            None => self.energy_norm_with_springs(&held, displacement, multiplier)?,
+        };
+        Ok(norm.map(|norm| norm.with_loose(loose)))
+    }
+
+    /// The energy norm of a semidefinite `stiffness` with springs on the rows that press.
+    fn energy_norm_with_springs(
+        &self,
+        stiffness: &SymmetricMatrix,
+        displacement: &[f64],
+        multiplier: &[f64],
+    ) -> Result<Option<EnergyNorm>, Error> {
         let springs = self.springs(displacement, multiplier);
-        let Some(held) = springs.added_to(&self.stiffness, &self.contact)? else { return Ok(None) };
+        let Some(held) = springs.added_to(stiffness, &self.contact)? else { return Ok(None) };
         let Some(norm) = EnergyNorm::of(&held, &self.contact)? else { return Ok(None) };
         Ok(self.stiffness.is_semidefinite()?.then(|| norm.with_springs(springs)))
     }
 
-    /// The dofs without stiffness, if there are some and the forces on all of them are exactly in balance.
-    fn loose_dofs(&self, displacement: &[f64], multiplier: &[f64]) -> Option<Loose> {
-        let is_loose: Vec<bool> = self.diagonal().values.iter().map(|&stiffness| stiffness == 0.0).collect();
-        let dofs: Vec<usize> = (0..self.dofs()).filter(|&dof| is_loose[dof]).collect();
-        let residual = self.accurate_residual(displacement, multiplier);
-        if dofs.is_empty() || dofs.iter().any(|&dof| residual[dof] != 0.0) {
-            return None;
-        }
+    /// The dofs without stiffness on which neither a load nor a row acts, if there are some.
+    fn loose_dofs(&self, multiplier: &[f64]) -> Option<Loose> {
+        let mut is_loose: Vec<bool> =
+            self.diagonal().values.iter().zip(&self.load).map(|(&stiffness, &f)| stiffness == 0.0 && f == 0.0).collect();
         // A coupling on a diagonal of zero has negative energy.
-        let is_coupled = |(row, column, value): (usize, usize, f64)| value != 0.0 && (is_loose[row] || is_loose[column]);
-        if self.stiffness.lower().triplets().any(is_coupled) {
-            return None;
+        for (row, column, _) in self.stiffness.lower().triplets().filter(|entry| entry.2 != 0.0) {
+            (is_loose[row], is_loose[column]) = (false, false);
         }
+        let acting = self.contact.triplets().filter(|&(row, _, b)| b != 0.0 && multiplier[row] != 0.0);
+        acting.for_each(|(_, dof, _)| is_loose[dof] = false);
+        let dofs: Vec<usize> = (0..self.dofs()).filter(|&dof| is_loose[dof]).collect();
         let mut rows = vec![false; self.rows()];
         self.contact.triplets().filter(|&(_, dof, b)| b != 0.0 && is_loose[dof]).for_each(|(row, ..)| rows[row] = true);
-        Some(Loose { dofs, rows })
+        (!dofs.is_empty()).then_some(Loose { dofs, rows })
     }
 
     /// Springs on the rows that press, each as stiff as the row itself if only its own dofs move.
@@ -284,7 +294,6 @@ impl ContactProblem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
     /// Two dofs of stiffness 4 and 16 that nothing couples, and one without stiffness; a row `3 u_0 + 5 u_1 <= 1` and one of zeros.
     fn apart() -> ContactProblem {

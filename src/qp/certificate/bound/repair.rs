@@ -164,9 +164,13 @@ impl<'a> Repair<'a> {
         let Witness { error, left, multiplier, closed, rest, .. } = witness;
         let of_left = self.length(left);
         let springs = self.norm.springs();
-        // A force that only rounding leaves on a row holds nothing.
-        let doubtful = || of_left + self.cancelled(witness);
-        if springs.is_some_and(|springs| !springs.hold(&self.expanded(multiplier), closed, |_| doubtful())) {
+        // A force that is the rounding of changes of the answer's force holds nothing.
+        let terms = |row: usize| self.multiplier[row].abs() + error.terms[row] + left.terms[row];
+        let rounding: Vec<f64> = (0..rest.len()).map(|row| CANCELLED * terms(row)).collect();
+        let rounding = self.expanded(&rounding);
+        if springs.is_some_and(|springs| {
+            !springs.hold(&self.expanded(multiplier), closed, |row| rounding[row], |_| of_left)
+        }) {
             return ErrorBound::none();
         }
         if (0..rest.len()).any(|row| error.terms[row] + left.terms[row] > 0.0 && self.norm.is_on_loose_dof(row)) {
