@@ -23,8 +23,8 @@ from ranks import PETSc, fetch, generic, larger
 ENTRY_ROUNDING = np.finfo(float).eps
 """Rounding of u and lambda changes a sum by up to this share of its terms."""
 
-AT_REST = 1e-6
-"""A body is at rest if its energy norm is below this share of the largest energy norm that its forces give to one dof."""
+DIGITS_OF_DOUBLES = 16.0
+"""Significant digits that a double holds."""
 
 ROUNDED_BOUND = 1.0 + 1e-6
 """Factor that covers the rounding of the bound itself."""
@@ -49,14 +49,25 @@ CHUNK = 20_000
 """Number of rows that are summed at once in extended precision."""
 
 
-def certify(problem, bounds, hierarchy, u, multiplier, tolerance):
-    """Returns the conditions and the bound as a dictionary, whether all hold to `tolerance`, and the number of cycles."""
+def certify(problem, bounds, hierarchy, u, multiplier, tolerance, rests=False):
+    """Returns the conditions and the bound as a dictionary, whether all hold to `tolerance`, and the number of cycles.
+
+    With `rests`, a part is put at rest in `u` if its error may be as large as its displacement.
+    """
     answer = Answer(problem, u, multiplier)
     numbers = answer.conditions()
-    bound, cycles = answer.bound(bounds, hierarchy)
-    numbers |= answer.judged(*bound)
-    held = ("stationarity_excess", "penetration", "adhesion", "complementarity", "duality_gap", "energy_error_excess")
-    is_certified = all(numbers[name] <= tolerance for name in held) and np.isfinite(bound[0])
+    bound, cycles, ritz = answer.bound(bounds, hierarchy)
+    judged, may_rest = answer.judged(*bound, 1.0 / min(ritz, 1.0))
+    numbers |= judged
+    held = ("imbalance", "penetration", "open_force", "energy_error_excess")
+    is_certified = all(numbers[name] <= tolerance for name in held) and numbers["adhesion"] == 0.0 and np.isfinite(bound[0])
+    if rests and not is_certified and may_rest.any():
+        u.array[may_rest[answer.part]] = 0.0
+        return certify(problem, bounds, hierarchy, u, multiplier, tolerance)
+    deciding = max(numbers["part_error_bound"], numbers["imbalance"], numbers["penetration"], numbers["open_force"])
+    numbers["met_tolerance"] = deciding if numbers["adhesion"] == 0.0 else np.inf
+    if is_certified:
+        numbers["met"] = "tolerance" if numbers["part_error_bound"] <= tolerance else "rounding"
     return numbers, is_certified, cycles
 
 
@@ -143,48 +154,57 @@ class Answer:
             problem.parts = Parts(problem, *stiffness[:2])
         del stiffness
         self.residual = (self.load - forces + contact).astype(float)
-        self._scale(np.asarray(own_u * forces, dtype=float), np.where(limited, self.gap, 0.0) * force)
+        self.elastic = np.abs(forces).astype(float)
+        self.forces = self.contact_terms + np.abs(self.load)
+        self.total = self.terms + self.forces
+        total = problem.load.duplicate()
+        total.array[:] = self.total
+        self.share_of_row = np.zeros(count)
+        np.maximum.at(self.share_of_row, row_of, relative(np.abs(values * force[row_of]), at_columns(total, columns)))
+        self._scale(np.asarray(own_u * forces, dtype=float))
 
-    def _scale(self, strain, gap_work):
-        """The size, force and energy of each part, from the strain energy of the places and the work of the gaps."""
+    def _scale(self, strain):
+        """The size and force of each part, from the strain energy of the places."""
         parts = self.parts = self.problem.parts
         self.part, self.part_of_row = parts.of_place, parts.of_rows(self.problem)
-        self.strain, self.rounding, load_work, gap_work = parts.sums(
-            (strain, self.part), (np.abs(self.u.array_r) * self.terms, self.part),
-            (self.u.array_r * self.load, self.part), (gap_work, self.part_of_row))
         self.softness = 1.0 / np.sqrt(self.diagonal)
-        largest = np.maximum(np.abs(self.load), np.abs(self.contact)) * self.softness
-        self.force = parts.largest(largest, self.part)
+        self.strain, self.rounding, squares = parts.sums(
+            (strain, self.part), (np.abs(self.u.array_r) * self.terms, self.part),
+            ((self.forces * self.softness) ** 2, self.part))
+        self.force, self.force_root = parts.largest(self.forces * self.softness, self.part), np.sqrt(squares)
+        self.moves = parts.largest(self.u.array_r, self.part) > 0.0
         self.norm = np.sqrt(np.maximum(self.strain, 0.0))
-        self.size = np.maximum(self.norm, AT_REST * self.force)
-        self.energy = np.maximum.reduce((self.norm**2 / 2.0, np.abs(load_work), np.abs(gap_work),
-                                         AT_REST * self.force**2 / 2.0))
 
     def conditions(self):
-        force = self.multiplier.array_r
-        is_rounding = np.abs(self.residual) <= ENTRY_ROUNDING * (self.terms + self.contact_terms)
-        excess = np.where(is_rounding, 0.0, self.residual)
-        explained = (force == 0.0) | (np.abs(self.violation) <= ENTRY_ROUNDING * self.lengths)
-        work = np.where(explained, 0.0, force * np.where(np.isfinite(self.violation), self.violation, -np.inf))
-        work = np.where(force == 0.0, 0.0, work)
+        force, counts, of_row = self.multiplier.array_r, self.counts, self.part_of_row
+        excess = np.where(np.abs(self.residual) <= ENTRY_ROUNDING * self.total, 0.0, self.residual)
         gap = np.where(self.gap < NO_LIMIT, np.abs(self.gap), 0.0)
-        scale = np.maximum.reduce((self.lengths, gap, self.size[self.part_of_row] * self.reach))
-        depth = np.maximum(self.violation, 0.0)
-        penetration = np.divide(depth, scale, out=np.where(depth > 0.0, np.inf, 0.0), where=scale > 0.0)
-        parts, counts = self.parts, self.counts
-        pull = np.maximum(force, 0.0) * self.reach
-        gaps = parts.sums((-self.u.array_r * excess, self.part), (work, self.part_of_row)).sum(axis=0)
+        length = np.maximum.reduce((self.lengths, gap, self.norm[of_row] * self.reach))
+        # A part that rests is known only to the rounding of its forces.
+        rest = np.where(self.moves, 0.0, ENTRY_ROUNDING * self.force_root)[of_row] * self.reach
+        distance = np.where(np.abs(self.violation) <= ENTRY_ROUNDING * self.lengths + rest, 0.0, self.violation)
+        depth, opening = relative(np.maximum(distance, 0.0), length), relative(np.maximum(-distance, 0.0), length)
+        work = np.where(force == 0.0, 0.0, force * np.where(force == 0.0, 0.0, self.violation))
+        gaps = self.parts.sums((-self.u.array_r * self.residual, self.part), (work, of_row)).sum()
+        strain = max(self.strain.sum(), 0.0)
+        parts = self.parts
+        of_parts = parts.largest(excess * self.softness, self.part), parts.largest(self.total * self.softness, self.part)
+
+        def most(values):
+            return float(self.ranks.max(larger(values)))
+
         return {
-            "stationarity": worst(parts.largest(self.residual * self.softness, self.part), self.force),
-            "stationarity_excess": worst(parts.largest(excess * self.softness, self.part), self.force),
-            "penetration": float(self.ranks.max(larger(penetration[counts]))),
-            "adhesion": worst(parts.largest(pull[counts], self.part_of_row[counts]), self.force),
-            "complementarity": worst(parts.largest(work[counts], self.part_of_row[counts]), self.energy),
-            "duality_gap": worst(np.abs(gaps), self.energy),
+            "stationarity": most(relative(np.abs(self.residual), self.total)),
+            "penetration": most(depth[counts]),
+            "adhesion": most(np.where(force > 0.0, self.share_of_row, 0.0)[counts]),
+            "complementarity": worst(most(np.abs(work[counts])), strain),
+            "duality_gap": worst(abs(gaps), strain),
+            "imbalance": worst(*of_parts),
+            "open_force": most(np.minimum(opening, self.share_of_row)[counts]),
         }
 
     def bound(self, bounds, hierarchy):
-        """Returns upper bounds on |u - u*|_K, of the whole and of each part, and the number of cycles.
+        """Returns upper bounds on |u - u*|_K, of the whole and of each part, the number of cycles, and the least Ritz value.
 
         The bounds are infinite if none is found.
         """
@@ -205,20 +225,20 @@ class Answer:
         if hierarchy.coarsest.is_singular:
             looked = LOOKED
             if not is_semidefinite(bounds, hierarchy):
-                return nothing, looked
+                return nothing, looked, 1.0
             springs = self._springs()
             product = self._product_with(springs, bounds)
-        dual, cycles = dual_norm(self.parts, product, hierarchy, residual, self.diagonal)
+        dual, cycles, ritz = dual_norm(self.parts, product, hierarchy, residual, self.diagonal)
         left = ROUNDED_BOUND * dual
         if springs is not None:
-            fails = (springs > 0.0) & ~(-force >= 2.0 * np.sqrt(springs) * np.sqrt((left**2).sum()))
+            fails = (springs > 0.0) & ~(-force > 2.0 * np.sqrt(springs) * np.sqrt((left**2).sum()))
             if not np.all(np.isfinite(left)) or self.ranks.max(float(fails.any())) > 0.0 \
                     or self.ranks.max(larger(springs)) == 0.0:
-                return nothing, looked + cycles
+                return nothing, looked + cycles, ritz
         touching = (self.violation > 0.0) | ((force < 0.0) & (self.violation != 0.0))
         lengths = self.along[touching] * np.abs(self.violation[touching])
         moved = 2.0 * ROUNDED_BOUND * self.parts.sums((lengths, self.part_of_row[touching]))[0]
-        return (moved.sum() + np.sqrt((left**2).sum()), moved + left), looked + cycles
+        return (moved.sum() + np.sqrt((left**2).sum()), moved + left), looked + cycles, ritz
 
     def _springs(self):
         """Returns a spring for each pressing row: its stiffness when all dofs outside the row are fixed."""
@@ -242,17 +262,40 @@ class Answer:
 
         return product
 
-    def judged(self, whole, of_parts):
-        """Returns the bounds relative to the energy norms. A bound that rounding of u explains has no excess."""
+    def judged(self, whole, of_parts, loss):
+        """Returns the bounds relative to the energy norms, and for each part whether it may rest.
+
+        A bound that rounding of u explains has no excess. A part without displacement rests if its bound is the rounding of its
+        forces, amplified by `loss`: it has no relative error, and the whole has none beside it.
+        """
         strain, rounding = np.r_[self.strain.sum(), self.strain], np.r_[self.rounding.sum(), self.rounding]
-        force = np.r_[self.force.max(), self.force]
-        sure = np.maximum(strain - OF_ENERGY * rounding, 0.0)
-        size = np.maximum(np.sqrt(sure), AT_REST * force)
+        certain = np.sqrt(np.maximum(strain - OF_ENERGY * rounding, 0.0))
         error = np.r_[whole, of_parts] + LEAST * np.sqrt(rounding)
-        share = relative(error, size)
-        excess = np.where(error <= ENTRY_ROUNDING * np.sqrt(rounding), 0.0, share)
-        return {"energy_error_bound": float(share[0]), "part_error_bound": float(share.max()),
-                "energy_error_excess": float(excess.max()), "bound_is_measured": True, "parts": self.parts.count}
+        share, explained = relative(error, certain), error <= ENTRY_ROUNDING * np.sqrt(rounding)
+        rests = ~self.moves & (error[1:] <= ENTRY_ROUNDING * loss * self.force_root)
+        counts = np.r_[not rests.any(), ~rests]
+        excess = np.where(counts & ~explained, share, 0.0)
+        may_rest = self.moves & np.isfinite(error[1:]) & (error[1:] >= certain[1:]) & ~explained[1:]
+        farthest = int(np.argmax(excess))
+        return {"energy_error": float(error[0]), "energy_error_bound": float(share[0]),
+                "part_error_bound": float(np.where(counts, share, 0.0).max()),
+                "energy_error_excess": float(excess.max()), "at_rest": bool(rests.all()),
+                "rest_error": float(np.where(rests, relative(error[1:], self.force), 0.0).max()),
+                "bound_is_measured": True, "parts": self.parts.count, "parts_at_rest": int(rests.sum()),
+                **self._cancellation(None if farthest == 0 else farthest - 1)}, may_rest
+
+    def _cancellation(self, part):
+        """The free dof of a part, or of all, at which loads and contact forces cancel most digits, and the digits left."""
+        order = self.problem.on_free(self.problem.load)
+        order.array[:] = np.arange(*order.getOwnershipRange())
+        number = self.problem.on_places(order).array_r
+        lost = relative(self.forces, self.elastic)
+        lost[~self.problem.is_free | (self.forces == 0.0) | ((self.part != part) if part is not None else False)] = -1.0
+        own = int(np.argmax(lost)) if len(lost) else 0
+        table = self.ranks.gather(np.array([lost[own], number[own]] if len(lost) else [-1.0, 0.0]))
+        share, dof = table[int(np.argmax(table[:, 0]))]
+        digits = DIGITS_OF_DOUBLES - (np.log10(share) if share > 1.0 else 0.0)
+        return {"worst_dof": int(dof), "digits_left": float(max(digits, 0.0))}
 
 
 def is_semidefinite(bounds, hierarchy):
@@ -277,7 +320,7 @@ def is_semidefinite(bounds, hierarchy):
 
 
 def dual_norm(parts, product, hierarchy, force, diagonal):
-    """Returns upper bounds on sqrt(r_p' K^-1 r_p) of each part p, and the number of cycles.
+    """Returns upper bounds on sqrt(r_p' K^-1 r_p) of each part p, the number of cycles, and the least Ritz value.
 
     The bounds are infinite if the Ritz value does not converge. The conjugate gradients work on the forces of all parts at
     once, scaled to the same size: otherwise the Ritz value would not see the parts with small forces.
@@ -297,14 +340,14 @@ def dual_norm(parts, product, hierarchy, force, diagonal):
             (solution.array_r * (force.array_r + rest.array_r), part), (rest.array_r * step.array_r, part),
             (step.array_r * moved.array_r, part), (np.abs(rest.array_r), part))
         if left.sum() == 0.0:
-            return sizes * np.sqrt(np.maximum(known, 0.0)), cycles - 1
+            return sizes * np.sqrt(np.maximum(known, 0.0)), cycles - 1, ritz
         if p is None:
             p = step.copy()
         else:
             earlier, ritz = ritz, least_eigenvalue(lengths, shares)
             unknown = in_cycle / (SAFETY * ritz)
             if unknown.sum() <= REST_SHARE * known.sum() and ritz >= (1.0 - SETTLED_RITZ) * earlier:
-                return sizes * np.sqrt(np.maximum(known + unknown, 0.0)), cycles
+                return sizes * np.sqrt(np.maximum(known + unknown, 0.0)), cycles, ritz
             shares.append(-along.sum() / energy)
             p.aypx(shares[-1], step)
         product(p, moved)
@@ -314,7 +357,7 @@ def dual_norm(parts, product, hierarchy, force, diagonal):
         lengths.append(work / energy)
         solution.axpy(lengths[-1], p)
         rest.axpy(-lengths[-1], moved)
-    return np.full(parts.count, np.inf), cycles
+    return np.full(parts.count, np.inf), cycles, ritz
 
 
 def least_eigenvalue(lengths, shares):

@@ -87,7 +87,7 @@ def run(ranks, options):
         mprgp.check_held(iterate, hierarchy, progress.settled)
         before = time.perf_counter()
         u, multiplier = bounds.turned_back(iterate.x), bounds.multipliers(iterate.split()[0])
-        numbers, is_certified, looked = certificate.certify(problem, bounds, hierarchy, u, multiplier, options.tolerance)
+        numbers, is_certified, looked = certificate.certify(problem, bounds, hierarchy, u, multiplier, options.tolerance, rests=True)
         judging += time.perf_counter() - before
         tolerance *= NEXT
         if is_certified or not progress.settled or tolerance < LEAST or cycles >= options.most_cycles:

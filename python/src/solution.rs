@@ -187,7 +187,7 @@ pub struct Certificate {
 
 #[pymethods]
 impl Certificate {
-    /// Relative residual of equilibrium, K u - f - B' multiplier = 0.
+    /// Residual of equilibrium, K u - f - B' multiplier = 0, at each dof relative to its own terms. It does not decide.
     #[getter]
     fn stationarity(&self) -> f64 {
         self.inner.stationarity
@@ -199,31 +199,85 @@ impl Certificate {
         self.inner.penetration
     }
 
-    /// Relative size of the multipliers of the wrong sign: an obstacle would pull on the body.
+    /// Relative size of the multipliers of the wrong sign: an obstacle would pull on the body. It must be zero.
     #[getter]
     fn adhesion(&self) -> f64 {
         self.inner.adhesion
     }
 
-    /// Relative size of the products of contact force and open distance, which must be zero.
+    /// Products of contact force and open distance, relative to twice the strain energy. It does not decide.
     #[getter]
     fn complementarity(&self) -> f64 {
         self.inner.complementarity
     }
 
-    /// Relative difference of the primal and the dual energy.
+    /// Difference of the primal and the dual energy, relative to twice the strain energy. It does not decide.
     #[getter]
     fn duality_gap(&self) -> f64 {
         self.inner.duality_gap
     }
 
-    /// Upper bound on the relative error of u in the energy norm; inf if none is known.
+    /// Residual of equilibrium above rounding, relative to the largest force on the part.
+    #[getter]
+    fn imbalance(&self) -> f64 {
+        self.inner.imbalance
+    }
+
+    /// Relative force of a row over its relative open distance, the smaller of the two.
+    #[getter]
+    fn open_force(&self) -> f64 {
+        self.inner.open_force
+    }
+
+    /// Upper bound on the error of u in the energy norm, in the square root of the problem's unit of energy; inf if none is known.
+    #[getter]
+    fn energy_error(&self) -> f64 {
+        self.inner.energy_error
+    }
+
+    /// Upper bound on the relative error of u in the energy norm; inf if none is known, or for a body at rest.
     #[getter]
     fn energy_error_bound(&self) -> f64 {
         self.inner.energy_error_bound
     }
 
-    /// Largest error bound over the whole problem and over each of its uncoupled parts.
+    /// The tolerance that is met without the excuse of rounding or, if none is, with it; inf if none is met.
+    #[getter]
+    fn met_tolerance(&self) -> f64 {
+        self.inner.met_tolerance
+    }
+
+    /// 'tolerance' or 'rounding', the way in which the goal is met; None if it is not.
+    #[getter]
+    fn met(&self) -> Option<&'static str> {
+        self.inner.met()
+    }
+
+    /// True if no part moves: there is no relative error, and `rest_error` bounds the error.
+    #[getter]
+    fn at_rest(&self) -> bool {
+        self.inner.at_rest
+    }
+
+    /// Largest error bound of a part at rest, relative to what the forces on it could do to a single dof.
+    #[getter]
+    fn rest_error(&self) -> f64 {
+        self.inner.rest_error
+    }
+
+    /// The dof, from 0, at which loads and contact forces cancel most digits of the elastic force.
+    #[getter]
+    fn worst_dof(&self) -> usize {
+        self.inner.worst_dof()
+    }
+
+    /// Digits of the elastic force that doubles can hold at that dof, from 0 to 16.
+    #[getter]
+    fn digits_left(&self) -> f64 {
+        self.inner.digits_left()
+    }
+
+    /// Largest error bound over the whole problem and over each of its uncoupled parts that moves.
     #[getter]
     fn part_error_bound(&self) -> f64 {
         self.inner.part_error_bound
@@ -235,7 +289,7 @@ impl Certificate {
         self.inner.bound_is_measured
     }
 
-    /// Name and value of the condition with the largest residual.
+    /// Name and value of the largest of the numbers that decide.
     #[getter]
     fn worst(&self) -> (&'static str, f64) {
         self.inner.worst()

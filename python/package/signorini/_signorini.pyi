@@ -146,31 +146,58 @@ class Certificate:
 
     @property
     def stationarity(self) -> float:
-        """Relative residual of equilibrium, K u - f - B' multiplier = 0."""
+        """Residual of equilibrium, K u - f - B' multiplier = 0, at each dof relative to its own terms. It does not decide."""
     @property
     def penetration(self) -> float:
         """Relative penetration into the obstacle, a violation of B u - g <= 0."""
     @property
     def adhesion(self) -> float:
-        """Relative size of the multipliers of the wrong sign: an obstacle would pull on the body."""
+        """Relative size of the multipliers of the wrong sign: an obstacle would pull on the body. It must be zero."""
     @property
     def complementarity(self) -> float:
-        """Relative size of the products of contact force and open distance, which must be zero."""
+        """Products of contact force and open distance, relative to twice the strain energy. It does not decide."""
     @property
     def duality_gap(self) -> float:
-        """Relative difference of the primal and the dual energy."""
+        """Difference of the primal and the dual energy, relative to twice the strain energy. It does not decide."""
     @property
     def energy_error_bound(self) -> float:
-        """Upper bound on the relative error of u in the energy norm; inf if none is known."""
+        """Upper bound on the relative error of u in the energy norm; inf if none is known, or for a body at rest."""
+    @property
+    def imbalance(self) -> float:
+        """Residual of equilibrium above rounding, relative to the largest force on the part."""
+    @property
+    def open_force(self) -> float:
+        """Relative force of a row over its relative open distance, the smaller of the two."""
+    @property
+    def energy_error(self) -> float:
+        """Upper bound on the error of u in the energy norm, in the square root of the problem's unit of energy; inf if none is known."""
+    @property
+    def met_tolerance(self) -> float:
+        """The tolerance that is met without the excuse of rounding or, if none is, with it; inf if none is met."""
+    @property
+    def met(self) -> str | None:
+        """'tolerance' or 'rounding', the way in which the goal is met; `None` if it is not."""
+    @property
+    def at_rest(self) -> bool:
+        """`True` if no part moves: there is no relative error, and `rest_error` bounds the error."""
+    @property
+    def rest_error(self) -> float:
+        """Largest error bound of a part at rest, relative to what the forces on it could do to a single dof."""
+    @property
+    def worst_dof(self) -> int:
+        """The dof, from 0, at which loads and contact forces cancel most digits of the elastic force."""
+    @property
+    def digits_left(self) -> float:
+        """Digits of the elastic force that doubles can hold at that dof, from 0 to 16."""
     @property
     def part_error_bound(self) -> float:
-        """Largest error bound over the whole problem and over each of its uncoupled parts."""
+        """Largest error bound over the whole problem and over each of its uncoupled parts that moves."""
     @property
     def bound_is_measured(self) -> bool:
         """`True` if the bound uses a measured eigenvalue, because K was not factorised."""
     @property
     def worst(self) -> tuple[str, float]:
-        """Name and value of the condition with the largest residual."""
+        """Name and value of the largest of the numbers that decide."""
     def meets(self, tolerance: float) -> bool:
         """Returns `True` if all conditions hold to `tolerance` and the error bound is at most `tolerance` or explained by rounding."""
     def conditions_hold(self, tolerance: float) -> bool:
