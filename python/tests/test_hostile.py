@@ -61,6 +61,16 @@ def far(form: str, name: str, index: int) -> sparse.spmatrix:
     return matrix
 
 
+class Converting:
+    """Converts itself into `result`, or into itself."""
+
+    def __init__(self, result: Any) -> None:
+        self.result = result
+
+    def to_scipy(self) -> Any:
+        return self if self.result is None else self.result
+
+
 HOSTILE: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "K none": (with_k(None), TypeError, "K is None"),
     "K text": (with_k("stiffness"), TypeError, "K is .* dtype"),
@@ -102,6 +112,8 @@ HOSTILE: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "K data of text": (with_k(damaged("csc", data=np.array(["1"] * 10))), TypeError, "data of K"),
     "K coo, lengths differ": (with_k(damaged("coo", data=np.ones(3))), ValueError, "K is no matrix: .* same length"),
     "K huge and empty": (with_k(sparse.coo_matrix((10**9, 10**9))), ValueError, "almost empty"),
+    "K converts into itself": (with_k(Converting(None)), TypeError, r"`to_scipy\(\)` returns a Converting"),
+    "K converts twice": (with_k(Converting(Converting(K))), TypeError, "must return a sparse matrix of scipy"),
     "K dictionary": (with_k({"a": 1}), TypeError, "K is"),
     "f none": (with_f(None), TypeError, "f is None"),
     "f short": (with_f(F[:-1]), ValueError, "load vector has length 3, but there are 4 dofs"),
