@@ -114,6 +114,16 @@ pub fn reals(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     with_reals(name, object, |values| copied(object.py(), values))
 }
 
+/// Copies a one-dimensional array of real numbers, which must be finite.
+pub fn finite_reals(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    let values = reals(name, object)?;
+    if let Some(entry) = values.iter().position(|value| !value.is_finite()) {
+        let sentence = format!("{name} has the value {} at entry {entry} (from 0); it must be finite", values[entry]);
+        return Err(bad_input(object.py(), sentence));
+    }
+    Ok(values)
+}
+
 /// Passes a two-dimensional array, row by row, and its shape to `take`, in place if it consists of contiguous doubles.
 pub fn with_table<T>(
     name: &str,

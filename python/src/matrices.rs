@@ -54,16 +54,32 @@ fn shape_of(name: &str, matrix: &Bound<'_, PyAny>) -> PyResult<[usize; 2]> {
 /// memory.
 const MOST_EMPTY: usize = 1_000_000;
 
+/// Returns `true` if `matrix` is none of scipy but converts itself into one without a copy, as a matrix of dolfinx does.
+fn converts_itself(matrix: &Bound<'_, PyAny>) -> PyResult<bool> {
+    Ok(!matrix.hasattr("format")? && matrix.hasattr("to_scipy")?)
+}
+
 /// Determines the form of `matrix`. A matrix with `dofs` columns may have any number of empty ones.
 fn look<'py>(name: &str, matrix: &Bound<'py, PyAny>, dofs: usize) -> PyResult<Seen<'py>> {
     let py = matrix.py();
     if matrix.is_none() {
         return Err(bad_type(py, format!("{name} is None; it must be a sparse matrix of scipy or an array of numpy")));
     }
-    // A matrix of dolfinx, for example, converts itself into one of scipy without a copy.
-    if !matrix.hasattr("format")? && matrix.hasattr("to_scipy")? {
-        return look(name, &matrix.call_method0("to_scipy")?, dofs);
-    }
+    let converted;
+    let matrix = if converts_itself(matrix)? {
+        converted = matrix.call_method0("to_scipy")?;
+        // One level only: an object may return itself.
+        if converts_itself(&converted)? {
+            let (given, returned) = (kind_of(matrix), kind_of(&converted));
+            let sentence = format!(
+                "{name} is a {given} whose `to_scipy()` returns a {returned}, which is no matrix; it must return a sparse matrix of scipy"
+            );
+            return Err(bad_type(py, sentence));
+        }
+        &converted
+    } else {
+        matrix
+    };
     let Ok(format) = matrix.getattr("format").and_then(|format| format.extract::<String>()) else {
         if matrix.hasattr("indptr")? {
             let kind = kind_of(matrix);

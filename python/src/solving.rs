@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use signorini::{ContactProblem, ContactSet, Error, Prepared, Settings, Start, Watch};
 
-use crate::arrays::{Indices, reals};
+use crate::arrays::{Indices, finite_reals};
 use crate::errors::{exception, interrupted, plain_exception};
 use crate::options::Options;
 use crate::prepared;
@@ -46,7 +46,7 @@ pub fn start_of(start: Option<&Bound<'_, PyAny>>, problem: &ContactProblem) -> P
         rows.into_iter().for_each(|row| set.insert(row));
         return Ok(Some(set.into()));
     }
-    let displacement = reals("start", start)?;
+    let displacement = finite_reals("start", start)?;
     if displacement.len() != problem.dofs() {
         let sentence =
             format!("start has length {}; the displacement has length {}", displacement.len(), problem.dofs());
@@ -174,14 +174,7 @@ pub fn verify(
     multiplier: &Bound<'_, PyAny>,
 ) -> PyResult<Certificate> {
     let (py, inner): (_, Arc<ContactProblem>) = (problem.py(), problem.get().inner.clone());
-    let (displacement, multiplier) = (reals("u", u)?, reals("multiplier", multiplier)?);
-    for (name, values) in [("u", &displacement), ("multiplier", &multiplier)] {
-        if let Some(entry) = values.iter().position(|value| !value.is_finite()) {
-            let sentence =
-                format!("{name} has the value {} at entry {entry} (from 0); it must be finite", values[entry]);
-            return Err(crate::errors::bad_input(py, sentence));
-        }
-    }
+    let (displacement, multiplier) = (finite_reals("u", u)?, finite_reals("multiplier", multiplier)?);
     let place = Place::for_problem(&inner);
     match run(py, place, move |_: &Watch| inner.certify(&displacement, &multiplier))? {
         End::Done(Ok(inner)) => Ok(Certificate { inner }),

@@ -31,6 +31,10 @@ def with_g(given: Any) -> Callable[[], Any]:
     return lambda: sg.Problem(K, F, B, given)
 
 
+def with_coordinates(given: Any) -> Callable[[], Any]:
+    return lambda: sg.Problem(K, F, B, G, coordinates=given)
+
+
 def solved(**options: Any) -> Callable[[], Any]:
     return lambda: sg.solve(two_springs(), **options)
 
@@ -59,6 +63,16 @@ def far(form: str, name: str, index: int) -> sparse.spmatrix:
     matrix = K.asformat(form).copy()
     getattr(matrix, name)[0] = index
     return matrix
+
+
+class Converting:
+    """Converts itself into `result`, or into itself."""
+
+    def __init__(self, result: Any) -> None:
+        self.result = result
+
+    def to_scipy(self) -> Any:
+        return self if self.result is None else self.result
 
 
 HOSTILE: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
@@ -102,6 +116,8 @@ HOSTILE: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "K data of text": (with_k(damaged("csc", data=np.array(["1"] * 10))), TypeError, "data of K"),
     "K coo, lengths differ": (with_k(damaged("coo", data=np.ones(3))), ValueError, "K is no matrix: .* same length"),
     "K huge and empty": (with_k(sparse.coo_matrix((10**9, 10**9))), ValueError, "almost empty"),
+    "K converts into itself": (with_k(Converting(None)), TypeError, r"`to_scipy\(\)` returns a Converting"),
+    "K converts twice": (with_k(Converting(Converting(K))), TypeError, "must return a sparse matrix of scipy"),
     "K dictionary": (with_k({"a": 1}), TypeError, "K is"),
     "f none": (with_f(None), TypeError, "f is None"),
     "f short": (with_f(F[:-1]), ValueError, "load vector has length 3, but there are 4 dofs"),
@@ -133,6 +149,8 @@ HOSTILE: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     ),
     "coordinates of another mesh": (lambda: sg.Problem(K, F, B, G, coordinates=np.ones((3, 2))), ValueError, "makes 6 dofs"),
     "coordinates in four dimensions": (lambda: sg.Problem(K, F, B, G, coordinates=np.ones((1, 4))), ValueError, "1, 2 or 3"),
+    "coordinates nan": (with_coordinates([[0.0], [np.nan], [2.0], [3.0]]), ValueError, r"coordinates has the value NaN at \(1, 0\)"),
+    "coordinates inf": (with_coordinates([[0.0, 0.0], [1.0, np.inf]]), ValueError, r"coordinates has the value inf at \(1, 1\)"),
     "method unknown": (solved(method="newton"), ValueError, "method is \"newton\"; it must be one of auto, qp"),
     "method number": (solved(method=3), TypeError, "method is of the type int"),
     "accuracy negative": (solved(accuracy=-1.0), ValueError, "accuracy is -1"),
@@ -152,6 +170,9 @@ HOSTILE: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "start of another problem": (solved(start=sg.solve(sg.Problem(K, F, B, G))), ValueError, "start has 4 dofs and 1 rows"),
     "start names a row beyond": (solved(start=np.array([5])), ValueError, "start names the row 5"),
     "start names a negative row": (solved(start=np.array([-1])), ValueError, "a negative number"),
+    "start nan": (solved(start=[0.0, np.nan]), ValueError, "start has the value NaN at entry 1"),
+    "start minus inf": (solved(start=[-np.inf, 0.0]), ValueError, "start has the value -inf at entry 0"),
+    "start of prepared nan": (lambda: sg.prepare(two_springs()).solve(start=[np.nan, 0.0]), ValueError, "NaN at entry 0"),
     "start too short": (solved(start=[0.5]), ValueError, "start has length 1"),
     "an unknown option": (solved(speed=3), TypeError, "speed"),
     "no problem": (lambda: sg.solve(K), TypeError, "Problem"),

@@ -3,7 +3,8 @@
 
 use crate::oracles::{Dense, Draws, random};
 use nalgebra::{DMatrix, DVector};
-use signorini::{Condense, Error, Method, Settings, Solution, solve};
+use signorini::internals::multigrid::NearNullSpace;
+use signorini::{Condense, ContactSet, Error, Method, Prepared, Settings, Solution, Start, solve};
 
 /// The expected ending.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -321,5 +322,48 @@ fn values_that_are_not_finite_are_refused_except_an_infinite_gap() {
         };
         let found = dense.problem().and_then(|problem| signorini::solve_qp(&problem));
         assert_eq!(found.err().map_or("", |error| error.code()), code, "case {case}");
+    }
+}
+
+/// The sentence names the entry and its value, for the methods that use a start and for those that do not.
+#[test]
+fn a_start_that_is_not_finite_or_does_not_fit_is_refused_by_every_method() {
+    let problem = node([0.3, 0.0], &[([1.0, 0.0], 0.1)]).problem().unwrap();
+    for method in [Method::Auto, Method::ActiveSet, Method::Mprgp, Method::penalty()] {
+        let prepared = Prepared::new(&problem, &Settings::with_method(method)).unwrap();
+        let refused = |start: Start| {
+            let started = prepared.starting_from(start);
+            let (whole, boundary) = (started.solve(problem.gap()), started.boundary(problem.gap()));
+            let sentence = whole.expect_err("a start that does not fit").to_string();
+            assert_eq!(boundary.expect_err("a start that does not fit").to_string(), sentence);
+            sentence
+        };
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let sentence = refused(Start::near(vec![0.0, value]));
+            let expected = format!("has the value {value} at entry 1");
+            assert!(sentence.contains(&expected), "{method:?}: {sentence}");
+        }
+        for start in [Start::near(vec![0.0; 3]), ContactSet::open(3).into()] {
+            let sentence = refused(start);
+            assert!(sentence.contains("to start from has length 3"), "{method:?}: {sentence}");
+        }
+        match prepared.starting_from(Start::near(vec![0.1, 0.0])).solve(problem.gap()) {
+            Ok(_) | Err(Error::NotCertified { .. }) => {}
+            Err(error) => panic!("{method:?}: {error}"),
+        }
+    }
+}
+
+/// On a line there is no rotation, so that no coordinate enters the near-null vectors.
+#[test]
+fn coordinates_that_are_not_finite_are_refused_in_one_two_and_three_dimensions() {
+    for dimension in 1..=3 {
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let mut axes = vec![vec![0.0, 1.0, 4.0]; dimension];
+            axes[dimension - 1][2] = value;
+            let sentence = NearNullSpace::of_nodes(&axes).expect_err("a coordinate that is not finite").to_string();
+            let expected = format!("has the value {value} at (2, {})", dimension - 1);
+            assert!(sentence.contains("coordinates") && sentence.contains(&expected), "{sentence}");
+        }
     }
 }

@@ -446,6 +446,36 @@ fn a_file_without_a_closed_surface_is_refused_with_the_place_of_the_fault() {
     }
 }
 
+/// Work that grows with the square of the number of copies would take about an hour here.
+#[test]
+fn very_many_copies_of_a_triangle_are_refused_at_the_first_edge_that_they_crowd() {
+    let copies = 500_000;
+    let cube = Triangles::cuboid([0.0; 3], [1.0; 3]);
+    let last = cube.corners[cube.corners.len() - 1];
+    let runs = |[a, b, c]: [usize; 3]| [[a, b], [b, c], [c, a]];
+    // The first triangle along an edge of the one that is copied.
+    let crowded =
+        |edge: &[usize; 2]| runs(last).iter().any(|[from, to]| edge == &[*from, *to] || edge == &[*to, *from]);
+    let of_cube = cube.corners.iter().enumerate();
+    let (triangle, edge) = of_cube
+        .flat_map(|(index, &corners)| runs(corners).map(|edge| (index, edge)))
+        .find(|(_, edge)| crowded(edge))
+        .unwrap();
+    let mut alone = cube.clone();
+    alone.corners = vec![last; copies];
+    let mut on_cube = cube.clone();
+    on_cube.corners.extend(&alone.corners);
+    for (surface, triangle, edge) in [(alone, 0, runs(last)[0]), (on_cube, triangle, edge)] {
+        let error = refusal("die.stl", &surface.binary_stl(), json!({"file": "die.stl"}));
+        let [from, to] = edge.map(|vertex| cube.vertices[vertex]);
+        let place = format!("/die.stl, byte {}:", 84 + 50 * triangle);
+        let first = format!(
+            "more than two triangles meet at an edge, so that inside and outside cannot be distinguished; the first runs from {from:?} to {to:?}"
+        );
+        assert!(error.contains(&place) && error.contains(&first), "{error:?} does not contain {place:?} and {first:?}");
+    }
+}
+
 #[test]
 fn a_surface_outside_the_folder_of_the_scene_is_read_only_if_that_is_allowed() {
     let desk = TempDir::new().unwrap();

@@ -5,10 +5,7 @@ use crate::fem::geometry::{cross, dot};
 
 /// The Jacobian of an element that is inverted or has no volume.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "the Jacobian determinant is {value:e} at its local node or quadrature point {point}; it must be positive: the \
-     element is flat, folded or turned over"
-)]
+#[error("the Jacobian determinant is {value:e} at its local node or quadrature point {point}; {}", fault(*.value))]
 pub struct NonPositiveJacobian {
     /// The smallest determinant, relative to the element's size to the power of its dimension.
     pub value: f64,
@@ -19,6 +16,16 @@ pub struct NonPositiveJacobian {
 /// Determinants below this, relative to the element's size to the power of its dimension, are rounding: the element has
 /// no volume.
 const NO_VOLUME: f64 = 1e-14;
+
+fn fault(determinant: f64) -> String {
+    match determinant > 0.0 {
+        true => format!(
+            "relative to the size of the element it must exceed {NO_VOLUME:e}, the rounding of double precision: the element is too \
+             thin for its length"
+        ),
+        false => "it must be positive: the element is flat, folded or turned over".into(),
+    }
+}
 
 /// Steps of Newton's method to the reference coordinates of a point: a straight cell takes one, a curved cell a few.
 const LOCATING_STEPS: usize = 20;

@@ -102,35 +102,43 @@ fn limits(triangle: Triangle) -> Limits {
 /// Edges with one kind of fault.
 #[derive(Clone, Copy, Debug)]
 struct Faulty {
-    /// Their number, counted once for each triangle along them.
     count: usize,
-    /// The first triangle that has one.
-    triangle: usize,
-    edge: [u32; 2],
+    first: Along,
 }
+
+/// A triangle along an edge: its number, and the corner at which its edge begins.
+type Along = (u32, usize);
 
 /// Every edge must join two triangles, in opposite directions.
 fn check_edges(facets: &Facets, around: &Around) -> Result<(), Error> {
     let [mut open, mut crowded, mut alike]: [Option<Faulty>; 3] = [None; 3];
-    for (triangle, corners) in facets.corners.iter().enumerate() {
-        for corner in 0..3 {
-            let edge = [corners[corner], corners[(corner + 1) % 3]];
-            // Look at the end with fewer triangles: the tip of a cone has very many.
-            let [from, to] = edge.map(|end| around.at(end));
-            let (mut along, mut against) = (0, 0);
-            for &other in if from.len() < to.len() { from } else { to } {
-                let other = facets.corners[other as usize];
-                let runs = |[a, b]: [u32; 2]| (0..3).any(|corner| [other[corner], other[(corner + 1) % 3]] == [a, b]);
-                along += usize::from(runs(edge));
-                against += usize::from(runs([edge[1], edge[0]]));
+    let mut edges: Vec<(u32, Along)> = Vec::new();
+    for vertex in 0..facets.vertices.len() as u32 {
+        // An edge is counted at its end with the lower number, as the other end and a triangle along it. They are sorted: the tip of a
+        // cone and copies of one triangle have very many.
+        edges.clear();
+        for &triangle in around.at(vertex) {
+            let corners = facets.corners[triangle as usize];
+            for (corner, from) in corners.into_iter().enumerate() {
+                let to = corners[(corner + 1) % 3];
+                if from.min(to) == vertex {
+                    edges.push((from.max(to), (triangle, corner)));
+                }
             }
-            let kind = match (along, against) {
+        }
+        edges.sort_unstable();
+        for of_edge in edges.chunk_by(|one, next| one.0 == next.0) {
+            let begins = |&(_, (triangle, corner)): &(u32, Along)| facets.corners[triangle as usize][corner] == vertex;
+            let away = of_edge.iter().filter(|&along| begins(along)).count();
+            let kind = match (away, of_edge.len() - away) {
                 (1, 1) => continue,
-                (1, 0) => &mut open,
-                (2, 0) => &mut alike,
+                (1, 0) | (0, 1) => &mut open,
+                (2, 0) | (0, 2) => &mut alike,
                 _ => &mut crowded,
             };
-            kind.get_or_insert(Faulty { count: 0, triangle, edge }).count += 1;
+            let first = of_edge[0].1;
+            let known = kind.get_or_insert(Faulty { count: 0, first });
+            (known.count, known.first) = (known.count + 1, known.first.min(first));
         }
     }
     let edges = |count: usize| if count == 1 { "1 edge".into() } else { format!("{count} edges") };
@@ -152,13 +160,15 @@ fn check_edges(facets: &Facets, around: &Around) -> Result<(), Error> {
             let message = format!(
                 "triangles on both sides of {} run along them in the same direction, so that one triangle faces \
                  inwards; orient all triangles alike",
-                edges(found.count / 2)
+                edges(found.count)
             );
             (found, message)
         }
         (None, None, None) => return Ok(()),
     };
-    let [from, to] = found.edge.map(|vertex| facets.vertices[vertex as usize]);
+    let (triangle, corner) = (found.first.0 as usize, found.first.1);
+    let corners = facets.corners[triangle];
+    let [from, to] = [corners[corner], corners[(corner + 1) % 3]].map(|vertex| facets.vertices[vertex as usize]);
     let message = format!("{message}; the first runs from {from:?} to {to:?} at the triangle that begins here");
-    Err(facets.fault(facets.place(found.triangle), message))
+    Err(facets.fault(facets.place(triangle), message))
 }

@@ -121,7 +121,7 @@ impl Engine for Hierarchical {
     /// The whole answer, certified.
     ///
     /// # Errors
-    /// * [`Error::Length`] and [`Error::NotFinite`] for gaps or a start that do not fit,
+    /// * [`Error::Length`] and [`Error::NotFinite`] for gaps that do not fit,
     /// * [`Error::Infeasible`] for contact rows that contradict each other,
     /// * [`Error::Numerical`] for rows that no rotation turns into bounds,
     /// * [`Error::Unbounded`] and [`Error::UnderHeld`] for a mode that nothing stops, if the method finds one,
@@ -134,9 +134,6 @@ impl Engine for Hierarchical {
         let clock = Instant::now();
         check_gap(gap, self.problem.rows())?;
         RowSelection::of(self.problem.contact(), gap)?;
-        if let Some(found) = start.displacement.as_ref().map(Vec::len).filter(|&found| found != self.problem.dofs()) {
-            return Err(Error::Length { name: "start displacement", found, expected: self.problem.dofs(), of: "dofs" });
-        }
         let problem = self.problem.with(case.load.force().to_vec(), gap.to_vec())?;
         let goal = settings.goal();
         let mut tolerance = settings.accuracy.map_or(MARGIN * settings.tolerance, |accuracy| FIRST * accuracy);

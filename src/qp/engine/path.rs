@@ -114,7 +114,7 @@ impl Prepared {
         if self.engine.factor().is_none() && settings.method == Method::Auto {
             return self.with_settings(&self.settings.clone().exactly())?.path(from, to);
         }
-        let walk = self.engine.clone().walk(&self.case(from, settings), to)?;
+        let walk = self.engine.clone().walk(&self.case(from, settings)?, to)?;
         Ok(Path { prepared: self.clone(), from: from.to_vec(), to: to.to_vec(), walk })
     }
 }

@@ -128,12 +128,12 @@ impl Prepared {
     /// Solves with these gaps, one per contact row, in m; negative if the obstacle starts inside the body.
     ///
     /// # Errors
-    /// As [`solve`](crate::solve()); [`Error::Length`] and [`Error::NotFinite`] for gaps that do not fit or, with a factor, that
-    /// are infinite in other rows than those of the problem that was prepared; [`Error::OutOfTime`] if there is no time for a
+    /// As [`solve`](crate::solve()); [`Error::Length`] and [`Error::NotFinite`] for gaps or a start that do not fit or, with a factor,
+    /// gaps that are infinite in other rows than those of the problem that was prepared; [`Error::OutOfTime`] if there is no time for a
     /// first factorisation.
     pub fn solve(&self, gap: &[f64]) -> Result<Solution, Error> {
         let settings = &self.settings.started()?;
-        let solved = self.engine.solve(&self.case(gap, settings));
+        let solved = self.engine.solve(&self.case(gap, settings)?);
         with_solution(solved, |solution| Solution { why: self.why.as_deref().cloned(), ..solution })
     }
 
@@ -154,12 +154,17 @@ impl Prepared {
     /// As [`Prepared::solve`]; the certificate of the condensed problem must meet the tolerance.
     pub fn boundary(&self, gap: &[f64]) -> Result<BoundarySolution, Error> {
         let settings = &self.settings.started()?;
-        self.engine.clone().boundary(&self.case(gap, settings))
+        self.engine.clone().boundary(&self.case(gap, settings)?)
     }
 
     /// The question to the engine at these gaps.
-    pub(super) fn case<'a>(&'a self, gap: &'a [f64], settings: &'a Settings) -> Case<'a> {
-        Case { load: &self.load, gap, start: &self.start, settings, given: &self.settings, is_bounded: true }
+    ///
+    /// # Errors
+    /// [`Error::Length`] and [`Error::NotFinite`] for a start that does not fit.
+    pub(super) fn case<'a>(&'a self, gap: &'a [f64], settings: &'a Settings) -> Result<Case<'a>, Error> {
+        let problem = self.engine.problem();
+        self.start.check(problem.dofs(), problem.rows())?;
+        Ok(Case { load: &self.load, gap, start: &self.start, settings, given: &self.settings, is_bounded: true })
     }
 }
 
@@ -225,7 +230,7 @@ impl Prepared {
     /// As [`Prepared::boundary`].
     pub(crate) fn step(&self, gap: &[f64]) -> Result<BoundarySolution, Error> {
         let settings = &self.settings.started()?;
-        let case = Case { is_bounded: settings.accuracy.is_some(), ..self.case(gap, settings) };
+        let case = Case { is_bounded: settings.accuracy.is_some(), ..self.case(gap, settings)? };
         self.engine.clone().boundary(&case)
     }
 
@@ -236,7 +241,7 @@ impl Prepared {
     /// As [`Prepared::boundary`].
     pub(crate) fn settled(&self, gap: &[f64]) -> Result<Option<Vec<f64>>, Error> {
         let settings = &self.settings.started()?;
-        self.engine.settled(&self.case(gap, settings))
+        self.engine.settled(&self.case(gap, settings)?)
     }
 
     /// The displacement that the load causes if no row is closed, in the precision of the factor; `None` without one.

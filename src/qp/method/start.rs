@@ -1,6 +1,5 @@
 //! The start of an iteration.
 
-#[cfg(feature = "cli")]
 use crate::error::Error;
 use crate::solution::{ContactSet, Solution};
 
@@ -45,12 +44,11 @@ impl Start {
         Start { displacement: Some(displacement), contact_set: Some(closed) }
     }
 
-    /// Refuses a start that does not fit a problem with this number of dofs and rows.
+    /// Refuses a start that does not fit a problem with this number of dofs and rows, or is not finite.
     ///
     /// # Errors
-    /// [`Error::Length`].
-    #[cfg(feature = "cli")]
-    pub(crate) fn check(&self, dofs: usize, rows: usize) -> Result<(), Error> {
+    /// [`Error::Length`], [`Error::NotFinite`].
+    pub(in crate::qp) fn check(&self, dofs: usize, rows: usize) -> Result<(), Error> {
         let lengths = [
             ("the displacement to start from", self.displacement.as_ref().map(Vec::len), dofs, "dofs"),
             ("the multiplier to start from", self.contact_set.as_ref().map(ContactSet::rows), rows, "contact rows"),
@@ -59,6 +57,11 @@ impl Start {
             if let Some(found) = found.filter(|&found| found != expected) {
                 return Err(Error::Length { name, found, expected, of });
             }
+        }
+        let values = self.displacement.iter().flatten();
+        if let Some((dof, &value)) = values.enumerate().find(|entry| !entry.1.is_finite()) {
+            let (name, at) = ("the displacement to start from", format!("entry {dof}"));
+            return Err(Error::NotFinite { name, at, value, allowed: "finite" });
         }
         Ok(())
     }

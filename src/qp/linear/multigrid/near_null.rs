@@ -64,7 +64,7 @@ impl NearNullSpace {
     ///
     /// # Errors
     /// As [`NearNullSpace::new`]; [`Error::Setting`] for another number of axes, [`Error::Length`] for axes that do not fit each
-    /// other.
+    /// other, [`Error::NotFinite`] for a coordinate, named by node and axis.
     pub fn of_nodes(axes: &[Vec<f64>]) -> Result<Self, Error> {
         let (dimension, nodes) = (axes.len(), axes.first().map_or(0, Vec::len));
         if !(1..=3).contains(&dimension) {
@@ -73,6 +73,12 @@ impl NearNullSpace {
         }
         if let Some(axis) = axes.iter().find(|axis| axis.len() != nodes) {
             return Err(Error::Length { name: "axis of coordinates", found: axis.len(), expected: nodes, of: "nodes" });
+        }
+        for (axis, values) in axes.iter().enumerate() {
+            if let Some((node, &value)) = values.iter().enumerate().find(|entry| !entry.1.is_finite()) {
+                let at = format!("({node}, {axis})");
+                return Err(Error::NotFinite { name: "coordinates", at, value, allowed: "finite" });
+            }
         }
         Self::new(modes(axes), dimension * nodes)
     }
