@@ -27,7 +27,9 @@ impl CertificateWords {
             Some(Met::Tolerance) if certificate.at_rest => "certified at rest, each relative:".to_string(),
             Some(Met::Tolerance) => format!("certified to {tolerance:.1e}, each relative:"),
             Some(Met::Rounding) => match certificate.met_tolerance {
-                met if met.is_finite() => format!("certified as exact as doubles can hold u: {met:.1e}, each relative:"),
+                met if met.is_finite() => {
+                    format!("certified as exact as doubles can hold u: {met:.1e}, each relative:")
+                }
                 _ => "certified as exact as doubles can hold u, each relative:".to_string(),
             },
             None => format!("NOT certified to {tolerance:.1e}, each relative:"),

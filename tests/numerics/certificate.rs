@@ -178,7 +178,8 @@ fn certificate_and_proof_do_not_depend_on_the_units() {
         assert!((error - 1.0).abs() < 1e-14, "2^{stiffness}, 2^{length}: {error}");
         assert_eq!((found.worst_dof(), found.digits_left()), (certificate.worst_dof(), certificate.digits_left()));
         let of = |certificate: &Certificate| {
-            let [stationarity, penetration, adhesion, complementarity, gap] = certificate.conditions().map(|(_, value)| value);
+            let [stationarity, penetration, adhesion, complementarity, gap] =
+                certificate.conditions().map(|(_, value)| value);
             [stationarity, penetration, adhesion, complementarity, gap, certificate.open_force]
         };
         assert_eq!(of(&found), of(&certificate), "2^{stiffness}, 2^{length}");
@@ -202,7 +203,11 @@ fn nothing_is_proven_from_values_that_are_not_finite_or_for_a_body_without_an_en
         let certificate = floating.certify(&[0.0; 2], &[0.0]).unwrap();
         // The energy does not see a dof without stiffness, but it sees a rod that moves as a whole only up to rounding.
         assert!(certificate.conditions_hold(0.0), "{certificate:?}");
-        assert_eq!((certificate.has_bound(), certificate.meets(TOLERANCE)), (is_bounded, is_bounded), "{certificate:?}");
+        assert_eq!(
+            (certificate.has_bound(), certificate.meets(TOLERANCE)),
+            (is_bounded, is_bounded),
+            "{certificate:?}"
+        );
         assert!(floating.prove(&[0.0; 2], &[0.0]).unwrap().is_none());
         assert!(matches!(solve(&floating, &Settings::default()), Err(Error::UnderHeld { .. })));
     }

@@ -92,7 +92,7 @@ impl Finding {
             let solution = ending.unwrap_or_else(|error| panic!("{} by {}: {error}", self.name, method.name()));
             let Outcome::Solved(answer) = &self.outcome else { panic!("{} has no answer", self.name) };
             let errors = Errors { case: &self.case, exact: &self.exact, answer };
-            let error = errors.whole(&solution.displacement, &solution.multiplier);
+            let error = errors.whole(&solution.displacement);
             let allowed = if method == Method::Mprgp { 1e-9 } else { ROUNDING.max(error.explained) };
             assert!(error.is_within(allowed), "{} by {}: {:.3e}", self.name, method.name(), error.value());
         }

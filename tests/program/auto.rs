@@ -2,9 +2,9 @@
 //! reached.
 
 use crate::program::{Desk, example, examples};
+use serde_json::json;
 use signorini::qp::{Condense, Method, Precision, Prepared, Settings};
 use signorini::{ContactProblem, Error, Scene, Solution, solve};
-use serde_json::json;
 use std::time::Duration;
 
 fn problem(name: &str) -> ContactProblem {

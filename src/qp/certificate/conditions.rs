@@ -289,7 +289,8 @@ impl ContactProblem {
     /// The dof of a part, or of all, at which the `forces` lose most digits to what is left as elastic force.
     fn cancellation(&self, forces: &[f64], elastic: &[f64], part: Option<usize>) -> Cancellation {
         let is_in = |dof: &usize| part.is_none_or(|part| self.parts().of_dof(*dof) == part);
-        let all = (0..forces.len()).filter(is_in).map(|dof| Cancellation { dof, forces: forces[dof], left: elastic[dof] });
+        let all =
+            (0..forces.len()).filter(is_in).map(|dof| Cancellation { dof, forces: forces[dof], left: elastic[dof] });
         let fewer = |a: Cancellation, b: Cancellation| if b.forces * a.left > a.forces * b.left { b } else { a };
         all.filter(|at| at.forces > 0.0).reduce(fewer).unwrap_or(Cancellation { dof: 0, forces: 0.0, left: 0.0 })
     }

@@ -103,7 +103,15 @@ impl EnergyNorm {
         let values = last.len().saturating_mul(last.len());
         let worth = !last.is_empty() && values <= FEW_VALUES.max(cholesky.entries());
         let boundary = worth.then(|| Arc::new(Boundary { block: cholesky.trailing_block(), dofs: last }));
-        EnergyNorm { cholesky, equilibration, boundary, widening: 1.0, springs: None, loose: None, watch: Watch::default() }
+        EnergyNorm {
+            cholesky,
+            equilibration,
+            boundary,
+            widening: 1.0,
+            springs: None,
+            loose: None,
+            watch: Watch::default(),
+        }
     }
 
     /// The energy norm of the equilibrated stiffness itself.

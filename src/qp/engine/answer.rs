@@ -75,8 +75,7 @@ impl Factored {
         let norm = self.norm_of(found, settings);
         let multiplier = self.expand_multiplier(&outcome.multiplier, *unit);
         let problem = self.problem.with(loading.load.clone(), gap.clone())?;
-        let (displacement, examined) =
-            self.examined(&problem, norm.as_ref(), (displacement, &multiplier), settings)?;
+        let (displacement, examined) = self.examined(&problem, norm.as_ref(), (displacement, &multiplier), settings)?;
         let Examined { certificate, evidence, .. } = examined;
         let judging = before_certificate.elapsed().as_secs_f64();
         // A factor that was made for the certificate alone is freed to make room for those of a refinement.
@@ -170,8 +169,7 @@ impl Factored {
             else {
                 break;
             };
-            let (displacement, examined) =
-                self.examined(problem, Some(norm), (displacement, &multiplier), settings)?;
+            let (displacement, examined) = self.examined(problem, Some(norm), (displacement, &multiplier), settings)?;
             let certificate = examined.certificate;
             if !certificate.improves_on(&solution.certificate, 1.0) {
                 break;

@@ -146,7 +146,8 @@ impl Engine for Hierarchical {
         let mut judging = 0.0;
         let Examined { certificate, evidence, .. } = loop {
             let before = Instant::now();
-            let examine = |displacement: &[f64]| self.examine(&problem, displacement, &found.multiplier, &settings.watch);
+            let examine =
+                |displacement: &[f64]| self.examine(&problem, displacement, &found.multiplier, &settings.watch);
             let examined = examine(&found.displacement)?;
             let (displacement, examined) = problem.resting(found.displacement.clone(), examined, examine)?;
             found.displacement = displacement;

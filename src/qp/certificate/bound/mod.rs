@@ -249,8 +249,13 @@ impl ContactProblem {
 
     /// The dofs without stiffness on which neither a load nor a row acts, if there are some.
     fn loose_dofs(&self, multiplier: &[f64]) -> Option<Loose> {
-        let mut is_loose: Vec<bool> =
-            self.diagonal().values.iter().zip(&self.load).map(|(&stiffness, &f)| stiffness == 0.0 && f == 0.0).collect();
+        let mut is_loose: Vec<bool> = self
+            .diagonal()
+            .values
+            .iter()
+            .zip(&self.load)
+            .map(|(&stiffness, &f)| stiffness == 0.0 && f == 0.0)
+            .collect();
         // A coupling on a diagonal of zero has negative energy.
         for (row, column, _) in self.stiffness.lower().triplets().filter(|entry| entry.2 != 0.0) {
             (is_loose[row], is_loose[column]) = (false, false);

@@ -168,9 +168,9 @@ impl<'a> Repair<'a> {
         let terms = |row: usize| self.multiplier[row].abs() + error.terms[row] + left.terms[row];
         let rounding: Vec<f64> = (0..rest.len()).map(|row| CANCELLED * terms(row)).collect();
         let rounding = self.expanded(&rounding);
-        if springs.is_some_and(|springs| {
-            !springs.hold(&self.expanded(multiplier), closed, |row| rounding[row], |_| of_left)
-        }) {
+        if springs
+            .is_some_and(|springs| !springs.hold(&self.expanded(multiplier), closed, |row| rounding[row], |_| of_left))
+        {
             return ErrorBound::none();
         }
         if (0..rest.len()).any(|row| error.terms[row] + left.terms[row] > 0.0 && self.norm.is_on_loose_dof(row)) {

@@ -125,7 +125,9 @@ impl ContactProblem {
         let total = |values: &[f64]| values.iter().sum::<f64>();
         // A shift of the answer changes its residual too, by K times the shift.
         let left = length(norm.of_force(residual).powi(2), total(&slack_work));
-        if norm.springs().is_some_and(|springs| !springs.hold(multiplier, &at_gap, |row| f64::EPSILON * answer.multiplier[row].abs(), |_| left)) {
+        if norm.springs().is_some_and(|springs| {
+            !springs.hold(multiplier, &at_gap, |row| f64::EPSILON * answer.multiplier[row].abs(), |_| left)
+        }) {
             return ErrorBound::none();
         }
         let whole = left + self.length(repair) + 2.0 * total(&put);

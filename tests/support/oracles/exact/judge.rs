@@ -303,7 +303,12 @@ impl<'a> Judge<'a> {
         }
         let errors = Errors { case: self.case, exact: self.exact, answer };
         let mut faults = Vec::new();
-        let (whole, bound) = (errors.whole(displacement, multiplier), certificate.energy_error_bound);
+        let (whole, bound) = (errors.whole(displacement), certificate.energy_error_bound);
+        if certificate.has_bound() && !errors.is_within(displacement, certificate.energy_error) {
+            let detail = format!("{asked}: the error exceeds {:.3e}, its bound in energy", certificate.energy_error);
+            let is_rounding = errors.is_within(displacement, OF_THE_BOUND * certificate.energy_error);
+            faults.push(Fault::new(if is_rounding { Sort::Rounded } else { Sort::Bound }, detail));
+        }
         if bound.is_finite() && !whole.is_within(bound) {
             let factor = whole.value() / bound;
             let detail = format!(
@@ -316,9 +321,12 @@ impl<'a> Judge<'a> {
             faults.push(Fault { factor, ..Fault::new(sort, detail) });
         }
         if let Some(goal) = certified {
-            let promised = goal.accuracy.filter(|_| bound.is_finite()).unwrap_or(goal.tolerance);
-            let parts = errors.parts(displacement, multiplier);
-            let exceeds = |relative: &&Relative| !relative.is_within(promised.max(relative.explained));
+            // A tolerance is relative to the answer found; here the larger of the two norms counts.
+            let promised = goal.required() / (1.0 - goal.required()).max(f64::MIN_POSITIVE);
+            let parts = errors.parts(displacement);
+            // A part at rest has no relative error; its bound in energy is compared above.
+            let exceeds =
+                |relative: &&Relative| !(relative.is_at_rest || relative.is_within(promised + relative.explained));
             if let Some(worst) = parts.iter().find(exceeds) {
                 let detail = format!(
                     "{asked}: certified to {promised:.1e}, but a part of {} is off by {:.3e} in energy, of which rounding explains {:.1e}",

@@ -7,14 +7,9 @@ use super::solve::{Answer, Exact};
 /// Couplings below this share of `sqrt(K_ii K_jj)` do not join two dofs into one part.
 const COUPLED: f64 = 1e-6;
 
-/// A displacement below this share of force divided by root of stiffness, in energy, counts as rest.
-const AT_REST: f64 = 1e-6;
-
-/// The size of a body at rest is computed in doubles: its error is at most this factor.
-const IN_DOUBLES: f64 = 1.0 + 1e-12;
-
-/// Rounding may change every displacement by this share.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// Rounding may change every displacement by this share: half a unit in the last place, twice, and a little for the difference
+/// between the two answers.
+const ROUNDING: f64 = 1.001 * f64::EPSILON;
 
 /// A problem and its exact answer.
 pub struct Errors<'a> {
@@ -27,6 +22,8 @@ pub struct Errors<'a> {
 pub struct Relative {
     error: Dyadic,
     size: Dyadic,
+    /// `true` if no displacement of the answer differs from zero.
+    pub is_at_rest: bool,
     /// The relative error caused by rounding the exact displacement.
     pub explained: f64,
 }
@@ -48,19 +45,24 @@ impl Relative {
 }
 
 impl Errors<'_> {
-    /// The error of (u, lambda) as the certificate states it: relative to the energy norm of u, or to the size that
-    /// counts as rest if that is larger.
-    pub fn whole(&self, displacement: &[f64], multiplier: &[f64]) -> Relative {
+    /// The error of u relative to its own energy norm, as the certificate states it.
+    pub fn whole(&self, displacement: &[f64]) -> Relative {
         let all: Vec<usize> = (0..self.case.dofs()).collect();
-        self.within(&all, displacement, multiplier, false)
+        self.within(&all, displacement, false)
     }
 
-    /// The error in each part, relative to the larger norm of the two answers, or to the size that counts as rest.
-    pub fn parts(&self, displacement: &[f64], multiplier: &[f64]) -> Vec<Relative> {
-        parts(self.case).iter().map(|part| self.within(part, displacement, multiplier, true)).collect()
+    /// Returns `true` if `|u - u*|_K` is at most `bound`, compared exactly.
+    pub fn is_within(&self, displacement: &[f64], bound: f64) -> bool {
+        let bound = &Dyadic::from(bound) * &self.answer.denominator;
+        self.whole(displacement).error <= &bound * &bound
     }
 
-    fn within(&self, dofs: &[usize], displacement: &[f64], multiplier: &[f64], or_exact: bool) -> Relative {
+    /// The error in each part, relative to the larger norm of the two answers.
+    pub fn parts(&self, displacement: &[f64]) -> Vec<Relative> {
+        parts(self.case).iter().map(|part| self.within(part, displacement, true)).collect()
+    }
+
+    fn within(&self, dofs: &[usize], displacement: &[f64], or_exact: bool) -> Relative {
         let scale = &self.answer.denominator;
         let square = |values: &[Dyadic]| {
             let product = |(place, &dof): (usize, &usize)| {
@@ -72,26 +74,14 @@ impl Errors<'_> {
         let given: Vec<Dyadic> = dofs.iter().map(|&dof| &Dyadic::from(displacement[dof]) * scale).collect();
         let exact: Vec<Dyadic> = dofs.iter().map(|&dof| self.answer.displacement[dof].clone()).collect();
         let apart: Vec<Dyadic> = given.iter().zip(&exact).map(|(a, b)| a - b).collect();
-        let still = IN_DOUBLES * AT_REST * self.static_size(dofs, multiplier);
-        let still = &Dyadic::from(still) * scale;
-        let mut size = larger(square(&given), &still * &still);
+        let mut size = square(&given);
         if or_exact {
             size = larger(size, square(&exact));
         }
         let rounding = &Dyadic::from(self.rounding(dofs)) * scale;
         let explained = if size.is_zero() { 0.0 } else { root_of_ratio(&(&rounding * &rounding), &size) };
-        Relative { error: square(&apart), size, explained }
-    }
-
-    /// The largest force divided by the root of the stiffness of its dof.
-    fn static_size(&self, dofs: &[usize], multiplier: &[f64]) -> f64 {
-        let pressed =
-            |dof: usize| (0..self.case.rows()).map(|row| self.case.contact[row][dof] * multiplier[row]).sum::<f64>();
-        let of_dof = |&dof: &usize| match self.case.stiffness[dof][dof] {
-            stiffness if stiffness > 0.0 => self.case.load[dof].abs().max(pressed(dof).abs()) / stiffness.sqrt(),
-            _ => 0.0,
-        };
-        dofs.iter().map(of_dof).fold(0.0, f64::max)
+        let is_at_rest = dofs.iter().all(|&dof| displacement[dof] == 0.0);
+        Relative { error: square(&apart), size, is_at_rest, explained }
     }
 
     /// The largest effect of rounding the exact displacement, in energy.
