@@ -1,6 +1,6 @@
 //! Legal but rarely intended parts of a scene: supports, loads, obstacles and meshes without the expected effect.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use super::Warning;
 use super::entry::COORDINATE_ROUNDING;
@@ -89,7 +89,7 @@ fn coincident_nodes(body: &ElasticBody) -> Option<Warning> {
     found
 }
 
-/// Obstacles with candidates that are mostly held by supports, and obstacles with the same rows as an earlier one.
+/// Obstacles with candidates that are mostly held by supports, and obstacles with the same rows as others.
 pub(super) fn suspect_rows(parts: &Parts, rows: &[ContactRow]) -> Vec<Warning> {
     let dimension = parts.body.dimension();
     let mut warnings = Vec::new();
@@ -101,25 +101,57 @@ pub(super) fn suspect_rows(parts: &Parts, rows: &[ContactRow]) -> Vec<Warning> {
             warnings.push(Warning::HeldCandidates { obstacle: index, held, of: all.len() });
         }
     }
+    warnings.extend(doubled_obstacles(parts, rows));
+    warnings
+}
+
+/// For each obstacle the later ones with the same rows at most of their nodes.
+fn doubled_obstacles(parts: &Parts, rows: &[ContactRow]) -> Vec<Warning> {
     let rounding = COORDINATE_ROUNDING * parts.body.mesh().size();
-    let mut of_node: BTreeMap<usize, Vec<&ContactRow>> = BTreeMap::new();
-    rows.iter().for_each(|row| of_node.entry(row.node).or_default().push(row));
+    // Along the rows of a node, sorted by their gaps, a row is compared with those before it up to the rounding of a gap.
+    let mut sorted: Vec<&ContactRow> = rows.iter().collect();
+    sorted.sort_by(|a, b| a.node.cmp(&b.node).then(a.gap.total_cmp(&b.gap)));
+    let mut different: Vec<&ContactRow> = Vec::new();
+    let mut kinds_of: Vec<Vec<usize>> = vec![Vec::new(); parts.obstacles.len()];
+    for row in sorted {
+        let is_near = |other: &&&ContactRow| other.node == row.node && row.gap - other.gap <= rounding;
+        let is_same =
+            |other: &ContactRow| other.partner == row.partner && dot(other.normal, row.normal) > 1.0 - PARALLEL;
+        let same = different.iter().rev().take_while(is_near).position(|other| is_same(other));
+        let kind = match same {
+            Some(back) => different.len() - 1 - back,
+            None => {
+                different.push(row);
+                different.len() - 1
+            }
+        };
+        kinds_of[row.obstacle].push(kind);
+    }
+    // Obstacles of equal rows are compared with the others once, so that very many copies of one obstacle cost little.
+    let mut later_of: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    let mut first_with: HashMap<&[usize], usize> = HashMap::new();
+    let mut firsts: Vec<Vec<usize>> = vec![Vec::new(); different.len()];
+    for (obstacle, kinds) in kinds_of.iter().enumerate().filter(|entry| !entry.1.is_empty()) {
+        let first = *first_with.entry(kinds).or_insert(obstacle);
+        match first == obstacle {
+            true => kinds.iter().for_each(|&kind| firsts[kind].push(obstacle)),
+            false => later_of.entry(first).or_default().push(obstacle),
+        }
+    }
     let mut same: BTreeMap<(usize, usize), usize> = BTreeMap::new();
-    for rows in of_node.values() {
-        for (place, second) in rows.iter().enumerate() {
-            let is_same = |first: &&&ContactRow| {
-                first.obstacle != second.obstacle
-                    && first.partner == second.partner
-                    && dot(first.normal, second.normal) > 1.0 - PARALLEL
-                    && (first.gap - second.gap).abs() <= rounding
-            };
-            for first in rows[..place].iter().filter(is_same) {
-                *same.entry((first.obstacle, second.obstacle)).or_default() += 1;
+    for obstacles in &firsts {
+        for (place, &second) in obstacles.iter().enumerate() {
+            for &first in obstacles[..place].iter().filter(|&&first| first != second) {
+                *same.entry((first, second)).or_default() += 1;
             }
         }
     }
-    let count = |obstacle: usize| rows.iter().filter(|row| row.obstacle == obstacle).count();
-    let doubled = same.into_iter().filter(|&((_, second), rows)| 2 * rows > count(second));
-    warnings.extend(doubled.map(|((first, second), _)| Warning::DoubledObstacle { first, second }));
-    warnings
+    for ((first, second), _) in same.into_iter().filter(|&((_, second), rows)| 2 * rows > kinds_of[second].len()) {
+        later_of.entry(first).or_default().push(second);
+    }
+    let warning = |(first, mut later): (usize, Vec<usize>)| {
+        later.sort_unstable();
+        Warning::DoubledObstacle { first, second: later[0], last: later[later.len() - 1], count: later.len() }
+    };
+    later_of.into_iter().map(warning).collect()
 }

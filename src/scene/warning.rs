@@ -58,16 +58,17 @@ pub enum Warning {
         /// Number of all candidate nodes of the obstacle.
         of: usize,
     },
-    /// Two obstacles make the same rows.
-    #[error(
-        "obstacles[{first}] and obstacles[{second}] make the same rows: the shares of the force between the two \
-         have no meaning; leave one obstacle out"
-    )]
+    /// Obstacles make the same rows as an earlier one.
+    #[error("{}", doubled(*.first, *.second, *.last, *.count))]
     DoubledObstacle {
         /// Number of the obstacle, from 0.
         first: usize,
-        /// Number of the later obstacle.
+        /// Number of the first later obstacle with the same rows.
         second: usize,
+        /// The latest obstacle with these rows, numbered from 0.
+        last: usize,
+        /// Number of the later obstacles with the same rows.
+        count: usize,
     },
     /// A load acts on supported dofs only.
     #[error(
@@ -120,6 +121,19 @@ pub enum Warning {
         /// Its name in scenes, as `trapezoidal`.
         scheme: &'static str,
     },
+}
+
+fn doubled(first: usize, second: usize, last: usize, count: usize) -> String {
+    if count == 1 {
+        return format!(
+            "obstacles[{first}] and obstacles[{second}] make the same rows: the shares of the force between the two have no meaning; \
+             leave one obstacle out"
+        );
+    }
+    format!(
+        "obstacles[{first}] and {count} others, from obstacles[{second}] to obstacles[{last}], make the same rows: the shares of the \
+         force among them have no meaning; leave all but one out"
+    )
 }
 
 impl Warning {

@@ -292,6 +292,22 @@ fn an_obstacle_that_is_given_twice_is_warned_of() {
     assert!(message.starts_with("obstacles[0] and obstacles[1] make the same rows"), "{message}");
 }
 
+/// One warning for each pair would be 200 million, and one comparison of each pair of rows 200 million for each node.
+#[test]
+fn twenty_thousand_equal_obstacles_are_warned_of_in_one_sentence() {
+    let copies = 20_000;
+    let crowded = pressed(|scene| {
+        let first = scene["obstacles"][0].clone();
+        scene["loads"] = json!([]);
+        scene["supports"] = json!([{"on": {"boundary": "bottom"}, "x": 0, "y": 0}]);
+        scene["obstacles"] = vec![first; copies].into();
+        scene["gap"] = json!(1e-3);
+    });
+    let expected = "obstacles[0] and 19999 others, from obstacles[1] to obstacles[19999], make the same rows";
+    let message = warned(&solved(&crowded), "doubled-obstacle");
+    assert!(message.starts_with(expected), "{message}");
+}
+
 /// Two triangles whose common edge has two nodes at each end, so that they are not connected; each has a support.
 const SLIT: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"base\"\n1 2 \"lid\"\n2 3 \"steel\"\n$EndPhysicalNames\n\
      $Nodes\n6\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 0\n6 1 1 0\n$EndNodes\n\

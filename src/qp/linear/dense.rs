@@ -176,11 +176,15 @@ impl UpperTriangle {
     /// leaves the others; zero on columns that follow from others.
     pub fn lengths_of_inverse(&self) -> Vec<f64> {
         let length = |place: usize| {
+            if !self.independent[place] {
+                return 0.0;
+            }
             let mut shift = vec![0.0; self.size()];
             shift[place] = 1.0;
             for (i, column) in self.columns.iter().enumerate().skip(place) {
-                let known = dot(&column[place..i], &shift[place..i]);
-                shift[i] = if self.independent[i] { (shift[i] - known) / column[i] } else { 0.0 };
+                if self.independent[i] {
+                    shift[i] = (shift[i] - dot(&column[place..i], &shift[place..i])) / column[i];
+                }
             }
             norm(&shift)
         };
@@ -195,7 +199,11 @@ impl UpperTriangle {
     /// `R^-1 b` for the first columns, as many as b has entries; zero on columns that follow from others.
     pub fn solve_upper(&self, mut b: Vec<f64>) -> Vec<f64> {
         for (place, column) in self.columns.iter().enumerate().take(b.len()).rev() {
-            b[place] = if self.independent[place] { b[place] / column[place] } else { 0.0 };
+            if !self.independent[place] {
+                b[place] = 0.0;
+                continue;
+            }
+            b[place] /= column[place];
             let value = b[place];
             subtract(&mut b[..place], value, column);
         }
@@ -205,8 +213,10 @@ impl UpperTriangle {
     /// `R'^-1 b`; zero on columns that follow from others.
     pub fn solve_lower(&self, mut b: Vec<f64>) -> Vec<f64> {
         for (place, column) in self.columns.iter().enumerate() {
-            let known = dot(&column[..place], &b[..place]);
-            b[place] = if self.independent[place] { (b[place] - known) / column[place] } else { 0.0 };
+            b[place] = match self.independent[place] {
+                true => (b[place] - dot(&column[..place], &b[..place])) / column[place],
+                false => 0.0,
+            };
         }
         b
     }
