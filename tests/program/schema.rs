@@ -1,6 +1,7 @@
 //! The printed schema of a scene: every example conforms to it, and the program refuses every scene that the schema
 //! refuses.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
@@ -171,4 +172,93 @@ fn the_schema_has_a_name_and_no_null() {
     assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
     assert!(schema["properties"]["$schema"]["description"].as_str().unwrap().contains("for editors"));
     assert!(!schema.to_string().contains("null"));
+}
+
+/// The places of all integers in `schema`, as pointers.
+fn integers(schema: &Value, place: &str, found: &mut BTreeSet<String>) {
+    match schema {
+        Value::Object(map) => {
+            if map.get("type").is_some_and(|kind| kind == "integer") {
+                found.insert(place.to_string());
+            }
+            map.iter().for_each(|(key, of)| integers(of, &format!("{place}/{key}"), found));
+        }
+        Value::Array(items) => {
+            items.iter().enumerate().for_each(|(index, of)| integers(of, &format!("{place}/{index}"), found));
+        }
+        _ => {}
+    }
+}
+
+/// The same for the integers of `value`, at `at`, by the places of the schema that they conform to.
+fn integers_of(value: &Value, at: &str, place: &str, root: &Value, found: &mut BTreeMap<String, String>) {
+    let schema = root.pointer(place).unwrap();
+    if let Some(reference) = schema["$ref"].as_str() {
+        integers_of(value, at, reference.trim_start_matches('#'), root, found);
+    }
+    if schema["type"] == "integer" {
+        found.entry(place.to_string()).or_insert(at.to_string());
+    }
+    for word in ["oneOf", "anyOf"] {
+        for (index, choice) in schema[word].as_array().into_iter().flatten().enumerate() {
+            if conforms(value, choice, root).is_ok() {
+                integers_of(value, at, &format!("{place}/{word}/{index}"), root, found);
+            }
+        }
+    }
+    if schema.get("items").is_some() {
+        for (index, item) in value.as_array().into_iter().flatten().enumerate() {
+            integers_of(item, &format!("{at}/{index}"), &format!("{place}/items"), root, found);
+        }
+    }
+    for (key, item) in value.as_object().into_iter().flatten() {
+        if schema["properties"].get(key).is_some() {
+            integers_of(item, &format!("{at}/{key}"), &format!("{place}/properties/{key}"), root, found);
+        }
+    }
+}
+
+/// The place of a value as messages name it: `/body/x/0` is `body.x[0]`.
+fn named(at: &str) -> String {
+    let parts = at.split('/').skip(1).map(|part| match part.parse::<usize>() {
+        Ok(index) => format!("[{index}]"),
+        Err(_) => format!(".{part}"),
+    });
+    parts.collect::<String>().trim_start_matches('.').to_string()
+}
+
+#[test]
+fn every_integer_of_the_schema_refuses_all_that_is_no_whole_number_in_digits() {
+    let desk = Desk::new();
+    let schema = desk.run(&["schema"]).ends_with(0).json();
+    let mut all = BTreeSet::new();
+    integers(&schema, "", &mut all);
+    let mut moving = scene();
+    moving["format"] = json!(1);
+    moving["analysis"] = json!({"dynamic": {
+        "duration": 1e-3, "frames": 2, "watch": [{"node": 0}], "loads-in-time": [{"load": 0, "factor": {"ramp": {"end": 1}}}]
+    }});
+    let examples = examples().into_iter().map(|name| fs::read_to_string(example(&name)).unwrap());
+    let mut kept: BTreeMap<String, (String, Value)> = BTreeMap::new();
+    for scene in examples.map(|text| serde_json::from_str(&text).unwrap()).chain([moving]) {
+        conforms(&scene, &schema, &schema).unwrap();
+        let mut found = BTreeMap::new();
+        integers_of(&scene, "", "", &schema, &mut found);
+        for (place, at) in found {
+            kept.entry(place).or_insert((at, scene.clone()));
+        }
+    }
+    assert_eq!(kept.keys().cloned().collect::<BTreeSet<_>>(), all, "no scene has some of the integers");
+    let wrong = [json!(1.5), json!(2.0), json!(0.5), json!(1e300), json!(-1), json!("2"), json!(true), json!([1])];
+    for (place, (at, scene)) in kept {
+        for value in &wrong {
+            let mut wrong = scene.clone();
+            *wrong.pointer_mut(&at).unwrap() = value.clone();
+            assert!(conforms(&wrong, &schema, &schema).is_err(), "the schema accepts {value} at {place}");
+            desk.write("wrong.json", wrong.to_string());
+            let expected =
+                format!("at `{}`: must be a whole number that is not negative, in digits alone, but is ", named(&at));
+            desk.run(&["solve", "wrong.json"]).fails_with(1, &[&expected]);
+        }
+    }
 }
