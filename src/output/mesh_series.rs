@@ -3,7 +3,7 @@
 use super::Drawing;
 use super::colour::Colour;
 use super::drawing::{Anchor, Paint};
-use super::report::printable;
+use super::text::printable;
 
 /// Number of panels: the first mesh, the last, and some between.
 const PANELS: usize = 4;

@@ -61,6 +61,7 @@ mod style;
 mod svg;
 #[cfg_attr(not(feature = "cli"), allow(dead_code))]
 pub(crate) mod tables;
+mod text;
 pub(crate) mod ticks;
 #[cfg(feature = "cli")]
 mod total_error;
@@ -89,11 +90,13 @@ pub use motion_tradeoff::{motion_tradeoff_csv, motion_tradeoff_plot, motion_trad
 pub use plot::{Plot, Series, line_plots};
 #[cfg(feature = "cli")]
 pub(crate) use problem_sweep::{draw_problem_sweep, problem_sweep_text, write_points};
+#[cfg(feature = "cli")]
+pub(crate) use report::why_text;
 pub use report::{compare_text, solve_text, sweep_text, verify_text};
 #[cfg(feature = "cli")]
-pub(crate) use report::{printable, why_text};
-#[cfg(feature = "cli")]
 pub(crate) use set_up::set_up_picture;
+#[cfg(feature = "cli")]
+pub(crate) use text::printable;
 pub use ticks::{Quantity, Scale};
 #[cfg(feature = "cli")]
 pub(crate) use total_error::{meshes_picture, total_error_text, write_total_error};

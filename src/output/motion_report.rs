@@ -3,7 +3,8 @@
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
-use super::report::{entry, plural, printable, quantity, warnings_text};
+use super::report::{entry, plural, quantity, warnings_text};
+use super::text::printable;
 use crate::qp::Method;
 use crate::scene::{Dynamics, Model};
 use crate::study::{MotionSummary, RunSeconds, Status};

@@ -3,7 +3,8 @@
 use super::certificate::number;
 use super::medium::Medium;
 use super::plot::line_plots_for;
-use super::report::{columns, printable};
+use super::report::columns;
+use super::text::printable;
 use super::{Drawing, Plot, Quantity, Scale, Series};
 use crate::study::{MotionPoint, MotionTradeoff};
 

@@ -1,6 +1,7 @@
 //! Answers as text and as JSON.
 
 use super::certificate::{CertificateWords, conditions};
+use super::text::printable;
 #[cfg(feature = "cli")]
 use crate::error::memory;
 use crate::scene::{Resultant, Rule, Segment, Units};
@@ -8,11 +9,6 @@ use crate::scene::{Resultant, Rule, Segment, Units};
 use crate::solution::Why;
 use crate::solution::{Certificate, Goal, ProvenSet};
 use crate::study::{Agreement, AnswerWarning, ContactSummary, Summary, Sweep, SweepEvent, SweepPoint, Verification};
-
-/// Text on one line, without control characters of a terminal.
-pub fn printable(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { c.escape_default().to_string() } else { c.to_string() }).collect()
-}
 
 /// A number with its unit.
 pub(super) fn quantity(value: f64, unit: &str) -> String {

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::paint::{Anchor, hex, hundredths, number};
 use super::shape::{Line, Shape, Text};
+use super::text::escape;
 use super::typeface::{self, Weight};
 
 /// The SVG text of a picture of `width` times `height` pixels, on white; on paper of this width in millimetres, with the typeface.
@@ -90,7 +91,7 @@ fn write_text(body: &mut String, text: &Text) {
         false => format!(" x=\"{x}\" y=\"{y}\""),
         true => format!(" transform=\"translate({x} {y}) rotate(-90)\""),
     };
-    let (ink, size, words) = (hex(text.ink), number(text.size), typeface::escape(&text.text));
+    let (ink, size, words) = (hex(text.ink), number(text.size), escape(&text.text));
     let _ = writeln!(body, "<text{place} font-size=\"{size}\"{anchor}{weight} fill=\"{ink}\">{words}</text>");
 }
 

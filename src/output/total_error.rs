@@ -10,7 +10,8 @@ use super::{
     mesh_series::{MeshPanel, mesh_series},
     msh::msh,
     plot::line_plots_for,
-    report::{columns, entry, plural, printable, quantity, warnings_text},
+    report::{columns, entry, plural, quantity, warnings_text},
+    text::printable,
     write_files, write_picture,
 };
 use crate::continuum::{PlaneAnswer, Triangulation};

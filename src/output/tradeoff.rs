@@ -1,7 +1,8 @@
 //! A trade-off as a table and as comma-separated values.
 
 use super::certificate::number;
-use super::report::{columns, plural, printable};
+use super::report::{columns, plural};
+use super::text::printable;
 use crate::study::{Tradeoff, TradeoffPoint};
 
 /// The energy error of an answer that is called loose.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::typeface::escape;
+use super::text::escape;
 use crate::error::Error;
 use crate::fem::ElementKind;
 

@@ -316,13 +316,24 @@ fn a_file_that_cannot_be_replaced_causes_no_temporary_files() {
 fn titles_and_units_with_any_characters_give_valid_pictures() {
     let desk = Desk::new();
     let mut odd = scene();
-    odd["title"] = json!(format!("<&>\"' \u{0}\u{1b}\n\u{fffe} Größe 接触 {}", "long ".repeat(500)));
-    odd["units"] = json!({"length": "<m>", "force": "&\u{0}"});
+    let title = format!("<&>\"' \u{0}\u{1b}\n\u{fffe} \u{202e}\u{2067}\u{200f} Größe 接触 {}", "long ".repeat(500));
+    odd["title"] = json!(title);
+    odd["units"] = json!({"length": "<m>", "force": "&\u{0}\u{202e}"});
     desk.write("odd.json", odd.to_string());
     desk.run(&["compare", "odd.json", "--out", "o"]).ends_with(0);
     desk.run(&["sweep", "odd.json", "--gaps", "0:-0.01:2", "--out", "s"]).ends_with(0);
-    checked(&desk.path("o"));
-    checked(&desk.path("s"));
+    for folder in ["o", "s"] {
+        let pages = checked(&desk.path(folder))
+            .into_iter()
+            .filter(|name| [".svg", ".html", ".vtu"].iter().any(|ending| name.ends_with(ending)));
+        for name in pages {
+            let bytes = fs::read(desk.path(folder).join(&name)).unwrap();
+            let text = String::from_utf8_lossy(&bytes);
+            let turns = |character: &char| "\u{202e}\u{2067}\u{200f}".contains(*character);
+            assert_eq!(text.chars().find(turns), None, "{folder}/{name} turns the direction of its text");
+            assert!(!text.to_lowercase().contains("\\u202e"), "{folder}/{name} turns the direction of its text");
+        }
+    }
 }
 
 #[test]

@@ -57,14 +57,14 @@ fn a_schema_address_a_byte_order_mark_and_standard_input_are_accepted() {
 fn control_characters_in_a_title_are_escaped() {
     let desk = Desk::new();
     let mut loud = scene();
-    loud["title"] = json!("red \u{1b}[31m\nand\u{7} loud");
+    loud["title"] = json!("red \u{1b}[31m\nand\u{7} loud \u{202e}duol");
     loud["units"] = json!({"length": "m\n", "force": "N"});
     desk.write("loud.json", loud.to_string());
     for arguments in
         [&["solve", "loud.json"][..], &["compare", "loud.json"], &["sweep", "loud.json", "--gaps", "0:0:1"]]
     {
         let text = desk.run(arguments).ends_with(0).stdout;
-        assert!(text.starts_with("red \\u{1b}[31m\\nand\\u{7} loud\n"), "{text:?}");
+        assert!(text.starts_with("red \\u{1b}[31m\\nand\\u{7} loud \\u{202e}duol\n"), "{text:?}");
         assert!(!text.chars().any(|character| character.is_control() && character != '\n'), "{text:?}");
     }
 }

@@ -9,6 +9,7 @@ use super::model::Page;
 use super::packed::Packer;
 use crate::error::Error;
 use crate::output::json::compact_json;
+use crate::output::text::{escape, is_unseen};
 use crate::output::{Drawing, write_atomically};
 
 const SHELL: &str = include_str!("page.html");
@@ -44,7 +45,7 @@ pub(super) fn write_page(folder: &Path, page: &Page, packer: Packer, still: Opti
     };
     let (data, arrays) = (safe_json(&compact_json(page)?), packer.finished()?);
     let html = filled(SHELL, |name| match name {
-        "title" => escaped(page.title()),
+        "title" => escape(page.title()),
         "style" => STYLE.to_string(),
         "still" => still.clone(),
         "data" => data.clone(),
@@ -57,7 +58,7 @@ pub(super) fn write_page(folder: &Path, page: &Page, packer: Packer, still: Opti
 
 fn image(drawing: &Drawing, title: &str) -> Result<String, Error> {
     let png = STANDARD.encode(drawing.png(1.0)?);
-    Ok(format!("<img id=\"still\" alt=\"{}\" src=\"data:image/png;base64,{png}\">", escaped(title)))
+    Ok(format!("<img id=\"still\" alt=\"{}\" src=\"data:image/png;base64,{png}\">", escape(title)))
 }
 
 /// The shell with each `{{name}}` replaced by its content; names inside the content are not replaced.
@@ -75,29 +76,14 @@ fn filled(shell: &str, content: impl Fn(&str) -> String) -> String {
     text
 }
 
-/// Text that is valid between tags and in attributes; characters that HTML does not allow are left out.
-fn escaped(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for character in text.chars().filter(|character| !character.is_control()) {
-        match character {
-            '&' => safe += "&amp;",
-            '<' => safe += "&lt;",
-            '>' => safe += "&gt;",
-            '"' => safe += "&quot;",
-            '\'' => safe += "&#39;",
-            other => safe.push(other),
-        }
-    }
-    safe
-}
-
 /// JSON that no parser of HTML takes for a tag or a comment: these characters occur only in texts, and there their escapes mean the
-/// same.
+/// same. Unseen characters are replaced.
 fn safe_json(json: &str) -> String {
     let mut safe = String::with_capacity(json.len());
     for character in json.chars() {
         match character {
             '<' | '>' | '&' | '\u{2028}' | '\u{2029}' => safe += &format!("\\u{:04x}", u32::from(character)),
+            unseen if is_unseen(unseen) => safe.push('\u{fffd}'),
             other => safe.push(other),
         }
     }
@@ -120,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn a_title_is_text_and_no_markup() {
-        assert_eq!(escaped("<b a='1'>\"&\u{0}\u{1b}ß"), "&lt;b a=&#39;1&#39;&gt;&quot;&amp;ß");
+    fn no_name_in_the_data_turns_the_text_of_the_page() {
+        assert_eq!(safe_json("[\"left\u{202e}\u{9b}\"]"), "[\"left\u{fffd}\u{fffd}\"]");
     }
 }
