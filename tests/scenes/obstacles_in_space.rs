@@ -113,6 +113,46 @@ fn closest_points_are_the_nearest_points_and_are_on_the_surface_along_the_unit_n
     }
 }
 
+/// A mid-side node at the rim of a cup with straight edges: 0.011 inside a radius of 16, 0.1 behind the centre.
+#[test]
+fn a_node_inside_at_the_rim_and_behind_the_centre_is_moved_out_to_its_side() {
+    let (distance, behind): (f64, f64) = (1.0 - 0.011 / 16.0, 0.1 / 16.0);
+    let aside = ((distance - behind) * (distance + behind)).sqrt();
+    // Each with the middle of the section that the node lies in, and the direction to the side.
+    let shapes = [
+        (json!({"sphere": {"centre": [0.5, 0.5, 3], "radius": 1}}), [0.5, 0.5, 3.0], [0.6, 0.8]),
+        (json!({"cylinder": {"centre": [0.5, 0, 3], "axis": [0, 1, 0], "radius": 1}}), [0.5, 0.7, 3.0], [-1.0, 0.0]),
+        (
+            json!({"torus": {"centre": [0, 0, 3], "axis": [0, 0, 1], "major": 5, "minor": 1}}),
+            [3.0, 4.0, 3.0],
+            [0.6, 0.8],
+        ),
+        (
+            json!({"torus": {"centre": [0, 0, 8], "axis": [0, 1, 0], "major": 5, "minor": 1}}),
+            [0.0, 0.0, 3.0],
+            [0.0, 1.0],
+        ),
+    ];
+    for (shape, middle, [x, y]) in shapes {
+        let model = top("closest-point", shape.clone(), 0.0);
+        let at = |aside: f64, behind: f64| [middle[0] + aside * x, middle[1] + aside * y, middle[2] + behind];
+        let row = |at: [f64; 3]| model.obstacles()[0].rigid().unwrap().row(at);
+        let found = row(at(aside, behind)).unwrap().unwrap();
+        assert!((found.gap - (distance - 1.0)).abs() < 8.0 * ROUNDING, "{shape}: {found:?}");
+        let normal = [-aside * x / distance, -aside * y / distance, -behind / distance];
+        let off = (0..3).map(|axis| (found.normal[axis] - normal[axis]).abs()).fold(0.0, f64::max);
+        assert!(off < 8.0 * ROUNDING, "{shape}: {found:?}");
+        // Across the plane of the centre nothing jumps.
+        let steps = [1e-9, -1e-9].map(|behind| row(at(0.9, behind)).unwrap().unwrap());
+        assert!((steps[0].gap - steps[1].gap).abs() < 1e-8, "{shape}: {steps:?}");
+        // Outside and behind there is no row, and deep inside no side is the right one.
+        assert_eq!(row(at(1.1, 0.1)).unwrap(), None, "{shape}");
+        for deep in [at(0.4, 0.1), at(0.1, 0.9)] {
+            assert!(row(deep).unwrap_err().starts_with("lies deeper in the "), "{shape}");
+        }
+    }
+}
+
 #[test]
 fn the_gap_grows_against_the_normal_as_the_obstacle_moves() {
     // Central differences: if the obstacle moves by h along an axis, the gap changes by h times the component of the

@@ -11,6 +11,9 @@ use super::surface::{Foot, Surface};
 use crate::error::Error;
 use crate::scene::schema::json::word;
 
+/// A node inside and behind the centre lies beside it if it is farther than this share of the radius from the axis through the centre.
+pub(super) const BESIDE: f64 = 0.5;
+
 /// A circle, given by its centre or by its apex.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
@@ -76,7 +79,8 @@ impl Surface for Circle {
         }
     }
 
-    /// Distance to the centre minus the radius; a node behind the centre has no closest point on the facing half.
+    /// Distance to the centre minus the radius. A node behind the centre has no closest point on the facing half; only if it lies inside
+    /// and far from the axis, as a node at the rim of a cup, it is moved out to its side.
     fn closest(&self, [along, towards]: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {
         let (r, rest) = (self.radius, self.radius - towards);
         let to_centre = along.hypot(rest);
@@ -87,7 +91,7 @@ impl Surface for Circle {
             return Ok(Some(Foot { normal: [0.0, 1.0], distance: -towards }));
         }
         // A node level with the centre has a closest point; rounding must not remove it.
-        if rest < -tolerance {
+        if rest < -tolerance && along.abs() <= BESIDE * r {
             return Err("lies deeper in the circle than its centre");
         }
         // (s^2 + q^2 - 2 R q)/(d + R) is d - R without the cancellation.

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::circle::BESIDE;
 use super::row::ObstacleRow;
 use super::ruled::RigidSurface;
 use super::shape::{About, Geometry, ObstacleShape, Site};
@@ -130,6 +131,10 @@ impl Torus {
             (false, true) => Ok(None),
             // A node level with the ring has a closest point; rounding must not remove it.
             (false, false) if -facing * to_ring <= self.rounding => Ok(Some((normal, distance))),
+            // At the side of the tube, as of a circle.
+            (false, false) if (1.0 - facing * facing).sqrt() * to_ring > BESIDE * self.minor => {
+                Ok(Some((normal, distance)))
+            }
             (false, false) => Err("lies deeper in the torus than the middle of its tube".into()),
         }
     }
