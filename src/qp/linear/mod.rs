@@ -24,6 +24,7 @@ mod quotient;
 mod rows;
 pub mod selected_inverse;
 mod symmetric;
+mod threads;
 pub mod twice;
 
 pub use accumulator::Accumulator;

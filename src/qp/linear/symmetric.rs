@@ -1,10 +1,10 @@
 //! Symmetric matrices, stored by their lower triangle.
 
 use std::ops::Range;
-use std::thread;
 
 use super::SparseMatrix;
 use super::both_triangles::Columns;
+use super::threads::in_order;
 use crate::error::Error;
 
 /// Number of entries that justify a separate part in a product on several threads.
@@ -163,17 +163,11 @@ impl SymmetricMatrix {
             (0..parts).map(|part| starts.partition_point(|&start| start < entries / parts * part)).collect();
         bounds.push(self.dim());
         let columns: Vec<Range<usize>> = bounds.windows(2).map(|pair| pair[0]..pair[1]).collect();
+        let runs = columns.chunks(parts.div_ceil(threads.clamp(1, parts))).collect();
         let of_run = |run: &[Range<usize>]| -> Vec<Vec<f64>> {
             run.iter().map(|columns| self.product_of_columns(columns.clone(), x)).collect()
         };
-        let sums: Vec<Vec<f64>> = match threads.min(parts) {
-            1 => of_run(&columns),
-            threads => thread::scope(|scope| {
-                let runs: Vec<_> =
-                    (columns.chunks(parts.div_ceil(threads))).map(|run| scope.spawn(|| of_run(run))).collect();
-                runs.into_iter().filter_map(|run| run.join().ok()).flatten().collect()
-            }),
-        };
+        let sums: Vec<Vec<f64>> = in_order(runs, of_run).into_iter().flatten().collect();
         let mut y = vec![0.0; self.dim()];
         for (columns, sum) in columns.iter().zip(&sums) {
             y[columns.start..].iter_mut().zip(sum).for_each(|(y, sum)| *y += sum);

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::real::Real;
-use super::threads::{in_row_chunks, row_chunks};
+use crate::qp::linear::threads::{in_row_chunks, row_chunks};
 
 /// A sparse matrix of blocks of `height` x `width` values, row by row, each block row by row.
 #[derive(Clone, Debug)]

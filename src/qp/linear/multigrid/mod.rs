@@ -25,7 +25,6 @@ mod nodes;
 mod operator;
 mod prolongator;
 mod real;
-mod threads;
 
 pub use coarser::Interval;
 pub use conjugate_gradients::{ConjugateGradients, conjugate_gradients, negative_direction};

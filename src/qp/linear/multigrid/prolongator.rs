@@ -2,7 +2,7 @@
 
 use super::blocks::BlockMatrix;
 use super::real::Real;
-use super::threads::in_block_chunks;
+use crate::qp::linear::threads::in_block_chunks;
 
 /// A near-null vector is no separate mode within an aggregate if less than this share of its length there is left after those
 /// before it are removed: two nodes do not turn about the line through them.

@@ -1,0 +1,108 @@
+//! Work shared out among threads; the number of threads changes no result.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+/// Blocks below which a second thread costs more than it saves.
+const LEAST_BLOCKS: usize = 20_000;
+
+/// The results of `work` on each part, in the order of the parts; a panic in one of them is one of the caller.
+pub fn in_order<P: Send, R: Send>(parts: Vec<P>, work: impl Fn(P) -> R + Sync) -> Vec<R> {
+    match parts.len() {
+        // No thread is started.
+        1 => parts.into_iter().map(work).collect(),
+        _ => parts.into_par_iter().map(&work).collect(),
+    }
+}
+
+/// At most `threads` runs of rows with about the same number of blocks; `starts` as in compressed rows.
+fn runs(starts: &[usize], threads: usize) -> Vec<Range<usize>> {
+    let (rows, blocks) = (starts.len() - 1, starts[starts.len() - 1]);
+    let parts = threads.min(blocks / LEAST_BLOCKS).max(1);
+    let bound =
+        |part: usize| if part == parts { rows } else { starts.partition_point(|&start| start < blocks / parts * part) };
+    (0..parts).map(|part| bound(part)..bound(part + 1)).collect()
+}
+
+/// Runs `work` on runs of rows, each with its parts of the vectors `ys`, which have `height` entries for each row.
+pub fn in_row_chunks<T: Send, const N: usize>(
+    starts: &[usize],
+    height: usize,
+    ys: [&mut [T]; N],
+    threads: usize,
+    work: impl Fn(Range<usize>, [&mut [T]; N]) + Sync,
+) {
+    let mut rest = ys;
+    let with_parts = |rows: Range<usize>| {
+        let parts = rest.each_mut().map(|rest| split_off(rest, rows.len() * height));
+        (rows, parts)
+    };
+    in_order(runs(starts, threads).into_iter().map(with_parts).collect(), |(rows, parts)| work(rows, parts));
+}
+
+/// Runs `work` on runs of rows, each with the values of its blocks, `size` for each.
+pub fn in_block_chunks<T: Send>(
+    starts: &[usize],
+    size: usize,
+    values: &mut [T],
+    threads: usize,
+    work: impl Fn(Range<usize>, &mut [T]) + Sync,
+) {
+    let mut rest = values;
+    let with_part = |rows: Range<usize>| {
+        let part = split_off(&mut rest, (starts[rows.end] - starts[rows.start]) * size);
+        (rows, part)
+    };
+    in_order(runs(starts, threads).into_iter().map(with_part).collect(), |(rows, part)| work(rows, part));
+}
+
+/// Takes the first `length` entries off a slice.
+fn split_off<'a, T>(rest: &mut &'a mut [T], length: usize) -> &'a mut [T] {
+    let (part, others) = std::mem::take(rest).split_at_mut(length);
+    *rest = others;
+    part
+}
+
+/// The results of `work` on runs of rows, in their order.
+pub fn row_chunks<R: Send>(starts: &[usize], threads: usize, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
+    in_order(runs(starts, threads), work)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::qp::barrier::guarded;
+
+    /// A hundred rows of as many blocks as two threads need.
+    const ROWS: usize = 100;
+
+    fn starts() -> Vec<usize> {
+        (0..=ROWS).map(|row| row * 4 * LEAST_BLOCKS / ROWS).collect()
+    }
+
+    #[test]
+    fn results_come_in_the_order_of_the_rows() {
+        for threads in 1..=4 {
+            let rows: Vec<usize> = row_chunks(&starts(), threads, |rows| rows.collect::<Vec<_>>()).concat();
+            assert_eq!(rows, (0..ROWS).collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn no_row_is_lost_if_one_thread_panics() {
+        let broken = |rows: Range<usize>| assert!(!rows.contains(&(ROWS / 2)), "row {} is broken", ROWS / 2);
+        for threads in 1..=4 {
+            let of_rows = guarded(|| row_chunks(&starts(), threads, broken));
+            let in_place = guarded(|| {
+                in_row_chunks(&starts(), 1, [&mut [0.0; ROWS][..]], threads, |rows, _| broken(rows));
+            });
+            let in_blocks = guarded(|| {
+                in_block_chunks(&starts(), 1, &mut vec![0.0; 4 * LEAST_BLOCKS], threads, |rows, _| broken(rows));
+            });
+            for ended in [of_rows.map(drop), in_place, in_blocks] {
+                assert_eq!(ended, Err("it panicked: row 50 is broken".to_string()));
+            }
+        }
+    }
+}
