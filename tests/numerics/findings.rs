@@ -241,3 +241,8 @@ fn a_weakly_held_part_between_difference_rows_is_certified() {
     finding.is_certified_by(&[Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty()]);
     finding.command(&[]).ends_with(0);
 }
+
+#[test]
+fn copies_of_a_row_in_other_scales_have_a_bound() {
+    Finding::read("scaled_duplicates_no_bound").is_certified_by(&ALL);
+}
