@@ -92,6 +92,7 @@ pub(super) fn rechecked(
     let Some(null) = null else { return Err(not_decided(problem, before)?) };
     let looked = Looked::of(&scaled, &scaling, null);
     if let Some(mode) = looked.escape() {
+        steps::check_rows(problem, &scaling, settings)?;
         return Err(Error::Unbounded { mode: mode.in_words(), direction: looked.expanded(&mode) });
     }
     let tolerance = settings.tolerance.min(SURE_CONDITIONS);
