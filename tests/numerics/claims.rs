@@ -3,6 +3,7 @@
 //! CONDITIONS: a stiffness that resists no motion, or not every motion; loads in balance and not in balance; rows that
 //! stop the motion in one direction, in both or in none. REFERENCE: the answers follow directly from the data.
 
+use signorini::qp::NearNullSpace;
 use signorini::{ContactProblem, Error, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve};
 
 const ALL: [Method; 5] = [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
@@ -125,5 +126,27 @@ fn rows_that_contradict_each_other_are_infeasible_although_the_load_drives_a_mot
             rows.contains(&0) && rows.contains(&1) && (overlap - 2.0).abs() < 1e-9,
             "{method}: {rows:?}, {overlap}"
         );
+    }
+}
+
+#[test]
+fn a_body_whose_rounded_stiffness_is_definite_floats_only_if_its_rigid_motion_is_declared() {
+    // Springs of 0.1 and 0.2: the doubles next to 0.1, 0.2 and 0.3 leave 2.8e-17 on the second mass.
+    let stiffness = [(0, 0, 0.1), (1, 0, -0.1), (1, 1, 0.1 + 0.2), (2, 1, -0.2), (2, 2, 0.2)];
+    for (load, is_driven) in [([0.0, 0.0, -1.0], true), ([0.0; 3], false)] {
+        let problem = problem(&stiffness, &load, &[&[1.0, 0.0, 0.0]], &[1e9]);
+        for (method, ending) in endings(&problem) {
+            let is_claim = matches!(ending, Err(Error::Unbounded { .. } | Error::UnderHeld { .. }));
+            assert!(!is_claim, "{method}: {ending:?}");
+        }
+        let declared = problem.with_near_null(NearNullSpace::new(vec![vec![1.0; 3]], 3).unwrap()).unwrap();
+        for (method, ending) in endings(&declared) {
+            let direction = match ending {
+                Err(Error::Unbounded { direction, .. }) if is_driven => direction,
+                Err(Error::UnderHeld { direction, .. }) if !is_driven => direction,
+                other => panic!("{method}, {load:?}: {other:?}"),
+            };
+            assert!(direction.iter().all(|d| (d.abs() - 1.0).abs() < 1e-9), "{method}: {direction:?}");
+        }
     }
 }
