@@ -261,3 +261,8 @@ fn a_soft_support_is_not_called_none() {
     let said = (stdout + &stderr).replace(finding.name, "");
     assert!([0, 4].contains(&code) && !said.contains("unbounded"), "{code}: {said}");
 }
+
+#[test]
+fn a_hundred_blocks_in_contact_with_each_other_have_a_bound() {
+    Finding::read("stack_of_blocks_101").is_certified_by(&ALL);
+}

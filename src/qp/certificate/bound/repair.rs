@@ -60,7 +60,7 @@ pub(super) struct Witness {
     /// For each closed row an upper bound on the energy norm of the shift that puts it exactly at its gap and leaves the other
     /// closed rows there.
     pub rest: Vec<f64>,
-    /// `true` if a row counts as met by rounding: a closed row that follows from others, or an open one just behind its gap.
+    /// `true` if a row counts as met by rounding: a closed row that follows from others, or an open one at its gap.
     pub is_rounded: bool,
 }
 

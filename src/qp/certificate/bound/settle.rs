@@ -76,7 +76,9 @@ impl Repair<'_> {
             let is_met = violated.is_empty() && deeper.is_empty() && looser.is_empty();
             if is_met && (pulling.is_empty() || exchange >= EXCHANGES) {
                 let has_dependent = first.iter().any(|&first| first > 0) || independent.contains(&false);
-                let is_excused = |row: usize| !closed[row] && distance[row] > 0.0;
+                // Whether such a row is violated is rounding of the way.
+                let is_excused =
+                    |row: usize| !closed[row] && tolerance[row] > 0.0 && distance[row].abs() <= tolerance[row];
                 let error = base.plus(change, steps);
                 return Some(Witness {
                     rest: self.rest(&set, &fitted),
