@@ -3,6 +3,7 @@
 //! CONDITIONS: a stiffness that resists no motion, or not every motion; loads in balance and not in balance; rows that
 //! stop the motion in one direction, in both or in none. REFERENCE: the answers follow directly from the data.
 
+use signorini::qp::NearNullSpace;
 use signorini::{ContactProblem, Error, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve};
 
 const ALL: [Method; 5] = [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
@@ -108,5 +109,44 @@ fn a_negative_eigenvalue_is_named_with_the_tolerance_of_its_recheck() {
     for (method, ending) in endings(&problem) {
         let Err(Error::NotConvex { evidence }) = ending else { panic!("{method}: {ending:?}") };
         assert!(evidence.contains("beyond 1e-12 of its terms"), "{method}: {evidence}");
+    }
+}
+
+#[test]
+fn rows_that_contradict_each_other_are_infeasible_although_the_load_drives_a_motion_that_none_stops() {
+    // Two masses that float under a load, and a third dof that is to be below -1 and above 1. A fourth dof above zero takes
+    // part in the second row by 1e-13: no two rows oppose each other.
+    let stiffness = [&SPRING[..], &[(2, 2, 1.0), (3, 2, -1.0), (3, 3, 2.0)]].concat();
+    let rows: [&[f64]; 3] = [&[0.0, 0.0, 1.0, 0.0], &[0.0, 0.0, -1.0, 1e-13], &[0.0, 0.0, 0.0, -1.0]];
+    let problem = problem(&stiffness, &[1.0, 1.0, 0.0, 0.0], &rows, &[-1.0, -1.0, 0.0]);
+    for (method, ending) in endings(&problem) {
+        let Err(Error::Infeasible { mut rows, overlap, .. }) = ending else { panic!("{method}: {ending:?}") };
+        rows.sort_unstable();
+        assert!(
+            rows.contains(&0) && rows.contains(&1) && (overlap - 2.0).abs() < 1e-9,
+            "{method}: {rows:?}, {overlap}"
+        );
+    }
+}
+
+#[test]
+fn a_body_whose_rounded_stiffness_is_definite_floats_only_if_its_rigid_motion_is_declared() {
+    // Springs of 0.1 and 0.2: the doubles next to 0.1, 0.2 and 0.3 leave 2.8e-17 on the second mass.
+    let stiffness = [(0, 0, 0.1), (1, 0, -0.1), (1, 1, 0.1 + 0.2), (2, 1, -0.2), (2, 2, 0.2)];
+    for (load, is_driven) in [([0.0, 0.0, -1.0], true), ([0.0; 3], false)] {
+        let problem = problem(&stiffness, &load, &[&[1.0, 0.0, 0.0]], &[1e9]);
+        for (method, ending) in endings(&problem) {
+            let is_claim = matches!(ending, Err(Error::Unbounded { .. } | Error::UnderHeld { .. }));
+            assert!(!is_claim, "{method}: {ending:?}");
+        }
+        let declared = problem.with_near_null(NearNullSpace::new(vec![vec![1.0; 3]], 3).unwrap()).unwrap();
+        for (method, ending) in endings(&declared) {
+            let direction = match ending {
+                Err(Error::Unbounded { direction, .. }) if is_driven => direction,
+                Err(Error::UnderHeld { direction, .. }) if !is_driven => direction,
+                other => panic!("{method}, {load:?}: {other:?}"),
+            };
+            assert!(direction.iter().all(|d| (d.abs() - 1.0).abs() < 1e-9), "{method}: {direction:?}");
+        }
     }
 }

@@ -241,3 +241,28 @@ fn a_weakly_held_part_between_difference_rows_is_certified() {
     finding.is_certified_by(&[Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty()]);
     finding.command(&[]).ends_with(0);
 }
+
+#[test]
+fn copies_of_a_row_in_other_scales_have_a_bound() {
+    Finding::read("scaled_duplicates_no_bound").is_certified_by(&ALL);
+}
+
+#[test]
+fn a_soft_support_is_not_called_none() {
+    let finding = Finding::read("soft_support_called_unbounded");
+    for method in ALL {
+        // The doubles of the problem hold the body; whether an answer is certified is another question.
+        if let Err(error) = finding.solve(method) {
+            assert!(matches!(error, Error::NotCertified { .. }), "{}: {error}", method.name());
+            assert!(!error.to_string().contains("unbounded"), "{}: {error}", method.name());
+        }
+    }
+    let Run { code, stdout, stderr } = finding.command(&[]);
+    let said = (stdout + &stderr).replace(finding.name, "");
+    assert!([0, 4].contains(&code) && !said.contains("unbounded"), "{code}: {said}");
+}
+
+#[test]
+fn a_hundred_blocks_in_contact_with_each_other_have_a_bound() {
+    Finding::read("stack_of_blocks_101").is_certified_by(&ALL);
+}
