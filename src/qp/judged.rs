@@ -2,7 +2,7 @@
 
 use super::problem::ContactProblem;
 use crate::error::Error;
-use crate::qp::linear::OF_ENTRIES;
+use crate::qp::linear::NullSpace;
 use crate::qp::method::Outcome;
 use crate::solution::{Certificate, ContactSet, Goal, Seconds, Solution};
 
@@ -100,7 +100,7 @@ pub(super) fn within_rounding(problem: &ContactProblem, dof: usize, share: f64) 
     );
     let solution = Box::new(Solution { reason: Some(reason), ..at_rest(problem)? });
     let condition = "the rounding of the stiffness, which its support of a motion must exceed,";
-    Ok(Error::NotCertified { solution, condition, value: OF_ENTRIES, tolerance: share })
+    Ok(Error::NotCertified { solution, condition, value: NullSpace::OF_ENTRIES, tolerance: share })
 }
 
 /// The answer before anything is found: no displacement and no force, with its certificate.

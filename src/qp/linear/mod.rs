@@ -35,7 +35,6 @@ pub use dense::{LowerTriangle, UpperTriangle, dot, largest, norm, subtract, take
 pub use dependence::Dependence;
 pub use factor::{FactorError, Width};
 pub use forest::Forest;
-pub(crate) use null_space::OF_ENTRIES;
 pub use null_space::{NullSpace, generic};
 pub use ordering::Fill;
 pub use orthogonal::inverse_lengths;

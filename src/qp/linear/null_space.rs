@@ -26,14 +26,6 @@ const EXACT: f64 = 1e-26;
 /// corrections.
 const NO_ENTRY: f64 = 1e-24;
 
-/// If a change of every entry of A by this share of itself makes `A v` vanish, A may be a singular matrix with rounded entries,
-/// rounded several times during assembly.
-///
-/// # Source
-/// W. Oettli, W. Prager, *Compatibility of approximate solution of linear equations with given error bounds for coefficients and
-/// right-hand sides*, Numer. Math. 6 (1964) 405-409.
-pub(crate) const OF_ENTRIES: f64 = 4.0 * f64::EPSILON;
-
 /// A basis of the null space of a matrix.
 #[derive(Clone, Debug, Default)]
 pub struct NullSpace {
@@ -46,6 +38,14 @@ pub struct NullSpace {
 }
 
 impl NullSpace {
+    /// If a change of every entry of A by this share of itself makes `A v` vanish, A may be a singular matrix with rounded entries,
+    /// rounded several times during assembly.
+    ///
+    /// # Source
+    /// W. Oettli, W. Prager, *Compatibility of approximate solution of linear equations with given error bounds for coefficients and
+    /// right-hand sides*, Numer. Math. 6 (1964) 405-409.
+    pub const OF_ENTRIES: f64 = 4.0 * f64::EPSILON;
+
     /// Returns `true` if A vanishes exactly on all vectors.
     pub fn is_exact(&self) -> bool {
         self.shares.iter().all(|&share| share == 0.0)
@@ -91,7 +91,7 @@ impl SymmetricMatrix {
             if share <= EXACT {
                 basis.vectors.push(corrected);
                 basis.shares.push(0.0);
-            } else if share <= OF_ENTRIES {
+            } else if share <= NullSpace::OF_ENTRIES {
                 // Corrections follow the rounding of the entries, and make the vectors less orthogonal to each other.
                 basis.vectors.push(vector.iter().map(|&value| value.into()).collect());
                 basis.shares.push(share);

@@ -25,6 +25,9 @@ const SOLVED: f64 = 1e-24;
 /// Steps of a solve for each row: rounding may need more than one.
 const STEPS_FOR_A_ROW: usize = 4;
 
+/// Steps of a solve that are taken although the time is over: rows with few dofs in common need no more.
+const STEPS_WHEN_OVER: usize = 50;
+
 /// A row is at its gap if its distance is below this share of the terms, far above the rounding of twice the working precision.
 const AT_GAP: f64 = 1e-26;
 
@@ -87,9 +90,9 @@ impl<'a> ClosedRows<'a> {
         let mut of_rest = product(&rest);
         let (mut direction, mut of_direction) = (rest.clone(), of_rest.clone());
         let (mut work, least) = (dot(&rest, &of_rest), SOLVED * dot(&rest, &rest));
-        for _ in 0..STEPS_FOR_A_ROW * self.rows.len() + STEPS_FOR_A_ROW {
+        for taken in 0..STEPS_FOR_A_ROW * self.rows.len() + STEPS_FOR_A_ROW {
             let step = work / dot(&of_direction, &of_direction);
-            if !(step.is_finite() && work > 0.0) || is_over() {
+            if !(step.is_finite() && work > 0.0) || (taken >= STEPS_WHEN_OVER && is_over()) {
                 break;
             }
             x.iter_mut().zip(&direction).for_each(|(x, d)| *x += step * d);
@@ -110,7 +113,7 @@ impl<'a> ClosedRows<'a> {
 
 impl ContactProblem {
     /// A shift of u that puts rows at their gaps, and all others within theirs. Of closed rows that follow from others only the
-    /// tightest stay closed. `None` if rows contradict each other, or for lack of time.
+    /// tightest stay closed. `None` if rows contradict each other, or if the time ends before long chains are solved.
     pub(super) fn placed(
         &self,
         by_row: &SparseMatrix,
@@ -122,7 +125,7 @@ impl ContactProblem {
         let terms = self.terms_of_rows(displacement);
         for _ in 0..EXCHANGES {
             let rows: Vec<usize> = (0..self.rows()).filter(|&row| closed[row]).collect();
-            let moved = self.moved_to_gaps(&ClosedRows::new(by_row, rows, &compliance)?, displacement, &is_over)?;
+            let moved = self.moved_to_gaps(&ClosedRows::new(by_row, rows, &compliance)?, displacement, &is_over);
             let is_off = |row: usize| moved.distance[row].abs() > AT_GAP * (terms[row] + moved.terms[row]);
             let violated: Vec<usize> =
                 (0..self.rows()).filter(|&row| !closed[row] && moved.distance[row] > 0.0 && is_off(row)).collect();
@@ -184,7 +187,7 @@ impl ContactProblem {
     }
 
     /// The rows moved to their gaps as far as they can be together.
-    fn moved_to_gaps(&self, rows: &ClosedRows, u: &[f64], is_over: &impl Fn() -> bool) -> Option<Moved> {
+    fn moved_to_gaps(&self, rows: &ClosedRows, u: &[f64], is_over: &impl Fn() -> bool) -> Moved {
         let start: Vec<f64> = self.gap.iter().map(|&gap| if gap.is_finite() { -gap } else { 0.0 }).collect();
         let mut sums = Accumulator::new(&start);
         let mut add = |v: &[f64]| -> Vec<f64> {
@@ -206,9 +209,6 @@ impl ContactProblem {
             if size == 0.0 || gain >= LEAST_GAIN {
                 break;
             }
-            if is_over() {
-                return None;
-            }
             before = size;
             last = rows.shift(rows.forces(&rows.solve(off, is_over)));
             distance = add(&last);
@@ -221,7 +221,7 @@ impl ContactProblem {
         // Each of the shifts that would follow is at most half as long as the one before.
         let follow = 2.0 * gain.min(1.0);
         let rest = self.parts().sums(|dof| roots[dof] * (OF_SHIFT * magnitude[dof] + follow * last[dof].abs()));
-        Some(Moved { terms: self.contact.mul_abs(&magnitude), shift, rest, distance })
+        Moved { terms: self.contact.mul_abs(&magnitude), shift, rest, distance }
     }
 }
 
