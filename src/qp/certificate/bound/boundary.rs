@@ -71,15 +71,16 @@ impl ContactProblem {
                 violation: &violation,
             };
             let near = Answer { residual: residual(&near), ..near };
-            let repair = Repair::new(self, norm, boundary, &near)?;
-            witness = repair.best_witness(&witness.closed)?;
+            let Some(repair) = Repair::new(self, norm, boundary, &near) else { break };
+            let Some(settled) = repair.best_witness(&witness.closed) else { break };
+            witness = settled;
             let step: Vec<f64> = moved.iter().zip(answer.displacement).map(|(v, u)| v - u).collect();
             let of_near = repair.bound(&witness);
             let size = of_near.size();
             let bound = of_near.farther(self, &step);
-            let is_settled = settled(size, bound.size(), best.as_ref().map_or(f64::INFINITY, ErrorBound::size));
+            let is_last = gains_nothing(size, bound.size(), best.as_ref().map_or(f64::INFINITY, ErrorBound::size));
             best = Some(best.into_iter().fold(bound, ErrorBound::smaller));
-            if is_settled {
+            if is_last {
                 break;
             }
             next = (repair.answer(&witness), repair.expanded(&witness.change));
@@ -101,7 +102,7 @@ impl ContactProblem {
 
 /// Returns `true` if another repair gains nothing. A repair gains the digits that the last one has, unless `rest`, the bound
 /// without the way to the witness, is at most half of the `bound`, or the last one has gained little on the `best` before.
-fn settled(rest: f64, bound: f64, best: f64) -> bool {
+fn gains_nothing(rest: f64, bound: f64, best: f64) -> bool {
     rest <= FAR * bound || bound >= GAINS * best
 }
 
@@ -133,12 +134,12 @@ mod tests {
     #[test]
     fn repairs_end_when_half_the_bound_is_the_way_or_a_tenth_of_the_last_is_not_reached() {
         // The way takes no part in the bound, and there is no previous bound, or one more than ten times as large.
-        assert!(!settled(1.0, 1.0, f64::INFINITY) && !settled(2.0, 2.0, 20.5));
+        assert!(!gains_nothing(1.0, 1.0, f64::INFINITY) && !gains_nothing(2.0, 2.0, 20.5));
         // The way is half of the bound, then a little less.
-        assert!(settled(1.0, 2.0, f64::INFINITY) && !settled(1.01, 2.0, f64::INFINITY));
+        assert!(gains_nothing(1.0, 2.0, f64::INFINITY) && !gains_nothing(1.01, 2.0, f64::INFINITY));
         // The previous bound is ten times as large, then less than that.
-        assert!(settled(2.0, 2.0, 20.0) && settled(2.0, 2.0, 1.0));
+        assert!(gains_nothing(2.0, 2.0, 20.0) && gains_nothing(2.0, 2.0, 1.0));
         // Without a bound no repair follows.
-        assert!(settled(f64::INFINITY, f64::INFINITY, f64::INFINITY));
+        assert!(gains_nothing(f64::INFINITY, f64::INFINITY, f64::INFINITY));
     }
 }

@@ -34,15 +34,14 @@ impl ContactProblem {
         let Some(placed) = self.placed(&by_row, answer.displacement, at_gap, || watch.is_over()) else {
             return (ErrorBound::none(), None);
         };
-        let mut residual = answer.residual.clone();
         // Neither a force that pulls nor one on an open row is a multiplier.
-        let dropped =
-            |row: usize| if placed.closed[row] { answer.multiplier[row].max(0.0) } else { answer.multiplier[row] };
-        let dropped: Vec<f64> = (0..self.rows()).map(dropped).collect();
-        let is_dropped = dropped.iter().any(|&force| force != 0.0);
-        if is_dropped {
-            residual.iter_mut().zip(self.contact.mul_transposed(&dropped)).for_each(|(r, force)| *r -= force);
-        }
+        let keeps = |row: usize| if placed.closed[row] { answer.multiplier[row].min(0.0) } else { 0.0 };
+        let kept: Vec<f64> = (0..self.rows()).map(keeps).collect();
+        let is_dropped = kept.iter().zip(answer.multiplier).any(|(kept, given)| kept != given);
+        let residual = match is_dropped {
+            true => self.accurate_residual(answer.displacement, &kept),
+            false => answer.residual.clone(),
+        };
         let parts = self.parts();
         let are_apart = parts.count() == 1 || parts.are_apart(&self.stiffness);
         let one = vec![0; if are_apart { 0 } else { self.dofs() }];

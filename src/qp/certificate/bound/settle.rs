@@ -45,7 +45,7 @@ impl Repair<'_> {
         let mut closed = closed.to_vec();
         // The exchange that put a row first; 0 if none did.
         let mut first = vec![0; rows];
-        for exchange in 0..=rows {
+        for exchange in 0..=rows + EXCHANGES {
             // The deepest first: of two rows that contradict each other as equalities the tighter one is kept.
             let mut set: Vec<usize> = (0..rows).filter(|&row| closed[row]).collect();
             set.sort_by(|&a, &b| {
@@ -144,13 +144,15 @@ impl Repair<'_> {
         let Triangle { r: triangle, weights } = triangle_of(&columns, || self.norm.is_over())?;
         let (mut change, mut steps) = (vec![0.0; self.rows.len()], vec![0.0; self.rows.len()]);
         let mut moved = self.boundary.backward(self.sweep(base));
+        // The magnitudes of the shifts whose sum is `moved`: that keeps the rounding of each.
+        let mut magnitude: Vec<f64> = moved.iter().map(|shift| shift.abs()).collect();
         let mut correction = 0;
         loop {
-            let terms = |row: usize| self.rows[row].iter().map(|&(place, b)| b * moved[place]);
-            let distance: Vec<f64> =
-                (0..self.rows.len()).map(|row| self.violation[row] + terms(row).sum::<f64>()).collect();
+            let along = |row: usize| self.rows[row].iter().map(|&(place, b)| b * moved[place]).sum::<f64>();
+            let distance: Vec<f64> = (0..self.rows.len()).map(|row| self.violation[row] + along(row)).collect();
             let rounding = |row: usize| {
-                DISTANCE_ROUNDING * terms(row).fold(self.violation[row].abs(), |sum, term| sum + term.abs())
+                let terms = self.rows[row].iter().map(|&(place, b)| b.abs() * magnitude[place]).sum::<f64>();
+                DISTANCE_ROUNDING * (self.violation[row].abs() + terms)
             };
             let mut tolerance: Vec<f64> = (0..self.rows.len()).map(rounding).collect();
             // A row that follows from others is at its gap as precisely as they are.
@@ -169,7 +171,12 @@ impl Repair<'_> {
             change.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step);
             // The shifts are those of the forces, except for the rounding of each step, even if the steps cancel each other.
             steps.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step.abs());
-            moved.iter_mut().zip(self.boundary.backward(self.spread(&added))).for_each(|(sum, step)| *sum += step);
+            for ((sum, most), step) in
+                moved.iter_mut().zip(&mut magnitude).zip(self.boundary.backward(self.spread(&added)))
+            {
+                *sum += step;
+                *most += step.abs();
+            }
         }
     }
 }
