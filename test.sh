@@ -1,17 +1,74 @@
 #!/usr/bin/env bash
-# Runs all checks. Needs cargo (with rustfmt and clippy), python3 >= 3.11 with venv, and Chromium.
-# The Python packages of the reference are installed into target/reference-venv, those of python/ into target/python-venv.
-# The tests of distributed/ run if Debian's python3-petsc4py and openmpi-bin are installed; DISTRIBUTED=required makes their
-# absence an error.
+# Runs all checks. Needs cargo with rustfmt and clippy, and python3 (3.11 or later) with venv.
+#
+#   ./test.sh          runs the checks
+#   ./test.sh needs    only says what is missing, what would be installed and which steps would be skipped
+#
+# Python packages go into target/. Chromium, PETSc and MPI are packages of Debian: as root in a container, or with INSTALL=1,
+# apt-get installs those that are missing. Otherwise the steps that need them are skipped, and named at the end; with SKIP=never
+# that is an error.
 #
 # All steps use one profile (dev: the crate with overflow checks, dependencies as in release), and every test runs once.
 set -euo pipefail
 cd "$(dirname "$0")"
+target=${CARGO_TARGET_DIR:-target}
+mkdir -p "$target"
+CARGO_TARGET_DIR=$(cd "$target" && pwd)
+export CARGO_TARGET_DIR
+built=$CARGO_TARGET_DIR/debug
 
-need() { command -v "$1" >/dev/null || { echo "test.sh needs $1: $2" >&2; exit 1; }; }
-need cargo "the Rust toolchain"
-need python3 "version 3.11 or later, with the venv module, for the reference validation"
-need "${CHROMIUM:-chromium}" "a headless browser, in which the pages are opened; on Debian apt-get install chromium"
+need() { "${@:2}" >/dev/null 2>&1 || { echo "test.sh needs $1" >&2; exit 1; }; }
+need "cargo, of Rust: https://rustup.rs"                          cargo --version
+need "rustfmt: rustup component add rustfmt"                      cargo fmt --version
+need "clippy: rustup component add clippy"                        cargo clippy --version
+need "python3, version 3.11 or later"                             python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))'
+need "venv of python3: on Debian apt-get install python3-venv"    python3 -c 'import ensurepip, venv'
+
+pages="pages, in a real browser"
+distributed="distributed, on PETSc"
+has_chromium() { (cd reference && python3 -B -c 'import browser; browser.found()') 2>/dev/null; }
+# Prints the interpreter that has PETSc.
+petsc_python() { (cd distributed && python3 -B -c 'import launch; print(launch.interpreter())') 2>/dev/null; }
+has_mpirun() { command -v mpirun >/dev/null; }
+# Sets `missing`, the packages of Debian that are not installed, and `skipped`, a line for each step that cannot run without them.
+look() {
+    missing=() skipped=()
+    has_chromium || { missing+=(chromium); skipped+=("$pages: there is no Chromium"); }
+    has_mpirun || { missing+=(openmpi-bin); skipped+=("$distributed: there is no mpirun"); }
+    petsc_python >/dev/null || { missing+=(python3-petsc4py python3-numpy); skipped+=("$distributed: there is no petsc4py"); }
+}
+is_skipped() { [[ "${skipped[*]-}" == *"$1"* ]]; }
+is_container() {
+    [ -e /.dockerenv ] || [ -e /run/.containerenv ] || [ -n "${container:-}${KUBERNETES_SERVICE_HOST:-}" ] \
+        || grep -qsE 'docker|containerd|kubepods|libpod|lxc' /proc/1/cgroup || systemd-detect-virt --container --quiet 2>/dev/null
+}
+is_root() { [ "$(id -u)" -eq 0 ]; }
+may_install() { command -v apt-get >/dev/null && { [ "${INSTALL:-}" = 1 ] || { is_root && is_container; }; }; }
+apt() {
+    local sudo=""
+    is_root || sudo=sudo
+    $sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq "$@" </dev/null >/dev/null
+}
+
+look
+if [ ${#missing[@]} -gt 0 ] && may_install; then
+    echo "== test.sh installs by apt-get: ${missing[*]}"
+    [ "${1:-}" = needs ] && exit
+    { apt update && apt install -y --no-install-recommends "${missing[@]}"; } || echo "apt-get failed" >&2
+    look
+fi
+# Names the skipped steps.
+tell_skipped() {
+    [ ${#skipped[@]} -gt 0 ] || return 0
+    printf '== skipped: %s\n' "${skipped[@]}"
+    echo "   INSTALL=1 ./test.sh installs by apt-get what these steps need: ${missing[*]}"
+}
+tell_skipped
+if [ ${#skipped[@]} -gt 0 ] && [ "${SKIP:-}" = never ]; then
+    echo "== failed: SKIP=never allows no skipped step" >&2
+    exit 1
+fi
+[ "${1:-}" = needs ] && exit
 
 out=$(mktemp -d)
 name="" began=0 times=""
@@ -28,7 +85,6 @@ ended() {
     [ $code -eq 0 ] || printf '\n== failed: %s\n' "$name" >&2
 }
 trap ended EXIT
-built=${CARGO_TARGET_DIR:-target}/debug
 example() { printf -- '-- %s\n' "$*"; "$built/examples/$1" "${@:2}"; }
 program() { printf -- '-- signorini %s\n' "$*"; "$built/signorini" "$@"; }
 
@@ -60,20 +116,21 @@ step "reference, its own tests";    reference/environment.sh
 target/reference-venv/bin/python -m unittest discover --start-directory reference
 step "schema, valid and invalid scenes"; target/reference-venv/bin/python reference/schema.py "$built/signorini"
 step "reference, live validation";  target/reference-venv/bin/python reference/validate.py --signorini "$built/signorini"
-step "pages, in a real browser";    (cd reference && SIGNORINI="../$built/signorini" ../target/reference-venv/bin/python -m unittest pages)
+if ! is_skipped "$pages"; then
+    step "$pages"
+    (cd reference && SIGNORINI="$built/signorini" ../target/reference-venv/bin/python -m unittest pages)
+fi
 
-step "distributed, on PETSc"
-if (cd distributed && /usr/bin/python3 -B -c "import ranks") 2>/dev/null && command -v mpirun >/dev/null; then
+if ! is_skipped "$distributed"; then
+    step "$distributed"
+    petsc=$(petsc_python)
     # The options of PETSc are global to a process, so that each test file runs in a process of its own.
     for tests in distributed/tests/test_*.py; do
-        SIGNORINI="$PWD/$built/signorini" /usr/bin/python3 -B -m unittest discover --start-directory distributed/tests --pattern "${tests##*/}"
+        SIGNORINI="$built/signorini" "$petsc" -B -m unittest discover --start-directory distributed/tests --pattern "${tests##*/}"
     done
-elif [ "${DISTRIBUTED:-}" = required ]; then
-    echo "the distributed tests need PETSc and MPI: apt-get install python3-petsc4py openmpi-bin" >&2
-    exit 1
-else
-    echo "skipped: /usr/bin/python3 has no PETSc, or mpirun is missing; on Debian apt-get install python3-petsc4py openmpi-bin"
 fi
 
 step ""
-printf '\n%s%6d s  in all\n== all checks passed\n' "$times" $SECONDS
+printf '\n%s%6d s  in all: %d minutes\n' "$times" $SECONDS $(((SECONDS + 30) / 60))
+tell_skipped
+if [ ${#skipped[@]} -gt 0 ]; then echo "== all other checks passed"; else echo "== all checks passed"; fi

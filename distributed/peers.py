@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Times PETSc's own solvers on the same problem: mpirun -n 2 python3 distributed/peers.py PROBLEM contact linear tron.
+"""Times PETSc's own solvers on the same problem: python3 distributed/peers.py PROBLEM contact linear tron --ranks 2.
 
 Prints a line for each solver that is named: seconds of the clock and of this rank's processor, with all set-up; iterations;
 unknowns at a bound. `contact` is this program without its certificate; `linear` solves K u = b without bounds by conjugate
@@ -10,6 +10,11 @@ several ranks. All end at 1e-9 of the first residual, `contact` as solve.py does
 
 import sys
 import time
+
+import launch
+
+if __name__ == "__main__":
+    launch.start()
 
 from ranks import PETSc, Refused, USAGE
 

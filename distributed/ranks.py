@@ -6,23 +6,26 @@ import os
 import resource
 import sys
 
+import launch
+
 # One thread for each rank: more threads would share the processors of other ranks.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 try:
-    import petsc4py
-except ImportError:
-    # Debian installs petsc4py in a folder that is not on the path of Python.
-    sys.path += sorted(glob.glob("/usr/lib/petscdir/petsc*/*real/lib/python3/dist-packages"))
+    # numpy comes first: if it is missing, MPI has not been started.
+    import numpy as np
+
     try:
         import petsc4py
     except ImportError:
-        print("there is no petsc4py: apt-get install python3-petsc4py, or pip install petsc4py", file=sys.stderr)
-        sys.exit(2)
+        # Debian installs petsc4py in a folder that is not on the path of Python.
+        sys.path += sorted(glob.glob("/usr/lib/petscdir/petsc*/*real/lib/python3/dist-packages"))
+        import petsc4py
+except ImportError as error:
+    launch.end(f"{sys.executable} has no {error.name}: start with --ranks instead of mpirun, or {launch.INSTALL}")
 
 petsc4py.init([sys.argv[0]])
 
-import numpy as np  # noqa: E402
 from petsc4py import PETSc  # noqa: E402
 
 
@@ -42,7 +45,7 @@ LARGE_BLOCK = 1024 * 1024
 M_MMAP_THRESHOLD, M_MMAP_MAX = -3, -4
 """Parameters of mallopt(3) in the GNU C library."""
 
-BAD_INPUT, USAGE, NO_ANSWER, NOT_CERTIFIED = 1, 2, 3, 4
+BAD_INPUT, USAGE, NO_ANSWER, NOT_CERTIFIED = 1, launch.USAGE, 3, 4
 
 
 def return_freed_memory():

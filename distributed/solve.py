@@ -1,11 +1,16 @@
 #!/usr/bin/env python3
-"""Solves a contact problem on many ranks: mpirun -n 4 python3 distributed/solve.py PROBLEM --out DIR."""
+"""Solves a contact problem on many ranks: python3 distributed/solve.py PROBLEM --out DIR --ranks 4."""
 
 import argparse
 import os
 import sys
 import time
 import traceback
+
+import launch
+
+if __name__ == "__main__":
+    launch.start()
 
 from ranks import BAD_INPUT, NOT_CERTIFIED, PETSc, Ranks, Refused
 
@@ -39,6 +44,7 @@ def arguments():
                                      "1 bad input or file, 2 usage, 3 infeasible or not enough supports, 4 not certified.")
     parser.add_argument("problem", help="folder that signorini export wrote, with --format petsc or as Matrix Market")
     parser.add_argument("--out", required=True, help="folder for u.mtx, lambda.mtx and log.json; made if missing")
+    launch.add_option(parser)
     parser.add_argument("--tolerance", type=float, default=1e-9, help="of the certificate (default 1e-9)")
     parser.add_argument("--start", help="folder of an earlier answer to start from")
     parser.add_argument("--multigrid", choices=("gamg", "boomeramg"), default="gamg", help="who builds the levels")

@@ -1,8 +1,13 @@
 #!/usr/bin/env python3
-"""Certifies an answer on many ranks: mpirun -n 4 python3 distributed/verify.py PROBLEM u.mtx lambda.mtx."""
+"""Certifies an answer on many ranks: python3 distributed/verify.py PROBLEM u.mtx lambda.mtx --ranks 4."""
 
 import argparse
 import json
+
+import launch
+
+if __name__ == "__main__":
+    launch.start()
 
 from ranks import NOT_CERTIFIED
 
@@ -19,6 +24,7 @@ def arguments():
     parser.add_argument("problem", help="folder that signorini export wrote")
     parser.add_argument("displacement", help="u.mtx: a number for each free dof")
     parser.add_argument("multiplier", help="lambda.mtx: a number for each contact row, <= 0")
+    launch.add_option(parser)
     parser.add_argument("--tolerance", type=float, default=1e-9, help="of every number (default 1e-9)")
     parser.add_argument("--save-memory", action="store_true", help=SAVE_MEMORY)
     options = parser.parse_args()

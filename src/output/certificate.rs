@@ -55,8 +55,8 @@ fn notes(certificate: &Certificate) -> Vec<String> {
         notes.push(format!("of {} parts {moving}the largest error is at most {worst:.1e}", parts - resting));
     }
     if certificate.loose_dofs > 0 {
-        let loose = "dofs without stiffness and force: the energy error does not see where they are";
-        notes.push(format!("{} {loose}", certificate.loose_dofs));
+        let loose = "without stiffness and force (number of dofs)";
+        notes.push(format!("the energy error does not see the place of dofs {loose}: {}", certificate.loose_dofs));
     }
     if !certificate.has_bound() {
         let unknown = "no error bound: the conditions alone do not bound the error of the displacement";

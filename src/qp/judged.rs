@@ -2,6 +2,7 @@
 
 use super::problem::ContactProblem;
 use crate::error::Error;
+use crate::qp::linear::NullSpace;
 use crate::qp::method::Outcome;
 use crate::solution::{Certificate, ContactSet, Goal, Seconds, Solution};
 
@@ -85,6 +86,21 @@ fn not_rechecked(problem: &ContactProblem, claim: &Error) -> Result<Error, Error
     let solution = Box::new(Solution { reason: Some(format!("not rechecked: {claim}")), ..at_rest(problem)? });
     let condition = "a claim that could not be rechecked";
     Ok(Error::NotCertified { solution, condition, value: 0.0, tolerance: 0.0 })
+}
+
+/// The error for a stiffness that resists a motion, mainly of `dof`, by a `share` of its terms that the rounding of its entries
+/// exceeds: the body at rest, which is not certified.
+///
+/// # Errors
+/// Those of the certificate.
+pub(super) fn within_rounding(problem: &ContactProblem, dof: usize, share: f64) -> Result<Error, Error> {
+    let reason = format!(
+        "the stiffness holds a motion, mainly at dof {dof} (indices from 0), but only within the rounding of its entries; give the \
+         rigid-body modes if the body floats"
+    );
+    let solution = Box::new(Solution { reason: Some(reason), ..at_rest(problem)? });
+    let condition = "the rounding of the stiffness, which its support of a motion must exceed,";
+    Ok(Error::NotCertified { solution, condition, value: NullSpace::OF_ENTRIES, tolerance: share })
 }
 
 /// The answer before anything is found: no displacement and no force, with its certificate.

@@ -161,9 +161,10 @@ pub struct Solution {
 impl Solution {
     /// Digits of the displacement that the entries of the stiffness determine, approximately, if they are few: each entry is
     /// rounded to double precision, and the softest motion amplifies that by one over the smallest pivot. The certificate takes
-    /// the entries as exact.
+    /// the entries as exact. A dof without stiffness has no digits to lose.
     pub fn digits_of_stiffness(&self) -> Option<u32> {
-        self.lost_pivot.map(|pivot| (pivot / ROUNDED_ENTRIES).log10().round().max(0.0) as u32)
+        let pivot = self.lost_pivot.filter(|&pivot| pivot > 0.0 || self.certificate.loose_dofs == 0);
+        pivot.map(|pivot| (pivot / ROUNDED_ENTRIES).log10().round().max(0.0) as u32)
     }
 
     /// Total contact force `-sum(lambda)`, `>= 0`, in the problem's unit of force.

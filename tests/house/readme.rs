@@ -1,7 +1,8 @@
-//! The README agrees with the program: its code is the doctest, its table of signs is that of the library, and its
-//! commands exist.
+//! The README agrees with the program: its first screen names the command that solves and the one that tests, its code
+//! is the doctest, its table of signs is that of the library, and its commands exist.
 
 use std::fs;
+use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::Command;
 
@@ -20,6 +21,104 @@ fn front_page() -> String {
 fn block<'a>(text: &'a str, start: &str) -> &'a str {
     let inside = text.split_once(start).unwrap_or_else(|| panic!("there is no block {start:?}")).1;
     inside.split_once("```").unwrap().0.trim()
+}
+
+/// The lines that a reader sees first.
+const FIRST_SCREEN: usize = 40;
+
+const SOLVES: &str = "cargo run --release -- solve examples/indentation.json --out answer";
+
+#[test]
+fn the_first_screen_names_one_command_that_solves_and_one_that_tests() {
+    let readme = read("README.md");
+    let lines: Vec<&str> = readme.lines().take(FIRST_SCREEN).collect();
+    let screen = lines.join("\n");
+    assert_eq!(screen.matches("```sh\n").count(), 1, "{screen}");
+    assert_eq!(block(&screen, "```sh\n"), [SOLVES, "./test.sh"].join("\n"));
+    assert!(read(".gitignore").lines().any(|line| line == "/answer"), "git sees what the first command leaves");
+    let minutes = ["about four minutes", "about 12 minutes", "20 the first time"];
+    assert!(minutes.iter().all(|minutes| screen.contains(minutes)), "{screen}");
+}
+
+#[test]
+fn the_first_command_leaves_the_files_that_the_readme_names() {
+    let readme = read("README.md");
+    let sentence = readme.split("it leaves ").nth(1).unwrap().split(". ").next().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("answer");
+    let arguments = SOLVES.strip_prefix("cargo run --release -- ").unwrap().strip_suffix("answer").unwrap();
+    let run = Command::new(env!("CARGO_BIN_EXE_signorini"))
+        .args(arguments.split_whitespace())
+        .arg(&out)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap();
+    assert!(run.status.success(), "{run:?}");
+    let names: Vec<&str> = sentence.split('`').skip(1).step_by(2).collect();
+    assert_eq!(names.len(), 3, "{sentence}");
+    for name in names {
+        assert!(out.join(name).is_file(), "there is no {name}");
+    }
+}
+
+/// Runs `./test.sh needs`, which installs nothing, as a user who is not root, where no programs exist but those given, by
+/// their name and exit code. Returns whether it succeeds, and its lines.
+fn needs(programs: &[(&str, i32)], variables: &[(&str, &str)]) -> (bool, Vec<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    let found =
+        |name: &str| ["/bin", "/usr/bin"].map(|at| Path::new(at).join(name)).into_iter().find(|file| file.exists());
+    for name in ["bash", "dirname", "grep", "mkdir"] {
+        std::os::unix::fs::symlink(found(name).unwrap(), folder.path().join(name)).unwrap();
+    }
+    for (name, code) in programs.iter().chain(&[("id", 0)]) {
+        let file = folder.path().join(name);
+        let prints = if *name == "id" { "echo 1000" } else { "" };
+        fs::write(&file, format!("#!/bin/sh\n{prints}\nexit {code}\n")).unwrap();
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).unwrap();
+    }
+    let output = Command::new(Path::new(env!("CARGO_MANIFEST_DIR")).join("test.sh"))
+        .arg("needs")
+        .env_clear()
+        .env("PATH", folder.path())
+        .env("CARGO_TARGET_DIR", folder.path().join("target"))
+        .envs(variables.iter().copied())
+        .output()
+        .unwrap();
+    let text = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+    (output.status.success(), text.lines().map(String::from).collect())
+}
+
+#[test]
+fn tests_need_the_named_tools_and_skip_the_rest_by_name() {
+    let readme = read("README.md");
+    let (is_fine, lines) = needs(&[("python3", 1), ("cargo", 0)], &[]);
+    assert!(!is_fine && lines == ["test.sh needs python3, version 3.11 or later"], "{lines:?}");
+    let (is_fine, lines) = needs(&[("cargo", 1), ("python3", 0)], &[]);
+    assert!(!is_fine && lines.len() == 1 && lines[0].starts_with("test.sh needs cargo"), "{lines:?}");
+    let script = read("test.sh");
+    let needed = script.lines().filter_map(|line| line.strip_prefix("need \""));
+    let needed: Vec<&str> = needed.map(|line| line.split([' ', ',', ':']).next().unwrap()).collect();
+    assert_eq!(needed, ["cargo", "rustfmt", "clippy", "python3", "venv"]);
+    let sentence = readme.split("It needs ").nth(1).unwrap().split(". ").next().unwrap();
+    assert!(needed.iter().all(|tool| sentence.contains(tool)), "{sentence}");
+    // Where everything but mpirun is found, exactly the steps that need it are named.
+    let (is_fine, lines) = needs(&[("cargo", 0), ("python3", 0)], &[]);
+    assert!(is_fine && lines[0] == "== skipped: distributed, on PETSc: there is no mpirun", "{lines:?}");
+    assert!(lines.len() == 2 && lines[1].contains("INSTALL=1") && lines[1].ends_with(": openmpi-bin"), "{lines:?}");
+    let (is_fine, lines) = needs(&[("cargo", 0), ("python3", 0)], &[("SKIP", "never")]);
+    assert!(!is_fine && lines.last().unwrap().contains("SKIP=never"), "{lines:?}");
+    let all = [("cargo", 0), ("python3", 0), ("mpirun", 0)];
+    assert_eq!(needs(&all, &[("SKIP", "never")]), (true, Vec::new()));
+    // It says what it installs before it does.
+    let with_apt = [("cargo", 0), ("python3", 0), ("apt-get", 1)];
+    let (is_fine, lines) = needs(&with_apt, &[("INSTALL", "1")]);
+    assert!(is_fine && lines == ["== test.sh installs by apt-get: openmpi-bin"], "{lines:?}");
+}
+
+#[test]
+fn the_checks_of_a_change_allow_no_skipped_step() {
+    let check = read(".ci/run");
+    assert!(check.lines().last().unwrap().ends_with("SKIP=never exec ./test.sh"), "{check}");
 }
 
 #[test]
@@ -109,9 +208,9 @@ fn the_commands_of_the_readme_are_those_of_the_program() {
 }
 
 #[test]
-fn the_command_in_the_readme_prints_the_shown_output() {
-    let readme = read("README.md");
-    let shown = block(&readme, "`signorini compare examples/indentation.json` solves by three methods:\n```text\n");
+fn three_methods_print_the_shown_comparison() {
+    let page = read("docs/methods.md");
+    let shown = block(&page, "`signorini compare examples/indentation.json` solves by three methods:\n\n```text\n");
     let output = Command::new(env!("CARGO_BIN_EXE_signorini"))
         .args(["compare", "examples/indentation.json"])
         .current_dir(env!("CARGO_MANIFEST_DIR"))

@@ -198,7 +198,8 @@ fn other_units_by_powers_of_two_give_the_same_iterations() {
     assert_eq!(one.multiplier.iter().map(|value| unit * value).collect::<Vec<_>>(), other.multiplier);
 }
 
-/// A block without supports, with rows at the top along z; the problem has the stiffness of all dofs.
+/// A block without supports, with rows at the top along z; the problem has the stiffness of all dofs, and declares the rigid-body
+/// modes.
 fn unsupported(cells: usize, load: [f64; 3]) -> ContactProblem {
     let model = built(&clamped_block(cells, 0.0));
     let body = model.body();
@@ -207,7 +208,9 @@ fn unsupported(cells: usize, load: [f64; 3]) -> ContactProblem {
     let entries: Vec<_> = model.rows().iter().enumerate().map(|(row, at)| (row, 3 * at.node + 2, 1.0)).collect();
     let contact = signorini::SparseMatrix::from_triplets(entries.len(), body.nodal_dofs(), &entries).unwrap();
     let load: Vec<f64> = (0..body.nodal_dofs()).map(|dof| load[dof % 3]).collect();
-    ContactProblem::new(stiffness, load, contact, vec![0.01; entries.len()]).unwrap()
+    let axes: Vec<Vec<f64>> = (0..3).map(|axis| body.mesh().nodes().iter().map(|node| node[axis]).collect()).collect();
+    let problem = ContactProblem::new(stiffness, load, contact, vec![0.01; entries.len()]).unwrap();
+    problem.with_near_null(NearNullSpace::of_nodes(&axes).unwrap()).unwrap()
 }
 
 #[test]

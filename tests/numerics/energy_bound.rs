@@ -2,7 +2,7 @@
 //! to it.
 
 use crate::program::examples;
-use crate::random::springs;
+use crate::random::{springs, stacked};
 use signorini::qp::{Condense, Method, Settings};
 use signorini::{ContactProblem, Error, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
 use signorini::{InteriorPoint, Penalty};
@@ -15,6 +15,9 @@ const ROUNDING: f64 = 1e-6;
 
 /// Largest ratio of the bound to the error.
 const LOOSEST: f64 = 10.0;
+
+/// Number of random problems with rows between dofs.
+const STACKED: u64 = 60;
 
 /// Largest median of these ratios.
 const MEDIAN: f64 = 3.0;
@@ -131,4 +134,42 @@ fn the_bound_is_near_the_error_if_every_dof_is_a_candidate() {
     )
     .unwrap();
     check(ratios("string", &problem));
+}
+
+#[test]
+fn every_answer_with_rows_between_dofs_has_a_bound_that_certifies_it() {
+    for seed in 0..STACKED {
+        let problem = stacked(seed);
+        let solution = solve(&problem, &Settings::default());
+        let solution = solution.unwrap_or_else(|error| panic!("seed {seed}, {} dofs: {error}", problem.dofs()));
+        let closed = solution.contact_set.iter().count();
+        assert!(closed > 0, "seed {seed}");
+        // An answer that is moved has a bound above the way, and within the usual ratio.
+        let moved: Vec<f64> = solution.displacement.iter().map(|u| u * (1.0 + 1e-6)).collect();
+        let certificate = problem.certify(&moved, &solution.multiplier).unwrap();
+        let way: Vec<f64> = moved.iter().zip(&solution.displacement).map(|(a, b)| a - b).collect();
+        let error = energy(&problem, &way) / energy(&problem, &moved);
+        let ratio = certificate.energy_error_bound / error;
+        assert!(
+            (1.0 - ROUNDING..LOOSEST).contains(&ratio),
+            "seed {seed}, {} dofs, {closed} closed: {ratio}",
+            problem.dofs()
+        );
+    }
+}
+
+#[test]
+fn rows_that_contradict_each_other_leave_no_bound_however_far_off_the_answer_is() {
+    // u_0 <= 0, u_1 <= 0 and u_0 + u_1 >= 1e-6.
+    let matrix = |rows, entries: &[_]| SparseMatrix::from_triplets(rows, 2, entries).unwrap();
+    let stiffness = SymmetricMatrix::from_lower(matrix(2, &[(0, 0, 2.0), (1, 0, -1.0), (1, 1, 2.0)])).unwrap();
+    let contact = matrix(3, &[(0, 0, 1.0), (1, 1, 1.0), (2, 0, -1.0), (2, 1, -1.0)]);
+    let problem = ContactProblem::new(stiffness, vec![1.0; 2], contact, vec![0.0, 0.0, -1e-6]).unwrap();
+    for exponent in 0..14 {
+        for u in [10_f64.powi(exponent), -10_f64.powi(exponent), 3.7 * 10_f64.powi(exponent)] {
+            let force = -u.abs();
+            let certificate = problem.certify(&[u, u], &[3.0 * force, 3.0 * force, force]).unwrap();
+            assert!(!certificate.has_bound(), "{u:e}: {certificate:?}");
+        }
+    }
 }

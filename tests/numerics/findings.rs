@@ -241,3 +241,98 @@ fn a_weakly_held_part_between_difference_rows_is_certified() {
     finding.is_certified_by(&[Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty()]);
     finding.command(&[]).ends_with(0);
 }
+
+#[test]
+fn copies_of_a_row_in_other_scales_have_a_bound() {
+    Finding::read("scaled_duplicates_no_bound").is_certified_by(&ALL);
+}
+
+#[test]
+fn a_soft_support_is_not_called_none() {
+    let finding = Finding::read("soft_support_called_unbounded");
+    for method in ALL {
+        // The doubles of the problem hold the body; whether an answer is certified is another question.
+        if let Err(error) = finding.solve(method) {
+            assert!(matches!(error, Error::NotCertified { .. }), "{}: {error}", method.name());
+            assert!(!error.to_string().contains("unbounded"), "{}: {error}", method.name());
+        }
+    }
+    let Run { code, stdout, stderr } = finding.command(&[]);
+    let said = (stdout + &stderr).replace(finding.name, "");
+    assert!([0, 4].contains(&code) && !said.contains("unbounded"), "{code}: {said}");
+}
+
+#[test]
+fn a_hundred_blocks_in_contact_with_each_other_have_a_bound() {
+    Finding::read("stack_of_blocks_101").is_certified_by(&ALL);
+}
+
+/// Asserts that `auto`, the QP and the active set certify the answer, for an accuracy goal as well, and that every error on the way
+/// to it that `tradeoff` prints is at most the bound beside it.
+#[test]
+fn an_answer_whose_forces_cancel_is_repaired_before_it_is_certified() {
+    let finding = Finding::read("foam_pair_certified_3e-4");
+    finding.is_certified_by(&[Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty()]);
+    let folder = folder(finding.name);
+    let report = Desk::new().run(&["tradeoff", folder.to_str().unwrap(), "--format", "json"]).ends_with(0).json();
+    let points = report["points"].as_array().unwrap().iter();
+    let pairs =
+        points.filter_map(|point| Some((point["energy_error"].as_f64()?, point["energy_error_bound"].as_f64()?)));
+    let pairs: Vec<(f64, f64)> = pairs.collect();
+    assert!(!pairs.is_empty() && pairs.iter().all(|(error, bound)| error <= bound), "{pairs:?}");
+}
+
+#[test]
+fn a_body_at_rest_is_certified_by_a_sentence_of_its_own() {
+    for name in ["rest_load_on_wall", "rest_weakly_coupled_part"] {
+        let finding = Finding::read(name);
+        for method in [Method::Auto, Method::qp(), Method::ActiveSet] {
+            let solution = finding.solve(method).unwrap_or_else(|error| panic!("{name} by {}: {error}", method.name()));
+            assert!(solution.certificate.at_rest && solution.displacement.iter().all(|&u| u == 0.0), "{name}");
+        }
+        let run = finding.command(&[]).ends_with(0);
+        assert!(run.stdout.contains("certified at rest"), "{}", run.stdout);
+    }
+}
+
+#[test]
+fn a_loose_part_between_two_walls_hides_no_bound_of_the_others() {
+    let finding = Finding::read("loose_part_between_walls");
+    finding.is_certified_by(&[Method::Auto]);
+    let certificate = &finding.command(&["--format", "json"]).ends_with(0).json()["certificate"];
+    assert_eq!(certificate["loose_dofs"], 1);
+    // It has no stiffness whose digits could be lost.
+    let text = finding.command(&[]).stdout;
+    assert!(!text.contains("warning"), "{text}");
+}
+
+#[test]
+fn a_body_that_a_small_force_drives_away_is_not_certified_to_any_accuracy() {
+    let finding = Finding::read("accuracy_certifies_unbounded");
+    for method in ALL {
+        for accuracy in [None, Some(1e-2)] {
+            let mut settings = Settings::with_method(method);
+            settings.accuracy = accuracy;
+            let ending = solve(&finding.problem, &settings);
+            finding.is_faultless(&finding.judge().ending(method.name(), settings.goal(), &ending, false));
+            assert!(ending.is_err(), "{} {accuracy:?}", method.name());
+        }
+    }
+    let Run { code, .. } = finding.command(&["--accuracy", "1e-2"]);
+    assert!([3, 4].contains(&code), "{code}");
+}
+
+#[test]
+fn an_answer_that_a_load_on_a_wall_makes_look_small_is_not_verified() {
+    let finding = Finding::read("verify_load_on_wall");
+    finding.is_not_verified();
+    let folder = folder(finding.name);
+    let files = ["u.mtx", "lambda.mtx"].map(|file| folder.join(file));
+    let [u, lambda] = files.each_ref().map(|file| file.to_str().unwrap());
+    let arguments = ["verify", folder.to_str().unwrap(), "--displacement", u, "--multiplier", lambda];
+    Desk::new().run(&[&arguments[..], &["--tolerance", "1e-2"]].concat()).ends_with(4);
+    // One that is right to the tolerance is certified.
+    for method in [Method::Auto, Method::qp(), Method::ActiveSet] {
+        finding.solve(method).unwrap_or_else(|error| panic!("{}: {error}", method.name()));
+    }
+}

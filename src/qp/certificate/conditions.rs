@@ -263,7 +263,7 @@ impl ContactProblem {
         certificate.cancellation = self.cancellation(&forces, &elastic, part);
         let Answer { residual, .. } = answer;
         let has_bound = !matches!(bounding, Bounding::Nothing);
-        let evidence = has_bound.then(|| Evidence { residual, violation, error: bound.whole, measured });
+        let evidence = has_bound.then_some(Evidence { residual, violation, error: bound.whole, measured });
         Examined { certificate, evidence, may_rest: scales.may_rest(&bound) }
     }
 

@@ -28,11 +28,11 @@ impl Rounding {
     /// For a direction in twice the working precision on which the stiffness does exactly no work.
     const OF_EXACT: Rounding = Rounding { entry: 1e-24, vanishes: 1e-28, zero: 1e-28, sure: 1e-28 };
 
-    /// For a direction that is known only as precisely as rounded entries of the stiffness.
+    /// For a rigid-body mode that the problem declares, which is known only as precisely as rounded entries of the stiffness.
     const OF_ROUNDED: Rounding = Rounding { entry: 1e-9, vanishes: 1e-10, zero: 1e-15, sure: 1e-8 };
 
     pub fn of(null: &NullSpace) -> Self {
-        if null.is_exact { Self::OF_EXACT } else { Self::OF_ROUNDED }
+        if null.is_exact() { Self::OF_EXACT } else { Self::OF_ROUNDED }
     }
 }
 

@@ -15,12 +15,14 @@
 //! one.
 
 mod cone;
+mod rigid;
 mod steps;
 
 use cone::{Cone, Face, Row};
+use rigid::{is_rigid, place_of_largest};
 
 use super::cost::{Kept, check_memory, check_time, seconds};
-use super::judged::{fallen_short, judged, not_decided};
+use super::judged::{fallen_short, judged, not_decided, within_rounding};
 use super::settings::Settings;
 use crate::error::Error;
 use crate::qp::certificate::{NullMode, Rounding};
@@ -92,9 +94,23 @@ pub(super) fn rechecked(
         Err(error) => return Err(error.into()),
     };
     let Some(null) = null else { return Err(not_decided(problem, before)?) };
+    // A rounded direction is a motion without energy only for a body that is known to float.
+    let bodies = scaled.stiffness().components().0;
+    let expanded = |vector: &[Twice]| {
+        let rounded: Vec<f64> = vector.iter().map(|value| value.rounded()).collect();
+        scaling.expand_displacement(&rounded, 0)
+    };
+    let softest =
+        null.shares.iter().zip(&null.vectors).max_by(|a, b| a.0.total_cmp(b.0)).map(|entry| expanded(entry.1));
+    let (null, share) = null.declared(|vector| is_rigid(problem, &expanded(vector), &bodies));
     let looked = Looked::of(&scaled, &scaling, null);
     if let Some(mode) = looked.escape() {
+        steps::check_rows(problem, &scaling, settings)?;
         return Err(Error::Unbounded { mode: mode.in_words(), direction: looked.expanded(&mode) });
+    }
+    if share > 0.0 && !matches!(before, Error::NotCertified { .. }) {
+        let dof = softest.map_or(0, |motion| place_of_largest(&motion));
+        return Err(within_rounding(problem, dof, share)?);
     }
     let tolerance = settings.tolerance.min(SURE_CONDITIONS);
     let holds = |solution: &Solution| solution.certificate.conditions_hold(tolerance);
@@ -251,7 +267,7 @@ impl<'a> Looked<'a> {
     /// The cone of the modes that close none of these rows.
     fn cone<'b>(&'b self, stops: &dyn Fn(usize) -> bool) -> Cone<'b> {
         let rows = self.rows.iter().filter(|(row, _)| stops(*row)).map(|(_, row)| row).collect();
-        Cone { rows, fixed: None, rounding: self.rounding.vanishes, is_exact: self.null.is_exact }
+        Cone { rows, fixed: None, rounding: self.rounding.vanishes, is_exact: self.null.is_exact() }
     }
 
     fn mode(&self, coordinates: &[Twice]) -> Option<NullMode> {

@@ -47,13 +47,7 @@ pub(super) fn answer(
     let added = added(scaling);
     let stiffness = with_diagonal(problem.stiffness(), &added)?;
     let dofs = problem.dofs();
-    let settings_of_step = Settings {
-        method: Method::ActiveSet,
-        precision: Precision::Double,
-        accuracy: None,
-        prove: false,
-        ..settings.clone()
-    };
+    let settings_of_step = settings_of_step(settings);
     // The pivot of K itself, not of the steps.
     let lost_pivot = match &before {
         Error::NotCertified { solution, .. } => solution.lost_pivot,
@@ -92,6 +86,27 @@ pub(super) fn answer(
         Some(solution) => Ok(solution),
         None => Err(not_decided(problem, before)?),
     }
+}
+
+/// Checks that some displacement meets the rows: the nearest to rest, in E.
+///
+/// # Errors
+/// [`Error::Infeasible`] for contact rows that contradict each other; if that is not decided, they count as met.
+pub(super) fn check_rows(problem: &ContactProblem, scaling: &Scaling, settings: &Settings) -> Result<(), Error> {
+    let diagonal: Vec<_> = added(scaling).into_iter().enumerate().map(|(dof, value)| (dof, dof, value)).collect();
+    let dofs = problem.dofs();
+    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &diagonal)?)?;
+    let nearest = ContactProblem::new(stiffness, vec![0.0; dofs], problem.contact().clone(), problem.gap().to_vec())?;
+    match attempts::solved(&nearest, &settings_of_step(settings)) {
+        Err(infeasible @ Error::Infeasible { .. }) => Err(infeasible),
+        _ => Ok(()),
+    }
+}
+
+/// The settings of a step.
+fn settings_of_step(settings: &Settings) -> Settings {
+    let (method, precision) = (Method::ActiveSet, Precision::Double);
+    Settings { method, precision, accuracy: None, prove: false, ..settings.clone() }
 }
 
 fn with_diagonal(stiffness: &SymmetricMatrix, added: &[f64]) -> Result<SymmetricMatrix, Error> {

@@ -26,22 +26,44 @@ const EXACT: f64 = 1e-26;
 /// corrections.
 const NO_ENTRY: f64 = 1e-24;
 
-/// If a change of every entry of A by this share of itself makes `A v` vanish, A may be a singular matrix with rounded entries,
-/// rounded several times during assembly.
-///
-/// # Source
-/// W. Oettli, W. Prager, *Compatibility of approximate solution of linear equations with given error bounds for coefficients and
-/// right-hand sides*, Numer. Math. 6 (1964) 405-409.
-const OF_ENTRIES: f64 = 4.0 * f64::EPSILON;
-
 /// A basis of the null space of a matrix.
 #[derive(Clone, Debug, Default)]
 pub struct NullSpace {
     /// Linearly independent vectors of length about one.
     pub vectors: Vec<Vec<Twice>>,
-    /// `true` if `A v` vanishes exactly, for the doubles of the matrix. Otherwise it would with its entries rounded in another
-    /// way, and the vectors have no more digits than the entries.
-    pub is_exact: bool,
+    /// The largest share of its terms that is left in an entry of `A v`, for each vector: zero if `A v` vanishes exactly, for the
+    /// doubles of the matrix. Otherwise it would vanish with the entries rounded in another way, and the vector has no more
+    /// digits than the entries.
+    pub shares: Vec<f64>,
+}
+
+impl NullSpace {
+    /// If a change of every entry of A by this share of itself makes `A v` vanish, A may be a singular matrix with rounded entries,
+    /// rounded several times during assembly.
+    ///
+    /// # Source
+    /// W. Oettli, W. Prager, *Compatibility of approximate solution of linear equations with given error bounds for coefficients and
+    /// right-hand sides*, Numer. Math. 6 (1964) 405-409.
+    pub const OF_ENTRIES: f64 = 4.0 * f64::EPSILON;
+
+    /// Returns `true` if A vanishes exactly on all vectors.
+    pub fn is_exact(&self) -> bool {
+        self.shares.iter().all(|&share| share == 0.0)
+    }
+
+    /// The vectors on which A vanishes exactly and those that `is_declared`, and the largest share of the others.
+    pub fn declared(self, is_declared: impl Fn(&[Twice]) -> bool) -> (Self, f64) {
+        let (mut kept, mut most) = (NullSpace::default(), 0.0_f64);
+        for (vector, share) in self.vectors.into_iter().zip(self.shares) {
+            if share == 0.0 || is_declared(&vector) {
+                kept.vectors.push(vector);
+                kept.shares.push(share);
+            } else {
+                most = most.max(share);
+            }
+        }
+        (kept, most)
+    }
 }
 
 impl SymmetricMatrix {
@@ -63,15 +85,16 @@ impl SymmetricMatrix {
             }
             found.extend(pieces);
         }
-        let mut basis = NullSpace { vectors: Vec::new(), is_exact: true };
+        let mut basis = NullSpace::default();
         for vector in &found {
             let (corrected, share) = self.corrected(&factor, vector);
             if share <= EXACT {
                 basis.vectors.push(corrected);
-            } else if share <= OF_ENTRIES {
+                basis.shares.push(0.0);
+            } else if share <= NullSpace::OF_ENTRIES {
                 // Corrections follow the rounding of the entries, and make the vectors less orthogonal to each other.
                 basis.vectors.push(vector.iter().map(|&value| value.into()).collect());
-                basis.is_exact = false;
+                basis.shares.push(share);
             }
         }
         Ok(Some(basis))
@@ -151,7 +174,7 @@ impl SymmetricMatrix {
     }
 
     /// The connected component of each unknown, and their number.
-    fn components(&self) -> (Vec<usize>, usize) {
+    pub(crate) fn components(&self) -> (Vec<usize>, usize) {
         let mut forest = Forest::new(self.dim());
         for (row, column, _) in self.lower().triplets().filter(|entry| entry.2 != 0.0) {
             forest.join(row, column);

@@ -46,7 +46,7 @@ impl ContactProblem {
         let bound = repair.bound(&witness);
         // With springs the shift is large and bends little: a factor that loses digits makes its energy mere rounding.
         let is_precise = norm.springs().is_none() || norm.loss() <= LOST_WITH_SPRINGS;
-        let is_exact = norm.widening() == 1.0 && !witness.has_dependent && is_precise;
+        let is_exact = norm.widening() == 1.0 && !witness.is_rounded && is_precise;
         if is_exact && repair.cancelled(&witness) <= SMALL * bound.whole {
             return Some(bound);
         }

@@ -19,6 +19,7 @@
 //! and therefore `|v - u*|_K <= a` as long as a is below every `|mu_i| / sqrt(D_i)`; [`Springs::hold`] asks for half of that.
 
 mod boundary;
+mod closed_rows;
 mod cycles;
 mod repair;
 mod row_by_row;
@@ -182,18 +183,6 @@ impl ContactProblem {
         of_rows
     }
 
-    /// An upper bound on `|b / b'b|_K` of each row b: the shift along the row that moves it by one.
-    pub(super) fn lengths_along_rows(&self) -> Vec<f64> {
-        let (mut sums, mut squares) = (vec![0.0; self.rows()], vec![0.0; self.rows()]);
-        for (dof, &root) in self.diagonal().roots.iter().enumerate() {
-            for (row, b) in self.contact.column(dof) {
-                sums[row] += b.abs() * root;
-                squares[row] += b * b;
-            }
-        }
-        sums.iter().zip(&squares).map(|(sum, square)| if *square > 0.0 { sum / square } else { 0.0 }).collect()
-    }
-
     /// The energy norm of a shift.
     fn length(&self, shift: &[f64]) -> f64 {
         let forces = self.unrounded_product(|column| self.stiffness.lower().column(column), shift);
@@ -310,12 +299,6 @@ mod tests {
 
     fn answer<'a>(displacement: &'a [f64], multiplier: &'a [f64]) -> Answer<'a> {
         Answer { displacement, multiplier, residual: vec![0.0; 3], violation: &[-1.0, -1.0] }
-    }
-
-    #[test]
-    fn lengths_along_rows_are_sums_of_single_shifts() {
-        // |b_0| sqrt(4) + |b_1| sqrt(16) over b'b, which is above sqrt(3^2 4 + 5^2 16) / 34.
-        assert_eq!(apart().lengths_along_rows(), [(3.0 * 2.0 + 5.0 * 4.0) / 34.0, 0.0]);
     }
 
     #[test]

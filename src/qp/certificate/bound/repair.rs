@@ -60,8 +60,8 @@ pub(super) struct Witness {
     /// For each closed row an upper bound on the energy norm of the shift that puts it exactly at its gap and leaves the other
     /// closed rows there.
     pub rest: Vec<f64>,
-    /// `true` if a closed row follows from others.
-    pub has_dependent: bool,
+    /// `true` if a row counts as met by rounding: a closed row that follows from others, or an open one at its gap.
+    pub is_rounded: bool,
 }
 
 /// An answer on the contact boundary, in equilibrated units, rows normalised by powers of two.

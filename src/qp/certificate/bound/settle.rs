@@ -43,7 +43,8 @@ impl Repair<'_> {
     pub fn settle(&self, closed: &[bool], multipliers: Multipliers) -> Option<Witness> {
         let rows = self.rows.len();
         let mut closed = closed.to_vec();
-        let mut first = vec![false; rows];
+        // The exchange that put a row first; 0 if none did.
+        let mut first = vec![0; rows];
         for exchange in 0..=rows {
             // The deepest first: of two rows that contradict each other as equalities the tighter one is kept.
             let mut set: Vec<usize> = (0..rows).filter(|&row| closed[row]).collect();
@@ -74,18 +75,22 @@ impl Repair<'_> {
             };
             let is_met = violated.is_empty() && deeper.is_empty() && looser.is_empty();
             if is_met && (pulling.is_empty() || exchange >= EXCHANGES) {
-                let has_dependent = first.iter().any(|&first| first) || independent.contains(&false);
+                let has_dependent = first.iter().any(|&first| first > 0) || independent.contains(&false);
+                // Whether such a row is violated is rounding of the way.
+                let is_excused =
+                    |row: usize| !closed[row] && tolerance[row] > 0.0 && distance[row].abs() <= tolerance[row];
                 let error = base.plus(change, steps);
                 return Some(Witness {
                     rest: self.rest(&set, &fitted),
-                    has_dependent,
+                    is_rounded: has_dependent || (0..rows).any(is_excused),
                     ..self.witness(error, change, &closed, multipliers)
                 });
             }
-            if deeper.iter().any(|&row| first[row]) {
+            // Of copies that differ by rounding the tightest comes first in the end, unless they contradict each other.
+            if exchange >= EXCHANGES && deeper.iter().any(|&row| first[row] > 0) {
                 return None;
             }
-            deeper.iter().for_each(|&row| first[row] = true);
+            deeper.iter().for_each(|&row| first[row] = exchange + 1);
             violated.iter().for_each(|&row| closed[row] = true);
             looser.iter().filter(|_| deeper.is_empty()).for_each(|&row| closed[row] = false);
             // The force of a looser row passes to other rows, which may then stop pulling.
@@ -113,7 +118,7 @@ impl Repair<'_> {
         let change = (0..change.len()).map(|row| if in_equilibrium && pushes(row) { change[row] } else { 0.0 });
         let (change, left, closed) = (change.collect(), Force::new(1.0 - error.alpha, rows), closed.to_vec());
         let rest = vec![0.0; closed.len()];
-        Witness { error, left, multiplier, change, closed, rest, has_dependent: false }
+        Witness { error, left, multiplier, change, closed, rest, is_rounded: false }
     }
 
     /// For each row an upper bound on the energy norm of the shift that moves it from its place after a fit exactly to its gap
