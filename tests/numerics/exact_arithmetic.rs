@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 
 use crate::draws::Draws;
 use crate::exact::case::Case;
-use crate::exact::dyadic::{Dyadic, dot};
+use crate::exact::dyadic::{Dyadic, dot, ratio};
 use crate::exact::judge::Sort;
 use crate::exact::solve::{Exact, Outcome};
 use crate::exact::table::Table;
@@ -274,4 +274,14 @@ fn no_point_that_meets_the_rows_has_less_energy_than_the_answer() {
         }
     }
     assert!(solved >= 1000, "{solved} points");
+}
+
+/// Division of doubles is rounded to the nearest one.
+#[test]
+fn ratios_are_rounded_as_division_rounds() {
+    let mut draws = Draws(9);
+    for _ in 0..20_000 {
+        let (a, b) = (draws.signed() * draws.decades(1e-30, 1e30), 1.0 + draws.signed() * draws.decades(1e-9, 0.5));
+        assert_eq!(ratio(&Dyadic::from(a), &Dyadic::from(b)), a / b, "{a:e} / {b:e}");
+    }
 }

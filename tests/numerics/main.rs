@@ -28,6 +28,7 @@ mod methods;
 mod obstacle_problems;
 mod penalty_ladder;
 mod precision;
+mod promises;
 mod proven_set;
 mod separate_parts;
 mod watch;

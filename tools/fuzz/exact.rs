@@ -2,13 +2,11 @@
 //! arithmetic.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
-use signorini::internals::format_vector;
-use signorini::qp::{problem_files, read_problem};
+use signorini::qp::read_problem;
 
 use super::oracle::case::Case;
 use super::oracle::judge::Fault;
@@ -16,6 +14,7 @@ use super::oracle::solve::Exact;
 use super::oracle::stiffness::KINDS;
 use super::oracle::table::Table;
 use super::oracle::trial::{Trial, draw};
+use super::save;
 
 /// The options of the command line.
 struct Options {
@@ -92,7 +91,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
                 println!("{number} ({}, {}): {}: {}", trial.kind, trial.rows, fault.sort.name(), fault.detail);
             }
             if let Some(folder) = options.save.as_ref().filter(|_| is_first)
-                && let Err(error) = save(&folder.join(place), &trial, fault, number, options.seed)
+                && let Err(error) = keep(&folder.join(place), &trial, fault, number, options.seed)
             {
                 eprintln!("{}: {error}", folder.display());
                 return ExitCode::FAILURE;
@@ -106,17 +105,8 @@ pub fn run(arguments: &[String]) -> ExitCode {
     if failures.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Writes a problem directory with the problem, its exact answer, and the faulty answer.
-fn save(folder: &Path, trial: &Trial, fault: &Fault, number: u64, seed: u64) -> std::io::Result<()> {
-    fs::create_dir_all(folder)?;
-    let problem = trial.case.problem().map_err(std::io::Error::other)?;
-    for (name, text) in problem_files(&problem) {
-        fs::write(folder.join(name), text)?;
-    }
-    if let Some((u, lambda)) = &fault.answer {
-        fs::write(folder.join("u.mtx"), format_vector(u))?;
-        fs::write(folder.join("lambda.mtx"), format_vector(lambda))?;
-    }
+/// Writes the problem, its exact answer, and the faulty answer.
+fn keep(folder: &Path, trial: &Trial, fault: &Fault, number: u64, seed: u64) -> std::io::Result<()> {
     let text = format!(
         "{}: {}\n\nstiffness {}, rows {}; problem {number} of seed {seed}: fuzz exact 1 {seed} --only {number}\n\nexact: {}\n",
         fault.sort.name(),
@@ -125,5 +115,5 @@ fn save(folder: &Path, trial: &Trial, fault: &Fault, number: u64, seed: u64) -> 
         trial.rows,
         Exact::new(&trial.case).json(&trial.case)
     );
-    fs::write(folder.join("README.txt"), text)
+    save(folder, &trial.case.problem().map_err(std::io::Error::other)?, fault.answer.as_ref(), &text)
 }

@@ -10,6 +10,10 @@
 //! NAME] [--only NUMBER] [--save FOLDER] [--all]`, or `fuzz exact --answer DIRECTORY` for the exact answer of one
 //! problem. See `exact.rs`.
 //!
+//! The target `promises` runs binaries of the program as a user does, and compares what they print with exact arithmetic:
+//! `fuzz promises PROBLEMS [SEED] --program PATH [--against PATH] [--save FOLDER] [--only NUMBER]`. `fuzz promises --chains
+//! PROBLEMS` has long chains of rows instead, which only have to be certified. See `promises.rs`.
+//!
 //! With `--keep`, the first input of every ending that is new to `tests/faults` and `tests/corpus` is written into
 //! `tests/corpus`, which `tests/files/corpus.rs` replays.
 
@@ -19,6 +23,7 @@ mod exact;
 #[path = "../../tests/support/oracles/exact/mod.rs"]
 mod oracle;
 mod problem;
+mod promises;
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -29,6 +34,8 @@ use std::time::Instant;
 
 use damage::{damaged, fault, faults, read, wording};
 use draws::Draws;
+use signorini::ContactProblem;
+use signorini::internals::format_vector;
 
 /// Seconds above which an input counts as taking too long.
 const LONG: f64 = 5.0;
@@ -49,6 +56,21 @@ fn corpus() -> PathBuf {
 fn desk() -> std::io::Result<tempfile::TempDir> {
     let memory = Path::new("/dev/shm");
     if memory.is_dir() { tempfile::tempdir_in(memory) } else { tempfile::tempdir() }
+}
+
+/// Writes a problem directory, with an answer if there is one, and a text about it.
+fn save(
+    folder: &Path,
+    problem: &ContactProblem,
+    answer: Option<&(Vec<f64>, Vec<f64>)>,
+    text: &str,
+) -> std::io::Result<()> {
+    promises::write(folder, problem)?;
+    if let Some((u, lambda)) = answer {
+        fs::write(folder.join("u.mtx"), format_vector(u))?;
+        fs::write(folder.join("lambda.mtx"), format_vector(lambda))?;
+    }
+    fs::write(folder.join("README.txt"), text)
 }
 
 /// The known endings, the number of files that were kept for them, and the number of new ones.
@@ -135,6 +157,9 @@ fn main() -> ExitCode {
     let all: Vec<String> = std::env::args().skip(1).collect();
     if all.first().is_some_and(|target| target == "exact") {
         return exact::run(&all[1..]);
+    }
+    if all.first().is_some_and(|target| target == "promises") {
+        return promises::run(&all[1..]);
     }
     let (options, arguments): (Vec<String>, Vec<String>) = all.into_iter().partition(|word| word == "--keep");
     let target = TARGETS.iter().find(|target| arguments.first().is_some_and(|name| name == target.0));

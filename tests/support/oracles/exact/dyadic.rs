@@ -58,7 +58,7 @@ impl Dyadic {
         &self.mantissa << (self.exponent - exponent)
     }
 
-    /// The nearest double, to one unit in the last place.
+    /// The nearest double.
     pub fn to_f64(&self) -> f64 {
         quotient(self, &Dyadic::integer(1)).map_or(0.0, |(m, e)| scaled(m, e))
     }
@@ -153,14 +153,20 @@ fn quotient(a: &Dyadic, b: &Dyadic) -> Option<(f64, i64)> {
     let mut shift = 70 + b.mantissa.bits() as i64 - a.mantissa.bits() as i64;
     let exponent = a.exponent - b.exponent;
     shift += (exponent - shift) & 1;
-    let up = |value: &BigInt, by: i64| if by >= 0 { value << by } else { value >> -by };
-    let whole = up(&a.mantissa, shift) / &b.mantissa;
-    let digits = whole.magnitude().to_u64_digits();
-    let size = digits.iter().rev().fold(0.0, |sum, &digit| sum * 2.0_f64.powi(64) + digit as f64);
-    Some((f64::from(sign(&whole)) * size, exponent - shift))
+    let (a, b) = if shift >= 0 {
+        (&a.mantissa << shift, b.mantissa.clone())
+    } else {
+        (a.mantissa.clone(), &b.mantissa << -shift)
+    };
+    let whole = &a / &b;
+    let digits = whole.magnitude().iter_u64_digits().rev().fold(0, |sum, digit| sum << 64 | u128::from(digit));
+    // What is cut off counts as half of the last of about 70 bits, so that a double is rounded once.
+    let is_cut = &whole * &b != a;
+    let size = (digits << 1 | u128::from(is_cut)) as f64;
+    Some((f64::from(sign(&whole)) * size / 2.0, exponent - shift))
 }
 
-/// `a / b`, to a few units in the last place.
+/// The double that is nearest to `a / b`.
 pub fn ratio(a: &Dyadic, b: &Dyadic) -> f64 {
     quotient(a, b).map_or(0.0, |(m, e)| scaled(m, e))
 }

@@ -57,6 +57,26 @@ impl Errors<'_> {
         self.whole(displacement).error <= &bound * &bound
     }
 
+    /// Returns `true` if `|u - u*|_K` is at most `T / (1 - T) |u*|_K + eps sqrt(|u|'|K||u|)`, compared exactly: right to T
+    /// of the own norm of u, or as close as doubles can be.
+    pub fn is_right(&self, displacement: &[f64], tolerance: f64) -> bool {
+        let all: Vec<usize> = (0..self.case.dofs()).collect();
+        let rest = &Dyadic::integer(1) - &Dyadic::from(tolerance);
+        let times = |factor: &Dyadic, square: &Dyadic| &(factor * factor) * square;
+        let error = times(&rest, &self.whole(displacement).error);
+        let allowed = times(&tolerance.into(), &self.energy(&all, &self.answer.displacement));
+        let sizes: Vec<Dyadic> = displacement.iter().map(|u| Dyadic::from(u.abs())).collect();
+        let terms = self.exact.stiffness.iter().zip(&sizes).map(|(line, u)| {
+            let line: Vec<Dyadic> = line.iter().map(Dyadic::abs).collect();
+            u * &dot(&line, &sizes)
+        });
+        let terms = terms.fold(Dyadic::ZERO, |sum, part| &sum + &part);
+        let rounding = times(&(&rest * &(&self.answer.denominator * &f64::EPSILON.into())), &terms);
+        // sqrt(error) <= sqrt(allowed) + sqrt(rounding), squared twice.
+        let mixed = &error - &(&allowed + &rounding);
+        mixed.sign() <= 0 || &mixed * &mixed <= (&allowed * &rounding).ldexp(2)
+    }
+
     /// The error in each part, relative to the larger norm of the two answers.
     pub fn parts(&self, displacement: &[f64]) -> Vec<Relative> {
         parts(self.case).iter().map(|part| self.within(part, displacement, true)).collect()
@@ -64,24 +84,26 @@ impl Errors<'_> {
 
     fn within(&self, dofs: &[usize], displacement: &[f64], or_exact: bool) -> Relative {
         let scale = &self.answer.denominator;
-        let square = |values: &[Dyadic]| {
-            let product = |(place, &dof): (usize, &usize)| {
-                let line = dofs.iter().map(|&other| &self.exact.stiffness[dof][other]);
-                &values[place] * &dot(line, values)
-            };
-            dofs.iter().enumerate().map(product).fold(Dyadic::ZERO, |sum, part| &sum + &part)
-        };
         let given: Vec<Dyadic> = dofs.iter().map(|&dof| &Dyadic::from(displacement[dof]) * scale).collect();
         let exact: Vec<Dyadic> = dofs.iter().map(|&dof| self.answer.displacement[dof].clone()).collect();
         let apart: Vec<Dyadic> = given.iter().zip(&exact).map(|(a, b)| a - b).collect();
-        let mut size = square(&given);
+        let mut size = self.energy(dofs, &given);
         if or_exact {
-            size = larger(size, square(&exact));
+            size = larger(size, self.energy(dofs, &exact));
         }
         let rounding = &Dyadic::from(self.rounding(dofs)) * scale;
         let explained = if size.is_zero() { 0.0 } else { root_of_ratio(&(&rounding * &rounding), &size) };
         let is_at_rest = dofs.iter().all(|&dof| displacement[dof] == 0.0);
-        Relative { error: square(&apart), size, is_at_rest, explained }
+        Relative { error: self.energy(dofs, &apart), size, is_at_rest, explained }
+    }
+
+    /// `v'K v` of the displacements v of some dofs.
+    fn energy(&self, dofs: &[usize], values: &[Dyadic]) -> Dyadic {
+        let product = |(place, &dof): (usize, &usize)| {
+            let line = dofs.iter().map(|&other| &self.exact.stiffness[dof][other]);
+            &values[place] * &dot(line, values)
+        };
+        dofs.iter().enumerate().map(product).fold(Dyadic::ZERO, |sum, part| &sum + &part)
     }
 
     /// The largest effect of rounding the exact displacement, in energy.

@@ -34,8 +34,16 @@ pub const KINDS: [(&str, Make); 23] = [
     ("bodies", bodies),
 ];
 
-/// Convenience functions for random numbers.
+/// Random numbers of a problem.
 impl Draws {
+    /// The numbers of problem `number` of a seed.
+    pub fn of(seed: u64, number: u64) -> Self {
+        let mixed = Draws(seed).below(usize::MAX >> 1) as u64;
+        let mut draws = Draws(mixed ^ number.wrapping_mul(0xd134_2543_de82_ef95));
+        draws.below(2);
+        draws
+    }
+
     pub fn one_in(&mut self, n: usize) -> bool {
         self.below(n) == 0
     }

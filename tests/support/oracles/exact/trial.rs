@@ -44,10 +44,7 @@ pub struct Report {
 
 /// Problem `number` of a seed; if `kind` is `None`, the number determines the kind of stiffness.
 pub fn draw(seed: u64, number: u64, kind: Option<&str>) -> Trial {
-    let mut start = Draws(seed);
-    let mixed = start.below(usize::MAX >> 1) as u64;
-    let mut draws = Draws(mixed ^ number.wrapping_mul(0xd134_2543_de82_ef95));
-    draws.below(2);
+    let mut draws = Draws::of(seed, number);
     let named = KINDS.iter().position(|entry| Some(entry.0) == kind);
     let (kind, make) = KINDS[named.unwrap_or(number as usize % KINDS.len())];
     let (rows_kind, make_rows) = ROWS[draws.below(ROWS.len())];
