@@ -14,6 +14,7 @@
 //! # Ok::<(), signorini::Error>(())
 //! ```
 
+mod absent;
 mod answer;
 pub(crate) mod body;
 mod build;
@@ -63,6 +64,8 @@ mod unstrained;
 mod warning;
 mod watched;
 
+#[cfg(feature = "cli")]
+pub(crate) use absent::absent;
 pub use answer::{Answer, Forces};
 pub use body::{Sides, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
 pub use dynamics::Dynamics;
