@@ -46,6 +46,8 @@ mod refine;
 mod resultants;
 mod rigid_body_modes;
 mod rigid_face;
+#[cfg(feature = "cli")]
+mod roles;
 mod rows;
 pub(crate) mod schema;
 mod segments;
