@@ -73,7 +73,7 @@ pub(crate) mod vtu;
 pub(crate) use body::{ContactPicture, common_limits, common_window};
 pub use drawing::Drawing;
 #[cfg(feature = "cli")]
-pub(crate) use estimated_error::{estimated_error_text, write_estimated_error};
+pub(crate) use estimated_error::{estimated_error_text, estimated_meshes_picture, write_estimated_error};
 #[cfg(feature = "cli")]
 pub(crate) use file::make_folder;
 pub(crate) use file::{write_atomically, write_streamed};

@@ -20,7 +20,7 @@ async function assemble() {
   const began = performance.now(),
     page = document.getElementById("page"),
     data = await unpackedData();
-  const summary = data.report?.methods ? data.report.methods[0] : data.report,
+  const summary = data.report?.methods?.[0] ?? data.report?.answer ?? data.report,
     notes = data.body ? [EXACTNESS] : [];
   // Black is invisible on a dark page.
   data.colours.lines = data.colours.lines.map(colour => (colour === "#000000" ? "var(--ink)" : colour));
@@ -34,8 +34,8 @@ async function assemble() {
     questionSection(page, data, shape, summary);
     if (data.sweep) sweepSection(page, data, shape, notes);
     else if (data.motion) motionSection(page, data, shape, notes);
-    else if (data.report.levels && !data.states) levelsSection(page, data, still);
-    else answerSection(page, data, shape, summary);
+    else if (data.states) answerSection(page, data, shape, summary);
+    if (data.report?.levels) levelsSection(page, data, still);
     certificateSection(page, data);
     comparisonSection(page, data);
     resultantSection(page, summary, data);

@@ -106,21 +106,27 @@ pub(crate) fn write_tradeoff_page(
     write_page(folder, &page, Packer::default(), still)
 }
 
-/// The page of a guaranteed error against the continuum: the question, and the decrease of the error from mesh to mesh, with `still` as
-/// its picture.
+/// The page of an error against the continuum: the question, the answer on the last mesh if there is one, and the decrease of the error
+/// from mesh to mesh, with `still` as its picture.
 ///
 /// # Errors
-/// [`Error::File`].
+/// As [`write_answer_page`].
 pub(crate) fn write_total_error_page(
     folder: &Path,
     about: &About,
-    model: &Model,
-    found: &impl Serialize,
-    still: &Drawing,
+    (first, answer): (&Model, Option<&(Answer, Summary)>),
+    report: Value,
+    still: Option<&Drawing>,
 ) -> Result<(), Error> {
-    let (mut packer, shape) = (Packer::default(), Shape::of(model));
-    let page = Page::of_model(about, model, &shape, &mut packer);
-    write_page(folder, &Page { report: timeless(value(found)?), ..page }, packer, Some(still))
+    let mut packer = Packer::default();
+    let page = match answer {
+        Some((answer, summary)) => {
+            let shape = Shape::of(answer.model());
+            of_answer(about, answer, summary, &summary.solution.history, (&shape, &mut packer))?
+        }
+        None => Page::of_model(about, first, &Shape::of(first), &mut packer),
+    };
+    write_page(folder, &Page { report: timeless(report), ..page }, packer, still)
 }
 
 /// The common content of all pages of one answer.
