@@ -5,7 +5,7 @@ mod direct;
 pub(in crate::qp) mod seconds;
 mod smooth;
 
-use super::linear::{SparseMatrix, Width, largest};
+use super::linear::Width;
 use super::problem::ContactProblem;
 use super::settings::Settings;
 use crate::error::Error;
@@ -25,19 +25,11 @@ const SINGULAR: f64 = 2.5;
 /// order by minimum degree is then computed.
 const LOOK: f64 = 12.0;
 
-/// Forces of a mode below this share of their terms are rounding.
-const FREE: f64 = 1e-9;
-
-/// Returns `true` if a row has several entries, so that it is a bound only after reflections.
-fn is_turned(contact: &SparseMatrix) -> bool {
-    contact.entries() > contact.rows()
-}
-
-/// Returns `true` if one of the rigid-body modes has no energy.
-fn has_free_mode(problem: &ContactProblem) -> bool {
-    let stiffness = problem.stiffness();
-    let is_free = |mode: &Vec<f64>| largest(&stiffness.mul(mode)) <= FREE * largest(&stiffness.mul_abs(mode));
-    problem.near_null().is_some_and(|modes| modes.vectors().iter().any(is_free))
+/// Returns `true` if a row has several entries on dofs with stiffness, so that it is a bound only after reflections.
+fn is_turned(problem: &ContactProblem) -> bool {
+    let contact = problem.contact();
+    let of_travels: usize = problem.without_stiffness().into_iter().map(|dof| contact.column(dof).count()).sum();
+    contact.entries() - of_travels > contact.rows()
 }
 
 /// Estimated time and memory of the two paths.
@@ -74,7 +66,7 @@ impl Estimate {
         let entries = problem.stiffness().lower().entries() as f64;
         let smooth = Smooth::of(problem);
         let hierarchy_seconds = seconds::hierarchy(dofs, entries);
-        let turned = if is_turned(problem.contact()) { TURNED } else { 1.0 };
+        let turned = if is_turned(problem) { TURNED } else { 1.0 };
         let cycles = turned * smooth.cycles();
         let multigrid_seconds = hierarchy_seconds + cycles * seconds::cycle(dofs, entries);
         let mut direct = Direct::of(problem, smooth, BodyFactor::by_size(problem));
@@ -84,7 +76,7 @@ impl Estimate {
         }
         let times_multigrid = direct.seconds / multigrid_seconds;
         let matters = times_multigrid < SINGULAR && times_multigrid * SINGULAR > 1.0;
-        let times = if matters && has_free_mode(problem) { SINGULAR } else { 1.0 };
+        let times = if matters && problem.has_free_mode() { SINGULAR } else { 1.0 };
         Estimate {
             direct_bytes: bytes::START
                 + bytes::of_problem(dofs, problem.stiffness().entries() as f64)

@@ -11,7 +11,7 @@ use diagonal::Diagonal;
 
 use crate::error::Error;
 use crate::qp::linear::multigrid::NearNullSpace;
-use crate::qp::linear::{Accumulator, SparseMatrix, SymmetricMatrix};
+use crate::qp::linear::{Accumulator, SparseMatrix, SymmetricMatrix, largest};
 
 /// Frictionless unilateral contact as a convex quadratic program:
 ///
@@ -71,6 +71,9 @@ impl<T> PartialEq for FoundOnce<T> {
         true
     }
 }
+
+/// Forces of a mode below this share of their terms are rounding.
+const FREE: f64 = 1e-9;
 
 /// Gaps that other QP solvers treat as infinite; any other finite gap is a length.
 const NO_OBSTACLE: [f64; 2] = [1e20, 1e30];
@@ -194,6 +197,18 @@ impl ContactProblem {
     /// The diagonal of K, computed at its first use.
     pub(in crate::qp) fn diagonal(&self) -> &Diagonal {
         self.diagonal.get_or_find(|| Diagonal::of(&self.stiffness))
+    }
+
+    /// The dofs without stiffness, in increasing order.
+    pub(in crate::qp) fn without_stiffness(&self) -> Vec<usize> {
+        (0..self.dofs()).filter(|&dof| self.diagonal().values[dof] == 0.0).collect()
+    }
+
+    /// Returns `true` if one of the vectors of the near-null space has no energy: supports do not hold the body.
+    pub(in crate::qp) fn has_free_mode(&self) -> bool {
+        let is_free =
+            |mode: &Vec<f64>| largest(&self.stiffness.mul(mode)) <= FREE * largest(&self.stiffness.mul_abs(mode));
+        self.near_null().is_some_and(|modes| modes.vectors().iter().any(is_free))
     }
 
     /// The parts, computed at their first use.
