@@ -251,7 +251,8 @@ impl ContactProblem {
             cancellation: Cancellation { dof: 0, forces: 0.0, left: 0.0 },
             bound_is_measured: matches!(bounding, Bounding::Cycles(..)),
         };
-        let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
+        let rounding = scales.whole(strain).rounding();
+        let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation, rounding };
         let (bound, measured, loss) = match bounding {
             Bounding::Nothing => (ErrorBound::none(), None, 1.0),
             Bounding::Factor(norm) => (self.energy_error_bound(norm, &answer), None, norm.loss()),

@@ -26,7 +26,7 @@ impl OfPart {
     }
 
     /// What rounding the displacement to doubles does to its energy norm.
-    fn rounding(&self) -> f64 {
+    pub fn rounding(&self) -> f64 {
         AS_ROUNDED * self.terms.sqrt()
     }
 
@@ -70,14 +70,7 @@ impl Certificate {
     /// Returns the part that is farthest from its goal, or `None` if that is the whole.
     pub(super) fn take_in(&mut self, bound: &ErrorBound, scales: &Scales, strain: f64, loss: f64) -> Option<usize> {
         let parts = &scales.of_parts;
-        let whole = OfPart {
-            is_stiff: true,
-            moves: parts.iter().any(|part| part.moves),
-            strain,
-            terms: parts.iter().map(|part| part.terms).sum(),
-            force: parts.iter().fold(0.0, |largest, part| larger(part.force, largest)),
-            force_squares: parts.iter().map(|part| part.force_squares).sum(),
-        };
+        let whole = scales.whole(strain);
         let mut worst = Worst::default();
         let of_parts = bound.of_parts.as_deref().unwrap_or(std::slice::from_ref(&bound.whole));
         let each = if of_parts.len() == parts.len() { &parts[..] } else { std::slice::from_ref(&whole) };

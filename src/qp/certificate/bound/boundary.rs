@@ -45,7 +45,7 @@ impl ContactProblem {
     pub(crate) fn repaired(&self, norm: &EnergyNorm, u: &[f64], lambda: &[f64]) -> Option<Moved> {
         let violation = self.accurate_violation(u);
         let residual = self.accurate_residual(u, lambda);
-        let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
+        let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation, rounding: 0.0 };
         let own = self.beside_springs(norm, &answer);
         let closed = self.rows_that_look_closed(&answer);
         let first = FirstRepair::new(self, norm, norm.boundary()?, &own, &closed)?;
@@ -81,7 +81,8 @@ impl ContactProblem {
             let parts: Vec<&[f64]> = multipliers.iter().map(Vec::as_slice).collect();
             let violation = self.accurate_violation(&moved);
             let residual = self.accurate_residual_of(&moved, &parts);
-            let near = Answer { displacement: &moved, multiplier: &multiplier, residual, violation: &violation };
+            let near =
+                Answer { displacement: &moved, multiplier: &multiplier, residual, violation: &violation, ..*answer };
             let near = self.beside_springs(norm, &near);
             let Some(repair) = Repair::new(self, norm, boundary, &near) else { break };
             let Some(settled) = repair.best_witness(&witness.closed) else { break };
@@ -112,7 +113,7 @@ struct FirstRepair<'a> {
     repair: Repair<'a>,
     witness: Witness,
     bound: ErrorBound,
-    /// `true` if rounding takes no part in the bound.
+    /// `true` if rounding takes no part in the bound, or the whole bound is what rounding the displacement does.
     is_sharp: bool,
 }
 
@@ -131,7 +132,8 @@ impl<'a> FirstRepair<'a> {
         // With springs the shift is large and bends little: a factor that loses digits makes its energy mere rounding.
         let is_precise = norm.springs().is_none() || norm.loss() <= LOST_WITH_SPRINGS;
         let is_exact = norm.widening() == 1.0 && !witness.is_rounded && is_precise;
-        let is_sharp = is_exact && repair.cancelled(&witness) <= SMALL * bound.whole;
+        let is_rounding = problem.parts().count() == 1 && bound.whole <= answer.rounding;
+        let is_sharp = is_exact && (is_rounding || repair.vague(&witness) <= SMALL * bound.whole);
         Some(FirstRepair { repair, witness, bound, is_sharp })
     }
 }
