@@ -38,6 +38,10 @@ impl Smooth {
         let stiffness = problem.stiffness();
         match problem.near_null() {
             Some(_) if !takes_travels(problem) => Smooth::Unknown,
+            // One vector: of a diffusion it can only be the constants.
+            Some(modes) if modes.count() == 1 && Self::of_stiffness(stiffness) != Smooth::Unknown => {
+                Self::of_stiffness(stiffness)
+            }
             Some(_) if is_heavy(stiffness) => Smooth::GivenHeavy,
             Some(_) => Smooth::Given,
             None => Self::of_stiffness(stiffness),

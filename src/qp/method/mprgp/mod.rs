@@ -43,6 +43,9 @@ const TRIAL: (usize, f64) = (16, 1.2);
 /// is lost by waiting for the other way. If no more cycles than that are left to go, the answer is near.
 const SHARE: usize = 8;
 
+/// A displacement with a residual up to this is near the answer: nothing else is tried as a start.
+const NEAR: f64 = 1e-3;
+
 /// If the residual in twice the precision is above this share of the previous one, it will not decrease any more.
 const NO_GAIN: f64 = 0.5;
 
@@ -87,8 +90,7 @@ impl Solver for Mprgp<'_> {
 /// that the rows under pressure leave free.
 fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: Limits) -> Result<Outcome, Error> {
     let bounds = Bounds::of(problem.contact(), problem.gap(), problem.without_stiffness())?;
-    let start = if start.is_unknown() { nested(problem, &bounds, multigrid, limits).unwrap_or(start) } else { start };
-    let mut iterate = Iterate::new(problem, &bounds, start, multigrid.threads());
+    let mut iterate = started(problem, &bounds, multigrid, start, limits);
     let mut history = vec![iterate.step()];
     let mut steps =
         Steps { multigrid, limits, face: None, travels: Travels::default(), is_old: false, last: None, cycles: 0 };
@@ -133,6 +135,29 @@ fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: 
         false => "-stagnated",
     };
     Ok(Outcome { displacement, multiplier, contact_set, iterations: steps.cycles, history, settled, variant })
+}
+
+/// The iterate at the start; if a displacement is given that is not near the answer, the better one of that and none.
+fn started<'a>(
+    problem: &'a ContactProblem,
+    bounds: &'a Bounds,
+    multigrid: &Multigrid,
+    start: Start,
+    limits: Limits,
+) -> Iterate<'a> {
+    let at = |start: Start| Iterate::new(problem, bounds, start, multigrid.threads());
+    let from_nothing = || at(nested(problem, bounds, multigrid, limits).unwrap_or_default());
+    if start.is_unknown() {
+        return from_nothing();
+    }
+    let is_displacement = start.displacement.is_some();
+    let given = at(start);
+    let residual = given.residual();
+    if !is_displacement || residual <= NEAR {
+        return given;
+    }
+    let other = from_nothing();
+    if other.residual() < residual { other } else { given }
 }
 
 /// The start from the second level, if there is one with nodal values.
