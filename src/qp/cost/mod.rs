@@ -6,6 +6,7 @@ pub(in crate::qp) mod seconds;
 mod smooth;
 
 use super::linear::Width;
+use super::method::mprgp::takes_travels;
 use super::problem::ContactProblem;
 use super::settings::Settings;
 use crate::error::Error;
@@ -45,7 +46,7 @@ pub struct Estimate {
     pub factor_entries: f64,
     /// Seconds of the factorisations on one processor of 2024.
     pub direct_seconds: f64,
-    /// Bytes of the iterative path at its peak, the problem itself included.
+    /// Bytes of the iterative path at its peak, the problem itself included; infinite if multigrid cannot take the problem.
     pub multigrid_bytes: f64,
     /// Seconds of hierarchy and iteration.
     pub multigrid_seconds: f64,
@@ -83,7 +84,7 @@ impl Estimate {
                 + bytes::of_factor(direct.factor_entries, size_of::<f64>()),
             factor_entries: direct.factor_entries,
             direct_seconds: times * direct.seconds,
-            multigrid_bytes: multigrid_bytes(problem),
+            multigrid_bytes: if takes_travels(problem) { multigrid_bytes(problem) } else { f64::INFINITY },
             multigrid_seconds,
             hierarchy_seconds,
             shared_seconds: times * direct.shared_seconds,
@@ -152,6 +153,12 @@ pub(in crate::qp) fn check_memory(problem: &ContactProblem, kept: Kept, settings
             (values, bytes::of_factor(values as f64, size_of::<f64>()) + bytes::of_set(stiffness_entries))
         }
         Kept::Multigrid => (0, 0.0),
+    };
+    let is_factor = !matches!(kept, Kept::Nothing | Kept::Multigrid);
+    // The bound of a singular stiffness needs further factors, with springs.
+    let beside = match is_factor && problem.is_singular() {
+        true => beside + bytes::of_springs(factor_entries as f64, stiffness_entries),
+        false => beside,
     };
     let bytes = match kept {
         Kept::Multigrid => multigrid_bytes(problem),
