@@ -59,7 +59,7 @@ impl ContactProblem {
         let rows = self.rows();
         let Evidence { residual, violation, error, .. } =
             evidence.or_else(|| self.examine_in(Some(norm), displacement, multiplier).ok()?.evidence)?;
-        let answer = Answer { displacement, multiplier, residual, violation: &violation };
+        let answer = Answer { displacement, multiplier, residual, violation: &violation, rounding: 0.0 };
         let error = ROUNDED_BOUND * error;
         if !error.is_finite() {
             return None;
@@ -108,7 +108,7 @@ impl ContactProblem {
             return None;
         }
         let Evidence { residual, violation, error, measured } = evidence?;
-        let answer = Answer { displacement, multiplier, residual, violation: &violation };
+        let answer = Answer { displacement, multiplier, residual, violation: &violation, rounding: 0.0 };
         let error = ROUNDED_BOUND * error;
         if !error.is_finite() {
             return None;
@@ -327,7 +327,13 @@ mod tests {
         let residual = problem.accurate_residual(&displacement, &multiplier);
         assert_eq!(residual, [1.0]);
         let violation = problem.accurate_violation(&displacement);
-        let answer = Answer { displacement: &displacement, multiplier: &multiplier, residual, violation: &violation };
+        let answer = Answer {
+            displacement: &displacement,
+            multiplier: &multiplier,
+            residual,
+            violation: &violation,
+            rounding: 0.0,
+        };
         for (open, balance) in [([false, true], 0.0), ([false, false], 1.0)] {
             let closed = problem.closed_by(&answer, &open.into_iter().collect(), 0.0, 1.0, |is_residual, force| {
                 assert_eq!((is_residual, force), (!open[1], &[balance][..]));

@@ -147,7 +147,7 @@ mod tests {
         let (u, lambda) = (vec![0.9; dofs], vec![-1.0; dofs]);
         let violation = problem.accurate_violation(&u);
         let residual = problem.accurate_residual(&u, &lambda);
-        let answer = Answer { displacement: &u, multiplier: &lambda, residual, violation: &violation };
+        let answer = Answer { displacement: &u, multiplier: &lambda, residual, violation: &violation, rounding: 0.0 };
         let (bound, measured) = problem.energy_error_bound_by(&multigrid, &answer, &Watch::default());
         // The exact answer is one everywhere: K 1 is one at each edge, so that the error is 0.1 sqrt(1'K 1), once for the answer
         // and once for its residual.
@@ -157,13 +157,13 @@ mod tests {
         // A force that pulls does not count, and is left as a residual.
         let pulls = vec![1.0; dofs];
         let residual = problem.accurate_residual(&u, &pulls);
-        let answer = Answer { displacement: &u, multiplier: &pulls, residual, violation: &violation };
+        let answer = Answer { displacement: &u, multiplier: &pulls, residual, violation: &violation, rounding: 0.0 };
         let (bound, measured) = problem.energy_error_bound_by(&multigrid, &answer, &Watch::default());
         assert!(measured.is_none() && bound.whole > 0.1 * (4.0 * SIDE as f64).sqrt(), "{bound:?}");
         // The bound is that of the same displacements without forces.
         let nothing = vec![0.0; dofs];
         let residual = problem.accurate_residual(&u, &nothing);
-        let answer = Answer { displacement: &u, multiplier: &nothing, residual, violation: &violation };
+        let answer = Answer { displacement: &u, multiplier: &nothing, residual, violation: &violation, rounding: 0.0 };
         let (without, _) = problem.energy_error_bound_by(&multigrid, &answer, &Watch::default());
         assert!((bound.whole / without.whole - 1.0).abs() < ROUNDING, "{bound:?} {without:?}");
     }
