@@ -57,8 +57,6 @@ function levelsSection(page, data, still) {
       interval(level.force_interval),
     ]),
   );
-  if (still) {
-    still.alt = "The meshes, from the first to the last";
-    own.append(still);
-  }
+  still.firstChild.alt = "The meshes, from the first to the last";
+  own.append(still);
 }
