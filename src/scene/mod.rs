@@ -52,7 +52,7 @@ mod rows;
 pub(crate) mod schema;
 mod segments;
 mod selection;
-#[cfg(feature = "cli")]
+#[cfg(feature = "pictures")]
 mod set_up;
 mod size;
 mod springs;
@@ -80,7 +80,9 @@ pub use schema::{Rule, Scene, Units};
 pub(crate) use segments::straight_cells;
 pub use segments::{ContactExtent, Segment};
 #[cfg(feature = "cli")]
-pub(crate) use set_up::{HeldNode, Hold};
+pub(crate) use set_up::HeldNode;
+#[cfg(feature = "pictures")]
+pub(crate) use set_up::Hold;
 pub use size::Size;
 #[cfg(feature = "cli")]
 pub(crate) use start::start_scene;

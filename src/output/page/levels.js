@@ -77,8 +77,8 @@ function levelsSection(page, data, still) {
         shown(level.contact_force, 7),
       ]),
     );
-  if (still) {
-    still.alt = "The meshes, from the first to the last";
+  if (still.firstChild) {
+    still.firstChild.alt = "The meshes, from the first to the last";
     own.append(still);
   }
 }

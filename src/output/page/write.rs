@@ -29,7 +29,7 @@ use crate::study::{Agreement, Summary, Sweep};
 /// # Errors
 /// [`Error::File`], and those of the recovery of stresses.
 pub(crate) fn write_answer_page(folder: &Path, about: &About, answer: &Answer, summary: &Summary) -> Result<(), Error> {
-    let (mut packer, shape) = (Packer::default(), Shape::of(answer.model()));
+    let (mut packer, shape) = (Packer::default(), Shape::with_inside(answer.model()));
     let page = of_answer(about, answer, summary, &summary.solution.history, (&shape, &mut packer))?;
     let page = Page { report: timeless(value(summary)?), ..page };
     write_page(folder, &page, packer, still(answer)?.as_ref())
@@ -92,18 +92,18 @@ pub(crate) fn write_motion_page(
     write_page(folder, &Page { report: timeless(report), motion: Some(motion), states, ..page }, packer, None)
 }
 
-/// The page of a trade-off with `still` as its picture.
+/// The page of a trade-off with its pictures.
 ///
 /// # Errors
 /// [`Error::File`].
-pub(crate) fn write_tradeoff_page(
+pub(crate) fn write_tradeoff_page<'a>(
     folder: &Path,
     about: &About,
     measured: &impl Serialize,
-    still: Option<&Drawing>,
+    stills: impl IntoIterator<Item = &'a Drawing>,
 ) -> Result<(), Error> {
     let page = Page { report: value(measured)?, ..Page::new(about, &Units::unnamed()) };
-    write_page(folder, &page, Packer::default(), still)
+    write_page(folder, &page, Packer::default(), stills)
 }
 
 /// The page of an error against the continuum: the question, the answer on the last mesh if there is one, and the decrease of the error
