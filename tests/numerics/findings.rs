@@ -230,6 +230,15 @@ fn a_violated_row_that_depends_on_others_is_not_certified() {
     Finding::read("verify_bound_fooled_dependent_row").is_not_verified();
 }
 
+/// Rows in opposed pairs hold dofs without stiffness at others: a repair moves them, and their forces balance nowhere.
+#[test]
+fn rows_on_dofs_without_stiffness_carry_no_force_in_a_bound() {
+    let finding = Finding::read("rows_in_pairs_on_loose_dofs");
+    let [u, lambda] = ["u.mtx", "lambda.mtx"].map(|file| read_vector(&folder(finding.name).join(file)).unwrap());
+    finding.is_faultless(&finding.judge().verified("verify", &finding.problem, &u, &lambda));
+    assert!(finding.problem.certify(&u, &lambda).unwrap().meets(1e-9));
+}
+
 #[test]
 fn a_soft_floating_body_at_the_wrong_place_is_not_certified() {
     Finding::read("verify_soft_floating_body").is_not_verified();

@@ -173,9 +173,6 @@ impl<'a> Repair<'a> {
         {
             return ErrorBound::none();
         }
-        if (0..rest.len()).any(|row| error.terms[row] + left.terms[row] > 0.0 && self.norm.is_on_loose_dof(row)) {
-            return ErrorBound::none();
-        }
         // Closed rows are put exactly at their gaps, which moves the answer and its residual; forces that cancel each other
         // leave their rounding.
         let put: Vec<f64> = (0..rest.len()).map(|row| COUNTS * rest[row] + self.cancelled_on(witness, row)).collect();

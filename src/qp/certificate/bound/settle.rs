@@ -105,11 +105,12 @@ impl Repair<'_> {
     fn witness(&self, error: Force, change: &[f64], closed: &[bool], multipliers: Multipliers) -> Witness {
         let in_equilibrium = multipliers == Multipliers::InEquilibrium;
         let balanced = |row: usize| self.multiplier[row] + if in_equilibrium { change[row] } else { 0.0 };
-        // A force that pulls is no multiplier.
+        // A force that pulls is no multiplier, and nothing balances one on a loose dof.
+        let holds = |row: usize| closed[row] && !self.norm.is_on_loose_dof(row);
         let multiplier: Vec<f64> =
-            (0..change.len()).map(|row| if closed[row] { balanced(row).min(0.0) } else { 0.0 }).collect();
+            (0..change.len()).map(|row| if holds(row) { balanced(row).min(0.0) } else { 0.0 }).collect();
         let left = |row: usize| match in_equilibrium {
-            true if closed[row] => -balanced(row).max(0.0),
+            true if closed[row] => multiplier[row] - balanced(row),
             true => 0.0,
             false => multiplier[row] - self.multiplier[row] - change[row],
         };
