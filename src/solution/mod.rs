@@ -5,7 +5,9 @@
 mod certificate;
 mod contact_set;
 
-pub(crate) use certificate::{Cancellation, Met};
+pub(crate) use certificate::Cancellation;
+#[cfg(feature = "pictures")]
+pub(crate) use certificate::Met;
 pub use certificate::{Certificate, Goal};
 pub use contact_set::ContactSet;
 
