@@ -227,6 +227,26 @@ fn small_scene() -> Map<String, Value> {
     scene.as_object().unwrap().clone()
 }
 
+/// No test runs Gmsh: the script has made the meshes beside it, and the page shows its lines.
+#[test]
+fn the_page_on_assemblies_shows_lines_of_its_script_and_keys_of_its_scenes() {
+    let (page, script) = (read("docs/assemblies.md"), read("examples/assembly/assembly.py"));
+    let code: Vec<&str> = page.lines().filter_map(|line| line.strip_prefix("    ")).collect();
+    assert!(code.len() > 5, "{code:?}");
+    code.iter().for_each(|line| assert!(script.contains(line), "{line:?} is no line of the script"));
+    let scenes = ["bush", "pads"]
+        .map(|name| -> Value { serde_json::from_str(&read(&format!("examples/assembly/{name}.json"))).unwrap() });
+    let blocks = parts(&page).into_iter().filter_map(|part| match part {
+        Part::Block { kind, text, .. } if kind == "json" => Some(text),
+        _ => None,
+    });
+    let blocks: Vec<Value> = blocks.map(|text| serde_json::from_str(&text).unwrap()).collect();
+    assert_eq!(blocks.len(), scenes.len());
+    for (block, scene) in blocks.iter().zip(&scenes) {
+        block.as_object().unwrap().iter().for_each(|(key, value)| assert_eq!(&scene[key], value, "{key}"));
+    }
+}
+
 #[test]
 fn every_key_of_a_scene_has_an_example_that_builds() {
     let page = read("docs/scenes.md");

@@ -127,12 +127,13 @@ fn height_map() -> Shape {
     })
 }
 
-/// A pyramid that points down, from a file: z = 0.97 + 0.4 max(|x - 0.43|, |y - 0.51|) below its base at z = 2.17.
+/// A pyramid that points down, from a file in half its size: z = 0.97 + 0.4 max(|x - 0.43|, |y - 0.51|) below its base at z = 2.17. Its
+/// apex is not the origin of the file, so that another scale moves it.
 fn pyramid(folder: &Path) -> Shape {
-    let text =
-        "v 0 0 0\nv -3 -3 1.2\nv 3 -3 1.2\nv 3 3 1.2\nv -3 3 1.2\nf 1 3 2\nf 1 4 3\nf 1 5 4\nf 1 2 5\nf 2 3 4 5\n";
+    let text = "v 0.05 0.1 0.15\nv -1.45 -1.4 0.75\nv 1.55 -1.4 0.75\nv 1.55 1.6 0.75\nv -1.45 1.6 0.75\n\
+                f 1 3 2\nf 1 4 3\nf 1 5 4\nf 1 2 5\nf 2 3 4 5\n";
     std::fs::write(folder.join("pyramid.obj"), text).unwrap();
-    in_space(json!({"surface": {"file": "pyramid.obj", "origin": [0.43, 0.51, 0.97]}}), |[x, y]| {
+    in_space(json!({"surface": {"file": "pyramid.obj", "scale": 2, "origin": [0.33, 0.31, 0.67]}}), |[x, y]| {
         let away = (x - 0.43).abs().max((y - 0.51).abs());
         (away <= 3.0).then_some(0.97 + 0.4 * away)
     })

@@ -302,7 +302,10 @@ fn surfaces_of_different_meshes_are_refused_for_either_finer_side() {
             let built = Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build());
             let Error::Refused { code, message, .. } = built.unwrap_err() else { panic!("{scene}") };
             assert_eq!(code, "unpaired-nodes");
-            assert!(message.contains("node ") && message.contains("pair up"), "{message}");
+            assert!(
+                message.contains("node ") && message.contains("must pair up, as docs/assemblies.md shows"),
+                "{message}"
+            );
         }
     }
     // A base that is wider than the body has nodes without a node opposite; this is allowed.

@@ -30,6 +30,9 @@ pub struct FacingSpec {
     pub boundary: String,
 }
 
+/// What the nodes of two boundaries must do, and the page that shows how.
+const PAIR_UP: &str = "the nodes of the two boundaries must pair up, as docs/assemblies.md shows";
+
 pub(super) const ABOUT: About = About { name: "body", dimensions: &[1, 2, 3] };
 
 impl ObstacleShape for FacingSpec {
@@ -145,8 +148,7 @@ impl Search<'_> {
         let slant = if site.rule == Rule::Approach { 0.0 } else { ASLANT * way.pair.distance.abs() };
         if way.aside > self.tolerance(node).max(slant) {
             let message = format!(
-                "node {node} of `{own}` at {place} has no node of `{other}` across it: the nearest is {:.3e} aside; the \
-                 nodes of the two boundaries must pair up",
+                "node {node} of `{own}` at {place} has no node of `{other}` across it: the nearest is {:.3e} aside; {PAIR_UP}",
                 way.aside
             );
             return Err(unpaired(site, message));
@@ -179,7 +181,7 @@ impl Search<'_> {
                 let place = point(&nodes[partner][..mesh.dimension()]);
                 let message = format!(
                     "node {partner} of `{other}` at {place} has no node of `{own}` across it: it faces the inside of a facet at a \
-                     distance of {:.3e}, and would go through; the nodes of the two boundaries must pair up",
+                     distance of {:.3e}, and would go through; {PAIR_UP}",
                     across.distance
                 );
                 return Err(unpaired(self.site, message));
