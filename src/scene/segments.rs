@@ -34,7 +34,8 @@ pub struct ContactExtent {
     pub width_uncertainty: Option<f64>,
 }
 
-/// Connected closed rows of one obstacle on its boundary: one piece of the contact, with its force and its extent.
+/// Connected closed rows of one obstacle on its boundary: one piece of the contact, with its force and its extent. With planes of symmetry
+/// all of it is of the meshed part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Segment {
     /// The obstacle, numbered from 0 in the order of the scene.
@@ -62,9 +63,9 @@ pub struct Segment {
 
 impl ContactExtent {
     /// The extent of all segments together; `None` without segments.
-    pub(crate) fn of(segments: &[Segment]) -> Option<Self> {
-        let peak = segments.iter().max_by(|a, b| a.pressure_max.total_cmp(&b.pressure_max))?;
-        let extents = || segments.iter().map(|segment| &segment.extent);
+    pub(crate) fn of<'a>(segments: impl Iterator<Item = &'a Segment> + Clone) -> Option<Self> {
+        let peak = segments.clone().max_by(|a, b| a.pressure_max.total_cmp(&b.pressure_max))?;
+        let extents = || segments.clone().map(|segment| &segment.extent);
         Some(ContactExtent {
             pressure_uncertainty: peak.extent.pressure_uncertainty,
             area: extents().map(|extent| extent.area).sum(),
@@ -72,6 +73,17 @@ impl ContactExtent {
             width: extents().map(|extent| extent.width).sum(),
             width_uncertainty: extents().map(|extent| extent.width_uncertainty).sum(),
         })
+    }
+
+    /// The extent of `parts` mirror images together.
+    pub(crate) fn of_parts(self, parts: f64) -> Self {
+        ContactExtent {
+            pressure_uncertainty: self.pressure_uncertainty,
+            area: parts * self.area,
+            area_uncertainty: parts * self.area_uncertainty,
+            width: self.width.map(|width| parts * width),
+            width_uncertainty: self.width_uncertainty.map(|off| parts * off),
+        }
     }
 }
 
@@ -281,7 +293,10 @@ impl Patch<'_> {
             return self.pressure(node);
         }
         near.insert(node);
-        let mean = near.iter().map(|&other| self.pressure(other)).sum::<f64>() / near.len() as f64;
+        // A node on a plane of symmetry has the mirror images of its neighbours around it as well.
+        let images = |other: usize| self.answer.model().images_around(node, other);
+        let count: f64 = near.iter().map(|&other| images(other)).sum();
+        let mean = near.iter().map(|&other| images(other) * self.pressure(other)).sum::<f64>() / count;
         0.5 * (self.pressure(node) - mean).abs()
     }
 

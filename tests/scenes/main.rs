@@ -41,3 +41,4 @@ mod turned_bodies;
 mod two_bodies;
 mod user_obstacles;
 mod verification;
+mod whole;
