@@ -266,14 +266,14 @@ class Answer:
         """Returns the bounds relative to the energy norms, and for each part whether it may rest.
 
         A bound that rounding of u explains has no excess. A part without displacement rests if its bound is the rounding of its
-        forces, amplified by `loss`: it has no relative error, and the whole has none beside it.
+        forces, amplified by `loss`: it has no relative error. The whole has none if nothing moves.
         """
         strain, rounding = np.r_[self.strain.sum(), self.strain], np.r_[self.rounding.sum(), self.rounding]
         certain = np.sqrt(np.maximum(strain - OF_ENERGY * rounding, 0.0))
         error = np.r_[whole, of_parts] + LEAST * np.sqrt(rounding)
         share, explained = relative(error, certain), error <= ENTRY_ROUNDING * np.sqrt(rounding)
         rests = ~self.moves & (error[1:] <= ENTRY_ROUNDING * loss * self.force_root)
-        counts = np.r_[not rests.any(), ~rests]
+        counts = np.r_[self.moves.any(), ~rests]
         excess = np.where(counts & ~explained, share, 0.0)
         may_rest = self.moves & np.isfinite(error[1:]) & (error[1:] >= certain[1:]) & ~explained[1:]
         farthest = int(np.argmax(excess))

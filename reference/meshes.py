@@ -15,6 +15,7 @@ import random
 
 import gmsh
 
+occ = gmsh.model.occ
 FOLDER = pathlib.Path(__file__).resolve().parent.parent / "tests" / "meshes"
 OPTIONS = {
     "General.Terminal": 0,
@@ -134,6 +135,83 @@ def quarter_ball():
     gmsh.model.mesh.setSizeCallback(lambda _, tag, x, y, z, size: 0.012 + 0.288 * share(x, y, z))
 
 
+def named(dimension, **boundaries):
+    """Names the body and its boundaries: each consists of the sides whose box fulfils its condition. `None` names neither."""
+    gmsh.model.occ.synchronize()
+    for name, condition in boundaries.items():
+        boxes = {tag: gmsh.model.getBoundingBox(dimension - 1, tag) for _, tag in gmsh.model.getEntities(dimension - 1)}
+        name_all(dimension - 1, {name: [tag for tag, box in boxes.items() if condition(box[:3], box[3:])]})
+    name_all(dimension, {"body": [tag for _, tag in gmsh.model.getEntities(dimension)]})
+
+
+def plate_with_hole():
+    occ.cut([(2, occ.addRectangle(0, 0, 0, 4, 2))], [(2, occ.addDisk(2, 1, 0, 0.5, 0.5))])
+    named(2, left=lambda low, high: high[0] < 0.1, right=lambda low, high: low[0] > 3.9,
+          bore=lambda low, high: low[0] > 1 and high[0] < 3)
+
+
+def bored_block():
+    """The axis of the bore is vertical: no facet of it faces up or down."""
+    occ.cut([(3, occ.addBox(0, 0, 0, 2, 2, 1))], [(3, occ.addCylinder(1, 1, -1, 0, 0, 3, 0.4))])
+    named(3, base=lambda low, high: high[2] < 0.1, bore=lambda low, high: low[0] > 0.5 and high[0] < 1.5)
+
+
+def bored_across():
+    """The axis of the bore is horizontal."""
+    occ.cut([(3, occ.addBox(0, 0, 0, 2, 2, 1))], [(3, occ.addCylinder(-1, 1, 0.5, 4, 0, 0, 0.3))])
+    bore = lambda low, high: low[2] > 0.1 and high[2] < 0.9
+    named(3, skin=lambda low, high: not bore(low, high), contact=bore)
+
+
+def quarter_with_hole():
+    occ.cut([(2, occ.addRectangle(0, 0, 0, 2, 2))], [(2, occ.addDisk(0, 0, 0, 0.5, 0.5))])
+    named(2, cut=lambda low, high: high[0] < 0.1, bore=lambda low, high: high[0] < 0.6 and high[1] < 0.6)
+
+
+def ring():
+    occ.cut([(2, occ.addDisk(0, 0, 0, 2, 2))], [(2, occ.addDisk(0, 0, 0, 1, 1))])
+    named(2, outer=lambda low, high: high[0] > 1.5, inner=lambda low, high: high[0] < 1.5)
+
+
+def two_boxes():
+    """Two boxes that are not joined, in one group."""
+    occ.addBox(0, 0, 0, 1, 1, 1), occ.addBox(3, 0, 0, 1, 1, 1)
+    named(3, left=lambda low, high: high[0] < 0.1, right=lambda low, high: low[0] > 3.9)
+
+
+def box_in_two():
+    """A boundary runs through the body."""
+    occ.fragment([(3, occ.addBox(0, 0, 0, 1, 1, 1))], [(3, occ.addBox(0, 0, 1, 1, 1, 1))])
+    named(3, base=lambda low, high: high[2] < 0.1, interface=lambda low, high: low[2] > 0.9 and high[2] < 1.1)
+
+
+def one_name():
+    occ.addRectangle(0, 0, 0, 2, 1)
+    named(2, held=lambda low, high: low[1] > 0.9)
+
+
+def skin_and_top():
+    """One boundary contains the other."""
+    occ.addBox(0, 0, 0, 1, 1, 1)
+    named(3, top=lambda low, high: low[2] > 0.9, skin=lambda low, high: True)
+
+
+def lying_cylinder():
+    occ.addCylinder(0, 0, 0, 3, 0, 0, 1)
+    ends = lambda low, high: high[0] - low[0] < 0.1
+    named(3, ends=ends, round=lambda low, high: not ends(low, high))
+
+
+def tilted_box():
+    occ.rotate([(3, occ.addBox(0, 0, 0, 1, 1, 1))], 0, 0, 0, 1, 1, 0.3, 0.8)
+    named(3)
+
+
+def line():
+    occ.addLine(occ.addPoint(0, 0, 0), occ.addPoint(1, 0, 0))
+    named(1, left=lambda low, high: high[0] < 0.1, right=lambda low, high: low[0] > 0.9)
+
+
 def generate(name, dimension, build, **options):
     gmsh.clear()
     for option, value in (OPTIONS | options).items():
@@ -177,4 +255,10 @@ if __name__ == "__main__":
     gmsh.model.mesh.removeSizeCallback()
     gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 1)
     write_forms("cube-tet4", 3, lambda: box(0, False, 2), **{"Mesh.MeshSizeMin": 2})
+    for build, dimension, size in (
+        (plate_with_hole, 2, 0.5), (bored_block, 3, 0.7), (bored_across, 3, 0.8), (quarter_with_hole, 2, 0.4), (ring, 2, 0.6),
+        (two_boxes, 3, 0.9), (box_in_two, 3, 0.9), (one_name, 2, 0.5), (skin_and_top, 3, 0.9), (lying_cylinder, 3, 1.0),
+        (tilted_box, 3, 0.9), (line, 1, 0.3),
+    ):
+        write("parts/" + build.__name__.replace("_", "-"), 4.1, dimension, build, **{"Mesh.MeshSizeMax": size})
     gmsh.finalize()

@@ -124,7 +124,7 @@ pub enum Error {
     #[error("interrupted before there was an answer")]
     Interrupted,
     /// An answer was found, but it does not meet the tolerance.
-    #[error("not certified: {condition} is {value:.3e}, above the tolerance {tolerance:.1e} ({} after {} iterations){}{}", solution.method, solution.iterations, cancelled(solution, *tolerance), lost_digits(solution))]
+    #[error("{}", not_certified(solution, condition, *value, *tolerance))]
     NotCertified {
         /// The best answer, with its certificate.
         solution: Box<Solution>,
@@ -331,8 +331,13 @@ pub enum Failure {
 }
 
 fn no_room(factor: f64, multigrid: f64, allowed: f64, ended: Option<&str>) -> String {
+    let is_taken = multigrid.is_finite();
     let [factor, multigrid, allowed] = [factor, multigrid, allowed].map(memory);
     match ended {
+        None if !is_taken => format!(
+            "the problem does not fit into {allowed} of memory: a factor of the stiffness takes about {factor}, and multigrid cannot \
+             take it, because contact alone holds some of its dofs; take larger cells, or allow more memory"
+        ),
         None => format!(
             "the problem does not fit into {allowed} of memory: a factor of the stiffness takes about {factor}, \
              multigrid about {multigrid}; take larger cells, or allow more memory"
@@ -342,6 +347,29 @@ fn no_room(factor: f64, multigrid: f64, allowed: f64, ended: Option<&str>) -> St
              {multigrid}, ended because {ended}, and a factor of the stiffness takes about {factor}; allow more \
              memory"
         ),
+    }
+}
+
+/// The sentence for an answer that is not certified: the limit that cut the search short, or the condition that decides.
+fn not_certified(solution: &Solution, condition: &str, value: f64, tolerance: f64) -> String {
+    let (method, iterations) = (&solution.method, solution.iterations);
+    let falls_short = match value.is_finite() {
+        true => format!("{condition} is {value:.3e}, above the tolerance {tolerance:.1e}"),
+        false => format!("no {condition} is known, which must be at most {tolerance:.1e}"),
+    };
+    match &solution.cut_short {
+        Some(cut) if method == "none" => {
+            format!("not certified: {cut}; no answer was found, and that of the body at rest is given")
+        }
+        Some(cut) => {
+            format!(
+                "not certified: {cut}; the best answer, of {method} after {iterations} iterations, is given: {falls_short}"
+            )
+        }
+        None => {
+            let (cancelled, lost) = (cancelled(solution, tolerance), lost_digits(solution));
+            format!("not certified: {falls_short} ({method} after {iterations} iterations){cancelled}{lost}")
+        }
     }
 }
 
@@ -367,7 +395,8 @@ const BALANCED: f64 = 1e-12;
 
 /// The cause of lost digits and the remedy, if the stiffness has a pivot near rounding.
 fn lost_digits(solution: &Solution) -> String {
-    let Some(pivot) = solution.lost_pivot else { return String::new() };
+    // A pivot that is not positive belongs to a motion that contact alone holds.
+    let Some(pivot) = solution.lost_pivot.filter(|&pivot| pivot > 0.0) else { return String::new() };
     format!(
         "; the stiffness has lost digits to rounding (smallest pivot {pivot:.0e} of its diagonal), as in slender \
          bodies in bending: take fewer elements along the thickness, quadratic elements, or a beam; or hold the \

@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 /// A handle on running work: any thread can ask it to stop and read its current step.
@@ -30,7 +30,33 @@ pub struct Watch {
     deadline: Option<Instant>,
     /// Time from setting the deadline to the deadline.
     span: Duration,
+    /// What the deadline cut short first; a sooner deadline has its own.
+    cut: Arc<OnceLock<Cut>>,
     shared: Arc<Shared>,
+}
+
+/// Work that a deadline cut short or left out.
+#[derive(Clone, Debug)]
+struct Cut {
+    activity: Activity,
+    /// Seconds that the work needed, and seconds that were left, if it did not begin.
+    refused: Option<[f64; 2]>,
+}
+
+impl fmt::Display for Cut {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let activity = self.activity.to_string();
+        let step = if activity.is_empty() { String::new() } else { format!(" the step `{activity}`") };
+        match self.refused {
+            Some([needed, left]) => {
+                let after = if step.is_empty() { "" } else { " after" };
+                let words = "the next step takes about";
+                write!(f, "the time does not suffice{after}{step}: {words} {needed:.1e} s, and {left:.1e} s are left")
+            }
+            None if step.is_empty() => write!(f, "the time ended before the first step"),
+            None => write!(f, "the time ended in{step}"),
+        }
+    }
 }
 
 #[derive(Debug, Default)]
@@ -172,7 +198,7 @@ impl Watch {
         let deadline = time.and_then(|time| Some((Instant::now().checked_add(time)?, time)));
         match deadline {
             Some((deadline, span)) if self.deadline.is_none_or(|own| deadline < own) => {
-                Watch { deadline: Some(deadline), span, shared: self.shared.clone() }
+                Watch { deadline: Some(deadline), span, cut: Arc::default(), shared: self.shared.clone() }
             }
             _ => self.clone(),
         }
@@ -180,7 +206,7 @@ impl Watch {
 
     /// The same watch without a deadline.
     pub fn unhurried(&self) -> Watch {
-        Watch { deadline: None, span: Duration::ZERO, shared: self.shared.clone() }
+        Watch { deadline: None, span: Duration::ZERO, cut: Arc::default(), shared: self.shared.clone() }
     }
 
     /// The same watch for finishing an answer, for example its certificate: its deadline is later by a share of the time.
@@ -201,14 +227,28 @@ impl Watch {
 
     /// Returns `true` if there is time left for work that is estimated to take `estimate` seconds.
     pub fn allows(&self, estimate: f64) -> bool {
-        self.time_left().is_none_or(|left| self.needed(estimate) < left)
+        let (left, needed) = (self.time_left(), self.needed(estimate));
+        let short = left.filter(|&left| needed >= left);
+        if let Some(left) = short {
+            self.note_cut(Some([needed, left]));
+        }
+        short.is_none()
+    }
+
+    /// What the deadline cut short or left out first, in words; `None` if nothing.
+    pub(crate) fn cut(&self) -> Option<String> {
+        self.cut.get().map(Cut::to_string)
+    }
+
+    fn note_cut(&self, refused: Option<[f64; 2]>) {
+        self.cut.get_or_init(|| Cut { activity: self.activity(), refused });
     }
 
     /// The same watch with the deadline sooner by the time that work of `estimate` seconds needs. A loop with steps of that
     /// length then ends before a step that would not finish in time.
     pub fn keeping(&self, estimate: f64) -> Watch {
         match self.time_left() {
-            Some(left) => self.within(left - self.needed(estimate).min(left)),
+            Some(left) => Watch { cut: self.cut.clone(), ..self.within(left - self.needed(estimate).min(left)) },
             None => self.clone(),
         }
     }
@@ -241,7 +281,11 @@ impl Watch {
 
     /// Returns `true` if the work must end: it was asked to stop, or its deadline has passed.
     pub fn is_over(&self) -> bool {
-        self.is_stopped() || self.time_left() == Some(0.0)
+        let is_late = self.time_left() == Some(0.0);
+        if is_late {
+            self.note_cut(None);
+        }
+        self.is_stopped() || is_late
     }
 
     /// Reports that part `number`, from 1, of `of` parts begins.

@@ -1,5 +1,6 @@
 //! `signorini solve --total-error`: an answer with its error against the continuum, guaranteed or estimated.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -12,19 +13,40 @@ use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
 use crate::output::gallery::{self, Pictures};
-use crate::output::page::{About, write_answer_page, write_total_error_page};
+use crate::output::page::write_total_error_page;
 use crate::output::{
-    estimated_error_text, meshes_picture, total_error_text, why_text, write_estimated_error, write_total_error,
+    Drawing, estimated_error_text, estimated_meshes_picture, meshes_picture, total_error_text, why_text,
+    write_estimated_error, write_total_error,
 };
-use crate::qp::Settings;
-use crate::scene::Scene;
-use crate::solution::Goal;
-use crate::study::total_error::{Estimated, Found, TotalError, TotalErrorGoal, total_error};
-use crate::study::{Summary, scene_summary};
+use crate::scene::{Answer, Model, Scene};
+use crate::solution::{Goal, Solution};
+use crate::study::total_error::{Found, TotalError, TotalErrorGoal, total_error};
+use crate::study::{ModelSize, Status, Summary, scene_summary};
 use crate::watch::Watch;
 
 /// Writing takes this share of the time.
 const REPORT: f64 = 0.05;
+
+/// An error against the continuum with the answer on the last mesh.
+#[derive(Serialize)]
+struct WithAnswer<'a, T> {
+    #[serde(flatten)]
+    found: &'a T,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    model: Option<&'a ModelSize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    answer: Option<&'a Summary>,
+}
+
+/// What both kinds of an error report and write.
+struct Shown<'a> {
+    text: String,
+    /// The answer on the last mesh with its numbers.
+    answer: Option<(Answer, Summary)>,
+    /// Writes the files of the error itself into a folder.
+    files: &'a dyn Fn(&Path) -> Result<(), Error>,
+    meshes: Option<Drawing>,
+}
 
 pub(super) fn run(options: &Solve, scene: &Scene, goal: TotalErrorGoal, watch: &Watch) -> Result<Outcome, Error> {
     let clock = Instant::now();
@@ -34,67 +56,74 @@ pub(super) fn run(options: &Solve, scene: &Scene, goal: TotalErrorGoal, watch: &
     let settings = settings(options.method, &options.common, &watch.keeping(REPORT * options.time.unwrap_or(0.0)));
     let wanted = options.common.wanted(Pictures::Answer);
     let (title, units) = (scene_title(&model, &options.input), model.units().clone());
-    let about = about(&title, "solve", &options.input, options.common.out.as_ref(), options.common.threads);
     let keep = |found: &TotalError| {
-        if let Ok(report) = Report::new(found, total_error_text(&title, found, &units)) {
+        if let Ok(report) = Report::new(found, total_error_text(&title, found, None, &units)) {
             watch.keep(report.formatted(options.common.format));
         }
     };
     match total_error(scene, &model, goal, &settings, &keep).map_err(|error| model.explain(error))? {
         Found::Guaranteed(found) => {
-            if options.explain {
-                warn("warning: --explain has no effect with a guaranteed error: it explains a single solve\n");
-            }
-            let report = Report::new(&found, total_error_text(&title, &found, &units))?;
-            if let Some(folder) = &options.common.out {
-                report.write_with_text(folder, "total-error.txt")?;
-                write_total_error(folder, &title, &found, &units, wanted)?;
-            }
-            let outcome = report.outcome(options.common.format, found.status);
-            let Some(folder) = options.common.out.clone() else { return Ok(outcome) };
-            Ok(outcome.with_pictures(move || {
-                let meshes = meshes_picture(&title, &found, &units);
-                write_total_error_page(&folder, &about, &model, &found, &meshes)
-            }))
+            let answer = found.last.as_ref().ok().map(|last| (last.answer.clone(), last.solution.clone()));
+            let estimated = found.last_mesh.map(|last| last.estimated);
+            let answer = answer.map(|(answer, solution)| summed(answer, solution, settings.goal(), estimated, seconds));
+            let answer = answer.transpose()?;
+            let text = total_error_text(&title, &found, answer.as_ref().map(|(_, summary)| summary), &units);
+            let files = |folder: &Path| write_total_error(folder, &title, &found, &units, wanted);
+            let meshes = Some(meshes_picture(&title, &found, &units));
+            shown(options, &title, (&model, &*found, found.status), Shown { text, answer, files: &files, meshes })
         }
-        Found::Estimated(found) => estimated(options, *found, about, &settings, seconds),
+        Found::Estimated(found) => {
+            let goal = Goal { accuracy: Some(found.algebra()), ..settings.goal() };
+            let estimated = found.levels.last().map(|level| level.discretisation_error);
+            let answer = summed(found.answer.clone(), found.solution.clone(), goal, estimated, seconds)?;
+            let text = estimated_error_text(&title, &found, &answer.1, &units);
+            let files = |folder: &Path| write_estimated_error(folder, &title, &found, wanted);
+            let meshes = estimated_meshes_picture(&title, &found);
+            let answer = Some(answer);
+            shown(options, &title, (&model, &*found, found.status), Shown { text, answer, files: &files, meshes })
+        }
     }
 }
 
-/// An estimated error with its answer.
-#[derive(Serialize)]
-struct EstimatedReport<'a> {
-    #[serde(flatten)]
-    found: &'a Estimated,
-    answer: &'a Summary,
+/// An answer with its numbers.
+fn summed(
+    answer: Answer,
+    solution: Solution,
+    goal: Goal,
+    estimated: Option<f64>,
+    seconds: f64,
+) -> Result<(Answer, Summary), Error> {
+    let summary = scene_summary(&answer, solution, goal, seconds)?;
+    Ok((answer, Summary { discretisation_error: estimated, ..summary }))
 }
 
-fn estimated(
+/// Reports an error with its answer, and writes the output of `--out`.
+fn shown<T: Serialize>(
     options: &Solve,
-    found: Estimated,
-    about: About,
-    settings: &Settings,
-    seconds: f64,
+    title: &str,
+    (first, found, status): (&Arc<Model>, &T, Status),
+    Shown { mut text, answer, files, meshes }: Shown,
 ) -> Result<Outcome, Error> {
-    let goal = Goal { accuracy: Some(found.algebra()), ..settings.goal() };
-    let mut summary = scene_summary(&found.answer, found.solution.clone(), goal, seconds)?;
-    summary.discretisation_error = found.levels.last().map(|level| level.discretisation_error);
-    let units = found.answer.model().units();
-    let mut text = estimated_error_text(&about.title, &found, &summary, units);
-    if let Some(why) = summary.solution.why.as_ref().filter(|_| options.explain) {
+    let common = &options.common;
+    let summary = answer.as_ref().map(|(_, summary)| summary);
+    if let Some(why) = summary.and_then(|summary| summary.solution.why.as_ref()).filter(|_| options.explain) {
         text += &why_text(why);
     }
-    let report = Report::new(&EstimatedReport { found: &found, answer: &summary }, text)?;
-    let Some(folder) = options.common.out.clone() else {
-        return Ok(report.outcome(options.common.format, found.status));
-    };
-    gallery::write_answer(&folder, &summary.solution, Some(&found.answer))?;
+    let report =
+        Report::new(&WithAnswer { found, model: summary.map(|summary| &summary.model), answer: summary }, text)?;
+    let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
+    if let Some((answer, summary)) = &answer {
+        gallery::write_answer(&folder, &summary.solution, Some(answer))?;
+    }
     report.write_with_text(&folder, "total-error.txt")?;
-    let wanted = options.common.wanted(Pictures::Answer);
-    write_estimated_error(&folder, &about.title, &found, wanted)?;
-    let outcome = report.outcome(options.common.format, found.status);
-    Ok(outcome.with_pictures(move || {
-        write_answer_page(&folder, &about, &found.answer, &summary)?;
-        gallery::write_solve(&folder, &found.answer, &summary.solution.history, wanted)
+    files(&folder)?;
+    let (wanted, value, first) = (common.wanted(Pictures::Answer), report.value()?, first.clone());
+    let about = about(title, "solve", &options.input, common.out.as_ref(), common.threads);
+    Ok(report.outcome(common.format, status).with_pictures(move || {
+        write_total_error_page(&folder, &about, (&first, answer.as_ref()), value, meshes.as_ref())?;
+        match &answer {
+            Some((answer, summary)) => gallery::write_solve(&folder, answer, &summary.solution.history, wanted),
+            None => Ok(()),
+        }
     }))
 }

@@ -76,7 +76,7 @@ fn reported(
         report.write_with_text(folder, "tradeoff.txt")?;
         write_files(folder, &[("tradeoff.csv", csv)])?;
         let plots = if options.pictures == Pictures::None { Vec::new() } else { plots() };
-        write_tradeoff_page(folder, about, measured, plots.first().map(|(_, drawing)| drawing))?;
+        write_tradeoff_page(folder, about, measured, plots.iter().map(|(_, drawing)| drawing))?;
         for (stem, drawing) in plots {
             write_picture(folder, stem, &drawing)?;
         }

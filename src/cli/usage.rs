@@ -1,4 +1,5 @@
-//! Errors of the arguments: an unknown option is answered with the nearest one, a scene without a command with `solve`.
+//! Errors of the arguments: an unknown option is answered with the nearest one, or with what is not modelled; a scene without a command
+//! with `solve`.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -8,6 +9,7 @@ use clap::{Command, CommandFactory, Error};
 
 use super::options::Arguments;
 use crate::error::nearest;
+use crate::scene::absent;
 
 /// The error without the tip to pass an unknown option as a value behind `--`, and with the option of the nearest name.
 pub(super) fn with_nearest_option(mut error: Error, given: &[OsString]) -> Error {
@@ -22,6 +24,12 @@ pub(super) fn with_nearest_option(mut error: Error, given: &[OsString]) -> Error
         return error;
     }
     error.remove(ContextKind::Suggested);
+    if let Some(sentence) = absent(unknown.trim_start_matches('-')) {
+        error.remove(ContextKind::SuggestedArg);
+        error.remove(ContextKind::Usage);
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![sentence.into()]));
+        return error;
+    }
     if error.get(ContextKind::SuggestedArg).is_none()
         && let Some(near) = nearest_option(&unknown, given)
     {

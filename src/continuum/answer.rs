@@ -4,6 +4,9 @@ use super::bound::Bracket;
 use super::johnson_mercier::at;
 use super::problem::Tensor;
 use super::triangulation::Point;
+use crate::error::Error;
+use crate::fem::ElementKind;
+use crate::fem::mesh::{Boundary, Mesh};
 
 /// The centroid of a part of a triangle.
 const CENTRE: [f64; 3] = [1.0 / 3.0; 3];
@@ -24,6 +27,22 @@ pub struct PlaneAnswer {
     pub stress: Vec<Tensor>,
     /// The contribution of each triangle to half the square of the bound, in force times length.
     pub shares: Vec<f64>,
+}
+
+impl PlaneAnswer {
+    /// The mesh of the displacement: triangles of six nodes with straight sides.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] for triangles that form no mesh.
+    pub fn mesh(&self) -> Result<Mesh, Error> {
+        let kind = ElementKind::QUADRATIC_TRIANGLE;
+        // As a part of itself, a boundary has its edges in the order in which they follow each other.
+        let boundary = |(name, edges): &(String, Vec<[usize; 3]>)| {
+            Boundary::new(name, kind.facet(), edges.concat()).part(name, |_| true)
+        };
+        let nodes = self.nodes.iter().map(|&[x, y]| [x, y, 0.0]).collect();
+        Mesh::new(nodes, kind, self.triangles.concat(), self.boundaries.iter().map(boundary).collect())
+    }
 }
 
 impl Bracket<'_> {

@@ -5,9 +5,10 @@ use std::borrow::Cow;
 use super::{
     arrows::{self, Arrow},
     axes::{Axis, Frame, LARGE, LINE, Labels, ROOM_BELOW, TITLE, draw_heading},
-    colour_bar::{self, ColourRange, Outside},
+    colour_bar::{ColourRange, Outside},
     drawing::{Anchor, Drawing},
     legend::{self, Entry},
+    magnified::obstacle_name,
     mark::Candidate,
     medium::Medium,
     obstacle,
@@ -26,6 +27,8 @@ const PAPER_PANEL: [f64; 2] = [400.0, 420.0];
 const SMALLEST: [f64; 2] = [180.0, 130.0];
 /// A column is at least this wide, for the colour bar and the legend.
 const COLUMN: f64 = 440.0;
+/// Values outside the colours by less than this share of their range, which is less than a band, are not noted.
+const UNNOTED: f64 = 0.02;
 /// Values that differ by less than this share of the largest differ by rounding: a picture would show noise as data.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
@@ -64,7 +67,7 @@ pub struct ContactPicture<'a> {
     /// The fields, a panel each.
     pub fields: &'a [FieldPanel<'a>],
     /// Obstacles. Their edges should reach beyond the body at both sides, to the ends of the picture. If the displacement is magnified,
-    /// their gaps must be magnified as well.
+    /// they are shifted with their contact.
     pub obstacles: &'a [ObstacleLine<'a>],
     /// Candidate nodes, indices from 0.
     pub candidates: &'a [usize],
@@ -129,7 +132,7 @@ impl ContactPicture<'_> {
         let Layout { title, panels, column, width, pitch } = self.layout(self.window());
         let [fields @ .., mesh] = &panels[..] else { return Ok(Drawing::new(width, pitch)) };
         let entries = self.legend(mesh);
-        let room = legend::rows_height(&entries, column).max(if fields.is_empty() { 0.0 } else { colour_bar::ROOM });
+        let room = legend::rows_height(&entries, column).max(self.bar_room());
         let under = |frame: &Frame| frame.corner[1] + frame.size[1] + ROOM_BELOW + 18.0;
         let margin = self.medium.margin();
         let mut drawing = Drawing::new(width, under(mesh) + room + margin);
@@ -200,14 +203,16 @@ impl ContactPicture<'_> {
     }
 
     fn moved_title(&self) -> String {
-        let times = brief(self.magnification);
-        match (self.is_displaced(), self.magnification == 1.0, self.obstacles.is_empty()) {
-            (false, false, false) => format!("mesh, gap × {times}"),
-            (false, _, _) => "mesh".into(),
-            (true, true, _) => "displaced mesh, to scale".into(),
-            (true, false, true) => format!("displaced mesh, displacement × {times}"),
-            (true, false, false) => format!("displaced mesh, displacement and gap × {times}"),
+        match (self.is_displaced(), self.magnification == 1.0) {
+            (false, _) => "mesh".into(),
+            (true, true) => "displaced mesh, to scale".into(),
+            (true, false) => format!("displaced mesh, displacement × {}", brief(self.magnification)),
         }
+    }
+
+    /// Room for the highest of the colour bars; none without a field.
+    fn bar_room(&self) -> f64 {
+        self.fields.iter().map(|field| field.outside(field.shown_limits()).room()).fold(0.0, f64::max)
     }
 
     /// Number of panels side by side: all on a screen, two on paper.
@@ -246,7 +251,7 @@ impl ContactPicture<'_> {
         let title = self.medium.title(typeface::wrapped(self.title, TITLE, Weight::Bold, width - 2.0 * margin));
         let over = LARGE * LINE + 14.0;
         let top = margin + TITLE * LINE * title.len() as f64 + over;
-        let pitch = size[1] + ROOM_BELOW + 18.0 + colour_bar::ROOM + over + 6.0;
+        let pitch = size[1] + ROOM_BELOW + 18.0 + self.bar_room() + over + 6.0;
         let before = before + 0.5 * (width - needed);
         let frame = |panel: usize| Frame {
             corner: [
@@ -275,7 +280,7 @@ impl ContactPicture<'_> {
             .collect();
         if !self.obstacles.is_empty() {
             let is_seen = self.obstacles.iter().any(|obstacle| obstacle.is_seen(frame));
-            let name = if is_seen { "obstacle" } else { "obstacle: outside the picture" };
+            let name = if is_seen { obstacle_name(self.magnification) } else { "obstacle: outside the picture" };
             entries.push(Entry { name: name.to_owned(), key: Box::new(obstacle::draw_key), key_width: 30.0 });
         }
         entries.extend(arrows::entries(self.arrows));
@@ -308,8 +313,12 @@ impl FieldPanel<'_> {
     /// The kinds of values outside the limits.
     pub(crate) fn outside(&self, limits: [f64; 2]) -> Outside {
         let [low, high] = common_limits([self.values]);
-        let slack = ROUNDING * (limits[1] - limits[0]).abs();
-        Outside { below: low < limits[0] - slack, above: high > limits[1] + slack, missing: false }
+        let slack = UNNOTED * (limits[1] - limits[0]).abs();
+        Outside {
+            below: (low < limits[0] - slack).then_some(low),
+            above: (high > limits[1] + slack).then_some(high),
+            missing: false,
+        }
     }
 }
 

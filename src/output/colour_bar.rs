@@ -4,7 +4,7 @@ use super::{
     axes::{Axis, LINE, NORMAL, SMALL},
     colour::{Colour, FAINT, INK, NO_VALUE, field_colour},
     drawing::{Anchor, Drawing, Paint},
-    ticks::{Quantity, Scale},
+    ticks::{Quantity, Scale, brief},
     typeface::{self, Weight},
 };
 
@@ -15,14 +15,25 @@ const TICK: f64 = 5.0;
 const GAP: f64 = 4.0;
 
 /// Room that a bar needs from its top to the end of its label.
-pub(crate) const ROOM: f64 = HEIGHT + TICK + GAP + SMALL * LINE + NORMAL * LINE;
+const ROOM: f64 = HEIGHT + TICK + GAP + SMALL * LINE + NORMAL * LINE;
 
-/// Flags: `true` if there are values below a range, above it, and values that are not finite.
+/// Room for the note on values outside the range, below the label.
+const NOTE: f64 = SMALL * LINE;
+
+/// The smallest value below a range and the largest one above it, if there are any.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outside {
-    pub below: bool,
-    pub above: bool,
+    pub below: Option<f64>,
+    pub above: Option<f64>,
+    /// `true` if there are values that are not finite.
     pub missing: bool,
+}
+
+impl Outside {
+    /// Room for a bar with these values outside its range.
+    pub fn room(self) -> f64 {
+        ROOM + if self.below.is_some() || self.above.is_some() { NOTE } else { 0.0 }
+    }
 }
 
 /// A range of values with its bands of colour. The edges of the bands include the ticks of the bar.
@@ -69,6 +80,22 @@ impl ColourRange {
         bands.rev().find(|band| value >= band.0).map_or(NO_VALUE, |band| band.1)
     }
 
+    /// The values outside the range, in words; empty if there are none.
+    fn note(&self, outside: Outside) -> String {
+        let shown = |value: f64| self.value_shown(value);
+        match (outside.below, outside.above) {
+            (Some(low), Some(high)) => format!("beyond the scale: {} to {}", shown(low), shown(high)),
+            (Some(low), None) => format!("below the scale: down to {}", shown(low)),
+            (None, Some(high)) => format!("above the scale: up to {}", shown(high)),
+            (None, None) => String::new(),
+        }
+    }
+
+    /// A value in the unit of the label.
+    fn value_shown(&self, value: f64) -> String {
+        brief(value / 10f64.powi(self.axis.ticks.exponent))
+    }
+
     /// Draws the bar with its left end at `corner`.
     pub fn draw(&self, drawing: &mut Drawing, [x, y]: [f64; 2], length: f64, outside: Outside) {
         let range = self.axis.range;
@@ -80,13 +107,13 @@ impl ColourRange {
             drawing.rect([from, y], [x + length - from, HEIGHT], &Paint::fill(colour));
         }
         let mut outline = vec![[x, y], [x + length, y]];
-        if outside.above {
+        if outside.above.is_some() {
             let tip = [[x + length, y], [x + length + 0.7 * HEIGHT, y + 0.5 * HEIGHT], [x + length, y + HEIGHT]];
             drawing.polygon(&tip, &Paint::fill(bands[bands.len() - 1].1));
             outline.push(tip[1]);
         }
         outline.extend([[x + length, y + HEIGHT], [x, y + HEIGHT]]);
-        if outside.below {
+        if outside.below.is_some() {
             let tip = [[x, y], [x - 0.7 * HEIGHT, y + 0.5 * HEIGHT], [x, y + HEIGHT]];
             drawing.polygon(&tip, &Paint::fill(bands[0].1));
             outline.push(tip[1]);
@@ -102,5 +129,6 @@ impl ColourRange {
         let (label, size) = typeface::fitted(&label, NORMAL, Weight::Regular, length + 60.0);
         let baseline = bottom + TICK + GAP + SMALL * LINE + 0.8 * NORMAL;
         drawing.text([x + 0.5 * length, baseline], &label, size, Anchor::Middle);
+        drawing.text([x + 0.5 * length, baseline + NOTE], &self.note(outside), SMALL, Anchor::Middle);
     }
 }

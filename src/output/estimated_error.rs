@@ -8,9 +8,9 @@ use super::medium::Medium;
 use super::mesh_series::{MeshPanel, mesh_series};
 use super::msh::msh;
 use super::plot::line_plots_for;
-use super::report::{columns, entry, plural, solve_text, wrapped};
+use super::report::{columns, entry, plural, wrapped};
 use super::text::printable;
-use super::total_error::{percent, verdict};
+use super::total_error::{of_last_mesh, percent, verdict};
 use super::{Drawing, Plot, Quantity, Scale, Series, write_files, write_picture};
 use crate::error::Error;
 use crate::scene::Units;
@@ -51,8 +51,7 @@ pub(crate) fn estimated_error_text(title: &str, found: &Estimated, answer: &Summ
     for line in columns(&table).lines() {
         let _ = writeln!(text, "  {line}");
     }
-    text.push('\n');
-    text + &solve_text(&format!("The answer on the last mesh: {title}"), answer, units)
+    text + &of_last_mesh(title, answer, units)
 }
 
 fn row(level: &EstimatedLevel) -> Vec<String> {
@@ -96,15 +95,21 @@ pub(crate) fn write_estimated_error(
         return Ok(());
     }
     write_picture(folder, "total-error", &plot(wanted.medium, title, found))?;
+    match estimated_meshes_picture(title, found) {
+        Some(meshes) => write_picture(folder, "meshes", &meshes).map(drop),
+        None => Ok(()),
+    }
+}
+
+/// The meshes of the levels; `None` for a bar.
+pub(crate) fn estimated_meshes_picture(title: &str, found: &Estimated) -> Option<Drawing> {
     let panel = |(cells, level): (&Vec<Vec<[f64; 2]>>, &EstimatedLevel)| MeshPanel {
         heading: format!("{} elements, estimated {:.2} %", level.elements, 100.0 * level.total_error),
         cells: cells.clone(),
     };
     let panels: Vec<MeshPanel> = found.views.iter().zip(&found.levels).map(panel).collect();
-    if panels.iter().all(|panel| !panel.cells.is_empty()) {
-        write_picture(folder, "meshes", &mesh_series(title, &panels, &found.answer.model().units().length))?;
-    }
-    Ok(())
+    let is_drawn = panels.iter().all(|panel| !panel.cells.is_empty());
+    is_drawn.then(|| mesh_series(title, &panels, &found.answer.model().units().length))
 }
 
 fn csv(found: &Estimated) -> String {

@@ -27,6 +27,7 @@ mod inset;
 mod iterations;
 mod json;
 mod legend;
+mod magnified;
 mod mark;
 pub(crate) mod medium;
 #[cfg(feature = "cli")]
@@ -55,6 +56,7 @@ mod report;
 #[cfg(feature = "cli")]
 mod set_up;
 mod shape;
+mod singular;
 mod space;
 mod space_scene;
 mod style;
@@ -70,10 +72,10 @@ mod tradeoff_plot;
 mod typeface;
 pub(crate) mod vtu;
 
-pub(crate) use body::{ContactPicture, common_limits, common_window};
+pub(crate) use body::{ContactPicture, common_window};
 pub use drawing::Drawing;
 #[cfg(feature = "cli")]
-pub(crate) use estimated_error::{estimated_error_text, write_estimated_error};
+pub(crate) use estimated_error::{estimated_error_text, estimated_meshes_picture, write_estimated_error};
 #[cfg(feature = "cli")]
 pub(crate) use file::make_folder;
 pub(crate) use file::{write_atomically, write_streamed};

@@ -24,8 +24,7 @@ use super::plane_scene::{PlaneScene, lines};
 use super::plot::line_plots_for;
 use super::ticks::amount;
 use super::{
-    ContactPicture, Plot, Quantity, Series, common_limits, common_window, json::compact_json, write_atomically,
-    write_picture,
+    ContactPicture, Plot, Quantity, Series, common_window, json::compact_json, write_atomically, write_picture,
 };
 use crate::error::Error;
 use crate::file::{MOST_OF_TABLE, read_text_capped};
@@ -283,7 +282,7 @@ impl MotionFolder {
         for number in 0..self.times.len() {
             let shown = scene(number)?;
             let fields = shown.fields();
-            let [low, high] = common_limits([fields[0].values]);
+            let [low, high] = fields[0].limits;
             limits = [limits[0].min(low), limits[1].max(high)];
             let outlines = shown.obstacles(1.0);
             let lines = lines(&outlines);

@@ -16,6 +16,12 @@ use super::{
 /// Mesh lines closer than this many pixels would only darken the body.
 const FINEST_MESH: f64 = 3.0;
 
+/// The radius of the dot of a candidate: as a share of the distance to the next candidate, and at least and at most in pixels.
+type Dot = [f64; 3];
+const DOT: Dot = [0.42, 1.8, 5.0];
+/// Over a field: dots cover at most a twentieth of it.
+const SMALL_DOT: Dot = [0.12, 0.8, 2.2];
+
 const BODY: Colour = Colour(0xf1, 0xf4, 0xf8);
 const MESH: Colour = Colour(0x9a, 0xa4, 0xb2);
 const OUTLINE: Colour = Colour(0x3a, 0x42, 0x4e);
@@ -75,23 +81,23 @@ impl ContactPicture<'_> {
                 obstacle.draw(drawing, frame);
             }
         });
-        self.draw_candidates(drawing, frame, &places);
+        self.draw_candidates(drawing, frame, &places, DOT);
     }
 
-    /// Draws cells and candidates over the field of a plan view.
+    /// Draws cells and candidates over the field of a plan view, with marks that leave the field visible.
     pub(crate) fn draw_plan(&self, drawing: &mut Drawing, frame: &Frame) {
         let places: Vec<[f64; 2]> = self.nodes.iter().map(|&point| frame.place(point)).collect();
         drawing.clipped(frame.corner, frame.size, |drawing| {
             let (lines, spacing) = mesh_lines(self.elements, &places, frame);
             drawing.polylines(&lines, &Paint::stroke(MESH, (0.05 * spacing).clamp(0.2, 0.6)));
         });
-        self.draw_candidates(drawing, frame, &places);
+        self.draw_candidates(drawing, frame, &places, SMALL_DOT);
     }
 
-    fn draw_candidates(&self, drawing: &mut Drawing, frame: &Frame, places: &[[f64; 2]]) {
+    fn draw_candidates(&self, drawing: &mut Drawing, frame: &Frame, places: &[[f64; 2]], dot: Dot) {
         let seen =
             |place: [f64; 2]| (0..2).all(|axis| (0.0..=frame.size[axis]).contains(&(place[axis] - frame.corner[axis])));
-        let radius = self.dot_radius(places, &seen);
+        let radius = self.dot_radius(places, &seen, dot);
         // Closed nodes last, so that no open node covers them.
         for (mark, shown) in [(Candidate::Open, false), (Candidate::Closed, true)] {
             for (&node, _) in self
@@ -106,13 +112,13 @@ impl ContactPicture<'_> {
     }
 
     /// The largest radius of dots that the distance of the candidates allows.
-    fn dot_radius(&self, places: &[[f64; 2]], seen: &impl Fn([f64; 2]) -> bool) -> f64 {
+    fn dot_radius(&self, places: &[[f64; 2]], seen: &impl Fn([f64; 2]) -> bool, [share, least, most]: Dot) -> f64 {
         let steps = self.candidates.windows(2).map(|pair| [places[pair[0]], places[pair[1]]]);
         let steps = steps.filter(|pair| pair.iter().all(|&place| seen(place)));
         let steps = steps.map(|[from, to]| (to[0] - from[0]).hypot(to[1] - from[1]));
         let mut steps: Vec<f64> = steps.filter(|step| step.is_finite()).collect();
         steps.sort_by(f64::total_cmp);
-        steps.get(steps.len() / 2).map_or(5.0, |median| (0.42 * median).clamp(1.8, 5.0))
+        steps.get(steps.len() / 2).map_or(most, |median| (share * median).clamp(least, most))
     }
 }
 

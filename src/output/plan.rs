@@ -71,9 +71,14 @@ impl Plan {
         }
     }
 
-    pub fn draw(&self, drawing: &mut Drawing, frame: &Frame, length_unit: &str, bar_at: [f64; 2], bar: f64) {
+    /// The contact pressure.
+    pub fn field(&self) -> FieldPanel<'_> {
         let quantity = Quantity::new("contact pressure p", &self.unit);
-        let fields = [FieldPanel { values: &self.pressure, quantity, limits: self.limits }];
+        FieldPanel { values: &self.pressure, quantity, limits: self.limits }
+    }
+
+    pub fn draw(&self, drawing: &mut Drawing, frame: &Frame, length_unit: &str, bar_at: [f64; 2], bar: f64) {
+        let fields = [self.field()];
         let still = vec![0.0; 2 * self.nodes.len()];
         let picture = self.picture(&fields, &still, length_unit);
         let limits = fields[0].shown_limits();

@@ -5,8 +5,10 @@ use std::path::Path;
 
 use super::arrows::{Arrow, ArrowKind};
 use super::body::{ContactPicture, FieldPanel, ROUNDING, common_limits, common_window};
+use super::magnified::{drawn_shift, magnification};
 use super::medium::Medium;
 use super::obstacle::ObstacleLine;
+use super::singular::{limits_without, singular};
 use super::ticks::{Quantity, amount, brief};
 use super::write_picture;
 use crate::error::Error;
@@ -15,12 +17,6 @@ use crate::scene::{Answer, Model};
 
 /// Pieces of the line of an obstacle.
 pub(super) const OUTLINE_SEGMENTS: usize = 200;
-
-/// Largest number of pieces of the line of a magnified obstacle between two nodes.
-const BETWEEN_NODES: usize = 10;
-
-/// The largest displacement is drawn at about this share of the size of the body.
-const SEEN: f64 = 0.05;
 
 /// The content of one picture.
 pub(super) struct PlaneScene {
@@ -33,22 +29,24 @@ pub(super) struct PlaneScene {
     displacement: Vec<f64>,
     /// Second principal stress and von Mises stress.
     fields: [Vec<f64>; 2],
+    /// The range of each field without singular nodes.
+    limits: [[f64; 2]; 2],
     /// The largest stress.
     largest: f64,
-    /// `true` if an obstacle is another body. It cannot be moved in the picture, so displacements are then not magnified.
-    has_pairs: bool,
+    /// Magnification of the displacement that suits this answer.
+    magnification: f64,
     obstacles: Vec<Outline>,
     candidates: Vec<usize>,
     closed: Vec<bool>,
     arrows: Vec<Arrow>,
 }
 
-/// The surface of a rigid obstacle, and its distances from the candidates, from which a magnified surface is drawn.
+/// The surface of a rigid obstacle.
 struct Outline {
     line: Vec<[f64; 2]>,
     inside: [f64; 2],
-    /// Positions of the candidates, and places between them, in the order of the boundary, each with the vector to the obstacle.
-    over: Vec<[[f64; 2]; 2]>,
+    /// Its shift in the picture for each unit of magnification beyond 1.
+    carried: [f64; 2],
 }
 
 impl PlaneScene {
@@ -77,13 +75,16 @@ impl PlaneScene {
                 stress.iter().map(|of| without_rounding(of.sigma_2)).collect(),
                 stress.iter().map(|of| without_rounding(of.von_mises)).collect(),
             ],
+            limits: [[f64::NAN; 2]; 2],
             largest,
-            has_pairs: has_pairs(model),
+            magnification: magnification(answer),
             obstacles: outlines(answer),
             closed: candidates.iter().map(|&node| is_closed[node]).collect(),
             candidates,
             arrows: arrows(answer)?,
         };
+        let singular = singular(model);
+        scene.limits = [0, 1].map(|field| limits_without(&singular, &scene.fields[field]));
         scene.elements = scene.polygons(model.mesh());
         Ok(scene)
     }
@@ -136,25 +137,10 @@ impl PlaneScene {
         self
     }
 
-    /// Magnification that makes the displacement visible: 1, 2 or 5 times a power of ten, at least 1.
-    fn magnification(&self) -> f64 {
-        if self.has_pairs {
-            return 1.0;
-        }
-        let extent = |axis: usize| {
-            let ends = common_limits([&self.nodes.iter().map(|node| node[axis]).collect::<Vec<f64>>()[..]]);
-            ends[1] - ends[0]
-        };
-        let moved = self.displacement.chunks_exact(2).map(|u| u[0].hypot(u[1])).filter(|moved| moved.is_finite());
-        rounded_down(SEEN * extent(0).max(extent(1)) / moved.fold(0.0, f64::max))
-    }
-
-    /// The fields, each with the range of its own values as the ends of its colours.
+    /// The fields, each with its own range as the ends of its colours.
     pub(super) fn fields(&self) -> Vec<FieldPanel<'_>> {
-        let panels = self.fields.iter().zip(&self.quantities);
-        panels
-            .map(|(values, quantity)| FieldPanel { values, quantity: quantity.clone(), limits: [f64::NAN; 2] })
-            .collect()
+        let panels = self.fields.iter().zip(&self.quantities).zip(self.limits);
+        panels.map(|((values, quantity), limits)| FieldPanel { values, quantity: quantity.clone(), limits }).collect()
     }
 
     /// The scene by itself, with its own magnification.
@@ -163,15 +149,18 @@ impl PlaneScene {
     /// As [`ContactPicture::draw`].
     #[cfg(feature = "cli")]
     pub(super) fn draw(&self) -> Result<super::Drawing, Error> {
-        let magnification = self.magnification();
-        let (fields, outlines) = (self.fields(), self.obstacles(magnification));
-        self.picture(&fields, &lines(&outlines), magnification).draw()
+        let (fields, outlines) = (self.fields(), self.obstacles(self.magnification));
+        self.picture(&fields, &lines(&outlines), self.magnification).draw()
     }
 
-    /// The obstacles beside a body with magnified displacement. Each gap is magnified too, so that body and obstacle touch in the
-    /// picture at their points of contact.
+    /// The obstacles beside a body with magnified displacement: each keeps its shape and is shifted to its contact.
     pub(super) fn obstacles(&self, magnification: f64) -> Vec<(Vec<[f64; 2]>, [f64; 2])> {
-        self.obstacles.iter().map(|outline| (outline.magnified(magnification), outline.inside)).collect()
+        let by = magnification - 1.0;
+        let shifted = |outline: &Outline| {
+            let [x, y] = outline.carried;
+            outline.line.iter().map(|point| [point[0] + by * x, point[1] + by * y]).collect()
+        };
+        self.obstacles.iter().map(|outline| (shifted(outline), outline.inside)).collect()
     }
 
     pub(super) fn picture<'a>(
@@ -199,67 +188,9 @@ impl PlaneScene {
     }
 }
 
-impl Outline {
-    /// The candidates around the nearest one, as long as the boundary continues across the approach direction. Candidates of a closed
-    /// boundary that face away from the obstacle have no part of the obstacle in front.
-    fn facing(&self) -> &[[[f64; 2]; 2]] {
-        let across = |[[x, y], _]: &[[f64; 2]; 2]| self.inside[0] * y - self.inside[1] * x;
-        let distance = |[_, way]: &[[f64; 2]; 2]| way[0] * self.inside[0] + way[1] * self.inside[1];
-        let nearest = (0..self.over.len()).min_by(|&a, &b| distance(&self.over[a]).total_cmp(&distance(&self.over[b])));
-        let Some(nearest) = nearest else { return &self.over };
-        let goes_on =
-            |from: usize, to: usize, sign: f64| sign * (across(&self.over[to]) - across(&self.over[from])) > 0.0;
-        let (mut first, mut last) = (nearest, nearest);
-        let beside = (nearest + 1).min(self.over.len() - 1).max(1);
-        let sign = if across(&self.over[beside]) > across(&self.over[beside - 1]) { 1.0 } else { -1.0 };
-        while last + 1 < self.over.len() && goes_on(last, last + 1, sign) {
-            last += 1;
-        }
-        while first > 0 && goes_on(first - 1, first, sign) {
-            first -= 1;
-        }
-        &self.over[first..=last]
-    }
-
-    fn magnified(&self, magnification: f64) -> Vec<[f64; 2]> {
-        if magnification == 1.0 || self.over.len() < 2 {
-            return self.line.clone();
-        }
-        let mut points: Vec<[f64; 2]> =
-            self.facing().iter().map(|[at, way]| [0, 1].map(|axis| at[axis] + magnification * way[axis])).collect();
-        if points.len() < 2 {
-            return self.line.clone();
-        }
-        // The line continues straight beyond the candidates.
-        let beyond =
-            |last: [f64; 2], before: [f64; 2]| [0, 1].map(|axis| last[axis] + 50.0 * (last[axis] - before[axis]));
-        let (first, last) = (beyond(points[0], points[1]), beyond(points[points.len() - 1], points[points.len() - 2]));
-        points.insert(0, first);
-        points.push(last);
-        points
-    }
-}
-
-/// 1, 2 or 5 times a power of ten, at most `value`; 1 if the result is less than 1 or not a number.
-pub(super) fn rounded_down(value: f64) -> f64 {
-    if value.is_finite() && value >= 2.0 { rounded_length(value) } else { 1.0 }
-}
-
-/// 1, 2 or 5 times a power of ten, at most `value`, which is positive.
-pub(super) fn rounded_length(value: f64) -> f64 {
-    let power = 10f64.powf(value.log10().floor());
-    let factor = [5.0, 2.0, 1.0].into_iter().find(|factor| factor * power <= value * 1.000001).unwrap_or(1.0);
-    factor * power
-}
-
 /// The names of the coordinates; for a body of revolution the radius and the axis.
 pub(super) fn axes(model: &Model) -> [&'static str; 2] {
     if model.body().formulation().is_axisymmetric() { ["r", "z"] } else { ["x", "y"] }
-}
-
-/// Returns `true` if an obstacle of the model is another of its bodies.
-pub(super) fn has_pairs(model: &Model) -> bool {
-    model.obstacles().iter().any(|obstacle| obstacle.rigid().is_none())
 }
 
 fn outlines(answer: &Answer) -> Vec<Outline> {
@@ -270,46 +201,10 @@ fn outlines(answer: &Answer) -> Vec<Outline> {
         Outline {
             line: model.obstacles()[index].outline(answer.shift(index), OUTLINE_SEGMENTS),
             inside: [x, y],
-            over: over(answer, index),
+            carried: [0, 1].map(|axis| drawn_shift(answer, index, 2.0)[axis]),
         }
     };
     rigid.map(outline).collect()
-}
-
-/// Places along the candidates of an obstacle, each with the vector to the obstacle: the candidates, and places between two neighbours, so
-/// that a round obstacle is not drawn as a polygon of the mesh.
-fn over(answer: &Answer, index: usize) -> Vec<[[f64; 2]; 2]> {
-    let (model, ways) = (answer.model(), ways_to_obstacle(answer, index));
-    let at = |node: usize| model.mesh().nodes()[node];
-    let pieces = (OUTLINE_SEGMENTS / ways.len().max(1)).clamp(1, BETWEEN_NODES);
-    let between = |from: usize, to: usize, piece: usize| {
-        let share = piece as f64 / pieces as f64;
-        let place = [0, 1, 2].map(|axis| (1.0 - share) * at(from)[axis] + share * at(to)[axis]);
-        let row = model.obstacles()[index].rigid()?.shifted_row(place, answer.shift(index)).ok()??;
-        Some([[place[0], place[1]], [row.gap * row.normal[0], row.gap * row.normal[1]]])
-    };
-    let mut over = Vec::new();
-    for (number, (node, way)) in ways.iter().enumerate() {
-        over.push([[at(*node)[0], at(*node)[1]], [way[0], way[1]]]);
-        if let Some((next, _)) = ways.get(number + 1) {
-            over.extend((1..pieces).filter_map(|piece| between(*node, *next, piece)));
-        }
-    }
-    over
-}
-
-/// The nodes of the rows of an obstacle, each with the vector from its undeformed position to the present position of the obstacle.
-pub(super) fn ways_to_obstacle(answer: &Answer, obstacle: usize) -> Vec<(usize, [f64; 3])> {
-    let model = answer.model();
-    let approach = model.obstacles()[obstacle].approach();
-    let travel = answer.travel(obstacle).unwrap_or(0.0);
-    let rows = model.rows().iter().filter(|row| row.obstacle == obstacle);
-    rows.map(|row| {
-        let leans: f64 = row.normal.iter().zip(approach).map(|(n, a)| n * a).sum();
-        let gap = row.gap - travel * leans;
-        (row.node, row.normal.map(|part| gap * part))
-    })
-    .collect()
 }
 
 /// Contact forces, reactions of supports and loads, each with its point of application and the displacement of that point.
@@ -346,8 +241,8 @@ pub(super) fn draw_series(
     medium: Medium,
 ) -> Result<(), Error> {
     let leading_scenes = || series.iter().take(leading).map(|(_, scene)| scene);
-    let magnification = leading_scenes().map(PlaneScene::magnification).fold(f64::INFINITY, f64::min);
-    let limits = [0, 1].map(|field| match common_limits(leading_scenes().map(|scene| &scene.fields[field][..])) {
+    let magnification = leading_scenes().map(|scene| scene.magnification).fold(f64::INFINITY, f64::min);
+    let limits = [0, 1].map(|field| match common_limits(leading_scenes().map(|scene| &scene.limits[field][..])) {
         // If this field is zero, the other fields give the scale of a small stress.
         [low, high] if low == 0.0 && high == 0.0 => {
             let largest = leading_scenes().map(|scene| scene.largest).fold(0.0, f64::max);
@@ -395,52 +290,4 @@ pub(super) fn state(model: &Model) -> String {
 /// The forces that press obstacles, in words.
 pub(super) fn pressing_amounts(model: &Model) -> Vec<String> {
     model.pressing_forces().into_iter().map(|force| amount(force, &model.units().force)).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use std::sync::Arc;
-
-    use super::{Outline, outlines};
-    use crate::qp::{Settings, solve};
-    use crate::scene::{Answer, Scene};
-
-    /// Four cells before a circle: its magnified line turns a little at many points, not much at five.
-    #[test]
-    fn a_magnified_circle_is_round_between_the_nodes() {
-        let text = r#"{
-            "body": {"rectangle": {"x": {"points": [0, 4], "divisions": [4]}, "y": {"points": [0, 2], "divisions": [2]}}},
-            "material": {"young": 100, "poisson": 0.3},
-            "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
-            "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"circle": {"apex": [2, 1.9], "radius": 4}}}]
-        }"#;
-        let scene: Scene = serde_json::from_str(text).unwrap();
-        let model = Arc::new(scene.build().unwrap());
-        let solution = solve(model.problem(), &Settings::default()).unwrap();
-        let answer = Answer::of(model, &solution).unwrap();
-        let line = outlines(&answer)[0].magnified(5.0);
-        let slopes: Vec<f64> =
-            line.windows(2).map(|ends| ((ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0])).atan()).collect();
-        let sharpest = slopes.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
-        assert!(sharpest < 0.2, "{sharpest}");
-    }
-
-    #[test]
-    fn of_a_closed_boundary_the_half_that_looks_away_has_no_obstacle_before_it() {
-        // A circle of radius 1 in the order of its boundary, from its lowest point; a plane at y = 2 comes from above.
-        let at = |number: usize| {
-            let angle = std::f64::consts::TAU * number as f64 / 16.0;
-            [angle.sin(), -angle.cos()]
-        };
-        let over: Vec<[[f64; 2]; 2]> = (0..16).map(|number| [at(number), [0.0, 2.0 - at(number)[1]]]).collect();
-        let line = vec![[-3.0, 2.0], [3.0, 2.0]];
-        let outline = Outline { line: line.clone(), inside: [0.0, 1.0], over };
-        let facing = outline.facing();
-        assert!(facing.iter().all(|[[_, y], _]| *y > -1e-12), "{facing:?}");
-        assert_eq!(facing.len(), 9, "from one side to the other");
-        // Without magnification the obstacle keeps its own line.
-        assert_eq!(outline.magnified(1.0), line);
-        let lowest = outline.magnified(3.0).into_iter().map(|[_, y]| y).fold(f64::INFINITY, f64::min);
-        assert!((lowest - 4.0).abs() < 1e-12, "three times the smallest gap above the top: {lowest}");
-    }
 }

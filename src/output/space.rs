@@ -4,7 +4,7 @@ use super::{
     axes::{LARGE, LINE, ROOM_BELOW, SMALL, TITLE, draw_heading},
     body::FieldPanel,
     colour::{Colour, INK},
-    colour_bar::{self, ColourRange},
+    colour_bar::ColourRange,
     drawing::{Anchor, Drawing, Paint},
     legend::{self, Entry},
     medium::Medium,
@@ -74,6 +74,8 @@ pub(super) struct SpacePicture<'a> {
     pub faces: &'a [Face],
     pub colouring: Colouring<'a>,
     pub sheets: &'a [Sheet],
+    /// The name of the obstacles in the legend.
+    pub obstacle_name: &'a str,
     /// Vector from the body to the eye, of any length.
     pub eye: [f64; 3],
     pub plan: Option<&'a Plan>,
@@ -144,7 +146,7 @@ impl SpacePicture<'_> {
             entries.extend(names.iter().map(|&(name, colour)| face_entry(name, colour)));
         }
         if !self.sheets.is_empty() {
-            entries.push(Entry { name: "obstacle".into(), key: Box::new(draw_obstacle_key), key_width: 30.0 });
+            entries.push(Entry { name: self.obstacle_name.into(), key: Box::new(draw_obstacle_key), key_width: 30.0 });
         }
         let legend = legend::rows_height(&entries, self.column());
         let bar = self.column() - 90.0;
@@ -152,7 +154,9 @@ impl SpacePicture<'_> {
             Colouring::Field(field) => Some((field, ColourRange::new(&field.quantity, field.shown_limits(), bar))),
             Colouring::Faces { .. } => None,
         };
-        let bar_room = if field.is_some() { colour_bar::ROOM + 8.0 } else { 0.0 };
+        let room = |field: &FieldPanel| field.outside(field.shown_limits()).room() + 8.0;
+        let of_plan = plan.as_ref().map_or(0.0, |(plan, _)| room(&plan.field()));
+        let bar_room = field.as_ref().map_or(0.0, |(field, _)| room(field)).max(of_plan);
         let mut drawing = Drawing::new(width, below + bar_room + legend + 4.0 + margin);
         draw_heading(&mut drawing, &title, 0.5 * width, margin);
 
@@ -319,7 +323,7 @@ impl SpacePicture<'_> {
 
     /// A length in the plane of the picture.
     fn draw_ruler(&self, drawing: &mut Drawing, scale: f64, [right, y]: [f64; 2]) {
-        let length = super::plane_scene::rounded_length(150.0 / scale);
+        let length = super::magnified::rounded_length(150.0 / scale);
         let text = amount(length, self.length_unit);
         let from = right - scale * length;
         let paint = Paint::stroke(INK, 1.6);

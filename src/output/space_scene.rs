@@ -6,25 +6,28 @@ use super::body::{FieldPanel, ROUNDING, common_limits, common_window};
 #[cfg(feature = "cli")]
 use super::colour::Colour;
 use super::drawing::Drawing;
+use super::magnified::{drawn_shift, magnification, obstacle_name};
 use super::medium::Medium;
 use super::plan::Plan;
-use super::plane_scene::{has_pairs, rounded_down, ways_to_obstacle};
+use super::singular::{limits_without, singular};
 use super::space::{Colouring, Face, Sheet, SpacePicture};
 use super::ticks::{Quantity, brief};
 use super::write_picture;
 use crate::error::Error;
 use crate::fem::body::Region;
 use crate::fem::element::FacetKind;
+use crate::fem::geometry::{dot, length, minus};
+use crate::fem::mesh::extent;
 use crate::scene::{Answer, Model, straight_cells};
 
-/// The largest displacement is drawn at about this share of the size of the body.
-const SEEN: f64 = 0.04;
 /// An obstacle is drawn if it is at most this share of the size of the body away.
 const NEAR: f64 = 0.25;
 /// The plan view extends beyond the contact by this share of its size.
 const BEYOND: f64 = 0.35;
 /// The direction to the eye: from the front, above and a little from the right; contact faces turn it to their side.
 const EYE: [f64; 3] = [0.5, -0.8, 0.55];
+/// Slope of the line of sight against the contact of two bodies.
+const TILT: f64 = 0.35;
 
 /// The content of the picture of an answer in space.
 pub(super) struct SpaceScene<'a> {
@@ -32,6 +35,8 @@ pub(super) struct SpaceScene<'a> {
     answer: &'a Answer,
     /// At the nodes.
     von_mises: Vec<f64>,
+    /// The range of the von Mises stress without singular nodes.
+    limits: [f64; 2],
 }
 
 impl<'a> SpaceScene<'a> {
@@ -39,18 +44,9 @@ impl<'a> SpaceScene<'a> {
         let stress = &answer.stress()?.nodes;
         let largest = stress.iter().map(|of| of.von_mises).fold(0.0, f64::max);
         let without_rounding = |value: f64| if value <= ROUNDING * largest { 0.0 } else { value };
-        let von_mises = stress.iter().map(|of| without_rounding(of.von_mises)).collect();
-        Ok(SpaceScene { title, answer, von_mises })
-    }
-
-    /// Magnification that makes the displacement visible.
-    fn magnification(&self) -> f64 {
-        let (model, displacement) = (self.answer.model(), self.answer.displacement());
-        if has_pairs(model) {
-            return 1.0;
-        }
-        let moved = displacement.chunks_exact(3).map(|u| u.iter().map(|part| part * part).sum::<f64>().sqrt());
-        rounded_down(SEEN * model.mesh().size() / moved.fold(0.0, f64::max))
+        let von_mises: Vec<f64> = stress.iter().map(|of| without_rounding(of.von_mises)).collect();
+        let limits = limits_without(&singular(answer.model()), &von_mises);
+        Ok(SpaceScene { title, answer, von_mises, limits })
     }
 
     /// The obstacle that the body presses most.
@@ -67,13 +63,15 @@ impl<'a> SpaceScene<'a> {
         let near = NEAR * model.mesh().size();
         let sheets: Vec<Sheet> = (0..model.obstacles().len())
             .filter(|&index| model.obstacles()[index].rigid().is_some())
-            .map(|index| sheet(model, index, &ways_to_obstacle(self.answer, index), (magnification, near)))
+            .map(|index| {
+                let shift = drawn_shift(self.answer, index, magnification);
+                sheet(model, index, &ways_to_obstacle(self.answer, index), (shift, near))
+            })
             .collect();
         let times = brief(magnification);
         let heading = match magnification == 1.0 {
             true => "displaced body, to scale".to_string(),
-            false if sheets.is_empty() => format!("displaced body, displacement × {times}"),
-            false => format!("displaced body, displacement and gap × {times}"),
+            false => format!("displaced body, displacement × {times}"),
         };
         let quantity = Quantity::new("von Mises stress", model.units().pressure());
         let picture = SpacePicture {
@@ -84,6 +82,7 @@ impl<'a> SpaceScene<'a> {
             faces: &faces(model),
             colouring: Colouring::Field(FieldPanel { values: &self.von_mises, quantity, limits: shared.von_mises }),
             sheets: &sheets,
+            obstacle_name: obstacle_name(magnification),
             eye: eye(model, shared.obstacle),
             plan,
             medium,
@@ -114,9 +113,9 @@ pub(super) fn draw_space_series(
     medium: Medium,
 ) -> Result<(), Error> {
     let leading_scenes = || series.iter().take(leading).map(|(_, scene)| scene);
-    let [lowest, largest] = common_limits(leading_scenes().map(|scene| &scene.von_mises[..]));
+    let [lowest, largest] = common_limits(leading_scenes().map(|scene| &scene.limits[..]));
     let shared = Shared {
-        magnification: leading_scenes().map(SpaceScene::magnification).fold(f64::INFINITY, f64::min),
+        magnification: leading_scenes().map(|scene| magnification(scene.answer)).fold(f64::INFINITY, f64::min),
         von_mises: [lowest.min(0.0), largest],
         obstacle: leading_scenes().next_back().and_then(SpaceScene::obstacle),
     };
@@ -141,16 +140,31 @@ fn faces(model: &Model) -> Vec<Face> {
     model.body().regions().iter().flat_map(of_region).collect()
 }
 
-/// Direction from the body to the eye: on the side of the obstacle in view.
-fn eye(model: &Model, obstacle: Option<usize>) -> [f64; 3] {
-    let mut eye = EYE;
-    if let Some(obstacle) = obstacle {
-        let approach = model.obstacles()[obstacle].approach();
-        (0..3)
-            .filter(|&axis| approach[axis].abs() > 0.3)
-            .for_each(|axis| eye[axis] = eye[axis].abs().copysign(approach[axis]));
+/// Direction from the body to the eye: on the side of the obstacle in view. Another body would hide the contact from there: the eye is
+/// then beside the contact, a little on the side of the smaller of the two bodies.
+pub(super) fn eye(model: &Model, obstacle: Option<usize>) -> [f64; 3] {
+    let Some(placed) = obstacle.and_then(|obstacle| model.obstacles().get(obstacle)) else { return EYE };
+    let approach = placed.approach();
+    if placed.rigid().is_some() {
+        let side = |axis: usize| if approach[axis].abs() > 0.3 { approach[axis] } else { EYE[axis] };
+        return [0, 1, 2].map(|axis| EYE[axis].abs().copysign(side(axis)));
     }
-    eye
+    let along = dot(EYE, approach);
+    let aside = [0, 1, 2].map(|axis| EYE[axis] - along * approach[axis]);
+    let tilt = if stands_on(model, obstacle) { -TILT } else { TILT };
+    [0, 1, 2].map(|axis| aside[axis] / length(aside) + tilt * approach[axis])
+}
+
+/// Returns `true` if the body of the candidates of a pair is the smaller one.
+fn stands_on(model: &Model, obstacle: Option<usize>) -> bool {
+    let size = |node: usize| {
+        let region = model.body().regions().iter().find(|region| region.nodes().contains(&node));
+        let (low, high) = extent(region.map_or(&[][..], |region| &model.mesh().nodes()[region.nodes()]));
+        length(minus(high, low))
+    };
+    let row = model.rows().iter().find(|row| Some(row.obstacle) == obstacle);
+    let sizes = row.map(|row| row.ends().map(|(node, _)| size(node)).collect::<Vec<f64>>());
+    sizes.is_some_and(|sizes| sizes.len() > 1 && sizes[0] < sizes[1])
 }
 
 /// The picture of a body in space before it is solved: the supported, loaded and candidate faces, and the obstacles at their gap.
@@ -181,7 +195,7 @@ pub(super) fn space_set_up(model: &Model, title: &str) -> Drawing {
         .map(|index| {
             let rows = model.rows().iter().filter(|row| row.obstacle == index);
             let ways: Vec<_> = rows.map(|row| (row.node, row.normal.map(|part| row.gap * part))).collect();
-            sheet(model, index, &ways, (1.0, NEAR * model.mesh().size()))
+            sheet(model, index, &ways, ([0.0; 3], NEAR * model.mesh().size()))
         })
         .collect();
     let picture = SpacePicture {
@@ -192,6 +206,7 @@ pub(super) fn space_set_up(model: &Model, title: &str) -> Drawing {
         faces: &faces,
         colouring: Colouring::Faces { colours: &colours, names: &names },
         sheets: &sheets,
+        obstacle_name: obstacle_name(1.0),
         eye: eye(model, (!model.obstacles().is_empty()).then_some(0)),
         plan: None,
         medium: Medium::Screen,
@@ -228,19 +243,32 @@ fn outline(kind: FacetKind, facet: &[usize]) -> Vec<usize> {
     sides.flat_map(|(place, ends)| [facet[ends[0]], facet[reference.corners + place]]).collect()
 }
 
-/// The obstacle over the facets with a row at every node. Each node is moved by its vector to the obstacle, with the magnification of
-/// the displacement.
-fn sheet(model: &Model, obstacle: usize, ways_of: &[(usize, [f64; 3])], (magnification, near): (f64, f64)) -> Sheet {
+/// The nodes of the rows of an obstacle, each with the vector from its undeformed position to the present position of the obstacle.
+fn ways_to_obstacle(answer: &Answer, obstacle: usize) -> Vec<(usize, [f64; 3])> {
+    let model = answer.model();
+    let approach = model.obstacles()[obstacle].approach();
+    let travel = answer.travel(obstacle).unwrap_or(0.0);
+    let rows = model.rows().iter().filter(|row| row.obstacle == obstacle);
+    rows.map(|row| {
+        let leans: f64 = row.normal.iter().zip(approach).map(|(n, a)| n * a).sum();
+        let gap = row.gap - travel * leans;
+        (row.node, row.normal.map(|part| gap * part))
+    })
+    .collect()
+}
+
+/// The obstacle over the facets with a row at every node, as far as it is near: each node is moved by its vector to the obstacle, then
+/// all are shifted alike.
+fn sheet(model: &Model, obstacle: usize, ways_of: &[(usize, [f64; 3])], (shift, near): ([f64; 3], f64)) -> Sheet {
     let placed = &model.obstacles()[obstacle];
     let mut ways: Vec<Option<[f64; 3]>> = vec![None; model.mesh().nodes().len()];
     for &(node, way) in ways_of {
-        let way = way.map(|part| magnification * part);
         let far = way.iter().map(|part| part * part).sum::<f64>().sqrt() > near;
         ways[node] = (!far).then_some(way);
     }
     let at = |node: usize| {
         let (place, way) = (model.mesh().nodes()[node], ways[node]?);
-        Some([0, 1, 2].map(|axis| place[axis] + way[axis]))
+        Some([0, 1, 2].map(|axis| place[axis] + way[axis] + shift[axis]))
     };
     let boundary = model.mesh().boundary(placed.boundary());
     let facets = boundary.into_iter().flat_map(|boundary| boundary.facets().map(|facet| outline(boundary.kind, facet)));

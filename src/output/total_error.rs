@@ -10,18 +10,19 @@ use super::{
     mesh_series::{MeshPanel, mesh_series},
     msh::msh,
     plot::line_plots_for,
-    report::{columns, entry, plural, quantity, warnings_text},
+    report::{columns, entry, plural, quantity, solve_text, warnings_text, wrapped},
     text::printable,
     write_files, write_picture,
 };
 use crate::continuum::{PlaneAnswer, Triangulation};
 use crate::error::Error;
-use crate::fem::{Boundary, ElementKind, Mesh};
+use crate::fem::Mesh;
 use crate::scene::Units;
+use crate::study::Summary;
 use crate::study::total_error::{Domain, Ended, TotalError, TotalErrorLevel, half_width};
 
-/// The report.
-pub(crate) fn total_error_text(title: &str, found: &TotalError, units: &Units) -> String {
+/// The report: the bounds, the refinement of the mesh, then the answer on the last mesh.
+pub(crate) fn total_error_text(title: &str, found: &TotalError, answer: Option<&Summary>, units: &Units) -> String {
     let mut text = format!("{}\n", printable(title));
     let (bound, goal) = (found.total_error.bound, found.goal);
     text +=
@@ -46,6 +47,22 @@ pub(crate) fn total_error_text(title: &str, found: &TotalError, units: &Units) -
         text += &entry("own mesh", &format!("{} of {} unknowns: guaranteed at most {bound}", own.element, own.dofs));
         text += &entry("", &format!("(estimated {})", percent(own.estimated)));
     }
+    match (found.last_mesh, &found.last) {
+        (Some(last), Ok(_)) => {
+            let bound = percent(last.total_error.bound);
+            text += &entry(
+                "last mesh",
+                &format!("its answer, below, of {} unknowns: guaranteed at most {bound}", last.dofs),
+            );
+            text += &entry("", &format!("(estimated {})", percent(last.estimated)));
+        }
+        (_, Err(reason)) => {
+            for (number, line) in wrapped(&format!("no answer on it: {reason}")).iter().enumerate() {
+                text += &entry(if number == 0 { "last mesh" } else { "" }, line);
+            }
+        }
+        _ => {}
+    }
     text += &entry("check", &format!("balance, signs, distances and energies agree to {:.1e}", found.defect));
     let domain = match found.domain {
         Domain::FirstPolygon => "the polygon of the first mesh: a curved side is that of its straight edges",
@@ -69,7 +86,12 @@ pub(crate) fn total_error_text(title: &str, found: &TotalError, units: &Units) -
     for line in columns(&table).lines() {
         let _ = writeln!(text, "  {line}");
     }
-    text
+    text + &answer.map_or_else(String::new, |answer| of_last_mesh(title, answer, units))
+}
+
+/// The answer on the last mesh, as `solve` reports it.
+pub(super) fn of_last_mesh(title: &str, answer: &Summary, units: &Units) -> String {
+    format!("\n{}", solve_text(&format!("The answer on the last mesh: {title}"), answer, units))
 }
 
 pub(super) fn percent(share: f64) -> String {
@@ -139,7 +161,7 @@ pub(crate) fn write_total_error(
     units: &Units,
     wanted: Wanted,
 ) -> Result<(), Error> {
-    let mesh = mesh(&found.answer)?;
+    let mesh = found.answer.mesh()?;
     let msh = msh(&mesh, &[("body", 0..mesh.element_count())]);
     write_files(
         folder,
@@ -177,14 +199,6 @@ fn csv(found: &TotalError) -> String {
         );
     }
     text
-}
-
-/// The mesh of the displacement: triangles of six nodes.
-fn mesh(answer: &PlaneAnswer) -> Result<Mesh, Error> {
-    let kind = ElementKind::QUADRATIC_TRIANGLE;
-    let boundary = |(name, edges): &(String, Vec<[usize; 3]>)| Boundary::new(name, kind.facet(), edges.concat());
-    let nodes = answer.nodes.iter().map(|&[x, y]| [x, y, 0.0]).collect();
-    Mesh::new(nodes, kind, answer.triangles.concat(), answer.boundaries.iter().map(boundary).collect())
 }
 
 /// The fields for ParaView: the displacement at the nodes, mean stress and share of the bound on triangles.

@@ -4,6 +4,7 @@ use super::problem::ContactProblem;
 use crate::error::Error;
 use crate::qp::linear::NullSpace;
 use crate::qp::method::Outcome;
+use crate::qp::settings::Settings;
 use crate::solution::{Certificate, ContactSet, Goal, Seconds, Solution};
 
 /// The outcome of the method called `name` as a solution, with its certificate and nothing else.
@@ -19,6 +20,7 @@ pub(super) fn answer(outcome: Outcome, name: &str, certificate: Certificate) -> 
         history,
         certificate,
         proven: None,
+        cut_short: None,
         refinements: None,
         lost_pivot: None,
         reason: None,
@@ -60,32 +62,44 @@ pub(super) fn with_solution(
     }
 }
 
-/// The ending without time for a first factorisation, of `needed` seconds with `left` to go: the body at rest.
+/// The ending of a solve under `settings`: if it is not certified, with what the limit of time cut short.
 ///
 /// # Errors
-/// Those of the certificate.
-pub(super) fn out_of_time(problem: &ContactProblem, needed: f64, left: f64) -> Result<Error, Error> {
-    let condition = "the time of one factorisation (s)";
-    Ok(Error::NotCertified { solution: Box::new(at_rest(problem)?), condition, value: needed, tolerance: left })
-}
-
-/// The error to return if a claim cannot be rechecked: an answer that is not certified stays as it is; a claim becomes
-/// the body at rest, which is not certified either, with the claim as the reason.
-///
-/// # Errors
-/// Those of the certificate.
-pub(super) fn not_decided(problem: &ContactProblem, before: Error) -> Result<Error, Error> {
-    match before {
-        before @ Error::NotCertified { .. } => Ok(before),
-        claim => not_rechecked(problem, &claim),
+/// Those of the ending; without time for a first factorisation [`Error::NotCertified`] with the body at rest.
+pub(super) fn in_time(
+    problem: &ContactProblem,
+    settings: &Settings,
+    ending: Result<Solution, Error>,
+) -> Result<Solution, Error> {
+    match ending {
+        Err(Error::OutOfTime { .. }) => Err(cut_short(at_rest(problem)?, settings)),
+        Err(Error::NotCertified { solution, .. }) if solution.cut_short.is_none() && settings.watch.cut().is_some() => {
+            Err(cut_short(*solution, settings))
+        }
+        ending => ending,
     }
 }
 
-/// The error for a claim about the problem that could not be rechecked.
-fn not_rechecked(problem: &ContactProblem, claim: &Error) -> Result<Error, Error> {
-    let solution = Box::new(Solution { reason: Some(format!("not rechecked: {claim}")), ..at_rest(problem)? });
-    let condition = "a claim that could not be rechecked";
-    Ok(Error::NotCertified { solution, condition, value: 0.0, tolerance: 0.0 })
+/// The error of a solution that the limit of time cut short.
+fn cut_short(solution: Solution, settings: &Settings) -> Error {
+    fallen_short(Solution { cut_short: settings.watch.cut(), ..solution }, settings.goal())
+}
+
+/// The error to return if a claim cannot be rechecked: an answer that is not certified stays as it is; a claim becomes
+/// the body at rest, which is not certified either, with the claim as the reason if there was time to recheck it.
+///
+/// # Errors
+/// Those of the certificate.
+pub(super) fn not_decided(problem: &ContactProblem, settings: &Settings, before: Error) -> Result<Error, Error> {
+    match before {
+        before @ Error::NotCertified { .. } => Ok(before),
+        _ if settings.watch.cut().is_some() => Ok(cut_short(at_rest(problem)?, settings)),
+        claim => {
+            let cut_short = Some("a claim of the method could not be rechecked".to_string());
+            let reason = Some(format!("not rechecked: {claim}"));
+            Ok(fallen_short(Solution { cut_short, reason, ..at_rest(problem)? }, settings.goal()))
+        }
+    }
 }
 
 /// The error for a stiffness that resists a motion, mainly of `dof`, by a `share` of its terms that the rounding of its entries

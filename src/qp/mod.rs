@@ -74,7 +74,7 @@ use crate::solution::{ContactSet, Solution};
 /// * [`Error::Numerical`] if memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     let settings = &settings.started()?;
-    claims::rechecked(problem, settings, attempts::solved(problem, settings))
+    judged::in_time(problem, settings, claims::rechecked(problem, settings, attempts::solved(problem, settings)))
 }
 
 /// The same from a start, for example the answer of a similar problem.
@@ -85,7 +85,8 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
 pub(crate) fn solve_from(problem: &ContactProblem, start: Start, settings: &Settings) -> Result<Solution, Error> {
     start.check(problem.dofs(), problem.rows())?;
     let settings = &settings.started()?;
-    claims::rechecked(problem, settings, attempts::solved_from(start, problem, settings))
+    let ending = claims::rechecked(problem, settings, attempts::solved_from(start, problem, settings));
+    judged::in_time(problem, settings, ending)
 }
 
 /// The certificate of an answer (u, lambda) that came from elsewhere, within the memory of `settings`: with a factor if that is

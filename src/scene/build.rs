@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::elastic::{locking, stiffness_jumps};
+use super::elastic::{locking, stiffness_jumps, unit_of_young};
 use super::entry::wrong;
 use super::files::Files;
 use super::model::Model;
@@ -64,6 +64,7 @@ impl Scene {
         }
         let mut warnings: Vec<_> = locking(&body).into_iter().collect();
         warnings.extend(stiffness_jumps(&body));
+        warnings.extend(unit_of_young(&body, &self.units));
         warnings.extend(self.suspect(&body, &dofs)?);
         let (title, units) = (self.title.clone(), self.units.clone());
         let moves = self.analysis.is_some();

@@ -8,8 +8,11 @@ use super::load::spread;
 use super::obstacle::PlacedObstacle;
 use super::schema::load::{LoadSpec, PressureSpec, TractionSpec};
 use super::schema::{Place, Rule, Scene};
-use crate::continuum::{Circle, Condition, Distance, Enclosure, Facing, PlaneProblem, Point, Triangulation};
+use crate::continuum::{
+    Circle, Condition, Distance, Enclosure, Facing, PlaneAnswer, PlaneProblem, Point, Triangulation,
+};
 use crate::error::Error;
+use crate::fem::body::ElasticBody;
 use crate::fem::formulation::Formulation;
 use crate::fem::material::Stiffness;
 use crate::fem::mesh::Mesh;
@@ -108,6 +111,18 @@ impl Scene {
         };
         let mesh = Triangulation::new(nodes, triangles, elements, &outline).ok_or_else(unmatched)?;
         Ok((problem, mesh))
+    }
+
+    /// The scene on the last mesh of a guaranteed error, with the boundaries and parts of the first mesh.
+    ///
+    /// # Errors
+    /// As [`Scene::build`].
+    pub(crate) fn on_last_mesh(&self, first: &Model, last: &PlaneAnswer) -> Result<Model, Error> {
+        let body = first.body();
+        let [phase] = body.phases() else { return Err(wrong("materials", "only a single one has a guaranteed bound")) };
+        let body = ElasticBody::new(last.mesh()?, *phase.material(), *body.formulation())?;
+        // The parts are boundaries of that mesh; to choose them again would move their ends.
+        Scene { parts: Vec::new(), ..self.clone() }.build_of(vec![body], &[])
     }
 
     /// The condition of each edge of the outline.

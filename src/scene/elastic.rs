@@ -4,7 +4,7 @@ use super::Warning;
 use super::body::{BodySpec, Site};
 use super::entry::{located, wrong};
 use super::materials::BodyMaterials;
-use super::schema::{ModelSpec, Scene};
+use super::schema::{ModelSpec, Scene, Units};
 use super::unstrained::Unstrained;
 use crate::error::Error;
 use crate::fem::body::{ElasticBody, Integration, Region};
@@ -16,6 +16,19 @@ const LOCKING_POISSON: [f64; 2] = [0.49, 0.499];
 
 /// Young's moduli of one body that differ by more than this leave few digits in the strain of the soft part, and slow down iterations.
 const STIFFNESS_JUMP: f64 = 1e4;
+
+/// Young's modulus of steel, in pascals.
+pub(super) const STEEL: f64 = 2.1e11;
+
+/// The largest Young's modulus of diamond by direction, in pascals: no material of engineering is stiffer.
+///
+/// # Source
+/// H. J. McSkimin, P. Andreatch, "Elastic moduli of diamond as a function of pressure and temperature", J. Appl. Phys. 43 (1972)
+/// 2944-2948: stiffnesses of 1079, 124 and 578 GPa.
+const DIAMOND: f64 = 1.2e12;
+
+/// A modulus above that of diamond by this factor is in another unit: the next unit in use, the pascal, is a factor of 1e6 away.
+const OTHER_UNIT: f64 = 2.0;
 
 /// A body as a scene describes it, with its place.
 struct DescribedBody<'a> {
@@ -170,4 +183,14 @@ pub(super) fn stiffness_jumps(body: &ElasticBody) -> Vec<Warning> {
         is_jump.then_some(Warning::StiffnessJump { body: name, stiff, soft, ratio: stiff / soft })
     };
     body.regions().iter().filter_map(jump).collect()
+}
+
+/// The warning for the largest Young's modulus, if no material has it in these units.
+pub(super) fn unit_of_young(body: &ElasticBody, units: &Units) -> Option<Warning> {
+    let pascals = units.pascals()?;
+    let young = body.phases().iter().flat_map(|phase| phase.material().young()).reduce(f64::max)?;
+    let times = young * pascals / DIAMOND;
+    let Units { length, force } = units.clone();
+    let [meant, steel] = [young, STEEL].map(|value| value / pascals);
+    (times > OTHER_UNIT).then_some(Warning::UnitOfYoung { young, force, length, times, meant, steel })
 }

@@ -113,7 +113,7 @@ impl Held {
 
 impl Held {
     /// The held nodes with the directions along which they are held, each once.
-    #[cfg(feature = "cli")]
+    #[cfg(feature = "pictures")]
     pub fn directions(&self) -> impl Iterator<Item = (usize, Vec<[f64; 3]>)> {
         self.nodes.iter().map(|(&node, components)| {
             let mut directions: Vec<[f64; 3]> = Vec::new();

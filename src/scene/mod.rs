@@ -14,6 +14,7 @@
 //! # Ok::<(), signorini::Error>(())
 //! ```
 
+mod absent;
 mod answer;
 pub(crate) mod body;
 mod build;
@@ -45,11 +46,13 @@ mod refine;
 mod resultants;
 mod rigid_body_modes;
 mod rigid_face;
+#[cfg(feature = "cli")]
+mod roles;
 mod rows;
 pub(crate) mod schema;
 mod segments;
 mod selection;
-#[cfg(feature = "cli")]
+#[cfg(feature = "pictures")]
 mod set_up;
 mod size;
 mod springs;
@@ -63,6 +66,8 @@ mod unstrained;
 mod warning;
 mod watched;
 
+#[cfg(feature = "cli")]
+pub(crate) use absent::absent;
 pub use answer::{Answer, Forces};
 pub use body::{Sides, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
 pub use dynamics::Dynamics;
@@ -75,7 +80,9 @@ pub use schema::{Rule, Scene, Units};
 pub(crate) use segments::straight_cells;
 pub use segments::{ContactExtent, Segment};
 #[cfg(feature = "cli")]
-pub(crate) use set_up::{HeldNode, Hold};
+pub(crate) use set_up::HeldNode;
+#[cfg(feature = "pictures")]
+pub(crate) use set_up::Hold;
 pub use size::Size;
 #[cfg(feature = "cli")]
 pub(crate) use start::start_scene;

@@ -25,15 +25,8 @@ impl Scene {
                 let message = format!("`{}` is not allowed: every part needs a name of its own", spec.name);
                 return Err(wrong(format!("{path}.name"), message));
             }
-            let region = Region::of(spec, &path, body.dimension())?;
             let whole = spec.whole(&body, &path)?;
-            let tolerance = PLACE_TOLERANCE * mesh.size();
-            let outside: Vec<Outside> =
-                facet_centres(&body, &whole).into_iter().map(|(at, normal)| region.outside(at, normal)).collect();
-            let part = whole.part(&spec.name, |facet| outside.get(facet).is_some_and(|one| one.is_in(tolerance)));
-            if part.connectivity.is_empty() {
-                return Err(wrong(path, nearest(&whole.name, &outside, mesh.size(), body.dimension())));
-            }
+            let part = spec.facets(&body, &whole, &path)?;
             body = body.with_boundary(part)?;
         }
         Ok(body)
@@ -41,6 +34,22 @@ impl Scene {
 }
 
 impl PartSpec {
+    /// The facets of `whole` that belong to the part.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for an invalid region, and without a facet.
+    pub(super) fn facets(&self, body: &ElasticBody, whole: &Boundary, path: &str) -> Result<Boundary, Error> {
+        let (region, size) = (Region::of(self, path, body.dimension())?, body.mesh().size());
+        let tolerance = PLACE_TOLERANCE * size;
+        let outside: Vec<Outside> =
+            facet_centres(body, whole).into_iter().map(|(at, normal)| region.outside(at, normal)).collect();
+        let part = whole.part(&self.name, |facet| outside.get(facet).is_some_and(|one| one.is_in(tolerance)));
+        if part.connectivity.is_empty() {
+            return Err(wrong(path, nearest(&whole.name, &outside, size, body.dimension())));
+        }
+        Ok(part)
+    }
+
     /// The boundary, or the whole surface, of which it is a part.
     fn whole(&self, body: &ElasticBody, path: &str) -> Result<Boundary, Error> {
         let mesh = body.mesh();

@@ -21,6 +21,7 @@ pub(crate) struct HeldNode {
     /// The kind of its hold.
     pub hold: Hold,
     /// The directions [x, y, z] of the hold, of unit length; empty for a rigid face.
+    #[cfg_attr(not(feature = "cli"), allow(dead_code))]
     pub directions: Vec<[f64; 3]>,
 }
 

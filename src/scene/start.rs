@@ -3,47 +3,29 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use super::elastic::STEEL;
 use super::entry::number;
+use super::roles::{Chosen, Roles, roles};
+use super::schema::{PartSpec, Scene};
 use crate::error::Error;
-use crate::fem::assembly::{node_normals, tributary_areas};
+use crate::fem::assembly::tributary_areas;
 use crate::fem::body::ElasticBody;
 use crate::fem::formulation::Formulation;
-use crate::fem::geometry::length;
 use crate::fem::material::Material;
 use crate::fem::mesh::gmsh::GmshFile;
-use crate::fem::mesh::{Boundary, Mesh};
+use crate::fem::mesh::{Mesh, extent};
 
 /// A body larger than this is assumed to be given in millimetres: few parts are larger in metres.
 const LARGEST_IN_METRES: f64 = 5.0;
 
-/// Young's modulus of steel in pascals.
-const STEEL: f64 = 2.1e11;
-
 /// The approximate strain under the force: far from large, far above rounding.
 const STRAIN: f64 = 1e-4;
 
-/// Words in the name of a boundary that is held, and of a boundary that is pressed.
-const HELD: [&str; 9] = ["fix", "clamp", "support", "held", "base", "bottom", "root", "cut", "ground"];
-const PRESSED: [&str; 8] = ["contact", "touch", "press", "top", "upper", "seat", "round", "arc"];
-
-/// A mean normal shorter than this belongs to a boundary that faces all directions.
-const FACING: f64 = 0.5;
-
-/// A boundary in the list.
-struct Listed {
-    name: String,
-    facets: usize,
-    area: f64,
-    /// The mean of the outward normals; short if they cancel.
-    normal: [f64; 3],
-    low: [f64; 3],
-    high: [f64; 3],
-}
-
-/// The text of a scene for the mesh `file`, with comment lines; `named` is the name of the file in the scene.
+/// The text of a scene for the mesh `file`, with comment lines; `named` is the name of the file in the scene. The scene is built before it is
+/// returned, so that it is not refused later.
 ///
 /// # Errors
-/// As [`GmshFile::read`] and [`GmshFile::mesh`].
+/// As [`GmshFile::read`] and [`GmshFile::mesh`]; [`Error::Mesh`] for a mesh of which no boundary can be held while another is pressed.
 pub(crate) fn start_scene(file: &Path, named: &str) -> Result<String, Error> {
     let content = GmshFile::read(file)?;
     let groups = content.bodies();
@@ -56,81 +38,19 @@ pub(crate) fn start_scene(file: &Path, named: &str) -> Result<String, Error> {
         2 => Formulation::PlaneStrain { thickness: 1.0 },
         _ => Formulation::Space,
     };
-    let mut listed = listed(mesh.clone(), formulation)?;
-    let named_in_file = listed.len();
-    let whole = listed.pop_if(|last| last.name.is_empty() && named_in_file > 2);
-    let axis = mesh.dimension() - 1;
-    let mut text = head(named, &mesh, &listed, &groups, millimetres);
-    // Without two names, take the sides that face up and down.
-    let by_sides = listed.iter().filter(|boundary| !boundary.name.is_empty()).count() < 2;
-    let (held, pressed) = match by_sides {
-        true => (String::from("lower"), String::from("upper")),
-        false => {
-            let [held, pressed] = roles(&listed);
-            (held.to_string(), pressed.to_string())
+    let elastic = ElasticBody::new(mesh, Material::new(young, 0.3)?, formulation)?;
+    let mut reason = String::from("no side faces up while another, which holds all pieces of the mesh, faces down");
+    for roles in roles(&elastic) {
+        let mut text = head(named, &elastic, &groups, millimetres);
+        body(&mut text, named, elastic.mesh(), group, (young, millimetres));
+        rest(&mut text, elastic.mesh(), &roles, young);
+        match Scene::from_json(&text, named)?.build_of(vec![elastic.clone()], &[]) {
+            Ok(_) => return Ok(text),
+            Err(error) => reason = error.to_string(),
         }
-    };
-    let of_pressed = listed.iter().find(|boundary| boundary.name == pressed).or(whole.as_ref()).or(listed.last());
-    let Some(of_pressed) = of_pressed else { return Ok(text) };
-    let (axis, sense) = match by_sides {
-        true => (axis, 1.0),
-        false => facing(of_pressed.normal, axis),
-    };
-    body(&mut text, named, &mesh, group, (young, millimetres));
-    if by_sides {
-        sides(&mut text, mesh.dimension());
     }
-    rest(&mut text, &mesh, (&held, &pressed), of_pressed, (axis, sense, young));
-    Ok(text)
-}
-
-/// All boundaries, followed by the whole surface, which has no name.
-fn listed(mesh: Mesh, formulation: Formulation) -> Result<Vec<Listed>, Error> {
-    let body = ElasticBody::new(mesh, Material::new(1.0, 0.3)?, formulation)?;
-    let mesh = body.mesh();
-    let surface = Boundary { name: String::new(), ..mesh.surface(0..mesh.element_count()) };
-    let of = |boundary: &Boundary| {
-        let areas = tributary_areas(&body, boundary);
-        let area: f64 = areas.iter().map(|(_, area)| area).sum();
-        let mut normal = [0.0; 3];
-        for ((_, of_node), (_, own)) in areas.iter().zip(node_normals(&body, boundary)) {
-            (0..3).for_each(|axis| normal[axis] += of_node / area * own[axis]);
-        }
-        let nodes: Vec<[f64; 3]> = boundary.nodes().into_iter().map(|node| mesh.nodes()[node]).collect();
-        let (low, high) = crate::fem::mesh::extent(&nodes);
-        Listed { name: boundary.name.clone(), facets: boundary.facet_count(), area, normal, low, high }
-    };
-    Ok(mesh.boundaries().iter().chain([&surface]).map(of).collect())
-}
-
-/// The boundaries that are held and pressed, from at least two: by their names, or else the last one is pressed and the first one is
-/// held.
-fn roles(listed: &[Listed]) -> [&str; 2] {
-    let names: Vec<&str> =
-        listed.iter().map(|boundary| boundary.name.as_str()).filter(|name| !name.is_empty()).collect();
-    let by_word = |words: &[&str], other: Option<&str>| {
-        let has = |name: &&str| words.iter().any(|word| name.to_lowercase().contains(word)) && Some(*name) != other;
-        names.iter().copied().find(has)
-    };
-    let held = by_word(&HELD, None);
-    let last = names.iter().copied().rfind(|name| Some(*name) != held);
-    let pressed = by_word(&PRESSED, held).or(last).unwrap_or_default();
-    let first = names.iter().copied().find(|name| *name != pressed);
-    [held.or(first).unwrap_or_default(), pressed]
-}
-
-/// A component within this share of the largest one counts as equal: the boundary faces several axes alike.
-const ALIKE: f64 = 0.99;
-
-/// The axis and the sense of a boundary's normal; the vertical axis if the normal is as close to it as to another, and up if the boundary
-/// faces all directions.
-fn facing(normal: [f64; 3], up: usize) -> (usize, f64) {
-    if length(normal) < FACING {
-        return (up, 1.0);
-    }
-    let largest = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(up);
-    let axis = if normal[up].abs() > ALIKE * normal[largest].abs() { up } else { largest };
-    (axis, normal[axis].signum())
+    let message = format!("no first scene holds one boundary of this mesh and presses another: {reason}");
+    Err(Error::Mesh { message })
 }
 
 fn quoted(name: &str) -> String {
@@ -149,7 +69,8 @@ fn shown(values: &[f64]) -> String {
 }
 
 /// Comments on the content of the file.
-fn head(named: &str, mesh: &Mesh, listed: &[Listed], groups: &[String], millimetres: bool) -> String {
+fn head(named: &str, body: &ElasticBody, groups: &[String], millimetres: bool) -> String {
+    let mesh = body.mesh();
     let (dimension, (low, high)) = (mesh.dimension(), mesh.extent());
     let size: Vec<f64> = (0..dimension).map(|axis| high[axis] - low[axis]).collect();
     let mut text = format!(
@@ -164,13 +85,16 @@ fn head(named: &str, mesh: &Mesh, listed: &[Listed], groups: &[String], millimet
     if groups.len() > 1 {
         let _ = writeln!(text, "// Groups of elements, of which the first is the body here: {}.", groups.join(", "));
     }
-    for boundary in listed.iter().filter(|boundary| !boundary.name.is_empty()) {
-        let Listed { name, facets, area, low, high, .. } = boundary;
+    for boundary in mesh.boundaries() {
+        let area: f64 = tributary_areas(body, boundary).iter().map(|(_, area)| area).sum();
+        let nodes: Vec<[f64; 3]> = boundary.nodes().into_iter().map(|node| mesh.nodes()[node]).collect();
+        let (low, high) = extent(&nodes);
         let (low, high) = (shown(&low[..dimension]), shown(&high[..dimension]));
-        let _ = writeln!(text, "// boundary {}: {facets} facets, area {area:.4e}, from {low} to {high}", quoted(name));
+        let (name, facets) = (quoted(&boundary.name), boundary.facet_count());
+        let _ = writeln!(text, "// boundary {name}: {facets} facets, area {area:.4e}, from {low} to {high}");
     }
-    if listed.iter().all(|boundary| boundary.name.is_empty()) {
-        text += "// It names no boundary (physical groups in Gmsh); `parts` finds its lower and upper sides.\n";
+    if mesh.boundaries().is_empty() {
+        text += "// It names no boundary (physical groups in Gmsh); `parts` finds a side to be held and one to be pressed.\n";
     }
     text
 }
@@ -191,53 +115,59 @@ fn body(text: &mut String, named: &str, mesh: &Mesh, group: Option<&String>, (yo
     );
 }
 
-/// Parts that face down and up.
-fn sides(text: &mut String, dimension: usize) {
-    let direction = |sense: f64| {
-        let mut direction = vec![0.0; dimension];
-        direction[dimension - 1] = sense;
-        vector(&direction)
+/// The name of what is held or pressed. Facets that face a direction are added to `parts`, with a name that no boundary has.
+fn named(chosen: &Chosen, name: &str, mesh: &Mesh, parts: &mut Vec<PartSpec>) -> String {
+    let (way, of) = match chosen {
+        Chosen::Boundary(name) => return name.clone(),
+        Chosen::Facing(way, of) => (*way, of.clone()),
     };
-    let _ = write!(
-        text,
-        "  \"parts\": [\n    {{\"name\": \"lower\", \"normal\": {{\"direction\": {}, \"within\": 45}}}},\n    \
-         {{\"name\": \"upper\", \"normal\": {{\"direction\": {}, \"within\": 45}}}}\n  ],\n",
-        direction(-1.0),
-        direction(1.0)
-    );
+    let mut name = name.to_string();
+    while mesh.boundary(&name).is_some() {
+        name += "-part";
+    }
+    parts.push(PartSpec { name: name.clone(), ..Chosen::spec(way, of, mesh.dimension()) });
+    name
 }
 
-/// Supports, and an obstacle that a force presses.
-fn rest(
-    text: &mut String,
-    mesh: &Mesh,
-    (held, pressed): (&str, &str),
-    of_pressed: &Listed,
-    (axis, sense, young): (usize, f64, f64),
-) {
-    let dimension = mesh.dimension();
+/// A part as it is written in a scene.
+fn written(part: &PartSpec) -> String {
+    let of = part.of.as_ref().map_or_else(String::new, |of| format!("\"of\": {}, ", quoted(of)));
+    let normal = part.normal.as_ref().map_or_else(String::new, |normal| {
+        format!("{{\"direction\": {}, \"within\": {}}}", vector(&normal.direction), number(normal.within))
+    });
+    format!("    {{\"name\": {}, {of}\"normal\": {normal}}}", quoted(&part.name))
+}
+
+/// Parts, supports, and an obstacle that a force presses.
+fn rest(text: &mut String, mesh: &Mesh, roles: &Roles, young: f64) {
+    let (dimension, (axis, sense), (low, high)) = (mesh.dimension(), roles.way, roles.extent);
+    let mut parts = Vec::new();
+    let held = named(&roles.held, "held", mesh, &mut parts);
+    let pressed = named(&roles.pressed, "pressed", mesh, &mut parts);
+    if !parts.is_empty() {
+        let _ = write!(text, "  \"parts\": [\n{}\n  ],\n", parts.iter().map(written).collect::<Vec<_>>().join(",\n"));
+    }
     let components: Vec<String> = ["x", "y", "z"][..dimension].iter().map(|name| format!("\"{name}\": 0")).collect();
-    let at = if sense > 0.0 { of_pressed.high } else { of_pressed.low };
     let size = mesh.size();
     // The position of the point within the plane is free: six digits of the size of the body are enough.
     let rounded = |value: f64| (value / size * 1e6).round() / 1e6 * size;
-    let mut point = [0, 1, 2].map(|other| rounded((of_pressed.low[other] + of_pressed.high[other]) / 2.0));
-    point[axis] = at[axis];
-    let mut normal = [0.0; 3];
-    normal[axis] = sense;
+    let mut point = [0, 1, 2].map(|other| rounded((low[other] + high[other]) / 2.0));
+    point[axis] = if sense > 0.0 { high[axis] } else { low[axis] };
     let across = (0..dimension).filter(|&other| other != axis);
-    let area: f64 = across.map(|other| of_pressed.high[other] - of_pressed.low[other]).product();
+    let area: f64 = across.map(|other| high[other] - low[other]).product();
     // One significant digit is enough.
     let force: f64 = format!("{:.0e}", STRAIN * young * area).parse().unwrap_or(1.0);
+    let mut normal = [0.0; 3];
+    normal[axis] = sense;
     let approach = format!("{}{}", if sense > 0.0 { "+" } else { "-" }, ["x", "y", "z"][axis]);
     let _ = write!(
         text,
         "  \"supports\": [{{\"on\": {{\"boundary\": {}}}, {}}}],\n  // A plate comes along its approach direction, and presses with a \
          force; `gap` instead moves it.\n  \"obstacles\": [\n    {{\"boundary\": {}, \"approach\": \"{approach}\", \"force\": {},\n     \
          \"shape\": {{\"plane\": {{\"point\": {}, \"normal\": {}}}}}}}\n  ]\n}}\n",
-        quoted(held),
+        quoted(&held),
         components.join(", "),
-        quoted(pressed),
+        quoted(&pressed),
         number(force),
         vector(&point[..dimension]),
         vector(&normal[..dimension])

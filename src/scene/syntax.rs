@@ -1,5 +1,6 @@
 //! The messages of the JSON parser in plain English: in the terms of JSON and of the scene instead of those of Rust.
 
+use super::absent::{absent, other_format};
 use super::locate::{key_before, starts_of_entries};
 use crate::error::nearly;
 
@@ -68,6 +69,9 @@ pub(super) struct Fault<'a> {
 impl Fault<'_> {
     /// The path of the fault, and a sentence on what is wrong and what is allowed.
     pub fn in_words(self) -> (String, String) {
+        if let Some(words) = other_format(self.text) {
+            return (self.path, words);
+        }
         let position = format!(" at line {} column {}", self.error.line(), self.error.column());
         let message = self.error.to_string().replace(&position, "");
         if let Some((_, words)) = WHOLE.iter().find(|(parser, _)| *parser == message) {
@@ -82,8 +86,7 @@ impl Fault<'_> {
         }
         let words = self.of_syntax(&message).or_else(|| self.of_length(&message)).unwrap_or_else(|| {
             let message = WORDS.iter().fold(message, |message, (parser, json)| message.replace(parser, json));
-            let meant = meant(&message);
-            of_type(&message, &self.path).unwrap_or(message) + &meant
+            in_place_of_unknown(&message).or_else(|| of_type(&message, &self.path)).unwrap_or(message)
         });
         (self.path, words)
     }
@@ -175,12 +178,16 @@ fn of_type(message: &str, path: &str) -> Option<String> {
     Some(format!("must be {}, but is {found}", example.map_or(expected, |(_, words)| words)))
 }
 
-/// A suggestion for an unknown key or choice; the parser's message names all known ones.
-fn meant(message: &str) -> String {
-    let unknown = ["unknown key `", "unknown choice `"].iter().find_map(|start| message.strip_prefix(start));
-    let Some((name, known)) = unknown.and_then(|unknown| unknown.split_once("`, expected ")) else {
-        return String::new();
-    };
+/// A message on an unknown key or choice: what is not modelled if it is the name of that, or else the parser's message, which names all
+/// known ones, with a suggestion.
+fn in_place_of_unknown(message: &str) -> Option<String> {
+    let (kind, unknown) = ["key", "choice"]
+        .iter()
+        .find_map(|kind| message.strip_prefix(&format!("unknown {kind} `")).map(|unknown| (kind, unknown)))?;
+    let (name, known) = unknown.split_once("`, ")?;
+    if let Some(words) = absent(name) {
+        return Some(format!("the {kind} `{name}` does not exist: {words}"));
+    }
     // Between the quotation marks, every second piece is a name.
-    nearly(name, known.split('`').skip(1).step_by(2))
+    Some(message.to_string() + &nearly(name, known.split('`').skip(1).step_by(2)))
 }

@@ -177,15 +177,9 @@ impl Unknowns {
     /// # Errors
     /// None for a stiffness of the free dofs.
     pub fn stiffness(&self, of_free: SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
-        if self.pressed.is_empty() && self.ties.is_none() {
-            return Ok(of_free);
-        }
+        let Some(ties) = &self.ties else { return Ok(of_free.with_empty(self.pressed.len())) };
         let mut entries = Vec::with_capacity(of_free.lower().entries());
         for (i, j, value) in of_free.lower().triplets() {
-            let Some(ties) = &self.ties else {
-                entries.push((i, j, value));
-                continue;
-            };
             for (p, a) in ties.rows.column(i) {
                 for (q, b) in ties.rows.column(j) {
                     // Entries off the diagonal have a mirror image (j, i).

@@ -36,6 +36,25 @@ pub enum Warning {
         /// The largest modulus over the smallest.
         ratio: f64,
     },
+    /// Young's modulus is far above that of every material in the units of the scene.
+    #[error(
+        "Young's modulus {young:e} is in {force}/{length}2, the units of this scene, {times:.0} times that of diamond: if it is given in Pa, \
+         write {meant:e}; steel has {steel:e} {force}/{length}2"
+    )]
+    UnitOfYoung {
+        /// The modulus, in force per area.
+        young: f64,
+        /// The unit of its numerator, as `N`.
+        force: String,
+        /// The unit whose square divides it, as `mm`.
+        length: String,
+        /// The modulus over that of diamond.
+        times: f64,
+        /// The number of the modulus in the units of the scene if it was given in pascals.
+        meant: f64,
+        /// The modulus of steel in the units of the scene.
+        steel: f64,
+    },
     /// No node of the candidate boundary faces the obstacle.
     #[error(
         "obstacles[{obstacle}] faces no node of its boundary: the body is solved without it; check its place, \
@@ -142,6 +161,7 @@ impl Warning {
         match self {
             Warning::NearlyIncompressible { .. } => "nearly-incompressible",
             Warning::StiffnessJump { .. } => "stiffness-jump",
+            Warning::UnitOfYoung { .. } => "unit-of-young",
             Warning::NoContactRow { .. } => "no-contact-row",
             Warning::HeldCandidates { .. } => "held-candidates",
             Warning::DoubledObstacle { .. } => "doubled-obstacle",

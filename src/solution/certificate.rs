@@ -210,7 +210,7 @@ impl Certificate {
         match self.worst() {
             _ if self.adhesion != 0.0 => ("adhesion", self.adhesion, 0.0),
             _ if self.conditions_hold(tolerance) && !self.has_bound() => {
-                ("energy_error_bound, of which none is known,", f64::INFINITY, tolerance)
+                ("energy_error_bound", f64::INFINITY, tolerance)
             }
             (condition, value) => (condition, value, tolerance),
         }

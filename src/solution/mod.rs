@@ -5,7 +5,9 @@
 mod certificate;
 mod contact_set;
 
-pub(crate) use certificate::{Cancellation, Met};
+pub(crate) use certificate::Cancellation;
+#[cfg(feature = "pictures")]
+pub(crate) use certificate::Met;
 pub use certificate::{Certificate, Goal};
 pub use contact_set::ContactSet;
 
@@ -134,6 +136,9 @@ pub struct Solution {
     /// known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<ProvenSet>,
+    /// The limit that ended the search before its end, in words; `None` if it ended by itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cut_short: Option<String>,
     /// Steps of refinement, if the factor was in single precision.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub refinements: Option<usize>,

@@ -136,10 +136,10 @@ fn a_body_in_space_is_drawn_with_its_contact_in_plan_view() {
     let desk = Desk::new();
     desk.run(&["solve", &example("ball"), "--out", "o"]).ends_with(0);
     let words = words(&desk, "o/contact.svg");
-    for expected in ["contact on `top` seen along z", "obstacle", "x (m)", "y (m)"] {
+    for expected in ["contact on `top` seen along z", "obstacle, rigid, shifted with its contact", "x (m)", "y (m)"] {
         assert!(words.iter().any(|text| text == expected), "`{expected}` is not among {words:?}");
     }
-    assert!(words.iter().any(|text| text.starts_with("displaced body, displacement and gap × ")), "{words:?}");
+    assert!(words.iter().any(|text| text.starts_with("displaced body, displacement × ")), "{words:?}");
     assert!(words.iter().any(|text| text.starts_with("contact pressure p (")), "{words:?}");
     // The obstacle is transparent, so that the body is visible.
     let svg = fs::read_to_string(desk.path("o/contact.svg")).unwrap();

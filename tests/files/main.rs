@@ -10,6 +10,7 @@ mod program;
 mod bad_input;
 mod corpus;
 mod drawn_answers;
+mod drawn_bodies;
 mod faults;
 mod matrix_market;
 mod out_folder;

@@ -12,4 +12,5 @@ mod mprgp;
 mod multigrid;
 mod near_null_files;
 mod obstacle;
+mod pressed;
 mod room;

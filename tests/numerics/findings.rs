@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use crate::exact::case::Case;
 use crate::exact::judge::{Fault, Judge};
 use crate::exact::measure::Errors;
-use crate::exact::solve::{Exact, Outcome};
+use crate::exact::solve::{Answer, Exact, Outcome};
 use crate::program::{Desk, Run};
 use serde_json::{Value, json};
 use signorini::qp::{read_problem, read_vector};
@@ -48,6 +48,12 @@ impl Finding {
         let kept: Value = serde_json::from_str(&fs::read_to_string(folder(name).join("exact.json")).unwrap()).unwrap();
         assert_eq!(exact.json(&case), kept, "{name}");
         Finding { name, problem, outcome: exact.outcome(), case, exact }
+    }
+
+    /// The exact answer of a problem that has one.
+    fn solved(&self) -> &Answer {
+        let Outcome::Solved(answer) = &self.outcome else { panic!("{} has no answer", self.name) };
+        answer
     }
 
     fn judge(&self) -> Judge<'_> {
@@ -90,8 +96,7 @@ impl Finding {
                 continue;
             }
             let solution = ending.unwrap_or_else(|error| panic!("{} by {}: {error}", self.name, method.name()));
-            let Outcome::Solved(answer) = &self.outcome else { panic!("{} has no answer", self.name) };
-            let errors = Errors { case: &self.case, exact: &self.exact, answer };
+            let errors = Errors { case: &self.case, exact: &self.exact, answer: self.solved() };
             let error = errors.whole(&solution.displacement);
             let allowed = if method == Method::Mprgp { 1e-9 } else { ROUNDING.max(error.explained) };
             assert!(error.is_within(allowed), "{} by {}: {:.3e}", self.name, method.name(), error.value());
@@ -225,6 +230,15 @@ fn a_violated_row_that_depends_on_others_is_not_certified() {
     Finding::read("verify_bound_fooled_dependent_row").is_not_verified();
 }
 
+/// Rows in opposed pairs hold dofs without stiffness at others: a repair moves them, and their forces balance nowhere.
+#[test]
+fn rows_on_dofs_without_stiffness_carry_no_force_in_a_bound() {
+    let finding = Finding::read("rows_in_pairs_on_loose_dofs");
+    let [u, lambda] = ["u.mtx", "lambda.mtx"].map(|file| read_vector(&folder(finding.name).join(file)).unwrap());
+    finding.is_faultless(&finding.judge().verified("verify", &finding.problem, &u, &lambda));
+    assert!(finding.problem.certify(&u, &lambda).unwrap().meets(1e-9));
+}
+
 #[test]
 fn a_soft_floating_body_at_the_wrong_place_is_not_certified() {
     Finding::read("verify_soft_floating_body").is_not_verified();
@@ -293,6 +307,28 @@ fn a_body_at_rest_is_certified_by_a_sentence_of_its_own() {
         let run = finding.command(&[]).ends_with(0);
         assert!(run.stdout.contains("certified at rest"), "{}", run.stdout);
     }
+}
+
+/// The forces on the second part are 1e20 times those that bend the first one: put at rest, the second part would make the whole
+/// wrong by 2e-5.
+#[test]
+fn a_part_that_looks_at_rest_is_no_excuse_for_the_error_of_the_whole() {
+    let finding = Finding::read("rest_that_is_none_beside_a_small_motion");
+    finding.is_certified_by(&[Method::Auto, Method::qp(), Method::ActiveSet]);
+    finding.command(&[]).ends_with(0);
+    let (mut u, lambda) = finding.exact.rounded(&finding.case, finding.solved());
+    assert!(finding.problem.certify(&u, &lambda).unwrap().meets(1e-9));
+    u[2..].fill(0.0);
+    let at_rest = finding.problem.certify(&u, &lambda).unwrap();
+    assert!(at_rest.meets(1e-4) && !at_rest.meets(1e-5), "{at_rest:?}");
+}
+
+/// Two copies of a row differ by rounding, and their forces cancel the load on a part to all but 1e-17 of it.
+#[test]
+fn copies_of_a_row_do_not_keep_a_part_from_its_repair() {
+    let finding = Finding::read("copies_of_a_row_under_forces_that_cancel");
+    finding.is_certified_by(&[Method::Auto, Method::qp(), Method::ActiveSet]);
+    finding.command(&[]).ends_with(0);
 }
 
 #[test]

@@ -30,6 +30,22 @@ pub fn cube(cells: usize, element: &str) -> Value {
     })
 }
 
+/// The scene with a force that presses its obstacle, instead of a gap.
+pub fn pressed(mut scene: Value, force: f64) -> Value {
+    scene["gap"] = json!(0);
+    scene["obstacles"][0]["force"] = json!(force);
+    scene
+}
+
+/// A block of `cells` cells that contact alone holds along y: pressed from above, on a plane below.
+pub fn pressed_on_a_plane(cells: [usize; 2]) -> Value {
+    let mut scene = pressed(block(cells, "q4"), 20.0);
+    scene["supports"] = json!([{"on": {"boundary": "left"}, "x": 0}]);
+    scene["obstacles"].as_array_mut().unwrap().push(json!({"boundary": "bottom", "approach": "-y",
+        "shape": {"plane": {"point": [0, 0], "normal": [0, -1]}}}));
+    scene
+}
+
 /// A thin strip of stretched cells.
 pub fn strip(cells: usize) -> Value {
     let mut strip = block([cells, 20], "q4");

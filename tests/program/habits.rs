@@ -135,16 +135,15 @@ fn json_and_text_of_an_answer_show_the_same_estimates_of_both_methods() {
     assert!(shown.iter().all(|line| line.chars().count() <= 100), "{shown:?}");
 }
 
-/// An estimated error belongs to one answer, whose reason is printed; a guaranteed error belongs to many answers, and a
-/// warning says so.
+/// The reason is that of the answer on the last mesh.
 #[test]
-fn an_estimated_total_error_is_explained_and_a_guaranteed_one_warns() {
+fn an_estimated_and_a_guaranteed_total_error_are_explained() {
     let desk = Desk::new();
-    let estimated = desk.run(&["solve", &example("ball"), "--total-error", "0.5", "--explain"]).ends_with(0);
-    assert!(estimated.stdout.contains("\n  why "), "{}", estimated.stdout);
     let plane = concat!(env!("CARGO_MANIFEST_DIR"), "/tools/guarantee/coarse.json");
-    let guaranteed = desk.run(&["solve", plane, "--total-error", "0.3", "--explain"]).ends_with(0);
-    assert!(guaranteed.stderr.contains("--explain has no effect with a guaranteed error"), "{}", guaranteed.stderr);
+    for (scene, error) in [(example("ball").as_str(), "0.5"), (plane, "0.3")] {
+        let run = desk.run(&["solve", scene, "--total-error", error, "--explain"]).ends_with(0);
+        assert!(run.stdout.contains("\n  why "), "{}", run.stdout);
+    }
 }
 
 #[test]
@@ -471,4 +470,83 @@ fn a_terminal_shows_progress_and_the_time_left_unless_quiet_is_given() {
     let quiet = on_terminal(&desk, &["sweep", "block.json", "--gaps", &gaps, "--format", "json", "--quiet"], "");
     assert!(quiet.contains("\"points\"") && !quiet.contains('\x1b') && !quiet.contains(" % gap"), "{}", &quiet[..500]);
     desk.run(&["sweep", "block.json", "--gaps", "0:0:1", "--quiet", "--progress"]).ends_with(2);
+}
+
+/// Names of other programs for what is not modelled, in any object of a scene, with the words of the answer.
+const ABSENT: [(&str, &str); 8] = [
+    ("friction", "friction is not modelled"),
+    ("mu", "friction is not modelled"),
+    ("Coulomb", "friction is not modelled"),
+    ("contact_stiffness", "a contact stiffness is not needed"),
+    ("penalty stiffness", "a contact stiffness is not needed"),
+    ("large-sliding", "large sliding is not modelled"),
+    ("nlgeom", "large displacements are not modelled"),
+    ("yield-stress", "plasticity and hyperelasticity are not modelled"),
+];
+
+#[test]
+fn what_is_not_modelled_is_answered_by_name_in_every_object_of_a_scene() {
+    let desk = Desk::new();
+    for place in [
+        "",
+        "/body",
+        "/body/rectangle",
+        "/material",
+        "/supports/0",
+        "/loads/0",
+        "/obstacles/0",
+        "/obstacles/0/shape",
+        "/obstacles/0/shape/parabola",
+    ] {
+        for (name, words) in ABSENT {
+            let mut scene = scene();
+            scene["loads"] = json!([{"body-force": [0, 0]}]);
+            let object = scene.pointer_mut(place).unwrap().as_object_mut().unwrap();
+            // An object with a single key takes no second one.
+            if ["/body", "/loads/0", "/obstacles/0/shape"].contains(&place) {
+                object.clear();
+            }
+            object.insert(name.to_string(), json!(0.3));
+            desk.write("scene.json", scene.to_string());
+            let run = desk.run(&["solve", "scene.json"]);
+            let found = run.fails_with(
+                1,
+                &[&format!("`{name}` does not exist: {words}"), "take CalculiX"]
+                    .map(|phrase| if name.contains("stiffness") { words } else { phrase }),
+            );
+            assert!(!found.stderr.contains("expected one of"), "{place}: {}", found.stderr);
+        }
+    }
+}
+
+#[test]
+fn an_option_for_what_is_not_modelled_is_answered_by_name() {
+    let desk = Desk::new();
+    for (option, words) in [
+        ("--friction", ABSENT[0].1),
+        ("--mu=0.3", ABSENT[1].1),
+        ("--contact-stiffness", ABSENT[3].1),
+        ("--nlgeom", ABSENT[6].1),
+    ] {
+        let run = desk.run(&["solve", "scene.json", option]).ends_with(2);
+        assert!(run.stderr.contains(words) && !run.stderr.contains("similar"), "{}", run.stderr);
+    }
+}
+
+#[test]
+fn a_deck_or_a_mesh_in_place_of_a_scene_is_recognised() {
+    let desk = Desk::new();
+    for deck in
+        ["*HEADING\nTwo cubes\n*NODE\n1, 0, 0, 0\n", "** a comment\n**\n*Node, NSET=all\n", "\n*NODE\n1, 0, 0, 0\n"]
+    {
+        desk.write("deck.inp", deck);
+        desk.run(&["solve", "deck.inp"])
+            .fails_with(1, &["deck.inp", "an input deck of Abaqus or CalculiX", "signorini new"]);
+    }
+    desk.write("part.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
+    desk.run(&["solve", "part.msh"]).fails_with(1, &["part.msh", "a mesh of Gmsh", "signorini new"]);
+    // Text that is neither keeps the message of the parser.
+    desk.write("other.json", "*");
+    let run = desk.run(&["solve", "other.json"]).fails_with(1, &["expected a value of JSON"]);
+    assert!(!run.stderr.contains("deck of"), "{}", run.stderr);
 }

@@ -5,7 +5,7 @@ use std::fs;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use crate::blocks::{block, cube, stiff_in_volume, strip};
+use crate::blocks::{block, cube, pressed, pressed_on_a_plane, stiff_in_volume, strip};
 use crate::program::Desk;
 use serde_json::Value;
 use signorini::internals::bytes::{START, of_problem};
@@ -42,6 +42,9 @@ fn the_peak_of_memory_stays_below_the_limit_and_runs_are_refused_or_certified() 
         cube(9, "hex8"),
         strip(400),
         stiff_in_volume(400),
+        pressed(block([80, 80], "q4"), 20.0),
+        pressed(cube(9, "hex8"), 2.0),
+        pressed_on_a_plane([60, 60]),
     ];
     let (mut solved, mut refused) = (0, 0);
     for (number, scene) in scenes.iter().enumerate() {

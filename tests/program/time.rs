@@ -4,10 +4,10 @@
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use crate::blocks::{block, strip};
+use crate::blocks::{block, cube, pressed, pressed_on_a_plane, strip};
 use crate::program::Desk;
 use serde_json::{Value, json};
-use signorini::{Error, Method, Scene, Settings, Watch, solve};
+use signorini::{ContactProblem, Error, Method, Scene, Settings, Watch, solve};
 
 #[test]
 fn time_of_failed_attempts_is_included_and_the_attempts_are_named() {
@@ -59,14 +59,62 @@ fn no_method_begins_a_step_for_which_its_time_does_not_suffice() {
             settings.watch.learn(1e6);
             settings.time = Some(Duration::from_secs(60));
             match solve(model.problem(), &settings) {
-                Err(Error::NotCertified { solution, value, tolerance, .. }) => {
+                Err(Error::NotCertified { solution, .. }) => {
                     assert_eq!((solution.method.as_str(), solution.iterations), ("none", 0));
-                    assert!(value > tolerance && tolerance > 30.0, "{value} of {tolerance}");
+                    let cut = solution.cut_short.unwrap();
+                    assert!(cut.starts_with("the time does not suffice"), "{cut}");
                 }
                 other => panic!("{method:?}: {:?}", other.map(|found| found.method)),
             }
         }
     }
+}
+
+/// The steps of a solve, each with its first iteration, in order.
+fn steps(problem: &ContactProblem) -> Vec<String> {
+    let steps = Arc::new(Mutex::new(Vec::new()));
+    let seen = Arc::clone(&steps);
+    let watch = Watch::observed(move |watch| seen.lock().unwrap().push(watch.activity().to_string()));
+    solve(problem, &Settings::default().watched(&watch)).unwrap();
+    let mut steps = steps.lock().unwrap().clone();
+    steps.dedup();
+    steps
+}
+
+/// In each step the time runs out once: whatever is left undone by then, the error says that the time ended.
+#[test]
+fn wherever_the_time_ends_the_error_says_so_and_claims_nothing() {
+    let scenes = [
+        pressed(cube(8, "hex8"), 2.0),
+        pressed(block([30, 30], "q4"), 20.0),
+        pressed_on_a_plane([30, 30]),
+        pressed(strip(60), 1e-3),
+        block([30, 30], "q4"),
+    ];
+    let (mut cut, time) = (0, Duration::from_millis(400));
+    for scene in scenes {
+        let problem = Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap().problem().clone();
+        for step in steps(&problem) {
+            let late = step.clone();
+            let watch = Watch::observed(move |watch| {
+                if watch.activity().to_string() == late {
+                    std::thread::sleep(time);
+                }
+            });
+            let mut settings = Settings::default().watched(&watch);
+            settings.time = Some(time);
+            let Err(error) = solve(&problem, &settings) else { continue };
+            let said = error.to_string();
+            assert!(said.starts_with("not certified: the time "), "{step}: {said}");
+            for word in ["convex", "slender", "factorisation (s)", " inf", "NaN", "rechecked"] {
+                assert!(!said.contains(word), "{step}: {said}");
+            }
+            let best = error.into_best().unwrap();
+            assert!(best.cut_short.is_some() && best.reason.is_none_or(|reason| !reason.contains("convex")), "{step}");
+            cut += 1;
+        }
+    }
+    assert!(cut > 20, "{cut}");
 }
 
 /// A flat strip of Q8 cells with all rows closed: the bound on its boundary takes longer than all other steps.

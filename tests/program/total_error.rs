@@ -345,9 +345,11 @@ fn the_output_folder_has_fields_meshes_and_pictures() {
     let run = desk.run(&["solve", "scene.json", "--total-error", "0.1", "--out", "out"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(run.stdout.lines().all(|line| line.chars().count() <= 100), "{}", run.stdout);
-    for name in
-        ["answer.vtu", "mesh.msh", "meshes.csv", "meshes.png", "total-error.svg", "total-error.txt", "report.json"]
-    {
+    let of_bound =
+        ["answer.vtu", "mesh.msh", "meshes.csv", "meshes.png", "total-error.svg", "total-error.txt", "report.json"];
+    // The files of every answer.
+    let of_answer = ["u.mtx", "lambda.mtx", "contact.csv", "solution.vtu", "contact.svg", "report.html"];
+    for name in of_bound.iter().chain(&of_answer) {
         assert!(desk.path("out").join(name).exists(), "{name}");
     }
     let table = std::fs::read_to_string(desk.path("out/meshes.csv")).unwrap();
@@ -447,4 +449,61 @@ fn a_circle_between_the_nodes_of_the_first_mesh_is_found_and_not_warned_of() {
     assert_eq!(code, 0, "{message}");
     assert!(report["contact_force"].as_f64().unwrap() > 1e3, "{report}");
     assert_eq!(report["warnings"], json!([]));
+}
+
+/// Both searches give an ordinary answer on the last mesh, beside the bound or the estimate: the same numbers as `solve` on that mesh.
+#[test]
+fn a_total_error_comes_with_the_answer_on_the_last_mesh() {
+    // The mesh in the file has coordinates of 16 digits, and another order of the unknowns.
+    const ROUNDING: f64 = 1e-9;
+    let mut estimated = classical(0.3);
+    estimated["model"] = json!("axisymmetric");
+    estimated["body"]["rectangle"]["element"] = json!("t3");
+    for (scene, words) in [(classical(0.3), "guaranteed at most"), (estimated, "estimated")] {
+        let desk = Desk::new();
+        desk.write("scene.json", scene.to_string());
+        let found = desk.run(&["solve", "scene.json", "--total-error", "0.1", "--out", "out", "--format", "json"]);
+        let found = found.ends_with(0).json();
+        let mut again = scene.clone();
+        again["body"] = json!({"gmsh": {"file": "out/mesh.msh"}});
+        desk.write("again.json", again.to_string());
+        let again = desk.run(&["solve", "again.json", "--format", "json"]).ends_with(0).json();
+        assert_eq!(found["model"]["dofs"], again["model"]["dofs"]);
+        let answer = &found["answer"];
+        for pointer in [
+            "/contact/force",
+            "/contact/pressure_max",
+            "/contact/estimate/width",
+            "/resultants/0/force/1",
+            "/resultants/1/force/1",
+        ] {
+            let [own, other] =
+                [answer, &again].map(|report| report.pointer(pointer).and_then(Value::as_f64).unwrap_or(f64::NAN));
+            assert!((own / other - 1.0).abs() < ROUNDING, "{pointer}: {own} {other}");
+        }
+        assert!(answer["contact"]["pressure_max"].as_f64().unwrap() > 0.0);
+        let text = std::fs::read_to_string(desk.path("out/total-error.txt")).unwrap();
+        for phrase in [words, "The answer on the last mesh", "peak pressure", "estimated width", "supports[0]"] {
+            assert!(text.contains(phrase), "{phrase}: {text}");
+        }
+        let page = std::fs::read_to_string(desk.path("out/report.html")).unwrap();
+        for key in ["\"levels\":", "\"states\":", "\"answer\":", "\"total_error\":"] {
+            assert!(page.contains(key), "the page has no {key}");
+        }
+    }
+}
+
+/// The answer of `solve` on the last mesh has a bound of its own: that of the displacement plus the distance from it. The exact column is
+/// quadratic, so that both are exact on the first mesh.
+#[test]
+fn the_answer_on_the_last_mesh_has_a_guaranteed_error_of_its_own() {
+    let (_, report, _) = solved(&column("plane-strain"), &["--total-error", "1e-6"]);
+    assert!(report["last_mesh"]["total_error"]["bound"].as_f64().unwrap() < 1e-6, "{report}");
+    let (_, report, _) = solved(&classical(0.3), &["--total-error", "0.05"]);
+    let [own, of_bound] =
+        ["/last_mesh/total_error/bound", "/total_error/bound"].map(|at| report.pointer(at).unwrap().as_f64().unwrap());
+    assert!(
+        report["last_mesh"]["total_error"]["guaranteed"] == true && own > of_bound && own < 2.0 * of_bound,
+        "{own} {of_bound}"
+    );
 }

@@ -383,3 +383,43 @@ fn a_problem_without_closed_rows_is_warned_of() {
     let message = warned(&(report, text), "nothing-touches");
     assert_eq!(message, "no row is closed; the smallest remaining gap is 9 at row 0");
 }
+
+/// 210e9 Pa are 210e3 N/mm2; twice the modulus of diamond, 1.2e6 N/mm2, is asked about.
+#[test]
+fn a_modulus_in_pascals_beside_millimetres_is_asked_about() {
+    let mut scene = scene();
+    scene["loads"] = json!([]);
+    let stderr = |scene: &Value| {
+        let desk = Desk::new();
+        desk.write("scene.json", scene.to_string());
+        desk.run(&["solve", "scene.json"]).ends_with(0).stderr
+    };
+    for (length, force, young, meant) in [
+        (
+            "mm",
+            "N",
+            210e9,
+            Some(
+                "2.1e11 is in N/mm2, the units of this scene, 175000 times that of diamond: if it is given in Pa, write 2.1e5;",
+            ),
+        ),
+        ("mm", "N", 2.5e6, Some("write 2.5e0")),
+        ("mm", "N", 2.3e6, None),
+        ("mm", "N", 210e3, None),
+        (
+            "mm",
+            "kN",
+            210e3,
+            Some("175 times that of diamond: if it is given in Pa, write 2.1e-4; steel has 2.1e2 kN/mm2"),
+        ),
+        ("mm", "kN", 210.0, None),
+        ("m", "N", 210e9, None),
+        ("inch", "lbf", 210e9, None),
+    ] {
+        scene["units"] = json!({"length": length, "force": force});
+        scene["material"]["young"] = json!(young);
+        let said = stderr(&scene);
+        assert_eq!(said.contains("diamond"), meant.is_some(), "{length} {force} {young}: {said}");
+        assert!(meant.is_none_or(|words| said.starts_with("warning: ") && said.contains(words)), "{said}");
+    }
+}

@@ -18,6 +18,7 @@ mod triangles;
 mod concave_obstacles;
 mod contact_scenes;
 mod dimensions;
+mod every_shape;
 mod inclined_frames;
 mod inclined_supports;
 mod loads;

@@ -311,6 +311,38 @@ fn surfaces_of_different_meshes_are_refused_for_either_finer_side() {
     solved(&wide);
 }
 
+/// The lower block has its nodes at thirds written in seven digits, as an export in single precision has them; with three digits its
+/// nodes are a thousandth of a facet aside.
+#[test]
+fn pairs_with_coordinates_of_seven_digits_have_the_answer_of_exact_pairs() {
+    // The strain of a body changes by about the share by which a cell does: 1e-7 times the distance from the origin.
+    const SEVEN_DIGITS: f64 = 1e-6;
+    for (model, axes) in [("plane-strain", &["x"][..]), ("space", &["x", "y"])] {
+        for rule in ["approach", "closest-point"] {
+            let rounded = |third: f64, far: f64| {
+                let mut scene = blocks(model, 3, 3);
+                scene["obstacles"][0]["rule"] = json!(rule);
+                let shape = if model == "space" { "box" } else { "rectangle" };
+                for axis in axes {
+                    scene["body"][shape][axis] =
+                        json!({"points": [far, far + 1.0 / 3.0, far + 1.0], "divisions": [1, 2]});
+                    scene["further-bodies"][0]["body"][shape][axis] =
+                        json!({"points": [far, far + third, far + 1.0], "divisions": [1, 2]});
+                }
+                scene
+            };
+            let force = |scene: &Value| -> f64 { solved(scene).1.multiplier.iter().sum() };
+            let exact = force(&rounded(1.0 / 3.0, 0.0));
+            for (third, far) in [(0.3333333, 0.0), (0.33333, 100.0)] {
+                let off = (force(&rounded(third, far)) / exact - 1.0).abs();
+                assert!(off < SEVEN_DIGITS * (1.0 + far), "{model} {rule}: {off:e}");
+            }
+            let built = Scene::from_json(&rounded(0.332, 0.0).to_string(), "scene").unwrap().build();
+            assert!(matches!(built, Err(Error::Refused { code: "unpaired-nodes", .. })), "{model} {rule}");
+        }
+    }
+}
+
 #[test]
 fn further_bodies_that_do_not_match_are_refused() {
     let discs = || pair_of_discs([1.0, 1.0], [0.3, 0.3], 0.01, "q4");

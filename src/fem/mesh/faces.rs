@@ -22,6 +22,16 @@ fn key(nodes: impl Iterator<Item = usize>) -> Key {
     key
 }
 
+/// The first element of a piece, with shorter ways to it.
+#[cfg(feature = "cli")]
+fn root_of(root: &mut [usize], mut element: usize) -> usize {
+    while root[element] != element {
+        root[element] = root[root[element]];
+        element = root[element];
+    }
+    element
+}
+
 impl Mesh {
     /// The element and its local face for each facet of a boundary: the first one if the boundary lies between two elements, `None` if
     /// the facet is not a face of any element.
@@ -69,6 +79,22 @@ impl Mesh {
         let outer = elements.flat_map(of_element).filter(|face| count.get(&key(face.clone())) == Some(&1));
         let kind = self.kind().facet();
         Boundary::new("surface", kind, chained(kind, outer.flatten().collect()))
+    }
+
+    /// The piece of each element, by the index of its first element: elements of one piece are joined by common faces.
+    #[cfg(feature = "cli")]
+    pub(crate) fn pieces(&self) -> Vec<usize> {
+        let faces = self.kind().reference().faces;
+        let mut first_at: HashMap<Key, usize> = HashMap::new();
+        let mut root: Vec<usize> = (0..self.element_count()).collect();
+        for (element, nodes) in self.elements().enumerate() {
+            for face in faces {
+                let first = *first_at.entry(key(face.iter().map(|&local| nodes[local]))).or_insert(element);
+                let [one, other] = [first, element].map(|element| root_of(&mut root, element));
+                root[one.max(other)] = one.min(other);
+            }
+        }
+        (0..root.len()).map(|element| root_of(&mut root, element)).collect()
     }
 
     pub(super) fn check_facets(&self) -> Result<(), Error> {

@@ -3,10 +3,17 @@
 use serde::Serialize;
 
 use super::packed::{Packed, Packer};
+use crate::output::singular::singular;
 use crate::scene::Model;
 
 /// Half of the height of the strip that stands for a bar, over its length.
 const HALF_STRIP: f64 = 0.04;
+
+/// The inside of a mesh with more nodes than this is left out of a page.
+const MOST_INSIDE: usize = 60_000;
+
+/// Six tetrahedra around a diagonal fill a brick.
+const BRICK: [[usize; 4]; 6] = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
 
 /// The cells that are drawn, and the nodes at their vertices.
 pub(super) struct Shape {
@@ -21,6 +28,8 @@ pub(super) struct Shape {
     mids: Vec<[usize; 2]>,
     /// A vertex of each node; none inside a body in space.
     pub vertex_of: Vec<Option<usize>>,
+    /// The vertices of tetrahedra that fill the body, for sections; empty if they are not known.
+    solids: Vec<usize>,
 }
 
 /// The same as it stands in a page.
@@ -35,6 +44,14 @@ pub(super) struct Body {
     cells: Packed,
     corners: usize,
     mids: Vec<[usize; 2]>,
+    /// Number of vertices on the surface; those inside follow.
+    surface: usize,
+    solids: Packed,
+    /// The names of the bodies, and the body of each vertex.
+    regions: Vec<String>,
+    region_of: Packed,
+    /// 1 for each vertex whose stress does not set the range of colours.
+    singular: Packed,
 }
 
 impl Shape {
@@ -47,10 +64,28 @@ impl Shape {
                 let (corners, mids) = (mesh.kind().corners(), mesh.kind().reference().mid_sides.to_vec());
                 let cells = mesh.elements().flatten().copied().collect();
                 let vertex_of = nodes.iter().copied().map(Some).collect();
-                Shape { places: mesh.nodes().to_vec(), nodes, cells, corners, mids, vertex_of }
+                Shape { places: mesh.nodes().to_vec(), nodes, cells, corners, mids, vertex_of, solids: Vec::new() }
             }
             _ => surface(model),
         }
+    }
+
+    /// The same with the inside of a body in space, if its mesh is not too large, so that a page can show sections.
+    pub fn with_inside(model: &Model) -> Self {
+        let (mesh, mut shape) = (model.mesh(), Shape::of(model));
+        if mesh.dimension() != 3 || mesh.nodes().len() > MOST_INSIDE {
+            return shape;
+        }
+        let mut vertices = shape.vertex_of.clone();
+        for (node, vertex) in vertices.iter_mut().enumerate().filter(|(_, vertex)| vertex.is_none()) {
+            *vertex = Some(shape.nodes.len());
+            shape.nodes.push(node);
+            shape.places.push(mesh.nodes()[node]);
+        }
+        let corners: &[[usize; 4]] = if mesh.kind().corners() == 8 { &BRICK } else { &[[0, 1, 2, 3]] };
+        let filling = mesh.elements().flat_map(|nodes| corners.iter().flatten().map(|&corner| nodes[corner]));
+        shape.solids = filling.filter_map(|node| vertices[node]).collect();
+        shape
     }
 
     /// Values of the vertices from nodal ones with `stride` components a node.
@@ -62,6 +97,9 @@ impl Shape {
     pub fn packed(&self, model: &Model, packer: &mut Packer) -> Body {
         let dimension = model.mesh().dimension();
         let shown = dimension.max(2);
+        let (regions, singular) = (model.body().regions(), singular(model));
+        let region_of =
+            |node: &usize| regions.iter().position(|region| region.nodes().contains(node)).unwrap_or(0) as u8;
         let places: Vec<f64> = self.places.iter().flat_map(|at| at[..shown].iter().copied()).collect();
         Body {
             dimension,
@@ -71,6 +109,11 @@ impl Shape {
             cells: packer.whole(&self.cells, self.corners + self.mids.len()),
             corners: self.corners,
             mids: self.mids.clone(),
+            surface: self.vertex_of.iter().flatten().max().map_or(0, |last| last + 1),
+            solids: packer.whole(&self.solids, 4),
+            regions: regions.iter().map(|region| region.name().to_string()).collect(),
+            singular: packer.bytes(self.nodes.iter().map(|&node| u8::from(singular[node]))),
+            region_of: packer.bytes(self.nodes.iter().map(region_of)),
         }
     }
 }
@@ -83,7 +126,7 @@ fn strip(model: &Model) -> Shape {
     let places = mesh.nodes().iter().flat_map(|at| [[at[0], -half, 0.0], [at[0], half, 0.0]]).collect();
     let cells = mesh.elements().flat_map(|ends| [2 * ends[0], 2 * ends[1], 2 * ends[1] + 1, 2 * ends[0] + 1]).collect();
     let vertex_of = (0..mesh.nodes().len()).map(|node| Some(2 * node)).collect();
-    Shape { nodes, places, cells, corners: 4, mids: Vec::new(), vertex_of }
+    Shape { nodes, places, cells, corners: 4, mids: Vec::new(), vertex_of, solids: Vec::new() }
 }
 
 /// The surface of bodies in space.
@@ -102,5 +145,6 @@ fn surface(model: &Model) -> Shape {
         mids: reference.mid_sides.to_vec(),
         nodes,
         vertex_of,
+        solids: Vec::new(),
     }
 }

@@ -34,15 +34,19 @@ const SCRIPTS: [&str; 15] = [
     include_str!("page.js"),
 ];
 
-/// Writes the page into `folder`, with a picture for browsers that cannot draw.
+/// Writes the page into `folder`, with pictures for browsers that cannot draw.
 ///
 /// # Errors
 /// [`Error::File`]; [`Error::Numerical`] if the picture or the data cannot be encoded.
-pub(super) fn write_page(folder: &Path, page: &Page, packer: Packer, still: Option<&Drawing>) -> Result<(), Error> {
-    let still = match still {
-        Some(drawing) => image(drawing, page.title())?,
-        None => String::new(),
-    };
+pub(super) fn write_page<'a>(
+    folder: &Path,
+    page: &Page,
+    packer: Packer,
+    stills: impl IntoIterator<Item = &'a Drawing>,
+) -> Result<(), Error> {
+    let stills: Vec<String> =
+        stills.into_iter().map(|drawing| image(drawing, page.title())).collect::<Result<_, _>>()?;
+    let still = format!("<figure id=\"still\">{}</figure>", stills.concat());
     let (data, arrays) = (safe_json(&compact_json(page)?), packer.finished()?);
     let html = filled(SHELL, |name| match name {
         "title" => escape(page.title()),
@@ -58,7 +62,7 @@ pub(super) fn write_page(folder: &Path, page: &Page, packer: Packer, still: Opti
 
 fn image(drawing: &Drawing, title: &str) -> Result<String, Error> {
     let png = STANDARD.encode(drawing.png(1.0)?);
-    Ok(format!("<img id=\"still\" alt=\"{}\" src=\"data:image/png;base64,{png}\">", escape(title)))
+    Ok(format!("<img alt=\"{}\" src=\"data:image/png;base64,{png}\">", escape(title)))
 }
 
 /// The shell with each `{{name}}` replaced by its content; names inside the content are not replaced.

@@ -26,6 +26,8 @@ pub(super) struct MotionShown {
     /// Eight columns, as in `history.csv`.
     history: Packed,
     times: Vec<f64>,
+    /// The kept frame with the largest contact force, at which the page opens; the first without contact.
+    opens: usize,
     /// The closed rows of each kept frame, with their pressures.
     closed: ClosedShown,
 }
@@ -43,14 +45,20 @@ impl MotionShown {
     ) -> Result<(Self, Vec<State>), Error> {
         let most = MOST_BYTES / State::bytes(shape, dimension).max(1);
         let (mut closed, mut states) = (Closed::default(), Vec::new());
+        let (mut opens, mut largest) = (0, 0.0);
         for frame in kept(frames.times.len(), most) {
             let answer = (frames.answer)(frame)?;
             closed.add(answer.contact_set(), &[answer.pressure()]);
+            let force = -answer.multiplier().iter().sum::<f64>();
+            if force > largest {
+                (opens, largest) = (states.len(), force);
+            }
             states.push(State::of(&answer, frame as f64, shape, packer)?);
         }
         let shown = MotionShown {
             history: packer.exact(&frames.history.concat(), 8),
             times: frames.times.to_vec(),
+            opens,
             closed: closed.packed(packer),
         };
         Ok((shown, states))

@@ -1,31 +1,25 @@
 // Drawings over a body: obstacles in the plane, supports, loads, forces, gaps, a scale.
 
 /** The outline of an obstacle in the plane, filled on its own side. */
-function paintOutline(view, brush, { outline, approach }, shift, dashed) {
+function paintOutline(view, brush, { outline, approach }, [x, y] = [0, 0]) {
   const at = view.measure(),
     points = [];
-  for (let i = 0; i < outline.length; i += 2) {
-    points.push(view.place([outline[i] + shift * approach[0], outline[i + 1] + shift * approach[1], 0], at));
-  }
+  for (let i = 0; i < outline.length; i += 2) points.push(view.place([outline[i] + x, outline[i + 1] + y, 0], at));
   const closed =
     points.length > 3 && Math.hypot(points[0][0] - points.at(-1)[0], points[0][1] - points.at(-1)[1]) < 1e-6;
   const far = 4 * (at.width + at.height),
     away = [far * approach[0], -far * approach[1]];
   const trace = list => list.forEach(([x, y], i) => (i ? brush.lineTo(x, y) : brush.moveTo(x, y)));
-  if (!dashed) {
-    brush.fillStyle = css(channels(view.ink("solid")), 0.4);
-    brush.beginPath();
-    trace(closed ? points : [...points, ...points.map(([x, y]) => [x + away[0], y + away[1]]).reverse()]);
-    brush.closePath();
-    brush.fill();
-  }
+  brush.fillStyle = css(channels(view.ink("solid")), 0.4);
+  brush.beginPath();
+  trace(closed ? points : [...points, ...points.map(([x, y]) => [x + away[0], y + away[1]]).reverse()]);
+  brush.closePath();
+  brush.fill();
   brush.strokeStyle = view.ink("edge");
   brush.lineWidth = 1.8;
-  brush.setLineDash(dashed ? [7, 4] : []);
   brush.beginPath();
   trace(points);
   brush.stroke();
-  brush.setLineDash([]);
 }
 
 /** An arrow from one place of the screen to another. */
@@ -245,7 +239,7 @@ function paintMarks(view, brush, vertices, kinds) {
     const [x, y] = view.place(view.vertex(vertex), at),
       closed = kinds[i] === 1 || kinds[i] === 3,
       undecided = kinds[i] >= 2,
-      size = closed ? 4.5 : 3.4;
+      size = (closed ? 0.5 : 0.38) * view.mark;
     brush.fillStyle = closed ? view.ink(undecided ? "undecided" : "closed") : view.ink("paper");
     brush.strokeStyle = view.ink(undecided ? "undecided" : closed ? "paper" : "open");
     brush.lineWidth = 1.1;

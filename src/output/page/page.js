@@ -2,13 +2,13 @@
 
 function answerSection(page, data, shape, summary) {
   const own = section(page, "The answer", "answer");
+  contactList(own, summary, data);
   const panel = new Panel(own, data, shape, {
     label: "The displaced body, coloured by a field",
     frames: [answerFrame(data)],
     resultants: summary.resultants,
   });
   panel.show(answerFrame(data));
-  contactList(own, summary, data);
   profileSection(page, data, shape)(answerFrame(data));
   window.signorini.answer = panel;
 }
@@ -20,28 +20,28 @@ async function assemble() {
   const began = performance.now(),
     page = document.getElementById("page"),
     data = await unpackedData();
-  const summary = data.report?.methods ? data.report.methods[0] : data.report,
+  const summary = data.report?.methods?.[0] ?? data.report?.answer ?? data.report,
     notes = data.body ? [EXACTNESS] : [];
   // Black is invisible on a dark page.
   data.colours.lines = data.colours.lines.map(colour => (colour === "#000000" ? "var(--ink)" : colour));
   window.signorini = { data };
   document.getElementById("loading").remove();
   const still = document.getElementById("still");
-  still?.remove();
+  still.remove();
   headline(page, data, summary);
   if (data.body) {
-    const shape = { ...shapeOf(data.body), eye: eyeOf(data.question) };
-    questionSection(page, data, shape, summary);
+    const shape = { ...shapeOf(data.body), eye: data.question.eye };
     if (data.sweep) sweepSection(page, data, shape, notes);
     else if (data.motion) motionSection(page, data, shape, notes);
-    else if (data.report.levels && !data.states) levelsSection(page, data, still);
-    else answerSection(page, data, shape, summary);
+    else if (data.states) answerSection(page, data, shape, summary);
+    if (data.report?.levels) levelsSection(page, data, still);
+    questionSection(page, data, shape, summary);
     certificateSection(page, data);
     comparisonSection(page, data);
     resultantSection(page, summary, data);
     segmentSection(page, summary, data);
     searchSection(page, data, shape);
-  } else if (data.report?.points) tradeoffSection(page, data);
+  } else if (data.report?.points) tradeoffSection(page, data, still);
   else {
     contactList(section(page, "The answer", "answer"), summary, data);
     certificateSection(page, data);

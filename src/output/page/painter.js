@@ -21,15 +21,17 @@ class Painter {
   draw(camera, look) {
     const { brush, canvas } = this;
     brush.clearRect(0, 0, canvas.width, canvas.height);
-    this.faces("body", camera, look.magnification, [0, 0, 0], look, share =>
-      look.coloured
-        ? css(colourAt(this.table, (share - look.range[0]) / (look.range[1] - look.range[0])))
-        : css(look.body),
-    );
-    if (look.mesh && !look.lit) this.lines(camera, look);
+    this.faces("body", camera, look.magnification, [0, 0, 0], look, share => this.colour(share, look));
+    this.faces("cap", camera, look.magnification, [0, 0, 0], { ...look, plane: null }, share => this.colour(share, look));
+    if (look.mesh && !look.lit) this.lines("mesh", camera, look.magnification, look);
+    if (look.rest) this.lines("rest", camera, 0, look);
     for (const { name, colour, shift } of look.patches)
-      this.faces(name, camera, 0, shift, look, () => css(colour, colour[3]));
+      this.faces(name, camera, 0, shift, { ...look, plane: null }, () => css(colour, colour[3]));
     this.points(camera, look);
+  }
+
+  colour(share, { coloured, range, body }) {
+    return css(coloured ? colourAt(this.table, (share - range[0]) / (range[1] - range[0])) : body);
   }
 
   placed(part, camera, magnification, shift) {
@@ -63,6 +65,7 @@ class Painter {
       { brush } = this;
     for (let turn = 0; turn < count; turn += every) {
       const corners = [0, 1, 2].map(k => order[3 * turns[turn] + k]);
+      if (look.plane && corners.some(c => beyond(part.places, c, look.plane))) continue;
       const share = values ? corners.reduce((sum, c) => sum + values[c] / 3, 0) : 0;
       brush.fillStyle = brush.strokeStyle = colour(share);
       brush.beginPath();
@@ -73,10 +76,10 @@ class Painter {
     }
   }
 
-  lines(camera, look) {
-    const part = this.parts.mesh;
+  lines(name, camera, magnification, look) {
+    const part = this.parts[name];
     if (!part || !part.order) return;
-    const at = this.placed(part, camera, look.magnification, [0, 0, 0]),
+    const at = this.placed(part, camera, magnification, [0, 0, 0]),
       { brush } = this;
     brush.strokeStyle = css(look.meshColour, 0.35);
     brush.beginPath();
@@ -94,6 +97,7 @@ class Painter {
       { brush } = this,
       size = look.markSize;
     part.values.forEach((kind, i) => {
+      if (beyond(part.places, i, look.plane)) return;
       const { closed, open, undecided, paper, held, rigid } = look.marks,
         solid = kind === 4 ? held : kind === 5 ? rigid : null,
         radius = (kind === 1 || kind === 3 ? 0.5 : 0.4) * size;
@@ -105,6 +109,11 @@ class Painter {
       brush.stroke();
     });
   }
+}
+
+/** Whether a vertex is on the side of a section that is cut away. */
+function beyond(places, i, [x, y, z, at]) {
+  return x * places[3 * i] + y * places[3 * i + 1] + z * places[3 * i + 2] > at;
 }
 
 function css([red, green, blue], opacity = 1) {

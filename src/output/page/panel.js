@@ -67,6 +67,7 @@ class Panel {
     this.view.coloured = true;
     this.view.mesh = shape.lines.length < MOST_LINES;
     this.marksOpen = (data.rows?.count ?? 0) <= MOST_OPEN_MARKS;
+    this.view.spacing = spacingOf(data.rows, shape);
     addPatches(this.view, data);
     this.bar = element("div", host, null, "bar");
     this.addLegend();
@@ -107,9 +108,12 @@ class Panel {
   range(quantity) {
     if (!this.ranges[quantity]) {
       const ranges = of =>
-        this.frames.map(frame =>
-          rangeOf(valuesOf(of, this.shape, mixed(this.data, this.shape, frame.states), frame, this.data)),
-        );
+        this.frames.map(frame => {
+          const values = valuesOf(of, this.shape, mixed(this.data, this.shape, frame.states), frame, this.data);
+          // The stress under a point load has no limit.
+          const skips = of === "sigma-2" || of === "von-mises";
+          return rangeOf(skips ? values.filter((_, vertex) => !this.shape.singular[vertex]) : values);
+        });
       const all = ranges(quantity),
         low = Math.min(...all.map(range => range[0])),
         high = Math.max(...all.map(range => range[1]));
@@ -130,27 +134,55 @@ class Panel {
       range: [low, high],
       magnification: Number(this.scale.value),
     });
-    this.view.state(field.moved, valuesOf(this.quantity, this.shape, field, frame, this.data));
+    const values = valuesOf(this.quantity, this.shape, field, frame, this.data);
+    this.view.state(field.moved, values);
     this.view.patches.forEach(patch => {
       patch.shift = this.shiftOf(patch.obstacle);
     });
     this.mark(frame);
-    const { name, unit } = QUANTITIES[this.quantity];
+    this.showBar(rangeOf(values), [low, high]);
+  }
+
+  /** The colours, their limits, which a reader may change, and what lies outside. */
+  showBar([least, most], limits) {
+    const { name, unit } = QUANTITIES[this.quantity],
+      slack = 0.02 * (limits[1] - limits[0]),
+      again = () => this.show(this.frame);
     this.bar.hidden = this.quantity === "none";
     this.bar.replaceChildren();
-    element("div", this.bar, `${name}${this.data.units[unit] ? ` [${this.data.units[unit]}]` : ""}`);
+    const outside = [
+      least < limits[0] - slack ? `; below the scale: down to ${shown(least, 4)}` : "",
+      most > limits[1] + slack ? `; above the scale: up to ${shown(most, 4)}` : "",
+    ];
+    element("div", this.bar, `${name}${this.data.units[unit] ? ` [${this.data.units[unit]}]` : ""}${outside.join("")}`);
     element("div", this.bar, null, "ramp").style.background =
       `linear-gradient(to right, ${this.data.colours.field.join(", ")})`;
     const ends = element("div", this.bar, null, "ends");
-    [low, (low + high) / 2, high].forEach(value => element("span", ends, shown(value, 4)));
+    ["lowest", "highest"].forEach((end, k) => {
+      const field = element("input", ends);
+      Object.assign(field, { type: "number", step: "any", value: shown(limits[k], 4) });
+      field.setAttribute("aria-label", `${end} value of the colours`);
+      field.addEventListener("change", () => {
+        const next = limits.with(k, field.valueAsNumber);
+        if (next[0] < next[1]) this.ranges[this.quantity] = next;
+        again();
+      });
+      if (k > 0) return;
+      pressed(ends, "all values", () => {
+        delete this.ranges[this.quantity];
+        again();
+      });
+    });
   }
 
-  /** Shift of an obstacle from its position in the question. */
+  /** Shift of an obstacle from its position in the question; it moves with its contact, which may be magnified. */
   shiftOf(obstacle) {
     const [lower, upper, share] = this.frame.states,
       { shift, approach } = this.data.question.obstacles[obstacle];
-    const by = lower.shifts[obstacle] * (1 - share) + upper.shifts[obstacle] * share - shift;
-    return approach.map(part => part * by);
+    const mix = (a, b) => a * (1 - share) + b * share,
+      by = mix(lower.shifts[obstacle], upper.shifts[obstacle]) - shift,
+      more = this.view.magnification - 1;
+    return approach.map((part, k) => part * by + more * mix(lower.carried[obstacle][k], upper.carried[obstacle][k]));
   }
 
   mark({ closed, proven }) {
@@ -159,7 +191,7 @@ class Panel {
       kinds = [];
     for (let row = 0; row < (rows?.count ?? 0); row++) {
       const kind = (closed[row] ? 1 : 0) + (proven && proven[row] === 0 ? 2 : 0);
-      if (kind === 0 && !this.marksOpen) continue;
+      if ((kind === 0 && !this.marksOpen) || this.view.hides(rows.vertices[row])) continue;
       vertices.push(rows.vertices[row]);
       kinds.push(kind);
     }
@@ -171,13 +203,10 @@ class Panel {
   paint(view, brush) {
     if (!this.frame) return;
     const { data, shape } = this,
-      dashed = view.magnification !== 1;
+      times = view.magnification;
     if (view.obstacles && shape.flat)
       data.question.obstacles.forEach((obstacle, index) => {
-        if (!obstacle.outline) return;
-        const [x, y] = this.shiftOf(index),
-          along = x * obstacle.approach[0] + y * obstacle.approach[1];
-        paintOutline(view, brush, obstacle, along, dashed);
+        if (obstacle.outline) paintOutline(view, brush, obstacle, this.shiftOf(index));
       });
     if (shape.flat && this.marks) paintMarks(view, brush, ...this.marks);
     if (this.showsForces)
@@ -186,8 +215,11 @@ class Panel {
         if (from) paintText(view, brush, resultant.of, from[0] + 6, from[1] - 4, view.ink("force"));
       }
     paintScale(view, brush, data.units.length);
-    if (dashed && data.question.obstacles.length)
-      paintText(view, brush, "the obstacle keeps its place; only the body is magnified", 10, 18, view.ink("soft"));
+    if (times !== 1) {
+      const beside = view.patches.length || data.question.obstacles.some(({ outline }) => outline);
+      const words = `displacement × ${shown(times, 3)}${beside ? "; obstacles are rigid and shift with the mean of their contact" : ""}`;
+      paintText(view, brush, words, 10, 18, view.ink("soft"));
+    }
   }
 
   described(vertex) {
@@ -216,6 +248,25 @@ class Panel {
       if (frame.remaining) lines.push(`gap left ${inUnit(frame.remaining[row], units.length, 6)}`);
     }
     return lines.join("\n");
+  }
+
+  /** A plane across a coordinate axis, of which the part behind is shown. */
+  addSection(host, again) {
+    const { low, high, eye } = this.shape,
+      line = element("label", host, "section ", "slider"),
+      select = element("select", line),
+      range = Object.assign(element("input", line), { type: "range", min: 0, max: 1, step: "any", value: 0.5 });
+    ["none", "x", "y", "z"].forEach(name => element("option", select, name));
+    range.setAttribute("aria-label", "position of the section");
+    const output = element("output", line);
+    const change = () => {
+      const axis = select.selectedIndex - 1,
+        at = axis < 0 ? 0 : low[axis] + range.valueAsNumber * (high[axis] - low[axis]);
+      this.view.cut = axis < 0 ? null : { axis, at, side: Math.sign(eye[axis]) };
+      output.textContent = axis < 0 ? "" : inUnit(at, this.data.units.length, 4);
+      again();
+    };
+    [select, range].forEach(part => part.addEventListener("input", change));
   }
 
   addLegend() {
@@ -270,9 +321,7 @@ class Panel {
       again();
     };
     this.scale.addEventListener("input", moved);
-    const button = element("button", slider, "as it is");
-    button.type = "button";
-    button.addEventListener("click", () => {
+    pressed(slider, "as it is", () => {
       this.scale.value = 1;
       moved();
     });
@@ -289,6 +338,14 @@ class Panel {
     check("mesh", this.view.mesh, on => {
       this.view.mesh = on;
     });
+    check("undeformed body", false, on => {
+      this.view.rest = on;
+    });
+    if (this.shape.regions.length > 1)
+      this.shape.regions.forEach((name, region) =>
+        check(name || "first body", true, on => this.view.showRegion(region, on)),
+      );
+    if (!this.shape.flat) this.addSection(controls, again);
     if (this.data.question.obstacles.some(obstacle => !obstacle.is_body))
       check("obstacle", true, on => {
         this.view.obstacles = on;
@@ -302,6 +359,22 @@ class Panel {
         this.showsForces = on;
       });
   }
+}
+
+/** A button that does something. */
+function pressed(host, text, act) {
+  const button = Object.assign(element("button", host, text), { type: "button" });
+  button.addEventListener("click", act);
+  return button;
+}
+
+/** The mean distance of neighbouring contact rows, from the extent of them all. */
+function spacingOf(rows, { places, dimension }) {
+  if (!rows?.count) return undefined;
+  const ends = [0, 1, 2].map(k => rangeOf(Array.from(rows.vertices, vertex => places[3 * vertex + k])));
+  const [long, wide] = ends.map(([low, high]) => high - low).sort((a, b) => b - a);
+  const count = new Set(rows.vertices).size;
+  return dimension === 3 ? Math.sqrt((long * wide) / count) : Math.hypot(long, wide) / count;
 }
 
 /** The obstacles in space, as parts of a view. */

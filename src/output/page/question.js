@@ -10,7 +10,7 @@ function questionSection(page, data, shape, summary) {
     label: "The body with its supports, loads and obstacles before anything has moved",
     paint: (view, brush) => {
       if (shape.flat)
-        question.obstacles.forEach(obstacle => obstacle.outline && paintOutline(view, brush, obstacle, 0, false));
+        question.obstacles.forEach(obstacle => obstacle.outline && paintOutline(view, brush, obstacle));
       paintHolds(view, brush, question, shape.dimension);
       paintLoads(view, brush, question.loads, loads, shape.dimension);
       paintGap(view, brush, data.rows, units.length, shape.dimension);

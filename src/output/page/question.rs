@@ -6,6 +6,7 @@ use super::body::Shape;
 use super::packed::{Packed, Packer};
 use crate::fem::geometry::length;
 use crate::output::plane_scene::OUTLINE_SEGMENTS;
+use crate::output::space_scene::eye;
 use crate::scene::{HeldNode, Hold, Model, straight_cells};
 
 /// Half of the height of a wall before a bar, over its length.
@@ -19,6 +20,9 @@ pub(super) struct Question {
     #[serde(skip_serializing_if = "Option::is_none")]
     force: Option<f64>,
     obstacles: Vec<ObstacleShown>,
+    /// In space: the direction from the body to the eye, of any length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    eye: Option<[f64; 3]>,
     /// Vertices that are held in all directions.
     fixed: Packed,
     /// Vertices that are held along a direction, one entry for each.
@@ -79,11 +83,14 @@ struct Patch {
 impl Question {
     pub fn of(model: &Model, shape: &Shape, packer: &mut Packer) -> Self {
         let holds = Holds::of(model, shape);
+        let is_rigid = |index: &usize| model.obstacles()[*index].rigid().is_some();
+        let seen = (0..model.obstacles().len()).find(is_rigid).or((!model.obstacles().is_empty()).then_some(0));
         let obstacles = (0..model.obstacles().len()).map(|index| obstacle(model, index, packer)).collect();
         Question {
             gap: model.gap(),
             force: model.pressing_force(),
             obstacles,
+            eye: (model.mesh().dimension() == 3).then(|| eye(model, seen)),
             fixed: packer.whole(&holds.fixed, 1),
             guided: holds.guided.packed(packer),
             springs: holds.springs.packed(packer),

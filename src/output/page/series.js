@@ -75,12 +75,12 @@ function sweepSection(page, data, shape, notes) {
     value => go(exact ? ends[0] * (1 - value) + ends[1] * value : value),
   );
   control.range.setAttribute("aria-label", exact ? "gap, exact at every position" : sweep.swept);
+  const facts = element("p", own);
+  facts.id = "facts";
   const panel = new Panel(own, data, shape, {
     label: "The displaced body at the gap of the slider",
     frames: evenly(frames, MOST_FRAMES),
   });
-  const facts = element("p", own);
-  facts.id = "facts";
   const profile = profileSection(page, data, shape),
     marks = sweepPlots(page, data);
   const unit = ofForces ? units.force : units.length;
@@ -237,13 +237,29 @@ function motionSection(page, data, shape, notes) {
   const { motion, units, report, colours, states } = data,
     own = section(page, "The motion", "answer");
   const frames = states.map((_, index) => motionFrame(data, index));
-  const control = slider(own, "time", { min: 0, max: states.length - 1, step: 1, value: 0 }, value => go(value));
+  const { contact } = report;
+  list(own, [
+    ["scheme", `${report.scheme}, ${counted(report.steps, "step")} of ${shown(report.step)}`],
+    [
+      "contact",
+      contact.first === null
+        ? "none"
+        : `from ${shown(contact.first)} to ${shown(contact.last)}, for ${shown(contact.duration)} in all`,
+    ],
+    ["impulse", shown(contact.impulse)],
+    [
+      "largest force",
+      `${inUnit(contact.force_max, units.force)} in one step, ${inUnit(contact.force_mean_max, units.force)} on the mean over ${shown(contact.force_window.time)}`,
+    ],
+    ["energy", `change ${shown(report.energy.change, 3)}, largest gain ${shown(report.energy.gain, 3)}`],
+  ]);
+  const control = slider(own, "time", { min: 0, max: states.length - 1, step: 1, value: motion.opens }, value => go(value));
+  const facts = element("p", own);
+  facts.id = "facts";
   const panel = new Panel(own, data, shape, {
     label: "The body at the time of the slider",
     frames: evenly(frames, MOST_FRAMES),
   });
-  const facts = element("p", own);
-  facts.id = "facts";
   const columns = 8,
     count = motion.history.length / columns,
     column = k =>
@@ -283,23 +299,7 @@ function motionSection(page, data, shape, notes) {
   };
   if (states.length < motion.times.length)
     notes.push(`Of ${motion.times.length} frames ${states.length} are kept in this page.`);
-  go(0);
-  const { contact } = report;
-  list(own, [
-    ["scheme", `${report.scheme}, ${counted(report.steps, "step")} of ${shown(report.step)}`],
-    [
-      "contact",
-      contact.first === null
-        ? "none"
-        : `from ${shown(contact.first)} to ${shown(contact.last)}, for ${shown(contact.duration)} in all`,
-    ],
-    ["impulse", shown(contact.impulse)],
-    [
-      "largest force",
-      `${inUnit(contact.force_max, units.force)} in one step, ${inUnit(contact.force_mean_max, units.force)} on the mean over ${shown(contact.force_window.time)}`,
-    ],
-    ["energy", `change ${shown(report.energy.change, 3)}, largest gain ${shown(report.energy.gain, 3)}`],
-  ]);
+  go(motion.opens);
 }
 
 function searchSection(page, data, shape) {
@@ -321,12 +321,12 @@ function searchSection(page, data, shape) {
     { min: 1, max: search.steps.length, step: 1, value: search.steps.length },
     value => go(value),
   );
+  const facts = element("p", own);
+  facts.id = "search-facts";
   const panel = new Panel(own, data, shape, {
     label: "The closed rows of a step of the search",
     frames: evenly(frames, MOST_FRAMES),
   });
-  const facts = element("p", own);
-  facts.id = "search-facts";
   const go = value => {
     const step = search.steps[value - 1],
       before = search.steps[value - 2];

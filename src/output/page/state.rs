@@ -6,6 +6,7 @@ use super::body::Shape;
 use super::packed::{Packed, Packer};
 use crate::error::Error;
 use crate::fem::recovery::Stress;
+use crate::output::magnified::carried;
 use crate::scene::Answer;
 
 /// Displacement and stress at the vertices. Both are linear in the answer, so that a page may mix two states.
@@ -18,6 +19,8 @@ pub(super) struct State {
     stress: Packed,
     /// The shift of each obstacle along its approach direction, in length.
     shifts: Vec<f64>,
+    /// The mean displacement of the contact with each obstacle, with which it is shifted beside a magnified displacement, in length.
+    carried: Vec<[f64; 3]>,
 }
 
 impl State {
@@ -33,6 +36,7 @@ impl State {
             displacement: packer.quantised(&shape.at_vertices(answer.displacement(), dimension), dimension),
             stress: packer.quantised(&shape.at_vertices(&stress, components), components),
             shifts: (0..model.obstacles().len()).map(|obstacle| answer.shift(obstacle)).collect(),
+            carried: (0..model.obstacles().len()).map(|obstacle| carried(answer, obstacle)).collect(),
         })
     }
 

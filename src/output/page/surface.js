@@ -8,9 +8,11 @@ layout(location = 2) in float value;
 uniform mat4 camera;
 uniform float magnification, nearer;
 uniform vec3 shift, stretch;
-out float share;
+out float share, cut;
 out vec3 at;
+uniform vec4 plane;
 void main() {
+  cut = dot(plane.xyz, place) - plane.w;
   vec4 clip = camera * vec4(place + magnification * moved + shift, 1.0);
   gl_Position = vec4(clip.xy, clip.z - nearer, 1.0);
   share = value;
@@ -19,7 +21,7 @@ void main() {
 
 const COLOURED = `#version 300 es
 precision highp float;
-in float share;
+in float share, cut;
 in vec3 at;
 uniform vec4 colour;
 uniform vec3 table[17];
@@ -27,6 +29,7 @@ uniform float coloured, lit;
 uniform vec2 range;
 out vec4 drawn;
 void main() {
+  if (cut > 0.0) discard;
   vec3 base = colour.rgb;
   if (coloured > 0.5) {
     float place = clamp((share - range.x) / max(range.y - range.x, 1e-30), 0.0, 1.0) * 16.0;
@@ -47,8 +50,11 @@ layout(location = 1) in vec3 moved;
 layout(location = 2) in float value;
 uniform mat4 camera;
 uniform float magnification, size, nearer;
+uniform vec4 plane;
 flat out int kind;
+flat out float cut;
 void main() {
+  cut = dot(plane.xyz, place) - plane.w;
   vec4 clip = camera * vec4(place + magnification * moved, 1.0);
   gl_Position = vec4(clip.xy, clip.z - nearer, 1.0);
   kind = int(value + 0.5);
@@ -59,12 +65,13 @@ void main() {
 const MARKED = `#version 300 es
 precision highp float;
 flat in int kind;
+flat in float cut;
 uniform vec3 closed, open, undecided, paper, held, rigid;
 out vec4 drawn;
 void main() {
   vec2 off = 2.0 * gl_PointCoord - 1.0;
   float away = kind >= 4 ? 0.0 : kind >= 2 ? abs(off.x) + abs(off.y) : length(off);
-  if (away > 1.0) discard;
+  if (away > 1.0 || cut > 0.0) discard;
   vec3 ring = kind == 4 ? held : kind == 5 ? rigid : kind >= 2 ? undecided : (kind == 1 ? paper : open);
   vec3 inside = kind == 4 ? held : kind == 5 ? rigid : kind == 1 ? closed : (kind == 3 ? undecided : paper);
   drawn = vec4(away > (kind == 1 ? 0.82 : 0.62) ? ring : inside, 1.0);
@@ -129,22 +136,28 @@ class Surface {
       table: this.table,
       range: look.range,
       magnification: look.magnification,
+      plane: look.plane,
     });
-    this.drawPart("body", gl.TRIANGLES, {
+    const body = {
       colour: [...look.body, 1],
       coloured: look.coloured,
       lit: look.lit,
       nearer: 0,
       shift: [0, 0, 0],
-    });
-    if (look.mesh)
-      this.drawPart("mesh", gl.LINES, { colour: look.meshColour, coloured: 0, lit: 0, nearer: 2e-5, shift: [0, 0, 0] });
+    };
+    this.drawPart("body", gl.TRIANGLES, body);
+    const lines = { colour: look.meshColour, coloured: 0, lit: 0, nearer: 2e-5, shift: [0, 0, 0] };
+    if (look.mesh) this.drawPart("mesh", gl.LINES, lines);
+    const whole = [0, 0, 0, 1e30];
+    this.drawPart("cap", gl.TRIANGLES, { ...body, plane: whole });
+    if (look.rest) this.drawPart("rest", gl.LINES, { ...lines, plane: whole, nearer: 1e-3 });
     gl.useProgram(this.marks.program);
     this.uniform("marks", {
       camera,
       magnification: look.magnification,
       size: look.markSize,
       nearer: 0.004,
+      plane: look.plane,
       ...look.marks,
     });
     this.drawPart("marks", gl.POINTS, {}, "marks");

@@ -1,9 +1,11 @@
 // Work and precision of many methods.
 
-function tradeoffSection(page, data) {
+function tradeoffSection(page, data, still) {
   const { report, colours } = data,
     own = section(page, "Work and precision", "tradeoff"),
     ofMotion = report.points.some(point => "scheme" in point);
+  own.append(still);
+  if (still.children.length) element("h3", own, "Every measured point, with its values under the pointer");
   const error = point => Math.max(ofMotion ? point.displacement_error : point.energy_error, 1e-16);
   const panels = ofMotion
     ? [[`${counted(report.dofs, "dof")}`, report.points]]

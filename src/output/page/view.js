@@ -8,6 +8,7 @@ function shapeOf(body) {
   const places = new Float32Array(3 * count);
   for (let i = 0; i < count; i++) for (let k = 0; k < width; k++) places[3 * i + k] = body.places[width * i + k];
   const { faces, edges } = cutCells(body, count);
+  const { regions, surface, solids, singular } = body;
   return {
     flat,
     dimension: body.dimension,
@@ -15,7 +16,12 @@ function shapeOf(body) {
     places,
     nodes: body.nodes,
     faces,
-    lines: linesOf(edges, count),
+    regions,
+    surface,
+    solids,
+    singular,
+    regionOf: body.region_of,
+    ...linesOf(edges, count),
     ...boxOf(places),
   };
 }
@@ -59,18 +65,18 @@ function cutCells({ cells, corners, mids }, count) {
   return { faces, edges };
 }
 
-/** The ends of each edge, once. */
+/** The ends of each edge, once, and of each edge of one cell alone. */
 function linesOf(edges, count) {
   edges.sort();
-  const lines = new Uint32Array(2 * edges.length);
-  let filled = 0;
+  const [lines, outline] = [[], []];
   for (let i = 0; i < edges.length; i++) {
-    if (i > 0 && edges[i] === edges[i - 1]) continue;
-    const low = Math.floor(edges[i] / count);
-    lines[filled++] = low;
-    lines[filled++] = edges[i] - low * count;
+    if (edges[i] === edges[i - 1]) continue;
+    const low = Math.floor(edges[i] / count),
+      ends = [low, edges[i] - low * count];
+    lines.push(...ends);
+    if (edges[i] !== edges[i + 1]) outline.push(...ends);
   }
-  return lines.subarray(0, filled);
+  return { lines: Uint32Array.from(lines), outline: Uint32Array.from(outline) };
 }
 
 function boxOf(places) {
@@ -105,6 +111,9 @@ class View {
       drawn: 0,
       patches: [],
       obstacles: true,
+      hidden: new Set(),
+      cut: null,
+      rest: false,
     });
     const canvas = () => host.appendChild(document.createElement("canvas"));
     this.under = canvas();
@@ -137,6 +146,8 @@ class View {
       values: new Float32Array(shape.count),
       order: shape.lines,
     });
+    // The undeformed body: in space a surface has no outline, and all its lines are drawn.
+    this.surface.set("rest", { places: shape.places, order: shape.outline.length ? shape.outline : shape.lines });
     this.window = [shape.low, shape.high];
     this.home();
     this.listen();
@@ -146,10 +157,30 @@ class View {
 
   /** Displacements (three a vertex) and values (one a vertex) of the state shown. */
   state(moved, values) {
-    this.moved = moved;
+    Object.assign(this, { moved, values });
     this.surface.set("body", { moved, values });
     this.surface.set("mesh", { moved });
+    this.section();
     this.redraw();
+  }
+
+  /** Shows or hides a body of several. */
+  showRegion(region, on) {
+    if (on) this.hidden.delete(region);
+    else this.hidden.add(region);
+    const kept = (order, each) => order.filter((_, i) => !this.hides(order[i - (i % each)]));
+    this.surface.set("body", { order: kept(this.shape.faces, 3) });
+    this.surface.set("mesh", { order: kept(this.shape.lines, 2) });
+  }
+
+  hides(vertex) {
+    return this.hidden.has(this.shape.regionOf[vertex]);
+  }
+
+  /** Fills the section of `cut`: { axis, at, side }, of which the part with side (x - at) <= 0 is shown. */
+  section() {
+    if (this.cut) this.surface.set("cap", capOf(this));
+    else this.surface.set("cap", { hidden: true });
   }
 
   /** Contact nodes: vertices and the kind of each mark. */
@@ -246,9 +277,16 @@ class View {
     const style = getComputedStyle(document.documentElement);
     this.ink = name => style.getPropertyValue(`--${name}`).trim();
     const of = name => channels(this.ink(name));
-    const { camera, stretch } = this.camera();
+    const { camera, stretch } = this.camera(),
+      plane = [0, 0, 0, 1e30];
+    if (this.cut) [plane[this.cut.axis], plane[3]] = [this.cut.side, this.cut.side * this.cut.at];
+    // Marks as large as their distances would hide the colours of a surface; in the plane they are on its edge.
+    const [share, least] = this.shape.flat ? [0.8, 5] : [0.35, 2.5];
+    this.mark = Math.min(Math.max(share * (this.spacing ?? Infinity) * this.measure().scale, least), this.markSize);
     this.surface.draw(camera, {
       stretch,
+      plane,
+      rest: this.rest,
       magnification: this.magnification,
       coloured: this.coloured ? 1 : 0,
       range: this.range,
@@ -256,7 +294,7 @@ class View {
       body: of("body"),
       mesh: this.mesh,
       meshColour: [...of("mesh"), this.shape.flat ? 0.28 : 0.2],
-      markSize: this.markSize * dense,
+      markSize: this.mark * dense,
       marks: {
         closed: of("closed"),
         open: of("open"),
@@ -371,7 +409,8 @@ class View {
     if (!this.asked) return;
     const at = this.measure();
     let [best, least] = [-1, Infinity];
-    for (let vertex = 0; vertex < this.shape.count; vertex++) {
+    for (let vertex = 0; vertex < this.shape.surface; vertex++) {
+      if (this.hides(vertex)) continue;
       const [px, py, near] = this.place(this.vertex(vertex), at),
         away = Math.hypot(px - x, py - y);
       if (away > 14) continue;
@@ -389,10 +428,42 @@ class View {
   }
 }
 
-/** Direction from the body to the eye, on the side of the first rigid obstacle, as in the pictures. */
-function eyeOf({ obstacles }) {
-  const { approach } = obstacles.find(obstacle => !obstacle.is_body) ?? obstacles[0] ?? { approach: [0, 0, 0] };
-  return [0.5, -0.8, 0.55].map((part, k) => (approach[k] < -0.3 ? -Math.abs(part) : approach[k] > 0.3 ? Math.abs(part) : part));
+/** The polygons in which a plane cuts the tetrahedra of a body, with displacements and values. */
+function capOf({ shape, moved, values, cut: { axis, at }, hidden }) {
+  const { places, solids, regionOf } = shape,
+    cap = { places: [], moved: [], values: [], order: [] },
+    height = vertex => places[3 * vertex + axis] - at;
+  const between = (a, b) => {
+    const share = height(a) / (height(a) - height(b)),
+      mix = (of, i, j) => of[i] * (1 - share) + of[j] * share;
+    for (let k = 0; k < 3; k++) {
+      cap.places.push(mix(places, 3 * a + k, 3 * b + k));
+      cap.moved.push(mix(moved, 3 * a + k, 3 * b + k));
+    }
+    return cap.values.push(mix(values, a, b)) - 1;
+  };
+  for (let i = 0; i < solids.length; i += 4) {
+    const corners = solids.subarray(i, i + 4),
+      above = corners.filter(vertex => height(vertex) > 0);
+    if (above.length % 4 === 0 || hidden.has(regionOf[corners[0]])) continue;
+    const [a, b, c, d] = ring(above, corners.filter(vertex => height(vertex) <= 0)).map(ends => between(...ends));
+    cap.order.push(a, b, c);
+    if (d !== undefined) cap.order.push(a, c, d);
+  }
+  const made = Object.fromEntries(["places", "moved", "values"].map(name => [name, Float32Array.from(cap[name])]));
+  return { ...made, order: Uint32Array.from(cap.order) };
+}
+
+/** The edges between the corners of a tetrahedron above and below a plane, in order around the section. */
+function ring([a, b, c], [d, e, f]) {
+  if (c !== undefined) return [a, b, c].map(above => [above, d]);
+  if (b === undefined) return [d, e, f].map(below => [a, below]);
+  return [
+    [a, d],
+    [a, e],
+    [b, e],
+    [b, d],
+  ];
 }
 
 /** To the right, upwards and to the eye. */

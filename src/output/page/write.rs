@@ -29,7 +29,7 @@ use crate::study::{Agreement, Summary, Sweep};
 /// # Errors
 /// [`Error::File`], and those of the recovery of stresses.
 pub(crate) fn write_answer_page(folder: &Path, about: &About, answer: &Answer, summary: &Summary) -> Result<(), Error> {
-    let (mut packer, shape) = (Packer::default(), Shape::of(answer.model()));
+    let (mut packer, shape) = (Packer::default(), Shape::with_inside(answer.model()));
     let page = of_answer(about, answer, summary, &summary.solution.history, (&shape, &mut packer))?;
     let page = Page { report: timeless(value(summary)?), ..page };
     write_page(folder, &page, packer, still(answer)?.as_ref())
@@ -92,35 +92,41 @@ pub(crate) fn write_motion_page(
     write_page(folder, &Page { report: timeless(report), motion: Some(motion), states, ..page }, packer, None)
 }
 
-/// The page of a trade-off with `still` as its picture.
+/// The page of a trade-off with its pictures.
 ///
 /// # Errors
 /// [`Error::File`].
-pub(crate) fn write_tradeoff_page(
+pub(crate) fn write_tradeoff_page<'a>(
     folder: &Path,
     about: &About,
     measured: &impl Serialize,
-    still: Option<&Drawing>,
+    stills: impl IntoIterator<Item = &'a Drawing>,
 ) -> Result<(), Error> {
     let page = Page { report: value(measured)?, ..Page::new(about, &Units::unnamed()) };
-    write_page(folder, &page, Packer::default(), still)
+    write_page(folder, &page, Packer::default(), stills)
 }
 
-/// The page of a guaranteed error against the continuum: the question, and the decrease of the error from mesh to mesh, with `still` as
-/// its picture.
+/// The page of an error against the continuum: the question, the answer on the last mesh if there is one, and the decrease of the error
+/// from mesh to mesh, with `still` as its picture.
 ///
 /// # Errors
-/// [`Error::File`].
+/// As [`write_answer_page`].
 pub(crate) fn write_total_error_page(
     folder: &Path,
     about: &About,
-    model: &Model,
-    found: &impl Serialize,
-    still: &Drawing,
+    (first, answer): (&Model, Option<&(Answer, Summary)>),
+    report: Value,
+    still: Option<&Drawing>,
 ) -> Result<(), Error> {
-    let (mut packer, shape) = (Packer::default(), Shape::of(model));
-    let page = Page::of_model(about, model, &shape, &mut packer);
-    write_page(folder, &Page { report: timeless(value(found)?), ..page }, packer, Some(still))
+    let mut packer = Packer::default();
+    let page = match answer {
+        Some((answer, summary)) => {
+            let shape = Shape::of(answer.model());
+            of_answer(about, answer, summary, &summary.solution.history, (&shape, &mut packer))?
+        }
+        None => Page::of_model(about, first, &Shape::of(first), &mut packer),
+    };
+    write_page(folder, &Page { report: timeless(report), ..page }, packer, still)
 }
 
 /// The common content of all pages of one answer.

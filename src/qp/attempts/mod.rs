@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::cost::Estimate;
 use super::engine::Prepared;
-use super::judged::{judged, out_of_time, with_solution};
+use super::judged::{in_time, judged, with_solution};
 use super::plan::{Choice, Tried, by_name, pieces_of, safer, starts_by_multigrid};
 use super::problem::ContactProblem;
 use super::settings::{Method, Settings};
@@ -70,11 +70,7 @@ fn in_one_piece_from(start: Start, problem: &ContactProblem, settings: &Settings
         Method::Auto => found,
         method => with_solution(found, |solution| Solution { why: Some(by_name(method)), ..solution }),
     };
-    let found = match found {
-        Err(Error::OutOfTime { needed, time }) => Err(out_of_time(problem, needed, time)?),
-        found => found,
-    };
-    with_solution(found, |solution| attempts.with_attempts(solution))
+    with_solution(in_time(problem, settings, found), |solution| attempts.with_attempts(solution))
 }
 
 /// The attempts so far.
@@ -121,7 +117,10 @@ impl Attempts {
                     estimate.without_factor(bytes, allowed)?
                 }
                 Err(error @ Error::OutOfTime { needed, time }) => {
-                    if estimate.multigrid_bytes > allowed || !watch.allows(estimate.hierarchy_seconds) {
+                    if !estimate.multigrid_bytes.is_finite()
+                        || estimate.multigrid_bytes > allowed
+                        || !watch.allows(estimate.hierarchy_seconds)
+                    {
                         return Err(error);
                     }
                     format!("by multigrid: a factorisation would take about {needed:.1e} s, but {time:.1e} s are left")
@@ -288,6 +287,7 @@ fn is_better(before: &Error, error: &Error) -> bool {
 /// The ending of an attempt, in a few words.
 fn ending(error: &Error) -> String {
     match error {
+        Error::NotCertified { condition, value, .. } if value.is_infinite() => format!("no {condition} is known"),
         Error::NotCertified { condition, value, tolerance, .. } => {
             format!("{condition} is {value:.1e}, above {tolerance:.1e}")
         }

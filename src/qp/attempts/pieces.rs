@@ -62,6 +62,7 @@ pub(super) fn solved(
         refinements: answers.iter().filter_map(|answer| answer.refinements).max(),
         reason: answers.iter().find_map(|answer| answer.reason.clone()),
         why: why(&answers),
+        cut_short: answers.iter().find_map(|answer| answer.cut_short.clone()),
         lost_pivot: answers.iter().filter_map(|answer| answer.lost_pivot).min_by(f64::total_cmp),
         condensed_dofs: answers.iter().map(|answer| answer.condensed_dofs).sum(),
         seconds: Seconds {

@@ -167,14 +167,15 @@ impl ContactProblem {
         multiplier: &[f64],
     ) -> Result<Certificate, Error> {
         let certificate = self.certify_in(None, displacement, multiplier)?;
-        Ok(certificate.with_bounds_of(pieces, self.certain_norm(displacement)))
+        Ok(certificate.with_bounds_of(pieces, &self.energy_of(displacement)))
     }
 
-    /// The part of the energy norm of a displacement that is certain.
-    fn certain_norm(&self, displacement: &[f64]) -> f64 {
+    /// The scales of a displacement, without forces.
+    fn energy_of(&self, displacement: &[f64]) -> OfPart {
         let Balance { strain, terms, .. } = self.accurate_balance(displacement, &[]);
+        let moves = displacement.iter().any(|&u| u != 0.0);
         let terms = displacement.iter().zip(&terms).map(|(u, terms)| u.abs() * terms).sum();
-        OfPart { strain, terms, ..OfPart::default() }.certain_norm()
+        OfPart { strain, terms, moves, ..OfPart::default() }
     }
 
     /// The displacement u with those parts at rest that may rest, if its certificate is better for it. A method leaves the
@@ -250,7 +251,8 @@ impl ContactProblem {
             cancellation: Cancellation { dof: 0, forces: 0.0, left: 0.0 },
             bound_is_measured: matches!(bounding, Bounding::Cycles(..)),
         };
-        let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
+        let rounding = scales.whole(strain).rounding();
+        let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation, rounding };
         let (bound, measured, loss) = match bounding {
             Bounding::Nothing => (ErrorBound::none(), None, 1.0),
             Bounding::Factor(norm) => (self.energy_error_bound(norm, &answer), None, norm.loss()),
@@ -413,11 +415,14 @@ mod tests {
         (pieces[0].part_error_bound, pieces[1].part_error_bound) = (0.0, 0.0);
         let whole = problem.certify_pieces(&pieces, &u, &lambda).unwrap();
         assert!(whole.bound_is_measured && whole.part_error_bound == whole.energy_error_bound, "{whole:?}");
-        // Beside a part at rest the whole has no relative error, only the part that moves.
+        // The error of a part at rest counts in the whole.
         pieces[0].parts_at_rest = 1;
-        pieces[1].part_error_bound = 1e-11;
+        (pieces[1].part_error_bound, pieces[0].energy_error_excess) = (1e-11, 0.0);
         let whole = problem.certify_pieces(&pieces, &u, &lambda).unwrap();
-        assert_eq!((whole.part_error_bound, whole.parts_at_rest, whole.at_rest), (1e-11, 1, false));
+        assert_eq!((whole.part_error_bound, whole.parts_at_rest), (whole.energy_error_bound, 1), "{whole:?}");
+        pieces[1].energy_error_excess = 0.0;
+        let whole = problem.certify_pieces(&pieces, &u, &lambda).unwrap();
+        assert!((whole.energy_error_excess / bound - 1.0).abs() < ROUNDED && !whole.at_rest, "{whole:?}");
     }
 
     #[test]

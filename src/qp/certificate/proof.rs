@@ -59,7 +59,7 @@ impl ContactProblem {
         let rows = self.rows();
         let Evidence { residual, violation, error, .. } =
             evidence.or_else(|| self.examine_in(Some(norm), displacement, multiplier).ok()?.evidence)?;
-        let answer = Answer { displacement, multiplier, residual, violation: &violation };
+        let answer = Answer { displacement, multiplier, residual, violation: &violation, rounding: 0.0 };
         let error = ROUNDED_BOUND * error;
         if !error.is_finite() {
             return None;
@@ -91,7 +91,7 @@ impl ContactProblem {
     }
 
     /// As [`ContactProblem::prove`], without a factor: with the bound by the cycles of the hierarchy of K, and one solve by
-    /// cycles for an M-matrix. `None` if the cycles find no bound, or if K is singular to their precision.
+    /// cycles for an M-matrix. `None` if the cycles find no bound, or if K is singular.
     pub(crate) fn prove_by_cycles(
         &self,
         multigrid: &Multigrid,
@@ -104,11 +104,12 @@ impl ContactProblem {
         if multigrid.unknowns().len() <= 1 {
             return self.prove(displacement, multiplier).ok()?;
         }
-        if multigrid.is_shifted() {
+        // Without a bound on the move of a travel, nothing is known of its rows.
+        if multigrid.is_shifted() || !self.without_stiffness().is_empty() {
             return None;
         }
         let Evidence { residual, violation, error, measured } = evidence?;
-        let answer = Answer { displacement, multiplier, residual, violation: &violation };
+        let answer = Answer { displacement, multiplier, residual, violation: &violation, rounding: 0.0 };
         let error = ROUNDED_BOUND * error;
         if !error.is_finite() {
             return None;
@@ -327,7 +328,13 @@ mod tests {
         let residual = problem.accurate_residual(&displacement, &multiplier);
         assert_eq!(residual, [1.0]);
         let violation = problem.accurate_violation(&displacement);
-        let answer = Answer { displacement: &displacement, multiplier: &multiplier, residual, violation: &violation };
+        let answer = Answer {
+            displacement: &displacement,
+            multiplier: &multiplier,
+            residual,
+            violation: &violation,
+            rounding: 0.0,
+        };
         for (open, balance) in [([false, true], 0.0), ([false, false], 1.0)] {
             let closed = problem.closed_by(&answer, &open.into_iter().collect(), 0.0, 1.0, |is_residual, force| {
                 assert_eq!((is_residual, force), (!open[1], &[balance][..]));

@@ -76,6 +76,19 @@ impl Scales {
         Scales { part_of_row, reach, norm, of_parts }
     }
 
+    /// The scales of all parts together, with their `strain` u'K u.
+    pub fn whole(&self, strain: f64) -> OfPart {
+        let parts = &self.of_parts;
+        OfPart {
+            is_stiff: true,
+            moves: parts.iter().any(|part| part.moves),
+            strain,
+            terms: parts.iter().map(|part| part.terms).sum(),
+            force: parts.iter().fold(0.0, |largest, part| larger(part.force, largest)),
+            force_squares: parts.iter().map(|part| part.force_squares).sum(),
+        }
+    }
+
     /// The part of a row.
     pub fn part_of_row(&self, row: usize) -> usize {
         self.part_of_row[row]

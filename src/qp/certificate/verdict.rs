@@ -26,7 +26,7 @@ impl OfPart {
     }
 
     /// What rounding the displacement to doubles does to its energy norm.
-    fn rounding(&self) -> f64 {
+    pub fn rounding(&self) -> f64 {
         AS_ROUNDED * self.terms.sqrt()
     }
 
@@ -70,14 +70,7 @@ impl Certificate {
     /// Returns the part that is farthest from its goal, or `None` if that is the whole.
     pub(super) fn take_in(&mut self, bound: &ErrorBound, scales: &Scales, strain: f64, loss: f64) -> Option<usize> {
         let parts = &scales.of_parts;
-        let whole = OfPart {
-            is_stiff: true,
-            moves: parts.iter().any(|part| part.moves),
-            strain,
-            terms: parts.iter().map(|part| part.terms).sum(),
-            force: parts.iter().fold(0.0, |largest, part| larger(part.force, largest)),
-            force_squares: parts.iter().map(|part| part.force_squares).sum(),
-        };
+        let whole = scales.whole(strain);
         let mut worst = Worst::default();
         let of_parts = bound.of_parts.as_deref().unwrap_or(std::slice::from_ref(&bound.whole));
         let each = if of_parts.len() == parts.len() { &parts[..] } else { std::slice::from_ref(&whole) };
@@ -93,8 +86,7 @@ impl Certificate {
         let error = whole.widened(bound.whole);
         self.energy_error = error;
         self.energy_error_bound = relative(error, whole.certain_norm());
-        // A part that rests has no relative error, so that the whole has none beside it.
-        if worst.resting == 0 {
+        if whole.moves {
             worst.moving(error, &whole, None);
         }
         (self.part_error_bound, self.energy_error_excess) = (worst.relative, worst.excess);
@@ -104,21 +96,22 @@ impl Certificate {
         worst.part
     }
 
-    /// The certificate with the bounds of pieces without coupling, for a whole with this energy `norm`.
-    pub(super) fn with_bounds_of(self, pieces: &[Certificate], norm: f64) -> Self {
+    /// The certificate with the bounds of pieces without coupling, which are these scales of the `whole`.
+    pub(super) fn with_bounds_of(self, pieces: &[Certificate], whole: &OfPart) -> Self {
         let largest = |of: fn(&Certificate) -> f64| pieces.iter().fold(0.0, |worst, piece| larger(of(piece), worst));
         let energy_error = pieces.iter().map(|piece| piece.energy_error.powi(2)).sum::<f64>().sqrt();
-        let energy_error_bound = relative(energy_error, norm);
-        let parts_at_rest = pieces.iter().map(|piece| piece.parts_at_rest).sum();
-        let of_whole = if parts_at_rest == 0 { energy_error_bound } else { 0.0 };
+        let mut worst = Worst::default();
+        if whole.moves {
+            worst.moving(energy_error, whole, None);
+        }
         let farthest = |a: &&Certificate, b: &&Certificate| a.energy_error_excess.total_cmp(&b.energy_error_excess);
         let mut whole = Certificate {
             energy_error,
-            energy_error_bound,
-            part_error_bound: larger(of_whole, largest(|piece| piece.part_error_bound)),
-            energy_error_excess: largest(|piece| piece.energy_error_excess),
+            energy_error_bound: relative(energy_error, whole.certain_norm()),
+            part_error_bound: larger(worst.relative, largest(|piece| piece.part_error_bound)),
+            energy_error_excess: larger(worst.excess, largest(|piece| piece.energy_error_excess)),
             at_rest: !pieces.is_empty() && pieces.iter().all(|piece| piece.at_rest),
-            parts_at_rest,
+            parts_at_rest: pieces.iter().map(|piece| piece.parts_at_rest).sum(),
             rest_error: largest(|piece| piece.rest_error),
             bound_is_measured: pieces.iter().any(|piece| piece.bound_is_measured),
             cancellation: pieces.iter().max_by(farthest).map_or(self.cancellation, |piece| piece.cancellation),

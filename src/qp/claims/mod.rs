@@ -72,28 +72,30 @@ pub(super) fn rechecked(
         sure => return sure,
     };
     if settings.watch.is_over() {
-        return Err(not_decided(problem, before)?);
+        return Err(not_decided(problem, settings, before)?);
     }
     let scaling = Scaling::of(problem.stiffness(), problem.contact())?;
     let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
     let scaled = match ContactProblem::new(scaling.stiffness().clone(), load, scaling.contact().clone(), gap) {
         Ok(scaled) => scaled,
         // Beyond the range of doubles nothing can be rechecked.
-        Err(_) => return Err(not_decided(problem, before)?),
+        Err(_) => return Err(not_decided(problem, settings, before)?),
     };
-    if check_room(&scaled, settings).is_err() {
-        return Err(not_decided(problem, before)?);
+    match check_room(&scaled, settings) {
+        Ok(()) => {}
+        Err(error @ Error::TooLarge { .. }) if !matches!(before, Error::NotCertified { .. }) => return Err(error),
+        Err(_) => return Err(not_decided(problem, settings, before)?),
     }
     let null = match scaled.stiffness().null_space() {
         Ok(null) => null,
         Err(FactorError::NotPositiveDefinite) => {
             let direction = scaled.stiffness().negative_direction()?;
             let claim = direction.and_then(|p| scaled.not_convex_along(&p));
-            return Err(claim.map_or_else(|| not_decided(problem, before), Ok)?);
+            return Err(claim.map_or_else(|| not_decided(problem, settings, before), Ok)?);
         }
         Err(error) => return Err(error.into()),
     };
-    let Some(null) = null else { return Err(not_decided(problem, before)?) };
+    let Some(null) = null else { return Err(not_decided(problem, settings, before)?) };
     // A rounded direction is a motion without energy only for a body that is known to float.
     let bodies = scaled.stiffness().components().0;
     let expanded = |vector: &[Twice]| {

@@ -84,7 +84,7 @@ pub(super) fn answer(
     }
     match best {
         Some(solution) => Ok(solution),
-        None => Err(not_decided(problem, before)?),
+        None => Err(not_decided(problem, settings, before)?),
     }
 }
 
@@ -144,7 +144,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
-    use crate::qp::judged::out_of_time;
+    use crate::qp::judged::in_time;
     use crate::watch::Watch;
 
     /// Two dofs, each with its own row: `stiffness` on the diagonal.
@@ -166,7 +166,8 @@ mod tests {
             counted.fetch_add(usize::from(watch.activity().step == "certificate"), Ordering::SeqCst);
         });
         let settings = Settings { watch, ..Settings::default() };
-        let mut before = out_of_time(&problem, 0.0, 0.0).unwrap();
+        let late = Err(Error::OutOfTime { needed: 0.0, time: 0.0 });
+        let mut before = in_time(&problem, &settings, late).unwrap_err();
         if let Error::NotCertified { solution, .. } = &mut before {
             solution.lost_pivot = Some(1e-17);
         }

@@ -85,6 +85,15 @@ pub fn of_set(entries: f64) -> f64 {
     OF_SET * entries
 }
 
+/// Factors, beside those of the method, of a singular stiffness with springs: that of the bound, that which shows it semidefinite, and
+/// what their fill-in has more.
+const WITH_SPRINGS: f64 = 3.0;
+
+/// Bytes of the factors of a singular stiffness with springs, and of its copies.
+pub fn of_springs(values: f64, entries: f64) -> f64 {
+    WITH_SPRINGS * of_factor(values, size_of::<f64>()) + 2.0 * OF_ENTRY * entries
+}
+
 /// Bytes of the dense triangle on this number of contact dofs that come last in a factor of all dofs.
 pub fn of_boundary(contact_dofs: f64) -> f64 {
     OF_BOUNDARY * contact_dofs * contact_dofs

@@ -43,7 +43,9 @@ impl BodyFactor {
     pub fn by_size(problem: &ContactProblem) -> Self {
         let dofs = problem.dofs() as f64;
         let (entries, seconds) = match problem.near_null().map(|near_null| near_null.count()) {
-            Some(1) => (ALONG_A_LINE * dofs, factor_seconds(0.0, (ALONG_A_LINE * dofs) as usize, Width::Double)),
+            Some(1) if is_line(problem) => {
+                (ALONG_A_LINE * dofs, factor_seconds(0.0, (ALONG_A_LINE * dofs) as usize, Width::Double))
+            }
             Some(MODES_IN_SPACE..) => (23.0 * dofs.powf(4.0 / 3.0), 7.7e-10 * dofs.powi(2)),
             _ => (6.0 * dofs * dofs.max(2.0).log2(), in_the_plane(problem)),
         };
@@ -67,6 +69,11 @@ impl BodyFactor {
             if fill.is_dissected { by_size.ordering_seconds } else { seconds::minimum_degree(problem) };
         BodyFactor { entries: by_size.entries.min(fill.entries), seconds, ordering_seconds }
     }
+}
+
+/// Returns `true` if an unknown is coupled to two others at most, as along a bar.
+fn is_line(problem: &ContactProblem) -> bool {
+    problem.stiffness().lower().entries() <= 2 * problem.dofs()
 }
 
 /// Seconds of a factor in the plane; each part has its own.

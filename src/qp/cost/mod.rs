@@ -5,7 +5,8 @@ mod direct;
 pub(in crate::qp) mod seconds;
 mod smooth;
 
-use super::linear::{SparseMatrix, Width, largest};
+use super::linear::Width;
+use super::method::mprgp::takes_travels;
 use super::problem::ContactProblem;
 use super::settings::Settings;
 use crate::error::Error;
@@ -25,19 +26,11 @@ const SINGULAR: f64 = 2.5;
 /// order by minimum degree is then computed.
 const LOOK: f64 = 12.0;
 
-/// Forces of a mode below this share of their terms are rounding.
-const FREE: f64 = 1e-9;
-
-/// Returns `true` if a row has several entries, so that it is a bound only after reflections.
-fn is_turned(contact: &SparseMatrix) -> bool {
-    contact.entries() > contact.rows()
-}
-
-/// Returns `true` if one of the rigid-body modes has no energy.
-fn has_free_mode(problem: &ContactProblem) -> bool {
-    let stiffness = problem.stiffness();
-    let is_free = |mode: &Vec<f64>| largest(&stiffness.mul(mode)) <= FREE * largest(&stiffness.mul_abs(mode));
-    problem.near_null().is_some_and(|modes| modes.vectors().iter().any(is_free))
+/// Returns `true` if a row has several entries on dofs with stiffness, so that it is a bound only after reflections.
+fn is_turned(problem: &ContactProblem) -> bool {
+    let contact = problem.contact();
+    let of_travels: usize = problem.without_stiffness().into_iter().map(|dof| contact.column(dof).count()).sum();
+    contact.entries() - of_travels > contact.rows()
 }
 
 /// Estimated time and memory of the two paths.
@@ -53,7 +46,7 @@ pub struct Estimate {
     pub factor_entries: f64,
     /// Seconds of the factorisations on one processor of 2024.
     pub direct_seconds: f64,
-    /// Bytes of the iterative path at its peak, the problem itself included.
+    /// Bytes of the iterative path at its peak, the problem itself included; infinite if multigrid cannot take the problem.
     pub multigrid_bytes: f64,
     /// Seconds of hierarchy and iteration.
     pub multigrid_seconds: f64,
@@ -74,7 +67,7 @@ impl Estimate {
         let entries = problem.stiffness().lower().entries() as f64;
         let smooth = Smooth::of(problem);
         let hierarchy_seconds = seconds::hierarchy(dofs, entries);
-        let turned = if is_turned(problem.contact()) { TURNED } else { 1.0 };
+        let turned = if is_turned(problem) { TURNED } else { 1.0 };
         let cycles = turned * smooth.cycles();
         let multigrid_seconds = hierarchy_seconds + cycles * seconds::cycle(dofs, entries);
         let mut direct = Direct::of(problem, smooth, BodyFactor::by_size(problem));
@@ -84,14 +77,14 @@ impl Estimate {
         }
         let times_multigrid = direct.seconds / multigrid_seconds;
         let matters = times_multigrid < SINGULAR && times_multigrid * SINGULAR > 1.0;
-        let times = if matters && has_free_mode(problem) { SINGULAR } else { 1.0 };
+        let times = if matters && problem.has_free_mode() { SINGULAR } else { 1.0 };
         Estimate {
             direct_bytes: bytes::START
                 + bytes::of_problem(dofs, problem.stiffness().entries() as f64)
                 + bytes::of_factor(direct.factor_entries, size_of::<f64>()),
             factor_entries: direct.factor_entries,
             direct_seconds: times * direct.seconds,
-            multigrid_bytes: multigrid_bytes(problem),
+            multigrid_bytes: if takes_travels(problem) { multigrid_bytes(problem) } else { f64::INFINITY },
             multigrid_seconds,
             hierarchy_seconds,
             shared_seconds: times * direct.shared_seconds,
@@ -160,6 +153,12 @@ pub(in crate::qp) fn check_memory(problem: &ContactProblem, kept: Kept, settings
             (values, bytes::of_factor(values as f64, size_of::<f64>()) + bytes::of_set(stiffness_entries))
         }
         Kept::Multigrid => (0, 0.0),
+    };
+    let is_factor = !matches!(kept, Kept::Nothing | Kept::Multigrid);
+    // The bound of a singular stiffness needs further factors, with springs.
+    let beside = match is_factor && problem.is_singular() {
+        true => beside + bytes::of_springs(factor_entries as f64, stiffness_entries),
+        false => beside,
     };
     let bytes = match kept {
         Kept::Multigrid => multigrid_bytes(problem),

@@ -1,6 +1,7 @@
 //! Number of cycles of an answer by multigrid, from the near-null space of the hierarchy and the quality of its smoother.
 
 use crate::qp::linear::SymmetricMatrix;
+use crate::qp::method::mprgp::takes_travels;
 use crate::qp::problem::ContactProblem;
 
 /// Row sums of a stiffness may be negative by this share of the diagonal, because of rounding.
@@ -36,7 +37,11 @@ impl Smooth {
     pub(super) fn of(problem: &ContactProblem) -> Self {
         let stiffness = problem.stiffness();
         match problem.near_null() {
-            Some(_) if stiffness.diagonal().contains(&0.0) => Smooth::Unknown,
+            Some(_) if !takes_travels(problem) => Smooth::Unknown,
+            // One vector: of a diffusion it can only be the constants.
+            Some(modes) if modes.count() == 1 && Self::of_stiffness(stiffness) != Smooth::Unknown => {
+                Self::of_stiffness(stiffness)
+            }
             Some(_) if is_heavy(stiffness) => Smooth::GivenHeavy,
             Some(_) => Smooth::Given,
             None => Self::of_stiffness(stiffness),

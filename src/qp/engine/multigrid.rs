@@ -8,7 +8,7 @@ use crate::qp::certificate::Examined;
 use crate::qp::cost::{Kept, NEAR_CYCLES, check_memory, check_time, seconds};
 use crate::qp::judged::{answer, judged};
 use crate::qp::linear::multigrid::{Multigrid, NearNullSpace};
-use crate::qp::method::mprgp::{Limits, Mprgp};
+use crate::qp::method::mprgp::{Limits, Mprgp, takes_travels};
 use crate::qp::method::{Solver, Start};
 use crate::qp::plan::Tried;
 use crate::qp::problem::{ContactProblem, check_gap};
@@ -52,11 +52,15 @@ impl Hierarchical {
     /// Builds the hierarchy from the near-null space of `problem`, or from constants if it has none.
     ///
     /// # Errors
-    /// Those of [`Multigrid::new`]; before that [`Error::Interrupted`], [`Error::TooLarge`] and [`Error::OutOfTime`].
+    /// Those of [`Multigrid::new`], also for a dof without stiffness that is no travel; before that [`Error::Interrupted`], [`Error::TooLarge`] and [`Error::OutOfTime`].
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         let Settings { watch, threads, .. } = settings;
         if watch.is_stopped() {
             return Err(Error::Interrupted);
+        }
+        if !takes_travels(problem) {
+            let dof = problem.without_stiffness().first().copied().unwrap_or_default();
+            return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is 0e0, indices from 0") });
         }
         check_memory(problem, Kept::Multigrid, settings)?;
         seconds::learn(watch);

@@ -8,7 +8,7 @@ use super::factored::Factored;
 use super::loading::Load;
 use super::multigrid::Hierarchical;
 use crate::error::Error;
-use crate::qp::judged::with_solution;
+use crate::qp::judged::{in_time, with_solution};
 use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::method::Start;
 use crate::qp::plan::{Tried, method_for};
@@ -134,6 +134,10 @@ impl Prepared {
     pub fn solve(&self, gap: &[f64]) -> Result<Solution, Error> {
         let settings = &self.settings.started()?;
         let solved = self.engine.solve(&self.case(gap, settings)?);
+        let solved = match solved {
+            Err(Error::OutOfTime { .. }) => solved,
+            solved => in_time(self.engine.problem(), settings, solved),
+        };
         with_solution(solved, |solution| Solution { why: self.why.as_deref().cloned(), ..solution })
     }
 

@@ -67,7 +67,7 @@ pub struct SparseMatrix {
 }
 
 /// The positions of the entries, column by column.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 struct Pattern {
     column_starts: Vec<usize>,
     row_indices: Vec<usize>,
@@ -194,6 +194,14 @@ impl SparseMatrix {
     /// The matrix with other values in the same pattern.
     pub(crate) fn with_values(&self, values: Vec<f64>) -> Self {
         SparseMatrix { rows: self.rows, pattern: self.pattern.clone(), values: Arc::new(values) }
+    }
+
+    /// The matrix with `count` more rows and columns of zeros at its end; values are not copied, positions only if they are shared.
+    pub(super) fn with_empty(self, count: usize) -> Self {
+        let SparseMatrix { rows, pattern, values } = self;
+        let mut pattern = Arc::unwrap_or_clone(pattern);
+        pattern.column_starts.extend(vec![values.len(); count]);
+        SparseMatrix { rows: rows + count, pattern: Arc::new(pattern), values }
     }
 
     /// Number of rows, empty ones included.

@@ -101,6 +101,11 @@ impl SymmetricMatrix {
         Self::from_lower(upper.transposed())
     }
 
+    /// The matrix with `count` more rows and columns of zeros at its end.
+    pub(crate) fn with_empty(self, count: usize) -> Self {
+        SymmetricMatrix { lower: self.lower.with_empty(count) }
+    }
+
     /// The matrix `A + B' diag(w) B` for rows B (m x n) and weights w (m).
     ///
     /// # Errors

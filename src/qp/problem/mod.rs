@@ -11,7 +11,7 @@ use diagonal::Diagonal;
 
 use crate::error::Error;
 use crate::qp::linear::multigrid::NearNullSpace;
-use crate::qp::linear::{Accumulator, SparseMatrix, SymmetricMatrix};
+use crate::qp::linear::{Accumulator, SparseMatrix, SymmetricMatrix, largest};
 
 /// Frictionless unilateral contact as a convex quadratic program:
 ///
@@ -48,6 +48,7 @@ pub struct ContactProblem {
     near_null: Option<Arc<NearNullSpace>>,
     diagonal: FoundOnce<Diagonal>,
     parts: FoundOnce<Parts>,
+    free_mode: FoundOnce<bool>,
 }
 
 /// Data that follow from the matrices of a problem, and some also from which rows have an obstacle: computed at the first use
@@ -71,6 +72,9 @@ impl<T> PartialEq for FoundOnce<T> {
         true
     }
 }
+
+/// Forces of a mode below this share of their terms are rounding.
+const FREE: f64 = 1e-9;
 
 /// Gaps that other QP solvers treat as infinite; any other finite gap is a length.
 const NO_OBSTACLE: [f64; 2] = [1e20, 1e30];
@@ -106,8 +110,8 @@ impl ContactProblem {
             return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
         }
         let gap = with_infinite(gap);
-        let (diagonal, parts) = (FoundOnce::not_yet(), FoundOnce::not_yet());
-        Ok(ContactProblem { stiffness, load, contact, gap, near_null: None, diagonal, parts })
+        let (diagonal, parts, free_mode) = (FoundOnce::not_yet(), FoundOnce::not_yet(), FoundOnce::not_yet());
+        Ok(ContactProblem { stiffness, load, contact, gap, near_null: None, diagonal, parts, free_mode })
     }
 
     /// The same problem with the near-null space of its body for multigrid: displacements of almost no energy, such as the
@@ -121,7 +125,7 @@ impl ContactProblem {
         if found != expected {
             return Err(Error::Length { name: "near-null vector", found, expected, of: "dofs" });
         }
-        Ok(ContactProblem { near_null: Some(near_null), ..self })
+        Ok(ContactProblem { near_null: Some(near_null), free_mode: FoundOnce::not_yet(), ..self })
     }
 
     /// The near-null space, if one was given.
@@ -187,13 +191,32 @@ impl ContactProblem {
         let gap = with_infinite(gap);
         let same_rows = gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
         let parts = if same_rows { self.parts.clone() } else { FoundOnce::not_yet() };
-        let diagonal = self.diagonal.clone();
-        Ok(ContactProblem { stiffness, load, contact, gap, near_null, diagonal, parts })
+        let (diagonal, free_mode) = (self.diagonal.clone(), self.free_mode.clone());
+        Ok(ContactProblem { stiffness, load, contact, gap, near_null, diagonal, parts, free_mode })
     }
 
     /// The diagonal of K, computed at its first use.
     pub(in crate::qp) fn diagonal(&self) -> &Diagonal {
         self.diagonal.get_or_find(|| Diagonal::of(&self.stiffness))
+    }
+
+    /// The dofs without stiffness, in increasing order.
+    pub(in crate::qp) fn without_stiffness(&self) -> Vec<usize> {
+        (0..self.dofs()).filter(|&dof| self.diagonal().values[dof] == 0.0).collect()
+    }
+
+    /// Returns `true` if one of the vectors of the near-null space has no energy: supports do not hold the body. Computed at its first
+    /// use.
+    pub(in crate::qp) fn has_free_mode(&self) -> bool {
+        let is_free =
+            |mode: &Vec<f64>| largest(&self.stiffness.mul(mode)) <= FREE * largest(&self.stiffness.mul_abs(mode));
+        let any_is_free = || self.near_null().is_some_and(|modes| modes.vectors().iter().any(is_free));
+        *self.free_mode.get_or_find(any_is_free)
+    }
+
+    /// Returns `true` if the stiffness is known to be singular: contact alone holds a dof or a mode.
+    pub(in crate::qp) fn is_singular(&self) -> bool {
+        !self.without_stiffness().is_empty() || self.has_free_mode()
     }
 
     /// The parts, computed at their first use.

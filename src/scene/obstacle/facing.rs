@@ -16,6 +16,11 @@ use crate::scene::schema::approach::Rule;
 /// normal, which is wrong by half the angle of a facet.
 const ASLANT: f64 = 0.2;
 
+/// Lengths below this share of the shortest edge of the facets at a node are rounding of coordinates: seven digits, as in single precision,
+/// leave 5e-7 of the size of the bodies, which is below this share of a facet if at most 2000 facets lie side by side. A place nearer to an
+/// edge of a facet than this share of the edge counts as on the edge.
+const SAME_PLACE: f64 = 1e-3;
+
 /// The surface of another elastic body: every candidate lies opposite one of its nodes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
@@ -38,7 +43,8 @@ impl ObstacleShape for FacingSpec {
             return Err(wrong(site.field("boundary"), message));
         }
         let (normals, partners) = (node_normals(site.body, own), node_normals(site.body, other));
-        let search = Search { site, own, other, partners, tolerance: PLACE_TOLERANCE * mesh.size() };
+        let edges = shortest_edges(own, mesh.nodes());
+        let search = Search { site, own, other, partners, edges };
         let candidates = site.candidates.iter().zip(&normals);
         let pairs: Result<Vec<Pair>, Error> = candidates
             .map(|(&(node, _), &(_, outward))| {
@@ -74,8 +80,8 @@ struct Search<'a> {
     other: &'a Boundary,
     /// Nodes of the other boundary with their outward normals.
     partners: Vec<(usize, [f64; 3])>,
-    /// Lengths below this are rounding of written decimals.
-    tolerance: f64,
+    /// The shortest edge of the facets at each node of the own boundary, in length; infinite at other nodes.
+    edges: Vec<f64>,
 }
 
 /// The vector from a candidate to a node of the other boundary.
@@ -85,7 +91,27 @@ struct Way {
     pair: Pair,
 }
 
+/// The shortest edge of the facets at each node of the mesh; infinite at nodes outside the boundary, and if facets are points.
+fn shortest_edges(boundary: &Boundary, nodes: &[[f64; 3]]) -> Vec<f64> {
+    let mut shortest = vec![f64::INFINITY; nodes.len()];
+    for facet in boundary.facets() {
+        for (place, &node) in facet.iter().enumerate() {
+            for &other in &facet[..place] {
+                let edge = distance(nodes[node], nodes[other]);
+                [node, other].iter().for_each(|&end| shortest[end] = shortest[end].min(edge));
+            }
+        }
+    }
+    shortest
+}
+
 impl Search<'_> {
+    /// Lengths below this at a node of the own boundary are rounding of coordinates.
+    fn tolerance(&self, node: usize) -> f64 {
+        let edge = self.edges[node];
+        if edge.is_finite() { SAME_PLACE * edge } else { PLACE_TOLERANCE * self.site.body.mesh().size() }
+    }
+
     fn nearest(&self, node: usize, outward: [f64; 3]) -> Result<Way, Error> {
         let (nodes, rule) = (self.site.body.mesh().nodes(), self.site.rule);
         let ways = self.partners.iter().map(|&(partner, facing)| {
@@ -99,7 +125,7 @@ impl Search<'_> {
         let nearest = match rule {
             // The nearest of the nodes straight across; without such a node, the node with the smallest offset.
             Rule::Approach => ways.min_by(|a, b| {
-                let straight = |way: &Way| way.aside.max(self.tolerance);
+                let straight = |way: &Way| way.aside.max(self.tolerance(node));
                 let far = |way: &Way| way.pair.distance.abs();
                 straight(a).total_cmp(&straight(b)).then(far(a).total_cmp(&far(b)))
             }),
@@ -117,7 +143,7 @@ impl Search<'_> {
         let mesh = site.body.mesh();
         let place = point(&mesh.nodes()[node][..mesh.dimension()]);
         let slant = if site.rule == Rule::Approach { 0.0 } else { ASLANT * way.pair.distance.abs() };
-        if way.aside > self.tolerance.max(slant) {
+        if way.aside > self.tolerance(node).max(slant) {
             let message = format!(
                 "node {node} of `{own}` at {place} has no node of `{other}` across it: the nearest is {:.3e} aside; the \
                  nodes of the two boundaries must pair up",
@@ -163,9 +189,6 @@ impl Search<'_> {
     }
 }
 
-/// A place nearer to an edge of a facet than this share of the edge's length counts as on the edge.
-const ON_EDGE: f64 = 1e-6;
-
 /// A place opposite to the inside of a facet.
 struct Across {
     /// Unit vector from the facet to the other body.
@@ -203,7 +226,7 @@ impl Across {
             [a, b] => {
                 let along = minus(nodes[b], nodes[a]);
                 let share = dot(minus(at, nodes[a]), along) / dot(along, along);
-                share > ON_EDGE && share < 1.0 - ON_EDGE
+                share > SAME_PLACE && share < 1.0 - SAME_PLACE
             }
             _ => {
                 let turns = (0..corners.len()).map(|corner| {
@@ -212,7 +235,7 @@ impl Across {
                     dot(cross(edge, minus(at, a)), normal) / dot(edge, edge)
                 });
                 let turns: Vec<f64> = turns.collect();
-                turns.iter().all(|&turn| turn > ON_EDGE) || turns.iter().all(|&turn| turn < -ON_EDGE)
+                turns.iter().all(|&turn| turn > SAME_PLACE) || turns.iter().all(|&turn| turn < -SAME_PLACE)
             }
         };
         is_inside.then_some(Across { normal, distance: way })

@@ -154,6 +154,18 @@ impl Units {
         if is_metric { "s" } else { "" }
     }
 
+    /// Pascals in a unit of force over a unit of length squared, if the length is in millimetres: a scene that names no units has metres,
+    /// which may stand for any consistent system.
+    pub(super) fn pascals(&self) -> Option<f64> {
+        let newtons = match self.force.as_str() {
+            "N" => 1.0,
+            "kN" => 1e3,
+            "MN" => 1e6,
+            _ => return None,
+        };
+        (self.length == "mm").then_some(newtons * 1e6)
+    }
+
     /// The unit of pressure and stress: `Pa`, `MPa`, or force over length squared.
     pub fn pressure(&self) -> String {
         match (self.force.as_str(), self.length.as_str()) {

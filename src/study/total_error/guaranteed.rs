@@ -8,8 +8,11 @@ use serde::Serialize;
 use super::goal::{Answering, Bound, Ended, MARKED, TotalErrorGoal, marked, shortage};
 use crate::continuum::{Bracket, Judged, PlaneAnswer, PlaneProblem, Triangulation};
 use crate::error::Error;
+use crate::fem::assembly::internal_force;
+use crate::qp::linear::dot;
 use crate::qp::{Method, Settings, solve};
 use crate::scene::{Answer, Model, Scene};
+use crate::solution::Solution;
 use crate::study::warnings::{check_motion, of_refined};
 use crate::study::{AnswerWarning, Status};
 
@@ -41,9 +44,9 @@ pub(crate) struct TotalErrorLevel {
     pub stress_seconds: f64,
 }
 
-/// The answer on the scene's own mesh, with its judgement.
+/// The answer on a mesh, with its judgement.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub(crate) struct OwnMesh {
+pub(crate) struct JudgedMesh {
     /// Its elements.
     pub element: &'static str,
     /// Its unknowns.
@@ -88,7 +91,10 @@ pub(crate) struct TotalError {
     pub defect: f64,
     /// The result on the scene's own mesh; `None` if that has no answer.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub own_mesh: Option<OwnMesh>,
+    pub own_mesh: Option<JudgedMesh>,
+    /// The judgement of the answer on the last mesh; `None` without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub last_mesh: Option<JudgedMesh>,
     pub levels: Vec<TotalErrorLevel>,
     /// Warnings about the answer on the scene's own mesh that no finer mesh settles.
     pub warnings: Vec<AnswerWarning>,
@@ -99,9 +105,19 @@ pub(crate) struct TotalError {
     /// The displacement and the stresses.
     #[serde(skip)]
     pub answer: PlaneAnswer,
+    /// The answer of `solve` on the last mesh, or the reason for which there is none.
+    #[serde(skip)]
+    pub last: Result<Box<OnLastMesh>, String>,
     /// The meshes, from the first to the last.
     #[serde(skip)]
     pub meshes: Vec<Triangulation>,
+}
+
+/// The answer on the last mesh, as `solve` finds it: its rows are at nodes, those of the bound hold between them as well.
+#[derive(Clone, Debug)]
+pub(crate) struct OnLastMesh {
+    pub answer: Answer,
+    pub solution: Solution,
 }
 
 /// A function that is called with what was found, after each mesh but the last.
@@ -112,6 +128,7 @@ pub(crate) type Keep<'a> = &'a dyn Fn(&TotalError);
 /// # Errors
 /// Those of [`crate::solve`] on the first mesh; [`Error::Scene`] for a bound of the force with obstacles from several directions.
 pub(super) fn total_error(
+    scene: &Scene,
     problem: &PlaneProblem,
     mesh: Triangulation,
     model: &Arc<Model>,
@@ -128,7 +145,44 @@ pub(super) fn total_error(
     let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
     let search =
         Search { problem, model, goal, settings: Settings { method, ..settings.clone() }, keep, clock: Instant::now() };
-    search.run(mesh)
+    let found = search.run(mesh)?;
+    settings.watch.step("answer", 0);
+    let last = on_last_mesh(scene, model, &found, settings);
+    let last_mesh = last.as_ref().ok().map(|last| last.1);
+    let seconds = search.clock.elapsed().as_secs_f64();
+    Ok(TotalError {
+        last: last.map(|last| Box::new(last.0)).map_err(|error| error.to_string()),
+        last_mesh,
+        seconds,
+        ..found
+    })
+}
+
+/// The answer to the scene on the last mesh, and its distance from the continuum: that of the displacement of the bound, plus the one from
+/// that displacement.
+fn on_last_mesh(
+    scene: &Scene,
+    first: &Model,
+    found: &TotalError,
+    settings: &Settings,
+) -> Result<(OnLastMesh, JudgedMesh), Error> {
+    let model = Arc::new(scene.on_last_mesh(first, &found.answer)?);
+    let solution = solve(model.problem(), settings)?;
+    let answer = Answer::of(model.clone(), &solution)?;
+    let size = |displacement: &[f64]| -> Result<f64, Error> {
+        Ok(dot(displacement, &internal_force(model.body(), displacement)?).max(0.0).sqrt())
+    };
+    let of_bound = found.answer.displacement.as_flattened();
+    let away: Vec<f64> = answer.displacement().iter().zip(of_bound).map(|(own, other)| own - other).collect();
+    let distance = found.total_error.bound * size(of_bound)? + size(&away)?;
+    let bound = if distance == 0.0 { 0.0 } else { distance / size(answer.displacement())? };
+    let judged = JudgedMesh {
+        element: model.mesh().kind().name(),
+        dofs: model.problem().dofs(),
+        total_error: Bound { bound, guaranteed: true },
+        estimated: answer.discretisation_error()?,
+    };
+    Ok((OnLastMesh { answer, solution }, judged))
 }
 
 /// The data that stay the same from mesh to mesh.
@@ -149,13 +203,15 @@ impl Search<'_> {
         loop {
             let mesh = next;
             self.settings.watch.step("mesh", found.as_ref().map_or(0, |found| found.levels.len()));
-            let bracket = match Bracket::new(self.problem, &mesh, touching.as_deref(), &self.settings) {
+            let last = found.as_ref().and_then(|found| found.levels.last());
+            let settings = self.keeping(last.map_or(0.0, |last| last.displacement_seconds));
+            let bracket = match Bracket::new(self.problem, &mesh, touching.as_deref(), &settings) {
                 Ok(bracket) => bracket,
                 Err(error) => return self.cut_short(found, error, mesh.triangles.len()),
             };
             let level = self.level(&bracket)?;
             let before = found.as_ref().and_then(|found| found.levels.last()).map_or(0.0, |last| last.seconds);
-            let is_late = !self.settings.watch.allows(GROWTH * (level.seconds - before));
+            let is_late = !self.settings.watch.allows(GROWTH * (level.seconds - before + level.displacement_seconds));
             let (is_first, is_met) = (found.is_none(), self.is_met(&level));
             let mut now = self.with_level(found, &bracket, level);
             // An obstacle that just touches presses less from mesh to mesh.
@@ -188,6 +244,11 @@ impl Search<'_> {
         }
     }
 
+    /// The settings with a deadline that leaves the time for the answer on the last mesh, which takes as long as its displacement.
+    fn keeping(&self, displacement_seconds: f64) -> Settings {
+        Settings { watch: self.settings.watch.keeping(GROWTH * displacement_seconds), ..self.settings.clone() }
+    }
+
     /// The result before an error for lack of memory or time; any other error.
     fn cut_short(&self, found: Option<TotalError>, error: Error, triangles: usize) -> Result<TotalError, Error> {
         let (Some(found), Some(ended)) = (found, shortage(&error)) else { return Err(error) };
@@ -215,6 +276,8 @@ impl Search<'_> {
             defect: bracket.defect,
             next_triangles: None,
             own_mesh,
+            last_mesh: None,
+            last: Err("it is not computed yet".into()),
             seconds: level.seconds,
             levels,
             answer: bracket.answer(),
@@ -234,10 +297,10 @@ impl Search<'_> {
     }
 
     /// Judges that answer by a bracket.
-    fn own_mesh(&self, own: &Answer, bracket: &Bracket) -> Result<OwnMesh, Error> {
+    fn own_mesh(&self, own: &Answer, bracket: &Bracket) -> Result<JudgedMesh, Error> {
         let (model, judged) = (self.model, judged(own, bracket));
         let bound = if judged.bound == 0.0 { 0.0 } else { judged.bound / judged.norm };
-        Ok(OwnMesh {
+        Ok(JudgedMesh {
             element: model.mesh().kind().name(),
             dofs: model.problem().dofs(),
             total_error: Bound { bound, guaranteed: true },

@@ -39,7 +39,7 @@ pub(crate) fn total_error(
     scene.check_continuum()?;
     match scene.plane_problem(model) {
         Ok((problem, mesh)) => {
-            let found = guaranteed::total_error(&problem, mesh, model, goal, settings, keep)?;
+            let found = guaranteed::total_error(scene, &problem, mesh, model, goal, settings, keep)?;
             Ok(Found::Guaranteed(Box::new(found)))
         }
         Err(Error::Scene { path, message }) if goal.force_error.is_some() => {

@@ -8,7 +8,7 @@
 //! * the rows that look closed are put at their gaps by the smallest shift, and keep the forces of the answer.
 
 use super::super::energy_norm::Boundary;
-use super::repair::{Multipliers, Repair};
+use super::repair::{Repair, Witness};
 use super::{Answer, EnergyNorm, ErrorBound};
 use crate::qp::problem::ContactProblem;
 
@@ -36,26 +36,42 @@ impl ContactProblem {
         answer: &Answer,
         closed: &[bool],
     ) -> Option<ErrorBound> {
-        let residual = |answer: &Answer| match norm.springs() {
+        let own = self.beside_springs(norm, answer);
+        let first = FirstRepair::new(self, norm, boundary, &own, closed)?;
+        if first.is_sharp { Some(first.bound) } else { self.repeated(first, answer).0 }
+    }
+
+    /// The answer moved to the witness of its own bound, in doubles; `None` if there is none, or if the boundary is not known.
+    pub(crate) fn repaired(&self, norm: &EnergyNorm, u: &[f64], lambda: &[f64]) -> Option<Moved> {
+        let violation = self.accurate_violation(u);
+        let residual = self.accurate_residual(u, lambda);
+        let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation, rounding: 0.0 };
+        let own = self.beside_springs(norm, &answer);
+        let closed = self.rows_that_look_closed(&answer);
+        let first = FirstRepair::new(self, norm, norm.boundary()?, &own, &closed)?;
+        if first.is_sharp { Some(first.repair.answer(&first.witness)) } else { Some(self.repeated(first, &answer).1) }
+    }
+
+    /// The answer with the forces of the springs of the norm in its residual.
+    fn beside_springs<'a>(&self, norm: &EnergyNorm, answer: &Answer<'a>) -> Answer<'a> {
+        let residual = match norm.springs() {
             Some(springs) => springs.residual(&self.contact, &answer.residual, answer.violation),
             None => answer.residual.clone(),
         };
-        let first = Answer { residual: residual(answer), ..*answer };
-        let repair = Repair::new(self, norm, boundary, &first)?;
-        let witness = repair.best_witness(closed)?;
-        let bound = repair.bound(&witness);
-        // With springs the shift is large and bends little: a factor that loses digits makes its energy mere rounding.
-        let is_precise = norm.springs().is_none() || norm.loss() <= LOST_WITH_SPRINGS;
-        let is_exact = norm.widening() == 1.0 && !witness.is_rounded && is_precise;
-        if is_exact && repair.cancelled(&witness) <= SMALL * bound.whole {
-            return Some(bound);
-        }
-        // The rounding of a large shift may be a large distance between rows that follow from others, and forces that cancel
-        // each other leave what the factor has rounded. So the repair is repeated from the witness itself, with small shifts,
-        // forces and changes of force; the distance of the answer from there needs no factor.
+        Answer { residual, ..*answer }
+    }
+
+    /// Repairs that start from the witness of the previous one: the best bound, if there is one, with the answer moved to its witness.
+    ///
+    /// The rounding of a large shift may be a large distance between rows that follow from others, and forces that cancel each
+    /// other leave what the factor has rounded. A repair from the witness itself has small shifts, forces and changes of force;
+    /// the distance of the answer from there needs no factor.
+    fn repeated(&self, first: FirstRepair, answer: &Answer) -> (Option<ErrorBound>, Moved) {
+        let FirstRepair { repair, mut witness, .. } = first;
+        let (norm, boundary) = (repair.norm, repair.boundary);
         let mut multipliers = vec![answer.multiplier.to_vec()];
         let mut next = (repair.answer(&witness), repair.expanded(&witness.change));
-        let (mut witness, mut best) = (witness, None);
+        let mut best: (Option<ErrorBound>, Moved) = (None, next.0.clone());
         for _ in 0..MOST_NEAR {
             let ((moved, multiplier), change) = next;
             // Multipliers stay sums: if rounded, they would leave more than all other forces on a dof with almost no stiffness.
@@ -64,13 +80,10 @@ impl ContactProblem {
             multipliers.push(change);
             let parts: Vec<&[f64]> = multipliers.iter().map(Vec::as_slice).collect();
             let violation = self.accurate_violation(&moved);
-            let near = Answer {
-                displacement: &moved,
-                multiplier: &multiplier,
-                residual: self.accurate_residual_of(&moved, &parts),
-                violation: &violation,
-            };
-            let near = Answer { residual: residual(&near), ..near };
+            let residual = self.accurate_residual_of(&moved, &parts);
+            let near =
+                Answer { displacement: &moved, multiplier: &multiplier, residual, violation: &violation, ..*answer };
+            let near = self.beside_springs(norm, &near);
             let Some(repair) = Repair::new(self, norm, boundary, &near) else { break };
             let Some(settled) = repair.best_witness(&witness.closed) else { break };
             witness = settled;
@@ -78,25 +91,50 @@ impl ContactProblem {
             let of_near = repair.bound(&witness);
             let size = of_near.size();
             let bound = of_near.farther(self, &step);
-            let is_last = gains_nothing(size, bound.size(), best.as_ref().map_or(f64::INFINITY, ErrorBound::size));
-            best = Some(best.into_iter().fold(bound, ErrorBound::smaller));
+            let size_of_best = best.0.as_ref().map_or(f64::INFINITY, ErrorBound::size);
+            let is_last = gains_nothing(size, bound.size(), size_of_best);
+            next = (repair.answer(&witness), repair.expanded(&witness.change));
+            if best.0.is_none() || bound.size() <= size_of_best {
+                best = (Some(bound), next.0.clone());
+            }
             if is_last {
                 break;
             }
-            next = (repair.answer(&witness), repair.expanded(&witness.change));
         }
         best
     }
+}
 
-    /// A repaired answer, in doubles: displacements at which the rows that look closed are at their gaps, and the multipliers
-    /// of their equilibrium; `None` if the repair fails, or if the boundary is not known.
-    pub(crate) fn repaired(&self, norm: &EnergyNorm, u: &[f64], lambda: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-        let violation = self.accurate_violation(u);
-        let residual = self.accurate_residual(u, lambda);
-        let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
-        let repair = Repair::new(self, norm, norm.boundary()?, &answer)?;
-        let witness = repair.settle(&self.rows_that_look_closed(&answer), Multipliers::InEquilibrium)?;
-        Some(repair.answer(&witness))
+/// A displacement with its multipliers.
+type Moved = (Vec<f64>, Vec<f64>);
+
+/// The first repair of an answer.
+struct FirstRepair<'a> {
+    repair: Repair<'a>,
+    witness: Witness,
+    bound: ErrorBound,
+    /// `true` if rounding takes no part in the bound, or the whole bound is what rounding the displacement does.
+    is_sharp: bool,
+}
+
+impl<'a> FirstRepair<'a> {
+    /// `None` if the rows that look closed cannot be met together.
+    fn new(
+        problem: &'a ContactProblem,
+        norm: &'a EnergyNorm,
+        boundary: &'a Boundary,
+        answer: &'a Answer<'a>,
+        closed: &[bool],
+    ) -> Option<Self> {
+        let repair = Repair::new(problem, norm, boundary, answer)?;
+        let witness = repair.best_witness(closed)?;
+        let bound = repair.bound(&witness);
+        // With springs the shift is large and bends little: a factor that loses digits makes its energy mere rounding.
+        let is_precise = norm.springs().is_none() || norm.loss() <= LOST_WITH_SPRINGS;
+        let is_exact = norm.widening() == 1.0 && !witness.is_rounded && is_precise;
+        let is_rounding = problem.parts().count() == 1 && bound.whole <= answer.rounding;
+        let is_sharp = is_exact && (is_rounding || repair.vague(&witness) <= SMALL * bound.whole);
+        Some(FirstRepair { repair, witness, bound, is_sharp })
     }
 }
 

@@ -9,13 +9,16 @@
 //! v is the answer with the rows that press or penetrate moved to their gaps together. For an answer of MPRGP this move is
 //! rounding, because its rows are bounds that it keeps. The dual norm comes from the cycles of the hierarchy.
 //!
+//! A dof without stiffness, such as the travel of an obstacle, has no energy. K is definite on the others, and the inequality holds for
+//! these if the forces on the dof balance: the multipliers of its rows are enlarged by the share that its residual lacks.
+//!
 //! Parts that no coupling joins are blocks of K, and the inequality holds for each by itself. If a coupling is too weak to join
 //! two parts into one, the parts have no bound of their own.
 
 use super::{Answer, ErrorBound, Measured};
 use crate::qp::certificate::energy_norm::ROUNDED_BOUND;
-use crate::qp::linear::SymmetricMatrix;
 use crate::qp::linear::multigrid::{Blocks, Multigrid, dual_norms_within, negative_direction};
+use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
 
@@ -38,10 +41,13 @@ impl ContactProblem {
         let keeps = |row: usize| if placed.closed[row] { answer.multiplier[row].min(0.0) } else { 0.0 };
         let kept: Vec<f64> = (0..self.rows()).map(keeps).collect();
         let is_dropped = kept.iter().zip(answer.multiplier).any(|(kept, given)| kept != given);
-        let residual = match is_dropped {
+        let mut residual = match is_dropped {
             true => self.accurate_residual(answer.displacement, &kept),
             false => answer.residual.clone(),
         };
+        if !self.balance_travels(&by_row, &kept, &mut residual) {
+            return (ErrorBound::none(), None);
+        }
         let parts = self.parts();
         let are_apart = parts.count() == 1 || parts.are_apart(&self.stiffness);
         let one = vec![0; if are_apart { 0 } else { self.dofs() }];
@@ -86,6 +92,33 @@ impl ContactProblem {
         (ErrorBound { whole, of_parts }, measured)
     }
 
+    /// Turns the `residual` of multipliers into that of others which balance every dof without stiffness: those of its rows times one
+    /// factor. Returns `false` if there is no factor that keeps their signs.
+    fn balance_travels(&self, by_row: &SparseMatrix, multiplier: &[f64], residual: &mut [f64]) -> bool {
+        let travels = self.without_stiffness();
+        let mut enlarged = vec![0.0; self.rows()];
+        for &travel in &travels {
+            if residual[travel] == 0.0 {
+                continue;
+            }
+            let pushed: f64 = self.contact.column(travel).map(|(row, c)| c * multiplier[row]).sum();
+            let share = -residual[travel] / pushed;
+            if !share.is_finite() || share < -1.0 {
+                return false;
+            }
+            for (row, _) in self.contact.column(travel).filter(|entry| entry.1 != 0.0) {
+                // A row of two travels would have two factors.
+                if enlarged[row] != 0.0 {
+                    return false;
+                }
+                enlarged[row] = share * multiplier[row];
+                by_row.column(row).for_each(|(dof, b)| residual[dof] += b * enlarged[row]);
+            }
+        }
+        travels.iter().for_each(|&travel| residual[travel] = 0.0);
+        true
+    }
+
     /// Returns `true` if conjugate gradients with the cycles meet no direction of negative energy beyond rounding and `watch`
     /// is not over before they end.
     fn is_semidefinite_by(&self, multigrid: &Multigrid, watch: &Watch) -> bool {
@@ -99,7 +132,6 @@ impl ContactProblem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::linear::SparseMatrix;
     use crate::qp::linear::multigrid::NearNullSpace;
 
     /// Points along a side of the square.
@@ -147,7 +179,7 @@ mod tests {
         let (u, lambda) = (vec![0.9; dofs], vec![-1.0; dofs]);
         let violation = problem.accurate_violation(&u);
         let residual = problem.accurate_residual(&u, &lambda);
-        let answer = Answer { displacement: &u, multiplier: &lambda, residual, violation: &violation };
+        let answer = Answer { displacement: &u, multiplier: &lambda, residual, violation: &violation, rounding: 0.0 };
         let (bound, measured) = problem.energy_error_bound_by(&multigrid, &answer, &Watch::default());
         // The exact answer is one everywhere: K 1 is one at each edge, so that the error is 0.1 sqrt(1'K 1), once for the answer
         // and once for its residual.
@@ -157,14 +189,33 @@ mod tests {
         // A force that pulls does not count, and is left as a residual.
         let pulls = vec![1.0; dofs];
         let residual = problem.accurate_residual(&u, &pulls);
-        let answer = Answer { displacement: &u, multiplier: &pulls, residual, violation: &violation };
+        let answer = Answer { displacement: &u, multiplier: &pulls, residual, violation: &violation, rounding: 0.0 };
         let (bound, measured) = problem.energy_error_bound_by(&multigrid, &answer, &Watch::default());
         assert!(measured.is_none() && bound.whole > 0.1 * (4.0 * SIDE as f64).sqrt(), "{bound:?}");
         // The bound is that of the same displacements without forces.
         let nothing = vec![0.0; dofs];
         let residual = problem.accurate_residual(&u, &nothing);
-        let answer = Answer { displacement: &u, multiplier: &nothing, residual, violation: &violation };
+        let answer = Answer { displacement: &u, multiplier: &nothing, residual, violation: &violation, rounding: 0.0 };
         let (without, _) = problem.energy_error_bound_by(&multigrid, &answer, &Watch::default());
         assert!((bound.whole / without.whole - 1.0).abs() < ROUNDING, "{bound:?} {without:?}");
+    }
+
+    #[test]
+    fn the_forces_of_a_travel_are_enlarged_until_they_balance_it() {
+        // Rows 1 and 2 press with 3 and 1 against a travel with the load 5: each lacks a quarter of its force.
+        let entries = [(0, 0, 1.0), (0, 2, 1.0), (1, 1, 2.0), (1, 2, 1.0)];
+        let contact = SparseMatrix::from_triplets(2, 3, &entries).unwrap();
+        let stiffness = SparseMatrix::from_triplets(3, 3, &[(0, 0, 1.0), (1, 1, 1.0)]).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(stiffness).unwrap();
+        let problem = ContactProblem::new(stiffness, vec![0.0, 0.0, 5.0], contact, vec![0.0; 2]).unwrap();
+        let by_row = problem.contact.transposed();
+        let mut residual = vec![0.1, 0.2, 1.0];
+        assert!(problem.balance_travels(&by_row, &[-3.0, -1.0], &mut residual));
+        for (found, exact) in residual.iter().zip([0.1 - 0.75, 0.2 - 0.5, 0.0]) {
+            assert!((found - exact).abs() < ROUNDING, "{residual:?}");
+        }
+        // Without a force no factor helps; against pulls, it would have to turn them.
+        assert!(!problem.balance_travels(&by_row, &[0.0, 0.0], &mut [0.0, 0.0, 5.0]));
+        assert!(!problem.balance_travels(&by_row, &[1.0, 1.0], &mut [0.0, 0.0, 7.0]));
     }
 }

@@ -41,6 +41,8 @@ pub(super) struct Answer<'a> {
     pub residual: Vec<f64>,
     /// B u - g.
     pub violation: &'a [f64],
+    /// What rounding the displacement to doubles does to its energy norm; a bound below that needs no repair.
+    pub rounding: f64,
 }
 
 /// Numbers that cycles have measured for a bound.
@@ -298,7 +300,7 @@ mod tests {
     }
 
     fn answer<'a>(displacement: &'a [f64], multiplier: &'a [f64]) -> Answer<'a> {
-        Answer { displacement, multiplier, residual: vec![0.0; 3], violation: &[-1.0, -1.0] }
+        Answer { displacement, multiplier, residual: vec![0.0; 3], violation: &[-1.0, -1.0], rounding: 0.0 }
     }
 
     #[test]

@@ -173,9 +173,6 @@ impl<'a> Repair<'a> {
         {
             return ErrorBound::none();
         }
-        if (0..rest.len()).any(|row| error.terms[row] + left.terms[row] > 0.0 && self.norm.is_on_loose_dof(row)) {
-            return ErrorBound::none();
-        }
         // Closed rows are put exactly at their gaps, which moves the answer and its residual; forces that cancel each other
         // leave their rounding.
         let put: Vec<f64> = (0..rest.len()).map(|row| COUNTS * rest[row] + self.cancelled_on(witness, row)).collect();
@@ -202,11 +199,17 @@ impl<'a> Repair<'a> {
     }
 
     /// The sum of `cancelled_on` over all rows and the residual.
-    pub fn cancelled(&self, witness: &Witness) -> f64 {
+    fn cancelled(&self, witness: &Witness) -> f64 {
         let alpha = witness.error.alpha.abs() + witness.left.alpha.abs();
         let residual = self.length(&Force::new(alpha, vec![0.0; self.rows.len()]));
         let of_residual = CANCELLED * self.norm.loss() * residual;
         (0..self.rows.len()).map(|row| self.cancelled_on(witness, row)).fold(of_residual, |sum, of_row| sum + of_row)
+    }
+
+    /// The part of a bound that another repair can make smaller: rounding of forces that cancel each other, and of the way to the
+    /// gaps.
+    pub fn vague(&self, witness: &Witness) -> f64 {
+        self.cancelled(witness) + COUNTS * witness.rest.iter().sum::<f64>()
     }
 
     /// Multipliers in the units of the problem.
@@ -230,7 +233,13 @@ mod tests {
         let stiffness = SymmetricMatrix::from_lower(one(4.0)).unwrap();
         let problem = ContactProblem::new(stiffness, vec![8.0], one(1.0), vec![1.0]).unwrap();
         let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
-        let answer = Answer { displacement: &[1.5], multiplier: &[-3.0], residual: vec![-1.0], violation: &[0.5] };
+        let answer = Answer {
+            displacement: &[1.5],
+            multiplier: &[-3.0],
+            residual: vec![-1.0],
+            violation: &[0.5],
+            rounding: 0.0,
+        };
         let repair = Repair::new(&problem, &norm, norm.boundary().unwrap(), &answer).unwrap();
         let witness = repair.best_witness(&[true]).unwrap();
         let (moved, multiplier) = repair.answer(&witness);

@@ -2,7 +2,7 @@
 
 use super::repair::{Force, Multipliers, Repair, Witness};
 use super::triangle::{Triangle, triangle_of};
-use crate::qp::linear::{UpperTriangle, ldexp};
+use crate::qp::linear::ldexp;
 
 /// Number of corrections of the set of rows that look closed; after these, rows are only added.
 const EXCHANGES: usize = 10;
@@ -62,8 +62,8 @@ impl Repair<'_> {
             let missed = |row: usize| closed[row] && distance[row].abs() > tolerance[row];
             let follows: Vec<usize> = set
                 .iter()
-                .zip(independent)
-                .filter(|entry| !entry.1 && missed(*entry.0))
+                .zip(&independent)
+                .filter(|entry| !*entry.1 && missed(*entry.0))
                 .map(|entry| *entry.0)
                 .collect();
             let (deeper, looser): (Vec<usize>, Vec<usize>) = follows.iter().partition(|&&row| distance[row] > 0.0);
@@ -105,11 +105,12 @@ impl Repair<'_> {
     fn witness(&self, error: Force, change: &[f64], closed: &[bool], multipliers: Multipliers) -> Witness {
         let in_equilibrium = multipliers == Multipliers::InEquilibrium;
         let balanced = |row: usize| self.multiplier[row] + if in_equilibrium { change[row] } else { 0.0 };
-        // A force that pulls is no multiplier.
+        // A force that pulls is no multiplier, and nothing balances one on a loose dof.
+        let holds = |row: usize| closed[row] && !self.norm.is_on_loose_dof(row);
         let multiplier: Vec<f64> =
-            (0..change.len()).map(|row| if closed[row] { balanced(row).min(0.0) } else { 0.0 }).collect();
+            (0..change.len()).map(|row| if holds(row) { balanced(row).min(0.0) } else { 0.0 }).collect();
         let left = |row: usize| match in_equilibrium {
-            true if closed[row] => -balanced(row).max(0.0),
+            true if closed[row] => multiplier[row] - balanced(row),
             true => 0.0,
             false => multiplier[row] - self.multiplier[row] - change[row],
         };
@@ -141,7 +142,8 @@ impl Repair<'_> {
     fn fit(&self, set: &[usize], base: &Force) -> Option<Fitted> {
         let half = |&row: &usize| if self.norm.is_over() { None } else { Some(self.half(row)) };
         let columns: Vec<&[f64]> = set.iter().map(half).collect::<Option<_>>()?;
-        let Triangle { r: triangle, weights } = triangle_of(&columns, || self.norm.is_over())?;
+        let triangle = triangle_of(&columns, || self.norm.is_over())?;
+        let independent = triangle.independent();
         let (mut change, mut steps) = (vec![0.0; self.rows.len()], vec![0.0; self.rows.len()]);
         let mut moved = self.boundary.backward(self.sweep(base));
         // The magnitudes of the shifts whose sum is `moved`: that keeps the rounding of each.
@@ -156,16 +158,17 @@ impl Repair<'_> {
             };
             let mut tolerance: Vec<f64> = (0..self.rows.len()).map(rounding).collect();
             // A row that follows from others is at its gap as precisely as they are.
-            for (&row, weights) in set.iter().zip(&weights) {
-                let of_others = weights.iter().zip(set).map(|(weight, &other)| weight.abs() * tolerance[other]);
+            for (&row, weights) in set.iter().zip(triangle.weights()) {
+                let of_others = weights.map(|(other, weight)| weight.abs() * tolerance[set[other]]);
                 tolerance[row] += FOLLOWS * of_others.sum::<f64>();
             }
             let is_met = |(&row, &kept): (&usize, &bool)| !kept || distance[row].abs() <= tolerance[row];
-            if set.iter().zip(triangle.independent()).all(is_met) || correction == CORRECTIONS {
+            if set.iter().zip(&independent).all(is_met) || correction == CORRECTIONS {
                 return Some(Fitted { change, steps, distance, tolerance, triangle });
             }
             correction += 1;
-            let step = triangle.solve_normal(set.iter().map(|&row| -distance[row]).collect());
+            let back: Vec<f64> = set.iter().map(|&row| -distance[row]).collect();
+            let step = triangle.solve_normal(&back);
             let mut added = vec![0.0; self.rows.len()];
             set.iter().zip(step).for_each(|(&row, step)| added[row] = step);
             change.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step);
@@ -188,5 +191,5 @@ struct Fitted {
     steps: Vec<f64>,
     distance: Vec<f64>,
     tolerance: Vec<f64>,
-    triangle: UpperTriangle,
+    triangle: Triangle,
 }

@@ -2,12 +2,14 @@
 
 use crate::qp::linear::{UpperTriangle, dot, norm, take_out};
 
-/// R, and the weights with which columns of Z that it leaves out follow from those before them.
+/// R of the columns of Z that do not follow from others, and the weights with which the other columns follow from them.
 #[derive(Default)]
 pub(super) struct Triangle {
-    pub r: UpperTriangle,
-    /// The weight of each earlier column; empty for a column that does not follow from others.
-    pub weights: Vec<Vec<f64>>,
+    r: UpperTriangle,
+    /// The place in Z of each column of R.
+    kept: Vec<usize>,
+    /// For each column of Z the weights of the columns of R before it; empty for a column of R.
+    weights: Vec<Vec<f64>>,
 }
 
 /// Pivots below this share of the products that cancel in them are rounding of nearly dependent rows.
@@ -25,28 +27,23 @@ const TURNS: usize = 2;
 /// `None` if it `is_over` before R is found.
 pub(super) fn triangle_of(columns: &[&[f64]], is_over: impl Fn() -> bool) -> Option<Triangle> {
     let found = of_products(columns, &is_over)?;
-    if found.r.independent().contains(&false) { of_columns(columns, &is_over) } else { Some(found) }
+    if found.kept.len() < columns.len() { of_columns(columns, &is_over) } else { Some(found) }
 }
 
 fn of_products(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Triangle> {
     let mut found = Triangle::default();
     let lengths: Vec<f64> = columns.iter().map(|column| norm(column)).collect();
-    for (i, column) in columns.iter().enumerate() {
+    for column in columns {
         if is_over() {
             return None;
         }
-        let mut entries = vec![0.0; i];
-        for j in (0..i).filter(|&j| found.r.independent()[j]) {
-            let before = found.r.column(j);
-            entries[j] = (dot(column, columns[j]) - dot(&before[..j], &entries[..j])) / before[j];
+        let mut entries: Vec<f64> = Vec::with_capacity(found.kept.len() + 1);
+        for (k, &place) in found.kept.iter().enumerate() {
+            let before = found.r.column(k);
+            entries.push((dot(column, columns[place]) - dot(&before[..k], &entries)) / before[k]);
         }
         let pivot = dot(column, column) - dot(&entries, &entries);
-        let (weights, terms) = found.combined(&entries, &lengths);
-        if pivot > PARALLEL * terms * terms {
-            found.push(entries, pivot.sqrt());
-        } else {
-            found.push_dependent(weights);
-        }
+        found.take(entries, &lengths, |terms| (pivot > PARALLEL * terms * terms).then(|| pivot.sqrt()));
     }
     Some(found)
 }
@@ -55,54 +52,76 @@ fn of_columns(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Triangl
     let mut found = Triangle::default();
     let mut directions: Vec<Vec<f64>> = Vec::new();
     let lengths: Vec<f64> = columns.iter().map(|column| norm(column)).collect();
-    for (i, column) in columns.iter().enumerate() {
+    for column in columns {
         if is_over() {
             return None;
         }
-        let (mut entries, mut across) = (vec![0.0; i], column.to_vec());
+        let (mut entries, mut across) = (vec![0.0; directions.len()], column.to_vec());
         for _ in 0..TURNS {
-            for (j, direction) in directions.iter().enumerate().filter(|entry| found.r.independent()[entry.0]) {
-                entries[j] += take_out(&mut across, direction);
+            for (entry, direction) in entries.iter_mut().zip(&directions) {
+                *entry += take_out(&mut across, direction);
             }
         }
         let left = norm(&across);
-        let (weights, terms) = found.combined(&entries, &lengths);
-        if left > DEPENDENT * terms {
-            found.push(entries, left);
-        } else {
-            found.push_dependent(weights);
+        if found.take(entries, &lengths, |terms| (left > DEPENDENT * terms).then_some(left)) {
+            across.iter_mut().for_each(|entry| *entry /= left);
+            directions.push(across);
         }
-        across.iter_mut().for_each(|entry| *entry /= left);
-        directions.push(across);
     }
     Some(found)
 }
 
 impl Triangle {
-    /// The weights of the columns in the component of the next one along them, which has these entries in R, and the sum of the
-    /// lengths of all terms, which cancel in the remainder.
-    fn combined(&self, entries: &[f64], lengths: &[f64]) -> (Vec<f64>, f64) {
-        let weights = self.r.solve_upper(entries.to_vec());
-        let along = weights.iter().zip(lengths);
-        let terms = along.fold(lengths[entries.len()], |sum, (weight, length)| sum + weight.abs() * length);
-        (weights, terms)
+    /// Takes in the next column of Z, which has these entries in R. `diagonal` gives its diagonal entry, or `None` if it follows
+    /// from the columns of R, from the lengths of all terms, which cancel in the remainder. Returns `true` if R has it.
+    fn take(&mut self, entries: Vec<f64>, lengths: &[f64], diagonal: impl Fn(f64) -> Option<f64>) -> bool {
+        let place = self.weights.len();
+        let weights = self.r.solve_upper(entries.clone());
+        let along = weights.iter().zip(&self.kept);
+        let terms = along.fold(lengths[place], |sum, (weight, &other)| sum + weight.abs() * lengths[other]);
+        let diagonal = diagonal(terms);
+        if let Some(diagonal) = diagonal {
+            self.r.push(entries, diagonal);
+            self.kept.push(place);
+        }
+        self.weights.push(if diagonal.is_some() { Vec::new() } else { weights });
+        diagonal.is_some()
     }
 
-    /// Appends a column of R with these entries above its diagonal entry.
-    fn push(&mut self, entries: Vec<f64>, diagonal: f64) {
-        self.r.push(entries, diagonal);
-        self.weights.push(Vec::new());
+    /// `true` for each column of Z that does not follow from those before it.
+    pub fn independent(&self) -> Vec<bool> {
+        let mut independent = vec![false; self.weights.len()];
+        self.kept.iter().for_each(|&place| independent[place] = true);
+        independent
     }
 
-    /// Appends a column that follows from earlier ones with these weights; nothing else of the column is kept.
-    fn push_dependent(&mut self, weights: Vec<f64>) {
-        self.r.push_dependent(vec![0.0; self.r.size()], 0.0);
-        self.weights.push(weights);
+    /// For each column of Z the earlier columns that it follows from, with their weights.
+    pub fn weights(&self) -> impl Iterator<Item = impl Iterator<Item = (usize, f64)>> {
+        self.weights.iter().map(|weights| self.kept.iter().copied().zip(weights.iter().copied()))
+    }
+
+    /// `(R'R)^-1 b`; zero on columns that follow from others.
+    pub fn solve_normal(&self, b: &[f64]) -> Vec<f64> {
+        self.spread(self.r.solve_normal(self.kept.iter().map(|&place| b[place]).collect()))
+    }
+
+    /// As [`UpperTriangle::lengths_of_inverse`]; zero on columns that follow from others.
+    pub fn lengths_of_inverse(&self) -> Vec<f64> {
+        self.spread(self.r.lengths_of_inverse())
+    }
+
+    /// Values of the columns of R as values of all columns.
+    fn spread(&self, values: Vec<f64>) -> Vec<f64> {
+        let mut all = vec![0.0; self.weights.len()];
+        self.kept.iter().zip(values).for_each(|(&place, value)| all[place] = value);
+        all
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::cell::Cell;
+
     use super::*;
 
     /// Rounding of a handful of operations on nearly orthogonal columns.
@@ -111,12 +130,16 @@ mod tests {
     #[test]
     fn what_cancels_in_a_column_are_the_lengths_of_its_parts_whatever_their_signs() {
         let mut found = Triangle::default();
-        found.push(Vec::new(), 2.0);
-        found.push(vec![3.0], 4.0);
-        // R w = (x, 8) with w_2 = 2; columns of length 2 and 5 next to one of length 7.
-        for (x, first) in [(8.0, 1.0), (4.0, -1.0)] {
-            let (weights, terms) = found.combined(&[x, 8.0], &[2.0, 5.0, 7.0]);
-            assert_eq!((&weights[..], terms), (&[first, 2.0][..], 7.0 + 2.0 + 2.0 * 5.0));
+        let lengths = [2.0, 5.0, 7.0, 7.0];
+        assert!(found.take(Vec::new(), &lengths, |_| Some(2.0)) && found.take(vec![3.0], &lengths, |_| Some(4.0)));
+        // R w = (x, 8) with w_2 = 2; columns of length 2 and 5 next to ones of length 7.
+        for (place, x, first) in [(2, 8.0, 1.0), (3, 4.0, -1.0)] {
+            let all = Cell::new(0.0);
+            found.take(vec![x, 8.0], &lengths, |terms| {
+                all.set(terms);
+                None
+            });
+            assert_eq!((&found.weights[place][..], all.get()), (&[first, 2.0][..], 7.0 + 2.0 + 2.0 * 5.0));
         }
     }
 
@@ -127,17 +150,25 @@ mod tests {
             // The third is twice the first less three times the second.
             let columns = [[1.0, 0.0, 2.0], [0.0, 1.0, -1.0], [2.0, -3.0, 7.0], [1.0, 1.0, 0.0]].map(column);
             let columns: Vec<&[f64]> = columns.iter().map(|column| &column[..]).collect();
-            let Triangle { r, weights } = triangle_of(&columns, || false).unwrap();
-            assert_eq!(r.independent(), [true, true, false, true], "{unit:e}");
-            let off = weights[2].iter().zip([2.0, -3.0]).map(|(weight, exact)| (weight - exact).abs());
-            assert!(off.fold(0.0, f64::max) < ROUNDING, "{unit:e}: {weights:?}");
+            let found = triangle_of(&columns, || false).unwrap();
+            assert_eq!(found.independent(), [true, true, false, true], "{unit:e}");
+            let off = found.weights[2].iter().zip([2.0, -3.0]).map(|(weight, exact)| (weight - exact).abs());
+            assert!(off.fold(0.0, f64::max) < ROUNDING, "{unit:e}: {:?}", found.weights);
             // R'R are the products of the columns that are kept.
-            for (a, b) in [(0, 0), (0, 1), (1, 1), (0, 3), (1, 3), (3, 3)] {
-                let product: f64 = (0..=a).map(|row| r.column(a)[row] * r.column(b)[row]).sum();
-                let exact = dot(columns[a], columns[b]);
+            for (a, b) in [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)] {
+                let product: f64 = (0..=a).map(|row| found.r.column(a)[row] * found.r.column(b)[row]).sum();
+                let exact = dot(columns[found.kept[a]], columns[found.kept[b]]);
                 assert!((product - exact).abs() < ROUNDING * unit * unit * 6.0, "{unit:e}, {a}, {b}");
             }
             assert!(triangle_of(&columns, || true).is_none());
         }
+    }
+
+    #[test]
+    fn copies_of_a_column_take_no_room_in_the_triangle() {
+        let columns = vec![&[3.0, 4.0][..]; 20_000];
+        let found = triangle_of(&columns, || false).unwrap();
+        assert_eq!((found.r.size(), found.weights().map(Iterator::count).max()), (1, Some(1)));
+        assert_eq!(found.solve_normal(&[50.0; 20_000])[..2], [2.0, 0.0]);
     }
 }

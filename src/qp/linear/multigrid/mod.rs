@@ -64,8 +64,8 @@ impl Multigrid {
     /// indefinite.
     ///
     /// # Errors
-    /// [`Error::Length`] for a near-null space of other than n dofs, [`Error::NotConvex`] for a diagonal entry that is not
-    /// positive and for a coarse matrix with a negative eigenvalue, [`Error::Numerical`] for lack of memory.
+    /// [`Error::Length`] for a near-null space of other than n dofs, [`Error::NotConvex`] for a diagonal entry that is negative,
+    /// or zero beside a coupling, and for a coarse matrix with a negative eigenvalue, [`Error::Numerical`] for lack of memory.
     pub fn new(matrix: &SymmetricMatrix, near_null: &NearNullSpace, threads: usize) -> Result<Self, Error> {
         match Self::with_precision(matrix, near_null, threads, Precision::Single) {
             Err(Error::NotConvex { .. }) => Self::with_precision(matrix, near_null, threads, Precision::Double),
@@ -87,9 +87,7 @@ impl Multigrid {
             let (found, expected) = (near_null.dofs(), matrix.dim());
             return Err(Error::Length { name: "near-null vector", found, expected, of: "dofs" });
         }
-        if let Some((dof, value)) = matrix.diagonal().iter().enumerate().find(|entry| *entry.1 <= 0.0) {
-            return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
-        }
+        check_diagonal(matrix)?;
         let levels = match precision {
             Precision::Single => Hierarchy::new(matrix, near_null, threads).map(Levels::Single),
             Precision::Double => Hierarchy::new(matrix, near_null, threads).map(Levels::Double),
@@ -187,6 +185,26 @@ impl Face<'_> {
             LevelsInFace::Single(_, face) => face.coarsest.is_shifted(),
             LevelsInFace::Double(_, face) => face.coarsest.is_shifted(),
         }
+    }
+}
+
+/// Checks that a dof without stiffness has no coupling either: a cycle then leaves it to itself.
+///
+/// # Errors
+/// [`Error::NotConvex`] for a diagonal entry that is negative, or zero beside a coupling.
+fn check_diagonal(matrix: &SymmetricMatrix) -> Result<(), Error> {
+    let diagonal = matrix.diagonal();
+    if diagonal.iter().all(|&value| value > 0.0) {
+        return Ok(());
+    }
+    let couples = |&(row, column, value): &(usize, usize, f64)| value != 0.0 && row != column;
+    let coupled = matrix.lower().triplets().filter(couples).flat_map(|(row, column, _)| [row, column]);
+    let negative = (0..diagonal.len()).find(|&dof| diagonal[dof] < 0.0);
+    match negative.or_else(|| coupled.into_iter().find(|&dof| diagonal[dof] <= 0.0)) {
+        Some(dof) => {
+            Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {:e}, indices from 0", diagonal[dof]) })
+        }
+        None => Ok(()),
     }
 }
 

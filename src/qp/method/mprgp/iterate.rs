@@ -77,12 +77,21 @@ impl Conjugate {
 impl<'a> Iterate<'a> {
     pub fn new(problem: &'a ContactProblem, bounds: &'a Bounds, start: Start, threads: usize) -> Self {
         let mut load = problem.load().to_vec();
-        bounds.turn(&mut load);
+        bounds.turn_forces(&mut load);
+        let is_unknown = start.displacement.is_none();
         let mut x = start.displacement.unwrap_or_else(|| vec![0.0; problem.dofs()]);
         bounds.turn(&mut x);
-        let diagonal = problem.stiffness().diagonal();
+        let mut diagonal = problem.stiffness().diagonal();
+        for bound in bounds.bounds() {
+            if let Some((travel, share)) = bound.travel {
+                diagonal[travel] += share * share * diagonal[bound.unknown];
+            }
+        }
         let at = vec![At::Free; bounds.bounds().len()];
         let mut iterate = Iterate { problem, bounds, load, diagonal, x, gradient: Vec::new(), at, threads };
+        if is_unknown {
+            iterate.travel_along_load();
+        }
         if let Some(closed) = &start.contact_set {
             for bound in bounds.bounds() {
                 let value = &mut iterate.x[bound.unknown];
@@ -100,6 +109,38 @@ impl<'a> Iterate<'a> {
         iterate
     }
 
+    /// Moves each travel, of a body at rest, along its load, about as far as that reaches: N closed rows resist like `sqrt(N)` single
+    /// ones, as a circle of that area on a half space does. Too deep or too shallow by half costs a few cycles.
+    fn travel_along_load(&mut self) {
+        for &travel in self.bounds.travels() {
+            let (load, way) = (self.problem.load()[travel].abs(), self.problem.load()[travel].signum());
+            let of_row = |bound: &Bound| {
+                let share = bound.travel.filter(|own| own.0 == travel && own.1 != 0.0)?.1;
+                let value = if way * share > 0.0 { bound.upper } else { bound.lower };
+                let depth = way * value / share;
+                depth.is_finite().then(|| (depth, share * share * self.diagonal[bound.unknown]))
+            };
+            let mut rows: Vec<(f64, f64)> = self.bounds.bounds().iter().filter_map(of_row).collect();
+            rows.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+            let (mut stiffness, mut force) = (0.0, 0.0);
+            for (index, &(depth, own)) in rows.iter().enumerate() {
+                stiffness += own;
+                let resists = stiffness / ((index + 1) as f64).sqrt();
+                let room = rows.get(index + 1).map_or(f64::INFINITY, |next| next.0 - depth);
+                self.x[travel] = way * (depth + room.min((load - force) / resists));
+                force += resists * room;
+                if force >= load {
+                    break;
+                }
+            }
+        }
+        for bound in self.bounds.bounds() {
+            if let Some((travel, share)) = bound.travel {
+                self.x[bound.unknown] = share * self.x[travel];
+            }
+        }
+    }
+
     /// Returns `true` if `p'Kp` is rounding of zero.
     pub fn is_rounding(&self, p: &[f64], energy: f64) -> bool {
         let scale: f64 = p.iter().zip(&self.diagonal).map(|(p, d)| d * p * p).sum();
@@ -113,7 +154,7 @@ impl<'a> Iterate<'a> {
         let mut u = v.to_vec();
         self.bounds.turn_back(&mut u);
         let mut moved = self.problem.stiffness().mul_on(self.threads, &u);
-        self.bounds.turn(&mut moved);
+        self.bounds.turn_forces(&mut moved);
         moved
     }
 
@@ -127,7 +168,7 @@ impl<'a> Iterate<'a> {
         let mut u = self.x.clone();
         self.bounds.turn_back(&mut u);
         let mut rest = self.problem.accurate_residual(&u, &vec![0.0; self.problem.rows()]);
-        self.bounds.turn(&mut rest);
+        self.bounds.turn_forces(&mut rest);
         rest.iter_mut().for_each(|rest| *rest = -*rest);
         self.gradient = rest;
     }
@@ -177,6 +218,20 @@ impl<'a> Iterate<'a> {
                 values[bound.unknown] = 0.0;
             }
         }
+    }
+
+    /// A travel by one while the body stays at rest.
+    pub fn alone(&self, travel: usize) -> Vec<f64> {
+        let mut way = vec![0.0; self.x.len()];
+        way[travel] = 1.0;
+        self.bounds.turn(&mut way);
+        way
+    }
+
+    /// Returns `true` if a row of the travel is at its bound.
+    pub fn is_held(&self, travel: usize) -> bool {
+        let of_bounds = self.bounds.bounds().iter().zip(&self.at);
+        of_bounds.into_iter().any(|(bound, at)| *at != At::Free && bound.travel.is_some_and(|own| own.0 == travel))
     }
 
     /// The largest force that is out of balance or wrong-signed, relative to the largest of load and multipliers.
@@ -274,7 +329,8 @@ impl<'a> Iterate<'a> {
             }
         }
         let share = 1.0 / self.largest_eigenvalue();
-        let free = self.free_gradient();
+        let mut free = self.free_gradient();
+        self.bounds.travels().iter().for_each(|&travel| free[travel] = 0.0);
         for ((x, g), d) in self.x.iter_mut().zip(&free).zip(&self.diagonal) {
             *x -= share * g / d;
         }
@@ -318,9 +374,10 @@ impl<'a> Iterate<'a> {
         step
     }
 
-    /// One cycle in a face.
+    /// One cycle in a face, in which nothing travels.
     pub fn cycled(&self, face: &Face, force: &[f64]) -> Vec<f64> {
         let mut force = force.to_vec();
+        self.bounds.travels().iter().for_each(|&travel| force[travel] = 0.0);
         self.bounds.turn_back(&mut force);
         let mut step = face.cycle(&force);
         self.bounds.turn(&mut step);

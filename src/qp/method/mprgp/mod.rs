@@ -18,6 +18,7 @@
 
 mod iterate;
 mod nested;
+mod travel;
 mod uniqueness;
 
 use super::bounds::Bounds;
@@ -28,6 +29,8 @@ use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
 use iterate::{Conjugate, Iterate};
 use nested::nested_start;
+use travel::Travels;
+pub use travel::takes_travels;
 
 /// The loop has stagnated after this many iterations without a residual half as large as the best before; those that change the
 /// face count only beyond one for each row.
@@ -39,6 +42,9 @@ const TRIAL: (usize, f64) = (16, 1.2);
 /// At least the worth divided by this number is spent first: conjugate gradients begin slowly on a stretched mesh, and little
 /// is lost by waiting for the other way. If no more cycles than that are left to go, the answer is near.
 const SHARE: usize = 8;
+
+/// A displacement with a residual up to this is near the answer: nothing else is tried as a start.
+const NEAR: f64 = 1e-3;
 
 /// If the residual in twice the precision is above this share of the previous one, it will not decrease any more.
 const NO_GAIN: f64 = 0.5;
@@ -83,11 +89,11 @@ impl Solver for Mprgp<'_> {
 /// in a face, [`Error::Unbounded`] for a load that drives a mode which no row stops, [`Error::UnderHeld`] for a mode
 /// that the rows under pressure leave free.
 fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: Limits) -> Result<Outcome, Error> {
-    let bounds = Bounds::of(problem.contact(), problem.gap())?;
-    let start = if start.is_unknown() { nested(problem, &bounds, multigrid, limits).unwrap_or(start) } else { start };
-    let mut iterate = Iterate::new(problem, &bounds, start, multigrid.threads());
+    let bounds = Bounds::of(problem.contact(), problem.gap(), problem.without_stiffness())?;
+    let mut iterate = started(problem, &bounds, multigrid, start, limits);
     let mut history = vec![iterate.step()];
-    let mut steps = Steps { multigrid, limits, face: None, is_old: false, last: None, cycles: 0 };
+    let mut steps =
+        Steps { multigrid, limits, face: None, travels: Travels::default(), is_old: false, last: None, cycles: 0 };
     let mut progress = Progress::default();
     let mut settled = false;
     let is_late = || limits.watch.is_over();
@@ -129,6 +135,29 @@ fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: 
         false => "-stagnated",
     };
     Ok(Outcome { displacement, multiplier, contact_set, iterations: steps.cycles, history, settled, variant })
+}
+
+/// The iterate at the start; if a displacement is given that is not near the answer, the better one of that and none.
+fn started<'a>(
+    problem: &'a ContactProblem,
+    bounds: &'a Bounds,
+    multigrid: &Multigrid,
+    start: Start,
+    limits: Limits,
+) -> Iterate<'a> {
+    let at = |start: Start| Iterate::new(problem, bounds, start, multigrid.threads());
+    let from_nothing = || at(nested(problem, bounds, multigrid, limits).unwrap_or_default());
+    if start.is_unknown() {
+        return from_nothing();
+    }
+    let is_displacement = start.displacement.is_some();
+    let given = at(start);
+    let residual = given.residual();
+    if !is_displacement || residual <= NEAR {
+        return given;
+    }
+    let other = from_nothing();
+    if other.residual() < residual { other } else { given }
 }
 
 /// The start from the second level, if there is one with nodal values.
@@ -203,6 +232,7 @@ struct Steps<'a> {
     multigrid: &'a Multigrid,
     limits: Limits<'a>,
     face: Option<Face<'a>>,
+    travels: Travels,
     /// `true` if the set of unknowns at bounds has changed since the face was built.
     is_old: bool,
     last: Option<Conjugate>,
@@ -219,10 +249,15 @@ impl Steps<'_> {
         let gradient = iterate.free_gradient();
         let face = match self.face.take() {
             Some(face) if !self.is_old => face,
-            old => self.multigrid.face(&iterate.held(), old.as_ref())?,
+            old => {
+                let face = self.multigrid.face(&iterate.held(), old.as_ref())?;
+                self.travels = std::mem::take(&mut self.travels).in_face(iterate, &face);
+                self.cycles += iterate.bounds.travels().len();
+                face
+            }
         };
         self.is_old = false;
-        let step = iterate.preconditioned(&face, &gradient);
+        let step = self.travels.preconditioned(iterate, &face, &gradient);
         self.face = Some(face);
         self.cycles += 1;
         self.limits.watch.step("MPRGP", self.cycles);
