@@ -123,9 +123,12 @@ pub fn why_text(why: &Why) -> String {
     text
 }
 
-/// A number with its uncertainty and its unit.
-fn within(value: f64, uncertainty: f64, unit: &str) -> String {
-    quantity(value, unit).replacen(' ', &format!(" ± {uncertainty:.1e} "), 1)
+/// A number with its uncertainty, if it has one above rounding, and its unit.
+fn within(value: f64, uncertainty: Option<f64>, unit: &str) -> String {
+    match uncertainty.filter(|&off| off > SHOWN * value) {
+        Some(off) => format!("{value:.6e} ± {off:.1e} {}", printable(unit)).trim_end().to_string(),
+        None => quantity(value, unit),
+    }
 }
 
 /// The largest pressure, and the extent of the contact.
@@ -139,9 +142,9 @@ fn extent_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
             quantity(area, &square)
         )];
     };
-    let extent = match (estimate.width, estimate.width_uncertainty) {
-        (Some(width), Some(off)) => format!("width {}", within(width, off, &units.length)),
-        _ => format!("area {}", within(estimate.area, estimate.area_uncertainty, &square)),
+    let extent = match estimate.width {
+        Some(width) => format!("width {}", within(width, estimate.width_uncertainty, &units.length)),
+        None => format!("area {}", within(estimate.area, Some(estimate.area_uncertainty), &square)),
     };
     let peak = within(pressure, estimate.pressure_uncertainty, &units.pressure());
     vec![format!("peak pressure {peak}"), format!("estimated {extent}")]
@@ -192,7 +195,7 @@ fn obstacle_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
     columns(&rows.map(|row| kept(row).collect()).collect::<Vec<_>>()).lines().map(String::from).collect()
 }
 
-/// Components below this share of the largest one are rounding in a text.
+/// Components below this share of the largest one, and uncertainties below this share of their value, are rounding in a text.
 const SHOWN: f64 = 1e-11;
 
 /// Resultants and segments that are shown; the JSON report has all.

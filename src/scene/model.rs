@@ -201,6 +201,12 @@ impl Model {
         self.parts.symmetry.contacts(&places, |axis| approach[axis] == 0.0)
     }
 
+    /// Returns `true` if two nodes lie on one plane of symmetry.
+    pub(super) fn share_plane(&self, node: usize, other: usize) -> bool {
+        let nodes = self.mesh().nodes();
+        self.parts.symmetry.share_plane(&nodes[node], &nodes[other])
+    }
+
     /// Number of mirror images of the node `other` that are around a node in the whole, itself included.
     pub(super) fn images_around(&self, node: usize, other: usize) -> f64 {
         let nodes = self.mesh().nodes();

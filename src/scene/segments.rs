@@ -1,35 +1,40 @@
 //! Contact segments: connected closed parts of an obstacle's boundary, and their extent.
 //!
-//! Rows exist only at nodes, so that the edge of the contact lies between the last closed node and the next open one. Near the edge of a
-//! smooth contact pressures are proportional to the square root of the distance: their squares lie on a straight line. The edge is
-//! estimated at the zero of this line through the last two nodes. Half of the cells at the edge are given as uncertainty.
+//! An uncertainty is meant to contain the value of a mesh that is four times finer (`reference/uncertainty.py` measures in how many parts
+//! it does); where no number is known to do that, there is none.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
 use super::Answer;
+use super::patch::Patch;
 use super::resultants::Sum;
-use crate::fem::element::FacetKind;
-use crate::fem::geometry::{cross, distance, dot, length, minus};
+use crate::fem::geometry::dot;
+use crate::fem::recovery::{Stress, stress_at};
 
-/// Least cosine of the angle between the direction from an inner node to the last closed one and the direction to the open one.
-const AHEAD: f64 = 0.5;
+/// A peak pressure at the end of a boundary is that of an edge if it is this many times the mean of the closed nodes around. The weakest
+/// edge of practice, a right angle on a flat body of the same material, has a pressure proportional to `d^-0.226` at the distance d: its
+/// means over the last half cell and the cell before are as 1.5 to 1. Smooth pressures are as 1 to 1.
+const EDGE: f64 = 4.0 / 3.0;
 
 /// The extent of a contact, estimated between the nodes from the pressures next to its edge, with its uncertainty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ContactExtent {
-    /// Half of the difference of the largest pressure from the mean over its node and the closed nodes around, in force
-    /// per area; the pressure itself if only open nodes are around.
-    pub pressure_uncertainty: f64,
+    /// Uncertainty of the largest pressure, in force per area: the largest difference, at its node and the inner nodes around, between the
+    /// pressure (the force of a row over its area) and the normal stress of the body, which is a second value with errors of its own;
+    /// plus half of the difference of the largest pressure from the mean over its node and the closed nodes around. `None` if it stands at an edge, where refinement changes it by
+    /// any amount, or if no node of the contact has only closed nodes around.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pressure_uncertainty: Option<f64>,
     /// Estimated area of the contact, in area; thickness or circumference included.
     pub area: f64,
-    /// Half of the area that lies in cells at the edge, in area.
+    /// Half of the area that lies in cells at the edge, in area; in closed cells the part by which a curved surface may differ.
     pub area_uncertainty: f64,
     /// Estimated length along the boundary, in length, if the model is plane or axisymmetric.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width: Option<f64>,
-    /// Half of the length that lies in cells at the edge, in length.
+    /// Half of the length that lies in cells at the edge, in length; in closed cells the part by which a curved line may differ.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width_uncertainty: Option<f64>,
 }
@@ -51,8 +56,8 @@ pub struct Segment {
     /// Estimated area and width of the contact, with their uncertainty.
     #[serde(flatten)]
     pub extent: ContactExtent,
-    /// The node of the largest pressure, if it is next to an open node although other closed nodes are not: an edge of the
-    /// obstacle, where the exact pressure is unbounded.
+    /// The node of the largest pressure, if it is next to an open node although other closed nodes are not, or at the end of the
+    /// boundary and far above the nodes around: an edge of the obstacle or of the body, where the exact pressure is unbounded.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub edge_peak: Option<usize>,
     /// The two estimated ends, `[x, y]` each, in length, on the undeformed boundary, if the model is plane or
@@ -96,10 +101,10 @@ struct Size {
 }
 
 impl Size {
-    /// Adds a cell with only closed nodes.
-    fn add_closed(&mut self, whole: f64) {
-        self.inner += whole;
-        self.add_edge(whole, whole);
+    /// Adds a cell with only closed nodes, from which the surface may differ by a share `bend`.
+    fn add_closed(&mut self, whole: f64, bend: f64) {
+        self.inner += (1.0 - bend) * whole;
+        self.add_edge(whole, (1.0 + bend) * whole);
     }
 
     /// Adds a cell at the edge, a part of which is covered.
@@ -120,150 +125,38 @@ impl Answer {
     }
 
     fn segments_of(&self, obstacle: usize) -> Vec<Segment> {
+        let Some(patch) = Patch::new(self, obstacle) else { return Vec::new() };
+        let pieces = patch.pieces();
+        let pieces: Vec<_> = pieces.iter().filter_map(|nodes| Some((nodes, Peak::of(&patch, nodes)?))).collect();
+        let recovered = self.recovered(&patch, pieces.iter().flat_map(|(_, peak)| peak.near.iter().copied()));
+        pieces.iter().map(|(nodes, peak)| self.segment(&patch, obstacle, nodes, peak, &recovered)).collect()
+    }
+
+    /// The pressure at closed nodes by the stress of the body: the traction along the row over the area that faces the obstacle, without
+    /// the part of the loads at the node.
+    fn recovered(&self, patch: &Patch, nodes: impl Iterator<Item = usize>) -> Recovered {
         let model = self.model();
-        let Some(boundary) = model.mesh().boundary(model.obstacles()[obstacle].boundary()) else { return Vec::new() };
-        let rows = model.rows().iter().enumerate().filter(|(_, row)| row.obstacle == obstacle);
-        let row_of: BTreeMap<usize, usize> = rows
-            .filter(|&(index, _)| self.contact_set().contains(index))
-            .map(|(index, row)| (row.node, index))
-            .collect();
-        if row_of.is_empty() {
-            return Vec::new();
-        }
-        let cells: Vec<Vec<usize>> = boundary.facets().flat_map(|facet| straight_cells(boundary.kind, facet)).collect();
-        let order = boundary.nodes();
-        let mut cells_of: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for (index, cell) in cells.iter().enumerate() {
-            cell.iter().filter(|node| row_of.contains_key(node)).for_each(|&node| {
-                cells_of.entry(node).or_default().push(index);
-            });
-        }
-        let patch = Patch { answer: self, row_of, cells, cells_of };
-        patch.pieces(&order).iter().map(|nodes| patch.segment(obstacle, nodes)).collect()
-    }
-}
-
-/// The straight cells of a facet: the nodes around each cell.
-pub(crate) fn straight_cells(kind: FacetKind, facet: &[usize]) -> Vec<Vec<usize>> {
-    // A quadratic triangle is cut into four: the corners and the middle. A quadratic quadrilateral is cut into four corners and the
-    // middle.
-    const QUARTERS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]];
-    const CORNERS_AND_MIDDLE: [&[usize]; 5] = [&[0, 4, 7], &[4, 1, 5], &[5, 2, 6], &[6, 3, 7], &[4, 5, 6, 7]];
-    let of_facet = |cell: &[usize]| cell.iter().map(|&local| facet[local]).collect();
-    match kind {
-        FacetKind::Point1 | FacetKind::T3 | FacetKind::Q4 => vec![facet.to_vec()],
-        FacetKind::Line2 | FacetKind::Line3 => {
-            let along: Vec<usize> = kind.reference().along.iter().map(|&local| facet[local]).collect();
-            along.windows(2).map(<[usize]>::to_vec).collect()
-        }
-        FacetKind::T6 => QUARTERS.iter().map(|cell| of_facet(cell)).collect(),
-        FacetKind::Q8 => CORNERS_AND_MIDDLE.iter().map(|cell| of_facet(cell)).collect(),
-    }
-}
-
-/// The boundary of an obstacle with its closed nodes.
-struct Patch<'a> {
-    answer: &'a Answer,
-    /// The row of each closed node.
-    row_of: BTreeMap<usize, usize>,
-    cells: Vec<Vec<usize>>,
-    /// The cells around each closed node.
-    cells_of: BTreeMap<usize, Vec<usize>>,
-}
-
-impl Patch<'_> {
-    /// The other nodes of the cells around a closed node, each as often as it shares a cell.
-    fn around(&self, node: usize) -> impl Iterator<Item = usize> {
-        let cells = self.cells_of.get(&node).into_iter().flatten();
-        cells.flat_map(|&cell| self.cells[cell].iter().copied()).filter(move |&other| other != node)
+        let stresses = stress_at(model.body(), self.displacement(), &nodes.collect());
+        let pressure = |(node, stress): (usize, Stress)| {
+            let row = patch.row(node)?;
+            let facing = dot(row.normal, row.outward);
+            let traction = dot(row.normal, stress.on(row.outward)) / if facing > 0.0 { facing } else { 1.0 };
+            let load = dot(row.normal, model.force_at(model.nodal_load(), node)) / row.projected_area();
+            // The end of a quadratic edge on an axis of revolution has no area.
+            Some((node, if load.is_finite() { load - traction } else { -traction }))
+        };
+        stresses.into_iter().filter_map(pressure).collect()
     }
 
-    fn is_closed(&self, node: usize) -> bool {
-        self.row_of.contains_key(&node)
-    }
-
-    fn pressure(&self, node: usize) -> f64 {
-        self.row_of.get(&node).map_or(0.0, |&row| self.answer.pressure()[row])
-    }
-
-    fn place(&self, node: usize) -> [f64; 3] {
-        self.answer.model().mesh().nodes()[node]
-    }
-
-    /// The closed nodes in connected pieces: nodes of one cell belong together.
-    fn pieces(&self, order: &[usize]) -> Vec<Vec<usize>> {
-        let closed: Vec<usize> = order.iter().copied().filter(|&node| self.is_closed(node)).collect();
-        let mut root: BTreeMap<usize, usize> = closed.iter().map(|&node| (node, node)).collect();
-        fn find(root: &mut BTreeMap<usize, usize>, node: usize) -> usize {
-            let mut at = node;
-            while root[&at] != at {
-                let above = root[&root[&at]];
-                root.insert(at, above);
-                at = above;
-            }
-            at
-        }
-        for cell in &self.cells {
-            let inside: Vec<usize> = cell.iter().copied().filter(|&node| self.is_closed(node)).collect();
-            for pair in inside.windows(2) {
-                let (a, b) = (find(&mut root, pair[0]), find(&mut root, pair[1]));
-                root.insert(a, b);
-            }
-        }
-        let mut pieces: Vec<Vec<usize>> = Vec::new();
-        let mut place_of: BTreeMap<usize, usize> = BTreeMap::new();
-        for node in closed {
-            let top = find(&mut root, node);
-            let place = *place_of.entry(top).or_insert_with(|| {
-                pieces.push(Vec::new());
-                pieces.len() - 1
-            });
-            pieces[place].push(node);
-        }
-        pieces
-    }
-
-    fn segment(&self, obstacle: usize, nodes: &[usize]) -> Segment {
-        let model = self.answer.model();
-        let (formulation, dimension) = (model.body().formulation(), model.body().dimension());
-        let (mut area, mut width, mut ends) = (Size::default(), Size::default(), Vec::new());
-        let own = nodes.iter().filter_map(|node| self.cells_of.get(node)).flatten().copied();
-        for cell in own.collect::<BTreeSet<usize>>() {
-            let cell = &self.cells[cell];
-            let covered = self.covered(cell);
-            let whole: Vec<[f64; 3]> = cell.iter().map(|&node| self.place(node)).collect();
-            let measure = |outline: &[[f64; 3]]| {
-                let count = outline.len().max(1) as f64;
-                let radius = outline.iter().map(|at| at[0]).sum::<f64>() / count;
-                formulation.measure(radius) * extent(outline)
-            };
-            if cell.iter().all(|&node| self.is_closed(node)) {
-                area.add_closed(measure(&whole));
-                width.add_closed(extent(&whole));
-            } else {
-                area.add_edge(measure(&covered), measure(&whole));
-                width.add_edge(extent(&covered), extent(&whole));
-            }
-            if let [a, b] = cell[..] {
-                match (self.is_closed(a), self.is_closed(b)) {
-                    (true, false) => ends.push(self.edge(a, b)),
-                    (false, true) => ends.push(self.edge(b, a)),
-                    _ => {}
-                }
-            }
-        }
+    fn segment(&self, patch: &Patch, obstacle: usize, nodes: &[usize], peak: &Peak, recovered: &Recovered) -> Segment {
+        let (formulation, dimension) = (self.model().body().formulation(), self.model().body().dimension());
+        let (width, area) = extent_of(patch, nodes);
         let is_line = dimension == 2;
-        // The contact ends at the end of the boundary.
-        let stops = |node: &&usize| is_line && self.around(**node).count() == 1;
-        ends.extend(nodes.iter().filter(stops).map(|&node| self.place(node)));
-        let highest = nodes.iter().copied().max_by(|&a, &b| self.pressure(a).total_cmp(&self.pressure(b)));
-        let is_inside = |node: &usize| self.around(*node).all(|other| self.is_closed(other));
-        let edge_peak = highest.filter(|highest| !is_inside(highest) && nodes.iter().any(is_inside));
-        let rows = || nodes.iter().filter_map(|node| self.row_of.get(node).copied());
+        let ends = if is_line { ends_of(patch, nodes) } else { Vec::new() };
         let mut sum = Sum::default();
-        for row in rows() {
-            let (row, lambda) = (&model.rows()[row], self.answer.multiplier()[row]);
-            sum.add(model.place(row.node), row.normal.map(|component| 0.0 + lambda * component));
+        for &node in nodes {
+            let Some(row) = patch.row(node) else { continue };
+            sum.add(self.model().place(node), row.normal.map(|component| 0.0 + patch.multiplier(node) * component));
         }
         let written = |at: [f64; 3]| at[..dimension].to_vec();
         Segment {
@@ -271,86 +164,88 @@ impl Patch<'_> {
             nodes: nodes.to_vec(),
             force: written(sum.force()),
             centre: sum.centre(formulation).map(written),
-            pressure_max: highest.map_or(0.0, |node| self.pressure(node)),
+            pressure_max: patch.pressure(peak.node),
             extent: ContactExtent {
-                pressure_uncertainty: highest.map_or(0.0, |node| self.spread(node)),
+                pressure_uncertainty: peak.uncertainty(patch, recovered),
                 area: area.estimate,
                 area_uncertainty: area.uncertainty(),
                 width: is_line.then_some(width.estimate),
                 width_uncertainty: is_line.then(|| width.uncertainty()),
             },
-            edge_peak,
+            edge_peak: peak.is_at_edge.then_some(peak.node),
             ends: <[[f64; 3]; 2]>::try_from(ends).ok().map(|ends| ends.map(written)),
         }
     }
-
-    /// Half of the difference of the pressure at a closed node from the mean over it and the closed nodes around. If only open nodes
-    /// are around, the area of the contact is unknown, and so is the whole pressure.
-    fn spread(&self, node: usize) -> f64 {
-        let around: BTreeSet<usize> = self.around(node).collect();
-        let mut near: BTreeSet<usize> = around.iter().copied().filter(|&other| self.is_closed(other)).collect();
-        if near.is_empty() && !around.is_empty() {
-            return self.pressure(node);
-        }
-        near.insert(node);
-        // A node on a plane of symmetry has the mirror images of its neighbours around it as well.
-        let images = |other: usize| self.answer.model().images_around(node, other);
-        let count: f64 = near.iter().map(|&other| images(other)).sum();
-        let mean = near.iter().map(|&other| images(other) * self.pressure(other)).sum::<f64>() / count;
-        0.5 * (self.pressure(node) - mean).abs()
-    }
-
-    /// The outline of the closed part of a cell.
-    fn covered(&self, cell: &[usize]) -> Vec<[f64; 3]> {
-        let mut outline = Vec::new();
-        for (place, &node) in cell.iter().enumerate() {
-            if self.is_closed(node) {
-                outline.push(self.place(node));
-            }
-            let next = cell[(place + 1) % cell.len()];
-            // A line has one connection between its nodes, not two.
-            let is_way = cell.len() > 2 || place == 0;
-            if is_way && self.is_closed(node) != self.is_closed(next) {
-                let (closed, open) = if self.is_closed(node) { (node, next) } else { (next, node) };
-                outline.push(self.edge(closed, open));
-            }
-        }
-        outline
-    }
-
-    /// The point at which the contact ends, between a closed and an open node.
-    fn edge(&self, closed: usize, open: usize) -> [f64; 3] {
-        let (from, to) = (self.place(closed), self.place(open));
-        let way = minus(to, from);
-        let ahead = |inner: usize| {
-            let before = minus(from, self.place(inner));
-            dot(before, way) / (length(before) * length(way))
-        };
-        let inner = self
-            .around(closed)
-            .filter(|&node| self.is_closed(node) && ahead(node) > AHEAD)
-            .max_by(|&a, &b| ahead(a).total_cmp(&ahead(b)));
-        let share = match inner {
-            Some(inner) => {
-                let (last, before) = (self.pressure(closed).powi(2), self.pressure(inner).powi(2));
-                let reach = last / (before - last) * distance(from, self.place(inner)) / length(way);
-                // Pressures that rise towards the edge give no estimate of the edge.
-                if before > last { reach.min(1.0) } else { 0.5 }
-            }
-            None => 0.5,
-        };
-        [0, 1, 2].map(|axis| from[axis] + share * way[axis])
-    }
 }
 
-/// The length of a line of two points, the area of a polygon; zero of a point.
-fn extent(outline: &[[f64; 3]]) -> f64 {
-    match outline {
-        [] | [_] => 0.0,
-        [a, b] => distance(*a, *b),
-        [first, rest @ ..] => {
-            let turned = rest.windows(2).map(|pair| cross(minus(pair[0], *first), minus(pair[1], *first)));
-            0.5 * length(turned.fold([0.0; 3], |sum, part| [0, 1, 2].map(|axis| sum[axis] + part[axis])))
+/// The length or area of closed nodes, and the area with thickness, cross-section or circumference.
+fn extent_of(patch: &Patch, nodes: &[usize]) -> (Size, Size) {
+    let (mut width, mut area) = (Size::default(), Size::default());
+    for cell in patch.cells_with(nodes) {
+        let whole = patch.sizes(cell, &patch.places(&cell.nodes));
+        if cell.nodes.iter().all(|&node| patch.is_closed(node)) {
+            let bend = patch.bend(cell);
+            width.add_closed(whole.0, bend);
+            area.add_closed(whole.1, bend);
+        } else {
+            let covered = patch.sizes(cell, &patch.covered(&cell.nodes));
+            width.add_edge(covered.0, whole.0);
+            area.add_edge(covered.1, whole.1);
         }
+    }
+    (width, area)
+}
+
+/// The ends of closed nodes on a line: between a closed and an open node, or where the boundary ends.
+fn ends_of(patch: &Patch, nodes: &[usize]) -> Vec<[f64; 3]> {
+    let edge = |cell: &[usize]| match *cell {
+        [a, b] if patch.is_closed(a) && !patch.is_closed(b) => Some(patch.edge(a, b)),
+        [a, b] if patch.is_closed(b) && !patch.is_closed(a) => Some(patch.edge(b, a)),
+        _ => None,
+    };
+    let inside = patch.cells_with(nodes).filter_map(|cell| edge(&cell.nodes));
+    let ends = |node: &&usize| patch.is_at_rim(**node) || patch.is_on_plane(**node);
+    let rim = nodes.iter().filter(ends).map(|&node| patch.place(node));
+    inside.chain(rim).collect()
+}
+
+/// The largest pressure of a segment.
+struct Peak {
+    node: usize,
+    /// The node and the closed nodes around.
+    near: BTreeSet<usize>,
+    /// Whether it stands at an edge of the obstacle or of the body.
+    is_at_edge: bool,
+    /// Whether a node of the segment has only closed nodes around.
+    is_resolved: bool,
+}
+
+/// The pressure at closed nodes by the stress of the body.
+type Recovered = BTreeMap<usize, f64>;
+
+impl Peak {
+    /// `None` without nodes.
+    fn of(patch: &Patch, nodes: &[usize]) -> Option<Self> {
+        let node = nodes.iter().copied().max_by(|&a, &b| patch.pressure(a).total_cmp(&patch.pressure(b)))?;
+        let around = patch.closed_around(node);
+        let mean = patch.mean_around(node, &around);
+        let ends_high = !around.is_empty() && patch.is_at_rim(node) && patch.pressure(node) > EDGE * mean;
+        let is_resolved = nodes.iter().any(|&node| patch.is_inside(node));
+        let is_at_edge = is_resolved && (!patch.is_inside(node) || ends_high);
+        let near = around.into_iter().chain([node]).collect();
+        Some(Peak { node, near, is_at_edge, is_resolved })
+    }
+
+    /// As [`ContactExtent::pressure_uncertainty`].
+    fn uncertainty(&self, patch: &Patch, recovered: &Recovered) -> Option<f64> {
+        if self.is_at_edge || !self.is_resolved {
+            return None;
+        }
+        let off = |&node: &usize| Some((patch.pressure(node) - recovered.get(&node)?).abs());
+        // Next to the edge of the contact pressure and stress differ by the edge.
+        let inner = self.near.iter().filter(|&&node| node == self.node || patch.is_inside(node));
+        let of_stress = inner.map(off).try_fold(0.0, |most: f64, off| Some(most.max(off?)))?;
+        let mean = patch.mean_around(self.node, &self.near);
+        Some(of_stress + 0.5 * (patch.pressure(self.node) - mean).abs())
     }
 }

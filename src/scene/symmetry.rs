@@ -116,6 +116,11 @@ impl Symmetry {
         2.0_f64.powi(self.planes.iter().filter(doubles).count() as i32)
     }
 
+    /// Returns `true` if two places lie on one plane.
+    pub fn share_plane(&self, at: &[f64; 3], other: &[f64; 3]) -> bool {
+        self.planes.iter().any(|&plane| self.lies_on(plane, at) && self.lies_on(plane, other))
+    }
+
     fn lies_on(&self, (axis, plane): (usize, f64), at: &[f64; 3]) -> bool {
         (at[axis] - plane).abs() <= self.rounding
     }

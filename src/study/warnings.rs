@@ -45,8 +45,8 @@ const BESIDE: f64 = 1e-6;
 /// A contact with at most this many nodes has no visible shape.
 const FEW_NODES: usize = 2;
 
-/// A peak depends on the mesh if half of its difference to the mean around it, relative to the peak, is larger than this.
-const SCATTER: f64 = 0.2;
+/// A peak depends on the mesh if its uncertainty, relative to the peak, is larger than this.
+const UNCERTAIN: f64 = 0.5;
 
 /// Codes of the warnings that a finer mesh settles.
 #[cfg(feature = "cli")]
@@ -289,7 +289,8 @@ fn leaning_normals(answer: &Answer) -> Option<AnswerWarning> {
     Some(AnswerWarning { code: "leaning-normals", message })
 }
 
-/// Warns that the mesh is too coarse for the numbers of the contact: segments of one or two nodes, a peak unlike its neighbours.
+/// Warns that the mesh is too coarse for the numbers of the contact: segments of one or two nodes or without an inner node, a peak that is
+/// uncertain or that grows without end.
 fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<AnswerWarning> {
     if model.mesh().dimension() == 1 {
         return None;
@@ -314,18 +315,21 @@ fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<AnswerWarning> 
         });
     }
     let peak = segments.iter().max_by(|a, b| a.pressure_max.total_cmp(&b.pressure_max))?;
-    let spread = peak.extent.pressure_uncertainty / peak.pressure_max;
-    if spread > SCATTER && !is_small(&peak) {
-        let percent = 200.0 * spread;
-        reasons.push(format!(
-            "the peak pressure differs by {percent:.0} % from the mean of its node and the closed ones around"
-        ));
-    }
-    if let Some(node) = peak.edge_peak {
-        reasons.push(format!(
-            "the peak pressure stands at the edge of the contact, {}: at an edge of the obstacle it grows with every refinement",
+    match (peak.edge_peak, peak.extent.pressure_uncertainty) {
+        (Some(node), _) => reasons.push(format!(
+            "the peak pressure stands at the edge of the contact, {}: at an edge of the obstacle or of the body it grows with every \
+             refinement, and has no uncertainty",
             model.node_in_words(node)
-        ));
+        )),
+        (None, None) if !is_small(&peak) => reasons.push(format!(
+            "every node of the contact of obstacles[{}] is next to an open one, and its peak pressure has no uncertainty",
+            peak.obstacle
+        )),
+        (None, Some(off)) if off > UNCERTAIN * peak.pressure_max && !is_small(&peak) => reasons.push(format!(
+            "the peak pressure is uncertain by {:.0} %: the force of a row over its area and the stress of the body differ there",
+            100.0 * off / peak.pressure_max
+        )),
+        _ => {}
     }
     let (first, others) = reasons.split_first()?;
     let reasons = others.iter().fold(first.clone(), |all, other| format!("{all}; {other}"));

@@ -167,6 +167,23 @@ fn a_peak_pressure_at_the_edge_of_a_punch_is_warned_of_as_mesh_dependent() {
     assert!(message.contains("the peak pressure stands at the edge of the contact, node "), "{message}");
 }
 
+/// A hub covers a part of a shaft, and its boundary ends with the contact: no candidate beyond is open.
+#[test]
+fn a_peak_pressure_at_the_end_of_a_seat_is_warned_of_as_mesh_dependent() {
+    let mut scene = scene();
+    scene["body"]["rectangle"]["x"]["divisions"] = json!([20]);
+    scene["body"]["rectangle"]["y"]["divisions"] = json!([10]);
+    scene["parts"] = json!([{"name": "seat", "of": "top", "box": {"min": [0.3, 0.5], "max": [0.7, 0.5]}}]);
+    scene["obstacles"][0] =
+        json!({"boundary": "seat", "approach": "+y", "shape": {"plane": {"point": [0.5, 0.5], "normal": [0, 1]}}});
+    scene["gap"] = json!(-0.01);
+    scene["loads"] = json!([]);
+    let run = solved(&scene);
+    let message = warned(&run, "mesh-dependent");
+    assert!(message.contains("the peak pressure stands at the edge of the contact, node "), "{message}");
+    assert!(message.contains("grows with every refinement, and has no uncertainty"), "{message}");
+}
+
 /// Two triangles in two groups of elements.
 const TWO_GROUPS: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 3 \"base\"\n2 1 \"steel\"\n2 2 \"rubber\"\n$EndPhysicalNames\n\
      $Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n\

@@ -17,7 +17,9 @@ pub(super) struct FacetPoint<'a> {
     pub at: [f64; 3],
     /// Outward unit normal; of either sense if the boundary is not a face of the mesh.
     pub normal: [f64; 3],
-    /// Share of the area that the point stands for; thickness, cross-section or circumference included.
+    /// Share of the length of a line, or of the area of a face, that the point stands for.
+    pub extent: f64,
+    /// The same as an area; thickness, cross-section or circumference included.
     pub area: f64,
 }
 
@@ -52,13 +54,14 @@ pub(super) fn for_each_point_of<'a>(
             let vector = cell.area_vector(&at.derivative);
             let size = length(vector);
             let place = cell.place(&at.shape);
-            let scale = cell.unit().powi(reference.dimension as i32);
+            let extent = size * at.weight * cell.unit().powi(reference.dimension as i32);
             visit(&FacetPoint {
                 nodes: facet,
                 shape: at.shape,
                 at: place,
                 normal: vector.map(|component| sense * component / size),
-                area: size * at.weight * scale * body.formulation().measure(place[0]),
+                extent,
+                area: extent * body.formulation().measure(place[0]),
             });
         }
     }
@@ -91,6 +94,16 @@ pub fn tributary_areas(body: &ElasticBody, boundary: &Boundary) -> Vec<(usize, f
         }
     });
     nodes.into_iter().map(|node| (node, area.get(node).copied().unwrap_or(0.0))).collect()
+}
+
+/// Each facet of a boundary in its order as `(extent, area)`: its length or area, and its area with thickness, cross-section or
+/// circumference. The areas add up to those of [`tributary_areas`].
+pub(crate) fn facet_sizes(body: &ElasticBody, boundary: &Boundary) -> Vec<(f64, f64)> {
+    let mut of_points = Vec::new();
+    for_each_point(body, boundary, &mut |point| of_points.push((point.extent, point.area)));
+    let points = Tabulated::new(boundary.kind.reference(), body.rule()).points.len();
+    let sum = |of_facet: &[(f64, f64)]| of_facet.iter().fold((0.0, 0.0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
+    of_points.chunks(points.max(1)).map(sum).collect()
 }
 
 /// The nodes of a boundary in its order, each with its outward unit normal: the mean over the facets around the node. Zero if these

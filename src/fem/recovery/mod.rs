@@ -9,8 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Matrix3;
 
 use crate::error::Error;
-use crate::fem::body::ElasticBody;
-use crate::fem::element::TabulatedPoint;
+use crate::fem::body::{BodyElement, ElasticBody};
+use crate::fem::element::{PerNode, Tabulated, TabulatedPoint};
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::Symmetric;
 
@@ -67,6 +67,17 @@ impl Stress {
     }
 }
 
+impl Stress {
+    /// The traction on a plane with the unit normal `normal`, in force per area.
+    pub(crate) fn on(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        [
+            self.sigma_xx * x + self.sigma_xy * y + self.sigma_zx * z,
+            self.sigma_xy * x + self.sigma_yy * y + self.sigma_yz * z,
+            self.sigma_zx * x + self.sigma_yz * y + self.sigma_zz * z,
+        ]
+    }
+}
+
 /// The stress of a displaced body, at the centroid of each element and, averaged, at each node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StressField {
@@ -115,24 +126,15 @@ pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, E
     let node_count = body.mesh().nodes().len();
     let table = body.tabulated();
     let extrapolation = table.extrapolation();
-    let finished = |s: Symmetric| match body.formulation() {
-        Formulation::Space => Stress::in_space(s),
-        _ => Stress::new(s[0], s[1], s[3], s[2]),
-    };
     let mut elements = Vec::with_capacity(body.mesh().element_count());
     let mut sums: Vec<(Symmetric, usize)> = vec![([0.0; 6], 0); node_count];
     let (interfaces, mut sides) = (interfaces(body), BTreeMap::<(usize, u32), (Symmetric, usize)>::new());
     for element in body.elements() {
-        let (nodes, cell) = (element.nodes, &element.cell);
-        let local = body.gather(displacement, nodes);
-        let mean = body.mean_dilatation(cell, &table, &local);
-        let stress_at = |at: &TabulatedPoint| {
-            let strain = body.point(cell, at).strain(&local, cell.unit());
-            element.stress(at, &strain, mean)
-        };
-        elements.push(finished(stress_at(&table.centroid)));
+        let nodes = element.nodes;
+        let strained = Strained::new(body, &table, displacement, &element);
+        elements.push(finished(body, strained.stress(&table.centroid)));
         for (index, at) in table.points.iter().enumerate() {
-            let at_point = stress_at(at);
+            let at_point = strained.stress(at);
             for (local, &node) in nodes.iter().enumerate() {
                 let weight = extrapolation[(local, index)];
                 add(&mut sums[node].0, weight, &at_point);
@@ -146,9 +148,66 @@ pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, E
             sides.get_mut(&(node, element.phase_number)).into_iter().for_each(|side| side.1 += 1);
         }
     }
-    let average = |(sum, count): &(Symmetric, usize)| finished(sum.map(|component| component / *count as f64));
+    let average = |(sum, count): &(Symmetric, usize)| finished(body, sum.map(|component| component / *count as f64));
     let nodes = sums.iter().map(average).collect();
     Ok(StressField { elements, nodes, sides: sides.iter().map(|(&side, sum)| (side, average(sum))).collect() })
+}
+
+/// The stresses at some nodes of a boundary, averaged over the elements around. `displacement` has `dim` entries per node.
+///
+/// Quadratic elements are extrapolated, as in [`StressField::nodes`]. Linear ones give the stress at their centroid, where it is most
+/// accurate: on a boundary without friction the normal stress does not change with the depth to first order.
+pub(crate) fn stress_at(body: &ElasticBody, displacement: &[f64], nodes: &BTreeSet<usize>) -> BTreeMap<usize, Stress> {
+    let table = body.tabulated();
+    let extrapolation = table.extrapolation();
+    let is_quadratic = body.mesh().kind().is_quadratic();
+    let weight = |local: usize, point: usize| if is_quadratic { extrapolation[(local, point)] } else { 1.0 };
+    let mut sums: BTreeMap<usize, (Symmetric, usize)> = BTreeMap::new();
+    let mut is_wanted = vec![false; body.mesh().nodes().len()];
+    nodes.iter().for_each(|&node| is_wanted[node] = true);
+    for element in body.elements().filter(|element| element.nodes.iter().any(|&node| is_wanted[node])) {
+        let strained = Strained::new(body, &table, displacement, &element);
+        let at_points: Vec<Symmetric> = if is_quadratic {
+            table.points.iter().map(|at| strained.stress(at)).collect()
+        } else {
+            vec![strained.stress(&table.centroid)]
+        };
+        for (local, &node) in element.nodes.iter().enumerate().filter(|&(_, &node)| is_wanted[node]) {
+            let (sum, count) = sums.entry(node).or_default();
+            at_points.iter().enumerate().for_each(|(point, stress)| add(sum, weight(local, point), stress));
+            *count += 1;
+        }
+    }
+    let average = |(sum, count): (Symmetric, usize)| finished(body, sum.map(|component| component / count as f64));
+    sums.into_iter().map(|(node, sum)| (node, average(sum))).collect()
+}
+
+/// An element with its displacement.
+struct Strained<'a> {
+    body: &'a ElasticBody,
+    element: &'a BodyElement<'a>,
+    local: PerNode<[f64; 3]>,
+    mean_dilatation: Option<f64>,
+}
+
+impl<'a> Strained<'a> {
+    fn new(body: &'a ElasticBody, table: &Tabulated, displacement: &[f64], element: &'a BodyElement<'a>) -> Self {
+        let local = body.gather(displacement, element.nodes);
+        Strained { body, element, local, mean_dilatation: body.mean_dilatation(&element.cell, table, &local) }
+    }
+
+    fn stress(&self, at: &TabulatedPoint) -> Symmetric {
+        let cell = &self.element.cell;
+        let strain = self.body.point(cell, at).strain(&self.local, cell.unit());
+        self.element.stress(at, &strain, self.mean_dilatation)
+    }
+}
+
+fn finished(body: &ElasticBody, s: Symmetric) -> Stress {
+    match body.formulation() {
+        Formulation::Space => Stress::in_space(s),
+        _ => Stress::new(s[0], s[1], s[3], s[2]),
+    }
 }
 
 fn add(sum: &mut Symmetric, weight: f64, stress: &Symmetric) {

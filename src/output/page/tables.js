@@ -59,6 +59,11 @@ function headline(page, data, summary) {
   for (const warning of summary?.warnings ?? []) element("p", page, `Warning: ${warning.message}`, "warning");
 }
 
+/** A value with its uncertainty, if it has one above rounding. */
+function within(value, off, unit) {
+  return off > 1e-11 * value ? `${inUnit(value, unit)} ± ${shown(off, 2)}` : inUnit(value, unit);
+}
+
 /** The numbers of one answer. */
 function contactList(host, summary, data) {
   const { contact, model } = summary,
@@ -68,7 +73,6 @@ function contactList(host, summary, data) {
     part = ofPart(summary),
     copies = obstacleCount(contact),
     several = copies > 1 ? copies : 0;
-  const within = (value, off, unit) => `${inUnit(value, unit)} ± ${shown(off, 2)}`;
   list(host, [
     ["method", `${summary.method}, ${counted(summary.iterations, "iteration")}`],
     ["why", summary.reason],
@@ -231,8 +235,8 @@ function segmentSection(page, summary, { units }) {
       vectorShown(segment.force, ""),
       shown(segment.pressure_max),
       segment.width !== undefined && segment.width !== null
-        ? `width ${inUnit(segment.width, units.length)} ± ${shown(segment.width_uncertainty, 2)}`
-        : `area ${inUnit(segment.area, `${units.length}²`)} ± ${shown(segment.area_uncertainty, 2)}`,
+        ? `width ${within(segment.width, segment.width_uncertainty, units.length)}`
+        : `area ${within(segment.area, segment.area_uncertainty, `${units.length}²`)}`,
       segment.ends ? segment.ends.map(end => vectorShown(end, "")).join(" to ") : "-",
     ]),
   );
