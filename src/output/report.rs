@@ -8,7 +8,9 @@ use crate::scene::{Resultant, Rule, Segment, Units};
 #[cfg(feature = "cli")]
 use crate::solution::Why;
 use crate::solution::{Certificate, Goal, ProvenSet};
-use crate::study::{Agreement, AnswerWarning, ContactSummary, Summary, Sweep, SweepEvent, SweepPoint, Verification};
+use crate::study::{
+    Agreement, AnswerWarning, ContactSummary, ObstacleContact, Summary, Sweep, SweepEvent, SweepPoint, Verification,
+};
 
 /// A number with its unit.
 pub(super) fn quantity(value: f64, unit: &str) -> String {
@@ -28,6 +30,10 @@ const LONGEST_REASON: usize = 50;
 /// Length of a line beside its name, in characters.
 const LONGEST_LINE: usize = 84;
 
+/// What a report with planes of symmetry gives of the part, and what the scene does.
+const OF_SYMMETRY: &str = "method, certificate and seconds are of the meshed part; in the scene the force on an obstacle is of the whole \
+                           body, loads, springs and rigid faces are of the meshed part";
+
 /// The report of one answer, in lines of at most 100 characters: contact, certificate, sizes, seconds and warnings.
 pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
     let Summary { solution, contact, model, seconds, .. } = summary;
@@ -37,7 +43,13 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
     };
     let mut text = format!("{}\n", printable(title));
     let mut line = |name: &str, content: String| text += &entry(name, &content);
-    line("model", format!("{mesh}{} dofs, {}", model.dofs, plural(model.contact_rows, "contact row")));
+    let of_part = of_part(summary);
+    line("model", format!("{mesh}{} dofs, {}{of_part}", model.dofs, plural(model.contact_rows, "contact row")));
+    if summary.parts_of_whole.is_some() {
+        wrapped(OF_SYMMETRY).into_iter().enumerate().for_each(|(number, sentence)| {
+            line(if number == 0 { "symmetry" } else { "" }, sentence);
+        });
+    }
     if let Some(overlap) = &summary.initial_overlap {
         wrapped(&printable(overlap)).into_iter().for_each(|overlap| line("", overlap));
     }
@@ -61,8 +73,19 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
     }
     let (closed, force) = (plural(contact.count, "closed row"), quantity(contact.force, &units.force));
     let basis = if summary.force_basis.is_empty() { String::new() } else { format!(" {}", summary.force_basis) };
-    let mut of_contact = wrapped(&format!("{closed}, sum of multipliers {force}{basis}"));
-    of_contact.extend(extent_lines(contact, units));
+    let mut of_contact = match is_of_several(contact) {
+        false => wrapped(&format!("{closed}{of_part}, sum of multipliers {force}{basis}")),
+        true => {
+            let sizes = if basis.is_empty() { basis } else { format!("; forces{basis}") };
+            let images = if of_part.is_empty() { "" } else { ", mirror images included" };
+            let count = plural(obstacle_count(contact), "obstacle");
+            wrapped(&format!("{closed}{of_part}, on {count}{images}{sizes}"))
+        }
+    };
+    of_contact.extend(match is_of_several(contact) {
+        false => extent_lines(contact, units),
+        true => obstacle_lines(contact, units),
+    });
     of_contact.into_iter().enumerate().for_each(|(number, sentence)| {
         line(if number == 0 { "contact" } else { "" }, sentence);
     });
@@ -70,7 +93,7 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
         line("", proven_text(proven));
     }
     if let Some(balance) = contact.force_balance {
-        line("", format!("loads, reactions and contact forces balance to {balance:.1e}"));
+        line("", format!("loads, reactions and contact forces{of_part} balance to {balance:.1e}"));
     }
     text += &resultants_text(summary, units);
     text += &displacement_text(summary, units);
@@ -127,6 +150,51 @@ fn extent_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
     vec![format!("peak pressure {peak}"), format!("estimated {extent}")]
 }
 
+/// The words that name the meshed part behind numbers of it; empty without planes of symmetry.
+fn of_part(summary: &Summary) -> &'static str {
+    if summary.parts_of_whole.is_some() { " of the meshed part" } else { "" }
+}
+
+/// Number of obstacles in the whole body, mirror images included.
+fn obstacle_count(contact: &ContactSummary) -> usize {
+    contact.obstacles.iter().map(|one| one.copies).sum()
+}
+
+/// Returns `true` if the sums over all obstacles are those of several.
+fn is_of_several(contact: &ContactSummary) -> bool {
+    obstacle_count(contact) > 1
+}
+
+/// The table of obstacles and pairs of bodies, a line for each.
+fn obstacle_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
+    let has_width = contact.obstacles.iter().any(|one| one.estimate.is_some_and(|estimate| estimate.width.is_some()));
+    let is_pressed = contact.obstacles.iter().any(|one| one.travel.is_some());
+    let square = if units.length.is_empty() { String::new() } else { format!("{}²", units.length) };
+    let shown = |value: Option<f64>| value.map_or_else(|| "-".to_string(), |value| format!("{value:.5e}"));
+    let header = [
+        "obstacle".to_string(),
+        in_unit("force", &units.force),
+        in_unit("travel", &units.length),
+        in_unit("peak p", &units.pressure()),
+        if has_width { in_unit("width", &units.length) } else { in_unit("area", &square) },
+        in_unit("mean p", &units.pressure()),
+    ];
+    let row = |one: &ObstacleContact| {
+        let extent = one.estimate.map(|estimate| estimate.width.unwrap_or(estimate.area));
+        let copies = match one.copies {
+            1 => String::new(),
+            2 => ", twice".to_string(),
+            copies => format!(", {copies} times"),
+        };
+        let cells = [Some(one.force), one.travel, Some(one.pressure_max), extent, one.pressure_mean];
+        std::iter::once(format!("{}{copies}", one.of)).chain(cells.map(shown)).collect::<Vec<_>>()
+    };
+    let rows = std::iter::once(header.to_vec()).chain(contact.obstacles.iter().map(row));
+    let kept =
+        |row: Vec<String>| row.into_iter().enumerate().filter(|(i, _)| *i != 2 || is_pressed).map(|(_, cell)| cell);
+    columns(&rows.map(|row| kept(row).collect()).collect::<Vec<_>>()).lines().map(String::from).collect()
+}
+
 /// Components below this share of the largest one, and uncertainties below this share of their value, are rounding in a text.
 const SHOWN: f64 = 1e-11;
 
@@ -181,7 +249,7 @@ fn resultants_text(summary: &Summary, units: &Units) -> String {
             (None, Some(centre)) => format!("around {} {}", place(centre), units.length),
             (None, None) => String::new(),
         };
-        let (count, force) = (plural(segment.nodes.len(), "node"), force(&segment.force));
+        let (count, force) = (plural(segment.nodes.len(), "node") + of_part(summary), force(&segment.force));
         format!("obstacles[{}]: {count}, force {force} {} {where_it_is}", segment.obstacle, units.force)
             .trim_end()
             .to_string()
@@ -203,7 +271,10 @@ fn displacement_text(summary: &Summary, units: &Units) -> String {
     let (value, axis) = (quantity(largest.value, &units.length), ["x", "y", "z"][largest.axis]);
     let scale = place.iter().fold(0.0, |scale: f64, part| scale.max(part.abs()));
     let at = format!("{} {}", rounded(place, scale), printable(&units.length));
-    listed("displacement", vec![format!("largest {value} along {axis}, at node {node}, {}", at.trim_end())])
+    listed(
+        "displacement",
+        vec![format!("largest {value} along {axis}, at node {node}{}, {}", of_part(summary), at.trim_end())],
+    )
 }
 
 /// Sentences beside a name, the first ones of many.
@@ -254,11 +325,10 @@ fn mesh_text(summary: &Summary, units: &Units) -> String {
         let unit = format!("{} {}", units.force, units.length);
         entry("energy", format!("strain energy {energy:.6e} {}", printable(&unit)).trim_end())
     });
-    let mut text = energy
-        + &entry(
-            "mesh",
-            &format!("relative error in the energy norm about {of_mesh:.1e}, estimated from the stresses"),
-        );
+    let part = if summary.parts_of_whole.is_some() { "of the meshed part: " } else { "" };
+    let of_stresses =
+        format!("{part}relative error in the energy norm about {of_mesh:.1e}, estimated from the stresses");
+    let mut text = energy + &listed("mesh", vec![of_stresses]);
     let bound = summary.solution.certificate.energy_error_bound;
     if !of_mesh.is_finite() || !bound.is_finite() {
         let reason = match bound.is_finite() {
@@ -322,10 +392,13 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
     let is_of_forces = sweep.points.first().is_some_and(|point| point.force.is_some());
     // Outside plane strain and plane stress a contact has an area.
     let has_width = sweep.points.first().is_none_or(|point| point.summary.contact.width.is_some());
+    // The sums of several obstacles say so.
+    let several = sweep.points.first().is_some_and(|point| is_of_several(&point.summary.contact));
+    let of_all = if several { ", all obstacles" } else { "" };
     let extent = match has_width {
-        true => in_unit("estimated width", &units.length),
+        true => in_unit(&format!("estimated width{of_all}"), &units.length),
         false => in_unit(
-            "estimated area",
+            &format!("estimated area{of_all}"),
             &if units.length.is_empty() { String::new() } else { format!("{}²", units.length) },
         ),
     };
@@ -362,6 +435,9 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
     };
     let table: Vec<Vec<String>> = std::iter::once(header.to_vec()).chain(sweep.points.iter().map(row)).collect();
     let mut text = format!("{}\n\n{}", printable(title), columns(&table));
+    if let Some(first) = sweep.points.first().map(|point| &point.summary) {
+        text += &sweep_notes(first).iter().flat_map(|note| wrapped(note)).map(|line| line + "\n").collect::<String>();
+    }
     if !sweep.corners.is_empty() {
         let times = plural(sweep.events.len(), "time");
         text += &format!("\nBetween the first and the last gap a row touches or releases {times}, exactly at\n");
@@ -375,6 +451,15 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
         }
     }
     text
+}
+
+/// What the columns of a sweep are of, if not of one obstacle and the meshed body.
+fn sweep_notes(first: &Summary) -> Vec<String> {
+    let part = "Contact (closed rows), iterations and energy error are of the meshed part, all other columns of the whole body.";
+    let sums =
+        format!("-sum(lambda) is over all {} obstacles, mirror images included.", obstacle_count(&first.contact));
+    let of_part = first.parts_of_whole.map(|_| part.to_string());
+    of_part.into_iter().chain(is_of_several(&first.contact).then_some(sums)).collect()
 }
 
 fn in_unit(name: &str, unit: &str) -> String {

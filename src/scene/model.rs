@@ -7,6 +7,7 @@ use super::obstacle::PlacedObstacle;
 use super::parts::Parts;
 use super::rigid_body_modes::RigidBodyModes;
 use super::rows::{self, ContactRow};
+use super::segments::Segment;
 use super::suspect::suspect_rows;
 #[cfg(feature = "pictures")]
 use super::unknowns::Meaning;
@@ -120,7 +121,7 @@ impl Model {
     #[cfg(feature = "pictures")]
     pub(crate) fn pressing_forces(&self) -> Vec<f64> {
         let force = |&obstacle: &usize| {
-            let parts = self.parts.symmetry.parts_of_obstacle(self.parts.obstacles[obstacle].approach());
+            let parts = self.parts.parts_of_obstacle(obstacle);
             self.parts.unknowns.travel(obstacle).map(|unknown| parts * self.problem.load()[unknown])
         };
         self.parts.unknowns.pressed().iter().filter_map(force).collect()
@@ -186,6 +187,30 @@ impl Model {
     /// Number of copies of the modelled part in the whole, by planes of symmetry.
     pub(crate) fn parts_of_whole(&self) -> f64 {
         self.parts.symmetry.parts()
+    }
+
+    /// Number of copies of an obstacle in the whole: a plane of symmetry normal to its approach direction gives it a mirror image.
+    pub(crate) fn copies_of_obstacle(&self, obstacle: usize) -> f64 {
+        self.parts_of_whole() / self.parts.parts_of_obstacle(obstacle)
+    }
+
+    /// Number of places at which a segment of contact stands on one copy of its obstacle, as the nodes of the segment lie.
+    pub(crate) fn contacts_of(&self, segment: &Segment) -> usize {
+        let places: Vec<[f64; 3]> = segment.nodes.iter().map(|&node| self.mesh().nodes()[node]).collect();
+        let approach = self.obstacles()[segment.obstacle].approach();
+        self.parts.symmetry.contacts(&places, |axis| approach[axis] == 0.0)
+    }
+
+    /// Returns `true` if two nodes lie on one plane of symmetry.
+    pub(super) fn share_plane(&self, node: usize, other: usize) -> bool {
+        let nodes = self.mesh().nodes();
+        self.parts.symmetry.share_plane(&nodes[node], &nodes[other])
+    }
+
+    /// Number of mirror images of the node `other` that are around a node in the whole, itself included.
+    pub(super) fn images_around(&self, node: usize, other: usize) -> f64 {
+        let nodes = self.mesh().nodes();
+        self.parts.symmetry.images_around(&nodes[node], &nodes[other])
     }
 
     pub(super) fn parts(&self) -> &Parts {

@@ -75,6 +75,11 @@ impl Parts {
 
     /// The share of the modelled part of the body in a force that presses an obstacle.
     pub fn share_of(&self, obstacle: usize, force: f64) -> f64 {
-        force / self.symmetry.parts_of_obstacle(self.obstacles[obstacle].approach())
+        force / self.parts_of_obstacle(obstacle)
+    }
+
+    /// Number of copies of the modelled part that one copy of an obstacle presses.
+    pub fn parts_of_obstacle(&self, obstacle: usize) -> f64 {
+        self.symmetry.parts_of_obstacle(self.obstacles[obstacle].approach())
     }
 }

@@ -125,7 +125,7 @@ impl<'a> Patch<'a> {
         self.row_of.get(&node).map_or(0.0, |&row| self.answer.multiplier()[row])
     }
 
-    /// Returns `true` if the boundary ends at a closed node.
+    /// Returns `true` if the boundary of the whole body ends at a closed node.
     pub fn is_at_rim(&self, node: usize) -> bool {
         let mut beside: BTreeMap<usize, usize> = BTreeMap::new();
         for cell in self.cells_of.get(&node).into_iter().flatten().map(|&cell| &self.cells[cell].nodes) {
@@ -141,7 +141,22 @@ impl<'a> Patch<'a> {
                 }
             }
         }
-        beside.values().any(|&cells| cells == 1)
+        // Beyond a plane of symmetry the boundary goes on.
+        let model = self.answer.model();
+        beside.iter().any(|(&other, &cells)| cells == 1 && !model.share_plane(node, other))
+    }
+
+    /// Returns `true` if a node lies on a plane of symmetry: the boundary of the meshed part ends there, not that of the whole.
+    pub fn is_on_plane(&self, node: usize) -> bool {
+        self.answer.model().share_plane(node, node)
+    }
+
+    /// The mean pressure of nodes around a node, itself or not, in force per area. A node on a plane of symmetry has the mirror images of
+    /// its neighbours around it as well.
+    pub fn mean_around(&self, node: usize, around: &BTreeSet<usize>) -> f64 {
+        let images = |other: usize| self.answer.model().images_around(node, other);
+        let count: f64 = around.iter().map(|&other| images(other)).sum();
+        around.iter().map(|&other| images(other) * self.pressure(other)).sum::<f64>() / count
     }
 
     /// Returns `true` if all nodes around a node are closed.

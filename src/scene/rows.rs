@@ -127,7 +127,7 @@ fn of_obstacle(parts: &Parts, index: usize, scene_gap: f64) -> Result<Vec<Contac
             normal: found.normal,
             gap: found.gap,
             tributary_area,
-            outward: obstacle.outward(candidate),
+            outward: parts.symmetry.of_whole(&at, obstacle.outward(candidate)),
         });
     }
     Ok(rows)

@@ -39,7 +39,8 @@ pub struct ContactExtent {
     pub width_uncertainty: Option<f64>,
 }
 
-/// Connected closed rows of one obstacle on its boundary: one piece of the contact, with its force and its extent.
+/// Connected closed rows of one obstacle on its boundary: one piece of the contact, with its force and its extent. With planes of symmetry
+/// all of it is of the meshed part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Segment {
     /// The obstacle, numbered from 0 in the order of the scene.
@@ -67,9 +68,9 @@ pub struct Segment {
 
 impl ContactExtent {
     /// The extent of all segments together; `None` without segments.
-    pub(crate) fn of(segments: &[Segment]) -> Option<Self> {
-        let peak = segments.iter().max_by(|a, b| a.pressure_max.total_cmp(&b.pressure_max))?;
-        let extents = || segments.iter().map(|segment| &segment.extent);
+    pub(crate) fn of<'a>(segments: impl Iterator<Item = &'a Segment> + Clone) -> Option<Self> {
+        let peak = segments.clone().max_by(|a, b| a.pressure_max.total_cmp(&b.pressure_max))?;
+        let extents = || segments.clone().map(|segment| &segment.extent);
         Some(ContactExtent {
             pressure_uncertainty: peak.extent.pressure_uncertainty,
             area: extents().map(|extent| extent.area).sum(),
@@ -77,6 +78,17 @@ impl ContactExtent {
             width: extents().map(|extent| extent.width).sum(),
             width_uncertainty: extents().map(|extent| extent.width_uncertainty).sum(),
         })
+    }
+
+    /// The extent of `parts` mirror images together.
+    pub(crate) fn of_parts(self, parts: f64) -> Self {
+        ContactExtent {
+            pressure_uncertainty: self.pressure_uncertainty,
+            area: parts * self.area,
+            area_uncertainty: parts * self.area_uncertainty,
+            width: self.width.map(|width| parts * width),
+            width_uncertainty: self.width_uncertainty.map(|off| parts * off),
+        }
     }
 }
 
@@ -192,7 +204,8 @@ fn ends_of(patch: &Patch, nodes: &[usize]) -> Vec<[f64; 3]> {
         _ => None,
     };
     let inside = patch.cells_with(nodes).filter_map(|cell| edge(&cell.nodes));
-    let rim = nodes.iter().filter(|&&node| patch.is_at_rim(node)).map(|&node| patch.place(node));
+    let ends = |node: &&usize| patch.is_at_rim(**node) || patch.is_on_plane(**node);
+    let rim = nodes.iter().filter(ends).map(|&node| patch.place(node));
     inside.chain(rim).collect()
 }
 
@@ -215,7 +228,7 @@ impl Peak {
     fn of(patch: &Patch, nodes: &[usize]) -> Option<Self> {
         let node = nodes.iter().copied().max_by(|&a, &b| patch.pressure(a).total_cmp(&patch.pressure(b)))?;
         let around = patch.closed_around(node);
-        let mean = around.iter().map(|&other| patch.pressure(other)).sum::<f64>() / around.len() as f64;
+        let mean = patch.mean_around(node, &around);
         let ends_high = !around.is_empty() && patch.is_at_rim(node) && patch.pressure(node) > EDGE * mean;
         let is_resolved = nodes.iter().any(|&node| patch.is_inside(node));
         let is_at_edge = is_resolved && (!patch.is_inside(node) || ends_high);
@@ -232,7 +245,7 @@ impl Peak {
         // Next to the edge of the contact pressure and stress differ by the edge.
         let inner = self.near.iter().filter(|&&node| node == self.node || patch.is_inside(node));
         let of_stress = inner.map(off).try_fold(0.0, |most: f64, off| Some(most.max(off?)))?;
-        let mean = self.near.iter().map(|&node| patch.pressure(node)).sum::<f64>() / self.near.len() as f64;
+        let mean = patch.mean_around(self.node, &self.near);
         Some(of_stress + 0.5 * (patch.pressure(self.node) - mean).abs())
     }
 }

@@ -5,6 +5,7 @@ use super::held::{COORDINATES, Component, Held, Holder};
 use super::schema::{ModelSpec, Scene, SymmetryPlane};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
+use crate::fem::geometry::unit;
 
 /// The planes of symmetry of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -76,7 +77,7 @@ impl Symmetry {
     /// Prescribes the displacement of the nodes on the planes.
     pub fn hold(&self, body: &ElasticBody, held: &mut Held) {
         for &(axis, at) in &self.planes {
-            let lies = |node: &usize| (body.mesh().nodes()[*node][axis] - at).abs() <= self.rounding;
+            let lies = |node: &usize| self.lies_on((axis, at), &body.mesh().nodes()[*node]);
             for node in (0..body.mesh().nodes().len()).filter(lies) {
                 held.prescribe(node, Component { direction: COORDINATES[axis], value: 0.0, by: Holder::Symmetry });
             }
@@ -94,10 +95,48 @@ impl Symmetry {
         2.0_f64.powi(self.planes.iter().filter(|plane| approach[plane.0] == 0.0).count() as i32)
     }
 
-    /// A force at a place with its mirror images, in the planes for whose axis `across` is `true`.
+    /// Number of places at which a contact of nodes at `places` stands in the whole. A contact that reaches a plane goes on in its mirror
+    /// image and is one with it; a plane that it does not reach gives a second contact. Planes for whose axis `across` is `false` do not
+    /// count.
+    pub fn contacts(&self, places: &[[f64; 3]], across: impl Fn(usize) -> bool) -> usize {
+        let reached = |plane: &(usize, f64)| places.iter().any(|at| self.lies_on(*plane, at));
+        self.planes.iter().filter(|plane| across(plane.0) && !reached(plane)).fold(1, |contacts, _| 2 * contacts)
+    }
+
+    /// A unit vector of the body's surface at a node of the part, as the whole has it: at a plane it lies in the plane.
+    pub fn of_whole(&self, at: &[f64; 3], normal: [f64; 3]) -> [f64; 3] {
+        let mut along = normal;
+        self.planes.iter().filter(|plane| self.lies_on(**plane, at)).for_each(|plane| along[plane.0] = 0.0);
+        if along == normal { normal } else { unit(along) }
+    }
+
+    /// Number of images of the place `other` around the place `at` in the whole: one on each side of a plane on which only `at` lies.
+    pub fn images_around(&self, at: &[f64; 3], other: &[f64; 3]) -> f64 {
+        let doubles = |plane: &&(usize, f64)| self.lies_on(**plane, at) && !self.lies_on(**plane, other);
+        2.0_f64.powi(self.planes.iter().filter(doubles).count() as i32)
+    }
+
+    /// Returns `true` if two places lie on one plane.
+    pub fn share_plane(&self, at: &[f64; 3], other: &[f64; 3]) -> bool {
+        self.planes.iter().any(|&plane| self.lies_on(plane, at) && self.lies_on(plane, other))
+    }
+
+    fn lies_on(&self, (axis, plane): (usize, f64), at: &[f64; 3]) -> bool {
+        (at[axis] - plane).abs() <= self.rounding
+    }
+
+    /// A force at a place with its mirror images, in the planes for whose axis `across` is `true`. A place on a plane is its own image: the
+    /// whole has one node there, with both forces.
     pub fn images(&self, at: [f64; 3], force: [f64; 3], across: impl Fn(usize) -> bool) -> Vec<([f64; 3], [f64; 3])> {
         let mut all = vec![(at, force)];
         for &(axis, plane) in self.planes.iter().filter(|plane| across(plane.0)) {
+            if self.lies_on((axis, plane), &at) {
+                for (_, force) in &mut all {
+                    *force = force.map(|part| 2.0 * part);
+                    force[axis] = 0.0;
+                }
+                continue;
+            }
             let mirrored = |&(mut at, mut force): &([f64; 3], [f64; 3])| {
                 at[axis] = 2.0 * plane - at[axis];
                 force[axis] = -force[axis];

@@ -5,6 +5,7 @@ mod exact_path;
 mod motion;
 mod motion_tradeoff;
 mod moving_mean;
+mod obstacles;
 #[cfg(feature = "cli")]
 mod problem_sweep;
 pub(crate) mod scene;
@@ -20,6 +21,6 @@ pub use motion_tradeoff::{MotionPoint, MotionTradeoff, motion_tradeoff};
 #[cfg(feature = "cli")]
 pub(crate) use problem_sweep::{ProblemPoint, ProblemSweep, sweep_problem};
 pub use scene::{Sweep, SweepCorner, SweepEvent, SweepPoint, scene_summary, sweep};
-pub use summary::{ContactSummary, ModelSize, RunSeconds, Status, Summary, Verification};
+pub use summary::{ContactSummary, ModelSize, ObstacleContact, RunSeconds, Status, Summary, Verification};
 pub use tradeoff::{Advice, Tradeoff, TradeoffGrid, TradeoffMesh, TradeoffPoint, tradeoff};
 pub use warnings::AnswerWarning;

@@ -10,7 +10,7 @@ use super::summary::LargestDisplacement;
 #[cfg(feature = "cli")]
 use super::warnings::untouched;
 use super::warnings::{check_approach, initial_overlap, of_scene, point_support};
-use super::{ModelSize, Summary};
+use super::{ModelSize, Summary, obstacles::contact_on_obstacles};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
 #[cfg(feature = "cli")]
@@ -53,15 +53,18 @@ pub fn scene_summary(
     summary.warnings.extend(warnings);
     let contact = &mut summary.contact;
     contact.pressure_max = Some(answer.pressure().iter().copied().fold(0.0, f64::max));
-    contact.force *= model.parts_of_whole();
+    let parts = model.parts_of_whole();
+    contact.force *= parts;
     contact.width = contact_width(model, closed);
     contact.area = Some(contact_area(model, closed));
     contact.force_balance = Some(answer.forces()?.balance);
     if mesh.dimension() > 1 {
-        contact.estimate = ContactExtent::of(&segments);
+        contact.estimate = ContactExtent::of(segments.iter()).map(|extent| extent.of_parts(parts));
     }
     summary.largest_displacement = largest_displacement(answer);
     summary.resultants = answer.resultants()?.to_vec();
+    contact_on_obstacles(answer, &segments, &mut summary);
+    summary.parts_of_whole = (parts > 1.0).then_some(parts as usize);
     summary.warnings.extend(point_support(mesh.dimension(), &summary.resultants));
     summary.force_basis = model.basis_of_forces();
     summary.initial_overlap = initial_overlap(model);

@@ -62,6 +62,10 @@ pub struct Summary {
     /// The reference of all forces, as `per metre`; left out if they are those of the whole body.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub force_basis: String,
+    /// Number of meshed parts in the whole body; only with planes of symmetry. Then forces, areas, widths and energies are of the whole;
+    /// rows, nodes, dofs, segments and the certificate are of the meshed part.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub parts_of_whole: Option<usize>,
     /// The deepest overlap of the undeformed body with an obstacle, in words, for the text of a report; `None` without an overlap.
     #[serde(skip)]
     pub initial_overlap: Option<String>,
@@ -112,9 +116,44 @@ pub struct ContactSummary {
     /// Estimates between the nodes; only in a scene with a contact of some extent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub estimate: Option<ContactExtent>,
+    /// The contact of each obstacle and pair of bodies; only in a scene.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub obstacles: Vec<ObstacleContact>,
     /// Imbalance of loads, reactions and contact forces, relative; only in a scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force_balance: Option<f64>,
+}
+
+/// The contact of one obstacle or pair of bodies, in the whole body. A plane of symmetry normal to its approach direction gives an obstacle
+/// a mirror image, which does not count here; in all other planes the contact is of the whole.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ObstacleContact {
+    /// Its name, as in [`Resultant::of`].
+    pub of: String,
+    /// The body on which it presses, if there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on: Option<String>,
+    /// Number of mirror images with the same numbers, itself included.
+    pub copies: usize,
+    /// Number of closed rows, in the meshed part.
+    pub count: usize,
+    /// Magnitude of the resultant force, in force, `>= 0`; 0 if the forces cancel, as around a shaft.
+    pub force: f64,
+    /// The sum `-sum(lambda)` of its rows, in force, `>= 0`.
+    pub sum_of_multipliers: f64,
+    /// Displacement against the approach direction, in length, if a force presses it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub travel: Option<f64>,
+    /// Largest contact pressure, in force per area, `>= 0`.
+    pub pressure_max: f64,
+    /// The sum of multipliers over the estimated area, in force per area; `None` without an area.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pressure_mean: Option<f64>,
+    /// Number of separate places of contact.
+    pub contacts: usize,
+    /// Area and width of all places together, estimated between the nodes; `None` without contact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub estimate: Option<ContactExtent>,
 }
 
 /// Sizes of the model that was solved: unknowns, contact rows, entries of the matrix, and the mesh if there is one.
@@ -202,6 +241,7 @@ impl Summary {
             resultants: Vec::new(),
             segments: Vec::new(),
             force_basis: String::new(),
+            parts_of_whole: None,
             initial_overlap: None,
             discretisation_error: None,
             strain_energy: None,

@@ -42,3 +42,4 @@ mod turned_bodies;
 mod two_bodies;
 mod user_obstacles;
 mod verification;
+mod whole;

@@ -203,6 +203,21 @@ function sweepTable(page, { sweep, units }) {
       shown(point.bound, 2),
     ]),
   );
+  const obstacles = obstacleCount(sweep.points[0].contact);
+  if (sweep.parts > 1)
+    element(
+      "p",
+      own,
+      "Closed rows, energy errors and pictures are of the meshed part; forces, widths, areas and pressures are of the whole body.",
+      "soft",
+    );
+  if (obstacles > 1)
+    element(
+      "p",
+      own,
+      `Forces are sums of multipliers over ${obstacles} obstacles, mirror images included; so are widths and areas.`,
+      "soft",
+    );
   if (!sweep.events.length) return;
   const more = element("details", own),
     shownEvents = sweep.events.slice(0, 200);

@@ -69,18 +69,30 @@ function contactList(host, summary, data) {
   const { contact, model } = summary,
     { units } = data,
     basis = summary.force_basis ? ` ${summary.force_basis}` : "";
-  const estimate = contact.estimate;
+  const estimate = contact.estimate,
+    part = ofPart(summary),
+    copies = obstacleCount(contact),
+    several = copies > 1 ? copies : 0;
   list(host, [
     ["method", `${summary.method}, ${counted(summary.iterations, "iteration")}`],
     ["why", summary.reason],
     [
-      "model",
-      `${model.nodes ? `${counted(model.nodes, "node")}, ${counted(model.elements, "element")}, ` : ""}${counted(model.dofs, "dof")}, ${counted(model.contact_rows, "contact row")}`,
+      "symmetry",
+      summary.parts_of_whole
+        ? "method, certificate and pictures are of the meshed part; in the scene the force on an obstacle is of the whole body, loads, springs and rigid faces are of the meshed part"
+        : null,
     ],
-    ["contact", `${counted(contact.count, "closed row")}, force ${inUnit(contact.force, units.force, 9)}${basis}`],
+    [
+      "model",
+      `${model.nodes ? `${counted(model.nodes, "node")}, ${counted(model.elements, "element")}, ` : ""}${counted(model.dofs, "dof")}, ${counted(model.contact_rows, "contact row")}${part}`,
+    ],
+    [
+      "contact",
+      `${counted(contact.count, "closed row")}${part}, ${several ? `on ${counted(several, "obstacle")}` : `sum of multipliers ${inUnit(contact.force, units.force, 9)}${basis}`}`,
+    ],
     [
       "peak pressure",
-      contact.pressure_max === undefined
+      several || contact.pressure_max === undefined
         ? null
         : estimate
           ? within(contact.pressure_max, estimate.pressure_uncertainty, units.pressure)
@@ -88,7 +100,7 @@ function contactList(host, summary, data) {
     ],
     [
       "estimated extent",
-      !estimate
+      several || !estimate
         ? null
         : estimate.width !== undefined
           ? `width ${within(estimate.width, estimate.width_uncertainty, units.length)}`
@@ -97,13 +109,13 @@ function contactList(host, summary, data) {
     ["contact set", data.proven],
     [
       "balance of forces",
-      contact.force_balance === undefined ? null : `to ${shown(contact.force_balance, 2)}, relative`,
+      contact.force_balance === undefined ? null : `to ${shown(contact.force_balance, 2)}, relative${part && `,${part}`}`,
     ],
     [
       "error of the mesh",
       summary.discretisation_error === undefined || summary.discretisation_error === null
         ? null
-        : `about ${shown(100 * summary.discretisation_error, 2)} % of the energy norm, estimated from the stresses`,
+        : `about ${shown(100 * summary.discretisation_error, 2)} % of the energy norm, estimated from the stresses${part}`,
     ],
     [
       "strain energy",
@@ -112,6 +124,44 @@ function contactList(host, summary, data) {
         : inUnit(summary.strain_energy, `${units.force} ${units.length}`.trim()),
     ],
   ]);
+  if (several) obstacleTable(host, summary, units);
+}
+
+/** The words behind numbers of the meshed part, if planes of symmetry make it a part. */
+function ofPart(summary) {
+  return summary.parts_of_whole ? " of the meshed part" : "";
+}
+
+/** Number of obstacles in the whole body, mirror images included. */
+function obstacleCount({ obstacles = [] }) {
+  return obstacles.reduce((sum, one) => sum + one.copies, 0);
+}
+
+/** The mirror images of an obstacle, in words. */
+function imagesOf({ copies }) {
+  return copies === 1 ? "" : copies === 2 ? " and its mirror image" : ` and its ${copies - 1} mirror images`;
+}
+
+/** The contact of each obstacle and pair of bodies. */
+function obstacleTable(host, { contact, force_basis }, units) {
+  const inPlane = contact.obstacles.some(one => one.estimate?.width !== undefined),
+    pressed = contact.obstacles.some(one => one.travel !== undefined);
+  const columns = [
+    ["obstacle", one => `${one.of}${one.on ? ` on ${one.on}` : ""}${imagesOf(one)}`],
+    [`force [${units.force}]#`, one => shown(one.force)],
+    ...(pressed ? [[`travel [${units.length}]#`, one => shown(one.travel)]] : []),
+    [`peak pressure [${units.pressure}]#`, one => shown(one.pressure_max)],
+    inPlane
+      ? [`estimated width [${units.length}]#`, one => shown(one.estimate?.width)]
+      : [`estimated area [${units.length}²]#`, one => shown(one.estimate?.area)],
+    [`mean pressure [${units.pressure}]#`, one => shown(one.pressure_mean)],
+  ];
+  table(
+    host,
+    columns.map(column => column[0]),
+    contact.obstacles.map(one => columns.map(column => column[1](one))),
+  );
+  if (force_basis) element("p", host, `Forces ${force_basis}.`, "soft");
 }
 
 function certificateSection(page, { certificate }) {
@@ -168,7 +218,7 @@ function resultantSection(page, summary, { units }) {
 
 function segmentSection(page, summary, { units }) {
   if (!summary?.segments?.length) return;
-  const own = section(page, "Contact segments", "segments");
+  const own = section(page, `Contact segments${ofPart(summary)}`, "segments");
   table(
     own,
     [

@@ -1,0 +1,216 @@
+//! Every number of a report with planes of symmetry is that of the whole body, or its line names the meshed part.
+//!
+//! GOAL: a half, a quarter and an eighth print what the whole prints.
+//! CONDITIONS: the part has the mesh of the whole, so that the answers differ by rounding only.
+//! REFERENCE: the whole body, solved without planes of symmetry.
+
+use serde_json::{Value, json};
+
+use crate::program::Desk;
+
+/// Difference of printed numbers of one answer on one mesh, relative: six to ten digits are printed, the last one rounded.
+const PRINTED: f64 = 2e-6;
+
+/// Numbers below this share of the largest of their line are rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Names of entries of which the report says in a line of its own that they are of the meshed part.
+const OF_PART: [&str; 4] = ["symmetry", "method", "certificate", "seconds"];
+
+/// A half cylinder under a plane, cut at x = 0 or not.
+fn half_cylinder(is_part: bool) -> Value {
+    let centre = if is_part { json!([]) } else { json!([{"on": {"point": [0, 10]}, "x": 0}]) };
+    let mut supports = vec![json!({"on": {"boundary": "upper"}, "y": 0})];
+    supports.extend(centre.as_array().unwrap().clone());
+    json!({
+        "model": "plane-strain", "units": {"length": "mm", "force": "N"},
+        "body": {"disc": {"centre": [0, 10], "radius": 10, "symmetric": is_part, "element": "q4",
+                          "zone": {"width": 1, "divisions": 8}}},
+        "material": {"young": 2000, "poisson": 0.3},
+        "symmetry": if is_part { json!(["x"]) } else { json!([]) },
+        "supports": supports,
+        "obstacles": [{"boundary": "lower", "approach": "-y", "force": 100,
+                       "shape": {"plane": {"point": [0, 0], "normal": [0, -1]}}}],
+    })
+}
+
+/// A block [-1, 1]^2 x [0, 1] under a ball, or the part that planes of symmetry leave; with `z`, the block [-1, 1]^3 between two balls.
+fn block(planes: &[&str], is_between: bool) -> Value {
+    let along = |name: &str, whole: [i32; 2]| match planes.contains(&name) {
+        true => json!({"points": [0, 1], "divisions": [4]}),
+        false => json!({"points": whole, "divisions": [4 * (whole[1] - whole[0])]}),
+    };
+    let ball = |boundary: &str, approach: &str, z: i32| {
+        json!({"boundary": boundary, "approach": approach, "force": 40,
+               "shape": {"sphere": {"apex": [0, 0, z], "radius": 2}}})
+    };
+    let mut obstacles = vec![ball("top", "+z", 1)];
+    if is_between && !planes.contains(&"z") {
+        obstacles.push(ball("bottom", "-z", -1));
+    }
+    let mut supports = Vec::new();
+    if !is_between {
+        supports.push(json!({"on": {"boundary": "bottom"}, "z": 0}));
+    }
+    // The whole is held in its planes of symmetry at points of them.
+    if planes.is_empty() {
+        supports.push(json!({"on": {"point": [0, 1, 0]}, "x": 0}));
+        supports.push(json!({"on": {"point": [0, -1, 0]}, "x": 0}));
+        supports.push(json!({"on": {"point": [1, 0, 0]}, "y": 0}));
+        if is_between {
+            supports.push(json!({"on": {"point": [0, 1, 0]}, "z": 0}));
+            supports.push(json!({"on": {"point": [1, 0, 0]}, "z": 0}));
+            supports.push(json!({"on": {"point": [0, -1, 0]}, "z": 0}));
+        }
+    }
+    json!({
+        "model": "space", "units": {"length": "mm", "force": "N"},
+        "body": {"box": {"x": along("x", [-1, 1]), "y": along("y", [-1, 1]),
+                         "z": along("z", [if is_between { -1 } else { 0 }, 1]), "element": "hex8"}},
+        "material": {"young": 1000, "poisson": 0.3},
+        "symmetry": planes, "supports": supports, "obstacles": obstacles,
+    })
+}
+
+/// The entries of a report: the name, with the numbers of each line, except lines that name the meshed part.
+fn printed(report: &str) -> Vec<(String, String)> {
+    let mut name = String::new();
+    let mut found = Vec::new();
+    for line in report.lines().skip(1) {
+        let (head, content) = line.split_at(line.len().min(16));
+        if !head.trim().is_empty() {
+            name = head.trim().to_string();
+        }
+        found.push((name.clone(), content.trim().to_string()));
+    }
+    found
+}
+
+/// The numbers of a text, without those in the names of things.
+fn numbers(text: &str) -> Vec<f64> {
+    let cleared: String = text.chars().map(|c| if "(),;".contains(c) { ' ' } else { c }).collect();
+    cleared.split_whitespace().filter_map(|word| word.parse().ok()).collect()
+}
+
+fn agree(ours: &[f64], exact: &[f64]) -> bool {
+    let largest = exact.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let near = |(a, b): (&f64, &f64)| (a - b).abs() <= PRINTED * b.abs() + ROUNDING * largest;
+    ours.len() == exact.len() && ours.iter().zip(exact).all(near)
+}
+
+/// The text and the JSON report of a scene, and the first line of its sweep over two values.
+fn reports(scene: &Value, sweep: &[&str]) -> (String, Value, String) {
+    let desk = Desk::new();
+    desk.write("scene.json", scene.to_string());
+    let text = desk.run(&["solve", "scene.json"]).ends_with(0).stdout;
+    let report = desk.run(&["solve", "scene.json", "--format", "json"]).ends_with(0).json();
+    let mut swept = vec!["sweep", "scene.json"];
+    swept.extend(sweep);
+    let table = if sweep.is_empty() { String::new() } else { desk.run(&swept).ends_with(0).stdout };
+    (text, report, table)
+}
+
+/// Compares the entries `contact` and `energy`, and every other line that does not name the part.
+fn check(part: &Value, whole: &Value, sweep: &[&str]) {
+    let ((text, report, table), (of_whole, exact, exact_table)) = (reports(part, sweep), reports(whole, sweep));
+    assert!(text.contains("method, certificate and seconds are of the meshed part"), "{text}");
+    let expected = printed(&of_whole);
+    for (name, line) in printed(&text) {
+        let names_part = line.contains("of the meshed part") && !line.contains("times the meshed part");
+        if OF_PART.contains(&name.as_str()) || names_part || name == "resultants" || name == "warning" {
+            continue;
+        }
+        let ours = numbers(&line);
+        // The line of the basis has the factor to the whole.
+        let found = expected.iter().any(|(other, exact)| *other == name && agree(&ours, &numbers(exact)));
+        let is_basis = line.contains("times the meshed part");
+        assert!(found || is_basis || ours.is_empty(), "{name}: {line}\n{text}\n{of_whole}");
+    }
+    let value = |report: &Value, path: &str| report.pointer(path).and_then(Value::as_f64);
+    for name in [
+        "/contact/force",
+        "/contact/area",
+        "/contact/width",
+        "/contact/pressure_max",
+        "/contact/estimate/area",
+        "/contact/estimate/area_uncertainty",
+        "/contact/estimate/width",
+        "/contact/estimate/width_uncertainty",
+        "/strain_energy",
+        "/contact/obstacles/0/force",
+        "/contact/obstacles/0/sum_of_multipliers",
+        "/contact/obstacles/0/travel",
+        "/contact/obstacles/0/pressure_mean",
+        "/contact/obstacles/0/contacts",
+        "/contact/obstacles/0/estimate/area",
+        "/contact/obstacles/0/estimate/width",
+        "/resultants/0/nodes",
+    ] {
+        match (value(&report, name), value(&exact, name)) {
+            (Some(ours), Some(exact)) => {
+                assert!((ours - exact).abs() <= PRINTED * exact.abs(), "{name}: {ours} {exact}")
+            }
+            (ours, exact) => assert_eq!(ours, exact, "{name}"),
+        }
+    }
+    // Column by column: the closed rows and the iterations are of the part.
+    let rows = |table: &str| {
+        let of_values = table.lines().skip(3).take_while(|line| line.ends_with("certified"));
+        of_values.map(numbers).collect::<Vec<_>>()
+    };
+    assert!(
+        sweep.is_empty() || table.contains("(closed rows), iterations and energy error are of the meshed part"),
+        "{table}"
+    );
+    for (ours, exact) in rows(&table).iter().zip(rows(&exact_table)) {
+        let of_whole = |row: &[f64]| [row[0], row[3], row[4], row[5]];
+        assert!(agree(&of_whole(ours), &of_whole(&exact)), "{table}\n{exact_table}");
+    }
+    assert_eq!(rows(&table).len(), rows(&exact_table).len());
+}
+
+#[test]
+fn half_of_a_cylinder_prints_the_numbers_of_the_whole() {
+    check(&half_cylinder(true), &half_cylinder(false), &["--forces", "50:100:2"]);
+}
+
+#[test]
+fn quarter_of_a_block_under_a_ball_prints_the_numbers_of_the_whole() {
+    check(&block(&["x", "y"], false), &block(&[], false), &["--forces", "20:40:2"]);
+}
+
+#[test]
+fn eighth_of_a_block_between_two_balls_prints_the_numbers_of_the_whole() {
+    check(&block(&["x", "y", "z"], true), &block(&[], true), &[]);
+}
+
+/// A disc between two plates that press with 300 each: the headline names 300 on each plate and the width of one contact, and no sum.
+#[test]
+fn headline_of_a_disc_between_two_plates_is_a_table_of_plates() {
+    let plate = |approach: &str, y: i32, boundary: &str| {
+        json!({"boundary": boundary, "approach": approach, "force": 300,
+               "shape": {"plane": {"point": [0, y], "normal": [0, y.signum()]}}})
+    };
+    let mut scene = half_cylinder(true);
+    scene["body"]["disc"]["centre"] = json!([0, 0]);
+    scene["supports"] = json!([{"on": {"point": [0, 0]}, "y": 0}]);
+    scene["symmetry"] = json!(["x"]);
+    scene["obstacles"] = json!([plate("-y", -10, "lower"), plate("+y", 10, "upper")]);
+    let (text, report, _) = reports(&scene, &[]);
+    let headline: Vec<_> = printed(&text).into_iter().filter(|(name, _)| name == "contact").collect();
+    let of_plates: Vec<_> = headline.iter().filter(|(_, line)| line.starts_with("obstacles[")).collect();
+    assert_eq!(of_plates.len(), 2, "{text}");
+    for (index, (_, line)) in of_plates.iter().enumerate() {
+        let shown = numbers(line);
+        let one = &report["contact"]["obstacles"][index];
+        let width = one["estimate"]["width"].as_f64().unwrap();
+        assert!((shown[0] / 300.0 - 1.0).abs() < PRINTED, "{line}");
+        assert!((shown[3] / width - 1.0).abs() < 1e-5, "{line}: {width}");
+        // The mean pressure acts on the width, per unit of length.
+        assert!((shown[4] * shown[3] / 300.0 - 1.0).abs() < 1e-5, "{line}");
+        assert_eq!((&one["copies"], &one["contacts"]), (&json!(1), &json!(1)), "{one}");
+    }
+    assert!(!headline.iter().any(|(_, line)| line.contains("6.0000") || line.contains("sum of")), "{text}");
+    // The contract of JSON: the sum over all rows.
+    assert!((report["contact"]["force"].as_f64().unwrap() / 600.0 - 1.0).abs() < PRINTED);
+}
