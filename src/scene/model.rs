@@ -7,7 +7,6 @@ use super::obstacle::PlacedObstacle;
 use super::parts::Parts;
 use super::rigid_body_modes::RigidBodyModes;
 use super::rows::{self, ContactRow};
-use super::segments::Segment;
 use super::suspect::suspect_rows;
 #[cfg(feature = "pictures")]
 use super::unknowns::Meaning;
@@ -194,10 +193,10 @@ impl Model {
         self.parts_of_whole() / self.parts.parts_of_obstacle(obstacle)
     }
 
-    /// Number of places at which a segment of contact stands on one copy of its obstacle, as the nodes of the segment lie.
-    pub(crate) fn contacts_of(&self, segment: &Segment) -> usize {
-        let places: Vec<[f64; 3]> = segment.nodes.iter().map(|&node| self.mesh().nodes()[node]).collect();
-        let approach = self.obstacles()[segment.obstacle].approach();
+    /// Number of places at which a contact at these nodes stands on one copy of an obstacle.
+    pub(crate) fn contacts_of(&self, obstacle: usize, nodes: &[usize]) -> usize {
+        let places: Vec<[f64; 3]> = nodes.iter().map(|&node| self.mesh().nodes()[node]).collect();
+        let approach = self.obstacles()[obstacle].approach();
         self.parts.symmetry.contacts(&places, |axis| approach[axis] == 0.0)
     }
 

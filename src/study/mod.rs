@@ -21,6 +21,8 @@ pub use motion_tradeoff::{MotionPoint, MotionTradeoff, motion_tradeoff};
 #[cfg(feature = "cli")]
 pub(crate) use problem_sweep::{ProblemPoint, ProblemSweep, sweep_problem};
 pub use scene::{Sweep, SweepCorner, SweepEvent, SweepPoint, scene_summary, sweep};
-pub use summary::{ContactSummary, ModelSize, ObstacleContact, RunSeconds, Status, Summary, Verification};
+#[cfg(feature = "pictures")]
+pub(crate) use summary::ObstacleContact;
+pub use summary::{ContactSummary, ModelSize, RunSeconds, Status, Summary, Verification};
 pub use tradeoff::{Advice, Tradeoff, TradeoffGrid, TradeoffMesh, TradeoffPoint, tradeoff};
 pub use warnings::AnswerWarning;

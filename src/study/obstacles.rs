@@ -36,7 +36,7 @@ fn of_obstacle(answer: &Answer, index: usize, resultant: &Resultant, segments: &
         travel: resultant.travel,
         pressure_max: rows().fold(0.0, |largest, row| answer.pressure()[row].max(largest)),
         pressure_mean: (area > 0.0).then(|| sum_of_multipliers / area),
-        contacts: own.map(|segment| model.contacts_of(segment)).sum(),
+        contacts: own.map(|segment| model.contacts_of(index, &segment.nodes)).sum(),
         estimate: estimate.filter(|_| model.mesh().dimension() > 1),
     }
 }
