@@ -250,6 +250,8 @@ def test_errors_in_a_scene_name_path_line_and_column(tmp_path: Path) -> None:
         sg.Scene(scene).solve()
     assert raised.value.path == "material.young" and raised.value.line is None
     with pytest.raises(sg.SceneError, match="unknown key"):
+        sg.Scene({**block(), "colour": "red"})
+    with pytest.raises(sg.SceneError, match="friction is not modelled"):
         sg.Scene({**block(), "friction": 0.3})
 
 
