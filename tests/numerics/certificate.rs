@@ -316,3 +316,14 @@ fn a_row_of_zeros_with_a_negative_gap_has_no_bound() {
     assert!(certificate.energy_error_bound.is_infinite() && !certificate.meets(TOLERANCE), "{certificate:?}");
     assert!(problem.prove(&[0.0; 400], &[0.0; 401]).unwrap().is_none());
 }
+
+#[test]
+fn contact_forces_without_bound_do_not_excuse_an_open_wall() {
+    // The last wall asks for u_2 <= -21.5, and the others then for u_0 >= 3e13, by forces of 1e26 that nearly cancel.
+    let stiffness: [&[f64]; 3] = [&[1.0, 0.1, 0.1], &[0.1, 1.0, 0.99999], &[0.1, 0.99999, 1.0]];
+    let rows: [&[f64]; 3] = [&[0.0, -0.41, -0.52], &[-3.7e-13, 0.0, 0.71], &[0.0, 0.043, 0.0]];
+    let problem = Dense::new(&stiffness, &[0.0, -8.1e11, 0.0], &rows, &[0.0, 1.0, -0.93]).problem().unwrap();
+    let pressed = [-1e26, -0.52 / 0.71 * 1e26, -0.41 / 0.043 * 1e26];
+    let certificate = problem.certify(&[0.0; 3], &pressed).unwrap();
+    assert!(certificate.penetration == 1.0 && !certificate.meets(1e-2), "{certificate:?}");
+}

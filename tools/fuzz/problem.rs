@@ -3,6 +3,7 @@
 use signorini::{ContactProblem, Error, Solution, SparseMatrix, SymmetricMatrix, solve_qp};
 
 use super::draws::Draws;
+use super::oracle::dyadic::Dyadic;
 
 /// Tolerance of the recomputed conditions of an answer that is certified to 1e-9.
 const HOLDS: f64 = 1e-7;
@@ -73,6 +74,15 @@ pub fn ending(draws: &mut Draws) -> Result<String, String> {
     }
 }
 
+/// `u' K u`, rounded once: its terms may cancel.
+fn energy(problem: &ContactProblem, u: &[f64]) -> f64 {
+    let terms = problem.stiffness().lower().triplets().map(|(i, j, value)| {
+        let term = &(&Dyadic::from(value) * &Dyadic::from(u[i])) * &Dyadic::from(u[j]);
+        if i == j { term } else { term.ldexp(1) }
+    });
+    terms.fold(Dyadic::ZERO, |sum, term| &sum + &term).to_f64().max(0.0)
+}
+
 /// Recomputes the conditions of an answer, and returns the first one that does not hold.
 fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str> {
     let (u, lambda) = (&solution.displacement, &solution.multiplier);
@@ -87,15 +97,17 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
     // A residual force is scaled by the energy that it causes in its own dof.
     let diagonal = problem.stiffness().diagonal();
     let counts = |dof: usize, force: f64| if diagonal[dof] > 0.0 { force.abs() / diagonal[dof].sqrt() } else { 0.0 };
-    let strong = (0..problem.dofs())
-        .map(|dof| counts(dof, problem.load()[dof]).max(counts(dof, pressed[dof])))
-        .fold(0.0, f64::max);
+    let all = 0..problem.dofs();
+    let strong =
+        (all.clone().map(|dof| counts(dof, problem.load()[dof]).max(counts(dof, pressed[dof])))).fold(0.0, f64::max);
+    // Forces balance to a share of the largest ones that take part, even of those that nearly cancel.
+    let strongest_term = all.clone().map(|dof| counts(dof, terms[dof])).fold(strong, f64::max);
     let balanced = |dof: usize| {
         let residual = within[dof] - problem.load()[dof] - pressed[dof];
         let rest = (residual.abs() - ROUNDING * terms[dof]).max(0.0);
-        rest <= HOLDS * force || (diagonal[dof] > 0.0 && counts(dof, rest) <= HOLDS * strong)
+        rest <= HOLDS * force || (diagonal[dof] > 0.0 && counts(dof, rest) <= HOLDS * strongest_term)
     };
-    if !(0..problem.dofs()).all(balanced) {
+    if !all.clone().all(balanced) {
         return Some("equilibrium");
     }
     let stiffness = largest(&problem.stiffness().diagonal());
@@ -103,7 +115,7 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
     let strongest = largest(lambda);
     let lengths = problem.contact().mul_abs(u);
     // The largest distance by which the energy of the displacement could move a row through a single dof.
-    let energy: f64 = u.iter().zip(problem.stiffness().mul(u)).map(|(u, force)| u * force).sum::<f64>().max(0.0);
+    let energy = energy(problem, u);
     let of_load: f64 = u.iter().zip(problem.load()).map(|(u, f)| u * f).sum();
     let of_gap: f64 = (lambda.iter().zip(problem.gap())).filter(|entry| *entry.0 != 0.0).map(|(l, g)| l * g).sum();
     // The energies of a body at rest are scaled by the work that its forces could do.
@@ -121,7 +133,8 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
         let touched = if lambda[row] != 0.0 || moved[row] > gap { gap.abs() } else { 0.0 };
         let reach = largest(&moved).max(touched).max(still);
         let distance = moved[row] - gap;
-        let product = if lambda[row] == 0.0 || distance.abs() <= ROUNDING * lengths[row] {
+        // A row is closed to what the certified error of the displacement can move it.
+        let product = if lambda[row] == 0.0 || distance.abs() <= (ROUNDING * lengths[row]).max(HOLDS * soft[row]) {
             0.0
         } else {
             (lambda[row] * distance).abs()

@@ -220,9 +220,14 @@ impl ContactProblem {
         // A row without obstacle carries no multiplier.
         let work = |row: usize| if lambda[row] == 0.0 { 0.0 } else { lambda[row] * violation[row] };
         let stationarity = worst((0..u.len()).map(|dof| share(dof, residual[dof])));
-        // Rounding of u moves a row, and a part that rests is known only to the rounding of its forces.
+        // Rounding of u moves a row, and a part that rests is known only to the rounding of its forces. Contact forces without
+        // bound excuse no open wall: what loads and elastic forces could do limits them.
+        let roots = &self.diagonal().roots;
+        let given = (roots.iter().enumerate().filter(|at| *at.1 > 0.0))
+            .map(|(dof, root)| (larger(self.load[dof].abs(), elastic[dof]) / root).powi(2));
+        let given = given.sum::<f64>().sqrt();
         let is_rounding = |row: usize| {
-            let rest = scales.rest_of_row(row, |of| FORCES_ROUNDED * of.force_squares.sqrt());
+            let rest = scales.rest_of_row(row, |of| FORCES_ROUNDED * of.force_squares.sqrt().min(given));
             violation[row].abs() <= ENTRY_ROUNDING * lengths[row] + rest
         };
         let distance = |row: usize| if is_rounding(row) { 0.0 } else { relative(violation[row], length(row)) };
