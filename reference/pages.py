@@ -8,6 +8,7 @@ import base64
 import hashlib
 import json
 import os
+import re
 import subprocess
 import tempfile
 import unittest
@@ -123,6 +124,69 @@ class Answers(Pages):
         self.assertEqual(sum(closed), report["contact"]["count"])
         peak = browser.ask("Math.max(...signorini.data.contact.pressure)")
         self.assertEqual(peak, report["contact"]["pressure_max"])
+
+    def numbers_shown(self, scene: dict, name: str) -> dict[str, list[float]]:
+        """Returns the numbers of each named line, table row and section of a page that are not named as those of the meshed part."""
+        path = self.folder / f"{name}.json"
+        path.write_text(json.dumps(scene))
+        page, _ = self.page("solve", path)
+        lines = self.opened(page).ask(
+            """Array.from(document.querySelectorAll("section")).flatMap(own => {
+              const title = own.querySelector("h2")?.textContent ?? "";
+              const list = Array.from(own.querySelectorAll("dt"), dt => [title, dt.textContent, dt.nextElementSibling.textContent]);
+              const rows = Array.from(own.querySelectorAll("tbody tr"), tr => {
+                const cells = Array.from(tr.cells, cell => cell.textContent);
+                return [title, cells[0], cells.slice(1).join(" ")];
+              });
+              return [...list, ...rows];
+            })"""
+        )
+        # The line `symmetry` says it of the method and of the certificate.
+        is_of_part = lambda title, label, text: (
+            label in ("symmetry", "method")
+            or title in ("Certificate", "About this page")
+            or ("of the meshed part" in title + text and "times the meshed part" not in text)
+        )
+        number = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+        shown = {}
+        for title, label, text in lines:
+            if not is_of_part(title, label, text):
+                # Of the contact, the closed rows and the factor to the whole belong to the part.
+                text = re.sub(r"\d+ closed rows[^,]*,|, of the whole body, \d+ times the meshed part", "", text)
+                shown[f"{title}: {label}"] = [float(value) for value in number.findall(text)]
+        return shown
+
+    def test_a_part_shows_the_numbers_of_the_whole(self) -> None:
+        def scene(is_part: bool) -> dict:
+            supports = [{"on": {"boundary": "upper"}, "y": 0}] + ([] if is_part else [{"on": {"point": [0, 10]}, "x": 0}])
+            return {
+                "model": "plane-strain",
+                "units": {"length": "mm", "force": "N"},
+                "body": {
+                    "disc": {"centre": [0, 10], "radius": 10, "symmetric": is_part, "element": "q4", "zone": {"width": 1, "divisions": 8}}
+                },
+                "material": {"young": 2000, "poisson": 0.3},
+                "symmetry": ["x"] if is_part else [],
+                "supports": supports,
+                "obstacles": [
+                    {
+                        "boundary": "lower",
+                        "approach": "-y",
+                        "force": 100,
+                        "shape": {"plane": {"point": [0, 0], "normal": [0, -1]}},
+                    }
+                ],
+            }
+
+        part = self.numbers_shown(scene(True), "half")
+        whole = self.numbers_shown(scene(False), "disc")
+        self.assertGreater(sum(map(len, part.values())), 15, part)
+        for line, numbers in part.items():
+            self.assertIn(line, whole)
+            self.assertEqual(len(numbers), len(whole[line]), f"{line}: {numbers} {whole[line]}")
+            largest = max(map(abs, numbers), default=0.0)
+            for ours, exact in zip(numbers, whole[line], strict=True):
+                self.assertLessEqual(abs(ours - exact), 2e-6 * abs(exact) + 1e-9 * largest, f"{line}: {numbers} {whole[line]}")
 
     def test_sliders_change_the_picture(self) -> None:
         page, _ = self.page("solve", EXAMPLES / "indentation.json", "--method", "active-set")

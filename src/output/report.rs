@@ -171,6 +171,10 @@ fn obstacle_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
     let is_pressed = contact.obstacles.iter().any(|one| one.travel.is_some());
     let square = if units.length.is_empty() { String::new() } else { format!("{}²", units.length) };
     let shown = |value: Option<f64>| value.map_or_else(|| "-".to_string(), |value| format!("{value:.5e}"));
+    let within = |value: Option<f64>, off: Option<f64>| match (value, off) {
+        (Some(size), Some(off)) if off > SHOWN * size => format!("{size:.5e} ± {off:.1e}"),
+        _ => shown(value),
+    };
     let header = [
         "obstacle".to_string(),
         in_unit("force", &units.force),
@@ -180,14 +184,23 @@ fn obstacle_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
         in_unit("mean p", &units.pressure()),
     ];
     let row = |one: &ObstacleContact| {
-        let extent = one.estimate.map(|estimate| estimate.width.unwrap_or(estimate.area));
+        let extent = one.estimate.map(|of| of.width.unwrap_or(of.area));
+        let extent_off =
+            one.estimate.and_then(|of| if has_width { of.width_uncertainty } else { Some(of.area_uncertainty) });
+        let peak_off = one.estimate.and_then(|of| of.pressure_uncertainty);
         let copies = match one.copies {
             1 => String::new(),
             2 => ", twice".to_string(),
             copies => format!(", {copies} times"),
         };
-        let cells = [Some(one.force), one.travel, Some(one.pressure_max), extent, one.pressure_mean];
-        std::iter::once(format!("{}{copies}", one.of)).chain(cells.map(shown)).collect::<Vec<_>>()
+        vec![
+            format!("{}{copies}", one.of),
+            shown(Some(one.force)),
+            shown(one.travel),
+            within(Some(one.pressure_max), peak_off),
+            within(extent, extent_off),
+            shown(one.pressure_mean),
+        ]
     };
     let rows = std::iter::once(header.to_vec()).chain(contact.obstacles.iter().map(row));
     let kept =

@@ -6,7 +6,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::exact_path::ExactPath;
-use super::summary::LargestDisplacement;
+use super::summary::{LargestDisplacement, OF_MESHED_PART};
 #[cfg(feature = "cli")]
 use super::warnings::untouched;
 use super::warnings::{check_approach, initial_overlap, of_scene, point_support};
@@ -64,7 +64,9 @@ pub fn scene_summary(
     summary.largest_displacement = largest_displacement(answer);
     summary.resultants = answer.resultants()?.to_vec();
     contact_on_obstacles(answer, &segments, &mut summary);
-    summary.parts_of_whole = (parts > 1.0).then_some(parts as usize);
+    if parts > 1.0 {
+        (summary.parts_of_whole, summary.of_meshed_part) = (Some(parts as usize), &OF_MESHED_PART);
+    }
     summary.warnings.extend(point_support(mesh.dimension(), &summary.resultants));
     summary.force_basis = model.basis_of_forces();
     summary.initial_overlap = initial_overlap(model);

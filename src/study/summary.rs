@@ -62,10 +62,12 @@ pub struct Summary {
     /// The reference of all forces, as `per metre`; left out if they are those of the whole body.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub force_basis: String,
-    /// Number of meshed parts in the whole body; only with planes of symmetry. Then forces, areas, widths and energies are of the whole;
-    /// rows, nodes, dofs, segments and the certificate are of the meshed part.
+    /// Number of meshed parts in the whole body; only with planes of symmetry.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub parts_of_whole: Option<usize>,
+    /// The names of these entries of the meshed part, with a point between a name and that of its owner; empty without planes of symmetry.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    pub of_meshed_part: &'static [&'static str],
     /// The deepest overlap of the undeformed body with an obstacle, in words, for the text of a report; `None` without an overlap.
     #[serde(skip)]
     pub initial_overlap: Option<String>,
@@ -83,6 +85,25 @@ pub struct Summary {
     /// Its cost in time.
     pub seconds: RunSeconds,
 }
+
+/// The entries of a summary that planes of symmetry leave of the meshed part. All other numbers are of the whole body.
+pub(crate) const OF_MESHED_PART: [&str; 15] = [
+    "certificate",
+    "contact.count",
+    "contact.force_balance",
+    "contact.obstacles.count",
+    "discretisation_error",
+    "history",
+    "iterations",
+    "largest_displacement.node",
+    "largest_displacement.place",
+    "met_tolerance",
+    "model",
+    "refinements",
+    "seconds",
+    "segments",
+    "why",
+];
 
 /// The component of a displacement with the largest magnitude of all nodes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -242,6 +263,7 @@ impl Summary {
             segments: Vec::new(),
             force_basis: String::new(),
             parts_of_whole: None,
+            of_meshed_part: &[],
             initial_overlap: None,
             discretisation_error: None,
             strain_energy: None,

@@ -69,16 +69,16 @@ function questionSection(page, data, shape, summary) {
       `${is_body ? "another body" : "rigid"}, faces the boundary ${boundary} in the direction ${vectorShown(approach.slice(0, shape.dimension), "")}`,
     ]),
     ["loads", loads ? `${vectorShown(loads.force, units.force)} in all` : null],
-    ["supports", supportWords(question, shape.dimension)],
-    ["springs", springWords(question.springs, shape.dimension)],
-    ["rigid faces", question.rigid.length ? `${counted(question.rigid.length, "node")} that move as one body` : null],
+    ["supports", supportWords(question, shape.dimension) + ofPart(data)],
+    ["springs", springWords(question.springs, shape.dimension, ofPart(data))],
+    ["rigid faces", question.rigid.length ? `${counted(question.rigid.length, "node")} that move as one body${ofPart(data)}` : null],
   ]);
   return view;
 }
 
-function springWords({ vertices }, dimension) {
+function springWords({ vertices }, dimension, part) {
   if (!vertices.length) return null;
-  return `at ${counted(new Set(vertices).size / (dimension === 1 ? 2 : 1), "node")} of the boundary`;
+  return `at ${counted(new Set(vertices).size / (dimension === 1 ? 2 : 1), "node")} of the boundary${part}`;
 }
 
 function supportWords({ fixed, guided }, dimension) {

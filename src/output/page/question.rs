@@ -20,6 +20,8 @@ pub(super) struct Question {
     #[serde(skip_serializing_if = "Option::is_none")]
     force: Option<f64>,
     obstacles: Vec<ObstacleShown>,
+    /// Number of meshed parts in the whole body.
+    parts: f64,
     /// In space: the direction from the body to the eye, of any length.
     #[serde(skip_serializing_if = "Option::is_none")]
     eye: Option<[f64; 3]>,
@@ -90,6 +92,7 @@ impl Question {
             gap: model.gap(),
             force: model.pressing_force(),
             obstacles,
+            parts: model.parts_of_whole(),
             eye: (model.mesh().dimension() == 3).then(|| eye(model, seen)),
             fixed: packer.whole(&holds.fixed, 1),
             guided: holds.guided.packed(packer),

@@ -181,7 +181,7 @@ function sweepPlots(page, data) {
   return at => made.forEach(plot => plot.mark(at));
 }
 
-function sweepTable(page, { sweep, units }) {
+function sweepTable(page, { sweep, units, question }) {
   const own = section(page, "Solved and certified", "points"),
     ofForces = sweep.swept === "force";
   table(
@@ -204,7 +204,7 @@ function sweepTable(page, { sweep, units }) {
     ]),
   );
   const obstacles = obstacleCount(sweep.points[0].contact);
-  if (sweep.parts > 1)
+  if (question.parts > 1)
     element(
       "p",
       own,
@@ -305,7 +305,7 @@ function motionSection(page, data, shape, notes) {
 function searchSection(page, data, shape) {
   const { search } = data;
   if (!search || search.steps.length < 2) return;
-  const own = section(page, "The search for the contact set", "search"),
+  const own = section(page, `The search for the contact set${ofPart(data)}`, "search"),
     rows = Array.from({ length: data.rows.count }, (_, row) => row);
   const none = new Float64Array(rows.length),
     answer = data.states[0];

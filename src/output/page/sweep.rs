@@ -22,8 +22,6 @@ pub(super) struct SweepShown<'a> {
     /// The closed rows of each piece of the exact path, with the pressures at both ends; for a sweep without a path those of each
     /// point.
     closed: ClosedShown,
-    /// Factor from the contact force of the model to that of the whole body.
-    parts: f64,
     /// Number of states, kept or not.
     state_count: usize,
 }
@@ -61,7 +59,6 @@ impl<'a> SweepShown<'a> {
             events: &sweep.events,
             corners: &sweep.corners,
             closed,
-            parts: model.parts_of_whole(),
             state_count,
         };
         Ok((shown, states))

@@ -70,7 +70,7 @@ function contactList(host, summary, data) {
     { units } = data,
     basis = summary.force_basis ? ` ${summary.force_basis}` : "";
   const estimate = contact.estimate,
-    part = ofPart(summary),
+    part = ofPart(data),
     copies = obstacleCount(contact),
     several = copies > 1 ? copies : 0;
   list(host, [
@@ -128,8 +128,8 @@ function contactList(host, summary, data) {
 }
 
 /** The words behind numbers of the meshed part, if planes of symmetry make it a part. */
-function ofPart(summary) {
-  return summary.parts_of_whole ? " of the meshed part" : "";
+function ofPart({ question }) {
+  return question?.parts > 1 ? " of the meshed part" : "";
 }
 
 /** Number of obstacles in the whole body, mirror images included. */
@@ -150,10 +150,10 @@ function obstacleTable(host, { contact, force_basis }, units) {
     ["obstacle", one => `${one.of}${one.on ? ` on ${one.on}` : ""}${imagesOf(one)}`],
     [`force [${units.force}]#`, one => shown(one.force)],
     ...(pressed ? [[`travel [${units.length}]#`, one => shown(one.travel)]] : []),
-    [`peak pressure [${units.pressure}]#`, one => shown(one.pressure_max)],
+    [`peak pressure [${units.pressure}]#`, one => within(one.pressure_max, one.estimate?.pressure_uncertainty, "")],
     inPlane
-      ? [`estimated width [${units.length}]#`, one => shown(one.estimate?.width)]
-      : [`estimated area [${units.length}²]#`, one => shown(one.estimate?.area)],
+      ? [`estimated width [${units.length}]#`, one => within(one.estimate?.width, one.estimate?.width_uncertainty, "")]
+      : [`estimated area [${units.length}²]#`, one => within(one.estimate?.area, one.estimate?.area_uncertainty, "")],
     [`mean pressure [${units.pressure}]#`, one => shown(one.pressure_mean)],
   ];
   table(
@@ -216,9 +216,10 @@ function resultantSection(page, summary, { units }) {
   element("p", own, `Forces on the body${summary.force_basis ? `, ${summary.force_basis}` : ""}.`, "soft");
 }
 
-function segmentSection(page, summary, { units }) {
+function segmentSection(page, summary, data) {
   if (!summary?.segments?.length) return;
-  const own = section(page, `Contact segments${ofPart(summary)}`, "segments");
+  const own = section(page, `Contact segments${ofPart(data)}`, "segments"),
+    { units } = data;
   table(
     own,
     [
@@ -253,7 +254,7 @@ function comparisonSection(page, data) {
       "method",
       "status",
       "iterations#",
-      "closed#",
+      `closed${ofPart(data)}#`,
       `force [${units.force}]#`,
       `peak pressure [${units.pressure}]#`,
       "energy error ≤#",
