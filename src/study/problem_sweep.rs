@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::Summary;
-use super::scene::{even_gaps, problem_summary};
+use super::scene::{beside_answers, even_gaps, problem_summary};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;
 use crate::qp::{Method, Prepared, Settings, Start, solve};
@@ -54,6 +54,7 @@ pub(crate) fn sweep_problem(
     count: usize,
     settings: &Settings,
 ) -> Result<ProblemSweep, Error> {
+    let settings = &beside_answers(count, first.dofs(), settings)?;
     let prepared = Prepared::for_gaps(first, count, settings)?;
     let is_by_choice = settings.method == Method::Auto && prepared.hierarchy().is_some();
     let same_load = first.load() == last.load();

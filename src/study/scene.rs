@@ -14,6 +14,7 @@ use super::{ModelSize, Summary, obstacles::contact_on_obstacles};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
 #[cfg(feature = "cli")]
+use crate::qp::cost::bytes;
 use crate::qp::problem::ContactProblem;
 use crate::qp::{Event, Method, Prepared, Settings, Start, solve};
 use crate::scene::{Answer, ContactExtent, Model};
@@ -198,6 +199,7 @@ pub struct Sweep {
 /// As [`Model::with_gap`] and [`solve`]; [`Error::Interrupted`] if no gap was solved.
 pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, Error> {
     let (Some(&first), Some(&last)) = (gaps.first(), gaps.last()) else { return Ok(Sweep::default()) };
+    let settings = &beside_answers(gaps.len(), model.problem().dofs(), settings)?;
     let at_first = model.with_gap(first)?;
     let prepared =
         Prepared::for_gaps(at_first.problem(), gaps.len(), settings).map_err(|error| at_first.explain(error))?;
@@ -236,6 +238,7 @@ impl Sweep {
         if forces.is_empty() {
             return Ok(Sweep::default());
         }
+        let settings = &beside_answers(forces.len(), model.problem().dofs(), settings)?;
         let prepared = Prepared::new(model.problem(), settings).map_err(|error| model.explain(error))?;
         let mut points = points("force", forces, settings, |force, known| {
             let clock = Instant::now();
@@ -252,6 +255,24 @@ impl Sweep {
         }
         Ok(Sweep { points, ..Sweep::default() })
     }
+}
+
+/// The settings of each solve of a sweep: its answers, `count` of them with `dofs` unknowns each, take their part of the memory.
+///
+/// # Errors
+/// [`Error::Refused`] if the answers alone do not fit.
+pub(super) fn beside_answers(count: usize, dofs: usize, settings: &Settings) -> Result<Settings, Error> {
+    let Some(most) = settings.memory else { return Ok(settings.clone()) };
+    let kept = bytes::of_answers(count as f64, dofs as f64);
+    if kept + bytes::START < most {
+        return Ok(settings.clone().with_memory(most - kept));
+    }
+    let message = format!(
+        "{count} answers with {dofs} dofs take about {:.0} MB, and {:.0} MB are allowed; take fewer of them, or allow more memory",
+        kept / 1e6,
+        most / 1e6
+    );
+    Err(Error::Refused { code: "too-large", place: "sweep, ".into(), path: "points".into(), message })
 }
 
 /// A model of a sweep with its solution.

@@ -50,6 +50,14 @@ pub fn of_mesh(nodes: f64, connections: f64) -> f64 {
     OF_NODE * nodes + OF_CONNECTION * connections
 }
 
+/// Bytes of an unknown in an answer that is kept: displacements, multipliers, forces, and what a report adds.
+const OF_ANSWER: f64 = 90.0;
+
+/// Bytes of `count` answers that are kept, with `dofs` unknowns each.
+pub fn of_answers(count: f64, dofs: f64) -> f64 {
+    OF_ANSWER * count * dofs
+}
+
 /// Bytes of a problem with `dofs` unknowns and `entries` of its stiffness, both triangles, before the factorisation.
 pub fn of_problem(dofs: f64, entries: f64) -> f64 {
     OF_DOF * dofs + OF_ENTRY * entries
