@@ -8,6 +8,8 @@
 mod damage;
 #[path = "../../tools/fuzz/draws.rs"]
 mod draws;
+#[path = "../support/oracles/exact/mod.rs"]
+mod oracle;
 #[path = "../../tools/fuzz/problem.rs"]
 mod problem;
 
