@@ -13,8 +13,8 @@ use super::warnings::{check_approach, initial_overlap, of_scene, point_support};
 use super::{ModelSize, Summary, obstacles::contact_on_obstacles};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
-#[cfg(feature = "cli")]
 use crate::qp::cost::bytes;
+#[cfg(feature = "cli")]
 use crate::qp::problem::ContactProblem;
 use crate::qp::{Event, Method, Prepared, Settings, Start, solve};
 use crate::scene::{Answer, ContactExtent, Model};
