@@ -204,7 +204,7 @@ impl ContactProblem {
         let violation = self.accurate_violation(u);
         let (contact_terms, lengths) = (self.contact.mul_abs_transposed(lambda), self.contact.mul_abs(u));
         let forces: Vec<f64> = self.load.iter().zip(&contact_terms).map(|(f, contact)| f.abs() + contact).collect();
-        let scales = Scales::of(self, u, &forces, strain, &terms);
+        let scales = Scales::of(self, u, &forces, &elastic, strain, &terms);
 
         let share = |dof: usize, force: f64| relative(force.abs(), terms[dof] + forces[dof]);
         let mut shares_of_rows = vec![0.0; self.rows()];
@@ -220,15 +220,9 @@ impl ContactProblem {
         // A row without obstacle carries no multiplier.
         let work = |row: usize| if lambda[row] == 0.0 { 0.0 } else { lambda[row] * violation[row] };
         let stationarity = worst((0..u.len()).map(|dof| share(dof, residual[dof])));
-        // Rounding of u moves a row, and a part that rests is known only to the rounding of its forces. Contact forces without
-        // bound excuse no open wall: what loads and elastic forces could do limits them.
-        let roots = &self.diagonal().roots;
-        let given = (roots.iter().enumerate().filter(|at| *at.1 > 0.0))
-            .map(|(dof, root)| (larger(self.load[dof].abs(), elastic[dof]) / root).powi(2));
-        let given = given.sum::<f64>().sqrt();
+        // Rounding of u moves a row, and a part that rests is known only to the rounding of its forces.
         let is_rounding = |row: usize| {
-            let rest = scales.rest_of_row(row, |of| FORCES_ROUNDED * of.force_squares.sqrt().min(given));
-            violation[row].abs() <= ENTRY_ROUNDING * lengths[row] + rest
+            violation[row].abs() <= ENTRY_ROUNDING * lengths[row] + FORCES_ROUNDED * scales.rest_of_row(row)
         };
         let distance = |row: usize| if is_rounding(row) { 0.0 } else { relative(violation[row], length(row)) };
         let penetration = worst(rows().map(|row| distance(row).max(0.0)));

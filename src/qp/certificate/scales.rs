@@ -31,6 +31,8 @@ pub(super) struct OfPart {
     pub force: f64,
     /// The sum of the squares `F_i^2 / K_ii`.
     pub force_squares: f64,
+    /// The same sum of loads and elastic forces alone: contact forces that cancel each other may be of any size.
+    pub given_squares: f64,
 }
 
 /// The larger of two numbers; NaN is larger than all.
@@ -45,8 +47,15 @@ pub(super) fn relative(value: f64, scale: f64) -> f64 {
 
 impl Scales {
     /// The scales of a displacement u of `problem` under these `forces`, the loads and contact forces `|f| + |B' lambda|`, with
-    /// its `strain` u'K u and the `terms` |K||u|.
-    pub fn of(problem: &ContactProblem, u: &[f64], forces: &[f64], strain: f64, terms: &[f64]) -> Self {
+    /// its `elastic` forces |K u|, its `strain` u'K u and the `terms` |K||u|.
+    pub fn of(
+        problem: &ContactProblem,
+        u: &[f64],
+        forces: &[f64],
+        elastic: &[f64],
+        strain: f64,
+        terms: &[f64],
+    ) -> Self {
         let (parts, diagonal) = (problem.parts(), problem.diagonal());
         let (mut reach, mut part_of_row) = (vec![0.0; problem.rows()], vec![0; problem.rows()]);
         for (dof, &root) in diagonal.roots.iter().enumerate() {
@@ -69,6 +78,7 @@ impl Scales {
                 let force = larger(forces[dof], couplings.get(dof).copied().unwrap_or(0.0)) / root;
                 part.force = larger(force, part.force);
                 part.force_squares += force * force;
+                part.given_squares += (larger(problem.load[dof].abs(), elastic[dof]) / root).powi(2);
             }
         }
         of_parts.iter_mut().zip(&strain).for_each(|(part, &strain)| part.strain = strain);
@@ -86,6 +96,7 @@ impl Scales {
             terms: parts.iter().map(|part| part.terms).sum(),
             force: parts.iter().fold(0.0, |largest, part| larger(part.force, largest)),
             force_squares: parts.iter().map(|part| part.force_squares).sum(),
+            given_squares: parts.iter().map(|part| part.given_squares).sum(),
         }
     }
 
@@ -94,11 +105,15 @@ impl Scales {
         self.part_of_row[row]
     }
 
-    /// The distance by which an error in the energy norm, of a part that rests, could move a single dof of a row; zero for a
-    /// part that moves.
-    pub fn rest_of_row(&self, row: usize, error: impl Fn(&OfPart) -> f64) -> f64 {
+    /// The distance by which the forces on a part that rests could move a single dof of a row, its loads and elastic forces at
+    /// most; zero for a part that moves.
+    pub fn rest_of_row(&self, row: usize) -> f64 {
         let part = &self.of_parts[self.part_of_row[row]];
-        if part.moves || !part.is_stiff { 0.0 } else { self.reach[row] * error(part) }
+        if part.moves || !part.is_stiff {
+            0.0
+        } else {
+            self.reach[row] * part.force_squares.min(part.given_squares).sqrt()
+        }
     }
 }
 
