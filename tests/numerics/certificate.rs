@@ -320,10 +320,35 @@ fn a_row_of_zeros_with_a_negative_gap_has_no_bound() {
 #[test]
 fn contact_forces_without_bound_do_not_excuse_an_open_wall() {
     // The last wall asks for u_2 <= -21.5, and the others then for u_0 >= 3e13, by forces of 1e26 that nearly cancel.
-    let stiffness: [&[f64]; 3] = [&[1.0, 0.1, 0.1], &[0.1, 1.0, 0.99999], &[0.1, 0.99999, 1.0]];
-    let rows: [&[f64]; 3] = [&[0.0, -0.41, -0.52], &[-3.7e-13, 0.0, 0.71], &[0.0, 0.043, 0.0]];
-    let problem = Dense::new(&stiffness, &[0.0, -8.1e11, 0.0], &rows, &[0.0, 1.0, -0.93]).problem().unwrap();
+    // A fourth dof, which is a part of its own, has a load that is no excuse for the others.
+    let stiffness: [&[f64]; 4] =
+        [&[1.0, 0.1, 0.1, 0.0], &[0.1, 1.0, 0.99999, 0.0], &[0.1, 0.99999, 1.0, 0.0], &[0.0, 0.0, 0.0, 1.0]];
+    let rows: [&[f64]; 3] = [&[0.0, -0.41, -0.52, 0.0], &[-3.7e-13, 0.0, 0.71, 0.0], &[0.0, 0.043, 0.0, 0.0]];
     let pressed = [-1e26, -0.52 / 0.71 * 1e26, -0.41 / 0.043 * 1e26];
-    let certificate = problem.certify(&[0.0; 3], &pressed).unwrap();
-    assert!(certificate.penetration == 1.0 && !certificate.meets(1e-2), "{certificate:?}");
+    for apart in [0.0, 2.0_f64.powi(100)] {
+        let problem = Dense::new(&stiffness, &[0.0, -8.1e11, 0.0, apart], &rows, &[0.0, 1.0, -0.93]).problem().unwrap();
+        let certificate = problem.certify(&[0.0, 0.0, 0.0, apart], &pressed).unwrap();
+        assert!(certificate.penetration == 1.0 && !certificate.meets(1e-2), "{certificate:?}");
+    }
+}
+
+#[test]
+fn an_answer_that_is_right_in_energy_closes_the_rows_that_press() {
+    // Two rows move by 6.5e11 of a dof that nothing else holds: an error of 1e-14 there has no energy and opens them by 0.01.
+    let dense = Dense::new(
+        &[&[0.1, 0.0], &[0.0, 0.5234632063150445]],
+        &[0.883138868957758, -0.46733904257416725],
+        &[
+            &[-0.03806643933057785, 647482397034.7643],
+            &[0.6917880158871412, -653640644624.8293],
+            &[0.903928542509675, 0.4953599702566862],
+            &[0.6005235258489847, 0.0],
+        ],
+        &[-4.4719095528125764e-13, -0.22527733072638512, 0.19200889579951763, 0.3770189620554447],
+    );
+    let problem = dense.problem().unwrap();
+    for solution in [solve_qp(&problem), solve(&problem, &Settings::default())] {
+        let solution = solution.unwrap();
+        assert!(solution.certificate.complementarity < 1e-7, "{solution:?}");
+    }
 }

@@ -97,17 +97,15 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
     // A residual force is scaled by the energy that it causes in its own dof.
     let diagonal = problem.stiffness().diagonal();
     let counts = |dof: usize, force: f64| if diagonal[dof] > 0.0 { force.abs() / diagonal[dof].sqrt() } else { 0.0 };
-    let all = 0..problem.dofs();
-    let strong =
-        (all.clone().map(|dof| counts(dof, problem.load()[dof]).max(counts(dof, pressed[dof])))).fold(0.0, f64::max);
-    // Forces balance to a share of the largest ones that take part, even of those that nearly cancel.
-    let strongest_term = all.clone().map(|dof| counts(dof, terms[dof])).fold(strong, f64::max);
+    let strong = (0..problem.dofs())
+        .map(|dof| counts(dof, problem.load()[dof]).max(counts(dof, pressed[dof])))
+        .fold(0.0, f64::max);
     let balanced = |dof: usize| {
         let residual = within[dof] - problem.load()[dof] - pressed[dof];
         let rest = (residual.abs() - ROUNDING * terms[dof]).max(0.0);
-        rest <= HOLDS * force || (diagonal[dof] > 0.0 && counts(dof, rest) <= HOLDS * strongest_term)
+        rest <= HOLDS * force || (diagonal[dof] > 0.0 && counts(dof, rest) <= HOLDS * strong)
     };
-    if !all.clone().all(balanced) {
+    if !(0..problem.dofs()).all(balanced) {
         return Some("equilibrium");
     }
     let stiffness = largest(&problem.stiffness().diagonal());
@@ -133,8 +131,7 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
         let touched = if lambda[row] != 0.0 || moved[row] > gap { gap.abs() } else { 0.0 };
         let reach = largest(&moved).max(touched).max(still);
         let distance = moved[row] - gap;
-        // A row is closed to what the certified error of the displacement can move it.
-        let product = if lambda[row] == 0.0 || distance.abs() <= (ROUNDING * lengths[row]).max(HOLDS * soft[row]) {
+        let product = if lambda[row] == 0.0 || distance.abs() <= ROUNDING * lengths[row] {
             0.0
         } else {
             (lambda[row] * distance).abs()

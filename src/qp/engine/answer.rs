@@ -15,7 +15,7 @@ use crate::solution::{ContactSet, Iteration, Seconds, Solution};
 use crate::watch::Watch;
 
 /// Largest number of repairs of an answer: the second removes the rounding of the first.
-const MOST_REPAIRS: usize = 2;
+const MOST_REPAIRS: usize = 8;
 
 impl Factored {
     /// The whole answer, certified, and what was found for it; a second attempt is made if `found` falls short.
@@ -99,9 +99,9 @@ impl Factored {
             seconds: Seconds { certificate: judging, solve: seconds.solve + clock.elapsed().as_secs_f64(), ..*seconds },
             ..answer(whole, method.name(), certificate)
         };
-        if !self.is_single() && self.resolved(settings).wants_best() {
+        if self.resolved(settings).wants_best() {
             solution = self.corrected(solution, &problem, settings)?;
-            if let Some(norm) = &norm {
+            if let Some(norm) = norm.as_ref().filter(|_| !self.is_single()) {
                 solution = self.repaired(solution, norm, &problem, settings)?;
             }
         }
@@ -161,7 +161,7 @@ impl Factored {
         settings: &Settings,
     ) -> Result<Solution, Error> {
         for _ in 0..MOST_REPAIRS {
-            if settings.goal().is_met_by(&solution.certificate) || settings.watch.is_over() {
+            if !solution.certificate.asks_for_more(settings.goal()) || settings.watch.is_over() {
                 break;
             }
             let clock = Instant::now();
@@ -171,7 +171,7 @@ impl Factored {
             };
             let (displacement, examined) = self.examined(problem, Some(norm), (displacement, &multiplier), settings)?;
             let certificate = examined.certificate;
-            if !certificate.improves_on(&solution.certificate, 1.0) {
+            if !certificate.gains_on(&solution.certificate, settings.goal(), 1.0) {
                 break;
             }
             let contact_set: ContactSet = multiplier.iter().map(|&force| force < 0.0).collect();

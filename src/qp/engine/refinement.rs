@@ -142,7 +142,7 @@ impl Factored {
         // Another step must reduce the worst condition to this share.
         const GAIN: f64 = 0.5;
         for _ in 0..MOST_CORRECTIONS {
-            if settings.goal().is_met_by(&solution.certificate) || settings.watch.is_over() {
+            if !solution.certificate.asks_for_more(settings.goal()) || settings.watch.is_over() {
                 break;
             }
             let clock = Instant::now();
@@ -159,7 +159,7 @@ impl Factored {
             let (displacement, examined) =
                 self.examined(problem, norm.as_ref(), (displacement, &multiplier), settings)?;
             let certificate = examined.certificate;
-            if !certificate.improves_on(&solution.certificate, GAIN) {
+            if !certificate.gains_on(&solution.certificate, settings.goal(), GAIN) {
                 break;
             }
             solution.contact_set = self.expand_set(&step.outcome.contact_set);
