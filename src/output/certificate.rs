@@ -34,12 +34,16 @@ impl CertificateWords {
             },
             None => format!("NOT certified to {tolerance:.1e}, each relative:"),
         };
-        CertificateWords { verdict, conditions: conditions(certificate).to_vec(), notes: notes(certificate) }
+        CertificateWords { verdict, conditions: conditions(certificate).to_vec(), notes: notes(certificate, tolerance) }
     }
 }
 
-fn notes(certificate: &Certificate) -> Vec<String> {
+fn notes(certificate: &Certificate, tolerance: f64) -> Vec<String> {
     let mut notes = Vec::new();
+    let explaining = [certificate.stationarity, certificate.complementarity, certificate.duality_gap];
+    if explaining.iter().any(|measure| measure.is_finite() && *measure > tolerance) {
+        notes.push("stationarity, complementarity and duality gap explain an error and do not decide".to_string());
+    }
     let (parts, resting) = (certificate.parts, certificate.parts_at_rest);
     if resting > 0 {
         let of_parts = if parts > 1 { format!("{resting} of {parts} parts at rest: ") } else { String::new() };

@@ -170,8 +170,8 @@ function certificateSection(page, { certificate }) {
   element(
     "p",
     own,
-    `This answer is ${certificate.verdict.replace(/, each relative:$/, ": every condition, recomputed from the problem, holds to that, each relative to its own scale.")}`.replace(
-      /is NOT (.*): every condition, recomputed from the problem, holds to that, each relative to its own scale\./,
+    `This answer is ${certificate.verdict.replace(/, each relative:$/, ": the conditions that decide, recomputed from the problem, hold to that, each relative to its own scale.")}`.replace(
+      /is NOT (.*): the conditions that decide, recomputed from the problem, hold to that, each relative to its own scale\./,
       "is NOT $1. The conditions, recomputed from the problem, each relative to its own scale:",
     ),
   );
