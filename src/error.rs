@@ -172,6 +172,26 @@ pub enum Error {
         /// Memory that it may take, in bytes.
         allowed: f64,
     },
+    /// A sweep whose answers leave too little memory to each solve.
+    #[error(
+        "{count} answers with {dofs} dofs, which a sweep keeps, take about {}, and a solve about {}, but {} are allowed; take fewer \
+         points, or allow more memory",
+        memory(*kept),
+        memory(*solve),
+        memory(*allowed)
+    )]
+    TooManyAnswers {
+        /// Number of answers.
+        count: usize,
+        /// Number of unknowns of each.
+        dofs: usize,
+        /// Memory of the answers, estimated, in bytes.
+        kept: f64,
+        /// Memory of a solve, estimated, in bytes.
+        solve: f64,
+        /// Memory that all may take, in bytes.
+        allowed: f64,
+    },
     /// A problem that neither path solves within the memory that it may take.
     #[error("{}", no_room(*factor, *multigrid, *allowed, ended.as_deref()))]
     NoRoom {
@@ -308,7 +328,7 @@ impl Error {
             Error::NotCertified { .. } => ("not-certified", "not_certified", NotCertified),
             Error::Setting { .. } => bad_input("setting"),
             Error::NotCondensed { .. } => bad_input("not-condensed"),
-            Error::TooLarge { .. } | Error::NoRoom { .. } => bad_input("too-large"),
+            Error::TooLarge { .. } | Error::NoRoom { .. } | Error::TooManyAnswers { .. } => bad_input("too-large"),
             Error::Numerical { .. } => ("numerical", "failed", BadInput),
             Error::Mesh { .. } => bad_input("mesh"),
             Error::Refused { code, .. } => bad_input(code),

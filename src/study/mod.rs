@@ -2,6 +2,7 @@
 
 mod compare;
 mod exact_path;
+mod kept_answers;
 mod motion;
 mod motion_tradeoff;
 mod moving_mean;

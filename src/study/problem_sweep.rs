@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::Summary;
-use super::scene::{beside_answers, even_gaps, problem_summary};
+use super::kept_answers::KeptAnswers;
+use super::scene::{even_gaps, problem_summary};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;
 use crate::qp::{Method, Prepared, Settings, Start, solve};
@@ -54,8 +55,9 @@ pub(crate) fn sweep_problem(
     count: usize,
     settings: &Settings,
 ) -> Result<ProblemSweep, Error> {
-    let settings = &beside_answers(count, first.dofs(), settings)?;
-    let prepared = Prepared::for_gaps(first, count, settings)?;
+    let kept = KeptAnswers::of(count, first.dofs(), settings);
+    let settings = &kept.settings(settings);
+    let prepared = Prepared::for_gaps(first, count, settings).map_err(|error| kept.explain(error))?;
     let is_by_choice = settings.method == Method::Auto && prepared.hierarchy().is_some();
     let same_load = first.load() == last.load();
     let mut points: Vec<ProblemPoint> = Vec::with_capacity(count);
@@ -76,7 +78,7 @@ pub(crate) fn sweep_problem(
             // An interrupted solve is no answer to this point.
             Err(_) if settings.watch.is_stopped() => break,
             Err(Error::NotCertified { solution, .. }) => *solution,
-            Err(error) => return Err(error),
+            Err(error) => return Err(kept.explain(error)),
         };
         points.push(point(&problem, t, solution, settings));
         if settings.watch.is_stopped() {

@@ -6,6 +6,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::exact_path::ExactPath;
+use super::kept_answers::KeptAnswers;
 use super::summary::{LargestDisplacement, OF_MESHED_PART};
 #[cfg(feature = "cli")]
 use super::warnings::untouched;
@@ -13,7 +14,6 @@ use super::warnings::{check_approach, initial_overlap, of_scene, point_support};
 use super::{ModelSize, Summary, obstacles::contact_on_obstacles};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
-use crate::qp::cost::bytes;
 #[cfg(feature = "cli")]
 use crate::qp::problem::ContactProblem;
 use crate::qp::{Event, Method, Prepared, Settings, Start, solve};
@@ -199,10 +199,11 @@ pub struct Sweep {
 /// As [`Model::with_gap`] and [`solve`]; [`Error::Interrupted`] if no gap was solved.
 pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, Error> {
     let (Some(&first), Some(&last)) = (gaps.first(), gaps.last()) else { return Ok(Sweep::default()) };
-    let settings = &beside_answers(gaps.len(), model.problem().dofs(), settings)?;
+    let kept = KeptAnswers::of(gaps.len(), model.problem().dofs(), settings);
+    let settings = &kept.settings(settings);
     let at_first = model.with_gap(first)?;
-    let prepared =
-        Prepared::for_gaps(at_first.problem(), gaps.len(), settings).map_err(|error| at_first.explain(error))?;
+    let prepared = Prepared::for_gaps(at_first.problem(), gaps.len(), settings)
+        .map_err(|error| at_first.explain(kept.explain(error)))?;
     let is_by_choice = settings.method == Method::Auto && prepared.hierarchy().is_some();
     let points = points("gap", gaps, settings, |gap, known| {
         let clock = Instant::now();
@@ -217,7 +218,7 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
             Err(Error::NotCertified { .. }) if is_by_choice => solve(model.problem(), settings),
             solved => solved,
         };
-        Ok(Solved { model, solved, assemble_seconds })
+        Ok(Solved { model, solved: solved.map_err(|error| kept.explain(error)), assemble_seconds })
     })?;
     if settings.watch.is_stopped() {
         return Ok(Sweep { points, ..Sweep::default() });
@@ -238,8 +239,9 @@ impl Sweep {
         if forces.is_empty() {
             return Ok(Sweep::default());
         }
-        let settings = &beside_answers(forces.len(), model.problem().dofs(), settings)?;
-        let prepared = Prepared::new(model.problem(), settings).map_err(|error| model.explain(error))?;
+        let kept = KeptAnswers::of(forces.len(), model.problem().dofs(), settings);
+        let settings = &kept.settings(settings);
+        let prepared = Prepared::new(model.problem(), settings).map_err(|error| model.explain(kept.explain(error)))?;
         let mut points = points("force", forces, settings, |force, known| {
             let clock = Instant::now();
             let model = model.pressed_by(force)?;
@@ -248,31 +250,13 @@ impl Sweep {
                 true => prepared.starting_from(known).solve_load(model.problem().load().to_vec()),
                 false => model.touched(settings),
             };
-            Ok(Solved { model, solved, assemble_seconds })
+            Ok(Solved { model, solved: solved.map_err(|error| kept.explain(error)), assemble_seconds })
         })?;
         for (point, &force) in points.iter_mut().zip(forces) {
             (point.gap, point.force) = (point.answer.model().gap(), Some(force));
         }
         Ok(Sweep { points, ..Sweep::default() })
     }
-}
-
-/// The settings of each solve of a sweep: its answers, `count` of them with `dofs` unknowns each, take their part of the memory.
-///
-/// # Errors
-/// [`Error::Refused`] if the answers alone do not fit.
-pub(super) fn beside_answers(count: usize, dofs: usize, settings: &Settings) -> Result<Settings, Error> {
-    let Some(most) = settings.memory else { return Ok(settings.clone()) };
-    let kept = bytes::of_answers(count as f64, dofs as f64);
-    if kept + bytes::START < most {
-        return Ok(settings.clone().with_memory(most - kept));
-    }
-    let message = format!(
-        "{count} answers with {dofs} dofs take about {:.0} MB, and {:.0} MB are allowed; take fewer of them, or allow more memory",
-        kept / 1e6,
-        most / 1e6
-    );
-    Err(Error::Refused { code: "too-large", place: "sweep, ".into(), path: "points".into(), message })
 }
 
 /// A model of a sweep with its solution.

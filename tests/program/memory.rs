@@ -72,6 +72,39 @@ fn the_peak_of_memory_stays_below_the_limit_and_runs_are_refused_or_certified() 
     assert!(solved > 30 && refused > 10, "{solved} solved, {refused} refused");
 }
 
+/// A sweep keeps its answers, which count as well.
+#[test]
+fn the_peak_of_a_sweep_stays_below_the_limit() {
+    let desk = Desk::new();
+    let sweeps = [
+        ("gaps", block([60, 60], "q4"), "--gaps", "-0.002:-0.01"),
+        ("forces", pressed(block([60, 60], "q4"), 20.0), "--forces", "5:20"),
+    ];
+    for (name, scene, option, range) in sweeps {
+        let file = format!("{name}.json");
+        desk.write(&file, scene.to_string());
+        let (mut solved, mut too_many) = (0, 0);
+        for count in [3, 150] {
+            let values = format!("{range}:{count}");
+            for megabytes in [30, 60, 120, 240] {
+                let limit = format!("{megabytes}MB");
+                let (code, said, peak) = measured(&desk, &["sweep", &file, option, &values, "--max-memory", &limit]);
+                let run = format!("{name} {count} {limit}: code {code}, {:.1} MB, {said}", peak / 1e6);
+                assert!(peak <= 1e6 * f64::from(megabytes), "{run}");
+                match code {
+                    0 => solved += 1,
+                    _ if said.contains("150 answers with") => {
+                        assert!(said.contains(&format!("but {megabytes} MB are allowed")), "{run}");
+                        too_many += 1;
+                    }
+                    _ => assert!(code == 1 && said.contains(&format!("{megabytes} MB")), "{run}"),
+                }
+            }
+        }
+        assert!(solved >= 3 && too_many >= 1, "{name}: {solved} solved, {too_many} with too many answers");
+    }
+}
+
 /// If memory is short, the factor of the stiffness is dropped for those of the contact sets, and computed again.
 #[test]
 fn the_memory_limit_named_in_a_refusal_suffices() {

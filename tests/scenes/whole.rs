@@ -121,11 +121,11 @@ fn every_number_is_of_the_whole_or_named(part: &Value, whole: &Value) {
     let (mut numbers, mut compared) = (Vec::new(), 0);
     leaves(part, "", "", &mut numbers);
     let is_named = |name: &str| named.iter().any(|of| name == *of || name.starts_with(&format!("{of}.")));
-    // Sums of forces that cancel are rounding of the forces.
-    let largest = |top: &str| {
-        let of_top = numbers.iter().filter(|(_, place, _)| place.split('/').nth(1) == Some(top));
-        of_top.map(|(_, _, value)| value.abs()).fold(0.0, f64::max)
-    };
+    // Components of a resultant that cancel are rounding beside its force, and its force times the size of the body.
+    let resultants: Vec<f64> =
+        numbers.iter().filter(|(name, ..)| name.starts_with("resultants.")).map(|n| n.2.abs()).collect();
+    let largest = resultants.into_iter().fold(0.0, f64::max);
+    let is_rounding = |name: &str, value: f64| name.starts_with("resultants.") && value.abs() <= ROUNDING * largest;
     // The whole has each mirror image of an obstacle as an obstacle of its own.
     let is_factor = |name: &str| ["parts_of_whole", "contact.obstacles.copies"].contains(&name);
     for (name, place, ours) in numbers.iter().filter(|(name, ..)| !is_factor(name) && !is_named(name)) {
@@ -133,8 +133,8 @@ fn every_number_is_of_the_whole_or_named(part: &Value, whole: &Value) {
         let exact = exact.unwrap_or_else(|| panic!("{place}: {ours}, and the whole has no such number: {whole:#}"));
         // The mirror image of a node moves the other way, and either of the two is the largest.
         let is_mirrored = name == "largest_displacement.value" && (ours + exact).abs() <= PRINTED * exact.abs();
-        let rounding = ROUNDING * largest(name.split('.').next().unwrap());
-        let is_equal = is_mirrored || (ours - exact).abs() <= PRINTED * exact.abs() + rounding;
+        let is_zero = is_rounding(name, *ours) && is_rounding(name, exact);
+        let is_equal = is_mirrored || is_zero || (ours - exact).abs() <= PRINTED * exact.abs();
         assert!(is_equal, "{place}: {ours}, of the whole {exact}");
         compared += 1;
     }
