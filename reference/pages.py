@@ -63,6 +63,29 @@ LOOK = """
 """
 
 
+def disc(is_part: bool) -> dict:
+    """A disc under a plate that presses, or the half of it that a plane of symmetry leaves."""
+    supports = [{"on": {"boundary": "upper"}, "y": 0}] + ([] if is_part else [{"on": {"point": [0, 10]}, "x": 0}])
+    return {
+        "model": "plane-strain",
+        "units": {"length": "mm", "force": "N"},
+        "body": {
+            "disc": {"centre": [0, 10], "radius": 10, "symmetric": is_part, "element": "q4", "zone": {"width": 1, "divisions": 8}}
+        },
+        "material": {"young": 2000, "poisson": 0.3},
+        "symmetry": ["x"] if is_part else [],
+        "supports": supports,
+        "obstacles": [
+            {
+                "boundary": "lower",
+                "approach": "-y",
+                "force": 100,
+                "shape": {"plane": {"point": [0, 0], "normal": [0, -1]}},
+            }
+        ],
+    }
+
+
 class Pages(unittest.TestCase):
     @classmethod
     def setUpClass(cls) -> None:
@@ -157,29 +180,8 @@ class Answers(Pages):
         return shown
 
     def test_a_part_shows_the_numbers_of_the_whole(self) -> None:
-        def scene(is_part: bool) -> dict:
-            supports = [{"on": {"boundary": "upper"}, "y": 0}] + ([] if is_part else [{"on": {"point": [0, 10]}, "x": 0}])
-            return {
-                "model": "plane-strain",
-                "units": {"length": "mm", "force": "N"},
-                "body": {
-                    "disc": {"centre": [0, 10], "radius": 10, "symmetric": is_part, "element": "q4", "zone": {"width": 1, "divisions": 8}}
-                },
-                "material": {"young": 2000, "poisson": 0.3},
-                "symmetry": ["x"] if is_part else [],
-                "supports": supports,
-                "obstacles": [
-                    {
-                        "boundary": "lower",
-                        "approach": "-y",
-                        "force": 100,
-                        "shape": {"plane": {"point": [0, 0], "normal": [0, -1]}},
-                    }
-                ],
-            }
-
-        part = self.numbers_shown(scene(True), "half")
-        whole = self.numbers_shown(scene(False), "disc")
+        part = self.numbers_shown(disc(True), "half")
+        whole = self.numbers_shown(disc(False), "disc")
         self.assertGreater(sum(map(len, part.values())), 15, part)
         for line, numbers in part.items():
             self.assertIn(line, whole)
@@ -189,6 +191,29 @@ class Answers(Pages):
             for ours, exact in zip(numbers, whole[line], strict=True):
                 if max(abs(ours), abs(exact)) > rounding:
                     self.assertLessEqual(abs(ours - exact), 2e-6 * abs(exact), f"{line}: {numbers} {whole[line]}")
+
+    def test_the_table_of_obstacles_has_their_uncertainties(self) -> None:
+        between = disc(True)
+        between["body"]["disc"]["centre"] = [0, 0]
+        between["supports"] = [{"on": {"point": [0, 0]}, "y": 0}]
+        below = dict(between["obstacles"][0], shape={"plane": {"point": [0, -10], "normal": [0, -1]}})
+        above = dict(below, boundary="upper", approach="+y", shape={"plane": {"point": [0, 10], "normal": [0, 1]}})
+        between["obstacles"] = [below, above]
+        path = self.folder / "between.json"
+        path.write_text(json.dumps(between))
+        page, report = self.page("solve", path)
+        cells = self.opened(page).ask(
+            "Array.from(document.querySelectorAll('#answer tbody tr'), tr => Array.from(tr.cells, cell => cell.textContent))"
+        )
+        for row, one in zip(cells, report["contact"]["obstacles"], strict=True):
+            estimate = one["estimate"]
+            for cell, value, off in (
+                (row[3], one["pressure_max"], estimate["pressure_uncertainty"]),
+                (row[4], estimate["width"], estimate["width_uncertainty"]),
+            ):
+                shown, shown_off = map(float, cell.split(" ± "))
+                self.assertLessEqual(abs(shown - value), 1e-5 * value, row)
+                self.assertLessEqual(abs(shown_off - off), 0.05 * off, row)
 
     def test_sliders_change_the_picture(self) -> None:
         page, _ = self.page("solve", EXAMPLES / "indentation.json", "--method", "active-set")

@@ -231,8 +231,15 @@ fn headline_of_a_disc_between_two_plates_is_a_table_of_plates() {
         let shown = numbers(&line.split(" ± ").enumerate().fold(String::new(), |text, (at, rest)| {
             text + " " + if at == 0 { rest } else { rest.split_once(' ').map_or("", |(_, rest)| rest) }
         }));
-        assert!(line.contains(" ± "), "{line}");
         let one = &report["contact"]["obstacles"][index];
+        let uncertainties = line.split(" ± ").skip(1).map(|rest| numbers(rest)[0]);
+        let exact = ["pressure_uncertainty", "width_uncertainty"].map(|name| one["estimate"][name].as_f64().unwrap());
+        // Two digits are printed.
+        assert!(uncertainties.clone().count() == 2, "{line}");
+        assert!(
+            uncertainties.zip(exact).all(|(shown, exact)| (shown / exact - 1.0).abs() <= 0.05),
+            "{line}: {exact:?}"
+        );
         let width = one["estimate"]["width"].as_f64().unwrap();
         assert!((shown[0] / 300.0 - 1.0).abs() < PRINTED, "{line}");
         assert!((shown[3] / width - 1.0).abs() < 1e-5, "{line}: {width}");
