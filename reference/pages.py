@@ -205,6 +205,9 @@ class Answers(Pages):
         cells = self.opened(page).ask(
             "Array.from(document.querySelectorAll('#answer tbody tr'), tr => Array.from(tr.cells, cell => cell.textContent))"
         )
+        question = self.text("#question")
+        self.assertEqual(question.count("pressed by 100 N"), 2, question)
+        self.assertNotIn("the shift of every obstacle", question)
         for row, one in zip(cells, report["contact"]["obstacles"], strict=True):
             estimate = one["estimate"]
             for cell, value, off in (

@@ -198,8 +198,9 @@ fn closed_nodes(model: &Model, set: &ContactSet) -> String {
     let mut nodes: Vec<usize> = set.iter().map(|row| model.rows()[row].node).collect();
     nodes.sort_unstable();
     nodes.dedup();
+    let part = if model.parts_of_whole() > 1.0 { " of the meshed part" } else { "" };
     match nodes.len() {
-        1 => "1 closed node".to_string(),
-        count => format!("{count} closed nodes"),
+        1 => format!("1 closed node{part}"),
+        count => format!("{count} closed nodes{part}"),
     }
 }

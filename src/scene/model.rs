@@ -104,26 +104,22 @@ impl Model {
         Self::with_rows(self.parts.clone(), gap, built, (stiffness, load, near_null))
     }
 
-    /// The force on the one obstacle that a force presses; `None` if there is no such obstacle, or several.
-    #[cfg(feature = "cli")]
-    pub(crate) fn pressing_force(&self) -> Option<f64> {
-        let &[force] = &self.pressing_forces()[..] else { return None };
-        Some(force)
-    }
-
     /// Returns `true` if a force presses the obstacle.
     pub(crate) fn is_pressed(&self, obstacle: usize) -> bool {
         self.parts.unknowns.travel(obstacle).is_some()
     }
 
+    /// The force that presses an obstacle, on the whole body; `None` if none does.
+    #[cfg(feature = "pictures")]
+    pub(crate) fn pressing_force_on(&self, obstacle: usize) -> Option<f64> {
+        let parts = self.parts.parts_of_obstacle(obstacle);
+        self.parts.unknowns.travel(obstacle).map(|unknown| parts * self.problem.load()[unknown])
+    }
+
     /// The force on each obstacle that a force presses.
     #[cfg(feature = "pictures")]
     pub(crate) fn pressing_forces(&self) -> Vec<f64> {
-        let force = |&obstacle: &usize| {
-            let parts = self.parts.parts_of_obstacle(obstacle);
-            self.parts.unknowns.travel(obstacle).map(|unknown| parts * self.problem.load()[unknown])
-        };
-        self.parts.unknowns.pressed().iter().filter_map(force).collect()
+        self.parts.unknowns.pressed().iter().filter_map(|&obstacle| self.pressing_force_on(obstacle)).collect()
     }
 
     /// The same scene with another force on the one obstacle that a force presses.

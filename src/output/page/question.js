@@ -58,18 +58,18 @@ function questionSection(page, data, shape, summary) {
   if (question.obstacles.some(obstacle => !obstacle.is_body))
     entry("obstacle", "rect", { x: 2, y: 4, width: 16, height: 12, fill: "var(--solid)" });
   list(own, [
-    question.force === undefined
-      ? [
-          "gap",
-          `${inUnit(question.gap, units.length)}: the shift of every obstacle along its approach direction, negative towards the body`,
-        ]
-      : ["pressing force", inUnit(question.force, units.force)],
-    ...question.obstacles.map(({ boundary, approach, is_body }, index) => [
+    [
+      "gap",
+      question.obstacles.some(({ force }) => force === undefined)
+        ? `${inUnit(question.gap, units.length)}: the shift of every obstacle ${question.obstacles.some(({ force }) => force !== undefined) ? "without a force " : ""}along its approach direction, negative towards the body`
+        : null,
+    ],
+    ...question.obstacles.map(({ boundary, approach, is_body, force }, index) => [
       `obstacles[${index}]`,
-      `${is_body ? "another body" : "rigid"}, faces the boundary ${boundary} in the direction ${vectorShown(approach.slice(0, shape.dimension), "")}`,
+      `${is_body ? "another body" : "rigid"}, faces the boundary ${boundary} in the direction ${vectorShown(approach.slice(0, shape.dimension), "")}${force === undefined ? "" : `, pressed by ${inUnit(force, units.force)}`}`,
     ]),
     ["loads", loads ? `${vectorShown(loads.force, units.force)} in all` : null],
-    ["supports", supportWords(question, shape.dimension) + ofPart(data)],
+    ["supports", supportWords(question, shape.dimension, ofPart(data))],
     ["springs", springWords(question.springs, shape.dimension, ofPart(data))],
     ["rigid faces", question.rigid.length ? `${counted(question.rigid.length, "node")} that move as one body${ofPart(data)}` : null],
   ]);
@@ -81,10 +81,10 @@ function springWords({ vertices }, dimension, part) {
   return `at ${counted(new Set(vertices).size / (dimension === 1 ? 2 : 1), "node")} of the boundary${part}`;
 }
 
-function supportWords({ fixed, guided }, dimension) {
+function supportWords({ fixed, guided }, dimension, part) {
   const parts = [];
   if (fixed.length)
     parts.push(`${counted(dimension === 1 ? fixed.length / 2 : fixed.length, "node")} held in all directions`);
   if (guided.vertices.length) parts.push(`${counted(guided.vertices.length, "direction")} of nodes held`);
-  return parts.length ? parts.join(", ") : "none";
+  return parts.length ? `${parts.join(", ")}${part && `,${part}`}` : "none";
 }

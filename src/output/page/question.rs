@@ -16,9 +16,6 @@ const WALL: f64 = 0.12;
 pub(super) struct Question {
     /// The scene-wide gap, in length.
     gap: f64,
-    /// The force on the one obstacle that a force presses.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    force: Option<f64>,
     obstacles: Vec<ObstacleShown>,
     /// Number of meshed parts in the whole body.
     parts: f64,
@@ -62,7 +59,7 @@ struct ObstacleShown {
     approach: [f64; 3],
     /// Its shift along the approach direction in the outline or patch, in length.
     shift: f64,
-    /// The force that presses it, in force.
+    /// The force that presses it, in force, on the whole body.
     #[serde(skip_serializing_if = "Option::is_none")]
     force: Option<f64>,
     /// `true` if it is the surface of another body.
@@ -90,7 +87,6 @@ impl Question {
         let obstacles = (0..model.obstacles().len()).map(|index| obstacle(model, index, packer)).collect();
         Question {
             gap: model.gap(),
-            force: model.pressing_force(),
             obstacles,
             parts: model.parts_of_whole(),
             eye: (model.mesh().dimension() == 3).then(|| eye(model, seen)),
@@ -180,7 +176,7 @@ fn obstacle(model: &Model, index: usize, packer: &mut Packer) -> ObstacleShown {
         boundary: obstacle.boundary().to_string(),
         approach: obstacle.approach(),
         shift,
-        force: obstacle.force(),
+        force: model.pressing_force_on(index),
         is_body: obstacle.rigid().is_none(),
         outline: (!points.is_empty()).then(|| packer.exact(&points, 2)),
         patch: if obstacle.rigid().is_some() { patch(model, index, packer) } else { None },
