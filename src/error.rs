@@ -181,7 +181,7 @@ pub enum Error {
         memory(*allowed)
     )]
     TooManyAnswers {
-        /// Number of answers.
+        /// Points of the sweep, each with an answer of its own.
         count: usize,
         /// Number of unknowns of each.
         dofs: usize,

@@ -10,6 +10,7 @@ use crate::oracles::Dense;
 use signorini::fem::GmshFile;
 use signorini::internals::ClosedSurface;
 use signorini::qp::read_problem;
+use signorini::study::sweep;
 use signorini::{
     Condense, ContactProblem, Error, Method, Prepared, Scene, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp,
 };
@@ -42,6 +43,7 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
     // Rows that share a dof at an oblique angle cannot be turned into bounds.
     let oblique =
         Dense::new(&[&[1.0, 0.0], &[0.0, 1.0]], &[2.0, 0.0], &[&[1.0, 0.0], &[1.0, 1.0]], &[0.5; 2]).problem()?;
+    let plane = scene(("[4]", "[4]"))?.build()?;
     let still = unprepared.path(&[0.5], &[0.4]);
     let hasty = Prepared::new(&spring_and_wall, &Settings::default().with_time(Duration::ZERO));
     let stopped = Settings::default();
@@ -65,6 +67,10 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
         ("Setting", ("setting", solve(&spring_and_wall, &settings(|settings| settings.threads = 0)).unwrap_err())),
         ("NotCondensed", ("not-condensed", still.map(drop).unwrap_err())),
         ("TooLarge", ("too-large", scene(("[4]", "[4000]"))?.check_size(1e3).unwrap_err())),
+        (
+            "TooManyAnswers",
+            ("too-large", sweep(&plane, &[0.0; 1000], &Settings::default().with_memory(21e6)).unwrap_err()),
+        ),
         ("Numerical", ("numerical", solve(&oblique, &Settings::with_method(Method::Mprgp)).unwrap_err())),
         ("Mesh", ("mesh", gmsh_of_another_body())),
         ("SceneSyntax", ("scene", Scene::from_json("{", "plane.json").map(drop).unwrap_err())),
