@@ -218,6 +218,31 @@ class Answers(Pages):
                 self.assertLessEqual(abs(shown - value), 1e-5 * value, row)
                 self.assertLessEqual(abs(shown_off - off), 0.05 * off, row)
 
+    def test_a_sweep_between_two_plates_shows_each_plate(self) -> None:
+        between = disc(True)
+        between["body"]["disc"]["centre"] = [0, 0]
+        between["supports"] = [{"on": {"point": [0, 0]}, "y": 0}]
+        below = {"boundary": "lower", "approach": "-y", "shape": {"plane": {"point": [0, -10], "normal": [0, -1]}}}
+        above = {"boundary": "upper", "approach": "+y", "shape": {"plane": {"point": [0, 10.02], "normal": [0, 1]}}}
+        between["obstacles"] = [below, above]
+        path = self.folder / "plates.json"
+        path.write_text(json.dumps(between))
+        page, report = self.page("sweep", path, "--gaps=-0.05:-0.1:3")
+        tables = self.opened(page).ask(
+            "Array.from(document.querySelectorAll('#points table'), table => Array.from(table.rows, "
+            "row => Array.from(row.cells, cell => cell.textContent)))"
+        )
+        of_gaps, of_plates = tables[0], tables[1]
+        self.assertNotIn("force", " ".join(of_gaps[0]))
+        expected = [(point["gap"], one) for point in report["points"] for one in point["contact"]["obstacles"]]
+        for row, (gap, one) in zip(of_plates[1:], expected, strict=True):
+            self.assertEqual((float(row[0]), row[1]), (gap, one["of"]))
+            for cell, value in zip(row[2:4], (one["force"], one["pressure_max"]), strict=True):
+                self.assertLessEqual(abs(float(cell.split(" ± ")[0]) - value), 1e-5 * value, row)
+        # No sum over both plates stands anywhere.
+        total = f"{report['points'][-1]['contact']['force']:.6g}"
+        self.assertNotIn(total[:5], self.text("#points") + self.text("#answer"))
+
     def test_sliders_change_the_picture(self) -> None:
         page, _ = self.page("solve", EXAMPLES / "indentation.json", "--method", "active-set")
         browser = self.opened(page)

@@ -139,7 +139,7 @@ pub fn swept<'py>(
     if values.is_empty() {
         return Err(bad_input(py, format!("{over} is empty; a sweep takes one value at least")));
     }
-    let sweep = if over == "forces" { study::Sweep::over_forces } else { study::sweep };
+    let sweep = if over == "forces" { study::Sweep::over_forces } else { study::Sweep::over_gaps };
     let model = scene.get().model(py)?;
     let options = Options { method, threads, proof: Some(false), ..Options::default() };
     let settings = options.settings(Some(model.problem()))?;

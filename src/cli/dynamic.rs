@@ -78,7 +78,8 @@ struct Run<'a> {
 
 impl<'a> Run<'a> {
     fn without_folder(model: &'a Arc<Model>, dynamics: &'a Dynamics, integrator: Integrator) -> Self {
-        let summary = MotionSummary::starting(&integrator.observe(), dynamics.window, dynamics.step);
+        let (seen, obstacles) = (integrator.observe(), model.obstacles().len());
+        let summary = MotionSummary::starting(&seen, obstacles, dynamics.window, dynamics.step);
         Run { model, dynamics, integrator, summary, folder: None }
     }
 
@@ -140,8 +141,8 @@ impl<'a> Run<'a> {
                 advanced => advanced.map_err(|error| self.model.explain(error))?,
             };
             let seen = self.integrator.observe();
-            self.summary.add(&seen, step);
             let state = self.integrator.state();
+            self.summary.add(&seen, &self.model.obstacle_forces(&state.multiplier), step);
             if let Some(folder) = &mut self.folder {
                 folder.observe(self.model, &seen, state, &self.dynamics.resultants(self.model, &self.integrator)?)?;
                 if frames_until(state.steps) > frames_until(state.steps - 1) {

@@ -13,7 +13,7 @@ use crate::qp::is_problem_directory;
 use crate::qp::matrix_market::read_other_end;
 use crate::scene::Scene;
 use crate::study::scene::even_gaps;
-use crate::study::{self, sweep, sweep_problem};
+use crate::study::{Sweep as Swept, sweep_problem};
 use crate::watch::Watch;
 
 pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
@@ -48,9 +48,9 @@ fn of_scene(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let settings = settings(options.method, common, watch);
     let even = |range: &Gaps| even_gaps(range.first, range.last, range.count);
     let swept = match (&options.gaps, &options.forces) {
-        (_, Some(forces)) => study::Sweep::over_forces(&model, &even(forces), &settings)
+        (_, Some(forces)) => Swept::over_forces(&model, &even(forces), &settings)
             .map_err(|error| Scene::located(error, &options.scene))?,
-        (gaps, None) => sweep(&model, &gaps.as_ref().map_or_else(Vec::new, even), &settings)?,
+        (gaps, None) => Swept::over_gaps(&model, &gaps.as_ref().map_or_else(Vec::new, even), &settings)?,
     };
     watch.step("report", 0);
     let text = sweep_text(&title, &swept, model.units());

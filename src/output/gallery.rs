@@ -15,7 +15,7 @@ use crate::error::Error;
 use crate::qp::matrix_market::solution_files;
 use crate::scene::{Answer, Model};
 use crate::solution::{ContactSet, Iteration, Solution};
-use crate::study::{Summary, Sweep, SweepCorner, SweepPoint};
+use crate::study::{ObstacleContact, Summary, Sweep, SweepCorner, SweepPoint};
 
 /// The pictures that a command draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,7 +118,7 @@ pub fn write_compare(
 }
 
 /// Writes one picture for each gap (`gap-01`, ...), with common colours and scale, and force, contact width (outside
-/// plane strain and plane stress, area) and peak pressure over the gap (`force-width`).
+/// plane strain and plane stress, area) and peak pressure over the gap (`force-width`); of each obstacle, if there are several.
 ///
 /// # Errors
 /// As [`write_solve`].
@@ -141,8 +141,14 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep, wanted: Wanted) -> Result<(), E
         Some(_) => ("force F", &units.force),
         None => ("gap g", &units.length),
     };
-    let over_gap = |name: &str, unit: &str, at_point: Value<SweepPoint>, at_corner: Value<SweepCorner>| {
-        // Beside the exact path the gaps are marks without a line.
+    let over_gap = |name: &str, unit: &str, series: Vec<Series>| {
+        let mut plot = Plot::new(Quantity::new(swept, swept_in), Quantity::new(name, unit), series);
+        plot.nested = true;
+        plot.y_from_zero = true;
+        plot
+    };
+    // Beside the exact path the gaps are marks without a line.
+    let of_all = |name: &str, unit: &str, at_point: Value<SweepPoint>, at_corner: Value<SweepCorner>| {
         let join = if sweep.corners.is_empty() { None } else { Some([f64::NAN; 2]) };
         let at = |point: &SweepPoint| [point.force.unwrap_or(point.gap), at_point(point)];
         let at_points = points.iter().flat_map(|point| [Some(at(point)), join]).flatten().collect();
@@ -152,28 +158,50 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep, wanted: Wanted) -> Result<(), E
         if !exact.is_empty() {
             series.insert(0, Series::new("exact path", exact));
         }
-        let mut plot = Plot::new(Quantity::new(swept, swept_in), Quantity::new(name, unit), series);
-        plot.nested = true;
-        plot.y_from_zero = true;
-        plot
+        over_gap(name, unit, series)
     };
-    let contact = |point: &SweepPoint| point.summary.contact.clone();
-    let extent = if first.summary.contact.width.is_some() {
-        let width = |point: &SweepPoint| contact(point).width.unwrap_or(0.0);
-        over_gap("width of the cells of closed nodes", &units.length, &width, &|corner| corner.width.unwrap_or(0.0))
-    } else {
-        let area = |point: &SweepPoint| contact(point).area.unwrap_or(0.0);
-        over_gap("area of the cells of closed nodes", &format!("{}²", units.length), &area, &|corner| corner.area)
+    let of_each = |name: &str, unit: &str, of: Value<ObstacleContact>| {
+        let series = first.summary.contact.obstacles.iter().enumerate().map(|(index, one)| {
+            let at =
+                |point: &SweepPoint| [point.force.unwrap_or(point.gap), of(&point.summary.contact.obstacles[index])];
+            Series::new(&one.of, points.iter().map(at).collect())
+        });
+        over_gap(name, unit, series.collect())
     };
-    let force_or_travel = match first.force {
-        Some(_) => over_gap("travel d", &units.length, &|point| point.travel().unwrap_or(0.0), &|_| 0.0),
-        None => over_gap("sum of multipliers", &units.force, &|point| contact(point).force, &|corner| corner.force),
+    let (contact, several) =
+        (|point: &SweepPoint| point.summary.contact.clone(), first.summary.contact.is_of_several());
+    let square = format!("{}²", units.length);
+    let extent = match (first.summary.contact.width.is_some(), several) {
+        (true, true) => of_each("estimated width", &units.length, &|one| {
+            one.estimate.and_then(|estimate| estimate.width).unwrap_or(0.0)
+        }),
+        (false, true) => of_each("estimated area", &square, &|one| one.estimate.map_or(0.0, |estimate| estimate.area)),
+        (true, false) => {
+            let width = |point: &SweepPoint| contact(point).width.unwrap_or(0.0);
+            of_all("width of the cells of closed nodes", &units.length, &width, &|corner| corner.width.unwrap_or(0.0))
+        }
+        (false, false) => {
+            let area = |point: &SweepPoint| contact(point).area.unwrap_or(0.0);
+            of_all("area of the cells of closed nodes", &square, &area, &|corner| corner.area)
+        }
     };
-    let plots = [
-        force_or_travel,
-        extent,
-        over_gap("peak pressure", &units.pressure(), &|p| contact(p).pressure_max.unwrap_or(0.0), &|c| c.pressure_max),
-    ];
+    let travel = || of_all("travel d", &units.length, &|point| point.travel().unwrap_or(0.0), &|_| 0.0);
+    let force = match several {
+        true => of_each("force", &units.force, &|one| one.force),
+        false => of_all("sum of multipliers", &units.force, &|point| contact(point).force, &|corner| corner.force),
+    };
+    let peak = match several {
+        true => of_each("peak pressure", &units.pressure(), &|one| one.pressure_max),
+        false => {
+            of_all("peak pressure", &units.pressure(), &|p| contact(p).pressure_max.unwrap_or(0.0), &|c| c.pressure_max)
+        }
+    };
+    let of_forces: Vec<Plot> = match first.force {
+        Some(_) if several => vec![travel(), force],
+        Some(_) => vec![travel()],
+        None => vec![force],
+    };
+    let plots: Vec<Plot> = of_forces.into_iter().chain([extent, peak]).collect();
     write_picture(folder, "force-width", &line_plots_for(medium, first.answer.model().title(), &plots))?;
     Ok(())
 }

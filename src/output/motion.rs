@@ -259,10 +259,11 @@ impl MotionFolder {
             |name: &str, column: usize| Series::new(name, history.iter().map(|row| [row[0], row[column]]).collect());
         let units = model.units();
         let work = format!("{} {}", units.force, units.length);
+        let force = if model.obstacles().len() > 1 { "contact force F of all obstacles" } else { "contact force F" };
         let energies = vec![line("kinetic", 4), line("strain", 5), line("potential", 6), line("total", 7)];
         let time = || Quantity::new("time t", units.time());
         let plots = [
-            Plot::new(time(), Quantity::new("contact force F", &units.force), vec![line("force", 1)]),
+            Plot::new(time(), Quantity::new(force, &units.force), vec![line("force", 1)]),
             Plot::new(time(), Quantity::new("energy", work.trim()), energies),
         ];
         write_picture(&self.folder, "history", &line_plots_for(medium, model.title(), &plots))?;

@@ -3,11 +3,11 @@
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
-use super::report::{entry, plural, quantity, warnings_text};
+use super::report::{columns, entry, in_unit, plural, quantity, warnings_text};
 use super::text::printable;
 use crate::qp::Method;
 use crate::scene::{Dynamics, Model};
-use crate::study::{MotionSummary, RunSeconds, Status};
+use crate::study::{MotionContact, MotionSummary, RunSeconds, Status};
 
 /// The interval over which the force is averaged.
 const WINDOW: &str = "a fifth of the time that a pressure wave takes through the body";
@@ -57,14 +57,21 @@ impl MotionReport<'_> {
         if all > 0 {
             line("", format!("{all} penalties, at most {most} in a step"));
         }
-        match (summary.first_contact, summary.last_contact) {
+        let several = summary.obstacles.len() > 1;
+        match (summary.contact.first, summary.contact.last) {
             (Some(first), Some(last)) => {
-                line("contact", format!("from {first:.6e} to {last:.6e}, for {:.6e} in all", summary.contact_time));
-                let force = quantity(summary.force_max, &units.force);
-                line("", format!("impulse {:.6e}, largest force {force} in one step,", summary.impulse));
-                let mean = quantity(summary.force_mean_max(), &units.force);
-                let window = summary.window_steps() as f64 * dynamics.step;
-                line("", format!("{mean} on the mean over {window:.6e} ({}):", plural(summary.window_steps(), "step")));
+                let contact = &summary.contact;
+                line("contact", format!("from {first:.6e} to {last:.6e}, for {:.6e} in all", contact.duration));
+                let (mean, window) = (contact.force_mean_max(), summary.window_steps() as f64 * dynamics.step);
+                let over = format!("mean over {window:.6e} ({})", plural(summary.window_steps(), "step"));
+                if several {
+                    obstacle_lines(model, summary).into_iter().for_each(|text| line("", text));
+                    line("", format!("the {over},"));
+                } else {
+                    let force = quantity(contact.force_max, &units.force);
+                    line("", format!("impulse {:.6e}, largest force {force} in one step,", contact.impulse));
+                    line("", format!("{} on the {over}:", quantity(mean, &units.force)));
+                }
                 line("", WINDOW.into());
             }
             _ => line("contact", "none".into()),
@@ -85,11 +92,56 @@ impl MotionReport<'_> {
     }
 }
 
+/// The contact of each obstacle and pair of bodies, with its name.
+fn named<'a>(model: &'a Model, summary: &'a MotionSummary) -> impl Iterator<Item = (String, &'a MotionContact)> {
+    (0..model.obstacles().len()).map(|index| format!("obstacles[{index}]")).zip(&summary.obstacles)
+}
+
+/// The table of obstacles and pairs of bodies, a line for each that was touched.
+fn obstacle_lines(model: &Model, summary: &MotionSummary) -> Vec<String> {
+    let units = model.units();
+    let header =
+        ["obstacle", "from", "to", "impulse", &in_unit("largest", &units.force), &in_unit("mean", &units.force)];
+    let row = |(name, of): (String, &MotionContact)| {
+        let time = |time: Option<f64>| time.map_or_else(|| "-".to_string(), |time| format!("{time:.5e}"));
+        let forces = [of.impulse, of.force_max, of.force_mean_max()].map(|value| format!("{value:.5e}"));
+        [name, time(of.first), time(of.last)].into_iter().chain(forces).collect()
+    };
+    let rows: Vec<Vec<String>> =
+        std::iter::once(header.map(String::from).to_vec()).chain(named(model, summary).map(row)).collect();
+    columns(&rows).lines().map(String::from).collect()
+}
+
 /// The same as one object.
 impl Serialize for MotionReport<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let MotionReport { model, dynamics, summary, .. } = self;
         let energies = |[kinetic, strain, potential]: [f64; 3]| json!({"kinetic": kinetic, "strain": strain, "potential": potential, "total": kinetic + strain + potential});
+        let contact = |of: &MotionContact| {
+            json!({
+                "first": of.first,
+                "last": of.last,
+                "duration": of.duration,
+                "force_max": of.force_max,
+                "force_mean_max": of.force_mean_max(),
+                "impulse": of.impulse,
+            })
+        };
+        let obstacles: Vec<_> = named(model, summary)
+            .map(|(name, of)| {
+                let mut one = contact(of);
+                one["of"] = json!(name);
+                one
+            })
+            .collect();
+        let mut of_all = contact(&summary.contact);
+        of_all["force_window"] = json!({
+            "of": WINDOW,
+            "time": summary.window_steps() as f64 * dynamics.step,
+            "steps": summary.window_steps(),
+        });
+        of_all["penetration_max"] = json!(summary.penetration_max);
+        of_all["obstacles"] = json!(obstacles);
         let mut report = json!({
             "status": self.status(),
             "method": self.method.name(),
@@ -98,20 +150,7 @@ impl Serialize for MotionReport<'_> {
             "step": dynamics.step,
             "steps": summary.steps,
             "time": summary.time,
-            "contact": {
-                "first": summary.first_contact,
-                "last": summary.last_contact,
-                "duration": summary.contact_time,
-                "force_max": summary.force_max,
-                "force_mean_max": summary.force_mean_max(),
-                "force_window": {
-                    "of": WINDOW,
-                    "time": summary.window_steps() as f64 * dynamics.step,
-                    "steps": summary.window_steps(),
-                },
-                "impulse": summary.impulse,
-                "penetration_max": summary.penetration_max,
-            },
+            "contact": of_all,
             "energy": {
                 "first": energies(summary.energy_first),
                 "last": energies(summary.energy_last),

@@ -73,16 +73,16 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
     }
     let (closed, force) = (plural(contact.count, "closed row"), quantity(contact.force, &units.force));
     let basis = if summary.force_basis.is_empty() { String::new() } else { format!(" {}", summary.force_basis) };
-    let mut of_contact = match is_of_several(contact) {
+    let mut of_contact = match contact.is_of_several() {
         false => wrapped(&format!("{closed}{of_part}, sum of multipliers {force}{basis}")),
         true => {
             let sizes = if basis.is_empty() { basis } else { format!("; forces{basis}") };
             let images = if of_part.is_empty() { "" } else { ", mirror images included" };
-            let count = plural(obstacle_count(contact), "obstacle");
+            let count = plural(contact.obstacles_of_whole(), "obstacle");
             wrapped(&format!("{closed}{of_part}, on {count}{images}{sizes}"))
         }
     };
-    of_contact.extend(match is_of_several(contact) {
+    of_contact.extend(match contact.is_of_several() {
         false => extent_lines(contact, units),
         true => obstacle_lines(contact, units),
     });
@@ -155,20 +155,17 @@ fn of_part(summary: &Summary) -> &'static str {
     if summary.parts_of_whole.is_some() { " of the meshed part" } else { "" }
 }
 
-/// Number of obstacles in the whole body, mirror images included.
-fn obstacle_count(contact: &ContactSummary) -> usize {
-    contact.obstacles.iter().map(|one| one.copies).sum()
-}
-
-/// Returns `true` if the sums over all obstacles are those of several.
-fn is_of_several(contact: &ContactSummary) -> bool {
-    obstacle_count(contact) > 1
-}
-
 /// The table of obstacles and pairs of bodies, a line for each.
 fn obstacle_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
-    let has_width = contact.obstacles.iter().any(|one| one.estimate.is_some_and(|estimate| estimate.width.is_some()));
-    let is_pressed = contact.obstacles.iter().any(|one| one.travel.is_some());
+    obstacle_table("", &[(String::new(), contact)], units).lines().map(|line| line.trim_start().into()).collect()
+}
+
+/// The table of obstacles and pairs of bodies at each of some values of a quantity, a line for each; without a name the values are left
+/// out.
+fn obstacle_table(name: &str, contacts: &[(String, &ContactSummary)], units: &Units) -> String {
+    let all = || contacts.iter().flat_map(|(_, contact)| &contact.obstacles);
+    let has_width = all().any(|one| one.estimate.is_some_and(|estimate| estimate.width.is_some()));
+    let is_pressed = all().any(|one| one.travel.is_some());
     let square = if units.length.is_empty() { String::new() } else { format!("{}²", units.length) };
     let shown = |value: Option<f64>| value.map_or_else(|| "-".to_string(), |value| format!("{value:.5e}"));
     let within = |value: Option<f64>, off: Option<f64>| match (value, off) {
@@ -176,6 +173,7 @@ fn obstacle_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
         _ => shown(value),
     };
     let header = [
+        name.to_string(),
         "obstacle".to_string(),
         in_unit("force", &units.force),
         in_unit("travel", &units.length),
@@ -183,7 +181,7 @@ fn obstacle_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
         if has_width { in_unit("width", &units.length) } else { in_unit("area", &square) },
         in_unit("mean p", &units.pressure()),
     ];
-    let row = |one: &ObstacleContact| {
+    let row = |value: &String, one: &ObstacleContact| {
         let extent = one.estimate.map(|of| of.width.unwrap_or(of.area));
         let extent_off =
             one.estimate.and_then(|of| if has_width { of.width_uncertainty } else { Some(of.area_uncertainty) });
@@ -194,6 +192,7 @@ fn obstacle_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
             copies => format!(", {copies} times"),
         };
         vec![
+            value.clone(),
             format!("{}{copies}", one.of),
             shown(Some(one.force)),
             shown(one.travel),
@@ -202,10 +201,11 @@ fn obstacle_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
             shown(one.pressure_mean),
         ]
     };
-    let rows = std::iter::once(header.to_vec()).chain(contact.obstacles.iter().map(row));
+    let of_all = contacts.iter().flat_map(|(value, contact)| contact.obstacles.iter().map(move |one| row(value, one)));
+    let is_kept = |column: usize| (column != 0 || !name.is_empty()) && (column != 3 || is_pressed);
     let kept =
-        |row: Vec<String>| row.into_iter().enumerate().filter(|(i, _)| *i != 2 || is_pressed).map(|(_, cell)| cell);
-    columns(&rows.map(|row| kept(row).collect()).collect::<Vec<_>>()).lines().map(String::from).collect()
+        |row: Vec<String>| row.into_iter().enumerate().filter(|(i, _)| is_kept(*i)).map(|(_, cell)| cell).collect();
+    columns(&std::iter::once(header.to_vec()).chain(of_all).map(kept).collect::<Vec<_>>())
 }
 
 /// Components below this share of the largest one, and uncertainties below this share of their value, are rounding in a text.
@@ -405,32 +405,28 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
     let is_of_forces = sweep.points.first().is_some_and(|point| point.force.is_some());
     // Outside plane strain and plane stress a contact has an area.
     let has_width = sweep.points.first().is_none_or(|point| point.summary.contact.width.is_some());
-    // The sums of several obstacles say so.
-    let several = sweep.points.first().is_some_and(|point| is_of_several(&point.summary.contact));
-    let of_all = if several { ", all obstacles" } else { "" };
+    // Sums over several obstacles are the answer to no question: each has its own lines.
+    let several = sweep.points.first().is_some_and(|point| point.summary.contact.is_of_several());
     let extent = match has_width {
-        true => in_unit(&format!("estimated width{of_all}"), &units.length),
+        true => in_unit("estimated width", &units.length),
         false => in_unit(
-            &format!("estimated area{of_all}"),
+            "estimated area",
             &if units.length.is_empty() { String::new() } else { format!("{}²", units.length) },
         ),
     };
-    let header = [
-        if is_of_forces { in_unit("travel", &units.length) } else { in_unit("gap", &units.length) },
-        "iterations".to_string(),
-        "contact".to_string(),
-        in_unit("-sum(lambda)", &units.force),
-        in_unit("peak pressure", &units.pressure()),
-        extent,
-        "energy error <=".to_string(),
-        "status".to_string(),
-    ];
-    let row = |point: &SweepPoint| {
-        let Summary { solution, contact, .. } = &point.summary;
-        vec![
-            point.travel().map_or_else(|| format!("{:.6}", point.gap), |travel| format!("{travel:.6e}")),
-            solution.iterations.to_string(),
-            contact.count.to_string(),
+    let swept = match (is_of_forces, several) {
+        (true, false) => in_unit("travel", &units.length),
+        (true, true) => in_unit("swept force", &units.force),
+        (false, _) => in_unit("gap", &units.length),
+    };
+    let value = |point: &SweepPoint| match (point.force, point.travel()) {
+        (Some(force), _) if several => format!("{force:.6e}"),
+        (_, Some(travel)) if is_of_forces => format!("{travel:.6e}"),
+        _ => format!("{:.6}", point.gap),
+    };
+    let of_contact = [in_unit("-sum(lambda)", &units.force), in_unit("peak pressure", &units.pressure()), extent];
+    let contact_of = |contact: &ContactSummary| {
+        [
             format!("{:.9e}", contact.force),
             format!("{:.6e}", contact.pressure_max.unwrap_or(0.0)),
             match (contact.width, contact.area, &contact.estimate) {
@@ -442,12 +438,31 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
                 }
                 _ => "-".to_string(),
             },
-            conditions(&solution.certificate)[5].2.clone(),
-            point.summary.status.words().to_owned(),
         ]
     };
-    let table: Vec<Vec<String>> = std::iter::once(header.to_vec()).chain(sweep.points.iter().map(row)).collect();
+    let line = |head: [String; 3], of_contact: [String; 3], tail: [String; 2]| {
+        let between = of_contact.into_iter().filter(|_| !several);
+        head.into_iter().chain(between).chain(tail).collect::<Vec<_>>()
+    };
+    let header = line(
+        [swept.clone(), "iterations".into(), "contact".into()],
+        of_contact,
+        ["energy error <=".into(), "status".into()],
+    );
+    let row = |point: &SweepPoint| {
+        let Summary { solution, contact, .. } = &point.summary;
+        line(
+            [value(point), solution.iterations.to_string(), contact.count.to_string()],
+            contact_of(contact),
+            [conditions(&solution.certificate)[5].2.clone(), point.summary.status.words().to_owned()],
+        )
+    };
+    let table: Vec<Vec<String>> = std::iter::once(header).chain(sweep.points.iter().map(row)).collect();
     let mut text = format!("{}\n\n{}", printable(title), columns(&table));
+    if several {
+        let contacts: Vec<_> = sweep.points.iter().map(|point| (value(point), &point.summary.contact)).collect();
+        text += &format!("\n{}", obstacle_table(&swept, &contacts, units));
+    }
     if let Some(first) = sweep.points.first().map(|point| &point.summary) {
         text += &sweep_notes(first).iter().flat_map(|note| wrapped(note)).map(|line| line + "\n").collect::<String>();
     }
@@ -466,16 +481,14 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
     text
 }
 
-/// What the columns of a sweep are of, if not of one obstacle and the meshed body.
-fn sweep_notes(first: &Summary) -> Vec<String> {
+/// What the columns of a sweep are of, if not of the meshed body.
+fn sweep_notes(first: &Summary) -> Option<String> {
     let part = "Contact (closed rows), iterations and energy error are of the meshed part, all other columns of the whole body.";
-    let sums =
-        format!("-sum(lambda) is over all {} obstacles, mirror images included.", obstacle_count(&first.contact));
-    let of_part = first.parts_of_whole.map(|_| part.to_string());
-    of_part.into_iter().chain(is_of_several(&first.contact).then_some(sums)).collect()
+    first.parts_of_whole.map(|_| part.to_string())
 }
 
-fn in_unit(name: &str, unit: &str) -> String {
+/// The name of a quantity with its unit, if there is one.
+pub(super) fn in_unit(name: &str, unit: &str) -> String {
     if unit.is_empty() { name.to_string() } else { format!("{name} [{}]", printable(unit)) }
 }
 

@@ -184,6 +184,15 @@ impl Model {
         self.parts.symmetry.parts()
     }
 
+    /// The sum of the contact forces on each obstacle and pair of bodies, in force, `>= 0`, for the multipliers of the rows (in force,
+    /// `<= 0`).
+    #[cfg(feature = "cli")]
+    pub(crate) fn obstacle_forces(&self, multiplier: &[f64]) -> Vec<f64> {
+        let mut forces = vec![0.0; self.obstacles().len()];
+        self.rows().iter().zip(multiplier).for_each(|(row, lambda)| forces[row.obstacle] -= lambda);
+        forces
+    }
+
     /// Number of copies of an obstacle in the whole: a plane of symmetry normal to its approach direction gives it a mirror image.
     pub(crate) fn copies_of_obstacle(&self, obstacle: usize) -> f64 {
         self.parts_of_whole() / self.parts.parts_of_obstacle(obstacle)

@@ -17,11 +17,11 @@ mod tradeoff;
 mod warnings;
 
 pub use compare::{Agreement, Comparison, Difference, MethodAnswer, compare};
-pub use motion::MotionSummary;
+pub use motion::{MotionContact, MotionSummary};
 pub use motion_tradeoff::{MotionPoint, MotionTradeoff, motion_tradeoff};
 #[cfg(feature = "cli")]
 pub(crate) use problem_sweep::{ProblemPoint, ProblemSweep, sweep_problem};
-pub use scene::{Sweep, SweepCorner, SweepEvent, SweepPoint, scene_summary, sweep};
+pub use scene::{Sweep, SweepCorner, SweepEvent, SweepPoint, scene_summary};
 #[cfg(feature = "pictures")]
 pub(crate) use summary::ObstacleContact;
 pub use summary::{ContactSummary, ModelSize, RunSeconds, Status, Summary, Verification};

@@ -13,6 +13,48 @@ use crate::motion::Observation;
 /// the speeds.
 const MOST_GROWTH: f64 = 0.01;
 
+/// Times, forces and impulse of the obstacles of a motion: of all together, or of one.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MotionContact {
+    /// Time at which the first contact force acted, at the middle of its step; `None` if nothing touched.
+    pub first: Option<f64>,
+    /// Time at which the last contact force acted.
+    pub last: Option<f64>,
+    /// Sum of the lengths of all steps with a contact force, in time.
+    pub duration: f64,
+    /// Largest contact force of a single step, in force, `>= 0`; it does not converge in a mesh that oscillates behind a wave front.
+    pub force_max: f64,
+    /// Mean of the contact force over a window of time, and its largest value.
+    force_mean: MovingMean,
+    /// Integral of the contact force over time, in force times time, `>= 0`.
+    pub impulse: f64,
+}
+
+impl MotionContact {
+    /// Nothing touched yet; the force is averaged over the whole number of steps that is nearest to `steps`.
+    fn averaged_over(steps: f64) -> Self {
+        MotionContact { force_mean: MovingMean::over(steps), ..MotionContact::default() }
+    }
+
+    /// Adds a step of length `step` that ends at `time`, with its contact force.
+    fn add(&mut self, force: f64, time: f64, step: f64) {
+        if force > 0.0 {
+            let middle = time - step / 2.0;
+            self.first.get_or_insert(middle);
+            self.last = Some(middle);
+            self.duration += step;
+            self.impulse += force * step;
+            self.force_max = self.force_max.max(force);
+        }
+        self.force_mean.add(force);
+    }
+
+    /// Largest mean of the contact force over any window of [`MotionSummary::window_steps`] steps, in force.
+    pub fn force_mean_max(&self) -> f64 {
+        self.force_mean.largest
+    }
+}
+
 /// The summary of a run, gathered step by step; its size does not depend on the number of steps.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionSummary {
@@ -20,19 +62,10 @@ pub struct MotionSummary {
     pub steps: usize,
     /// Time from the start of the motion to the last step.
     pub time: f64,
-    /// Time at which the first contact force acted, at the middle of its step; `None` if nothing touched.
-    pub first_contact: Option<f64>,
-    /// Time at which the last contact force acted.
-    pub last_contact: Option<f64>,
-    /// Sum of the lengths of all steps with a contact force, in time.
-    pub contact_time: f64,
-    /// Largest total contact force of a single step, in force, `>= 0`; it does not converge in a mesh that oscillates
-    /// behind a wave front.
-    pub force_max: f64,
-    /// Mean of the contact force over a window of time, and its largest value.
-    force_mean: MovingMean,
-    /// Integral of the total contact force over time, in force times time, `>= 0`.
-    pub impulse: f64,
+    /// The sum of the forces of all obstacles over time.
+    pub contact: MotionContact,
+    /// The force of each obstacle and pair of bodies over time, in the order of the scene.
+    pub obstacles: Vec<MotionContact>,
     /// Deepest penetration, in length.
     pub penetration_max: f64,
     /// Kinetic, strain and potential energy at the start, in this order, in force times length.
@@ -54,9 +87,10 @@ pub struct MotionSummary {
 }
 
 impl MotionSummary {
-    /// A run that starts as `seen`; the force is averaged over a whole number of steps of length `step`: the one nearest to `window`, in
-    /// time.
-    pub fn starting(seen: &Observation, window: f64, step: f64) -> Self {
+    /// A run with a number of obstacles that starts as `seen`; the force is averaged over a whole number of steps of length `step`: the one
+    /// nearest to `window`, in time.
+    pub fn starting(seen: &Observation, obstacles: usize, window: f64, step: f64) -> Self {
+        let contact = MotionContact::averaged_over(window / step);
         let energies = [seen.kinetic, seen.strain, seen.potential];
         MotionSummary {
             time: seen.time,
@@ -65,24 +99,18 @@ impl MotionSummary {
             energy_last: energies,
             energy_range: [seen.energy(); 2],
             energy_scale: seen.kinetic + seen.strain,
-            force_mean: MovingMean::over(window / step),
+            obstacles: vec![contact.clone(); obstacles],
+            contact,
             ..MotionSummary::default()
         }
     }
 
-    /// Adds one step of length `step`.
-    pub fn add(&mut self, seen: &Observation, step: f64) {
+    /// Adds one step of length `step`, in time, in which the obstacles pressed with these forces, one entry per obstacle, in force, `>= 0`.
+    pub fn add(&mut self, seen: &Observation, of_obstacles: &[f64], step: f64) {
         self.steps += 1;
         self.time = seen.time;
-        if seen.force > 0.0 {
-            let middle = seen.time - step / 2.0;
-            self.first_contact.get_or_insert(middle);
-            self.last_contact = Some(middle);
-            self.contact_time += step;
-            self.impulse += seen.force * step;
-            self.force_max = self.force_max.max(seen.force);
-        }
-        self.force_mean.add(seen.force);
+        self.contact.add(seen.force, seen.time, step);
+        self.obstacles.iter_mut().zip(of_obstacles).for_each(|(one, &force)| one.add(force, seen.time, step));
         self.penetration_max = self.penetration_max.max(seen.penetration);
         self.energy_last = [seen.kinetic, seen.strain, seen.potential];
         let [least, most] = self.energy_range;
@@ -94,14 +122,9 @@ impl MotionSummary {
         self.excess_max = self.excess_max.max(seen.kinetic + seen.strain - self.initial_energy() - seen.work);
     }
 
-    /// Largest mean of the contact force over any window of [`MotionSummary::window_steps`] steps, in force.
-    pub fn force_mean_max(&self) -> f64 {
-        self.force_mean.largest
-    }
-
     /// Steps of the window over which the force is averaged.
     pub fn window_steps(&self) -> usize {
-        self.force_mean.steps()
+        self.contact.force_mean.steps()
     }
 
     /// Kinetic and strain energy at the start.

@@ -147,11 +147,11 @@ fn run(dynamics: Dynamics, settings: &Settings) -> Result<Run, Error> {
     let Dynamics { problem, scheme, step, steps, window, .. } = dynamics;
     let first = problem.displacement().to_vec();
     let mut integrator = Integrator::new(problem, scheme, step, settings)?;
-    let mut summary = super::MotionSummary::starting(&integrator.observe(), window, step);
+    let mut summary = super::MotionSummary::starting(&integrator.observe(), 0, window, step);
     let mut samples = Vec::with_capacity(SAMPLES);
     for number in 1..=steps {
         integrator.advance()?;
-        summary.add(&integrator.observe(), step);
+        summary.add(&integrator.observe(), &[], step);
         if number % (steps / SAMPLES).max(1) == 0 {
             samples.push(integrator.state().displacement.clone());
         }
@@ -160,7 +160,7 @@ fn run(dynamics: Dynamics, settings: &Settings) -> Result<Run, Error> {
         seconds: clock.elapsed().as_secs_f64(),
         samples,
         first,
-        impulse: summary.impulse,
+        impulse: summary.contact.impulse,
         energy_change: summary.energy_change(),
         penetration: summary.penetration_max,
     })

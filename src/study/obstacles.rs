@@ -34,7 +34,7 @@ fn of_obstacle(answer: &Answer, index: usize, resultant: &Resultant, segments: &
         force: if length(force) > CANCELS * sum_of_multipliers { length(force) } else { 0.0 },
         sum_of_multipliers,
         travel: resultant.travel,
-        pressure_max: rows().fold(0.0, |largest, row| answer.pressure()[row].max(largest)),
+        pressure_max: rows().map(|row| answer.pressure()[row]).fold(0.0, f64::max) + 0.0,
         pressure_mean: (area > 0.0).then(|| sum_of_multipliers / area),
         contacts: own.map(|segment| model.contacts_of(index, &segment.nodes)).sum(),
         estimate: estimate.filter(|_| model.mesh().dimension() > 1),

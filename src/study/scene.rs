@@ -186,49 +186,49 @@ pub struct Sweep {
     pub(crate) path: Option<ExactPath>,
 }
 
-/// Solves a scene at every one of `gaps`, in length, negative into the body; an answer that is not certified counts as
-/// an answer here.
-///
-/// The stiffness is factorised once, or a hierarchy is built once, and every solve starts from the last contact set. If the body is
-/// condensed and the rows move on straight lines (rows along the approach direction do), all events between the first and the last gap
-/// are found.
-///
-/// An interrupted sweep holds the gaps that were solved before, and nothing in between.
-///
-/// # Errors
-/// As [`Model::with_gap`] and [`solve`]; [`Error::Interrupted`] if no gap was solved.
-pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, Error> {
-    let (Some(&first), Some(&last)) = (gaps.first(), gaps.last()) else { return Ok(Sweep::default()) };
-    let kept = KeptAnswers::of(gaps.len(), model.problem().dofs(), settings);
-    let settings = &kept.settings(settings);
-    let at_first = model.with_gap(first)?;
-    let prepared = Prepared::for_gaps(at_first.problem(), gaps.len(), settings)
-        .map_err(|error| at_first.explain(kept.explain(error)))?;
-    let is_by_choice = settings.method == Method::Auto && prepared.hierarchy().is_some();
-    let points = points("gap", gaps, settings, |gap, known| {
-        let clock = Instant::now();
-        let model = model.with_gap(gap)?;
-        let assemble_seconds = clock.elapsed().as_secs_f64();
-        let same_rows = model.problem().contact() == at_first.problem().contact();
-        let solved = match same_rows {
-            true => prepared.starting_from(known).solve(model.problem().gap()),
-            false => solve(model.problem(), settings),
-        };
-        let solved = match solved {
-            Err(Error::NotCertified { .. }) if is_by_choice => solve(model.problem(), settings),
-            solved => solved,
-        };
-        Ok(Solved { model, solved: solved.map_err(|error| kept.explain(error)), assemble_seconds })
-    })?;
-    if settings.watch.is_stopped() {
-        return Ok(Sweep { points, ..Sweep::default() });
-    }
-    let Some(path) = between(&prepared, &at_first, last)? else { return Ok(Sweep { points, ..Sweep::default() }) };
-    let (events, corners) = (events(&path, &at_first), corners(&path, &at_first)?);
-    Ok(Sweep { points, events, corners, path: Some(path) })
-}
-
 impl Sweep {
+    /// Solves a scene at every one of `gaps`, in length, negative into the body; an answer that is not certified counts as
+    /// an answer here.
+    ///
+    /// The stiffness is factorised once, or a hierarchy is built once, and every solve starts from the last contact set. If the body is
+    /// condensed and the rows move on straight lines (rows along the approach direction do), all events between the first and the last gap
+    /// are found.
+    ///
+    /// An interrupted sweep holds the gaps that were solved before, and nothing in between.
+    ///
+    /// # Errors
+    /// As [`Model::with_gap`] and [`solve`]; [`Error::Interrupted`] if no gap was solved.
+    pub fn over_gaps(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Self, Error> {
+        let (Some(&first), Some(&last)) = (gaps.first(), gaps.last()) else { return Ok(Sweep::default()) };
+        let kept = KeptAnswers::of(gaps.len(), model.problem().dofs(), settings);
+        let settings = &kept.settings(settings);
+        let at_first = model.with_gap(first)?;
+        let prepared = Prepared::for_gaps(at_first.problem(), gaps.len(), settings)
+            .map_err(|error| at_first.explain(kept.explain(error)))?;
+        let is_by_choice = settings.method == Method::Auto && prepared.hierarchy().is_some();
+        let points = points("gap", gaps, settings, |gap, known| {
+            let clock = Instant::now();
+            let model = model.with_gap(gap)?;
+            let assemble_seconds = clock.elapsed().as_secs_f64();
+            let same_rows = model.problem().contact() == at_first.problem().contact();
+            let solved = match same_rows {
+                true => prepared.starting_from(known).solve(model.problem().gap()),
+                false => solve(model.problem(), settings),
+            };
+            let solved = match solved {
+                Err(Error::NotCertified { .. }) if is_by_choice => solve(model.problem(), settings),
+                solved => solved,
+            };
+            Ok(Solved { model, solved: solved.map_err(|error| kept.explain(error)), assemble_seconds })
+        })?;
+        if settings.watch.is_stopped() {
+            return Ok(Sweep { points, ..Sweep::default() });
+        }
+        let Some(path) = between(&prepared, &at_first, last)? else { return Ok(Sweep { points, ..Sweep::default() }) };
+        let (events, corners) = (events(&path, &at_first), corners(&path, &at_first)?);
+        Ok(Sweep { points, events, corners, path: Some(path) })
+    }
+
     /// Solves a scene at every one of `forces`, in force, 0 or positive, of the one obstacle that a force presses. At
     /// the force 0 the obstacle stands where it first touches the body.
     ///

@@ -145,6 +145,19 @@ pub struct ContactSummary {
     pub force_balance: Option<f64>,
 }
 
+#[cfg(feature = "pictures")]
+impl ContactSummary {
+    /// Number of obstacles in the whole body, mirror images included.
+    pub(crate) fn obstacles_of_whole(&self) -> usize {
+        self.obstacles.iter().map(|one| one.copies).sum()
+    }
+
+    /// Returns `true` if the sums over all obstacles are those of several.
+    pub(crate) fn is_of_several(&self) -> bool {
+        self.obstacles_of_whole() > 1
+    }
+}
+
 /// The contact of one obstacle or pair of bodies, in the whole body. A plane of symmetry normal to its approach direction gives an obstacle
 /// a mirror image, which does not count here; in all other planes the contact is of the whole.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -10,7 +10,7 @@ use crate::oracles::Dense;
 use signorini::fem::GmshFile;
 use signorini::internals::ClosedSurface;
 use signorini::qp::read_problem;
-use signorini::study::sweep;
+use signorini::study::Sweep;
 use signorini::{
     Condense, ContactProblem, Error, Method, Prepared, Scene, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp,
 };
@@ -69,7 +69,7 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
         ("TooLarge", ("too-large", scene(("[4]", "[4000]"))?.check_size(1e3).unwrap_err())),
         (
             "TooManyAnswers",
-            ("too-large", sweep(&plane, &[0.0; 1000], &Settings::default().with_memory(21e6)).unwrap_err()),
+            ("too-large", Sweep::over_gaps(&plane, &[0.0; 1000], &Settings::default().with_memory(21e6)).unwrap_err()),
         ),
         ("Numerical", ("numerical", solve(&oblique, &Settings::with_method(Method::Mprgp)).unwrap_err())),
         ("Mesh", ("mesh", gmsh_of_another_body())),

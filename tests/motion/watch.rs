@@ -168,3 +168,40 @@ fn every_frame_has_the_velocities_of_its_nodes() {
         }
     }
 }
+
+/// A bar flies to and fro between two walls. Each wall has a line of its own: the integral and the largest value of its own force.
+#[test]
+fn a_motion_between_two_walls_has_the_impulse_of_each_wall() {
+    let desk = Desk::new();
+    let mut scene = bar();
+    let wall = json!({"boundary": "left", "approach": "-x", "shape": {"plane": {"point": [-1], "normal": [-1]}}});
+    scene["obstacles"].as_array_mut().unwrap().push(wall);
+    // It touches one wall from 0.5 to 1.17, and the other one 0.6 later.
+    scene["analysis"]["dynamic"]["duration"] = json!(2.6);
+    desk.write("bar.json", scene.to_string());
+    let text = desk.run(&["solve", "bar.json", "--out", "out"]).ends_with(0).stdout;
+    let report: Value = serde_json::from_str(&fs::read_to_string(desk.path("out/report.json")).unwrap()).unwrap();
+    let contact = &report["contact"];
+    let (heading, rows) = table(&desk, "out/history.csv");
+    assert_eq!(heading[1], "force");
+    let step = report["step"].as_f64().unwrap();
+    let resultants = fs::read_to_string(desk.path("out/resultants.csv")).unwrap();
+    let names: Vec<&str> = resultants.lines().next().unwrap().split(',').collect();
+    for (index, sign) in [(0, -1.0), (1, 1.0)] {
+        let column = names.iter().position(|name| *name == format!("obstacles[{index}] f_x")).unwrap();
+        let forces: Vec<f64> = resultants
+            .lines()
+            .skip(2)
+            .map(|line| sign * line.split(',').nth(column).unwrap().parse::<f64>().unwrap())
+            .collect();
+        assert_eq!(forces.len(), rows.len() - 1);
+        let one = &contact["obstacles"][index];
+        let (impulse, largest) = (forces.iter().sum::<f64>() * step, forces.iter().copied().fold(0.0, f64::max));
+        assert!((one["impulse"].as_f64().unwrap() / impulse - 1.0).abs() < ROUNDING * forces.len() as f64, "{one}");
+        assert!((one["force_max"].as_f64().unwrap() / largest - 1.0).abs() < ROUNDING, "{one}: {largest}");
+        // The exact impulse turns the bar round: mass 10, speed 10 before and after.
+        assert!((impulse / 200.0 - 1.0).abs() < 0.05, "{impulse}");
+        assert!(text.contains(&format!("obstacles[{index}]")) && !text.contains("impulse 4"), "{text}");
+    }
+    assert!(contact["obstacles"][0]["last"].as_f64() < contact["obstacles"][1]["first"].as_f64(), "{contact}");
+}

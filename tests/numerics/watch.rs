@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use signorini::InteriorPoint;
 use signorini::internals::even_gaps;
 use signorini::motion::Integrator;
-use signorini::study::{TradeoffGrid, compare, motion_tradeoff, sweep, tradeoff};
+use signorini::study::{Sweep, TradeoffGrid, compare, motion_tradeoff, tradeoff};
 use signorini::{Condense, Error, Method, Prepared, Scene, Settings, Solution, Watch, solve};
 
 /// A block of `cells` x `cells` cells under a parabola.
@@ -69,7 +69,7 @@ fn work_that_is_stopped_before_it_begins_is_interrupted_by_every_method() {
         assert!(matches!(Prepared::new(model.problem(), &settings), Err(Error::Interrupted)));
         assert!(settings.watch.is_noticed());
         assert!(matches!(compare(model.problem(), &settings), Err(Error::Interrupted)));
-        assert!(matches!(sweep(&model, &even_gaps(0.0, -0.01, 3), &settings), Err(Error::Interrupted)));
+        assert!(matches!(Sweep::over_gaps(&model, &even_gaps(0.0, -0.01, 3), &settings), Err(Error::Interrupted)));
     }
     let settings = Settings::default();
     settings.watch.stop();
@@ -125,11 +125,11 @@ fn interior_point_and_multigrid_end_early_on_request() {
 fn a_stopped_sweep_returns_the_gaps_solved_so_far() {
     let model = build(&block(20));
     let gaps = even_gaps(0.0, -0.05, 400);
-    let whole = sweep(&model, &gaps, &Settings::default()).unwrap();
+    let whole = Sweep::over_gaps(&model, &gaps, &Settings::default()).unwrap();
     assert!(whole.points.len() == gaps.len() && !whole.events.is_empty());
     let mut settings = Settings::default();
     settings.watch = stopping_at("gap", 5);
-    let part = sweep(&model, &gaps, &settings).unwrap();
+    let part = Sweep::over_gaps(&model, &gaps, &settings).unwrap();
     assert!((4..gaps.len()).contains(&part.points.len()), "{}", part.points.len());
     assert!(part.events.is_empty() && part.corners.is_empty());
     for (point, expected) in part.points.iter().zip(&whole.points) {

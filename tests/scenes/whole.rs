@@ -251,3 +251,33 @@ fn headline_of_a_disc_between_two_plates_is_a_table_of_plates() {
     // The contract of JSON: the sum over all rows.
     assert!((report["contact"]["force"].as_f64().unwrap() / 600.0 - 1.0).abs() < PRINTED);
 }
+
+/// A disc between two plates that come nearer: a sweep gives each plate its own lines, which are those of the disc between two plates that
+/// press with the force of that gap.
+#[test]
+fn a_sweep_between_two_plates_has_lines_of_each_plate_and_no_sum() {
+    let plate = |approach: &str, y: f64, boundary: &str| {
+        json!({"boundary": boundary, "approach": approach,
+               "shape": {"plane": {"point": [0, y], "normal": [0, y.signum()]}}})
+    };
+    let mut scene = half_cylinder(true);
+    scene["body"]["disc"]["centre"] = json!([0, 0]);
+    scene["supports"] = json!([{"on": {"point": [0, 0]}, "y": 0}]);
+    scene["obstacles"] = json!([plate("-y", -10.0, "lower"), plate("+y", 10.02, "upper")]);
+    let (.., table, points) = reports(&scene, &["--gaps", "-0.05:-0.1:2"]);
+    assert!(!table.contains("sum(lambda)") && !table.contains("all obstacles"), "{table}");
+    let mut lines = table.lines().filter(|line| line.contains("obstacles["));
+    for point in points["points"].as_array().unwrap() {
+        let gap = point["gap"].as_f64().unwrap();
+        scene["gap"] = json!(gap);
+        let (_, alone, ..) = reports(&scene, &[]);
+        for (index, one) in alone["contact"]["obstacles"].as_array().unwrap().iter().enumerate() {
+            let line = lines.next().unwrap();
+            let shown = numbers(line);
+            assert!((shown[0] / gap - 1.0).abs() < PRINTED && line.contains(&format!("obstacles[{index}]")), "{line}");
+            assert!((shown[1] / one["force"].as_f64().unwrap() - 1.0).abs() < 1e-5, "{line}: {one}");
+            assert!((shown[2] / one["pressure_max"].as_f64().unwrap() - 1.0).abs() < 1e-5, "{line}: {one}");
+        }
+    }
+    assert!(lines.next().is_none(), "{table}");
+}

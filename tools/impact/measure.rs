@@ -83,7 +83,7 @@ pub fn with_value(
     let [begin, end] = case.contact;
     let after = end + (end - begin) / 2.0;
     let first = integrator.observe();
-    let mut summary = MotionSummary::starting(&first, dynamics.window, dynamics.step);
+    let mut summary = MotionSummary::starting(&first, 0, dynamics.window, dynamics.step);
     let (mut history, mut squares, mut speed) = (vec![first], 0.0, 0.0);
     let ones = vec![1.0; integrator.problem().statics().dofs()];
     let inertia = integrator.problem().mass().mul(&ones);
@@ -98,7 +98,7 @@ pub fn with_value(
             speed = -momentum / inertia.iter().sum::<f64>();
         }
         let seen = integrator.observe();
-        summary.add(&seen, dynamics.step);
+        summary.add(&seen, &[], dynamics.step);
         history.push(seen);
     }
     let step = dynamics.step;
@@ -126,7 +126,7 @@ pub fn with_value(
             history.iter().map(Observation::energy).fold(0.0, f64::max) / first.energy(),
         ],
         penetration: history.iter().map(|seen| seen.penetration).fold(0.0, f64::max),
-        peaks: [summary.force_max, summary.force_mean_max()],
+        peaks: [summary.contact.force_max, summary.contact.force_mean_max()],
         window: summary.window_steps() as f64 * step,
         history,
     })

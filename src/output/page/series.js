@@ -62,6 +62,7 @@ function sweepSection(page, data, shape, notes) {
   const { sweep, units } = data,
     { points, events, corners } = sweep,
     exact = corners.length > 0,
+    several = obstacleCount(points[0].contact) > 1,
     ofForces = sweep.swept === "force";
   const own = section(page, exact ? "The answer at every gap" : `The answers at the ${sweep.swept}s`, "answer");
   const frames = exact
@@ -95,7 +96,8 @@ function sweepSection(page, data, shape, notes) {
       width !== undefined && width !== null
         ? `cells of closed nodes ${inUnit(width, units.length)} wide`
         : `cells of closed nodes ${inUnit(area, `${units.length}²`)}`;
-    facts.textContent = `${counted(count, "closed row")}, force ${inUnit(force, units.force, 10)}, peak pressure ${inUnit(pressure_max, units.pressure, 10)}, ${extent}${frame.travel !== undefined ? `, travel ${inUnit(frame.travel, units.length)}` : ""}`;
+    const ofAll = several ? "" : `, force ${inUnit(force, units.force, 10)}`;
+    facts.textContent = `${counted(count, "closed row")}${ofAll}, peak pressure ${inUnit(pressure_max, units.pressure, 10)}${several ? "" : `, ${extent}`}${frame.travel !== undefined ? `, travel ${inUnit(frame.travel, units.length)}` : ""}`;
     panel.show(frame);
     profile(frame);
     marks(frame.at);
@@ -153,69 +155,89 @@ function sweepPlots(page, data) {
     ofForces = sweep.swept === "force";
   const own = section(page, ofForces ? "Over the force" : "Over the gap", "curves"),
     x = { name: ofForces ? `force [${units.force}]` : `gap [${units.length}]` };
-  const hasWidth = points[0].contact.width !== undefined;
-  const curves = [
-    ofForces
-      ? [`travel [${units.length}]`, point => point.travel, () => NaN]
-      : [`contact force [${units.force}]`, point => point.contact.force, corner => corner.force],
-    hasWidth
-      ? [`width of the cells of closed nodes [${units.length}]`, point => point.contact.width, corner => corner.width]
-      : [`area of the cells of closed nodes [${units.length}²]`, point => point.contact.area, corner => corner.area],
-    [`peak pressure [${units.pressure}]`, point => point.contact.pressure_max, corner => corner.pressure_max],
-  ];
+  const hasWidth = points[0].contact.width !== undefined,
+    several = obstacleCount(points[0].contact) > 1,
+    at = point => point.force ?? point.gap;
+  const ofEach = of =>
+    points[0].contact.obstacles.map((one, index) => ({
+      name: one.of,
+      colour: colours.lines[index % colours.lines.length],
+      marks: true,
+      points: points.map(point => [at(point), of(point.contact.obstacles[index]) ?? 0]),
+    }));
   const exact = { name: "exact path", colour: colours.lines[0] },
     solved = { name: `${sweep.swept}s that were solved`, colour: colours.lines[1], marks: true, line: !corners.length };
-  const made = curves.map(([name, ofPoint, ofCorner]) =>
-    plotted(own, {
-      label: `${name} over the ${sweep.swept}`,
-      x,
-      y: { name },
-      height: 230,
-      series: [
-        ...(corners.length ? [{ ...exact, points: corners.map(corner => [corner.gap, ofCorner(corner)]) }] : []),
-        { ...solved, points: points.map(point => [point.force ?? point.gap, ofPoint(point)]) },
-      ],
-    }),
+  const ofAll = (ofPoint, ofCorner) => [
+    ...(corners.length ? [{ ...exact, points: corners.map(corner => [corner.gap, ofCorner(corner)]) }] : []),
+    { ...solved, points: points.map(point => [at(point), ofPoint(point)]) },
+  ];
+  const travel = ofForces ? [[`travel [${units.length}]`, ofAll(point => point.travel, () => NaN)]] : [];
+  const curves = several
+    ? [
+        ...travel,
+        [`force [${units.force}]`, ofEach(one => one.force)],
+        hasWidth
+          ? [`estimated width [${units.length}]`, ofEach(one => one.estimate?.width)]
+          : [`estimated area [${units.length}²]`, ofEach(one => one.estimate?.area)],
+        [`peak pressure [${units.pressure}]`, ofEach(one => one.pressure_max)],
+      ]
+    : [
+        ...(ofForces
+          ? travel
+          : [[`contact force [${units.force}]`, ofAll(point => point.contact.force, corner => corner.force)]]),
+        hasWidth
+          ? [
+              `width of the cells of closed nodes [${units.length}]`,
+              ofAll(point => point.contact.width, corner => corner.width),
+            ]
+          : [
+              `area of the cells of closed nodes [${units.length}²]`,
+              ofAll(point => point.contact.area, corner => corner.area),
+            ],
+        [`peak pressure [${units.pressure}]`, ofAll(point => point.contact.pressure_max, corner => corner.pressure_max)],
+      ];
+  const made = curves.map(([name, series]) =>
+    plotted(own, { label: `${name} over the ${sweep.swept}`, x, y: { name }, height: 230, series }),
   );
-  keyOf(own, corners.length ? [exact, solved] : [solved]);
+  keyOf(own, several ? curves.at(-1)[1] : corners.length ? [exact, solved] : [solved]);
   return at => made.forEach(plot => plot.mark(at));
 }
 
 function sweepTable(page, { sweep, units, question }) {
   const own = section(page, "Solved and certified", "points"),
-    ofForces = sweep.swept === "force";
+    several = obstacleCount(sweep.points[0].contact) > 1,
+    swept = sweep.swept === "force" ? `${several ? "swept " : ""}force [${units.force}]#` : `gap [${units.length}]#`,
+    at = point => shown(point.force ?? point.gap, 9),
+    points = evenly(sweep.points, 60);
+  const columns = [
+    [swept, at],
+    ["status", point => STATUS[point.status]],
+    ["closed#", point => String(point.contact.count)],
+    ...(several
+      ? []
+      : [
+          [`force [${units.force}]#`, point => shown(point.contact.force, 10)],
+          [`peak pressure [${units.pressure}]#`, point => shown(point.contact.pressure_max, 7)],
+        ]),
+    ["energy error ≤#", point => shown(point.bound, 2)],
+  ];
   table(
     own,
-    [
-      ofForces ? `force [${units.force}]#` : `gap [${units.length}]#`,
-      "status",
-      "closed#",
-      `force [${units.force}]#`,
-      `peak pressure [${units.pressure}]#`,
-      "energy error ≤#",
-    ],
-    evenly(sweep.points, 60).map(point => [
-      shown(point.force ?? point.gap, 9),
-      STATUS[point.status],
-      String(point.contact.count),
-      shown(point.contact.force, 10),
-      shown(point.contact.pressure_max, 7),
-      shown(point.bound, 2),
-    ]),
+    columns.map(column => column[0]),
+    points.map(point => columns.map(column => column[1](point))),
   );
-  const obstacles = obstacleCount(sweep.points[0].contact);
+  if (several)
+    obstacleTable(
+      own,
+      points.flatMap(point => point.contact.obstacles.map(one => [at(point), one])),
+      units,
+      swept,
+    );
   if (question.parts > 1)
     element(
       "p",
       own,
       "Closed rows, energy errors and pictures are of the meshed part; forces, widths, areas and pressures are of the whole body.",
-      "soft",
-    );
-  if (obstacles > 1)
-    element(
-      "p",
-      own,
-      `Forces are sums of multipliers over ${obstacles} obstacles, mirror images included; so are widths and areas.`,
       "soft",
     );
   if (!sweep.events.length) return;
@@ -237,7 +259,9 @@ function motionSection(page, data, shape, notes) {
   const { motion, units, report, colours, states } = data,
     own = section(page, "The motion", "answer");
   const frames = states.map((_, index) => motionFrame(data, index));
-  const { contact } = report;
+  const { contact } = report,
+    several = contact.obstacles.length > 1,
+    mean = `the mean over ${shown(contact.force_window.time)}`;
   list(own, [
     ["scheme", `${report.scheme}, ${counted(report.steps, "step")} of ${shown(report.step)}`],
     [
@@ -246,13 +270,32 @@ function motionSection(page, data, shape, notes) {
         ? "none"
         : `from ${shown(contact.first)} to ${shown(contact.last)}, for ${shown(contact.duration)} in all`,
     ],
-    ["impulse", shown(contact.impulse)],
+    ["impulse", several ? null : shown(contact.impulse)],
     [
       "largest force",
-      `${inUnit(contact.force_max, units.force)} in one step, ${inUnit(contact.force_mean_max, units.force)} on the mean over ${shown(contact.force_window.time)}`,
+      several
+        ? null
+        : `${inUnit(contact.force_max, units.force)} in one step, ${inUnit(contact.force_mean_max, units.force)} on ${mean}`,
     ],
     ["energy", `change ${shown(report.energy.change, 3)}, largest gain ${shown(report.energy.gain, 3)}`],
   ]);
+  if (several)
+    table(
+      own,
+      [
+        "obstacle",
+        "from#",
+        "to#",
+        "impulse#",
+        `largest force in one step [${units.force}]#`,
+        `largest, ${mean} [${units.force}]#`,
+      ],
+      contact.obstacles.map(one => [
+        one.of,
+        ...[one.first, one.last].map(time => (time === null ? "-" : shown(time))),
+        ...[one.impulse, one.force_max, one.force_mean_max].map(value => shown(value)),
+      ]),
+    );
   const control = slider(own, "time", { min: 0, max: states.length - 1, step: 1, value: motion.opens }, value => go(value));
   const facts = element("p", own);
   facts.id = "facts";
@@ -274,7 +317,7 @@ function motionSection(page, data, shape, notes) {
   const force = plotted(curves, {
     label: "Contact force over time",
     x: { name: "time" },
-    y: { name: `contact force [${units.force}]` },
+    y: { name: `contact force${several ? " of all obstacles" : ""} [${units.force}]` },
     series: [{ name: "contact force", colour: colours.lines[0], points: column(1) }],
     height: 230,
   });
@@ -292,7 +335,7 @@ function motionSection(page, data, shape, notes) {
     while (line + 1 < count && motion.history[columns * (line + 1)] <= frame.time * (1 + 1e-12)) line++;
     const at = k => motion.history[columns * line + k];
     control.output.textContent = `t = ${shown(frame.time, 6)}`;
-    facts.textContent = `${counted(frame.rows.length, "closed row")}, force ${inUnit(at(1), units.force)}; energies: kinetic ${shown(at(4))}, strain ${shown(at(5))}, potential ${shown(at(6))}, total ${shown(at(7), 9)} ${work}`;
+    facts.textContent = `${counted(frame.rows.length, "closed row")}, force ${inUnit(at(1), units.force)}${several ? " of all obstacles" : ""}; energies: kinetic ${shown(at(4))}, strain ${shown(at(5))}, potential ${shown(at(6))}, total ${shown(at(7), 9)} ${work}`;
     panel.show(frame);
     force.mark(frame.time);
     energy.mark(frame.time);

@@ -124,7 +124,13 @@ function contactList(host, summary, data) {
         : inUnit(summary.strain_energy, `${units.force} ${units.length}`.trim()),
     ],
   ]);
-  if (several) obstacleTable(host, summary, units);
+  if (!several) return;
+  obstacleTable(
+    host,
+    contact.obstacles.map(one => [null, one]),
+    units,
+  );
+  if (basis) element("p", host, `Forces${basis}.`, "soft");
 }
 
 /** The words behind numbers of the meshed part, if planes of symmetry make it a part. */
@@ -142,11 +148,12 @@ function imagesOf({ copies }) {
   return copies === 1 ? "" : copies === 2 ? " and its mirror image" : ` and its ${copies - 1} mirror images`;
 }
 
-/** The contact of each obstacle and pair of bodies. */
-function obstacleTable(host, { contact, force_basis }, units) {
-  const inPlane = contact.obstacles.some(one => one.estimate?.width !== undefined),
-    pressed = contact.obstacles.some(one => one.travel !== undefined);
+/** The contact of each obstacle and pair of bodies: lines of `[value, obstacle]`; the values have a column if it has a name. */
+function obstacleTable(host, lines, units, name = null) {
+  const inPlane = lines.some(([, one]) => one.estimate?.width !== undefined),
+    pressed = lines.some(([, one]) => one.travel !== undefined);
   const columns = [
+    ...(name ? [[name, (_, value) => value]] : []),
     ["obstacle", one => `${one.of}${one.on ? ` on ${one.on}` : ""}${imagesOf(one)}`],
     [`force [${units.force}]#`, one => shown(one.force)],
     ...(pressed ? [[`travel [${units.length}]#`, one => shown(one.travel)]] : []),
@@ -159,9 +166,8 @@ function obstacleTable(host, { contact, force_basis }, units) {
   table(
     host,
     columns.map(column => column[0]),
-    contact.obstacles.map(one => columns.map(column => column[1](one))),
+    lines.map(([value, one]) => columns.map(column => column[1](one, value))),
   );
-  if (force_basis) element("p", host, `Forces ${force_basis}.`, "soft");
 }
 
 function certificateSection(page, { certificate }) {
