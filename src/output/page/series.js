@@ -16,7 +16,7 @@ function slider(host, label, { min, max, step, value }, moved) {
 /** Pressure along each obstacle of a plane body; returns a function that shows another frame. */
 function profileSection(page, data, shape) {
   if (!data.rows?.count || shape.dimension !== 2) return () => {};
-  const own = section(page, "Contact pressure along the boundary", "pressure"),
+  const own = section(page, `Contact pressure along the boundary${ofPart(data)}`, "pressure"),
     { rows, units } = data;
   const plots = data.question.obstacles.map(({ approach }, obstacle) => {
     const axis = approach[0] !== 0 ? 1 : 0;
@@ -95,7 +95,7 @@ function sweepSection(page, data, shape, notes) {
       width !== undefined && width !== null
         ? `cells of closed nodes ${inUnit(width, units.length)} wide`
         : `cells of closed nodes ${inUnit(area, `${units.length}²`)}`;
-    facts.textContent = `${counted(count, "closed row")}, force ${inUnit(force, units.force, 10)}, peak pressure ${inUnit(pressure_max, units.pressure, 10)}, ${extent}${frame.travel !== undefined ? `, travel ${inUnit(frame.travel, units.length)}` : ""}`;
+    facts.textContent = `${counted(count, "closed row")}${ofPart(data)}, force ${inUnit(force, units.force, 10)}, peak pressure ${inUnit(pressure_max, units.pressure, 10)}, ${extent}${frame.travel !== undefined ? `, travel ${inUnit(frame.travel, units.length)}` : ""}`;
     panel.show(frame);
     profile(frame);
     marks(frame.at);
@@ -128,7 +128,7 @@ function sweepSection(page, data, shape, notes) {
     element(
       "p",
       own,
-      `Between its events the answer is linear in the gap: closed rows, forces and pressures are exact at every position of the slider. A row touches or releases ${counted(events.length, "time")}.`,
+      `Between its events the answer is linear in the gap: closed rows, forces and pressures are exact at every position of the slider. A row${ofPart(data)} touches or releases ${counted(events.length, "time")}.`,
       "soft",
     );
   } else
@@ -181,18 +181,20 @@ function sweepPlots(page, data) {
   return at => made.forEach(plot => plot.mark(at));
 }
 
-function sweepTable(page, { sweep, units, question }) {
+function sweepTable(page, data) {
   const own = section(page, "Solved and certified", "points"),
+    { sweep, units, question } = data,
+    part = ofPart(data),
     ofForces = sweep.swept === "force";
   table(
     own,
     [
       ofForces ? `force [${units.force}]#` : `gap [${units.length}]#`,
       "status",
-      "closed#",
+      `closed${part}#`,
       `force [${units.force}]#`,
       `peak pressure [${units.pressure}]#`,
-      "energy error ≤#",
+      `energy error${part} ≤#`,
     ],
     evenly(sweep.points, 60).map(point => [
       shown(point.force ?? point.gap, 9),
@@ -224,11 +226,11 @@ function sweepTable(page, { sweep, units, question }) {
   element(
     "summary",
     more,
-    `${counted(sweep.events.length, "event")}${shownEvents.length < sweep.events.length ? ", the first 200 shown" : ""}`,
+    `${counted(sweep.events.length, "event")}${part}${shownEvents.length < sweep.events.length ? ", the first 200 shown" : ""}`,
   );
   table(
     more,
-    [`gap [${units.length}]#`, "node#", "what"],
+    [`gap [${units.length}]#`, `node${part}#`, "what"],
     shownEvents.map(event => [shown(event.gap, 12), String(event.node), event.touches ? "touches" : "releases"]),
   );
 }
