@@ -358,6 +358,19 @@ class Answers(Pages):
         self.assertEqual(sum(kinds), report["contact"]["count"])
         self.assertEqual(kinds, sorted(kinds))
 
+    def test_closed_rows_that_are_close_are_seen(self) -> None:
+        page, report = self.page("solve", EXAMPLES / "two_cylinders.json")
+        browser = self.opened(page)
+        browser.frame()
+        seen = browser.ask(
+            "(() => { const { view, marks: [vertices, kinds] } = signorini.answer, brush = view.over.getContext('2d'),"
+            " ratio = view.over.width / view.over.clientWidth, wanted = channels(view.ink('closed')).map(part => 255 * part);"
+            " return vertices.filter((vertex, i) => { const [x, y] = view.place(view.vertex(vertex)).map(at => Math.floor(ratio * at));"
+            " const { data } = brush.getImageData(x, y, 1, 1);"
+            " return kinds[i] === 1 && wanted.every((part, k) => Math.abs(data[k] - part) < 3); }).length; })()"
+        )
+        self.assertEqual(seen, report["contact"]["count"])
+
     def test_the_legend_names_undecided_rows_only_if_there_are_some(self) -> None:
         page, report = self.page("solve", EXAMPLES / "ball.json")
         self.assertEqual(report["proven"]["undecided"], [])
