@@ -86,6 +86,56 @@ def disc(is_part: bool) -> dict:
     }
 
 
+def block(planes: str, is_between: bool) -> dict:
+    """A block under a ball or between two balls, or the part of it that planes of symmetry leave."""
+
+    def along(axis: str, low: int) -> dict:
+        low = 0 if axis in planes else low
+        return {"points": [low, 1], "divisions": [4 * (1 - low)]}
+
+    def ball(boundary: str, approach: str, z: int) -> dict:
+        shape = {"sphere": {"apex": [0, 0, z], "radius": 2}}
+        return {"boundary": boundary, "approach": approach, "force": 40, "shape": shape}
+
+    supports = [] if is_between else [{"on": {"boundary": "bottom"}, "z": 0}]
+    if not planes:
+        supports += [{"on": {"point": [0, y, 0]}, "x": 0} for y in (-1, 1)] + [{"on": {"point": [1, 0, 0]}, "y": 0}]
+    if not planes and is_between:
+        supports += [{"on": {"point": point}, "z": 0} for point in ([0, 1, 0], [1, 0, 0], [0, -1, 0])]
+    return {
+        "model": "space",
+        "units": {"length": "mm", "force": "N"},
+        "body": {"box": {"x": along("x", -1), "y": along("y", -1), "z": along("z", -1 if is_between else 0), "element": "hex8"}},
+        "material": {"young": 1000, "poisson": 0.3},
+        "symmetry": list(planes),
+        "supports": supports,
+        "obstacles": [ball("top", "+z", 1)] + ([ball("bottom", "-z", -1)] if is_between and not planes else []),
+    }
+
+
+def half_ball(planes: str) -> dict:
+    """Half of a ball on a plate, or the part of it that planes of symmetry leave."""
+    centre = [{"on": {"point": [0, 0, 10]}, "x": 0, "y": 0}, {"on": {"point": [10, 0, 10]}, "y": 0}]
+    zone = {"width": 1, "divisions": 2, "growth": 2}
+    return {
+        "model": "space",
+        "units": {"length": "mm", "force": "N"},
+        "body": {"half-ball": {"half": "lower", "centre": [0, 0, 10], "radius": 10, "symmetric": list(planes), "zone": zone}},
+        "material": {"young": 2000, "poisson": 0.3},
+        "symmetry": list(planes),
+        "supports": [{"on": {"boundary": "cut"}, "z": 0}, *([] if planes else centre)],
+        "obstacles": [
+            {"boundary": "round", "approach": "-z", "force": 100, "shape": {"plane": {"point": [0, 0, 0], "normal": [0, 0, -1]}}}
+        ],
+    }
+
+
+def at_gap(scene: dict) -> dict:
+    """The scene with obstacles at a prescribed place."""
+    obstacles = [{key: value for key, value in obstacle.items() if key != "force"} for obstacle in scene["obstacles"]]
+    return {**scene, "obstacles": obstacles, "gap": -0.02}
+
+
 class Pages(unittest.TestCase):
     @classmethod
     def setUpClass(cls) -> None:
@@ -148,49 +198,63 @@ class Answers(Pages):
         peak = browser.ask("Math.max(...signorini.data.contact.pressure)")
         self.assertEqual(peak, report["contact"]["pressure_max"])
 
-    def numbers_shown(self, scene: dict, name: str) -> dict[str, list[float]]:
-        """Returns the numbers of each named line, table row and section of a page that are not named as those of the meshed part."""
-        path = self.folder / f"{name}.json"
-        path.write_text(json.dumps(scene))
-        page, _ = self.page("solve", path)
+    def numbers_shown(self, command: str, scene: dict, *options: str) -> dict[str, list[float]]:
+        """Returns the numbers of each line of a page that does not name the meshed part: entries, cells, sentences, axes of plots."""
+        path = self.folder / f"shown-{len(self.made)}.json"
+        path.write_text(json.dumps({"title": "A part and its whole", **scene}))
+        page, _ = self.page(command, path, *options)
         lines = self.opened(page).ask(
-            """Array.from(document.querySelectorAll("section")).flatMap(own => {
-              const title = own.querySelector("h2")?.textContent ?? "";
-              const list = Array.from(own.querySelectorAll("dt"), dt => [title, dt.textContent, dt.nextElementSibling.textContent]);
-              const rows = Array.from(own.querySelectorAll("tbody tr"), tr => {
-                const cells = Array.from(tr.cells, cell => cell.textContent);
-                return [title, cells[0], cells.slice(1).join(" ")];
+            """Array.from(document.querySelectorAll("main, section")).flatMap(own => {
+              const title = own.querySelector(":scope > h2")?.textContent ?? "",
+                all = query => Array.from(own.querySelectorAll(query)).filter(it => it.closest("main, section") === own);
+              const list = all("dt").map(dt => [title, dt.textContent, dt.nextElementSibling.textContent]);
+              const cells = all("tbody tr").flatMap(tr => {
+                const headings = tr.closest("table").tHead.rows[0].cells;
+                return Array.from(tr.cells, (cell, i) => [title, `${tr.cells[0].textContent}, ${headings[i].textContent}`, cell.textContent]);
               });
-              return [...list, ...rows];
+              const words = all("p, summary, .slider").map(it => [title, "", it.textContent]);
+              const plots = all("svg[aria-label]").map(svg => [
+                title, svg.ariaLabel, Array.from(svg.querySelectorAll("text"), text => text.textContent).join(" "),
+              ]);
+              return [...list, ...cells, ...words, ...plots];
             })"""
         )
-        # The line `symmetry` says it of the method and of the certificate.
-        is_of_part = lambda title, label, text: (
-            label in ("symmetry", "method")
-            or title in ("Certificate", "About this page")
-            or ("of the meshed part" in title + text and "times the meshed part" not in text)
-        )
-        number = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+        self.assertTrue(not scene["symmetry"] or any("pictures are of the meshed part" in text for _, _, text in lines))
+        number = re.compile(r"(?<![\w\[])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
         shown = {}
         for title, label, text in lines:
-            if not is_of_part(title, label, text):
-                # Of the contact, the closed rows and the factor to the whole belong to the part.
-                text = re.sub(r"\d+ closed rows[^,]*,|, of the whole body, \d+ times the meshed part", "", text)
-                shown[f"{title}: {label}"] = [float(value) for value in number.findall(text)]
-        return shown
+            # In these lines the closed rows and the factor to the whole belong to the part, and the other numbers to the whole.
+            text = re.sub(r"\d+ closed rows?( of the meshed part)?|,? of the whole body, \d+ times the meshed part", "", text)
+            label = re.sub(r" and its (\d+ )?mirror images?", "", label)
+            if title == "About this page" or (scene["symmetry"] and "of the meshed part" in title + label + text):
+                continue
+            shown[f"{title}: {label or number.sub('#', text)}"] = [float(value) for value in number.findall(text)]
+        return {line: numbers for line, numbers in shown.items() if numbers}
 
     def test_a_part_shows_the_numbers_of_the_whole(self) -> None:
-        part = self.numbers_shown(disc(True), "half")
-        whole = self.numbers_shown(disc(False), "disc")
-        self.assertGreater(sum(map(len, part.values())), 15, part)
-        for line, numbers in part.items():
-            self.assertIn(line, whole)
-            self.assertEqual(len(numbers), len(whole[line]), f"{line}: {numbers} {whole[line]}")
-            # The components of a resultant that cancel are rounding beside its force.
-            rounding = 1e-9 * max(map(abs, numbers), default=0.0)
-            for ours, exact in zip(numbers, whole[line], strict=True):
-                if max(abs(ours), abs(exact)) > rounding:
-                    self.assertLessEqual(abs(ours - exact), 2e-6 * abs(exact), f"{line}: {numbers} {whole[line]}")
+        pairs = {
+            "half of a disc": (disc(True), disc(False)),
+            "quarter of a block": (block("xy", False), block("", False)),
+            "eighth of a block": (block("xyz", True), block("", True)),
+            "quarter of a half ball": (half_ball("xy"), half_ball("")),
+        }
+        gaps = ("sweep", "--gaps=-0.02:-0.05:2")
+        for name, (part, whole) in pairs.items():
+            forces = ("sweep", "--forces=20:40:2")
+            for command, *options in (("solve",), ("compare",), gaps, *((forces,) if len(whole["obstacles"]) == 1 else ())):
+                with self.subTest(f"{name}, {command} {options}"):
+                    make = at_gap if options == [gaps[1]] else dict
+                    ours, exact = (self.numbers_shown(command, make(scene), *options) for scene in (part, whole))
+                    self.assertGreater(sum(map(len, ours.values())), 15, ours)
+                    # The components of a resultant that cancel are rounding beside its force.
+                    forces_of = [abs(value) for line, numbers in ours.items() if line.startswith("Resultants: ") for value in numbers]
+                    for line, numbers in ours.items():
+                        self.assertIn(line, exact)
+                        self.assertEqual(len(numbers), len(exact[line]), f"{line}: {numbers} {exact[line]}")
+                        rounding = 1e-9 * max(forces_of, default=0.0) if line.startswith("Resultants: ") else 0.0
+                        for value, expected in zip(numbers, exact[line], strict=True):
+                            if max(abs(value), abs(expected)) > rounding:
+                                self.assertLessEqual(abs(value - expected), 2e-6 * abs(expected), f"{line}: {numbers} {exact[line]}")
 
     def test_the_table_of_obstacles_has_their_uncertainties(self) -> None:
         between = disc(True)
@@ -311,6 +375,32 @@ class Answers(Pages):
         )
         self.assertAlmostEqual(plate + shift[1], node, delta=2e-3)
         self.assertGreater(shift[1], 0.5)
+
+    def test_the_mark_of_a_closed_row_is_over_those_of_open_rows(self) -> None:
+        # Every node of the ring has a row of each plate.
+        page, report = self.page("solve", EXAMPLES / "gallery/ring.json")
+        kinds = self.opened(page).ask("signorini.answer.marks[1]")
+        self.assertEqual(sum(kinds), report["contact"]["count"])
+        self.assertEqual(kinds, sorted(kinds))
+
+    def test_closed_rows_that_are_close_are_seen(self) -> None:
+        page, report = self.page("solve", EXAMPLES / "two_cylinders.json")
+        browser = self.opened(page)
+        browser.frame()
+        seen = browser.ask(
+            "(() => { const { view, marks: [vertices, kinds] } = signorini.answer, brush = view.over.getContext('2d'),"
+            " ratio = view.over.width / view.over.clientWidth, wanted = channels(view.ink('closed')).map(part => 255 * part);"
+            " return vertices.filter((vertex, i) => { const [x, y] = view.place(view.vertex(vertex)).map(at => Math.floor(ratio * at));"
+            " const { data } = brush.getImageData(x, y, 1, 1);"
+            " return kinds[i] === 1 && wanted.every((part, k) => Math.abs(data[k] - part) < 3); }).length; })()"
+        )
+        self.assertEqual(seen, report["contact"]["count"])
+
+    def test_the_legend_names_undecided_rows_only_if_there_are_some(self) -> None:
+        page, report = self.page("solve", EXAMPLES / "ball.json")
+        self.assertEqual(report["proven"]["undecided"], [])
+        self.opened(page)
+        self.assertNotIn("undecided", self.text("#answer .legend"))
 
     def test_the_limits_of_the_colours_are_set_by_hand(self) -> None:
         page, _ = self.page("solve", EXAMPLES / "ball.json")

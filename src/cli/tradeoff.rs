@@ -50,7 +50,10 @@ pub(super) fn run(options: &options::Tradeoff, watch: &Watch) -> Result<Outcome,
         return reported(options, watch, about, &measured, text, &csv, plots);
     }
     let measured = tradeoff(&scene, &grid, watch)?;
-    let (text, csv) = (tradeoff_text(title, &measured), tradeoff_csv(&measured));
+    let (mut text, csv) = (tradeoff_text(title, &measured), tradeoff_csv(&measured));
+    if model.parts_of_whole() > 1.0 {
+        text += "All numbers but the error of the mesh are of the meshed part.\n";
+    }
     let plots = || {
         vec![
             ("tradeoff", tradeoff_plot_for(options.style, title, &measured)),

@@ -71,20 +71,24 @@ fn largest(arrows: &[Arrow]) -> f64 {
     arrows.iter().map(Arrow::size).fold(0.0, f64::max)
 }
 
-/// Draws the forces that are more than rounding. Pushing arrows stand outside the body if the frame has room for them.
+/// Draws the forces that are more than rounding and act within the frame. Pushing arrows stand outside the body if the frame has room for
+/// them.
 pub(super) fn draw(drawing: &mut Drawing, frame: &Frame, arrows: &[Arrow], magnification: f64) {
     let largest = largest(arrows);
     let mut drawn: Vec<[f64; 2]> = Vec::new();
+    let inside =
+        |point: [f64; 2]| (0..2).all(|axis| (0.0..=frame.size[axis]).contains(&(point[axis] - frame.corner[axis])));
     for arrow in arrows.iter().filter(|arrow| arrow.size() > NOTHING * largest) {
         let share = arrow.size() / largest;
         let length = (LONGEST * frame.size[0].min(frame.size[1]) * share).max(SHORTEST);
         let at = frame.place([0, 1].map(|axis| arrow.at[axis] + magnification * arrow.moved[axis]));
+        if !inside(at) {
+            continue;
+        }
         let direction = [arrow.force[0] / arrow.size(), -arrow.force[1] / arrow.size()];
         let along = |from: [f64; 2], by: f64| [0, 1].map(|axis| from[axis] + by * direction[axis]);
         let middle = [0, 1].map(|axis| frame.corner[axis] + 0.5 * frame.size[axis]);
         let far = |point: [f64; 2]| (point[0] - middle[0]).hypot(point[1] - middle[1]);
-        let inside =
-            |point: [f64; 2]| (0..2).all(|axis| (0.0..=frame.size[axis]).contains(&(point[axis] - frame.corner[axis])));
         // The tip or the tail is at the point of application: the arrow farther from the middle of the body, if it fits in the frame.
         let [push, pull] = [[along(at, -length), at], [at, along(at, length)]];
         let is_push = match (inside(push[0]), inside(pull[1])) {
@@ -139,4 +143,30 @@ pub(super) fn entries(arrows: &[Arrow]) -> Vec<Entry<'static>> {
         Some(Entry { name, key: Box::new(key), key_width: 30.0 })
     };
     ArrowKind::ALL.into_iter().filter_map(entry).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::axes::Axis;
+    use crate::output::ticks::{Quantity, Scale};
+
+    #[test]
+    fn a_force_outside_its_panel_is_not_drawn_in_the_panel_beside() {
+        let place = Quantity::new("x", "m");
+        let (x, y) = (
+            Axis::horizontal(&place, Scale::Linear, [0.0, 1.0], 100.0),
+            Axis::vertical(&place, Scale::Linear, [0.0, 1.0], 100.0),
+        );
+        let frame = Frame { corner: [150.0, 0.0], size: [100.0; 2], x, y };
+        let drawn = |at: [f64; 2]| {
+            let mut drawing = Drawing::new(300.0, 100.0);
+            let arrow = Arrow { kind: ArrowKind::Contact, at, moved: [0.0; 2], force: [0.0, -1.0], unit: "N".into() };
+            draw(&mut drawing, &frame, &[arrow], 1.0);
+            drawing.svg()
+        };
+        let empty = Drawing::new(300.0, 100.0).svg();
+        assert!(drawn([0.5, 0.5]) != empty);
+        assert_eq!(drawn([-0.9, 0.5]), empty);
+    }
 }

@@ -8,7 +8,7 @@ use super::medium::Medium;
 use super::mesh_series::{MeshPanel, mesh_series};
 use super::msh::msh;
 use super::plot::line_plots_for;
-use super::report::{columns, entry, plural, wrapped};
+use super::report::{columns, entry, of_part, plural, wrapped};
 use super::text::printable;
 use super::total_error::{of_last_mesh, percent, verdict};
 use super::{Drawing, Plot, Quantity, Scale, Series, write_files, write_picture};
@@ -32,7 +32,10 @@ pub(crate) fn estimated_error_text(title: &str, found: &Estimated, answer: &Summ
     }
     if let Some(last) = found.levels.last() {
         let meshes = plural(found.levels.len(), "mesh").replace("meshs", "meshes");
-        text += &entry("mesh", &format!("{meshes}; the last: {} elements, {} unknowns", last.elements, last.dofs));
+        text += &entry(
+            "mesh",
+            &format!("{meshes}; the last: {} elements, {} unknowns{}", last.elements, last.dofs, of_part(answer)),
+        );
     }
     match found.ended {
         Ended::Goal => {}
@@ -50,6 +53,9 @@ pub(crate) fn estimated_error_text(title: &str, found: &Estimated, answer: &Summ
     table.extend(found.levels.iter().map(row));
     for line in columns(&table).lines() {
         let _ = writeln!(text, "  {line}");
+    }
+    if answer.parts_of_whole.is_some() {
+        text += "  total error and force are of the whole body, all other columns of the meshed part\n";
     }
     text + &of_last_mesh(title, answer, units)
 }

@@ -226,7 +226,7 @@ fn closed_nodes(model: &Model, set: &ContactSet) -> String {
     let mut nodes: Vec<usize> = set.iter().map(|row| model.rows()[row].node).collect();
     nodes.sort_unstable();
     nodes.dedup();
-    let part = if model.parts_of_whole() > 1.0 { " of the meshed part" } else { "" };
+    let part = model.of_part();
     match nodes.len() {
         1 => format!("1 closed node{part}"),
         count => format!("{count} closed nodes{part}"),

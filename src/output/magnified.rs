@@ -31,7 +31,8 @@ pub(super) fn magnification(answer: &Answer) -> f64 {
     rounded_down(fits.fold(most, f64::min))
 }
 
-/// The mean displacement of the nodes that touch an obstacle, weighted with their forces, in the unit of length; zero without contact.
+/// The mean displacement of the nodes that touch an obstacle, weighted with their forces, in the unit of length. Without contact it is
+/// that of the surface at the deepest node in the obstacle, as in the first steps of a search; zero if no node is inside.
 pub(super) fn carried(answer: &Answer, obstacle: usize) -> [f64; 3] {
     let dimension = answer.model().mesh().dimension();
     let rows = answer.model().rows().iter().zip(answer.multiplier());
@@ -41,7 +42,17 @@ pub(super) fn carried(answer: &Answer, obstacle: usize) -> [f64; 3] {
         (0..3).for_each(|axis| sum[axis] -= lambda * moved[axis]);
         force -= lambda;
     }
-    if force > 0.0 { sum.map(|part| part / force) } else { [0.0; 3] }
+    if force > 0.0 {
+        return sum.map(|part| part / force);
+    }
+    let remaining = answer.remaining_gaps();
+    let inside =
+        answer.model().rows().iter().zip(remaining).filter(|(row, gap)| row.obstacle == obstacle && *gap < 0.0);
+    let deepest = inside.min_by(|(_, a), (_, b)| a.total_cmp(b));
+    deepest.map_or([0.0; 3], |(row, gap)| {
+        let moved = displacement(answer, dimension, row.node);
+        [0, 1, 2].map(|axis| moved[axis] + gap * row.normal[axis])
+    })
 }
 
 /// The shift by which an obstacle is drawn beside a body whose displacement is magnified.
@@ -150,5 +161,12 @@ mod tests {
         // The rows are linear: the true displacement itself is off by its square over the radius.
         assert!(times >= 2.0 && misfit(times) < 1.1 * UNSEEN * 4.0, "{times}: {}", misfit(times));
         assert!(misfit(5.0 * times) > UNSEEN * 4.0, "{}", misfit(5.0 * times));
+        // Before the first contact the overlap of 0.02 is magnified as well.
+        let mut free = solution;
+        free.displacement.fill(0.0);
+        free.multiplier.fill(0.0);
+        let answer = Answer::of(model, &free).unwrap();
+        let [x, y, _] = drawn_shift(&answer, 0, 3.0);
+        assert!(x == 0.0 && (y + 2.0 * 0.02).abs() < 1e-12, "{x} {y}");
     }
 }

@@ -16,7 +16,7 @@ use crate::fem::mesh::Mesh;
 use crate::scene::{Answer, Model};
 
 /// Pieces of the line of an obstacle.
-pub(super) const OUTLINE_SEGMENTS: usize = 200;
+pub(super) const OUTLINE_SEGMENTS: usize = 400;
 
 /// The content of one picture.
 pub(super) struct PlaneScene {

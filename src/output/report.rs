@@ -31,8 +31,8 @@ const LONGEST_REASON: usize = 50;
 const LONGEST_LINE: usize = 84;
 
 /// What a report with planes of symmetry gives of the part, and what the scene does.
-const OF_SYMMETRY: &str = "method, certificate and seconds are of the meshed part; in the scene the force on an obstacle is of the whole \
-                           body, loads, springs and rigid faces are of the meshed part";
+const OF_SYMMETRY: &str = "method, certificate, seconds and memory are of the meshed part; in the scene the force on an obstacle is of \
+                           the whole body, loads, springs and rigid faces are of the meshed part";
 
 /// The report of one answer, in lines of at most 100 characters: contact, certificate, sizes, seconds and warnings.
 pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
@@ -90,7 +90,8 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
         line(if number == 0 { "contact" } else { "" }, sentence);
     });
     if let Some(proven) = &solution.proven {
-        line("", proven_text(proven));
+        let part = if of_part.is_empty() { String::new() } else { format!(",{of_part}") };
+        line("", proven_text(proven) + &part);
     }
     if let Some(balance) = contact.force_balance {
         line("", format!("loads, reactions and contact forces{of_part} balance to {balance:.1e}"));
@@ -151,7 +152,7 @@ fn extent_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
 }
 
 /// The words that name the meshed part behind numbers of it; empty without planes of symmetry.
-fn of_part(summary: &Summary) -> &'static str {
+pub(super) fn of_part(summary: &Summary) -> &'static str {
     if summary.parts_of_whole.is_some() { " of the meshed part" } else { "" }
 }
 
@@ -338,9 +339,7 @@ fn mesh_text(summary: &Summary, units: &Units) -> String {
         let unit = format!("{} {}", units.force, units.length);
         entry("energy", format!("strain energy {energy:.6e} {}", printable(&unit)).trim_end())
     });
-    let part = if summary.parts_of_whole.is_some() { "of the meshed part: " } else { "" };
-    let of_stresses =
-        format!("{part}relative error in the energy norm about {of_mesh:.1e}, estimated from the stresses");
+    let of_stresses = format!("relative error in the energy norm about {of_mesh:.1e}, estimated from the stresses");
     let mut text = energy + &listed("mesh", vec![of_stresses]);
     let bound = summary.solution.certificate.energy_error_bound;
     if !of_mesh.is_finite() || !bound.is_finite() {
@@ -468,7 +467,8 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
     }
     if !sweep.corners.is_empty() {
         let times = plural(sweep.events.len(), "time");
-        text += &format!("\nBetween the first and the last gap a row touches or releases {times}, exactly at\n");
+        let row = format!("a row{}", sweep.points.first().map_or("", |point| of_part(&point.summary)));
+        text += &format!("\nBetween the first and the last gap {row} touches or releases {times}, exactly at\n");
         let event = |event: &SweepEvent| {
             let what = if event.touches { "touches" } else { "releases" };
             vec![format!("  {:.12}", event.gap), format!("node {}", event.node), what.to_string()]
@@ -523,9 +523,17 @@ pub fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Agreement
             format!("{:.4}", summary.seconds.factor + summary.seconds.solve),
         ]);
     }
-    let mut text =
-        format!("{}\n{} dofs, {}\n\n", printable(title), qp.model.dofs, plural(qp.model.contact_rows, "contact row"));
+    let mut text = format!(
+        "{}\n{} dofs, {}{}\n\n",
+        printable(title),
+        qp.model.dofs,
+        plural(qp.model.contact_rows, "contact row"),
+        of_part(qp)
+    );
     text += &columns(&table);
+    if qp.parts_of_whole.is_some() {
+        text += "-sum(lambda) and peak pressure are of the whole body, all other columns of the meshed part.\n";
+    }
     text += "\n";
     let mut table = vec![
         ["certificate", "stationarity", "penetration", "adhesion", "complementarity", "duality gap", "energy error <="]

@@ -158,7 +158,7 @@ impl Answer {
     /// # Errors
     /// As [`Model::stress`].
     pub fn stress(&self) -> Result<&StressField, Error> {
-        once(&self.stress, || recovery::stress(self.model.body(), &self.displacement))
+        once(&self.stress, || self.model.stress_of_nodal(&self.displacement))
     }
 
     /// The forces on all nodes by their source; computed at the first call.
@@ -249,7 +249,13 @@ impl Model {
     /// # Errors
     /// As [`Model::nodal_displacement`].
     pub fn stress(&self, displacement: &[f64]) -> Result<StressField, Error> {
-        recovery::stress(self.body(), &self.nodal_displacement(displacement)?)
+        self.stress_of_nodal(&self.nodal_displacement(displacement)?)
+    }
+
+    fn stress_of_nodal(&self, displacement: &[f64]) -> Result<StressField, Error> {
+        let nodes = self.mesh().nodes();
+        let of_part = recovery::stress(self.body(), displacement)?;
+        Ok(of_part.of_whole(self.body(), |node| self.parts().symmetry.axes_at(&nodes[node])))
     }
 
     /// The forces of a nodal displacement.

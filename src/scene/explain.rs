@@ -1,7 +1,7 @@
 //! Errors of the solvers in the words of the scene: rigid-body modes by name, rows by node and obstacle.
 
 use super::Model;
-use super::entry::{number, point, six_digits};
+use super::entry::{COORDINATE_ROUNDING, number, point, six_digits};
 use super::rigid_body_modes::RigidBodyModes;
 use crate::error::Error;
 
@@ -36,12 +36,18 @@ impl Model {
 
     /// A node with its coordinates, as `node 5 at (0.25, 1)`.
     pub(crate) fn node_in_words(&self, node: usize) -> String {
-        format!("node {node} at {}", self.place_in_words(node))
+        format!("node {node}{} at {}", self.of_part(), self.place_in_words(node))
     }
 
-    /// The coordinates of a node to six digits.
+    /// The words behind numbers of the meshed part; empty without planes of symmetry.
+    pub(crate) fn of_part(&self) -> &'static str {
+        if self.parts_of_whole() > 1.0 { " of the meshed part" } else { "" }
+    }
+
+    /// The coordinates of a node to six digits; those of rounding are 0.
     pub(crate) fn place_in_words(&self, node: usize) -> String {
-        let at = self.mesh().nodes()[node].map(six_digits);
+        let rounding = COORDINATE_ROUNDING * self.mesh().size();
+        let at = self.mesh().nodes()[node].map(|value| if value.abs() <= rounding { 0.0 } else { six_digits(value) });
         point(&at[..self.mesh().dimension()])
     }
 
@@ -77,13 +83,13 @@ impl Model {
             format!("obstacles[{}] (gap {})", row.obstacle, number(row.gap))
         };
         let dimension = self.mesh().dimension();
-        let at = self.place_in_words(node);
+        let node_at = self.node_in_words(node);
         let names: Vec<String> = rows.iter().map(obstacle).collect();
         let supported = (0..dimension).all(|axis| self.parts().dofs.number(dimension * node + axis).is_none());
         match names.as_slice() {
-            [one] if supported => format!("node {node} at {at} is supported inside {one}"),
-            [one] => format!("node {node} at {at} cannot leave {one}"),
-            _ => format!("node {node} at {at} has no room between {}", names.join(" and ")),
+            [one] if supported => format!("{node_at} is supported inside {one}"),
+            [one] => format!("{node_at} cannot leave {one}"),
+            _ => format!("{node_at} has no room between {}", names.join(" and ")),
         }
     }
 }

@@ -211,8 +211,8 @@ impl Model {
         self.parts.symmetry.share_plane(&nodes[node], &nodes[other])
     }
 
-    /// Number of mirror images of the node `other` that are around a node in the whole, itself included.
-    pub(super) fn images_around(&self, node: usize, other: usize) -> f64 {
+    /// The places of the node `other` and its mirror images that are around a node in the whole.
+    pub(super) fn images_around(&self, node: usize, other: usize) -> Vec<[f64; 3]> {
         let nodes = self.mesh().nodes();
         self.parts.symmetry.images_around(&nodes[node], &nodes[other])
     }

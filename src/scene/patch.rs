@@ -15,6 +15,9 @@ use crate::fem::geometry::{cross, distance, dot, length, minus};
 /// Least cosine of the angle between the direction from an inner node to the last closed one and the direction to the open one.
 const AHEAD: f64 = 0.5;
 
+/// Squares of pressures that differ by less than this share are equal: the accuracy of the answer decides which is larger.
+const EQUAL_PRESSURES: f64 = 1e-6;
+
 /// Squared lengths of a mean normal that differ from 1 by less are rounding.
 const ROUNDING_OF_NORMALS: f64 = 1e-12;
 
@@ -154,7 +157,7 @@ impl<'a> Patch<'a> {
     /// The mean pressure of nodes around a node, itself or not, in force per area. A node on a plane of symmetry has the mirror images of
     /// its neighbours around it as well.
     pub fn mean_around(&self, node: usize, around: &BTreeSet<usize>) -> f64 {
-        let images = |other: usize| self.answer.model().images_around(node, other);
+        let images = |other: usize| self.answer.model().images_around(node, other).len() as f64;
         let count: f64 = around.iter().map(|&other| images(other)).sum();
         around.iter().map(|&other| images(other) * self.pressure(other)).sum::<f64>() / count
     }
@@ -246,20 +249,25 @@ impl<'a> Patch<'a> {
     pub fn edge(&self, closed: usize, open: usize) -> [f64; 3] {
         let (from, to) = (self.place(closed), self.place(open));
         let way = minus(to, from);
-        let ahead = |inner: usize| {
-            let before = minus(from, self.place(inner));
+        let ahead = |inner: [f64; 3]| {
+            let before = minus(from, inner);
             dot(before, way) / (length(before) * length(way))
         };
+        // The whole has mirror images of nodes around a node on a plane of symmetry.
+        let images =
+            |node: usize| self.answer.model().images_around(closed, node).into_iter().map(move |at| (node, at));
         let inner = self
             .around(closed)
-            .filter(|&node| self.is_closed(node) && ahead(node) > AHEAD)
-            .max_by(|&a, &b| ahead(a).total_cmp(&ahead(b)));
+            .filter(|&node| self.is_closed(node))
+            .flat_map(images)
+            .filter(|&(_, at)| ahead(at) > AHEAD)
+            .max_by(|&(_, a), &(_, b)| ahead(a).total_cmp(&ahead(b)));
         let share = match inner {
-            Some(inner) => {
+            Some((inner, at)) => {
                 let (last, before) = (self.pressure(closed).powi(2), self.pressure(inner).powi(2));
-                let reach = last / (before - last) * distance(from, self.place(inner)) / length(way);
-                // Pressures that rise towards the edge give no estimate of the edge.
-                if before > last { reach.min(1.0) } else { 0.5 }
+                let reach = last / (before - last) * distance(from, at) / length(way);
+                // Pressures that do not fall towards the edge give no estimate of the edge.
+                if before - last > EQUAL_PRESSURES * before { reach.min(1.0) } else { 0.5 }
             }
             None => 0.5,
         };

@@ -110,10 +110,27 @@ impl Symmetry {
         if along == normal { normal } else { unit(along) }
     }
 
-    /// Number of images of the place `other` around the place `at` in the whole: one on each side of a plane on which only `at` lies.
-    pub fn images_around(&self, at: &[f64; 3], other: &[f64; 3]) -> f64 {
-        let doubles = |plane: &&(usize, f64)| self.lies_on(**plane, at) && !self.lies_on(**plane, other);
-        2.0_f64.powi(self.planes.iter().filter(doubles).count() as i32)
+    /// The images of the place `other` around the place `at` in the whole: one on each side of a plane on which only `at` lies.
+    pub fn images_around(&self, at: &[f64; 3], other: &[f64; 3]) -> Vec<[f64; 3]> {
+        let mut all = vec![*other];
+        for &(axis, plane) in self.planes.iter().filter(|plane| self.lies_on(**plane, at)) {
+            let beyond: Vec<[f64; 3]> = all
+                .iter()
+                .filter(|place| !self.lies_on((axis, plane), place))
+                .map(|place| {
+                    let mut image = *place;
+                    image[axis] = 2.0 * plane - image[axis];
+                    image
+                })
+                .collect();
+            all.extend(beyond);
+        }
+        all
+    }
+
+    /// Returns `true` for each axis across which a place lies on a plane.
+    pub fn axes_at(&self, at: &[f64; 3]) -> [bool; 3] {
+        [0, 1, 2].map(|axis| self.planes.iter().any(|plane| plane.0 == axis && self.lies_on(*plane, at)))
     }
 
     /// Returns `true` if two places lie on one plane.

@@ -180,6 +180,9 @@ pub struct Sweep {
     pub events: Vec<SweepEvent>,
     /// Exact force, width and pressure in between; empty if the events are.
     pub corners: Vec<SweepCorner>,
+    /// The names of these entries of the meshed part; empty without planes of symmetry. Those of the points are in each point.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    pub of_meshed_part: &'static [&'static str],
     /// The answers in between, if the events are known.
     #[serde(skip)]
     #[cfg_attr(not(feature = "cli"), allow(dead_code))]
@@ -226,7 +229,8 @@ impl Sweep {
         }
         let Some(path) = between(&prepared, &at_first, last)? else { return Ok(Sweep { points, ..Sweep::default() }) };
         let (events, corners) = (events(&path, &at_first), corners(&path, &at_first)?);
-        Ok(Sweep { points, events, corners, path: Some(path) })
+        let of_meshed_part: &[&str] = if model.parts_of_whole() > 1.0 { &["events"] } else { &[] };
+        Ok(Sweep { points, events, corners, of_meshed_part, path: Some(path) })
     }
 
     /// Solves a scene at every one of `forces`, in force, 0 or positive, of the one obstacle that a force presses. At

@@ -139,6 +139,13 @@ fn every_number_is_of_the_whole_or_named(part: &Value, whole: &Value) {
         compared += 1;
     }
     assert!(compared > 20, "{compared} numbers: {part:#}");
+    let messages = |report: &Value| -> Vec<String> {
+        let warnings = report["warnings"].as_array().cloned().unwrap_or_default();
+        warnings.iter().map(|warning| warning["message"].to_string()).collect()
+    };
+    for message in messages(part) {
+        assert!(message.contains("of the meshed part") || messages(whole).contains(&message), "{message}\n{whole:#}");
+    }
 }
 
 /// The text and the JSON report of a scene, and both of its sweep over two values.
@@ -160,7 +167,7 @@ fn reports(scene: &Value, sweep: &[&str]) -> (String, Value, String, Value) {
 fn check(part: &Value, whole: &Value, sweep: &[&str]) {
     let (text, report, table, points) = reports(part, sweep);
     let (of_whole, exact, exact_table, exact_points) = reports(whole, sweep);
-    assert!(text.contains("method, certificate and seconds are of the meshed part"), "{text}");
+    assert!(text.contains("method, certificate, seconds and memory are of the meshed part"), "{text}");
     let expected = printed(&of_whole);
     for (name, line) in printed(&text) {
         let names_part = line.contains("of the meshed part") && !line.contains("times the meshed part");
@@ -174,9 +181,9 @@ fn check(part: &Value, whole: &Value, sweep: &[&str]) {
         assert!(found || is_basis || ours.is_empty(), "{name}: {line}\n{text}\n{of_whole}");
     }
     every_number_is_of_the_whole_or_named(&report, &exact);
-    let entries = |swept: &Value| swept["points"].as_array().cloned().unwrap_or_default();
-    assert_eq!(entries(&points).len(), entries(&exact_points).len());
-    for (ours, exact) in entries(&points).iter().zip(&entries(&exact_points)) {
+    let (solved, exact_solved) = (entries_of(&points, "points"), entries_of(&exact_points, "points"));
+    assert_eq!(solved.len(), exact_solved.len());
+    for (ours, exact) in solved.iter().zip(&exact_solved) {
         every_number_is_of_the_whole_or_named(ours, exact);
     }
     // Column by column: the closed rows and the iterations are of the part.
@@ -193,6 +200,31 @@ fn check(part: &Value, whole: &Value, sweep: &[&str]) {
         assert!(agree(&of_whole(ours), &of_whole(&exact)), "{table}\n{exact_table}");
     }
     assert_eq!(rows(&table).len(), rows(&exact_table).len());
+    for (ours, exact) in entries_of(&points, "corners").iter().zip(entries_of(&exact_points, "corners")) {
+        for (name, exact) in exact.as_object().unwrap() {
+            assert!(
+                agree(&[ours[name].as_f64().unwrap()], &[exact.as_f64().unwrap()]),
+                "{name}: {ours}, of the whole {exact}"
+            );
+        }
+    }
+    if !entries_of(&points, "events").is_empty() {
+        assert_eq!(points["of_meshed_part"], json!(["events"]));
+        assert!(table.contains("a row of the meshed part touches or releases"), "{table}");
+    }
+}
+
+fn entries_of(sweep: &Value, name: &str) -> Vec<Value> {
+    sweep[name].as_array().cloned().unwrap_or_default()
+}
+
+/// The scene with obstacles at a prescribed place.
+fn at_gap(mut scene: Value) -> Value {
+    for obstacle in scene["obstacles"].as_array_mut().unwrap() {
+        obstacle.as_object_mut().unwrap().remove("force");
+    }
+    scene["gap"] = json!(-0.02);
+    scene
 }
 
 #[test]
@@ -208,6 +240,67 @@ fn quarter_of_a_block_under_a_ball_prints_the_numbers_of_the_whole() {
 #[test]
 fn eighth_of_a_block_between_two_balls_prints_the_numbers_of_the_whole() {
     check(&block(&["x", "y", "z"], true), &block(&[], true), &[]);
+}
+
+#[test]
+fn half_of_a_disc_prints_the_numbers_of_the_whole_at_every_gap() {
+    check(&at_gap(half_cylinder(true)), &at_gap(half_cylinder(false)), &["--gaps", "-0.02:-0.05:2"]);
+}
+
+/// At the first gap the contact has a node and its neighbours: the mirror images of nodes decide on its edge.
+#[test]
+fn quarter_and_eighth_of_a_block_print_the_numbers_of_the_whole_at_every_gap() {
+    check(&at_gap(block(&["x", "y"], false)), &at_gap(block(&[], false)), &["--gaps", "-0.02:-0.05:2"]);
+    check(&at_gap(block(&["x", "y", "z"], true)), &at_gap(block(&[], true)), &["--gaps", "-0.02:-0.05:2"]);
+}
+
+/// Half of a ball, or a quarter of that, on a plate.
+fn half_ball(planes: &[&str]) -> Value {
+    let centre = json!([{"on": {"point": [0, 0, 10]}, "x": 0, "y": 0}, {"on": {"point": [10, 0, 10]}, "y": 0}]);
+    let mut supports = vec![json!({"on": {"boundary": "cut"}, "z": 0})];
+    supports.extend(centre.as_array().unwrap().iter().filter(|_| planes.is_empty()).cloned());
+    json!({
+        "model": "space", "units": {"length": "mm", "force": "N"},
+        "body": {"half-ball": {"half": "lower", "centre": [0, 0, 10], "radius": 10, "symmetric": planes,
+                               "zone": {"width": 1, "divisions": 2, "growth": 2}}},
+        "material": {"young": 2000, "poisson": 0.3},
+        "symmetry": planes, "supports": supports,
+        "obstacles": [{"boundary": "round", "approach": "-z", "force": 100,
+                       "shape": {"plane": {"point": [0, 0, 0], "normal": [0, 0, -1]}}}],
+    })
+}
+
+#[test]
+fn quarter_of_a_half_ball_prints_the_numbers_of_the_whole() {
+    check(&half_ball(&["x", "y"]), &half_ball(&[]), &["--forces", "50:100:2"]);
+}
+
+#[test]
+fn comparison_and_total_error_name_the_meshed_part() {
+    let (part, whole) = (block(&["x", "y"], false), block(&[], false));
+    let table = |scene: &Value| {
+        let desk = Desk::new();
+        desk.write("scene.json", scene.to_string());
+        desk.run(&["compare", "scene.json"]).stdout
+    };
+    let (ours, exact) = (table(&part), table(&whole));
+    assert!(ours.contains("301 dofs, 25 contact rows of the meshed part"), "{ours}");
+    assert!(
+        ours.contains("-sum(lambda) and peak pressure are of the whole body, all other columns of the meshed part.")
+    );
+    let rows = |table: &str| {
+        let of_methods = table.lines().skip_while(|line| !line.starts_with("qp")).take(3);
+        of_methods.map(|line| numbers(line)[2..4].to_vec()).collect::<Vec<_>>()
+    };
+    assert!(rows(&ours).iter().zip(rows(&exact)).take(2).all(|(ours, exact)| agree(ours, &exact)), "{ours}\n{exact}");
+    let estimated = |scene: Value| {
+        let desk = Desk::new();
+        desk.write("scene.json", at_gap(scene).to_string());
+        let found = desk.run(&["solve", "scene.json", "--total-error", "0.9", "--format", "json"]).ends_with(0).json();
+        found["total_error"]["bound"].as_f64().unwrap()
+    };
+    let (ours, exact) = (estimated(part), estimated(whole));
+    assert!((ours / exact - 1.0).abs() < 1e-3, "{ours}, of the whole {exact}");
 }
 
 /// A disc between two plates that press with 300 each: the headline names 300 on each plate and the width of one contact, and no sum.

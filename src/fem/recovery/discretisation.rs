@@ -1,6 +1,6 @@
 //! The estimated discretisation error: the stress of the elements against the recovered stress.
 
-use super::{Stress, StressField};
+use super::StressField;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::element::{MAX_NODES, PerNode, Rule, Tabulated};
@@ -58,7 +58,7 @@ impl EstimatedError {
             let mean = body.mean_dilatation(cell, &standard, &local);
             let mut recovered: PerNode<Symmetric> = [[0.0; 6]; MAX_NODES];
             for (stress, &node) in recovered.iter_mut().zip(nodes) {
-                *stress = components(field.within(node, element.phase_number));
+                *stress = field.within(node, element.phase_number).components();
             }
             let volume = cell.unit().powi(body.dimension() as i32);
             let mut difference = 0.0;
@@ -93,8 +93,4 @@ impl EstimatedError {
         let total = self.whole + difference;
         if total > ROUNDING * ROUNDING * self.unstrained { (difference / total).sqrt() } else { 0.0 }
     }
-}
-
-fn components(stress: &Stress) -> Symmetric {
-    [stress.sigma_xx, stress.sigma_yy, stress.sigma_zz, stress.sigma_xy, stress.sigma_yz, stress.sigma_zx]
 }

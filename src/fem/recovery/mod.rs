@@ -68,6 +68,11 @@ impl Stress {
 }
 
 impl Stress {
+    /// The components `[xx, yy, zz, xy, yz, zx]`.
+    fn components(&self) -> Symmetric {
+        [self.sigma_xx, self.sigma_yy, self.sigma_zz, self.sigma_xy, self.sigma_yz, self.sigma_zx]
+    }
+
     /// The traction on a plane with the unit normal `normal`, in force per area.
     pub(crate) fn on(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         [
@@ -97,6 +102,22 @@ impl StressField {
             true => &self.nodes[node],
             false => self.sides.get(&(node, phase)).unwrap_or(&self.nodes[node]),
         }
+    }
+
+    /// The field of the whole of which `body` is a part: at a node on a plane of symmetry the shear stresses of the mirror images cancel.
+    /// `axes_at` gives the axes across the planes on which a node lies.
+    pub(crate) fn of_whole(mut self, body: &ElasticBody, axes_at: impl Fn(usize) -> [bool; 3]) -> Self {
+        let nodes = self.nodes.iter_mut().enumerate();
+        let sides = self.sides.iter_mut().map(|(&(node, _), stress)| (node, stress));
+        for (node, stress) in nodes.chain(sides) {
+            let [x, y, z] = axes_at(node);
+            if x || y || z {
+                let [xx, yy, zz, xy, yz, zx] = stress.components();
+                let shear = |cancels: bool, value: f64| if cancels { 0.0 } else { value };
+                *stress = finished(body, [xx, yy, zz, shear(x || y, xy), shear(y || z, yz), shear(z || x, zx)]);
+            }
+        }
+        self
     }
 }
 

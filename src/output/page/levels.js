@@ -4,6 +4,7 @@ function levelsSection(page, data, still) {
   const { report, units, colours } = data,
     { levels, goal } = report,
     own = section(page, "The error against the continuum", "levels"),
+    part = ofPart(data),
     // A level without a guarantee has the estimated error of its elements.
     isGuaranteed = report.total_error.guaranteed,
     words = isGuaranteed ? "guaranteed at most" : "estimated",
@@ -32,7 +33,7 @@ function levelsSection(page, data, still) {
     points: levels.map(level => [
       level.dofs,
       value(level),
-      `${cells(level)}, ${counted(level.dofs, "unknown")}\n${name} ${percent(value(level))}`,
+      `${cells(level)}, ${counted(level.dofs, "unknown")}${part}\n${name} ${percent(value(level))}`,
     ]),
   });
   const series = [line("displacement", error, 0)];
@@ -46,8 +47,8 @@ function levelsSection(page, data, still) {
     points: [first, last].map(dofs => [dofs, goal.total_error, ""]),
   };
   plotted(own, {
-    label: `${isGuaranteed ? "Guaranteed" : "Estimated"} error over the unknowns`,
-    x: { name: "unknowns of the displacement", log: true },
+    label: `${isGuaranteed ? "Guaranteed" : "Estimated"} error over the unknowns${part}`,
+    x: { name: `unknowns of the displacement${part}`, log: true },
     y: { name: `${isGuaranteed ? "guaranteed" : "estimated"} error, relative`, log: true },
     series: [asked, ...series],
     height: 360,
@@ -69,7 +70,7 @@ function levelsSection(page, data, still) {
   else
     table(
       own,
-      ["elements#", "unknowns#", "total error, estimated#", `force [${units.force}]#`],
+      [`elements${part}#`, `unknowns${part}#`, "total error, estimated#", `force [${units.force}]#`],
       levels.map(level => [
         String(level.elements),
         String(level.dofs),

@@ -232,11 +232,11 @@ function wholeLoad(view, { vertices, forces }, dimension) {
   return { force, centre: view.shape.low.map((value, k) => (value + view.shape.high[k]) / 2) };
 }
 
-/** Contact rows in the plane, over the obstacle that they touch. */
+/** Contact rows in the plane, over the obstacle that they touch. The rims of close marks do not cover those of closed rows. */
 function paintMarks(view, brush, vertices, kinds) {
   const at = view.measure();
-  vertices.forEach((vertex, i) => {
-    const [x, y] = view.place(view.vertex(vertex), at),
+  const paint = (i, hasRim) => {
+    const [x, y] = view.place(view.vertex(vertices[i]), at),
       closed = kinds[i] === 1 || kinds[i] === 3,
       undecided = kinds[i] >= 2,
       size = (closed ? 0.5 : 0.38) * view.mark;
@@ -249,6 +249,8 @@ function paintMarks(view, brush, vertices, kinds) {
     else brush.arc(x, y, size, 0, 7);
     brush.closePath();
     brush.fill();
-    brush.stroke();
-  });
+    if (hasRim) brush.stroke();
+  };
+  kinds.forEach((_, i) => paint(i, true));
+  kinds.forEach((kind, i) => kind === 1 && paint(i, false));
 }

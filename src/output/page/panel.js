@@ -189,7 +189,9 @@ class Panel {
     const { rows } = this.data,
       vertices = [],
       kinds = [];
-    for (let row = 0; row < (rows?.count ?? 0); row++) {
+    // A node may have an open row of another obstacle: the mark of the closed one is drawn over it.
+    const all = Array.from({ length: rows?.count ?? 0 }, (_, row) => row);
+    for (const row of [...all.filter(row => !closed[row]), ...all.filter(row => closed[row])]) {
       const kind = (closed[row] ? 1 : 0) + (proven && proven[row] === 0 ? 2 : 0);
       if ((kind === 0 && !this.marksOpen) || this.view.hides(rows.vertices[row])) continue;
       vertices.push(rows.vertices[row]);
@@ -282,7 +284,7 @@ class Panel {
       entry("open row", mark =>
         svg("circle", { cx: 10, cy: 10, r: 6, fill: "var(--paper)", stroke: "var(--open)", "stroke-width": 2 }, mark),
       );
-      if (this.data.contact?.proven) {
+      if (this.data.contact?.proven?.includes(0)) {
         entry("closed, undecided by the proof", mark =>
           svg("path", { d: "M10 2 18 10 10 18 2 10Z", fill: "var(--undecided)" }, mark),
         );

@@ -16,7 +16,7 @@ function slider(host, label, { min, max, step, value }, moved) {
 /** Pressure along each obstacle of a plane body; returns a function that shows another frame. */
 function profileSection(page, data, shape) {
   if (!data.rows?.count || shape.dimension !== 2) return () => {};
-  const own = section(page, "Contact pressure along the boundary", "pressure"),
+  const own = section(page, `Contact pressure along the boundary${ofPart(data)}`, "pressure"),
     { rows, units } = data;
   const plots = data.question.obstacles.map(({ approach }, obstacle) => {
     const axis = approach[0] !== 0 ? 1 : 0;
@@ -97,7 +97,7 @@ function sweepSection(page, data, shape, notes) {
         ? `cells of closed nodes ${inUnit(width, units.length)} wide`
         : `cells of closed nodes ${inUnit(area, `${units.length}²`)}`;
     const ofAll = several ? "" : `, force ${inUnit(force, units.force, 10)}`;
-    facts.textContent = `${counted(count, "closed row")}${ofAll}, peak pressure ${inUnit(pressure_max, units.pressure, 10)}${several ? "" : `, ${extent}`}${frame.travel !== undefined ? `, travel ${inUnit(frame.travel, units.length)}` : ""}`;
+    facts.textContent = `${counted(count, "closed row")}${ofPart(data)}${ofAll}, peak pressure ${inUnit(pressure_max, units.pressure, 10)}${several ? "" : `, ${extent}`}${frame.travel !== undefined ? `, travel ${inUnit(frame.travel, units.length)}` : ""}`;
     panel.show(frame);
     profile(frame);
     marks(frame.at);
@@ -130,7 +130,7 @@ function sweepSection(page, data, shape, notes) {
     element(
       "p",
       own,
-      `Between its events the answer is linear in the gap: closed rows, forces and pressures are exact at every position of the slider. A row touches or releases ${counted(events.length, "time")}.`,
+      `Between its events the answer is linear in the gap: closed rows, forces and pressures are exact at every position of the slider. A row${ofPart(data)} touches or releases ${counted(events.length, "time")}.`,
       "soft",
     );
   } else
@@ -203,8 +203,10 @@ function sweepPlots(page, data) {
   return at => made.forEach(plot => plot.mark(at));
 }
 
-function sweepTable(page, { sweep, units, question }) {
+function sweepTable(page, data) {
   const own = section(page, "Solved and certified", "points"),
+    { sweep, units, question } = data,
+    part = ofPart(data),
     several = obstacleCount(sweep.points[0].contact) > 1,
     swept = sweep.swept === "force" ? `${several ? "swept " : ""}force [${units.force}]#` : `gap [${units.length}]#`,
     at = point => shown(point.force ?? point.gap, 9),
@@ -212,14 +214,14 @@ function sweepTable(page, { sweep, units, question }) {
   const columns = [
     [swept, at],
     ["status", point => STATUS[point.status]],
-    ["closed#", point => String(point.contact.count)],
+    [`closed${part}#`, point => String(point.contact.count)],
     ...(several
       ? []
       : [
           [`force [${units.force}]#`, point => shown(point.contact.force, 10)],
           [`peak pressure [${units.pressure}]#`, point => shown(point.contact.pressure_max, 7)],
         ]),
-    ["energy error ≤#", point => shown(point.bound, 2)],
+    [`energy error${part} ≤#`, point => shown(point.bound, 2)],
   ];
   table(
     own,
@@ -246,11 +248,11 @@ function sweepTable(page, { sweep, units, question }) {
   element(
     "summary",
     more,
-    `${counted(sweep.events.length, "event")}${shownEvents.length < sweep.events.length ? ", the first 200 shown" : ""}`,
+    `${counted(sweep.events.length, "event")}${part}${shownEvents.length < sweep.events.length ? ", the first 200 shown" : ""}`,
   );
   table(
     more,
-    [`gap [${units.length}]#`, "node#", "what"],
+    [`gap [${units.length}]#`, `node${part}#`, "what"],
     shownEvents.map(event => [shown(event.gap, 12), String(event.node), event.touches ? "touches" : "releases"]),
   );
 }

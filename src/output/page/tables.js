@@ -74,7 +74,7 @@ function contactList(host, summary, data) {
     copies = obstacleCount(contact),
     several = copies > 1 ? copies : 0;
   list(host, [
-    ["method", `${summary.method}, ${counted(summary.iterations, "iteration")}`],
+    ["method", `${summary.method}, ${counted(summary.iterations, "iteration")}${part && `,${part}`}`],
     ["why", summary.reason],
     [
       "symmetry",
@@ -106,7 +106,7 @@ function contactList(host, summary, data) {
           ? `width ${within(estimate.width, estimate.width_uncertainty, units.length)}`
           : `area ${within(estimate.area, estimate.area_uncertainty, `${units.length}²`)}`,
     ],
-    ["contact set", data.proven],
+    ["contact set", data.proven && `${data.proven}${part && `,${part}`}`],
     [
       "balance of forces",
       contact.force_balance === undefined ? null : `to ${shown(contact.force_balance, 2)}, relative${part && `,${part}`}`,
@@ -115,7 +115,7 @@ function contactList(host, summary, data) {
       "error of the mesh",
       summary.discretisation_error === undefined || summary.discretisation_error === null
         ? null
-        : `about ${shown(100 * summary.discretisation_error, 2)} % of the energy norm, estimated from the stresses${part}`,
+        : `about ${shown(100 * summary.discretisation_error, 2)} % of the energy norm, estimated from the stresses`,
     ],
     [
       "strain energy",
@@ -170,9 +170,10 @@ function obstacleTable(host, lines, units, name = null) {
   );
 }
 
-function certificateSection(page, { certificate }) {
+function certificateSection(page, data) {
+  const { certificate } = data;
   if (!certificate) return;
-  const own = section(page, "Certificate", "certificate");
+  const own = section(page, `Certificate${ofPart(data)}`, "certificate");
   element(
     "p",
     own,
@@ -253,17 +254,18 @@ function comparisonSection(page, data) {
   const { methods, agreement } = data.report ?? {};
   if (!methods) return;
   const own = section(page, "Three methods", "methods"),
-    { units } = data;
+    { units } = data,
+    part = ofPart(data);
   table(
     own,
     [
       "method",
       "status",
-      "iterations#",
-      `closed${ofPart(data)}#`,
+      `iterations${part}#`,
+      `closed${part}#`,
       `force [${units.force}]#`,
       `peak pressure [${units.pressure}]#`,
-      "energy error ≤#",
+      `energy error${part} ≤#`,
     ],
     methods.map(method => [
       method.method,

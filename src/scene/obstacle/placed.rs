@@ -154,7 +154,7 @@ impl PlacedObstacle {
         &self.candidates
     }
 
-    /// The surface as a polyline [x, y] for pictures, in length: over the body's extent and a margin, shifted by `gap`
+    /// The surface as a polyline [x, y] for pictures, in length: over the body's extent and its size beyond, shifted by `gap`
     /// along the approach direction, in `segments` pieces (10,000 at most), with exact corners. The obstacle lies on
     /// the side to which [`approach`](Self::approach) points. Empty if the surface does not reach over the body, for
     /// another body, and outside the plane.

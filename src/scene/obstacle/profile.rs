@@ -9,9 +9,6 @@ use super::shape::Site;
 use super::surface::{Foot, Surface};
 use crate::scene::schema::approach::Rule;
 
-/// The pictured surface extends beyond the body by this part of the body's extent on each side.
-const OUTLINE_MARGIN: f64 = 0.3;
-
 /// Largest number of pieces of a pictured surface; more cannot be seen.
 const MAX_SEGMENTS: usize = 10_000;
 
@@ -21,7 +18,8 @@ pub(super) struct Profile {
     frame: Frame,
     origin: Local,
     surface: Arc<dyn Surface>,
-    /// Extent of the body along the surface.
+    /// Extent of the pictured surface along the body: beyond it by the size of the body on each side, so that a wall before a slender
+    /// body does not end in the picture.
     extent: (f64, f64),
     rounding: f64,
 }
@@ -32,7 +30,8 @@ impl Profile {
         let frame = Frame::of(site.approach);
         let (low, high) = site.body.mesh().extent();
         let axis = frame.along_axis();
-        let (extent, rounding) = ((low[axis], high[axis]), site.rounding());
+        let margin = site.body.mesh().size();
+        let (extent, rounding) = ((low[axis] - margin, high[axis] + margin), site.rounding());
         Profile { frame, origin, surface, extent, rounding }
     }
 }
@@ -81,10 +80,9 @@ impl RigidSurface for Profile {
 
     fn outline(&self, shift: f64, segments: usize) -> Vec<[f64; 2]> {
         let (low, high) = self.extent;
-        let margin = OUTLINE_MARGIN * (high - low);
         let range = self.surface.range();
-        let first = (low - margin - self.origin[0]).max(range.0);
-        let last = (high + margin - self.origin[0]).min(range.1);
+        let first = (low - self.origin[0]).max(range.0);
+        let last = (high - self.origin[0]).min(range.1);
         if first >= last {
             return Vec::new();
         }
