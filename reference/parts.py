@@ -231,7 +231,7 @@ def layered_strip():
     for (_, tag), name in zip(layers, ("strip", "base")):
         gmsh.model.addPhysicalGroup(2, [tag], name=name)
     even(0.455)
-    base = {"name": "base", "material": POLYMER, "body": {"gmsh": {"file": "layered-strip.msh", "group": "base"}}}
+    base = {"name": "base", "material": POLYMER, "body": {"gmsh": {"group": "base"}}}
     joint = obstacle(AXIS, "joint", "-y", body={"boundary": "base.joint"})
     others = {"model": "plane-strain", "group": "strip", "further-bodies": [base]}
     supports = [held("x", on="middle"), held("x", "y", on="base.bottom")]
@@ -304,30 +304,35 @@ def roller():
     return scene(STEEL, [held("x", on="middle"), held("y", on="front"), held("x", on="cut", z=-0.08)], [plane])
 
 
-PARTS = {part.__name__.replace("_", "-"): part for part in (
+def by_name(*functions):
+    return {function.__name__.replace("_", "-"): function for function in functions}
+
+
+PARTS = by_name(
     seal, bracket, loose_liner, clip, foundation, dovetail, lug, liner, bearing, gear_tooth,
     cantilever_stop, stiffened_plate, layered_strip, beam, rail, cup, fine_liner, thin_plate, half_space, roller,
-)}
+)
 
 
-QUADRATIC = {"bracket", "loose-liner", "lug", "bearing", "cantilever-stop", "beam", "stiffened-plate"}
-"""The parts in space with ten-node tetrahedra. Plane and axisymmetric parts always have quadratic elements."""
+LINEAR = {"foundation", "liner", "rail", "cup", "fine-liner", "thin-plate", "roller"}
+"""The parts with four-node tetrahedra. All others have quadratic elements."""
 
 
-def write(name, folder):
-    """Writes one part. Gmsh is started for each part, so that a part does not depend on those before it."""
+def write(part, mesh, order):
+    """Writes the file `mesh` of a part and its scene. Gmsh is started for each part, so that a part does not depend on those before it."""
     gmsh.initialize([], readConfigFiles=False, interruptible=False)
     for option, setting in OPTIONS.items():
         gmsh.option.setNumber(option, setting)
-    part = PARTS[name]()
-    dimension = gmsh.model.getDimension()
-    gmsh.option.setNumber("Mesh.ElementOrder", 2 if dimension == 2 or name in QUADRATIC else 1)
-    gmsh.model.mesh.generate(dimension)
-    gmsh.write(str(folder / f"{name}.msh"))
+    made = part()
+    gmsh.option.setNumber("Mesh.ElementOrder", order)
+    gmsh.model.mesh.generate(gmsh.model.getDimension())
+    gmsh.write(str(mesh))
     gmsh.finalize()
-    body = {"gmsh": {"file": f"{name}.msh", "group": part.pop("group", "body")}}
-    start = {"title": PARTS[name].__doc__.rstrip("."), "units": {"length": "mm", "force": "N"}, "body": body}
-    (folder / f"{name}.json").write_text(json.dumps(start | part) + "\n")
+    body = {"gmsh": {"file": mesh.name, "group": made.pop("group", "body")}}
+    for further in made.get("further-bodies", []):
+        further["body"]["gmsh"]["file"] = mesh.name
+    start = {"title": part.__doc__.rstrip("."), "units": {"length": "mm", "force": "N"}, "body": body}
+    mesh.with_suffix(".json").write_text(json.dumps(start | made) + "\n")
 
 
 if __name__ == "__main__":
@@ -337,4 +342,4 @@ if __name__ == "__main__":
     folder = pathlib.Path(arguments[0]) if arguments else sys.exit("usage: parts.py [--coarser FACTOR] FOLDER [NAME ...]")
     folder.mkdir(parents=True, exist_ok=True)
     for name in arguments[1:] or PARTS:
-        write(name, folder)
+        write(PARTS[name], folder / f"{name}.msh", 1 if name in LINEAR else 2)

@@ -9,6 +9,7 @@ that were not looked at when the estimates were designed. In space the size far 
 mm, forces in N. Meshes and answers stay in FOLDER; what is there is not made again. meshes.py names the libraries that Gmsh needs.
 """
 
+import functools
 import json
 import pathlib
 import statistics
@@ -19,8 +20,7 @@ from dataclasses import dataclass
 import gmsh
 
 import parts
-from parts import AXIS, ALUMINIUM, BRONZE, CLAMPED, NORMAL, POLYMER, RUBBER, STEEL
-from parts import about, held, load, named, obstacle, occ, polygon, scene, sector
+from parts import AXIS, CLAMPED, NORMAL, RUBBER, STEEL, about, by_name, held, load, named, obstacle, occ, polygon, scene, sector
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FINER = 4
@@ -35,6 +35,18 @@ def graded(fine, coarse, near, far, distance):
     """Sets the size to `fine` up to the distance `near` from the contact, and to `coarse` beyond `far`, on both meshes."""
     share = FINER / FAR[gmsh.model.getDimension()] if parts.COARSER == 1 / FINER else 1
     parts.graded(fine, coarse * share, near, far, distance)
+
+
+def regraded(part, *sizes):
+    """Returns a part of `parts` with other element sizes."""
+
+    @functools.wraps(part)
+    def sized():
+        made = part()
+        graded(*sizes)
+        return made
+
+    return sized
 
 
 def pin():
@@ -56,15 +68,6 @@ def cylinder():
     return scene(STEEL, [held("x", on="middle"), held("y", on="cut", y=-0.02)], [plane], model="plane-strain")
 
 
-def seal():
-    """A lip seal that is widened by a shaft."""
-    occ.fuse([(2, occ.addRectangle(21, 0, 0, 5, 5))], [(2, occ.addDisk(21, 2.5, 0, 1.5, 1.5))])
-    named(outside="x - 26", lip="hypot(x - 21, y - 2.5) - 1.5")
-    graded(0.09, 0.8, 0.6, 3, "hypot(x - 19.5, y - 2.5)")
-    shaft = obstacle(AXIS, "lip", "-x", plane={"point": [19.5, 0], "normal": [-1, 0]})
-    return scene(RUBBER, [held("x", "y", on="outside")], [shaft], gap=-0.15, model="axisymmetric")
-
-
 def punch():
     """Half a block that a flat punch with sharp edges presses."""
     polygon((0, 0), (30, 0), (30, 20), (5, 20), (0, 20))
@@ -72,13 +75,6 @@ def punch():
     graded(0.5, 3, 7, 20, "hypot(x, y - 20)")
     flat = obstacle(AXIS, "top", "+y", table={"points": [[-1, 20], [5, 20], [5.001, 25], [30, 26]]})
     return scene(STEEL, [held("x", on="middle"), held("x", "y", on="bottom")], [flat], gap=-0.02, model="plane-strain")
-
-
-def gear_tooth():
-    """A gear tooth against which the flank of another tooth is pressed."""
-    part = parts.gear_tooth()
-    graded(0.09, 1.2, 0.7, 5, f"hypot(x - {about(22, 15)[0] - 17}, y - {about(22, 15)[1]})")
-    return part
 
 
 def press_fit():
@@ -99,13 +95,6 @@ def ball():
     return scene(STEEL, [held("x", on="left"), held("y", on="front"), held("z", on="cut", z=-0.06)], [plane])
 
 
-def cup():
-    """A quarter of a cup into which a ball is pressed."""
-    part = parts.cup()
-    graded(0.45, 3.5, 2, 12, "hypot(x, y, z - 6)")
-    return part
-
-
 def roller():
     """A quarter of a roller that is pressed onto a plane."""
     occ.intersect([(3, occ.addCylinder(0, 0, 10, 0, 4, 0, 10))], [(3, occ.addBox(0, 0, 0, 10, 4, 10))])
@@ -113,13 +102,6 @@ def roller():
     graded(0.2, 2, 0.6, 8, "hypot(x, z)")
     plane = obstacle(AXIS, "round", "-z", plane={"point": [0, 0, 0], "normal": [0, 0, -1]})
     return scene(STEEL, [held("x", on="middle"), held("y", on="front"), held("x", on="cut", z=-0.06)], [plane])
-
-
-def lug():
-    """A quarter of a lug under a pulling force, supported only by planes of symmetry and the pin."""
-    part = parts.lug()
-    graded(1.2, 4, 3, 20, "hypot(x + 10, y)")
-    return part
 
 
 def clip():
@@ -132,13 +114,6 @@ def clip():
     return scene(STEEL, supports, [bolt], thickness=2, model="plane-stress")
 
 
-def half_space():
-    """A piece of the half space under a ball."""
-    part = parts.half_space()
-    graded(0.15, 5, 2, 30, "hypot(x, y)")
-    return part
-
-
 def hub():
     """A hub on a longer rigid shaft: the contact ends at the faces of the hub."""
     polygon((20, 0), (35, 0), (35, 12), (26, 12), (26, 30), (20, 30))
@@ -146,13 +121,6 @@ def hub():
     graded(1, 3, 2, 12, "hypot(x - 20, y - 15) - 15")
     shaft = obstacle(AXIS, "bore", "-x", plane={"point": [20, 0], "normal": [-1, 0]})
     return scene(STEEL, [held("y", on="bottom")], [shaft], gap=-0.02, model="axisymmetric")
-
-
-def layered_strip():
-    """Half a strip on a soft layer, pressed at its centre, so that its end lifts off."""
-    part = parts.layered_strip()
-    graded(0.6, 4, 20, 40, "x")
-    return part
 
 
 def ring():
@@ -163,20 +131,6 @@ def ring():
     plate = obstacle(AXIS, "round", "+y", plane={"point": [20, 2], "normal": [0, 1]})
     wall = obstacle(AXIS, "round", "+x", plane={"point": [22.1, 0], "normal": [1, 0]})
     return scene(RUBBER, [held("y", on="middle")], [plate, wall], gap=-0.2, model="axisymmetric")
-
-
-def dovetail():
-    """Half the root of a blade under a pulling force, supported only by a plane of symmetry and the flank of the groove."""
-    part = parts.dovetail()
-    graded(0.5, 2, 4, 12, "hypot(x - 6.2, y - 5)")
-    return part
-
-
-def rail():
-    """A quarter of a piece of rail with a round head under a wheel."""
-    part = parts.rail()
-    graded(0.6, 9, 3, 30, "hypot(x, y, z)")
-    return part
 
 
 def beam():
@@ -209,12 +163,30 @@ def bearing():
     return scene(STEEL, supports, [roller], [load("pressure", "outside", 40)])
 
 
-def named_parts(*functions):
-    return {function.__name__.replace("_", "-"): function for function in functions}
-
-
-DESIGN = named_parts(pin, cylinder, seal, punch, gear_tooth, press_fit, ball, cup, roller, lug)
-CHECK = named_parts(clip, half_space, hub, layered_strip, ring, dovetail, rail, beam, thick_plate, bearing)
+DESIGN = by_name(
+    pin,
+    cylinder,
+    regraded(parts.seal, 0.09, 0.8, 0.6, 3, "hypot(x - 19.5, y - 2.5)"),
+    punch,
+    regraded(parts.gear_tooth, 0.09, 1.2, 0.7, 5, "hypot(x - {} + 17, y - {})".format(*about(22, 15))),
+    press_fit,
+    ball,
+    regraded(parts.cup, 0.45, 3.5, 2, 12, "hypot(x, y, z - 6)"),
+    roller,
+    regraded(parts.lug, 1.2, 4, 3, 20, "hypot(x + 10, y)"),
+)
+CHECK = by_name(
+    clip,
+    regraded(parts.half_space, 0.15, 5, 2, 30, "hypot(x, y)"),
+    hub,
+    regraded(parts.layered_strip, 0.6, 4, 20, 40, "x"),
+    ring,
+    regraded(parts.dovetail, 0.5, 2, 4, 12, "hypot(x - 6.2, y - 5)"),
+    regraded(parts.rail, 0.6, 9, 3, 30, "hypot(x, y, z)"),
+    beam,
+    thick_plate,
+    bearing,
+)
 
 
 @dataclass
@@ -225,30 +197,12 @@ class Quantity:
     uncertainty: float | None
 
 
-def mesh(part, file, order, finer):
-    """Meshes a part and returns its scene and the name of its element."""
-    parts.COARSER = 1 / finer
-    gmsh.initialize([], readConfigFiles=False, interruptible=False)
-    for option, setting in parts.OPTIONS.items():
-        gmsh.option.setNumber(option, setting)
-    made = part()
-    dimension = gmsh.model.getDimension()
-    gmsh.option.setNumber("Mesh.ElementOrder", order)
-    gmsh.model.mesh.generate(dimension)
-    gmsh.write(str(file))
-    gmsh.finalize()
-    body = {"gmsh": {"file": file.name, "group": made.pop("group", "body")}}
-    for further in made.get("further-bodies", []):
-        further["body"]["gmsh"]["file"] = file.name
-    start = {"title": part.__doc__.rstrip("."), "units": {"length": "mm", "force": "N"}, "body": body}
-    file.with_suffix(".json").write_text(json.dumps(start | made) + "\n")
-
-
 def solved(program, part, folder, name, order, finer):
     """Returns the report of a part on one mesh."""
     stem = folder / f"{name}-{order}-{finer}"
     if not stem.with_suffix(".json").exists():
-        mesh(part, stem.with_suffix(".msh"), order, finer)
+        parts.COARSER = 1 / finer
+        parts.write(part, stem.with_suffix(".msh"), order)
     out = folder / f"{stem.name}-out"
     if not (out / "report.json").exists():
         command = [program, "solve", stem.with_suffix(".json"), "--no-proof", "--pictures", "none", "--out", out, "--quiet"]
@@ -275,20 +229,17 @@ def main(program, chosen, folder):
     for name, part in chosen.items():
         for order in (1, 2):
             coarse, fine = (solved(program, part, folder, name, order, finer) for finer in (1, FINER))
-            space = "width" not in quantities(coarse)
-            element = (("T3", "T6"), ("Tet4", "Tet10"))[json.loads((folder / f"{name}-{order}-1.json").read_text())["model"] == "space"][order - 1]
+            element = (("T3", "T6") if "width" in coarse["contact"]["estimate"] else ("Tet4", "Tet10"))[order - 1]
             warned = any(warning["code"] == "mesh-dependent" for warning in coarse.get("warnings", []))
             others = quantities(fine)
             for quantity, ours in quantities(coarse).items():
-                exact, share = others[quantity].value, None
+                exact, written, verdict = others[quantity].value, "-", "-"
                 off = ours.value / exact - 1
-                holds = None
                 if ours.uncertainty is not None:
                     share = ours.uncertainty / ours.value
                     holds = abs(ours.value - exact) <= ours.uncertainty + 1e-9 * exact
                     found[quantity].append((holds, share))
-                written = "-" if share is None else f"{100 * share:.1f} %"
-                verdict = {None: "-", True: "yes", False: "NO"}[holds]
+                    written, verdict = f"{100 * share:.1f} %", "yes" if holds else "NO"
                 print(
                     f"{name:14} {element:7} {coarse['contact']['count']:6} {quantity:6} {ours.value:10.4g} {written:>8} "
                     f"{exact:10.4g} {100 * off:6.1f} %  {verdict:5}  {'yes' if warned else ''}",

@@ -2,7 +2,8 @@
 //!
 //! Rows exist only at nodes, so that the edge of the contact lies between the last closed node and the next open one. Near the edge of a
 //! smooth contact pressures are proportional to the square root of the distance: their squares lie on a straight line. The edge is
-//! estimated at the zero of this line through the last two nodes.
+//! estimated at the zero of this line through the last two nodes. A zero far beyond the open node contradicts that node: the edge is then
+//! taken in the middle.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,8 +16,9 @@ use crate::fem::geometry::{cross, distance, dot, length, minus};
 /// Least cosine of the angle between the direction from an inner node to the last closed one and the direction to the open one.
 const AHEAD: f64 = 0.5;
 
-/// Squares of pressures that differ by less than this share are equal: the accuracy of the answer decides which is larger.
-const EQUAL_PRESSURES: f64 = 1e-6;
+/// How far beyond the last closed node, in cells, the zero may lie although the edge lies within one cell: in the contact of Hertz a line
+/// through nodes at 1/2 and 3/2 cells from the centre has its zero 2 cells beyond if the edge is at 5/2, and less through nodes farther out.
+const FARTHEST: f64 = 2.0;
 
 /// Squared lengths of a mean normal that differ from 1 by less are rounding.
 const ROUNDING_OF_NORMALS: f64 = 1e-12;
@@ -262,15 +264,12 @@ impl<'a> Patch<'a> {
             .flat_map(images)
             .filter(|&(_, at)| ahead(at) > AHEAD)
             .max_by(|&(_, a), &(_, b)| ahead(a).total_cmp(&ahead(b)));
-        let share = match inner {
-            Some((inner, at)) => {
-                let (last, before) = (self.pressure(closed).powi(2), self.pressure(inner).powi(2));
-                let reach = last / (before - last) * distance(from, at) / length(way);
-                // Pressures that do not fall towards the edge give no estimate of the edge.
-                if before - last > EQUAL_PRESSURES * before { reach.min(1.0) } else { 0.5 }
-            }
-            None => 0.5,
-        };
+        let reach = inner.map(|(inner, at)| {
+            let (last, before) = (self.pressure(closed).powi(2), self.pressure(inner).powi(2));
+            last / (before - last) * distance(from, at) / length(way)
+        });
+        // Pressures that rise towards the edge, or fall too little for the open node, give no estimate of the edge.
+        let share = reach.filter(|reach| (0.0..=FARTHEST).contains(reach)).map_or(0.5, |reach| reach.min(1.0));
         [0, 1, 2].map(|axis| from[axis] + share * way[axis])
     }
 }

@@ -184,6 +184,37 @@ fn a_peak_pressure_at_the_end_of_a_seat_is_warned_of_as_mesh_dependent() {
     assert!(message.contains("grows with every refinement, and has no uncertainty"), "{message}");
 }
 
+/// A sleeve is pressed on a longer shaft, both elastic. The peak at the end of the sleeve grows with every refinement: no mesh has an
+/// uncertainty of it, and each is warned of.
+#[test]
+fn the_end_of_a_sleeve_on_a_shaft_is_warned_of_on_every_mesh() {
+    let steel = json!({"young": 210e3, "poisson": 0.3});
+    let press_fit = |divisions: usize| {
+        let cells = |points: Value| {
+            let pieces = points.as_array().unwrap().len() - 1;
+            json!({"points": points, "divisions": vec![divisions; pieces]})
+        };
+        let body = |x: Value, y: Value| json!({"rectangle": {"x": cells(x), "y": cells(y), "element": "t3"}});
+        let scene = json!({
+            "model": "axisymmetric", "units": {"length": "mm", "force": "N"}, "material": steel,
+            "body": body(json!([20, 40]), json!([20, 40])),
+            "further-bodies": [{"name": "shaft", "material": steel, "body": body(json!([0, 20]), json!([0, 20, 40, 60]))}],
+            "parts": [{"name": "seat", "of": "shaft.right", "box": {"min": [20, 20], "max": [20, 40]}}],
+            "supports": [{"on": {"point": [40, 20]}, "y": 0}, {"on": {"boundary": "shaft.bottom"}, "y": 0}],
+            "obstacles": [{"boundary": "left", "approach": "-x", "shape": {"body": {"boundary": "seat"}}}],
+            "gap": -0.01
+        });
+        let run = solved(&scene);
+        let message = warned(&run, "mesh-dependent");
+        assert!(message.contains("grows with every refinement, and has no uncertainty"), "{divisions}: {message}");
+        let contact = &run.0["contact"];
+        assert_eq!(contact["estimate"].get("pressure_uncertainty"), None, "{divisions}: {contact}");
+        contact["pressure_max"].as_f64().unwrap()
+    };
+    let peaks = [5, 10, 20].map(press_fit);
+    assert!(peaks.windows(2).all(|pair| pair[1] > 1.1 * pair[0]), "{peaks:?}");
+}
+
 /// Two triangles in two groups of elements.
 const TWO_GROUPS: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 3 \"base\"\n2 1 \"steel\"\n2 2 \"rubber\"\n$EndPhysicalNames\n\
      $Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n\

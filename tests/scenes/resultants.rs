@@ -435,3 +435,56 @@ fn a_load_on_the_boundary_of_a_contact_is_not_taken_for_an_error() {
     let off = segment.extent.pressure_uncertainty.unwrap();
     assert!(off < 1e-9 * segment.pressure_max, "{} ± {off}", segment.pressure_max);
 }
+
+/// An eye is pulled onto a pin that is thinner than its hole. Linear triangles are too stiff, so that their peak is too high at all of its
+/// nodes: it does not scatter, and only the stress of the body shows how far it is off.
+#[test]
+fn the_peak_of_a_pin_in_a_hole_of_linear_triangles_lies_within_its_uncertainty() {
+    const WIDE: f64 = 0.1;
+    let eye = |element: &str, divisions: usize| {
+        answer(&json!({
+            "model": "plane-stress", "thickness": 5,
+            "body": {"ring": {"radius": {"points": [8, 20], "divisions": [divisions]},
+                              "angle": {"points": [0, 180], "divisions": [4 * divisions]}, "element": element}},
+            "material": {"young": 210e3, "poisson": 0.3},
+            "supports": [{"on": {"boundary": "start"}, "y": 0}, {"on": {"boundary": "end"}, "y": 0}],
+            "loads": [{"body-force": [4, 0]}],
+            "obstacles": [{"boundary": "inner", "approach": "+x", "rule": "closest-point",
+                           "shape": {"circle": {"centre": [-0.02, 0], "radius": 7.98}}}]
+        }))
+        .segments()
+        .remove(0)
+    };
+    let exact = eye("t6", 24).pressure_max;
+    for divisions in [12, 16, 20] {
+        let segment = eye("t3", divisions);
+        let off = segment.extent.pressure_uncertainty.unwrap();
+        let peak = segment.pressure_max;
+        assert!((peak - exact).abs() < off && off < WIDE * exact, "{divisions}: {peak} ± {off}, {exact}");
+    }
+}
+
+/// A roller presses a block, and half its contact is half a quadratic tetrahedron wide. Forces of nodes are means over cells, so that the
+/// pressure hardly falls up to the last closed node: the zero of its square lies far beyond the open node, and is no edge. The fine strip in
+/// plane strain has the same area.
+#[test]
+fn an_edge_extrapolated_beyond_the_open_node_is_not_taken() {
+    let press = |model: &str, body: Value, sides: &[&str], shape: Value, approach: &str| {
+        let mut supports = vec![json!({"on": {"boundary": "left"}, "x": 0})];
+        supports.extend(sides.iter().map(|side| json!({"on": {"boundary": side}, "y": 0})));
+        let up = &approach[1..];
+        supports.push(json!({"on": {"boundary": "bottom"}, up: 0}));
+        let scene = json!({
+            "model": model, "body": body, "material": {"young": 1e6, "poisson": 0.3}, "supports": supports,
+            "obstacles": [{"boundary": "top", "approach": approach, "shape": shape}], "gap": -0.02
+        });
+        answer(&scene).segments().remove(0).extent
+    };
+    let cells = |to: usize, divisions: usize| json!({"points": [0, to], "divisions": [divisions]});
+    let strip = json!({"rectangle": {"x": cells(2, 64), "y": cells(1, 32), "element": "q8"}});
+    let exact = press("plane-strain", strip, &[], json!({"circle": {"apex": [0, 1], "radius": 1.5}}), "+y").area;
+    let block = json!({"box": {"x": cells(2, 8), "y": cells(1, 2), "z": cells(1, 2), "element": "tet10"}});
+    let roller = json!({"cylinder": {"axis": [0, 1, 0], "apex": [0, 0, 1], "radius": 1.5}});
+    let extent = press("space", block, &["front", "back"], roller, "+z");
+    assert!((extent.area - exact).abs() < extent.area_uncertainty, "{extent:?}, {exact}");
+}
