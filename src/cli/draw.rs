@@ -8,7 +8,7 @@ use crate::output::{set_up_picture, write_atomically};
 
 pub(super) fn run(options: &Draw) -> Result<Outcome, Error> {
     let scene = read_scene(&options.scene, &options.limits)?;
-    let model = build(&scene, &options.scene)?;
+    let model = build(&scene, &options.scene, &options.limits)?;
     warn(&warnings(&model));
     let drawing = set_up_picture(&model)?;
     let (file, bytes) = match &options.out {

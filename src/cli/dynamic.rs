@@ -19,7 +19,7 @@ use crate::watch::Watch;
 
 pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outcome, Error> {
     let clock = Instant::now();
-    let model = Arc::new(scene.build()?);
+    let model = Arc::new(scene.build_within(options.common.limits.most_memory())?);
     let Some(dynamics) = scene.dynamics(&model)? else { return Ok(Outcome::done(String::new())) };
     warn(&warnings(&model));
     warn(&dynamics.warnings.iter().map(|warning| format!("warning: {warning}\n")).collect::<String>());

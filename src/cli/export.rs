@@ -16,7 +16,7 @@ pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
     let scene = scene_of(&options.scene, &options.limits)?;
     scene.check_size_of_model(options.limits.most_memory())?;
     rests(&scene)?;
-    let model = build(&scene, &options.scene)?;
+    let model = build(&scene, &options.scene, &options.limits)?;
     warn(&warnings(&model));
     let layout;
     let files = match options.format {

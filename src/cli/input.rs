@@ -58,16 +58,16 @@ impl Input {
             Source::Scene(scene, read_seconds) => {
                 scene.check_size(limits.most_memory())?;
                 rests(&scene)?;
-                Input::of_scene(&scene, path, read_seconds)
+                Input::of_scene(&scene, path, limits, read_seconds)
             }
             Source::Directory(input) => Ok(*input),
         }
     }
 
     /// The model of a static scene that was read in `read_seconds`.
-    pub fn of_scene(scene: &Scene, path: &Path, read_seconds: f64) -> Result<Self, Error> {
+    pub fn of_scene(scene: &Scene, path: &Path, limits: &Limits, read_seconds: f64) -> Result<Self, Error> {
         let clock = Instant::now();
-        let model = build(scene, path)?;
+        let model = build(scene, path, limits)?;
         let assemble_seconds = read_seconds + clock.elapsed().as_secs_f64();
         let (title, units) = (scene_title(&model, path), model.units().clone());
         Ok(Input { title, units, assemble_seconds, content: Content::Scene(Arc::new(model)) })
@@ -122,7 +122,7 @@ impl Input {
 pub(super) fn still_model(path: &Path, limits: &Limits) -> Result<Model, Error> {
     let scene = read_scene(path, limits)?;
     rests(&scene)?;
-    build(&scene, path)
+    build(&scene, path, limits)
 }
 
 /// Refuses a scene that asks for its motion.
@@ -153,8 +153,8 @@ pub(super) fn read_scene(path: &Path, limits: &Limits) -> Result<Scene, Error> {
 }
 
 /// Builds the scene of a file; an error names the line and column of the wrong value.
-pub(super) fn build(scene: &Scene, path: &Path) -> Result<Model, Error> {
-    scene.build().map_err(|error| Scene::located(error, path))
+pub(super) fn build(scene: &Scene, path: &Path, limits: &Limits) -> Result<Model, Error> {
+    scene.build_within(limits.most_memory()).map_err(|error| Scene::located(error, path))
 }
 
 /// The title of a scene, or its file if it has none.

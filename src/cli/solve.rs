@@ -55,7 +55,9 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
         });
     }
     let input = match source {
-        Source::Scene(scene, read_seconds) => Input::of_scene(&scene, &options.input, read_seconds)?,
+        Source::Scene(scene, read_seconds) => {
+            Input::of_scene(&scene, &options.input, &options.common.limits, read_seconds)?
+        }
         Source::Directory(input) => *input,
     };
     warn(&input.warnings());

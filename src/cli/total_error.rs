@@ -50,7 +50,7 @@ struct Shown<'a> {
 
 pub(super) fn run(options: &Solve, scene: &Scene, goal: TotalErrorGoal, watch: &Watch) -> Result<Outcome, Error> {
     let clock = Instant::now();
-    let model = Arc::new(build(scene, &options.input)?);
+    let model = Arc::new(build(scene, &options.input, &options.common.limits)?);
     let seconds = clock.elapsed().as_secs_f64();
     warn(&warnings(&model));
     let settings = settings(options.method, &options.common, &watch.keeping(REPORT * options.time.unwrap_or(0.0)));

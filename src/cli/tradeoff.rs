@@ -38,7 +38,11 @@ pub(super) fn run(options: &options::Tradeoff, watch: &Watch) -> Result<Outcome,
     }
     let scene = read_scene(&options.input, &options.limits)?;
     let moves = scene.analysis.is_some();
-    let model = if moves { scene.build()? } else { build(&scene, &options.input)? };
+    let model = if moves {
+        scene.build_within(options.limits.most_memory())?
+    } else {
+        build(&scene, &options.input, &options.limits)?
+    };
     warn(&warnings(&model));
     let title = &scene_title(&model, &options.input);
     let about = &about(title);

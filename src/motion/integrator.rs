@@ -6,6 +6,7 @@ use super::step::Advance;
 use super::{Balance, DynamicProblem, Observation, Scheme, State};
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
+use crate::qp::cost::bytes;
 use crate::qp::linear::{dot, largest};
 use crate::qp::{Method, Settings};
 use crate::solution::ContactSet;
@@ -59,8 +60,18 @@ impl Integrator {
             // Penalty answers are never exact, so no tolerance is enforced.
             settings.tolerance = f64::MAX;
         }
+        // The matrices of the motion leave less to the solve of a step.
+        let statics = problem.statics();
+        let beside = bytes::of_motion(statics.dofs() as f64, statics.stiffness().entries() as f64);
+        settings.memory = settings.memory.map(|most| (most - beside).max(1.0));
         let watch = settings.watch.clone();
-        let prepared = (scheme.prepare())(&problem, step, scheme.value(), &settings)?;
+        let prepared = (scheme.prepare())(&problem, step, scheme.value(), &settings).map_err(|error| match error {
+            Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed } => {
+                let [bytes, allowed] = [bytes, allowed].map(|taken| taken + beside);
+                Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed }
+            }
+            error => error,
+        })?;
         let violation = problem.statics().violation(problem.displacement());
         let rows = problem.statics().rows();
         let state = State {

@@ -34,6 +34,17 @@ impl Scene {
         self.build_of(self.bodies()?, further)
     }
 
+    /// As [`Scene::build`], for a scene that may take at most `most` bytes.
+    ///
+    /// # Errors
+    /// As [`Scene::build`]; [`Error::TooLarge`] before the assembly of bodies that are too large.
+    #[cfg(feature = "cli")]
+    pub(crate) fn build_within(&self, most: f64) -> Result<Model, Error> {
+        let bodies = self.bodies()?;
+        Scene::check_bodies(&bodies, most)?;
+        self.build_of(bodies, &[])
+    }
+
     /// The files that the scene names.
     pub(super) fn files(&self) -> Files<'_> {
         Files { folder: self.folder.as_deref().unwrap_or(Path::new("")), reads_outside: self.reads_outside }

@@ -2,6 +2,7 @@
 
 use super::schema::Scene;
 use crate::error::Error;
+use crate::fem::ElasticBody;
 use crate::fem::mesh::MAX_NODES;
 use crate::qp::cost::{assembly_seconds, bytes};
 use crate::qp::transform::FEW_VALUES;
@@ -81,6 +82,9 @@ impl Scene {
             size.multigrid_bytes += mesh + bytes::of_hierarchy(dofs, entries);
             size.model_bytes += mesh + bytes::of_model(dofs, entries);
         }
+        if self.analysis.is_some() {
+            size.bytes += bytes::of_motion(size.dofs, size.stiffness_entries);
+        }
         size
     }
 
@@ -109,6 +113,27 @@ impl Scene {
     #[cfg(feature = "cli")]
     pub(crate) fn check_size_of_model(&self, most: f64) -> Result<(), Error> {
         self.check_bytes(self.size().model_bytes, 0.0, most)
+    }
+
+    /// Refuses bodies whose assembly alone would take more than `most` bytes: the size of a mesh from a file is known only now.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`].
+    pub(super) fn check_bodies(bodies: &[ElasticBody], most: f64) -> Result<(), Error> {
+        let (mut dofs, mut stiffness_entries, mut bytes) = (0.0, 0.0, bytes::START);
+        for mesh in bodies.iter().map(ElasticBody::mesh) {
+            let (nodes, dimension) = (mesh.nodes().len() as f64, mesh.dimension() as f64);
+            let reference = mesh.kind().reference();
+            let entries = nodes * reference.counts.neighbours * dimension * dimension;
+            let connections = (mesh.element_count() * reference.nodes.len()) as f64;
+            dofs += nodes * dimension;
+            stiffness_entries += entries;
+            bytes += bytes::of_mesh(nodes, connections) + bytes::of_model(nodes * dimension, entries);
+        }
+        match bytes > most {
+            true => Err(Error::TooLarge { dofs, stiffness_entries, factor_entries: 0.0, bytes, allowed: most }),
+            false => Ok(()),
+        }
     }
 
     fn check_bytes(&self, bytes: f64, factor_entries: f64, most: f64) -> Result<(), Error> {

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use crate::blocks::{block, cube, pressed, pressed_on_a_plane, stiff_in_volume, strip};
 use crate::program::Desk;
-use serde_json::Value;
+use serde_json::{Value, json};
 use signorini::internals::bytes::{START, of_problem};
 use signorini::qp::{Condense, Prepared};
 use signorini::{Error, Method, Scene, Settings, solve};
@@ -215,4 +215,77 @@ fn a_run_whose_memory_allocation_fails_ends_with_one_sentence() {
         }
     }
     assert!(codes.iter().all(|&count| count > 10), "{codes:?}");
+}
+
+/// A motion has its mass, the matrix of a step and its states beside the solve, and writes frames and an animation.
+#[test]
+fn the_peak_of_a_motion_stays_below_the_limit() {
+    let desk = Desk::new();
+    let mut solved = 0;
+    for (scheme, mut scene) in [("midpoint", block([90, 45], "q4")), ("contact-stabilised", cube(10, "hex8"))] {
+        scene["material"]["density"] = json!(1e-3);
+        scene["gap"] = json!(0);
+        scene["analysis"] = json!({"dynamic": {"scheme": scheme, "duration": 1e-4, "step": 1e-5}});
+        desk.write("motion.json", scene.to_string());
+        for megabytes in [30, 45, 60, 75, 90, 120] {
+            let limit = format!("{megabytes}MB");
+            let folder = format!("{scheme}-{megabytes}");
+            let (code, said, peak) =
+                measured(&desk, &["solve", "motion.json", "--max-memory", &limit, "--out", &folder]);
+            let run = format!("{scheme} {limit}: code {code}, {:.1} MB, {said}", peak / 1e6);
+            assert!(peak <= 1e6 * f64::from(megabytes), "{run}");
+            match code {
+                0 => solved += 1,
+                _ => assert!(code == 1 && said.contains(&format!("{megabytes} MB are allowed")), "{run}"),
+            }
+        }
+    }
+    assert!((3..10).contains(&solved), "{solved} solved");
+}
+
+/// The length of a mesh file does not tell how many entries its stiffness has: the mesh itself is judged before its assembly.
+#[test]
+fn a_mesh_from_a_file_is_refused_before_its_assembly() {
+    const CELLS: usize = 24;
+    let desk = Desk::new();
+    let side = CELLS + 1;
+    let node = |[x, y, z]: [usize; 3]| 1 + x + side * (y + side * z);
+    let mut text =
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"bottom\"\n2 2 \"top\"\n$EndPhysicalNames\n"
+            .to_string();
+    text += &format!("$Nodes\n{}\n", side.pow(3));
+    for number in 0..side.pow(3) {
+        text += &format!("{} {} {} {}\n", number + 1, number % side, number / side % side, number / side / side);
+    }
+    text += &format!("$EndNodes\n$Elements\n{}\n", CELLS.pow(3) + 2 * CELLS.pow(2));
+    for number in 0..CELLS.pow(2) {
+        let (x, y) = (number % CELLS, number / CELLS);
+        for (group, z) in [(1, 0), (2, CELLS)] {
+            let [a, b, c, d] = [[x, y, z], [x + 1, y, z], [x + 1, y + 1, z], [x, y + 1, z]].map(node);
+            text += &format!("{} 3 2 {group} 1 {a} {b} {c} {d}\n", 2 * number + group);
+        }
+    }
+    for number in 0..CELLS.pow(3) {
+        let (x, y, z) = (number % CELLS, number / CELLS % CELLS, number / CELLS / CELLS);
+        text += &format!("{} 5 2 0 1", 2 * CELLS.pow(2) + number + 1);
+        for z in [z, z + 1] {
+            for at in [[x, y, z], [x + 1, y, z], [x + 1, y + 1, z], [x, y + 1, z]] {
+                text += &format!(" {}", node(at));
+            }
+        }
+        text += "\n";
+    }
+    desk.write("cube.msh", text + "$EndElements\n");
+    let scene = json!({
+        "model": "space", "body": {"gmsh": {"file": "cube.msh"}}, "material": {"young": 1000, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0}], "gap": -0.1,
+        "obstacles": [{"boundary": "top", "approach": "+z", "shape": {"sphere": {"apex": [12, 12, CELLS], "radius": 40}}}],
+    });
+    desk.write("cube.json", scene.to_string());
+    for (megabytes, code) in [(35, 1), (50, 1), (65, 1), (250, 0)] {
+        let limit = format!("{megabytes}MB");
+        let (found, said, peak) = measured(&desk, &["solve", "cube.json", "--max-memory", &limit]);
+        let run = format!("{limit}: code {found}, {:.1} MB, {said}", peak / 1e6);
+        assert!(found == code && peak <= 1e6 * f64::from(megabytes), "{run}");
+    }
 }

@@ -12,8 +12,8 @@ const OF_NODE: f64 = 120.0;
 /// Bytes of a node of an element: the mesh, and its copies by node.
 const OF_CONNECTION: f64 = 16.0;
 
-/// Bytes of an unknown: loads, displacements, residuals.
-const OF_DOF: f64 = 120.0;
+/// Bytes of an unknown: loads, displacements, residuals, and the pictures and files of the answer.
+const OF_DOF: f64 = 350.0;
 
 /// Bytes of an entry of the stiffness, both triangles: in its file or mesh, in the stiffness itself, scaled, ordered, and in the graph
 /// of the ordering.
@@ -50,12 +50,21 @@ pub fn of_mesh(nodes: f64, connections: f64) -> f64 {
     OF_NODE * nodes + OF_CONNECTION * connections
 }
 
-/// Bytes of an unknown in an answer that is kept: displacements, multipliers, forces, and what a report adds.
-const OF_ANSWER: f64 = 90.0;
+/// Bytes of an unknown in an answer that is kept: displacements, multipliers, forces, what a report adds, and its picture.
+const OF_ANSWER: f64 = 240.0;
 
 /// Bytes of `count` answers that are kept, with `dofs` unknowns each.
 pub fn of_answers(count: f64, dofs: f64) -> f64 {
     OF_ANSWER * count * dofs
+}
+
+/// Bytes of an unknown, and of an entry of the stiffness, both triangles, that a motion takes beside the solve of a step: its mass, the
+/// matrix of a step, its states and their frames.
+const OF_MOTION: [f64; 2] = [400.0, 40.0];
+
+/// Bytes that a motion takes beside the solve of a step.
+pub fn of_motion(dofs: f64, entries: f64) -> f64 {
+    OF_MOTION[0] * dofs + OF_MOTION[1] * entries
 }
 
 /// Bytes of a problem with `dofs` unknowns and `entries` of its stiffness, both triangles, before the factorisation.
