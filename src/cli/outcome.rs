@@ -47,6 +47,23 @@ pub(super) struct Report {
     json: String,
 }
 
+/// A report with the names of its entries of the meshed part.
+#[derive(Serialize)]
+pub(super) struct OfPart<T> {
+    #[serde(flatten)]
+    report: T,
+    /// Empty without planes of symmetry.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    of_meshed_part: &'static [&'static str],
+}
+
+impl<T: Serialize> OfPart<T> {
+    /// The report, in which these entries are of the meshed part if it is a part of the whole.
+    pub fn new(report: T, is_part: bool, names: &'static [&'static str]) -> Self {
+        OfPart { report, of_meshed_part: if is_part { names } else { &[] } }
+    }
+}
+
 impl Report {
     /// The report `value` with its text.
     pub fn new(value: &impl Serialize, text: String) -> Result<Self, Error> {

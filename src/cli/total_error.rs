@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::about::about;
 use super::input::{build, scene_title, warnings};
 use super::options::Solve;
-use super::outcome::{Outcome, Report, warn};
+use super::outcome::{OfPart, Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
 use crate::output::gallery::{self, Pictures};
@@ -109,8 +109,9 @@ fn shown<T: Serialize>(
     if let Some(why) = summary.and_then(|summary| summary.solution.why.as_ref()).filter(|_| options.explain) {
         text += &why_text(why);
     }
-    let report =
-        Report::new(&WithAnswer { found, model: summary.map(|summary| &summary.model), answer: summary }, text)?;
+    let is_part = first.parts_of_whole() > 1.0;
+    let found = WithAnswer { found, model: summary.map(|summary| &summary.model), answer: summary };
+    let report = Report::new(&OfPart::new(found, is_part, &["levels", "model"]), text)?;
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
     if let Some((answer, summary)) = &answer {
         gallery::write_answer(&folder, &summary.solution, Some(answer))?;

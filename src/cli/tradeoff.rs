@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::about::about;
 use super::input::{Input, build, read_scene, scene_title, warnings};
 use super::options;
-use super::outcome::{Outcome, Report, warn};
+use super::outcome::{OfPart, Outcome, Report, warn};
 use crate::error::Error;
 use crate::output::gallery::Pictures;
 use crate::output::page::{About, write_tradeoff_page};
@@ -55,7 +55,8 @@ pub(super) fn run(options: &options::Tradeoff, watch: &Watch) -> Result<Outcome,
     }
     let measured = tradeoff(&scene, &grid, watch)?;
     let (mut text, csv) = (tradeoff_text(title, &measured), tradeoff_csv(&measured));
-    if model.parts_of_whole() > 1.0 {
+    let is_part = model.parts_of_whole() > 1.0;
+    if is_part {
         text += "All numbers but the error of the mesh are of the meshed part.\n";
     }
     let plots = || {
@@ -64,7 +65,8 @@ pub(super) fn run(options: &options::Tradeoff, watch: &Watch) -> Result<Outcome,
             ("total-error", total_error_plot(options.style, title, &measured)),
         ]
     };
-    reported(options, watch, about, &measured, text, &csv, plots)
+    let report = OfPart::new(&measured, is_part, &["advice", "meshes", "points"]);
+    reported(options, watch, about, &report, text, &csv, plots)
 }
 
 /// Reports the measurements, with their values and pictures in the folder of the options.

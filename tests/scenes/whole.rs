@@ -309,6 +309,18 @@ fn comparison_and_total_error_name_the_meshed_part() {
     };
     let (ours, exact) = (estimated(part), estimated(whole));
     assert!((ours / exact - 1.0).abs() < 1e-3, "{ours}, of the whole {exact}");
+    for (command, named) in [
+        (&["compare"][..], json!(["agreement"])),
+        (&["tradeoff", "--refinements", "0", "--runs", "1"], json!(["advice", "meshes", "points"])),
+        (&["solve", "--total-error", "0.9"], json!(["levels", "model"])),
+    ] {
+        for (scene, expected) in [(block(&["x", "y"], false), named.clone()), (block(&[], false), Value::Null)] {
+            let desk = Desk::new();
+            desk.write("scene.json", at_gap(scene).to_string());
+            let found = desk.run(&[command, &["scene.json", "--format", "json"]].concat()).json();
+            assert_eq!(found["of_meshed_part"], expected, "{command:?}");
+        }
+    }
 }
 
 /// A disc between two plates that press with 300 each: the headline names 300 on each plate and the width of one contact, and no sum.

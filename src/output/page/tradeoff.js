@@ -5,6 +5,8 @@ function tradeoffSection(page, data, still) {
     own = section(page, "Work and precision", "tradeoff"),
     ofMotion = report.points.some(point => "scheme" in point);
   own.append(still);
+  if (report.of_meshed_part)
+    element("p", own, "All numbers but the error of the mesh are of the meshed part.", "soft");
   if (still.children.length) element("h3", own, "Every measured point, with its values under the pointer");
   const error = point => Math.max(ofMotion ? point.displacement_error : point.energy_error, 1e-16);
   const panels = ofMotion
