@@ -2,6 +2,7 @@
 
 use super::schema::Scene;
 use crate::error::Error;
+#[cfg(feature = "cli")]
 use crate::fem::ElasticBody;
 use crate::fem::mesh::MAX_NODES;
 use crate::qp::cost::{assembly_seconds, bytes};
@@ -119,6 +120,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`Error::TooLarge`].
+    #[cfg(feature = "cli")]
     pub(super) fn check_bodies(bodies: &[ElasticBody], most: f64) -> Result<(), Error> {
         let (mut dofs, mut stiffness_entries, mut bytes) = (0.0, 0.0, bytes::START);
         for mesh in bodies.iter().map(ElasticBody::mesh) {
