@@ -5,10 +5,12 @@ use super::input::{Input, scene_title, still_model, warnings};
 use super::options::{Gaps, Sweep};
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
-use crate::error::Error;
-use crate::output::gallery::{self, Pictures};
+use crate::error::{Error, memory as written};
+use crate::memory;
+use crate::output::gallery::{self, Pictures, Wanted};
 use crate::output::page::write_sweep_page;
 use crate::output::{draw_problem_sweep, problem_sweep_text, sweep_text, write_points};
+use crate::qp::cost::bytes;
 use crate::qp::is_problem_directory;
 use crate::qp::matrix_market::read_other_end;
 use crate::scene::Scene;
@@ -59,11 +61,27 @@ fn of_scene(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
     report.write(&folder)?;
     let outcome = report.outcome(common.format, status);
-    let wanted = common.wanted(Pictures::usual_of_series(&model));
+    let wanted = with_room(common.wanted(Pictures::usual_of_series(&model)), &swept, common.limits.most_memory());
     Ok(outcome.with_pictures(move || {
         write_sweep_page(&folder, &about, &swept)?;
         gallery::write_sweep(&folder, &swept, wanted)
     }))
+}
+
+/// The pictures of a sweep that fit into the memory that its answers leave of `most` bytes: all, or its curves alone.
+fn with_room(wanted: Wanted, swept: &Swept, most: f64) -> Wanted {
+    let Some(first) = swept.points.first().filter(|_| wanted.pictures == Pictures::All) else { return wanted };
+    let count = swept.points.len();
+    let needed = bytes::of_pictures(count as f64, first.answer.model().problem().dofs() as f64);
+    let left = most - memory::held();
+    if needed <= left {
+        return wanted;
+    }
+    let [needed, left] = [needed, left.max(0.0)].map(written);
+    warn(&format!(
+        "warning: {count} pictures take about {needed} of memory, and {left} are left: only the curves are drawn\n"
+    ));
+    Wanted { pictures: Pictures::Answer, ..wanted }
 }
 
 fn of_problem(options: &Sweep, points: usize, watch: &Watch) -> Result<Outcome, Error> {

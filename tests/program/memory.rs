@@ -103,6 +103,18 @@ fn the_peak_of_a_sweep_stays_below_the_limit() {
         }
         assert!(solved >= 3 && too_many >= 1, "{name}: {solved} solved, {too_many} with too many answers");
     }
+    // Pictures that do not fit are left out.
+    desk.write("drawn.json", block([80, 40], "q4").to_string());
+    let arguments = ["sweep", "drawn.json", "--gaps", "-0.002:-0.01:30", "--out", "drawn", "--max-memory"];
+    let mut left_out = [false; 2];
+    for (megabytes, is_left_out) in [60, 200].into_iter().zip(&mut left_out) {
+        let (code, said, peak) = measured(&desk, &[&arguments[..], &[&format!("{megabytes}MB")]].concat());
+        assert!(code == 0 && peak <= 1e6 * f64::from(megabytes), "{megabytes} MB: code {code}, {peak:.3e}, {said}");
+        assert!(desk.path("drawn/force-width.png").exists());
+        *is_left_out = said.contains("only the curves are drawn");
+        assert_eq!(desk.path("drawn/gap-30.png").exists(), !*is_left_out, "{said}");
+    }
+    assert_eq!(left_out, [true, false]);
 }
 
 /// If memory is short, the factor of the stiffness is dropped for those of the contact sets, and computed again.

@@ -183,7 +183,7 @@ fn an_interrupt_that_is_not_noticed_ends_the_program() {
 fn a_second_interrupt_ends_the_program_at_once() {
     let desk = Desk::new();
     desk.write("block.json", block(40, 20).to_string());
-    let mut run = desk.start(&["sweep", "block.json", "--gaps", "0:-0.1:10000", "--format", "json"]);
+    let mut run = desk.start(&["sweep", "block.json", "--gaps", "0:-0.1:4000", "--format", "json"]);
     assert!(run.waits_for("gap 1000 of 10000"));
     run.interrupt();
     assert!(run.waits_for("interrupted in gap "));
@@ -232,7 +232,7 @@ fn an_interrupted_total_error_tells_the_best_bound() {
 fn an_interrupted_sweep_reports_the_gaps_solved_so_far() {
     let desk = Desk::new();
     desk.write("block.json", block(40, 20).to_string());
-    let arguments = ["sweep", "block.json", "--gaps", "0:-0.1:10000", "--format", "json", "--out", "o"];
+    let arguments = ["sweep", "block.json", "--gaps", "0:-0.1:4000", "--format", "json", "--out", "o"];
     let points = |run: &Run| run.json()["points"].as_array().unwrap().len();
     let run = interrupted(&desk, &arguments, "gap 5 of 10000", |run| !run.stdout.is_empty() && points(run) < 10_000);
     assert!(points(&run) >= 4, "{}", points(&run));
@@ -400,8 +400,8 @@ fn left_and_shown(drawn: &str) -> (&str, Vec<&str>) {
 fn long_work_shows_its_progress_on_a_terminal_and_erases_it() {
     let desk = Desk::new();
     desk.write("block.json", block(100, 100).to_string());
-    let awaited = ["\\] [0-9]+ % gap [0-9]+ of 10000, ", " s left: "];
-    let drawn_by_sweep = drawn(&desk, &["sweep", "block.json", "--gaps", "0:-0.1:10000"], &awaited);
+    let awaited = ["\\] [0-9]+ % gap [0-9]+ of 4000, ", " s left: "];
+    let drawn_by_sweep = drawn(&desk, &["sweep", "block.json", "--gaps", "0:-0.1:4000"], &awaited);
     let (left, shown) = left_and_shown(&drawn_by_sweep);
     assert!(!shown.is_empty() && shown.iter().all(|line| line.chars().count() < 80), "{shown:?}");
     assert!(left.starts_with("interrupted in gap ") && left.lines().count() == 1, "{left:?}");

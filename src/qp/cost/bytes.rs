@@ -50,8 +50,18 @@ pub fn of_mesh(nodes: f64, connections: f64) -> f64 {
     OF_NODE * nodes + OF_CONNECTION * connections
 }
 
-/// Bytes of an unknown in an answer that is kept: displacements, multipliers, forces, what a report adds, and its picture.
-const OF_ANSWER: f64 = 240.0;
+/// Bytes of an unknown in an answer that is kept: displacements, multipliers, forces, and what a report and a page add.
+const OF_ANSWER: f64 = 100.0;
+
+/// Bytes of an unknown in the picture of an answer, beside the answer: its nodal stresses and its displaced cells.
+#[cfg(feature = "cli")]
+const OF_PICTURE: f64 = 150.0;
+
+/// Bytes of `count` pictures with common colours, which are drawn together, of answers with `dofs` unknowns each.
+#[cfg(feature = "cli")]
+pub fn of_pictures(count: f64, dofs: f64) -> f64 {
+    OF_PICTURE * count * dofs
+}
 
 /// Bytes of `count` answers that are kept, with `dofs` unknowns each.
 pub fn of_answers(count: f64, dofs: f64) -> f64 {
