@@ -183,7 +183,7 @@ fn an_interrupt_that_is_not_noticed_ends_the_program() {
 fn a_second_interrupt_ends_the_program_at_once() {
     let desk = Desk::new();
     desk.write("block.json", block(40, 20).to_string());
-    let mut run = desk.start(&["sweep", "block.json", "--gaps", "0:-0.1:4000", "--format", "json"]);
+    let mut run = desk.start(&["sweep", "block.json", "--gaps", "0:-0.1:10000", "--format", "json"]);
     assert!(run.waits_for("gap 1000 of 10000"));
     run.interrupt();
     assert!(run.waits_for("interrupted in gap "));
@@ -232,7 +232,7 @@ fn an_interrupted_total_error_tells_the_best_bound() {
 fn an_interrupted_sweep_reports_the_gaps_solved_so_far() {
     let desk = Desk::new();
     desk.write("block.json", block(40, 20).to_string());
-    let arguments = ["sweep", "block.json", "--gaps", "0:-0.1:4000", "--format", "json", "--out", "o"];
+    let arguments = ["sweep", "block.json", "--gaps", "0:-0.1:10000", "--format", "json", "--out", "o"];
     let points = |run: &Run| run.json()["points"].as_array().unwrap().len();
     let run = interrupted(&desk, &arguments, "gap 5 of 10000", |run| !run.stdout.is_empty() && points(run) < 10_000);
     assert!(points(&run) >= 4, "{}", points(&run));
