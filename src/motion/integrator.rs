@@ -70,6 +70,10 @@ impl Integrator {
                 let [bytes, allowed] = [bytes, allowed].map(|taken| taken + beside);
                 Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed }
             }
+            Error::NoRoom { factor, multigrid, allowed, ended } => {
+                let [factor, multigrid, allowed] = [factor, multigrid, allowed].map(|taken| taken + beside);
+                Error::NoRoom { factor, multigrid, allowed, ended }
+            }
             error => error,
         })?;
         let violation = problem.statics().violation(problem.displacement());
