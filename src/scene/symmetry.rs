@@ -165,3 +165,17 @@ impl Symmetry {
         all
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Symmetry;
+
+    #[test]
+    fn images_around_an_edge_lie_beyond_planes_away_from_the_origin() {
+        let symmetry = Symmetry { planes: vec![(0, 4.0), (1, -2.0)], rounding: 1e-12 };
+        let images = symmetry.images_around(&[4.0, -2.0, 7.0], &[5.0, -1.5, 8.0]);
+        assert_eq!(images, [[5.0, -1.5, 8.0], [3.0, -1.5, 8.0], [5.0, -2.5, 8.0], [3.0, -2.5, 8.0]]);
+        // A place on a plane is its own image, and a plane on which the middle does not lie makes none.
+        assert_eq!(symmetry.images_around(&[4.0, 0.0, 7.0], &[4.0, -1.5, 8.0]), [[4.0, -1.5, 8.0]]);
+    }
+}
