@@ -17,11 +17,9 @@
 //! penalty ladder, then by the dual active-set method ([`takes_last_resort`]); an answer with a factor that falls short is corrected
 //! and repaired (`engine/answer`).
 
-use std::sync::LazyLock;
-
-use serde::Deserialize;
-
 use super::certificate::EnergyNorm;
+pub(super) use super::cost::fitted::Way;
+use super::cost::fitted::{STEPS, Step};
 use super::cost::{Estimate, FACTORS, Kept, Smooth, bytes, check_memory, check_time, seconds, starts_near};
 use super::linear::{Analysis, Width};
 use super::method::Start;
@@ -199,48 +197,6 @@ pub(super) fn starts_by_multigrid(problem: &ContactProblem, settings: &Settings)
     matches!(settings.method, Method::Auto | Method::ActiveSet) && starts_near(problem)
 }
 
-/// The rules that `cargo run --release --example fit_rules` writes.
-static FITTED: LazyLock<Fitted> =
-    LazyLock::new(|| serde_json::from_str(include_str!("fitted.json")).unwrap_or_default());
-
-/// The fitted rules, without the costs.
-#[derive(Clone, Debug, Default, Deserialize)]
-struct Fitted {
-    rules: Vec<Rule>,
-}
-
-/// A method with its settings and precision.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum Way {
-    ActiveSet,
-    ActiveSetMixed,
-    Qp,
-    QpUnpolished,
-    Penalty,
-    PenaltyRung,
-}
-
-/// The ways by size, for an accuracy and all lower accuracies.
-///
-/// The size of a condensed problem is the multiplications of its factor. That of an uncondensed one, with a factorisation in every
-/// iteration, is the multiplications for each row: a measure of the width of the factor relative to its contact.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Rule {
-    condensed: bool,
-    accuracy: f64,
-    steps: Vec<Step>,
-}
-
-/// A way for all sizes up to `up_to` that earlier steps do not cover; without `up_to`, for all sizes.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Step {
-    up_to: Option<f64>,
-    way: Way,
-}
-
 /// The interior point aims at this share of the requested accuracy.
 const INTERIOR_POINT_SHARE: f64 = 0.1;
 
@@ -262,10 +218,10 @@ impl Way {
         }
         let accuracy = settings.accuracy.unwrap_or(0.0);
         let condensed = unknowns == Unknowns::ContactDofs;
-        let rule = FITTED.rules.iter().filter(|rule| rule.condensed == condensed && rule.accuracy <= accuracy);
         let size = if condensed { multiplications } else { multiplications / rows.max(1) as f64 };
-        let rule = rule.max_by(|a, b| a.accuracy.total_cmp(&b.accuracy));
-        let step = rule.and_then(|rule| rule.steps.iter().find(|step| step.up_to.is_none_or(|most| size <= most)));
+        let covers = |step: &&Step| step.condensed == condensed && step.accuracy <= accuracy && size <= step.up_to;
+        let nearest = |a: &&Step, b: &&Step| b.accuracy.total_cmp(&a.accuracy).then(a.up_to.total_cmp(&b.up_to));
+        let step = STEPS.iter().filter(covers).min_by(nearest);
         let is_long_chain = !condensed && rows > LONG && size < CHAIN;
         let way = match step.map_or(Way::ActiveSet, |step| step.way) {
             Way::ActiveSet if is_long_chain => Way::Qp,
@@ -524,7 +480,7 @@ fn is_exact(certificate: &Certificate, settings: &Settings) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{FITTED, PIECE, pieces_of};
+    use super::{PIECE, pieces_of};
     use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
     use crate::qp::problem::ContactProblem;
     use crate::qp::settings::{Method, Settings};
@@ -555,10 +511,5 @@ mod tests {
         assert_eq!(count(&[3 * PIECE, 10], Method::Auto), 1);
         assert_eq!(count(&[10; 1000], Method::ActiveSet), 10_000 / PIECE);
         assert_eq!(count(&[PIECE, PIECE], Method::Mprgp), 1, "a hierarchy keeps parts apart by itself");
-    }
-
-    #[test]
-    fn the_fitted_rules_are_read() {
-        assert!(FITTED.rules.iter().any(|rule| rule.condensed) && FITTED.rules.iter().any(|rule| !rule.condensed));
     }
 }

@@ -1,8 +1,6 @@
 //! The fit. For each class and accuracy it finds the methods, by problem size, with the smallest loss against the
 //! fastest method. It fits the cost of a factorisation by least squares.
 
-use serde_json::{Value, json};
-
 use super::measure::{ACCURACIES, Point};
 
 /// The method that is chosen if several are equally fast: it is exact and needs no parameter.
@@ -19,8 +17,14 @@ const INTERIOR_POINT: &str = "qp";
 /// Percent of loss that one more step must save.
 const PRICE_OF_A_STEP: f64 = 5.0;
 
+const HEADING: &str = "
+/// The fitted steps: for each layout, from the lowest accuracy and the smallest size on.
+pub(in crate::qp) static STEPS: &[Step] = &[
+";
+
+/// The constants of `src/qp/cost/fitted.rs`.
 pub fn fitted(points: &[Point]) -> String {
-    let mut rules = Vec::new();
+    let mut fitted = HEADING.to_string();
     for condensed in [true, false] {
         for accuracy in ACCURACIES {
             let of_class: Vec<&Point> = points
@@ -31,7 +35,12 @@ pub fn fitted(points: &[Point]) -> String {
                 .filter(|point| accuracy > 0.0 || point.way != MIXED)
                 .filter(|point| condensed || point.way != INTERIOR_POINT)
                 .collect();
-            rules.push(rule(&of_class, condensed, accuracy));
+            for (up_to, way) in steps(&of_class, condensed, accuracy) {
+                let up_to = if up_to < f64::INFINITY { format!("{up_to:?}") } else { "f64::INFINITY".to_string() };
+                let way = variant(way);
+                let step = format!("condensed: {condensed}, accuracy: {accuracy:?}, up_to: {up_to}, way: Way::{way}");
+                fitted += &format!("    Step {{ {step} }},\n");
+            }
         }
     }
     let cost = |way: &str| {
@@ -43,8 +52,22 @@ pub fn fitted(points: &[Point]) -> String {
             .collect();
         cost(&times)
     };
-    let fitted = json!({ "rules": rules, "double": cost(FIRST), "single": cost(MIXED) });
-    format!("{fitted:#}\n")
+    fitted += "];\n";
+    for (precision, way) in [("double", FIRST), ("single", MIXED)] {
+        let name = precision.to_uppercase();
+        fitted +=
+            &format!("\n/// The cost in {precision} precision.\npub(in crate::qp) const {name}: Cost = Cost {{\n");
+        for (term, value) in ["constant", "per_multiplication", "per_value"].into_iter().zip(cost(way)) {
+            fitted += &format!("    {term}: {value:?},\n");
+        }
+        fitted += "};\n";
+    }
+    fitted
+}
+
+/// The variant of a way with this name in the table: `ActiveSet` of `active-set`.
+fn variant(way: &str) -> String {
+    way.split('-').map(|word| word[..1].to_uppercase() + &word[1..]).collect()
 }
 
 /// A problem of one class: its size, and the loss of each method against the fastest.
@@ -63,8 +86,8 @@ impl Losses<'_> {
 type Steps<'a> = Vec<(usize, &'a str)>;
 
 /// Returns the best steps of at most three methods: those with the smallest worst loss, then with the smallest mean
-/// loss, both compared to one percent, then with the fewest steps.
-fn rule(points: &[&Point], condensed: bool, accuracy: f64) -> Value {
+/// loss, both compared to one percent, then with the fewest steps. Each is a way with the largest size for which it is used.
+fn steps<'a>(points: &[&'a Point], condensed: bool, accuracy: f64) -> Vec<(f64, &'a str)> {
     let mut problems: Vec<&str> = points.iter().map(|point| point.problem.as_str()).collect();
     problems.dedup();
     let mut losses: Vec<Losses> = problems
@@ -108,21 +131,20 @@ fn rule(points: &[&Point], condensed: bool, accuracy: f64) -> Value {
     let best = candidates.into_iter().min_by(|a, b| price(a).total_cmp(&price(b))).unwrap_or_default();
     let (worst, mean) = judged(&best);
     let between = |index: usize| (losses[index - 1].size * losses[index].size).sqrt();
-    let steps: Vec<Value> = (0..best.len())
-        .map(|step| json!({ "up_to": best.get(step + 1).map(|next| between(next.0)), "way": best[step].1 }))
-        .collect();
+    let end = |step: usize| best.get(step + 1).map_or(f64::INFINITY, |next| between(next.0));
+    let steps: Vec<(f64, &str)> = (0..best.len()).map(|step| (end(step), best[step].1)).collect();
     println!(
         "condensed {condensed}, accuracy {accuracy:.0e}, {count} problems: {}; at most {:.2}, on average {:.2} times the best",
-        steps.iter().map(Value::to_string).collect::<Vec<_>>().join(" "),
+        steps.iter().map(|(up_to, way)| format!("{way} up to {up_to:.3e}")).collect::<Vec<_>>().join(", "),
         worst / 100.0,
         mean / 100.0
     );
-    json!({ "condensed": condensed, "accuracy": accuracy, "steps": steps })
+    steps
 }
 
 /// Fits seconds as a constant plus multiples of multiplications and values, by least squares of the relative error. No
 /// coefficient is negative.
-fn cost(points: &[&Point]) -> Value {
+fn cost(points: &[&Point]) -> [f64; 3] {
     let terms = |point: &Point| [1.0, point.multiplications, point.values].map(|term| term / point.seconds);
     let mut cost = [0.0_f64; 3];
     // Coordinate descent keeps every coefficient at or above zero.
@@ -138,5 +160,5 @@ fn cost(points: &[&Point]) -> Value {
             cost[term] = if below > 0.0 { (above / below).max(0.0) } else { 0.0 };
         }
     }
-    json!({ "constant": cost[0], "per_multiplication": cost[1], "per_value": cost[2] })
+    cost
 }

@@ -1,7 +1,7 @@
 //! Fits the rules of `Method::Auto` to measured times, and checks them on other scenes.
 //!
 //! `cargo run --release --example fit_rules` measures the training problems, writes `tools/fit_rules/measured.csv` and
-//! fits `src/qp/fitted.json` to it. With `-- --fit` it fits to the times in the existing file; with `-- --check` it
+//! fits the constants of `src/qp/cost/fitted.rs` to it. With `-- --fit` it fits to the times in the existing file; with `-- --check` it
 //! measures the other scenes.
 
 #[path = "../contact_cost/clock.rs"]
@@ -14,7 +14,10 @@ use std::fs;
 use std::process::ExitCode;
 
 const MEASURED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tools/fit_rules/measured.csv");
-const FITTED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/qp/fitted.json");
+const FITTED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/qp/cost/fitted.rs");
+
+/// The line with which the constants begin.
+const FIRST_LINE: &str = "// Written by the fit.";
 
 fn main() -> ExitCode {
     let argument = std::env::args().nth(1);
@@ -48,7 +51,9 @@ fn training() -> Result<(), Anything> {
 
 fn fitted() -> Result<(), Anything> {
     let points = measure::read(&fs::read_to_string(MEASURED)?)?;
-    fs::write(FITTED, fit::fitted(&points))?;
+    let text = fs::read_to_string(FITTED)?;
+    let (by_hand, _) = text.split_once(FIRST_LINE).ok_or_else(|| format!("{FITTED} has no line `{FIRST_LINE}`"))?;
+    fs::write(FITTED, format!("{by_hand}{FIRST_LINE}\n{}", fit::fitted(&points)))?;
     println!("{FITTED} is fitted to {} times", points.len());
     Ok(())
 }

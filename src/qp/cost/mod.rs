@@ -2,6 +2,7 @@
 
 pub mod bytes;
 mod direct;
+pub(in crate::qp) mod fitted;
 pub(in crate::qp) mod seconds;
 mod smooth;
 

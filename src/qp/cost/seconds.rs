@@ -2,40 +2,12 @@
 //! it.
 
 use std::hint::black_box;
-use std::sync::LazyLock;
 
-use serde::Deserialize;
-
+use super::fitted::{DOUBLE, SINGLE};
 use crate::qp::linear::selected_inverse::FACTORISATIONS;
 use crate::qp::linear::{Analysis, SparseMatrix, SymmetricMatrix, Width};
 use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
-
-/// The costs that `cargo run --release --example fit_rules` writes.
-static FITTED: LazyLock<Fitted> =
-    LazyLock::new(|| serde_json::from_str(include_str!("../fitted.json")).unwrap_or_default());
-
-/// The fitted costs, without the rules.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-struct Fitted {
-    double: Cost,
-    single: Cost,
-}
-
-/// Seconds of a step: a constant, and one for each multiplication and each value of the factor.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Cost {
-    constant: f64,
-    per_multiplication: f64,
-    per_value: f64,
-}
-
-impl Cost {
-    fn seconds(&self, multiplications: f64, values: f64) -> f64 {
-        self.constant + self.per_multiplication * multiplications + self.per_value * values
-    }
-}
 
 /// Seconds of meshing and assembly for an entry of the stiffness, both triangles.
 const ASSEMBLY: f64 = 3e-8;
@@ -69,7 +41,7 @@ const LATTICE: usize = 64;
 
 /// Seconds of a factorisation with this number of multiplications and values, on the machine of the fit.
 pub(in crate::qp) fn factor_seconds(multiplications: f64, values: usize, width: Width) -> f64 {
-    let cost = if width == Width::Single { FITTED.single } else { FITTED.double };
+    let cost = if width == Width::Single { SINGLE } else { DOUBLE };
     cost.seconds(multiplications, values as f64)
 }
 
@@ -121,7 +93,7 @@ pub(in crate::qp) fn dense(size: usize) -> f64 {
 
 /// Seconds that this number of columns adds to a factorisation if they come last.
 pub(in crate::qp) fn last_block(size: usize) -> f64 {
-    FITTED.double.per_multiplication * (size as f64).powi(3) / 6.0
+    DOUBLE.per_multiplication * (size as f64).powi(3) / 6.0
 }
 
 /// Seconds of `count` sweeps through this number of values.
@@ -152,15 +124,4 @@ pub(in crate::qp) fn learn(watch: &Watch) {
     // The first run is slower, because it fetches code and memory.
     let _ = black_box(analysis.factor(&lattice));
     let _ = black_box(watch.timed(factorisation(&analysis), || analysis.factor(&lattice)));
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Width, factor_seconds};
-
-    #[test]
-    fn the_fitted_costs_are_read() {
-        let [double, single] = [Width::Double, Width::Single].map(|width| factor_seconds(1e9, 1_000_000, width));
-        assert!(single > 0.0 && double > single && double < 10.0, "{double} {single}");
-    }
 }
