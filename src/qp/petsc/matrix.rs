@@ -6,8 +6,19 @@ use super::source::{INTEGER, REAL, Source};
 use super::{Class, DENSE, TOO_MANY};
 use crate::error::Error;
 
-/// Bytes before the lengths of the rows.
+/// Bytes before the lengths of the rows of a sparse matrix, or the values of a dense one.
 const HEADER: u64 = 4 * INTEGER;
+
+/// Bytes before the number of entries.
+const ENTRIES: u64 = 3 * INTEGER;
+
+/// The header of a matrix: rows and columns, and the number of entries or what takes its place.
+fn read_header(path: &Path) -> Result<(Source, [usize; 2], i32), Error> {
+    let mut source = Source::open(path, Class::Matrix)?;
+    let shape = [source.count("rows")?, source.count("columns")?];
+    let entries = source.integer()?;
+    Ok((source, shape, entries))
+}
 
 /// A sparse matrix that is read row by row.
 pub(super) struct Rows {
@@ -37,16 +48,14 @@ impl Rows {
     /// # Errors
     /// [`Error::File`], [`Error::FileBytes`].
     pub fn open(path: &Path) -> Result<Self, Error> {
-        let mut source = Source::open(path, Class::Matrix)?;
-        let (rows, columns) = (source.count("rows")?, source.count("columns")?);
-        let (byte, announced) = (source.byte(), source.integer()?);
+        let (mut source, [rows, columns], announced) = read_header(path)?;
         if announced == DENSE {
             let message = format!("the matrix is stored dense (its number of entries is {DENSE}); store it as AIJ");
-            return Err(source.fault(byte, message));
+            return Err(source.fault(ENTRIES, message));
         }
         if announced < 0 {
             let message = format!("the number of entries is {announced}; it must not be negative");
-            return Err(source.fault(byte, message));
+            return Err(source.fault(ENTRIES, message));
         }
         let after_lengths = HEADER + INTEGER * rows as u64;
         if source.is_shorter_than(after_lengths) {
@@ -66,7 +75,7 @@ impl Rows {
         if announced != TOO_MANY && entries != announced as u64 {
             let message =
                 format!("the number of entries is {announced}, but the lengths of the rows add up to {entries}");
-            return Err(source.fault(byte, message));
+            return Err(source.fault(ENTRIES, message));
         }
         let after_columns = after_lengths + INTEGER * entries;
         let holds = || format!("a matrix of {rows} rows and {entries} entries");
@@ -131,16 +140,14 @@ impl Rows {
 /// # Errors
 /// [`Error::File`]; [`Error::FileBytes`] for another shape or form, and for values that are not finite.
 pub(super) fn dense_columns(path: &Path, rows: usize) -> Result<Vec<Vec<f64>>, Error> {
-    let mut source = Source::open(path, Class::Matrix)?;
-    let (found, count) = (source.count("rows")?, source.count("columns")?);
+    let (mut source, [found, count], announced) = read_header(path)?;
     if found != rows || count == 0 {
         let message = format!("it is {found} x {count}, but it must have {rows} rows, as the stiffness, and a column");
         return Err(source.fault(INTEGER, message));
     }
-    let (byte, announced) = (source.byte(), source.integer()?);
     if announced != DENSE {
         let message = format!("the number of entries is {announced}; it must be {DENSE}: store the matrix dense");
-        return Err(source.fault(byte, message));
+        return Err(source.fault(ENTRIES, message));
     }
     let bytes = (rows as u64).saturating_mul(count as u64).saturating_mul(REAL).saturating_add(HEADER);
     source.ends_at(bytes, || format!("a dense matrix of {rows} x {count}"))?;
