@@ -7,8 +7,8 @@
 use crate::bodies::{built, clamped_block, clamped_square};
 use crate::oracles::{Draws, random};
 use serde_json::{Value, json};
-use signorini::internals::Cholesky;
-use signorini::internals::multigrid::{Blocks, Multigrid, NearNullSpace, dual_norm, dual_norms_within};
+use signorini::internals::multigrid::{Multigrid, NearNullSpace};
+use signorini::internals::{Blocks, Cholesky};
 use signorini::{
     ContactProblem, Error, Method, Prepared, Settings, Solution, SparseMatrix, Start, SymmetricMatrix, Watch, solve,
 };
@@ -185,13 +185,14 @@ fn the_energy_of_a_force_is_between_its_bounds_after_few_cycles() {
         let multigrid = Multigrid::new(matrix, near_null, 1).unwrap();
         for force in [&rough, &smooth, &pressed] {
             let exact = product(force, &factor.solve(force)).sqrt();
-            let found = dual_norm(matrix, &multigrid, force).unwrap();
+            let found = multigrid.preconditioning(matrix).dual_norm(force, &Watch::default()).unwrap();
             assert!(found.least <= exact && exact <= found.most, "{found:?}, {exact:e}");
             assert!(found.most <= 1.05 * exact && found.ritz > 0.1, "{found:?}, {exact:e}");
             assert!(found.cycles <= FEW_CYCLES + 3 * usize::from(near_null.count() == 3), "{found:?}");
         }
     }
-    let nothing = dual_norm(matrix, &Multigrid::new(matrix, near_null, 1).unwrap(), &vec![0.0; problem.dofs()]);
+    let multigrid = Multigrid::new(matrix, near_null, 1).unwrap();
+    let nothing = multigrid.preconditioning(matrix).dual_norm(&vec![0.0; problem.dofs()], &Watch::default());
     assert_eq!(nothing.map(|found| found.most), Some(0.0));
 }
 
@@ -320,7 +321,7 @@ fn the_energy_of_each_block_of_a_matrix_is_between_its_bounds() {
     let of_unknown: Vec<usize> = (0..both.dofs()).map(|dof| usize::from(dof >= stiff.dofs())).collect();
     let multigrid = Multigrid::new(both.stiffness(), both.near_null().unwrap(), 1).unwrap();
     let blocks = Blocks { of_unknown: &of_unknown, count: 2 };
-    let found = dual_norms_within(both.stiffness(), &multigrid, &force, blocks, &Watch::default()).unwrap();
+    let found = multigrid.preconditioning(both.stiffness()).dual_norms(&force, blocks, &Watch::default()).unwrap();
     let parts = [(stiff, &force[..stiff.dofs()], 1.0), (soft, &force[stiff.dofs()..], 1e-12)];
     for (found, (problem, force, softness)) in found.iter().zip(parts) {
         let moved = Cholesky::of(problem.stiffness()).unwrap().solve(force);

@@ -10,7 +10,7 @@ use std::path::Path;
 use crate::bodies::{built, clamped_block, clamped_square, largest};
 use crate::oracles::{Dense, Draws, random};
 use serde_json::json;
-use signorini::internals::multigrid::{NearNullSpace, conjugate_gradients};
+use signorini::internals::multigrid::NearNullSpace;
 use signorini::{ContactProblem, ContactSet, Error, Method, Prepared, Scene, Settings, Solution, Start, solve};
 
 /// Both answers are certified to 1e-9; the condition numbers of these bodies are at most 1e3.
@@ -52,7 +52,7 @@ fn a_contact_solve_takes_at_most_one_and_a_half_times_the_cycles_of_a_linear_sol
     let contact = agrees_with_the_direct_path(&problem, "block");
     let iterative = Prepared::new(&problem, &mprgp()).unwrap();
     let load = problem.contact().mul_transposed(&vec![-1.0; problem.rows()]);
-    let linear = conjugate_gradients(problem.stiffness(), &load, iterative.hierarchy().unwrap(), 1e-10, 100).unwrap();
+    let linear = iterative.hierarchy().unwrap().preconditioning(problem.stiffness()).solve(&load, 1e-10, 100).unwrap();
     let ratio = contact.iterations as f64 / linear.cycles as f64;
     assert!(ratio <= RATIO, "{} cycles of contact, {} of the linear solve", contact.iterations, linear.cycles);
 }
@@ -86,7 +86,7 @@ fn fine_meshes_with_closed_rows_on_coarse_levels_need_few_cycles() {
     assert!(contact.contact_set.count() > 10);
     let iterative = Prepared::new(&problem, &mprgp()).unwrap();
     let load = problem.contact().mul_transposed(&vec![-1.0; problem.rows()]);
-    let linear = conjugate_gradients(problem.stiffness(), &load, iterative.hierarchy().unwrap(), 1e-10, 100).unwrap();
+    let linear = iterative.hierarchy().unwrap().preconditioning(problem.stiffness()).solve(&load, 1e-10, 100).unwrap();
     println!("{} cycles of contact, {} of the linear solve", contact.iterations, linear.cycles);
     assert!(contact.iterations as f64 <= RATIO * linear.cycles as f64, "{} cycles", contact.iterations);
 }

@@ -7,7 +7,7 @@ use crate::bodies::{built, clamped_block, clamped_square, largest};
 use crate::oracles::Draws;
 use serde_json::json;
 use signorini::internals::Cholesky;
-use signorini::internals::multigrid::{Multigrid, NearNullSpace, Precision, conjugate_gradients};
+use signorini::internals::multigrid::{Multigrid, NearNullSpace, Precision};
 use signorini::{ContactProblem, Error, SparseMatrix, SymmetricMatrix};
 
 /// Relative residual at which the iteration ends.
@@ -54,7 +54,7 @@ fn conjugate_gradients_with_one_cycle_agree_with_the_cholesky_factor() {
         let load = pressed(&problem);
         let exact = Cholesky::of(problem.stiffness()).unwrap().solve(&load);
         let multigrid = hierarchy(&problem, Precision::Single, 1);
-        let found = conjugate_gradients(problem.stiffness(), &load, &multigrid, TOLERANCE, 50).unwrap();
+        let found = multigrid.preconditioning(problem.stiffness()).solve(&load, TOLERANCE, 50).unwrap();
         assert!(multigrid.unknowns().len() > 1, "there is no coarse level");
         assert!(found.residual <= TOLERANCE && found.cycles <= MOST_CYCLES, "{} cycles", found.cycles);
         let error = exact.iter().zip(&found.solution).fold(0.0, |error: f64, (a, b)| error.max((a - b).abs()));
@@ -67,7 +67,7 @@ fn cycles_hardly_grow_with_the_number_of_unknowns() {
     let cycles = [8, 16, 24].map(|cells| {
         let problem = block(cells);
         let multigrid = hierarchy(&problem, Precision::Single, 1);
-        conjugate_gradients(problem.stiffness(), &pressed(&problem), &multigrid, TOLERANCE, 50).unwrap().cycles
+        multigrid.preconditioning(problem.stiffness()).solve(&pressed(&problem), TOLERANCE, 50).unwrap().cycles
     });
     assert!(cycles[2] <= MOST_CYCLES && cycles[2] <= cycles[0] + 4, "{cycles:?} cycles");
 }
@@ -77,7 +77,7 @@ fn single_and_double_precision_need_the_same_number_of_cycles() {
     let problem = block(10);
     let cycles = [Precision::Single, Precision::Double].map(|precision| {
         let multigrid = hierarchy(&problem, precision, 1);
-        conjugate_gradients(problem.stiffness(), &pressed(&problem), &multigrid, TOLERANCE, 50).unwrap().cycles
+        multigrid.preconditioning(problem.stiffness()).solve(&pressed(&problem), TOLERANCE, 50).unwrap().cycles
     });
     assert!(cycles[0].abs_diff(cycles[1]) <= 1, "{cycles:?}");
 }
@@ -124,7 +124,7 @@ fn a_scalar_problem_is_solved_with_constants() {
     assert_eq!(constants.count(), 1);
     let multigrid = Multigrid::new(&matrix, &constants, 1).unwrap();
     let load = vec![1.0; dim];
-    let found = conjugate_gradients(&matrix, &load, &multigrid, TOLERANCE, 50).unwrap();
+    let found = multigrid.preconditioning(&matrix).solve(&load, TOLERANCE, 50).unwrap();
     let exact = Cholesky::of(&matrix).unwrap().solve(&load);
     assert!(found.cycles <= MOST_CYCLES, "{} cycles", found.cycles);
     let error = exact.iter().zip(&found.solution).fold(0.0, |error: f64, (a, b)| error.max((a - b).abs()));
@@ -163,7 +163,7 @@ fn a_matrix_with_a_negative_eigenvalue_is_refused() {
     let matrix = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dim, dim, &entries).unwrap()).unwrap();
     let near_null = problem.near_null().unwrap();
     let refused = match Multigrid::new(&matrix, near_null, 1) {
-        Ok(multigrid) => conjugate_gradients(&matrix, &pressed(&problem), &multigrid, TOLERANCE, 200).map(|_| ()),
+        Ok(multigrid) => multigrid.preconditioning(&matrix).solve(&pressed(&problem), TOLERANCE, 200).map(|_| ()),
         Err(error) => Err(error),
     };
     assert!(matches!(refused, Err(Error::NotConvex { .. })), "{refused:?}");

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::process::peak_bytes;
 use serde_json::{Value, json};
-use signorini::internals::multigrid::{Multigrid, conjugate_gradients};
+use signorini::internals::multigrid::Multigrid;
 use signorini::{Error, Method, Model, Prepared, Settings};
 
 /// Relative residual of the linear solve, and tolerance of the contact solve.
@@ -41,7 +41,7 @@ pub fn iterative(model: &Model, threads: usize) -> Result<Value, Error> {
     // A body that is supported by contact only has a singular stiffness, so that no linear solve is measured.
     let linear = match multigrid.is_shifted() {
         true => None,
-        false => Some(conjugate_gradients(problem.stiffness(), &load, multigrid, TOLERANCE, MOST_CYCLES)?.cycles),
+        false => Some(multigrid.preconditioning(problem.stiffness()).solve(&load, TOLERANCE, MOST_CYCLES)?.cycles),
     };
     let (linear_seconds, linear_clock) = (since(from), clock.elapsed().as_secs_f64() - from_clock);
     let (from, from_clock) = (processor_seconds(clock), clock.elapsed().as_secs_f64());

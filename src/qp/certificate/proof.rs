@@ -12,7 +12,7 @@ use super::bound::Answer;
 use super::conditions::Evidence;
 use super::energy_norm::ROUNDED_BOUND;
 use crate::error::Error;
-use crate::qp::linear::multigrid::{Multigrid, conjugate_gradients, dual_norm_within};
+use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::linear::{Dependence, SparseMatrix, dot, inverse_lengths, ldexp};
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, ProvenSet};
@@ -114,17 +114,15 @@ impl ContactProblem {
         if !error.is_finite() {
             return None;
         }
-        let reach = self.monotone_reach(|s| {
-            let found = conjugate_gradients(&self.stiffness, s, multigrid, ROUGH, MOST_CYCLES).ok();
-            found.map(|found| found.solution)
-        });
+        let stiffness = multigrid.preconditioning(&self.stiffness);
+        let reach = self.monotone_reach(|s| stiffness.solve(s, ROUGH, MOST_CYCLES).ok().map(|found| found.solution));
         let least = || measured.map(|measured| measured.ritz);
         let reach = reach.or_else(|| self.measured_reach(multigrid, displacement, least()?, watch));
         let reach = reach.unwrap_or_else(|| self.any_reach());
         let open = self.open_by(&answer, error, &reach);
         let of_force = |is_residual: bool, force: &[f64]| match measured {
             Some(measured) if is_residual => Some(measured.of_residual),
-            _ => dual_norm_within(&self.stiffness, multigrid, force, watch).map(|norm| ROUNDED_BOUND * norm.most),
+            _ => stiffness.dual_norm(force, watch).map(|norm| ROUNDED_BOUND * norm.most),
         };
         let closed = self.closed_by(&answer, &open, error, 1.0, of_force);
         Some(ProvenSet { open, closed: closed.set })

@@ -128,7 +128,7 @@ impl<'a> Balances<'a> {
     fn of(&mut self, closed: &ContactSet, near: &[f64]) -> Result<Balance, Error> {
         let problem = self.scaled.problem;
         if let (Some(bounded), Some(factor)) = (&self.bounded, &self.earlier)
-            && let Some(balance) = factor.balance(problem, (bounded, closed), near, self.most_steps)
+            && let Some(balance) = factor.balance(&bounded.set(problem, closed), near, self.most_steps)
         {
             return Ok(Balance::Held(balance));
         }

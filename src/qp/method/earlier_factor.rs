@@ -5,7 +5,7 @@
 //! than a factorisation.
 
 use super::equilibrium::Equilibrium;
-use crate::qp::linear::{Analysis, Cholesky, SparseMatrix, dot, subtract};
+use crate::qp::linear::{Analysis, Blocks, Cholesky, Iterate, SparseMatrix, dot};
 use crate::qp::problem::ContactProblem;
 use crate::solution::ContactSet;
 
@@ -52,6 +52,11 @@ impl BoundedDofs {
         Some(BoundedDofs { dofs: contact.columns(), of_rows })
     }
 
+    /// A set of the rows.
+    pub fn set<'a>(&'a self, problem: &'a ContactProblem, closed: &'a ContactSet) -> BoundedSet<'a> {
+        BoundedSet { problem, bounded: self, closed }
+    }
+
     /// The values at which a set of rows holds dofs; `None` if two rows hold one dof.
     fn held(&self, gap: &[f64], closed: &ContactSet) -> Option<Vec<Option<f64>>> {
         let mut held = vec![None; self.dofs];
@@ -63,6 +68,13 @@ impl BoundedDofs {
         }
         Some(held)
     }
+}
+
+/// A set of closed rows, which are at their gaps.
+pub struct BoundedSet<'a> {
+    problem: &'a ContactProblem,
+    bounded: &'a BoundedDofs,
+    closed: &'a ContactSet,
 }
 
 /// The factor of a set of closed rows that bound one dof each.
@@ -81,30 +93,26 @@ impl EarlierFactor {
         EarlierFactor { cholesky, held }
     }
 
-    /// The balance with the rows of `closed` at their gaps, from a displacement `near` it; `None` if that would take more than
-    /// `most_steps`, or if two of the rows hold one dof.
-    pub fn balance(
-        &self,
-        problem: &ContactProblem,
-        (bounded, closed): (&BoundedDofs, &ContactSet),
-        near: &[f64],
-        most_steps: usize,
-    ) -> Option<Equilibrium> {
+    /// The balance of `set`, from a displacement `near` it; `None` if that would take more than `most_steps`, or if two of its rows
+    /// hold one dof.
+    pub fn balance(&self, set: &BoundedSet, near: &[f64], most_steps: usize) -> Option<Equilibrium> {
+        let BoundedSet { problem, bounded, closed } = *set;
         let held = bounded.held(problem.gap(), closed)?;
         let mut u: Vec<f64> = held.iter().zip(near).map(|(held, &near)| held.unwrap_or(near)).collect();
         let energy = dot(&u, &problem.stiffness().mul(&u));
-        let task = Task { factor: self, problem, held: &held, diagonal: &problem.stiffness().diagonal(), most_steps };
+        let (diagonal, enough) = (&problem.stiffness().diagonal(), ENOUGH * energy);
+        let task = Task { factor: self, problem, held: &held, diagonal, enough, most_steps };
         let (mut steps, mut last) = (0, f64::INFINITY);
         let force = loop {
             let force = task.force(&u);
             let residual = task.on_free(&force);
-            let direction = task.preconditioned(&residual);
-            let left = dot(&residual, &direction);
-            if left <= ENOUGH * energy || left > NO_GAIN * last {
-                break if task.is_balanced(&u, &residual, &direction) { force } else { return None };
+            let step = task.preconditioned(&residual);
+            let left = dot(&residual, &step);
+            if left <= enough || left > NO_GAIN * last {
+                break if task.is_balanced(&u, &residual, &step) { force } else { return None };
             }
             last = left;
-            task.descend(&mut u, residual, direction, ENOUGH * energy, &mut steps)?;
+            u = task.descend(Iterate::new(u, residual, Blocks::ONE), step, &mut steps)?;
         };
         let mut multiplier = vec![0.0; problem.rows()];
         for row in closed.iter() {
@@ -121,6 +129,8 @@ struct Task<'a> {
     problem: &'a ContactProblem,
     held: &'a [Option<f64>],
     diagonal: &'a [f64],
+    /// The remaining energy at which the displacement is balanced.
+    enough: f64,
     most_steps: usize,
 }
 
@@ -157,36 +167,26 @@ impl Task<'_> {
         step
     }
 
-    /// Conjugate gradients until the remaining energy falls to `enough`; `None` if that takes too many steps.
-    fn descend(
-        &self,
-        u: &mut [f64],
-        mut residual: Vec<f64>,
-        mut direction: Vec<f64>,
-        enough: f64,
-        steps: &mut usize,
-    ) -> Option<()> {
-        let first = dot(&residual, &direction);
-        let mut left = first;
-        let mut taken = 0;
-        while left > enough {
+    /// The displacement after conjugate gradients until the remaining energy falls to `enough`; `None` if that takes too many `steps`,
+    /// those before included. `step` is the preconditioned residual.
+    fn descend(&self, mut iterate: Iterate, mut step: Vec<f64>, steps: &mut usize) -> Option<Vec<f64>> {
+        let first = dot(&iterate.rest, &step);
+        let (mut left, mut taken) = (first, 0);
+        while left > self.enough {
             *steps += 1;
             taken += 1;
-            let elastic = self.on_free(&self.problem.stiffness().mul(&direction));
-            let length = left / dot(&direction, &elastic);
-            subtract(u, -length, &direction);
-            subtract(&mut residual, length, &elastic);
-            let step = self.preconditioned(&residual);
-            let next = dot(&residual, &step);
-            direction.iter_mut().zip(&step).for_each(|(d, &step)| *d = step + next / left * *d);
-            left = next;
-            let expected = taken as f64 * (first / enough).ln() / (first / left).ln();
-            let is_slow = taken >= TRIAL && left > enough && !(expected <= self.most_steps as f64 && left < first);
+            if !iterate.step(step, |p| self.on_free(&self.problem.stiffness().mul(p))) {
+                return None;
+            }
+            step = self.preconditioned(&iterate.rest);
+            left = dot(&iterate.rest, &step);
+            let expected = taken as f64 * (first / self.enough).ln() / (first / left).ln();
+            let is_slow = taken >= TRIAL && left > self.enough && !(expected <= self.most_steps as f64 && left < first);
             if is_slow || *steps > self.most_steps || !left.is_finite() {
                 return None;
             }
         }
-        Some(())
+        Some(iterate.solution)
     }
 }
 
@@ -232,7 +232,7 @@ mod tests {
         // Some rows open, some close, none changes.
         for changes in [97, 31, usize::MAX] {
             let other = ContactSet::from_fn(problem.rows(), |row| (row % 7 == 0) != (row % changes == 21 % changes));
-            let found = earlier.balance(&problem, (&bounded, &other), &by_first.displacement, 25).unwrap();
+            let found = earlier.balance(&bounded.set(&problem, &other), &by_first.displacement, 25).unwrap();
             let exact = equilibrium(&problem, &factor(&problem, &other), &other);
             for (found, exact) in [(&found.displacement, &exact.displacement), (&found.multiplier, &exact.multiplier)] {
                 let off: Vec<f64> = found.iter().zip(exact).map(|(a, b)| a - b).collect();
@@ -261,13 +261,13 @@ mod tests {
         let bounded = BoundedDofs::of(both.contact()).unwrap();
         let first = equilibrium(&both, &factor(&both, &closed(false)), &closed(false));
         let earlier = EarlierFactor::new(factor(&both, &closed(false)), &bounded, &closed(false));
-        if let Some(found) = earlier.balance(&both, (&bounded, &closed(true)), &first.displacement, 25) {
+        if let Some(found) = earlier.balance(&bounded.set(&both, &closed(true)), &first.displacement, 25) {
             let off = (0..dofs).map(|dof| found.displacement[dof] - found.displacement[dofs + dof]).collect::<Vec<_>>();
             assert!(largest(&off) < 1e-11 * largest(&found.displacement), "{:e}", largest(&off));
         }
         // A balance that is settled in the stiff part alone is not accepted.
         let stiff_only = ContactSet::from_fn(2 * dofs, |row| row % dofs % 7 == 0 && (row < dofs || row % 2 == 0));
-        let found = earlier.balance(&both, (&bounded, &stiff_only), &first.displacement, 25);
+        let found = earlier.balance(&bounded.set(&both, &stiff_only), &first.displacement, 25);
         let exact = equilibrium(&both, &factor(&both, &stiff_only), &stiff_only);
         if let Some(found) = found {
             let off: Vec<f64> = found.displacement.iter().zip(&exact.displacement).map(|(a, b)| a - b).collect();
@@ -283,7 +283,7 @@ mod tests {
         let free = equilibrium(&problem, &factor(&problem, &none), &none);
         let earlier = EarlierFactor::new(factor(&problem, &none), &bounded, &none);
         let checkered = ContactSet::from_fn(problem.rows(), |row| row % 2 == 0);
-        assert!(earlier.balance(&problem, (&bounded, &checkered), &free.displacement, TRIAL).is_none());
+        assert!(earlier.balance(&bounded.set(&problem, &checkered), &free.displacement, TRIAL).is_none());
         // A dof between two walls, both closed.
         let twice = SparseMatrix::from_triplets(2, 1, &[(0, 0, 1.0), (1, 0, -1.0)]).unwrap();
         let both = BoundedDofs::of(&twice).unwrap();

@@ -17,13 +17,13 @@
 
 use super::{Answer, ErrorBound, Measured};
 use crate::qp::certificate::energy_norm::ROUNDED_BOUND;
-use crate::qp::linear::multigrid::{Blocks, Multigrid, dual_norms_within, negative_direction};
-use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
+use crate::qp::linear::multigrid::Multigrid;
+use crate::qp::linear::{Blocks, SparseMatrix, SymmetricMatrix};
 use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
 
 impl ContactProblem {
-    /// An upper bound on `|u - u*|_K`, as far as [`dual_norms_within`] finds the least eigenvalues; infinite if it finds none,
+    /// An upper bound on `|u - u*|_K`, as far as the cycles find the least eigenvalues; infinite if it finds none,
     /// or if `watch` is over before that. A stiffness that the hierarchy has found singular gets springs on the rows that
     /// press, but only if no direction of negative energy is found, because springs would hide it.
     pub(in super::super) fn energy_error_bound_by(
@@ -50,12 +50,11 @@ impl ContactProblem {
         }
         let parts = self.parts();
         let are_apart = parts.count() == 1 || parts.are_apart(&self.stiffness);
-        let one = vec![0; if are_apart { 0 } else { self.dofs() }];
         let blocks = match are_apart {
             true => Blocks { of_unknown: parts.of_dofs(), count: parts.count() },
-            false => Blocks { of_unknown: &one, count: 1 },
+            false => Blocks::ONE,
         };
-        let dual = |stiffness: &SymmetricMatrix| dual_norms_within(stiffness, multigrid, &residual, blocks, watch);
+        let dual = |held: &SymmetricMatrix| multigrid.preconditioning(held).dual_norms(&residual, blocks, watch);
         let springs = multigrid.is_shifted().then(|| self.springs(answer.displacement, answer.multiplier));
         let left = match &springs {
             None => dual(&self.stiffness),
@@ -122,7 +121,7 @@ impl ContactProblem {
     /// Returns `true` if conjugate gradients with the cycles meet no direction of negative energy beyond rounding and `watch`
     /// is not over before they end.
     fn is_semidefinite_by(&self, multigrid: &Multigrid, watch: &Watch) -> bool {
-        match negative_direction(&self.stiffness, multigrid, watch) {
+        match multigrid.preconditioning(&self.stiffness).negative_direction(watch) {
             Some(direction) => self.not_convex_along(&direction).is_none(),
             None => !watch.is_over(),
         }

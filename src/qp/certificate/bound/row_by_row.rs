@@ -1,7 +1,7 @@
 //! The bound if the contact boundary is not known: the rows are repaired by their own dofs, and the body follows.
 
 use super::{Answer, EnergyNorm, ErrorBound, Keeping};
-use crate::qp::linear::{SparseMatrix, dot};
+use crate::qp::linear::{Blocks, Iterate, SparseMatrix};
 use crate::qp::problem::ContactProblem;
 
 /// Rounding of a sum, relative to the sum of its terms.
@@ -142,31 +142,18 @@ impl ContactProblem {
     /// gradients.
     fn relaxed(&self, residual: &[f64], held: &[bool]) -> Vec<f64> {
         let diagonal = &self.diagonal().values;
-        let free = |values: Vec<f64>| -> Vec<f64> {
-            values.into_iter().zip(held).map(|(value, &held)| if held { 0.0 } else { value }).collect()
+        let free = |mut values: Vec<f64>| {
+            values.iter_mut().zip(held).filter(|entry| *entry.1).for_each(|(value, _)| *value = 0.0);
+            values
         };
-        let scaled = |rest: &[f64]| -> Vec<f64> { rest.iter().zip(diagonal).map(|(r, d)| r / d).collect() };
-        let mut moved = vec![0.0; self.dofs()];
-        let mut rest = free(residual.to_vec());
-        let mut preconditioned = scaled(&rest);
-        let mut direction = preconditioned.clone();
-        let mut work = dot(&rest, &preconditioned);
+        let mut iterate = Iterate::new(vec![0.0; self.dofs()], free(residual.to_vec()), Blocks::ONE);
         for _ in 0..RELAXATIONS {
-            let elastic = self.stiffness.mul(&direction);
-            let step = work / dot(&direction, &elastic);
-            if !step.is_finite() {
+            let scaled = iterate.rest.iter().zip(diagonal).map(|(rest, diagonal)| rest / diagonal).collect();
+            if !iterate.step(scaled, |p| free(self.stiffness.mul(p))) {
                 break;
             }
-            moved.iter_mut().zip(&direction).for_each(|(entry, d)| *entry += step * d);
-            let change = free(elastic);
-            rest.iter_mut().zip(&change).for_each(|(entry, k)| *entry -= step * k);
-            preconditioned = scaled(&rest);
-            let next = dot(&rest, &preconditioned);
-            let share = next / work;
-            direction.iter_mut().zip(&preconditioned).for_each(|(d, z)| *d = z + share * *d);
-            work = next;
         }
-        moved
+        iterate.solution
     }
 }
 

@@ -15,8 +15,8 @@
 //! G. Meurant, P. Tichý, *Approximating the extreme Ritz values and upper bounds for the A-norm of the error in CG*,
 //! Numer. Algorithms 82 (2019) 937-968.
 
-use super::Multigrid;
-use crate::qp::linear::{SymmetricMatrix, exponent, ldexp};
+use super::Preconditioned;
+use crate::qp::linear::{Blocks, Iterate, exponent, ldexp};
 use crate::watch::Watch;
 
 /// Factor on the least Ritz value, because the least eigenvalue may be smaller.
@@ -47,150 +47,89 @@ pub struct DualNorm {
     pub cycles: usize,
 }
 
-/// Groups of unknowns that share no energy: the blocks of a block-diagonal matrix.
-#[derive(Clone, Copy, Debug)]
-pub struct Blocks<'a> {
-    /// The block of each unknown.
-    pub of_unknown: &'a [usize],
-    /// Number of blocks.
-    pub count: usize,
-}
-
-impl Blocks<'_> {
-    /// The sum of `term(i)` over the unknowns i of each block.
-    fn sums(&self, term: impl Fn(usize) -> f64) -> Vec<f64> {
-        let mut sums = vec![0.0; self.count];
-        self.of_unknown.iter().enumerate().for_each(|(i, &block)| sums[block] += term(i));
-        sums
+impl Preconditioned<'_> {
+    /// Bounds `sqrt(r' A^-1 r)` of a force r for a definite A, by conjugate gradients; `None` if the cycles do not settle, or if `watch`
+    /// is over before they do.
+    pub fn dual_norm(&self, force: &[f64], watch: &Watch) -> Option<DualNorm> {
+        self.dual_norms(force, Blocks::ONE, watch)?.pop()
     }
-}
 
-/// Bounds `sqrt(r' A^-1 r)` by conjugate gradients with one cycle of `multigrid`, the hierarchy of `matrix` A or of A without
-/// terms of low rank; `None` if the cycles do not settle. A must be definite.
-pub fn dual_norm(matrix: &SymmetricMatrix, multigrid: &Multigrid, force: &[f64]) -> Option<DualNorm> {
-    dual_norm_within(matrix, multigrid, force, &Watch::default())
-}
-
-/// The same; `None` also if `watch` is over before the cycles settle.
-pub fn dual_norm_within(
-    matrix: &SymmetricMatrix,
-    multigrid: &Multigrid,
-    force: &[f64],
-    watch: &Watch,
-) -> Option<DualNorm> {
-    let blocks = Blocks { of_unknown: &vec![0; force.len()], count: 1 };
-    dual_norms_within(matrix, multigrid, force, blocks, watch)?.pop()
-}
-
-/// The same for the force on each of the blocks of A.
-///
-/// One cycle serves all blocks, but each block has its own conjugate gradients: its own scale, step lengths and Ritz value. So
-/// a soft block is not lost beside a stiff one.
-pub fn dual_norms_within(
-    matrix: &SymmetricMatrix,
-    multigrid: &Multigrid,
-    force: &[f64],
-    blocks: Blocks,
-    watch: &Watch,
-) -> Option<Vec<DualNorm>> {
-    let block = |i: usize| blocks.of_unknown[i];
-    let mut largest = vec![0.0_f64; blocks.count];
-    force.iter().enumerate().for_each(|(i, value)| largest[block(i)] = largest[block(i)].max(value.abs()));
-    let units: Vec<i32> = largest.iter().map(|&largest| -exponent(largest)).collect();
-    let mut rest: Vec<f64> = force.iter().enumerate().map(|(i, &value)| ldexp(value, units[block(i)])).collect();
-    let force = rest.clone();
-    let mut solution = vec![0.0; force.len()];
-    let mut iterations = vec![Iteration::default(); blocks.count];
-    let (mut before, mut moved) = (vec![0.0; force.len()], vec![0.0; force.len()]);
-    for cycles in 1..=MOST_CYCLES {
-        if watch.is_over() {
-            return None;
-        }
-        let known = blocks.sums(|i| solution[i] * (force[i] + rest[i]));
-        let left = blocks.sums(|i| rest[i].abs());
-        for ((iteration, known), left) in iterations.iter_mut().zip(&known).zip(&left) {
-            iteration.end_without_rest(*known, *left, cycles - 1);
-        }
-        let mut direction = multigrid.cycle(&rest);
-        let in_cycle = blocks.sums(|i| rest[i] * direction[i]);
-        let along = blocks.sums(|i| direction[i] * moved[i]);
-        for (index, iteration) in iterations.iter_mut().enumerate() {
-            iteration.turn(known[index], in_cycle[index], along[index], cycles);
-        }
-        if iterations.iter().all(|iteration| iteration.found.is_some()) {
-            let scaled = iterations.iter().zip(&units).map(|(iteration, &unit)| iteration.found_in_unit(unit));
-            return scaled.collect();
-        }
-        for (i, (entry, before)) in direction.iter_mut().zip(&before).enumerate() {
-            let iteration = &iterations[block(i)];
-            *entry = if iteration.found.is_some() { 0.0 } else { *entry + iteration.share * before };
-        }
-        moved = matrix.mul_on(multigrid.threads(), &direction);
-        let energies = blocks.sums(|i| direction[i] * moved[i]);
-        let works = blocks.sums(|i| direction[i] * rest[i]);
-        for ((iteration, energy), work) in iterations.iter_mut().zip(energies).zip(works) {
-            iteration.step(energy, work)?;
-        }
-        for (i, (z, d)) in solution.iter_mut().zip(&direction).enumerate() {
-            let iteration = &iterations[block(i)];
-            if iteration.found.is_none() {
-                *z += iteration.length * d;
-                rest[i] -= iteration.length * moved[i];
+    /// The same for the force on each of the blocks of A.
+    ///
+    /// One cycle serves all blocks, but each block has its own conjugate gradients. So a soft block is not lost beside a stiff one.
+    pub fn dual_norms(&self, force: &[f64], blocks: Blocks, watch: &Watch) -> Option<Vec<DualNorm>> {
+        let mut largest = vec![0.0_f64; blocks.count];
+        force.iter().enumerate().for_each(|(i, value)| {
+            let largest = &mut largest[blocks.of(i)];
+            *largest = largest.max(value.abs());
+        });
+        let units: Vec<i32> = largest.iter().map(|&largest| -exponent(largest)).collect();
+        let force: Vec<f64> = force.iter().enumerate().map(|(i, &value)| ldexp(value, units[blocks.of(i)])).collect();
+        let mut iterate = Iterate::new(vec![0.0; force.len()], force.clone(), blocks);
+        let mut lanczos = vec![Lanczos::default(); blocks.count];
+        for cycles in 1..=MOST_CYCLES {
+            if watch.is_over() {
+                return None;
+            }
+            let both: Vec<f64> = force.iter().zip(&iterate.rest).map(|(force, rest)| force + rest).collect();
+            let known = blocks.dots(&iterate.solution, &both);
+            let mut has_rest = vec![false; blocks.count];
+            let rest = iterate.rest.iter().enumerate().filter(|entry| *entry.1 != 0.0);
+            rest.for_each(|(i, _)| has_rest[blocks.of(i)] = true);
+            let mut step = self.multigrid.cycle(&iterate.rest);
+            let in_cycle = blocks.dots(&iterate.rest, &step);
+            for (index, lanczos) in lanczos.iter_mut().enumerate().filter(|entry| entry.1.found.is_none()) {
+                match has_rest[index] {
+                    true => lanczos.turn(known[index], in_cycle[index], cycles),
+                    false => lanczos.end_without_rest(known[index], cycles - 1),
+                }
+            }
+            if lanczos.iter().all(|lanczos| lanczos.found.is_some()) {
+                return lanczos.iter().zip(&units).map(|(lanczos, &unit)| lanczos.found_in_unit(unit)).collect();
+            }
+            let is_found = |i: usize| lanczos[blocks.of(i)].found.is_some();
+            step.iter_mut().enumerate().filter(|entry| is_found(entry.0)).for_each(|(_, entry)| *entry = 0.0);
+            if !iterate.step(step, |p| self.product(p)) {
+                return None;
+            }
+            for (index, lanczos) in lanczos.iter_mut().enumerate().filter(|entry| entry.1.found.is_none()) {
+                lanczos.shares.push(iterate.shares[index]);
+                lanczos.lengths.push(Some(iterate.lengths[index]).filter(|&length| length > 0.0)?);
             }
         }
-        before = direction;
+        None
     }
-    None
 }
 
-/// The conjugate gradients of one block.
+/// The Lanczos coefficients of the conjugate gradients of one block.
 #[derive(Clone, Debug, Default)]
-struct Iteration {
+struct Lanczos {
     lengths: Vec<f64>,
+    /// The coefficient of the previous direction in each direction.
     shares: Vec<f64>,
-    /// The coefficient of the previous direction in the last one, and the step along it.
-    share: f64,
-    length: f64,
-    energy: f64,
     ritz: Option<f64>,
     found: Option<DualNorm>,
 }
 
-impl Iteration {
-    /// Ends if nothing is left of the force.
-    fn end_without_rest(&mut self, known: f64, left: f64, cycles: usize) {
-        if self.found.is_none() && left == 0.0 {
-            let norm = known.max(0.0).sqrt();
-            self.found = Some(DualNorm { least: norm, most: norm, ritz: 1.0, cycles });
-        }
+impl Lanczos {
+    /// Ends, because nothing is left of the force.
+    fn end_without_rest(&mut self, known: f64, cycles: usize) {
+        let norm = known.max(0.0).sqrt();
+        self.found = Some(DualNorm { least: norm, most: norm, ritz: 1.0, cycles });
     }
 
-    /// Takes in the effect of a cycle on the residual: the end, or the coefficient of the previous direction in the next one.
-    fn turn(&mut self, known: f64, in_cycle: f64, along: f64, cycles: usize) {
-        if self.found.is_some() || self.lengths.is_empty() {
+    /// Ends if the effect of a cycle on the residual shows that little of the energy is unknown.
+    fn turn(&mut self, known: f64, in_cycle: f64, cycles: usize) {
+        if self.lengths.is_empty() {
             return;
         }
-        let earlier = self.ritz.unwrap_or(f64::INFINITY);
         let ritz = least_eigenvalue(&self.lengths, &self.shares);
-        self.ritz = Some(ritz);
+        let earlier = self.ritz.replace(ritz).unwrap_or(f64::INFINITY);
         let unknown = in_cycle / (SAFETY * ritz);
         if unknown <= REST_SHARE * known && ritz >= (1.0 - SETTLED_RITZ) * earlier {
             let norm = |square: f64| square.max(0.0).sqrt();
             self.found = Some(DualNorm { least: norm(known), most: norm(known + unknown), ritz, cycles });
         }
-        self.share = -along / self.energy;
-        self.shares.push(self.share);
-    }
-
-    /// The step along a direction of this energy, on which the residual does this work; `None` if there is no step.
-    fn step(&mut self, energy: f64, work: f64) -> Option<()> {
-        if self.found.is_some() {
-            return Some(());
-        }
-        (self.energy, self.length) = (energy, work / energy);
-        let is_step = energy > 0.0 && self.length.is_finite() && self.length > 0.0;
-        self.lengths.push(self.length);
-        is_step.then_some(())
     }
 
     fn found_in_unit(&self, unit: i32) -> Option<DualNorm> {
@@ -204,7 +143,7 @@ impl Iteration {
 fn least_eigenvalue(lengths: &[f64], shares: &[f64]) -> f64 {
     let entries = || {
         (0..lengths.len()).map(|k| {
-            let (share, before) = if k == 0 { (0.0, 1.0) } else { (shares[k - 1].max(0.0), lengths[k - 1]) };
+            let (share, before) = if k == 0 { (0.0, 1.0) } else { (shares[k].max(0.0), lengths[k - 1]) };
             (1.0 / lengths[k] + share / before, share / (before * before))
         })
     };

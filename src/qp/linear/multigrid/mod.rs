@@ -27,8 +27,8 @@ mod prolongator;
 mod real;
 
 pub use coarser::Interval;
-pub use conjugate_gradients::{ConjugateGradients, conjugate_gradients, negative_direction};
-pub use dual_norm::{Blocks, DualNorm, dual_norm, dual_norm_within, dual_norms_within};
+pub use conjugate_gradients::{ConjugateGradients, Preconditioned};
+pub use dual_norm::DualNorm;
 pub use face::Direction;
 pub use near_null::NearNullSpace;
 
