@@ -1,5 +1,6 @@
 //! Distinguishes a positive definite matrix from a singular one that passed its Cholesky factorisation by rounding.
 
+use super::power_iteration::power_iteration;
 use super::{Cholesky, Equilibration, FactorError, SymmetricMatrix, largest};
 
 /// On a diagonal of order one, a smallest pivot above this leaves no doubt; below it the smallest eigenvalue is computed.
@@ -33,15 +34,7 @@ impl Cholesky {
 
     /// The vector with the least energy, largest entry one, by inverse iteration.
     pub fn softest_vector(&self) -> Vec<f64> {
-        // A start without symmetry, the same in every run.
-        let golden = 0.618_033_988_749_895;
-        let mut x: Vec<f64> = (0..self.dim()).map(|i| 0.5 + (i as f64 * golden).fract()).collect();
-        for _ in 0..STEPS {
-            x = self.solve(&x);
-            let size = largest(&x);
-            x.iter_mut().for_each(|value| *value /= size);
-        }
-        x
+        power_iteration(self.dim(), 0.5, STEPS, |x| Some(self.solve(x)))
     }
 }
 

@@ -19,6 +19,7 @@ mod of_faer;
 mod of_nalgebra;
 mod ordering;
 mod orthogonal;
+mod power_iteration;
 mod power_of_two;
 mod quotient;
 #[cfg(feature = "cli")]

@@ -4,6 +4,7 @@ use super::blocks::BlockMatrix;
 use super::coarsest::LOST_DIAGONAL;
 use super::operator::Operator;
 use super::real::Real;
+use crate::qp::linear::power_iteration::power_iteration;
 
 /// Products that estimate the largest eigenvalue of D^-1 A.
 const POWER_STEPS: usize = 12;
@@ -118,25 +119,21 @@ impl<T: Real> Chebyshev<T> {
     }
 
     fn largest_eigenvalue(&self, operator: &Operator<T>) -> f64 {
-        let golden = 0.618_033_988_749_895;
-        let mut x: Vec<T> = (0..operator.dim()).map(|i| T::of((i as f64 * golden).fract() - 0.5)).collect();
-        let mut moved = vec![T::default(); x.len()];
+        let product = |x: &[T], y: &[T]| x.iter().zip(y).map(|(x, y)| x.double() * y.double()).sum::<f64>();
+        let mut moved = vec![T::default(); operator.dim()];
         let mut estimate = 1.0;
-        for _ in 0..POWER_STEPS {
-            operator.mul_into(&x, &mut moved);
-            let energy: f64 = x.iter().zip(&moved).map(|(x, m)| x.double() * m.double()).sum();
+        power_iteration(operator.dim(), -0.5, POWER_STEPS, |x| {
+            operator.mul_into(x, &mut moved);
             let mut next = vec![T::default(); x.len()];
             self.precondition(operator, &moved, &mut next);
-            let dual: f64 = next.iter().zip(&moved).map(|(x, m)| x.double() * m.double()).sum();
+            let (energy, dual) = (product(x, &moved), product(&next, &moved));
             if energy.is_nan() || energy <= 0.0 || !dual.is_finite() {
-                break;
+                return None;
             }
             // The Rayleigh quotient of D^-1 A in the energy product, in which it is symmetric.
             estimate = dual / energy;
-            let size = next.iter().fold(0.0_f64, |size, value| size.max(value.double().abs()));
-            let shrink = T::of(1.0 / size);
-            x = next.into_iter().map(|value| value * shrink).collect();
-        }
+            Some(next)
+        });
         estimate
     }
 }

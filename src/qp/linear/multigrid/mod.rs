@@ -24,7 +24,7 @@ mod near_null;
 mod nodes;
 mod operator;
 mod prolongator;
-mod real;
+pub(super) mod real;
 
 pub use coarser::Interval;
 pub use conjugate_gradients::{ConjugateGradients, Preconditioned};
