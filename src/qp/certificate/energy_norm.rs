@@ -125,6 +125,10 @@ impl EnergyNorm {
     }
 
     /// Returns `true` if the time for a bound is over.
+    pub(super) fn watch(&self) -> &Watch {
+        &self.watch
+    }
+
     pub(super) fn is_over(&self) -> bool {
         self.watch.is_over()
     }

@@ -28,7 +28,6 @@ enum Taken {
 
 /// A symmetric matrix that takes its rows, with both triangles, one after another.
 pub struct SymmetricRows {
-    dim: usize,
     lower: Lower,
 }
 
@@ -38,7 +37,7 @@ impl SymmetricRows {
     /// # Errors
     /// [`Error::Numerical`] if memory does not suffice.
     pub fn new(dim: usize, entries: usize) -> Result<Self, Error> {
-        Ok(SymmetricRows { dim, lower: Lower::new(dim, entries, Taken::Upper)? })
+        Ok(SymmetricRows { lower: Lower::new(dim, entries, Taken::Upper)? })
     }
 
     /// Takes the next row: columns from 0, increasing, and values.
@@ -47,8 +46,7 @@ impl SymmetricRows {
     /// [`Error::Pattern`], [`Error::IndexOutOfRange`], [`Error::NotFinite`]; [`Error::NotSymmetric`] for an entry that differs from
     /// its mirror image in a row before.
     pub fn take(&mut self, columns: &[u32], values: &[f64]) -> Result<(), Error> {
-        let row = self.lower.cursor.len();
-        self.lower.take(self.dim, row, columns, values)
+        self.lower.take(columns, values)
     }
 
     /// The lower triangle; a negligible entry may be in one triangle only.
@@ -57,13 +55,13 @@ impl SymmetricRows {
     /// [`Error::NotSymmetric`] for an entry of the upper triangle without a mirror image.
     pub fn lower(mut self) -> Result<SparseMatrix, Error> {
         self.lower.all_matched()?;
-        let Lower { starts, rows, values, .. } = self.lower;
-        Ok(SparseMatrix::from_parts(self.dim, starts, rows, values))
+        Ok(self.lower.into_matrix())
     }
 }
 
 /// The lower triangle under construction.
 struct Lower {
+    dim: usize,
     starts: Vec<usize>,
     rows: Vec<usize>,
     values: Vec<f64>,
@@ -81,8 +79,7 @@ impl<I: Copy + TryInto<usize>> Columns<'_, I> {
     /// [`Error::Length`], [`Error::Pattern`] and [`Error::IndexOutOfRange`] for arrays that are no sorted columns,
     /// [`Error::NotFinite`], [`Error::NotSymmetric`].
     pub fn lower(self) -> Result<SparseMatrix, Error> {
-        let lower = self.walked(Taken::Lower)?;
-        Ok(SparseMatrix::from_parts(lower.starts.len() - 1, lower.starts, lower.rows, lower.values))
+        Ok(self.walked(Taken::Lower)?.into_matrix())
     }
 
     /// The transposed upper triangle; `None` if a negligible entry is on one side of the diagonal only.
@@ -91,8 +88,7 @@ impl<I: Copy + TryInto<usize>> Columns<'_, I> {
     /// As [`Columns::lower`].
     pub fn upper(self) -> Result<Option<SparseMatrix>, Error> {
         let upper = self.walked(Taken::Upper)?;
-        let matrix = || SparseMatrix::from_parts(upper.starts.len() - 1, upper.starts, upper.rows, upper.values);
-        Ok((!upper.is_one_sided).then(matrix))
+        Ok((!upper.is_one_sided).then(|| upper.into_matrix()))
     }
 
     /// The entries on and below the diagonal, of the values of the triangle `taken`.
@@ -114,7 +110,7 @@ impl<I: Copy + TryInto<usize>> Columns<'_, I> {
                 let message = format!("the column starts decrease after column {column} (indices from 0)");
                 return Err(Error::Pattern { message });
             };
-            lower.take(dim, column, rows, values)?;
+            lower.take(rows, values)?;
             first = end;
         }
         lower.all_matched()?;
@@ -125,6 +121,13 @@ impl<I: Copy + TryInto<usize>> Columns<'_, I> {
         let start = self.starts.get(column).and_then(|&start| start.try_into().ok());
         start.ok_or_else(|| Error::Pattern { message: format!("the start of column {column} is no index (from 0)") })
     }
+}
+
+/// An entry of the matrix.
+struct Entry {
+    row: usize,
+    column: usize,
+    value: f64,
 }
 
 /// An empty vector with room for this number of entries.
@@ -143,17 +146,16 @@ impl Lower {
         let mut starts = with_room(dim + 1)?;
         starts.push(0);
         let (rows, values, cursor) = (with_room(room)?, with_room(room)?, with_room(dim)?);
-        Ok(Lower { starts, rows, values, cursor, taken, is_one_sided: false })
+        Ok(Lower { dim, starts, rows, values, cursor, taken, is_one_sided: false })
     }
 
-    /// Takes the entries of `column` on and below the diagonal, and compares those above.
-    fn take<I: Copy + TryInto<usize>>(
-        &mut self,
-        dim: usize,
-        column: usize,
-        rows: &[I],
-        values: &[f64],
-    ) -> Result<(), Error> {
+    fn into_matrix(self) -> SparseMatrix {
+        SparseMatrix::from_parts(self.dim, self.starts, self.rows, self.values)
+    }
+
+    /// Takes the entries of the next column on and below the diagonal, and compares those above.
+    fn take<I: Copy + TryInto<usize>>(&mut self, rows: &[I], values: &[f64]) -> Result<(), Error> {
+        let column = self.cursor.len();
         let (start, mut above, mut least) = (self.rows.len(), 0, 0);
         for (&row, &value) in rows.iter().zip(values) {
             let Ok(row) = row.try_into() else { break };
@@ -161,7 +163,7 @@ impl Lower {
                 break;
             }
             if !self.is_mirrored(row, column, value) {
-                self.compare(row, column, value, || diagonal_of(column, rows, values))?;
+                self.compare(Entry { row, column, value }, || diagonal_of(column, rows, values))?;
             }
             (above, least) = (above + 1, row + 1);
         }
@@ -170,10 +172,10 @@ impl Lower {
         self.rows.extend(rows[above..].iter().map(|&row| row.try_into().unwrap_or(usize::MAX)));
         self.values.extend_from_slice(of_rest);
         let rest = &self.rows[start..];
-        let lies_below = rest.first().is_none_or(|&row| row >= column) && rest.last().is_none_or(|&row| row < dim);
+        let lies_below = rest.first().is_none_or(|&row| row >= column) && rest.last().is_none_or(|&row| row < self.dim);
         let increases = rest.windows(2).all(|pair| pair[0] < pair[1]);
         if !(lies_below && increases && of_rest.iter().all(|value| value.is_finite())) {
-            return Err(self.fault(dim, column, rows, values));
+            return Err(self.fault(rows, values));
         }
         self.starts.push(self.rows.len());
         let has_diagonal = self.rows.get(start) == Some(&column);
@@ -190,9 +192,10 @@ impl Lower {
         is_same
     }
 
-    /// The error of a column with rows that do not increase or lie outside, or with values that are not finite.
+    /// The error of the next column, with rows that do not increase or lie outside, or with values that are not finite.
     #[cold]
-    fn fault<I: Copy + TryInto<usize>>(&self, dim: usize, column: usize, rows: &[I], values: &[f64]) -> Error {
+    fn fault<I: Copy + TryInto<usize>>(&self, rows: &[I], values: &[f64]) -> Error {
+        let (dim, column) = (self.dim, self.cursor.len());
         let [line, entry] = self.taken.words();
         let mut before = None;
         for (&row, &value) in rows.iter().zip(values) {
@@ -213,14 +216,16 @@ impl Lower {
         Error::Pattern { message: format!("a {entry} of {line} {column} is negative (indices from 0)") }
     }
 
-    /// Compares entry (row, column) above the diagonal with its mirror image in column `row`.
-    fn compare(&mut self, row: usize, column: usize, value: f64, diagonal: impl Fn() -> f64) -> Result<(), Error> {
+    /// Compares an entry above the diagonal with its mirror image in column `row`.
+    fn compare(&mut self, above: Entry, diagonal: impl Fn() -> f64) -> Result<(), Error> {
+        let Entry { row, column, value } = above;
+        let mirror = |value: f64| Entry { row: column, column: row, value };
         let end = self.starts[row + 1];
         loop {
             let place = self.cursor[row];
             if place >= end || self.rows[place] > column {
                 self.is_one_sided = true;
-                return self.alike((column, row), 0.0, value, diagonal());
+                return self.alike(mirror(0.0), value, diagonal());
             }
             self.cursor[row] += 1;
             let below = self.values[place];
@@ -231,7 +236,7 @@ impl Lower {
                 if self.taken == Taken::Upper {
                     self.values[place] = value;
                 }
-                return self.alike((column, row), below, value, diagonal());
+                return self.alike(mirror(below), value, diagonal());
             }
             // A column before this one had no entry in that row.
             self.alone(place, row)?;
@@ -252,7 +257,7 @@ impl Lower {
     fn alone(&mut self, place: usize, column: usize) -> Result<(), Error> {
         self.is_one_sided = true;
         let row = self.rows[place];
-        self.alike((row, column), self.values[place], 0.0, self.diagonal(row))
+        self.alike(Entry { row, column, value: self.values[place] }, 0.0, self.diagonal(row))
     }
 
     /// The size of the diagonal entry of a column that was walked.
@@ -264,7 +269,8 @@ impl Lower {
 
     /// Makes sure that an entry below the diagonal and its mirror image differ by rounding at most; `diagonal` is the size of the
     /// diagonal entry of its row.
-    fn alike(&self, (row, column): (usize, usize), value: f64, mirrored: f64, diagonal: f64) -> Result<(), Error> {
+    fn alike(&self, below: Entry, mirrored: f64, diagonal: f64) -> Result<(), Error> {
+        let Entry { row, column, value } = below;
         let size = self.diagonal(column).max(diagonal);
         let scale = if size > 0.0 { size } else { value.abs().max(mirrored.abs()) };
         if (value - mirrored).abs() > SYMMETRY_TOLERANCE * scale {

@@ -53,7 +53,7 @@ impl SymmetricMatrix {
             while open < first && next[open] == starts[open + 1] {
                 open += 1;
             }
-            (open..last).for_each(|column| gathered.add(self, column, last, &mut next[column]));
+            (open..last).for_each(|column| gathered.add(self, column, &mut next[column]));
             let mut start = 0;
             for &end in &gathered.ends {
                 take(&gathered.columns[start..end], &gathered.values[start..end])?;
@@ -89,11 +89,11 @@ impl Gathered {
         self.values.resize(room, 0.0);
     }
 
-    /// Adds the entries of a column of the lower triangle in these rows, which end before `last`, from its entry `next` on. If its own
+    /// Adds the entries of a column of the lower triangle in these rows, from its entry `next` on. If its own
     /// row is one of these rows, adds also the entries right of the diagonal there.
-    fn add(&mut self, matrix: &SymmetricMatrix, column: usize, last: usize, next: &mut usize) {
+    fn add(&mut self, matrix: &SymmetricMatrix, column: usize, next: &mut usize) {
         let (rows, values) = (matrix.lower().row_indices(), matrix.lower().values());
-        let end = matrix.lower().column_starts()[column + 1];
+        let (end, last) = (matrix.lower().column_starts()[column + 1], self.first + self.ends.len());
         if column >= self.first {
             for place in *next..end {
                 self.push(column, rows[place], values[place]);

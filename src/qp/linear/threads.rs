@@ -16,45 +16,55 @@ pub fn in_order<P: Send, R: Send>(parts: Vec<P>, work: impl Fn(P) -> R + Sync) -
     }
 }
 
-/// At most `threads` runs of rows with about the same number of blocks; `starts` as in compressed rows.
-fn runs(starts: &[usize], threads: usize) -> Vec<Range<usize>> {
-    let (rows, blocks) = (starts.len() - 1, starts[starts.len() - 1]);
-    let parts = threads.min(blocks / LEAST_BLOCKS).max(1);
-    let bound =
-        |part: usize| if part == parts { rows } else { starts.partition_point(|&start| start < blocks / parts * part) };
-    (0..parts).map(|part| bound(part)..bound(part + 1)).collect()
+/// Rows of blocks to be shared out.
+#[derive(Clone, Copy)]
+pub struct SharedRows<'a> {
+    /// The start of each row, as in compressed rows.
+    pub starts: &'a [usize],
+    pub threads: usize,
 }
 
-/// Runs `work` on runs of rows, each with its parts of the vectors `ys`, which have `height` entries for each row.
-pub fn in_row_chunks<T: Send, const N: usize>(
-    starts: &[usize],
-    height: usize,
-    ys: [&mut [T]; N],
-    threads: usize,
-    work: impl Fn(Range<usize>, [&mut [T]; N]) + Sync,
-) {
-    let mut rest = ys;
-    let with_parts = |rows: Range<usize>| {
-        let parts = rest.each_mut().map(|rest| split_off(rest, rows.len() * height));
-        (rows, parts)
-    };
-    in_order(runs(starts, threads).into_iter().map(with_parts).collect(), |(rows, parts)| work(rows, parts));
-}
+impl SharedRows<'_> {
+    /// At most `threads` runs of rows with about the same number of blocks.
+    fn runs(&self) -> Vec<Range<usize>> {
+        let (rows, blocks) = (self.starts.len() - 1, self.starts[self.starts.len() - 1]);
+        let parts = self.threads.min(blocks / LEAST_BLOCKS).max(1);
+        let bound = |part: usize| match part == parts {
+            true => rows,
+            false => self.starts.partition_point(|&start| start < blocks / parts * part),
+        };
+        (0..parts).map(|part| bound(part)..bound(part + 1)).collect()
+    }
 
-/// Runs `work` on runs of rows, each with the values of its blocks, `size` for each.
-pub fn in_block_chunks<T: Send>(
-    starts: &[usize],
-    size: usize,
-    values: &mut [T],
-    threads: usize,
-    work: impl Fn(Range<usize>, &mut [T]) + Sync,
-) {
-    let mut rest = values;
-    let with_part = |rows: Range<usize>| {
-        let part = split_off(&mut rest, (starts[rows.end] - starts[rows.start]) * size);
-        (rows, part)
-    };
-    in_order(runs(starts, threads).into_iter().map(with_part).collect(), |(rows, part)| work(rows, part));
+    /// The results of `work` on runs of rows, in their order.
+    pub fn map<R: Send>(&self, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
+        in_order(self.runs(), work)
+    }
+
+    /// Runs `work` on runs of rows, each with its parts of the vectors `ys`, which have `height` entries for each row.
+    pub fn with_vectors<T: Send, const N: usize>(
+        &self,
+        height: usize,
+        ys: [&mut [T]; N],
+        work: impl Fn(Range<usize>, [&mut [T]; N]) + Sync,
+    ) {
+        let mut rest = ys;
+        let with_parts = |rows: Range<usize>| {
+            let parts = rest.each_mut().map(|rest| split_off(rest, rows.len() * height));
+            (rows, parts)
+        };
+        in_order(self.runs().into_iter().map(with_parts).collect(), |(rows, parts)| work(rows, parts));
+    }
+
+    /// Runs `work` on runs of rows, each with the values of its blocks, `size` for each.
+    pub fn with_blocks<T: Send>(&self, size: usize, values: &mut [T], work: impl Fn(Range<usize>, &mut [T]) + Sync) {
+        let mut rest = values;
+        let with_part = |rows: Range<usize>| {
+            let part = split_off(&mut rest, (self.starts[rows.end] - self.starts[rows.start]) * size);
+            (rows, part)
+        };
+        in_order(self.runs().into_iter().map(with_part).collect(), |(rows, part)| work(rows, part));
+    }
 }
 
 /// Takes the first `length` entries off a slice.
@@ -62,11 +72,6 @@ fn split_off<'a, T>(rest: &mut &'a mut [T], length: usize) -> &'a mut [T] {
     let (part, others) = std::mem::take(rest).split_at_mut(length);
     *rest = others;
     part
-}
-
-/// The results of `work` on runs of rows, in their order.
-pub fn row_chunks<R: Send>(starts: &[usize], threads: usize, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
-    in_order(runs(starts, threads), work)
 }
 
 #[cfg(test)]
@@ -84,7 +89,8 @@ mod tests {
     #[test]
     fn results_come_in_the_order_of_the_rows() {
         for threads in 1..=4 {
-            let rows: Vec<usize> = row_chunks(&starts(), threads, |rows| rows.collect::<Vec<_>>()).concat();
+            let rows: Vec<usize> =
+                SharedRows { starts: &starts(), threads }.map(|rows| rows.collect::<Vec<_>>()).concat();
             assert_eq!(rows, (0..ROWS).collect::<Vec<_>>());
         }
     }
@@ -93,13 +99,11 @@ mod tests {
     fn no_row_is_lost_if_one_thread_panics() {
         let broken = |rows: Range<usize>| assert!(!rows.contains(&(ROWS / 2)), "row {} is broken", ROWS / 2);
         for threads in 1..=4 {
-            let of_rows = guarded(|| row_chunks(&starts(), threads, broken));
-            let in_place = guarded(|| {
-                in_row_chunks(&starts(), 1, [&mut [0.0; ROWS][..]], threads, |rows, _| broken(rows));
-            });
-            let in_blocks = guarded(|| {
-                in_block_chunks(&starts(), 1, &mut vec![0.0; 4 * LEAST_BLOCKS], threads, |rows, _| broken(rows));
-            });
+            let (starts, mut values) = (starts(), vec![0.0; 4 * LEAST_BLOCKS]);
+            let shared = SharedRows { starts: &starts, threads };
+            let of_rows = guarded(|| shared.map(broken));
+            let in_place = guarded(|| shared.with_vectors(1, [&mut [0.0; ROWS][..]], |rows, _| broken(rows)));
+            let in_blocks = guarded(|| shared.with_blocks(1, &mut values, |rows, _| broken(rows)));
             for ended in [of_rows.map(drop), in_place, in_blocks] {
                 assert_eq!(ended, Err("it panicked: row 50 is broken".to_string()));
             }

@@ -92,34 +92,43 @@ fn write_stiffness(out: &mut dyn Write, stiffness: &SymmetricMatrix, layout: &La
     layout.each_place(|_, dof| out.write_all(&dof.map_or(1, |dof| lengths[dof]).to_be_bytes()))?;
     drop(lengths);
     let place = &layout.place;
+    let rows = PlacedRows { stiffness, layout };
     let own = |place: usize| (place as u32).to_be_bytes();
-    write_rows(out, stiffness, layout, own, |column, _| place[column as usize].to_be_bytes())?;
+    rows.write(out, own, |column, _| place[column as usize].to_be_bytes())?;
     let diagonal = stiffness.diagonal();
     let mean = diagonal.iter().map(|value| value.abs()).sum::<f64>() / diagonal.len().max(1) as f64;
     drop(diagonal);
-    write_rows(out, stiffness, layout, |_| mean.to_be_bytes(), |_, value| value.to_be_bytes())
+    rows.write(out, |_| mean.to_be_bytes(), |_, value| value.to_be_bytes())
 }
 
-/// The `bytes` of each entry of the stiffness, row by row, and those of `own` if a component is supported.
-fn write_rows<const COUNT: usize>(
-    out: &mut dyn Write,
-    stiffness: &SymmetricMatrix,
-    layout: &Layout,
-    own: impl Fn(usize) -> [u8; COUNT],
-    bytes: impl Fn(u32, f64) -> [u8; COUNT],
-) -> io::Result<()> {
-    let (mut row, mut place) = (Vec::new(), 0);
-    let mut free = layout.place.iter().map(|&free| free as usize);
-    let mut supported = |out: &mut dyn Write, end: usize| {
-        let written = (place..end).try_for_each(|place| out.write_all(&own(place)));
-        place = end + 1;
-        written
-    };
-    stiffness.each_row(|columns, values| {
-        supported(out, free.next().unwrap_or(layout.len()))?;
-        row.clear();
-        columns.iter().zip(values).for_each(|(&column, &value)| row.extend_from_slice(&bytes(column, value)));
-        out.write_all(&row)
-    })?;
-    supported(out, layout.len())
+/// The rows of the stiffness at their places.
+struct PlacedRows<'a> {
+    stiffness: &'a SymmetricMatrix,
+    layout: &'a Layout,
+}
+
+impl PlacedRows<'_> {
+    /// The `bytes` of each entry of the stiffness, row by row, and those of `own` if a component is supported.
+    fn write<const COUNT: usize>(
+        &self,
+        out: &mut dyn Write,
+        own: impl Fn(usize) -> [u8; COUNT],
+        bytes: impl Fn(u32, f64) -> [u8; COUNT],
+    ) -> io::Result<()> {
+        let PlacedRows { stiffness, layout } = self;
+        let (mut row, mut place) = (Vec::new(), 0);
+        let mut free = layout.place.iter().map(|&free| free as usize);
+        let mut supported = |out: &mut dyn Write, end: usize| {
+            let written = (place..end).try_for_each(|place| out.write_all(&own(place)));
+            place = end + 1;
+            written
+        };
+        stiffness.each_row(|columns, values| {
+            supported(out, free.next().unwrap_or(layout.len()))?;
+            row.clear();
+            columns.iter().zip(values).for_each(|(&column, &value)| row.extend_from_slice(&bytes(column, value)));
+            out.write_all(&row)
+        })?;
+        supported(out, layout.len())
+    }
 }

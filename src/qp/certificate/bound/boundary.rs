@@ -7,7 +7,6 @@
 //!   error itself;
 //! * the rows that look closed are put at their gaps by the smallest shift, and keep the forces of the answer.
 
-use super::super::energy_norm::Boundary;
 use super::repair::{Repair, Witness};
 use super::{Answer, EnergyNorm, ErrorBound};
 use crate::qp::problem::ContactProblem;
@@ -28,16 +27,11 @@ const SMALL: f64 = 1e-3;
 const LOST_WITH_SPRINGS: f64 = 1e4;
 
 impl ContactProblem {
-    /// The bound from the repair on the boundary; `None` if the rows that look closed cannot be met together.
-    pub(super) fn bound_on_boundary(
-        &self,
-        norm: &EnergyNorm,
-        boundary: &Boundary,
-        answer: &Answer,
-        closed: &[bool],
-    ) -> Option<ErrorBound> {
+    /// The bound from the repair on the boundary; `None` if there is no boundary, or if the rows that look closed cannot be met
+    /// together.
+    pub(super) fn bound_on_boundary(&self, norm: &EnergyNorm, answer: &Answer, closed: &[bool]) -> Option<ErrorBound> {
         let own = self.beside_springs(norm, answer);
-        let first = FirstRepair::new(self, norm, boundary, &own, closed)?;
+        let first = FirstRepair::new(self, norm, &own, closed)?;
         if first.is_sharp { Some(first.bound) } else { self.repeated(first, answer).0 }
     }
 
@@ -48,7 +42,7 @@ impl ContactProblem {
         let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation, rounding: 0.0 };
         let own = self.beside_springs(norm, &answer);
         let closed = self.rows_that_look_closed(&answer);
-        let first = FirstRepair::new(self, norm, norm.boundary()?, &own, &closed)?;
+        let first = FirstRepair::new(self, norm, &own, &closed)?;
         if first.is_sharp { Some(first.repair.answer(&first.witness)) } else { Some(self.repeated(first, &answer).1) }
     }
 
@@ -118,15 +112,9 @@ struct FirstRepair<'a> {
 }
 
 impl<'a> FirstRepair<'a> {
-    /// `None` if the rows that look closed cannot be met together.
-    fn new(
-        problem: &'a ContactProblem,
-        norm: &'a EnergyNorm,
-        boundary: &'a Boundary,
-        answer: &'a Answer<'a>,
-        closed: &[bool],
-    ) -> Option<Self> {
-        let repair = Repair::new(problem, norm, boundary, answer)?;
+    /// `None` if the boundary is not known, or if the rows that look closed cannot be met together.
+    fn new(problem: &'a ContactProblem, norm: &'a EnergyNorm, answer: &'a Answer<'a>, closed: &[bool]) -> Option<Self> {
+        let repair = Repair::new(problem, norm, norm.boundary()?, answer)?;
         let witness = repair.best_witness(closed)?;
         let bound = repair.bound(&witness);
         // With springs the shift is large and bends little: a factor that loses digits makes its energy mere rounding.

@@ -6,6 +6,7 @@
 
 use crate::qp::linear::{Accumulator, SparseMatrix, dot, norm};
 use crate::qp::problem::ContactProblem;
+use crate::watch::Watch;
 
 /// Exchanges of the set of rows: violated rows join, rows that follow from tighter ones leave.
 const EXCHANGES: usize = 10;
@@ -31,6 +32,12 @@ const STEPS_WHEN_OVER: usize = 50;
 /// A row is at its gap if its distance is below this share of the terms, far above the rounding of twice the working precision.
 const AT_GAP: f64 = 1e-26;
 
+/// The contact rows, each a column, and the watch over the work on them.
+pub(super) struct WatchedRows<'a> {
+    pub by_row: SparseMatrix,
+    pub watch: &'a Watch,
+}
+
 /// A displacement at which the closed rows are at their gaps and no other row is violated.
 pub(super) struct Placed {
     /// The shift d, rounded.
@@ -44,6 +51,7 @@ pub(super) struct Placed {
 /// Some rows B_C with the compliance `D^-1` of each dof alone.
 struct ClosedRows<'a> {
     by_row: &'a SparseMatrix,
+    watch: &'a Watch,
     rows: Vec<usize>,
     compliance: &'a [f64],
     /// `1 / sqrt(S_ii)`: with it the diagonal of S is one.
@@ -52,10 +60,11 @@ struct ClosedRows<'a> {
 
 impl<'a> ClosedRows<'a> {
     /// `None` if a row has no dofs.
-    fn new(by_row: &'a SparseMatrix, rows: Vec<usize>, compliance: &'a [f64]) -> Option<Self> {
+    fn new(watched: &'a WatchedRows, rows: Vec<usize>, compliance: &'a [f64]) -> Option<Self> {
+        let WatchedRows { by_row, watch } = watched;
         let own = |&row: &usize| by_row.column(row).map(|(dof, b)| b * b * compliance[dof]).sum::<f64>();
         let scale: Vec<f64> = rows.iter().map(|row| 1.0 / own(row).sqrt()).collect();
-        scale.iter().all(|scale| scale.is_finite()).then_some(ClosedRows { by_row, rows, compliance, scale })
+        scale.iter().all(|scale| scale.is_finite()).then_some(ClosedRows { by_row, watch, rows, compliance, scale })
     }
 
     /// `B_C v` of a displacement, rows scaled.
@@ -84,7 +93,7 @@ impl<'a> ClosedRows<'a> {
     /// # Source
     /// E. Stiefel, *Relaxationsmethoden bester Strategie zur Lösung linearer Gleichungssysteme*, Comment. Math. Helv. 29 (1955)
     /// 157-179.
-    fn solve(&self, b: Vec<f64>, is_over: &impl Fn() -> bool) -> Vec<f64> {
+    fn solve(&self, b: Vec<f64>) -> Vec<f64> {
         let product = |x: &[f64]| self.along(&self.shift(self.forces(x)));
         let (mut x, mut rest) = (vec![0.0; b.len()], b);
         let mut of_rest = product(&rest);
@@ -92,7 +101,7 @@ impl<'a> ClosedRows<'a> {
         let (mut work, least) = (dot(&rest, &of_rest), SOLVED * dot(&rest, &rest));
         for taken in 0..STEPS_FOR_A_ROW * self.rows.len() + STEPS_FOR_A_ROW {
             let step = work / dot(&of_direction, &of_direction);
-            if !(step.is_finite() && work > 0.0) || (taken >= STEPS_WHEN_OVER && is_over()) {
+            if !(step.is_finite() && work > 0.0) || (taken >= STEPS_WHEN_OVER && self.watch.is_over()) {
                 break;
             }
             x.iter_mut().zip(&direction).for_each(|(x, d)| *x += step * d);
@@ -112,20 +121,19 @@ impl<'a> ClosedRows<'a> {
 }
 
 impl ContactProblem {
+    /// The contact rows for work that ends with `watch`.
+    pub(super) fn watched_rows<'a>(&self, watch: &'a Watch) -> WatchedRows<'a> {
+        WatchedRows { by_row: self.contact.transposed(), watch }
+    }
+
     /// A shift of u that puts rows at their gaps, and all others within theirs. Of closed rows that follow from others only the
     /// tightest stay closed. `None` if rows contradict each other, or if the time ends before long chains are solved.
-    pub(super) fn placed(
-        &self,
-        by_row: &SparseMatrix,
-        displacement: &[f64],
-        mut closed: Vec<bool>,
-        is_over: impl Fn() -> bool,
-    ) -> Option<Placed> {
+    pub(super) fn placed(&self, watched: &WatchedRows, displacement: &[f64], mut closed: Vec<bool>) -> Option<Placed> {
         let compliance = self.compliance_alone();
         let terms = self.terms_of_rows(displacement);
         for _ in 0..EXCHANGES {
             let rows: Vec<usize> = (0..self.rows()).filter(|&row| closed[row]).collect();
-            let moved = self.moved_to_gaps(&ClosedRows::new(by_row, rows, &compliance)?, displacement, &is_over);
+            let moved = self.moved_to_gaps(&ClosedRows::new(watched, rows, &compliance)?, displacement);
             let is_off = |row: usize| moved.distance[row].abs() > AT_GAP * (terms[row] + moved.terms[row]);
             let violated: Vec<usize> =
                 (0..self.rows()).filter(|&row| !closed[row] && moved.distance[row] > 0.0 && is_off(row)).collect();
@@ -144,17 +152,11 @@ impl ContactProblem {
     }
 
     /// The forces on the closed rows that leave least of `residual`, each in its dofs alone.
-    pub(super) fn balancing(
-        &self,
-        by_row: &SparseMatrix,
-        closed: &[bool],
-        residual: &[f64],
-        is_over: impl Fn() -> bool,
-    ) -> Option<Vec<f64>> {
+    pub(super) fn balancing(&self, watched: &WatchedRows, closed: &[bool], residual: &[f64]) -> Option<Vec<f64>> {
         let compliance = self.compliance_alone();
         let rows = (0..self.rows()).filter(|&row| closed[row]).collect();
-        let rows = ClosedRows::new(by_row, rows, &compliance)?;
-        let found = rows.solve(rows.along(&rows.shift(residual.to_vec())), &is_over);
+        let rows = ClosedRows::new(watched, rows, &compliance)?;
+        let found = rows.solve(rows.along(&rows.shift(residual.to_vec())));
         let mut forces = vec![0.0; self.rows()];
         for ((&row, scale), x) in rows.rows.iter().zip(&rows.scale).zip(found) {
             forces[row] = -scale * x;
@@ -187,7 +189,7 @@ impl ContactProblem {
     }
 
     /// The rows moved to their gaps as far as they can be together.
-    fn moved_to_gaps(&self, rows: &ClosedRows, u: &[f64], is_over: &impl Fn() -> bool) -> Moved {
+    fn moved_to_gaps(&self, rows: &ClosedRows, u: &[f64]) -> Moved {
         let start: Vec<f64> = self.gap.iter().map(|&gap| if gap.is_finite() { -gap } else { 0.0 }).collect();
         let mut sums = Accumulator::new(&start);
         let mut add = |v: &[f64]| -> Vec<f64> {
@@ -210,7 +212,7 @@ impl ContactProblem {
                 break;
             }
             before = size;
-            last = rows.shift(rows.forces(&rows.solve(off, is_over)));
+            last = rows.shift(rows.forces(&rows.solve(off)));
             distance = add(&last);
             for ((sum, most), step) in shift.iter_mut().zip(&mut magnitude).zip(&last) {
                 *sum += step;
@@ -258,7 +260,7 @@ mod tests {
     }
 
     fn placed(problem: &ContactProblem, u: &[f64], closed: &[bool]) -> Option<Placed> {
-        problem.placed(&problem.contact.transposed(), u, closed.to_vec(), || false)
+        problem.placed(&problem.watched_rows(&Watch::default()), u, closed.to_vec())
     }
 
     #[test]
@@ -334,7 +336,7 @@ mod tests {
         let balancing = |rows: &[&[f64]]| {
             let problem = problem(&[1.0, 1.0], rows, &vec![1.0; rows.len()]);
             let closed = vec![true; rows.len()];
-            problem.balancing(&problem.contact.transposed(), &closed, &[3.0, 5.0], || false).unwrap()
+            problem.balancing(&problem.watched_rows(&Watch::default()), &closed, &[3.0, 5.0]).unwrap()
         };
         assert_eq!(balancing(&[&[2.0, 0.0]]), [-1.5]);
         assert!((balancing(&[&[1.0, 1.0]])[0] + 4.0).abs() < ROUNDING);

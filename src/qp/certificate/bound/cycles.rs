@@ -33,8 +33,8 @@ impl ContactProblem {
         watch: &Watch,
     ) -> (ErrorBound, Option<Measured>) {
         let at_gap = (0..self.rows()).map(|row| answer.multiplier[row] < 0.0 || answer.violation[row] > 0.0).collect();
-        let by_row = self.contact.transposed();
-        let Some(placed) = self.placed(&by_row, answer.displacement, at_gap, || watch.is_over()) else {
+        let watched = self.watched_rows(watch);
+        let Some(placed) = self.placed(&watched, answer.displacement, at_gap) else {
             return (ErrorBound::none(), None);
         };
         // Neither a force that pulls nor one on an open row is a multiplier.
@@ -45,7 +45,7 @@ impl ContactProblem {
             true => self.accurate_residual(answer.displacement, &kept),
             false => answer.residual.clone(),
         };
-        if !self.balance_travels(&by_row, &kept, &mut residual) {
+        if !self.balance_travels(&watched.by_row, &kept, &mut residual) {
             return (ErrorBound::none(), None);
         }
         let parts = self.parts();

@@ -117,7 +117,7 @@ impl ContactProblem {
     /// An upper bound on `|u - u*|_K`.
     pub(super) fn energy_error_bound(&self, norm: &EnergyNorm, answer: &Answer) -> ErrorBound {
         let closed = self.rows_that_look_closed(answer);
-        let on_boundary = norm.boundary().and_then(|boundary| self.bound_on_boundary(norm, boundary, answer, &closed));
+        let on_boundary = self.bound_on_boundary(norm, answer, &closed);
         // A bound that was cut short is not used.
         let on_boundary = on_boundary.filter(|bound| bound.whole.is_finite() || !norm.is_over());
         let bound = on_boundary.unwrap_or_else(|| {

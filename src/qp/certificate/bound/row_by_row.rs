@@ -1,7 +1,7 @@
 //! The bound if the contact boundary is not known: the rows are repaired by their own dofs, and the body follows.
 
 use super::{Answer, EnergyNorm, ErrorBound, Keeping};
-use crate::qp::linear::{Blocks, Iterate, SparseMatrix};
+use crate::qp::linear::{Blocks, Iterate};
 use crate::qp::problem::ContactProblem;
 
 /// Rounding of a sum, relative to the sum of its terms.
@@ -29,7 +29,7 @@ impl ContactProblem {
 
     /// The bound from a displacement with the closed rows moved to their gaps, and all others out of their obstacles.
     pub(super) fn bound_row_by_row(&self, norm: &EnergyNorm, answer: &Answer, keeping: Keeping) -> ErrorBound {
-        let by_row = self.contact.transposed();
+        let watched = self.watched_rows(norm.watch());
         let negligible = self.negligible(answer.displacement);
         let touches = |row: usize| {
             let violation = answer.violation[row];
@@ -39,7 +39,7 @@ impl ContactProblem {
             Keeping::All => (true, (0..self.rows()).map(touches).collect()),
             Keeping::Closed(closed) => (false, closed.to_vec()),
         };
-        let Some(placed) = self.placed(&by_row, answer.displacement, at_gap, || norm.is_over()) else {
+        let Some(placed) = self.placed(&watched, answer.displacement, at_gap) else {
             return ErrorBound::none();
         };
         let (closed, mut repair) = (&placed.closed, placed.shift);
@@ -51,7 +51,7 @@ impl ContactProblem {
         if !keeps_all && is_moved {
             let mut held = vec![false; self.dofs()];
             for row in (0..self.rows()).filter(|&row| closed[row]) {
-                by_row.column(row).filter(|entry| entry.1 != 0.0).for_each(|(dof, _)| held[dof] = true);
+                watched.by_row.column(row).filter(|entry| entry.1 != 0.0).for_each(|(dof, _)| held[dof] = true);
             }
             let follow = self.relaxed(&residual, &held);
             let both: Vec<f64> = repair.iter().zip(&follow).map(|(a, b)| a + b).collect();
@@ -67,7 +67,9 @@ impl ContactProblem {
             }
         }
         let mut multiplier = kept.clone();
-        if !keeps_all && let Some(change) = self.balanced(&by_row, closed, &kept, &residual, || norm.is_over()) {
+        if !keeps_all && let Some(forces) = self.balancing(&watched, closed, &residual) {
+            let pushing = |(mu, force): (&f64, f64)| if mu + force < 0.0 { force } else { -mu };
+            let change: Vec<f64> = kept.iter().zip(forces).map(pushing).collect();
             // Not rounded: a sum of two multipliers may leave more than all other forces on a dof.
             let left = self.residual_at(answer, &[&kept, &change], &repair);
             if self.size_alone(&left) < self.size_alone(&residual) {
@@ -84,19 +86,6 @@ impl ContactProblem {
         let forces = self.unrounded_product(|column| self.stiffness.lower().column(column), repair);
         residual.iter_mut().zip(forces.sums()).for_each(|(entry, force)| *entry -= force);
         residual
-    }
-
-    /// The change of the multipliers of closed rows that takes the force out of balance on their dofs, as far as they may push.
-    fn balanced(
-        &self,
-        by_row: &SparseMatrix,
-        closed: &[bool],
-        kept: &[f64],
-        residual: &[f64],
-        is_over: impl Fn() -> bool,
-    ) -> Option<Vec<f64>> {
-        let forces = self.balancing(by_row, closed, residual, is_over)?;
-        Some(kept.iter().zip(forces).map(|(mu, force)| if mu + force < 0.0 { force } else { -mu }).collect())
     }
 
     /// The square of a force in the energy norm of dofs that stand alone.
@@ -160,7 +149,7 @@ impl ContactProblem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::linear::SymmetricMatrix;
+    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
     #[test]
     fn the_rest_of_the_body_follows_a_force_to_its_equilibrium() {

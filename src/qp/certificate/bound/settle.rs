@@ -83,7 +83,7 @@ impl Repair<'_> {
                 return Some(Witness {
                     rest: self.rest(&set, &fitted),
                     is_rounded: has_dependent || (0..rows).any(is_excused),
-                    ..self.witness(error, change, &closed, multipliers)
+                    ..self.witness(error, Settled { change, closed: &closed, multipliers })
                 });
             }
             // Of copies that differ by rounding the tightest comes first in the end, unless they contradict each other.
@@ -101,8 +101,8 @@ impl Repair<'_> {
         None
     }
 
-    /// The witness of rows that are at their gaps under the force `error`, which includes a `change` of the multipliers.
-    fn witness(&self, error: Force, change: &[f64], closed: &[bool], multipliers: Multipliers) -> Witness {
+    /// The witness of rows that are at their gaps under the force `error`, which includes the change of the multipliers.
+    fn witness(&self, error: Force, Settled { change, closed, multipliers }: Settled) -> Witness {
         let in_equilibrium = multipliers == Multipliers::InEquilibrium;
         let balanced = |row: usize| self.multiplier[row] + if in_equilibrium { change[row] } else { 0.0 };
         // A force that pulls is no multiplier, and nothing balances one on a loose dof.
@@ -182,6 +182,13 @@ impl Repair<'_> {
             }
         }
     }
+}
+
+/// Closed rows that are at their gaps, and the change of the multipliers that puts them there.
+struct Settled<'a> {
+    change: &'a [f64],
+    closed: &'a [bool],
+    multipliers: Multipliers,
 }
 
 /// Rows after a fit: the change of each multiplier, the distances and their rounding, and the triangle of the rows of the set.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::real::Real;
-use crate::qp::linear::threads::{in_row_chunks, row_chunks};
+use crate::qp::linear::threads::SharedRows;
 
 /// A sparse matrix of blocks of `height` x `width` values, row by row, each block row by row.
 #[derive(Clone, Debug)]
@@ -73,9 +73,14 @@ impl<T: Real> BlockMatrix<T> {
         size_of_val(&self.starts[..]) + size_of_val(&self.indices[..]) + size_of_val(&self.values[..])
     }
 
+    /// The rows, to be shared out among threads.
+    pub fn shared(&self, threads: usize) -> SharedRows<'_> {
+        SharedRows { starts: &self.starts, threads }
+    }
+
     /// `y = A x`.
     pub fn mul_into(&self, x: &[T], y: &mut [T], threads: usize) {
-        in_row_chunks(&self.starts, self.height, [y], threads, |rows, [part]| {
+        self.shared(threads).with_vectors(self.height, [y], |rows, [part]| {
             with_block_size!(multiply_rows, (self.height, self.width), (self, x, rows, part));
         });
     }
@@ -183,9 +188,9 @@ impl<T: Real> BlockMatrix<T> {
 
     /// The product A B, row by row: a row of the product is a sum of rows of B, one for each entry in the row of A.
     pub fn product(&self, other: &Self, threads: usize) -> Self {
-        let parts = row_chunks(&self.starts, threads, |rows| {
-            with_block_size!(product_rows, (self.height, self.width), (self, other, rows))
-        });
+        let parts = self
+            .shared(threads)
+            .map(|rows| with_block_size!(product_rows, (self.height, self.width), (self, other, rows)));
         let mut product = BlockMatrix {
             height: self.height,
             width: other.width,

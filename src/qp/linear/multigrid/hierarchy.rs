@@ -6,7 +6,7 @@ use super::aggregation::{aggregate, strong_connections};
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
 use super::coarsest::Coarsest;
-use super::lines::Lines;
+use super::lines::{BothLevels, Lines};
 use super::near_null::NearNullSpace;
 use super::nodes::{Nodes, fill_empty_diagonal};
 use super::prolongator::{Candidates, smoothed, tentative};
@@ -27,9 +27,6 @@ const COARSEST: usize = 1500;
 
 /// A level with more than this share of the nodes above it is not worth its work: the matrix is factorised there.
 const LEAST_COARSENING: f64 = 0.4;
-
-/// Factor on the inverse of the largest eigenvalue in the smoothing of the prolongator.
-const PROLONGATOR_STEP: f64 = 4.0 / 3.0;
 
 /// A hierarchy of levels in one precision.
 #[derive(Debug)]
@@ -95,10 +92,13 @@ impl<T: Real> Hierarchy<T> {
             let (flat, coarse) = tentative::<T>(&candidates, blocks.height, &of_node, aggregates);
             drop(of_node);
             let moved = match lines {
-                Some(lines) => lines.product(&blocks, &flat, &candidates, &coarse),
+                Some(lines) => {
+                    let levels = BothLevels { fine: &candidates, coarse: &coarse };
+                    lines.product(&blocks, &flat, levels)
+                }
                 None => blocks.product(&flat, threads),
             };
-            let prolongator = smoothed(&flat, moved, &smoother.inverse, PROLONGATOR_STEP / smoother.largest, threads);
+            let prolongator = smoothed(&flat, moved, &smoother, threads);
             drop(flat);
             let restriction = prolongator.transposed();
             let mut next = restriction.product(&blocks.product(&prolongator, threads), threads);

@@ -25,6 +25,12 @@ pub struct Lines {
     pub aggregates: usize,
 }
 
+/// The near-null vectors of a level and of the next one.
+pub struct BothLevels<'a> {
+    pub fine: &'a Candidates,
+    pub coarse: &'a Candidates,
+}
+
 impl Lines {
     /// `None` if nodes do not lie on lines, or are close to all others.
     pub fn of<T: Real>(matrix: &BlockMatrix<T>) -> Option<Self> {
@@ -35,13 +41,12 @@ impl Lines {
     }
 
     /// `A T` of the tentative prolongator T of these aggregates, without the couplings across lines: its columns stay those of
-    /// the aggregates of strong neighbours. `fine` and `coarse` are the near-null vectors of both levels.
+    /// the aggregates of strong neighbours.
     pub fn product<T: Real>(
         &self,
         matrix: &BlockMatrix<T>,
         tentative: &BlockMatrix<T>,
-        fine: &Candidates,
-        coarse: &Candidates,
+        BothLevels { fine, coarse }: BothLevels,
     ) -> BlockMatrix<T> {
         let (height, width) = (tentative.height, tentative.width);
         let size = height * width;
@@ -54,7 +59,7 @@ impl Lines {
             for (other, block) in matrix.row(node) {
                 let is_strong = other == node || self.graph.neighbours(node).contains(&(other as u32));
                 moved.clear();
-                let is_continued = !is_strong && continued(fine, coarse, (other, own), height, &mut moved);
+                let is_continued = !is_strong && continued(fine.of_node(other, height), coarse, own, &mut moved);
                 let column = if is_continued { own } else { self.of_node[other] };
                 if !is_continued {
                     moved.clear();
@@ -84,18 +89,12 @@ impl Lines {
     }
 }
 
-/// The modes of an aggregate, continued to a node outside: X with `X R = B`; B are the near-null vectors at the node, R those
+/// The modes of an aggregate, continued to a node outside: X with `X R = B`; B are the near-null vectors at the node, `of_node`, R those
 /// in the columns of the aggregate. Returns `false` if the aggregate lacks one of these vectors.
-fn continued(
-    fine: &Candidates,
-    coarse: &Candidates,
-    (node, aggregate): (usize, u32),
-    height: usize,
-    moved: &mut Vec<f64>,
-) -> bool {
-    let count = fine.count;
+fn continued(of_node: &[f64], coarse: &Candidates, aggregate: u32, moved: &mut Vec<f64>) -> bool {
+    let count = coarse.count;
     let triangle = &coarse.values[aggregate as usize * count * count..][..count * count];
-    moved.extend_from_slice(&fine.values[node * height * count..(node + 1) * height * count]);
+    moved.extend_from_slice(of_node);
     if (0..count).any(|column| triangle[column * count + column] == 0.0) {
         return false;
     }
@@ -149,7 +148,7 @@ mod tests {
         // Constants, and vectors that grow along the lines.
         let fine = Candidates { count: 2, values: (0..nx * ny).flat_map(|node| [1.0, (node % nx) as f64]).collect() };
         let (flat, coarse) = tentative::<f64>(&fine, 1, &lines.of_node, lines.aggregates);
-        let product = lines.product(&matrix, &flat, &fine, &coarse);
+        let product = lines.product(&matrix, &flat, BothLevels { fine: &fine, coarse: &coarse });
         let line_of_aggregate: Vec<usize> = (0..lines.aggregates)
             .map(|aggregate| line_of(lines.of_node.iter().position(|&of| of as usize == aggregate).unwrap()))
             .collect();

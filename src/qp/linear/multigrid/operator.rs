@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use super::blocks::BlockMatrix;
 use super::real::Real;
-use crate::qp::linear::threads::in_row_chunks;
 
 /// A matrix A minus the change by a face: on the finest level the face is the range of I - Q, on coarser ones A becomes A - C.
 #[derive(Clone, Copy, Debug)]
@@ -59,7 +58,7 @@ impl<'a, T: Real> Operator<'a, T> {
     /// Runs `work` on runs of unknowns, whole nodes each, with the matching parts of the vectors `ys`.
     pub fn in_chunks<const N: usize>(&self, ys: [&mut [T]; N], work: impl Fn(Range<usize>, [&mut [T]; N]) + Sync) {
         let height = self.matrix.height;
-        in_row_chunks(&self.matrix.starts, height, ys, self.threads, |rows, parts| {
+        self.matrix.shared(self.threads).with_vectors(height, ys, |rows, parts| {
             work(rows.start * height..rows.end * height, parts);
         });
     }

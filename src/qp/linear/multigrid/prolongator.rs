@@ -1,12 +1,16 @@
 //! The prolongator of a level: near-null vectors cut into aggregates, made orthonormal, smoothed.
 
 use super::blocks::BlockMatrix;
+use super::chebyshev::Chebyshev;
 use super::real::Real;
-use crate::qp::linear::threads::in_block_chunks;
+use crate::qp::linear::threads::SharedRows;
 
 /// A near-null vector is no separate mode within an aggregate if less than this share of its length there is left after those
 /// before it are removed: two nodes do not turn about the line through them.
 const DEPENDENT_IN_AGGREGATE: f64 = 1e-8;
+
+/// Factor on the inverse of the largest eigenvalue in the smoothing of the prolongator.
+const STEP: f64 = 4.0 / 3.0;
 
 /// The near-null space on a level: `count` values for each place, place by place.
 #[derive(Clone, Debug)]
@@ -15,6 +19,13 @@ pub struct Candidates {
     pub count: usize,
     /// Their values.
     pub values: Vec<f64>,
+}
+
+impl Candidates {
+    /// The values at a node with `height` places.
+    pub fn of_node(&self, node: usize, height: usize) -> &[f64] {
+        &self.values[node * height * self.count..(node + 1) * height * self.count]
+    }
 }
 
 /// The tentative prolongator and the near-null space in its columns. The columns are the vectors of `fine` within each
@@ -77,19 +88,18 @@ fn orthonormalise(local: &mut [f64], count: usize, triangle: &mut [f64]) {
     }
 }
 
-/// `T - step D^-1 (A T)` from T and `moved` = A T, with a pattern that contains that of T; `inverse` holds the blocks of D^-1.
+/// `T - step D^-1 (A T)` from T and `moved` = A T, with a pattern that contains that of T; `smoother` is that of A.
 pub fn smoothed<T: Real>(
     tentative: &BlockMatrix<T>,
     mut moved: BlockMatrix<T>,
-    inverse: &[T],
-    step: f64,
+    smoother: &Chebyshev<T>,
     threads: usize,
 ) -> BlockMatrix<T> {
     let (height, width) = (moved.height, moved.width);
-    let step = T::of(step);
+    let (inverse, step) = (&smoother.inverse, T::of(STEP / smoother.largest));
     let BlockMatrix { starts, indices, values, .. } = &mut moved;
     let size = height * width;
-    in_block_chunks(starts, size, values, threads, |rows, values| {
+    SharedRows { starts, threads }.with_blocks(size, values, |rows, values| {
         let mut column = vec![T::default(); height];
         let first = starts[rows.start];
         for node in rows {
