@@ -102,7 +102,7 @@ pub mod internals {
     pub use crate::output::medium::Medium;
     #[cfg(feature = "pictures")]
     pub use crate::output::ticks::{Ticks, brief, decimal, power_of_ten};
-    pub use crate::qp::barrier::guarded;
+    pub use crate::qp::panics::guarded;
     pub use crate::qp::cost::{Estimate, bytes};
     pub use crate::qp::linear::{AugmentedMatrix, Blocks, Cholesky, dot, multigrid};
     pub use crate::qp::matrix_market::format_vector;

@@ -10,7 +10,6 @@
 //! and gaps; `judged` alone says whether an answer falls short.
 
 mod attempts;
-pub(crate) mod barrier;
 mod certificate;
 mod claims;
 pub(crate) mod cost;
@@ -20,6 +19,7 @@ mod judged;
 pub(crate) mod linear;
 pub(crate) mod matrix_market;
 pub(crate) mod method;
+pub(crate) mod panics;
 pub(crate) mod petsc;
 mod plan;
 pub(crate) mod problem;

@@ -11,7 +11,7 @@ use crate::imports::House;
 const FLOORS: [&[&str]; 18] = [
     &["solution", "watch", "memory"],
     &["error"],
-    &["file", "qp/barrier", "fem/formulation", "fem/geometry"],
+    &["file", "qp/panics", "fem/formulation", "fem/geometry"],
     &["qp/linear", "fem/element", "fem/material", "fem/surface"],
     &["qp/problem", "fem/mesh"],
     &["qp/certificate", "qp/transform", "qp/method", "fem/body"],
@@ -140,7 +140,7 @@ fn libraries_stay_in_their_rooms() {
         ("set_infinity", &[]),
         ("ctrlc::", &["cli"]),
         ("signal_hook::", &["cli"]),
-        ("catch_unwind", &["qp/barrier.rs"]),
+        ("catch_unwind", &["qp/panics.rs"]),
         ("clarabel::", &["qp/method/interior_point.rs"]),
         (
             "faer::",

@@ -12,7 +12,7 @@ use faer::{Conj, MatMut, Par};
 
 use super::{SparseMatrix, exponent, largest, ldexp};
 use crate::error::Error;
-use crate::qp::barrier::guarded;
+use crate::qp::panics::guarded;
 
 /// Reason why a factorisation did not end with a factor.
 #[derive(Clone, Debug, PartialEq)]

@@ -77,7 +77,7 @@ fn split_off<'a, T>(rest: &mut &'a mut [T], length: usize) -> &'a mut [T] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::barrier::guarded;
+    use crate::qp::panics::guarded;
 
     /// A hundred rows of as many blocks as two threads need.
     const ROWS: usize = 100;

@@ -1,4 +1,4 @@
-//! The one barrier against panics of libraries: only calls that solve and factorise are wrapped in it.
+//! The one place that catches panics of libraries: only calls that solve and factorise are wrapped in it.
 //!
 //! The code of this crate does not panic on any input. For a library nobody can promise that, and a panic that crosses it ends
 //! the caller's program too.
