@@ -102,12 +102,12 @@ pub mod internals {
     pub use crate::output::medium::Medium;
     #[cfg(feature = "pictures")]
     pub use crate::output::ticks::{Ticks, brief, decimal, power_of_ten};
-    pub use crate::qp::panics::guarded;
     pub use crate::qp::cost::{Estimate, bytes};
     pub use crate::qp::linear::{AugmentedMatrix, Blocks, Cholesky, dot, multigrid};
     pub use crate::qp::matrix_market::format_vector;
     pub use crate::qp::method::dual_active_set::DualActiveSet;
     pub use crate::qp::method::{Definiteness, Outcome, ScaledProblem, Solver};
+    pub use crate::qp::panics::guarded;
     pub use crate::scene::body::BodySpec;
     pub use crate::scene::schema::AnalysisSpec;
     pub use crate::study::scene::even_gaps;

@@ -1,10 +1,11 @@
 //! An interrupt, or a request to terminate: the first asks the work to end with what it has, the second ends the program.
 
 use std::io::{self, Write};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use super::outcome::warn;
-use crate::watch::Watch;
+use crate::watch::{Watch, locked};
 
 /// The exit code of a command that was interrupted.
 pub(super) const INTERRUPTED: u8 = 130;
@@ -19,21 +20,38 @@ const UNTIL_THEN: &str = "interrupted: the report has the results up to there\n"
 /// the address space.
 const STACK: usize = 64 << 10;
 
+/// The report of the best answer so far, for a program that ends before its work notices an interrupt.
+#[derive(Clone, Default)]
+pub(super) struct Kept(Arc<Mutex<Option<String>>>);
+
+impl Kept {
+    /// Keeps a report instead of the one before.
+    pub fn keep(&self, report: String) {
+        *locked(&self.0) = Some(report);
+    }
+
+    /// Calls `last` with the kept report, and forgets it. Any other caller waits until `last` returns.
+    pub fn take_to<T>(&self, last: impl FnOnce(Option<String>) -> T) -> T {
+        let mut kept = locked(&self.0);
+        last(kept.take())
+    }
+}
+
 /// Lets interrupts stop the work that `watch` observes. A factorisation cannot be stopped: work that does not notice in time is ended
-/// at once, with the report of the best answer if one is kept. Files remain complete, because every file is written as a whole or not at all.
-pub(super) fn listen(watch: &Watch) {
-    let watch = watch.clone();
+/// at once, with the report of the best answer if one is `kept`. Files remain complete, because every file is written as a whole or not at all.
+pub(super) fn listen(watch: &Watch, kept: &Kept) {
+    let (watch, kept) = (watch.clone(), kept.clone());
     let mut is_second = false;
     let handler = move || {
         if std::mem::replace(&mut is_second, true) {
             end();
         }
         watch.stop();
-        let watch = watch.clone();
+        let (watch, kept) = (watch.clone(), kept.clone());
         let patience = std::thread::Builder::new().stack_size(STACK).spawn(move || {
             std::thread::sleep(PATIENCE);
             if !watch.is_noticed() {
-                end_with_kept(&watch);
+                end_with(&kept);
             }
         });
         if patience.is_err() {
@@ -65,8 +83,8 @@ fn on_request(handler: impl FnMut() + Send + 'static) {
 }
 
 /// Ends with the report of the best answer so far, if one is kept. The work that ends meanwhile waits, and prints nothing.
-fn end_with_kept(watch: &Watch) -> ! {
-    watch.with_kept(|report| {
+fn end_with(kept: &Kept) -> ! {
+    kept.take_to(|report| {
         let Some(report) = report else { end() };
         warn(UNTIL_THEN);
         // With a closed pipe there is no reader.

@@ -31,7 +31,7 @@ use clap::Parser;
 use crate::scene::Scene;
 use crate::watch::Watch;
 use failure::{failed, sentence};
-use interrupt::INTERRUPTED;
+use interrupt::{INTERRUPTED, Kept};
 use options::{Arguments, Command};
 use outcome::{Ending, Outcome, Pictures, warn};
 use progress::Progress;
@@ -50,13 +50,14 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     let watch = if arguments.progress { progress::printed() } else { Watch::default() };
-    interrupt::listen(&watch);
+    let kept = Kept::default();
+    interrupt::listen(&watch, &kept);
     watch.step("assembly", 0);
     let line = || (!arguments.progress && !arguments.quiet).then(|| Progress::of(&watch));
     let shown = line();
     let format = arguments.command.format();
     let outcome = match arguments.command {
-        Command::Solve(options) => solve::run(&options, &watch),
+        Command::Solve(options) => solve::run(&options, &watch, &kept),
         Command::Compare(options) => compare::run(&options, &watch),
         Command::Sweep(options) => sweep::run(&options, &watch),
         Command::Tradeoff(options) => tradeoff::run(&options, &watch),
@@ -70,8 +71,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     drop(shown);
     // If the program is being ended with a kept report, it waits here.
-    watch.with_kept(drop);
-    if watch.is_stopped() && outcome.is_ok() {
+    kept.take_to(drop);
+    if watch.acknowledge() && outcome.is_ok() {
         warn(&interrupt::sentence(&watch));
     }
     let outcome = outcome.unwrap_or_else(|error| {
@@ -90,7 +91,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         let _shown = line();
         pictures()
     };
-    match outcome.pictures.filter(|_| !watch.is_stopped()).map_or(Ok(()), draw) {
+    match outcome.pictures.filter(|_| !watch.acknowledge()).map_or(Ok(()), draw) {
         Err(error) => {
             warn(&format!("error: {}\n", sentence(&error)));
             ExitCode::from(failed(&error, format).ending as u8)

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::about::about;
 use super::dynamic;
 use super::input::{Input, Source};
+use super::interrupt::Kept;
 use super::options::{Accuracy, Solve};
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
@@ -26,7 +27,7 @@ const AT_ONCE: f64 = 1e-3;
 /// A report sums the assembled data: it takes this share of the assembly time.
 const REPORT: f64 = 0.5;
 
-pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
+pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome, Error> {
     // Reading and assembly count too.
     let watch = &options.time.map_or_else(|| watch.clone(), |time| watch.within(time));
     let source = Source::read(&options.input, &options.common.limits)?;
@@ -45,7 +46,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
             return Err(Error::Scene { path: "--total-error".into(), message });
         };
         let goal = TotalErrorGoal { total_error: bound, force_error: options.force_error };
-        return total_error::run(options, scene, goal, watch);
+        return total_error::run(options, scene, goal, watch, kept);
     }
     if options.resume {
         let path = "analysis".into();

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::about::about;
 use super::input::{build, scene_title, warnings};
+use super::interrupt::Kept;
 use super::options::Solve;
 use super::outcome::{OfPart, Outcome, Report, warn};
 use super::settings::settings;
@@ -48,7 +49,13 @@ struct Shown<'a> {
     meshes: Option<Drawing>,
 }
 
-pub(super) fn run(options: &Solve, scene: &Scene, goal: TotalErrorGoal, watch: &Watch) -> Result<Outcome, Error> {
+pub(super) fn run(
+    options: &Solve,
+    scene: &Scene,
+    goal: TotalErrorGoal,
+    watch: &Watch,
+    kept: &Kept,
+) -> Result<Outcome, Error> {
     let clock = Instant::now();
     let model = Arc::new(build(scene, &options.input, &options.common.limits)?);
     let seconds = clock.elapsed().as_secs_f64();
@@ -58,7 +65,7 @@ pub(super) fn run(options: &Solve, scene: &Scene, goal: TotalErrorGoal, watch: &
     let (title, units) = (scene_title(&model, &options.input), model.units().clone());
     let keep = |found: &TotalError| {
         if let Ok(report) = Report::new(found, total_error_text(&title, found, None, &units)) {
-            watch.keep(report.formatted(options.common.format));
+            kept.keep(report.formatted(options.common.format));
         }
     };
     match total_error(scene, &model, goal, &settings, &keep).map_err(|error| model.explain(error))? {

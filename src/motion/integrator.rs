@@ -110,7 +110,7 @@ impl Integrator {
         let clock = Instant::now();
         let next = self.scheme.advance(&self.problem, self.step, &self.state);
         self.longest = self.longest.max(clock.elapsed().as_secs_f64());
-        if self.watch.is_stopped() {
+        if self.watch.acknowledge() {
             // The solves of this step may be incomplete.
             return Err(Error::Interrupted);
         }

@@ -290,7 +290,7 @@ impl Layout {
         let mut refused: Option<Error> = None;
         for number in 0.. {
             check_time(&settings.watch, seconds::ordering(problem))?;
-            if settings.watch.is_stopped() {
+            if settings.watch.acknowledge() {
                 return Err(Error::Interrupted);
             }
             let (last, dense) = match number {

@@ -84,7 +84,7 @@ pub fn compare(problem: &ContactProblem, settings: &Settings) -> Result<Comparis
         settings.method = method;
         match solve(problem, &settings) {
             Ok(solution) => Ok(MethodAnswer { solution, certified: true }),
-            Err(_) if settings.watch.is_stopped() => Err(Error::Interrupted),
+            Err(_) if settings.watch.acknowledge() => Err(Error::Interrupted),
             Err(Error::NotCertified { solution, .. }) => Ok(MethodAnswer { solution: *solution, certified: false }),
             Err(error) => Err(error),
         }

@@ -86,7 +86,7 @@ pub fn motion_tradeoff(scene: &Scene, settings: &Settings) -> Result<MotionTrade
         let dynamics = of(scheme, steps)?;
         let (name, step) = (dynamics.scheme.name(), dynamics.step);
         let found = match run(dynamics, settings) {
-            Err(_) if settings.watch.is_stopped() => break,
+            Err(_) if settings.watch.acknowledge() => break,
             found => found.unwrap_or_default(),
         };
         points.push(MotionPoint {

@@ -76,19 +76,19 @@ pub(crate) fn sweep_problem(
         let solution = match solved {
             Ok(solution) => solution,
             // An interrupted solve is no answer to this point.
-            Err(_) if settings.watch.is_stopped() => break,
+            Err(_) if settings.watch.acknowledge() => break,
             Err(Error::NotCertified { solution, .. }) => *solution,
             Err(error) => return Err(kept.explain(error)),
         };
         points.push(point(&problem, t, solution, settings));
-        if settings.watch.is_stopped() {
+        if settings.watch.acknowledge() {
             break;
         }
     }
     if points.is_empty() {
         return Err(Error::Interrupted);
     }
-    let is_known = same_load && !settings.watch.is_stopped() && prepared.hierarchy().is_none();
+    let is_known = same_load && !settings.watch.acknowledge() && prepared.hierarchy().is_none();
     let path = if is_known { prepared.path(first.gap(), last.gap()).ok() } else { None };
     let event = |event: &crate::qp::Event| ProblemEvent { t: event.at, row: event.row, touches: event.touches };
     Ok(ProblemSweep { points, events: path.map(|path| path.events().iter().map(event).collect()) })

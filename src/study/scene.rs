@@ -224,7 +224,7 @@ impl Sweep {
             };
             Ok(Solved { model, solved: solved.map_err(|error| kept.explain(error)), assemble_seconds })
         })?;
-        if settings.watch.is_stopped() {
+        if settings.watch.acknowledge() {
             return Ok(Sweep { points, ..Sweep::default() });
         }
         let Some(path) = between(&prepared, &at_first, last)? else { return Ok(Sweep { points, ..Sweep::default() }) };
@@ -285,14 +285,14 @@ fn points(
         let solution = match solved {
             Ok(solution) => solution,
             // An interrupted solve is no answer to this value.
-            Err(_) if settings.watch.is_stopped() => break,
+            Err(_) if settings.watch.acknowledge() => break,
             Err(Error::NotCertified { solution, .. }) => *solution,
             Err(error) => return Err(model.explain(error)),
         };
         let answer = Answer::of(Arc::new(model), &solution)?;
         let summary = scene_summary(&answer, solution, settings.goal(), assemble_seconds)?;
         points.push(SweepPoint { gap: value, force: None, summary, answer });
-        if settings.watch.is_stopped() {
+        if settings.watch.acknowledge() {
             break;
         }
     }

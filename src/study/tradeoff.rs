@@ -181,7 +181,7 @@ pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tra
         result.meshes.push(TradeoffMesh { discretisation_error, ..TradeoffMesh::of(model.problem(), divided_by) });
         let now = clock.elapsed().as_secs_f64();
         let growth = 2_f64.powi(model.body().dimension() as i32).powf(PER_UNKNOWN);
-        if watch.is_stopped() || now + growth * (now - began) > grid.seconds {
+        if watch.acknowledge() || now + growth * (now - began) > grid.seconds {
             break;
         }
     }
@@ -247,7 +247,7 @@ impl Measured<'_> {
     ) -> Result<Option<Solution>, Error> {
         let watched = |settings| Settings { watch: watch.clone(), ..settings };
         let exact = match solve(self.problem, &watched(Settings::with_method(Method::ActiveSet))) {
-            Err(_) if watch.is_stopped() => return Ok(None),
+            Err(_) if watch.acknowledge() => return Ok(None),
             solved => solved?,
         };
         let mut ways = ways(Condense::Auto, Precision::Double);
@@ -376,14 +376,14 @@ struct Timed {
 /// before the way was run.
 fn timed(problem: &ContactProblem, ways: &[Way], runs: usize, watch: &Watch) -> Result<Vec<Option<Timed>>, Error> {
     let run = |number: usize, way: &Way| {
-        if watch.is_stopped() {
+        if watch.acknowledge() {
             return Ok(None);
         }
         watch.part("run", number + 1, runs * ways.len());
         let clock = Instant::now();
         let solved = Prepared::new(problem, &way.settings).and_then(|prepared| prepared.solve(problem.gap()));
         let seconds = clock.elapsed().as_secs_f64();
-        if watch.is_stopped() {
+        if watch.acknowledge() {
             // An interrupted run gives no measurement.
             return Ok(None);
         }

@@ -105,7 +105,7 @@ impl Factored {
                 solution = self.repaired(solution, norm, &problem, settings)?;
             }
         }
-        let may_prove = settings.prove && !settings.watch.is_stopped() && settings.watch.allows(self.proof_seconds);
+        let may_prove = settings.prove && !settings.watch.acknowledge() && settings.watch.allows(self.proof_seconds);
         // A proof takes about the memory of one more factor.
         if let Some(norm) = norm.as_ref().filter(|_| may_prove) {
             let clock = Instant::now();

@@ -55,7 +55,7 @@ impl Hierarchical {
     /// Those of [`Multigrid::new`], also for a dof without stiffness that is no travel; before that [`Error::Interrupted`], [`Error::TooLarge`] and [`Error::OutOfTime`].
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         let Settings { watch, threads, .. } = settings;
-        if watch.is_stopped() {
+        if watch.acknowledge() {
             return Err(Error::Interrupted);
         }
         if !takes_travels(problem) {

@@ -38,7 +38,7 @@ impl Factored {
         let factor_clock = Instant::now();
         let layout = Layout::within(problem, &scaling, settings)?;
         let Layout { analysis, last, unknowns, multiplications, mut way, width, keeps_norm } = layout;
-        if watch.is_stopped() {
+        if watch.acknowledge() {
             return Err(Error::Interrupted);
         }
         watch.step("factorisation", 0);

@@ -7,8 +7,8 @@ use clarabel::solver::{
 
 use super::{Outcome, ScaledProblem, Solver, Start};
 use crate::error::Error;
-use crate::qp::panics::guarded;
 use crate::qp::linear::{SparseMatrix, exponent, largest, ldexp};
+use crate::qp::panics::guarded;
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 use crate::watch::Watch;
