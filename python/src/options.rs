@@ -68,7 +68,7 @@ impl Options<'_> {
             settings.precision = word("precision", precision, &PRECISIONS)?;
         }
         if let Some(tolerance) = &self.tolerance {
-            settings.tolerance = number("tolerance", tolerance)?;
+            settings.tolerance = Some(number("tolerance", tolerance)?);
         }
         match &self.accuracy {
             Some(word) if word.extract::<String>().is_ok_and(|word| word == "exact") => settings = settings.exactly(),

@@ -7,7 +7,7 @@ use crate::watch::Watch;
 /// The settings from `common` for one method; `watch` can end the solve.
 pub(super) fn settings(method: Method, common: &Common, watch: &Watch) -> Settings {
     let mut settings = Settings::with_method(method);
-    settings.tolerance = common.tolerance;
+    settings.tolerance = Some(common.tolerance);
     settings.threads = common.threads;
     settings.condense = if common.no_condense { Condense::Never } else { Condense::Auto };
     settings.memory = Some(common.limits.most_memory());

@@ -58,7 +58,7 @@ impl Integrator {
         let mut settings = settings.started()?.exactly();
         if matches!(settings.method, Method::Penalty(_)) {
             // Penalty answers are never exact, so no tolerance is enforced.
-            settings.tolerance = f64::MAX;
+            settings.tolerance = None;
         }
         // The matrices of the motion leave less to the solve of a step.
         let statics = problem.statics();

@@ -475,7 +475,7 @@ pub(super) fn safer(tried: &Tried, settings: &Settings, fell_short: &Error) -> O
 /// Returns `true` if the conditions hold and no error bound exceeds the effect of rounding the displacement: the answer can only miss
 /// an accuracy beyond that.
 fn is_exact(certificate: &Certificate, settings: &Settings) -> bool {
-    certificate.conditions_hold(settings.tolerance) && certificate.energy_error_excess == 0.0
+    certificate.conditions_hold(settings.goal().tolerance) && certificate.energy_error_excess == 0.0
 }
 
 #[cfg(test)]

@@ -86,6 +86,9 @@ pub enum Precision {
     Mixed,
 }
 
+/// The tolerance that every finite error meets.
+const ANY_FINITE: f64 = f64::MAX;
+
 /// Settings of a solve; start from [`Settings::default`] or [`Settings::with_method`] and change what differs.
 ///
 /// ```
@@ -134,8 +137,8 @@ pub struct Settings {
     pub threads: usize,
     /// Precision of the sparse factor.
     pub precision: Precision,
-    /// Tolerance of the certificate, relative: what `Ok` promises.
-    pub tolerance: f64,
+    /// Tolerance of the certificate, relative: what `Ok` promises. With `None` every finite error will do.
+    pub tolerance: Option<f64>,
     /// Relative error in the energy norm that is good enough: if a bound is known, `Ok` promises that it is below, and nothing
     /// else.
     pub accuracy: Option<f64>,
@@ -164,7 +167,7 @@ impl Default for Settings {
             condense: Condense::Auto,
             threads: 1,
             precision: Precision::Auto,
-            tolerance: 1e-9,
+            tolerance: Some(1e-9),
             accuracy: None,
             prove: false,
             time: None,
@@ -194,7 +197,7 @@ impl Settings {
 
     /// The same with a tolerance of the certificate, relative.
     pub fn with_tolerance(self, tolerance: f64) -> Self {
-        Settings { tolerance, ..self }
+        Settings { tolerance: Some(tolerance), ..self }
     }
 
     /// The same with an accuracy in energy that is good enough, relative.
@@ -268,7 +271,7 @@ impl Settings {
 
     /// The goal that an answer must meet.
     pub fn goal(&self) -> Goal {
-        Goal { tolerance: self.tolerance, accuracy: self.accuracy }
+        Goal { tolerance: self.tolerance.unwrap_or(ANY_FINITE), accuracy: self.accuracy }
     }
 
     /// Returns `true` if the best possible answer is wanted. An unpolished QP and a penalty are returned as they are.
@@ -293,9 +296,8 @@ impl Settings {
     /// # Errors
     /// [`Error::Setting`] for the first that is not in its range.
     fn check(&self) -> Result<(), Error> {
-        positive("tolerance", self.tolerance)?;
-        if let Some(accuracy) = self.accuracy {
-            positive("accuracy", accuracy)?;
+        for (name, value) in [("tolerance", self.tolerance), ("accuracy", self.accuracy)] {
+            value.map_or(Ok(()), |value| positive(name, value))?;
         }
         if let Some(memory) = self.memory.filter(|memory| memory.is_nan() || *memory <= 0.0) {
             return Err(Error::Setting { name: "memory", value: memory, allowed: "positive" });

@@ -345,7 +345,7 @@ fn ways(condense: Condense, precision: Precision) -> Vec<Way> {
 
 /// The same settings without a tolerance that judges the answers.
 fn unjudged(settings: Settings) -> Settings {
-    Settings { tolerance: f64::MAX, ..settings }
+    Settings { tolerance: None, ..settings }
 }
 
 /// Multigrid to each of its accuracies, on all dofs.

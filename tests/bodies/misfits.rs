@@ -90,8 +90,8 @@ fn each_setting_out_of_its_range_is_refused_by_name() {
     assert!(solve(&problem(), &Settings::default()).is_ok());
     type Change = fn(&mut Settings);
     let cases: [(Change, &str); 12] = [
-        (|settings| settings.tolerance = 0.0, "tolerance is 0"),
-        (|settings| settings.tolerance = f64::NAN, "tolerance is NaN"),
+        (|settings| settings.tolerance = Some(0.0), "tolerance is 0"),
+        (|settings| settings.tolerance = Some(f64::NAN), "tolerance is NaN"),
         (|settings| settings.accuracy = Some(-1.0), "accuracy is -1"),
         (
             |settings| settings.method = Method::Qp(InteriorPoint { polish: true, tolerance: f64::INFINITY }),

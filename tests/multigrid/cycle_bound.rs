@@ -127,7 +127,7 @@ fn of_body(problem: &ContactProblem, name: &str, reach: f64, draws: &mut Draws, 
         let Ok(exact) = direct.solve(&gap) else { continue };
         for stop in [(1e-9, 2), (1e-9, 5), (1e-2, 500), (1e-3, 500), (1e-4, 500), (1e-6, 500), (1e-8, 500)] {
             let mut settings = mprgp();
-            (settings.tolerance, settings.max_iterations) = stop;
+            (settings.tolerance, settings.max_iterations) = (Some(stop.0), stop.1);
             let Some(found) = answer(iterative.with_settings(&settings).unwrap().solve(&gap)) else { continue };
             let what = format!("{name}, gaps moved by {shift:.1e}, {stop:?}");
             assert!(found.certificate.bound_is_measured, "{what}");
@@ -153,7 +153,7 @@ fn the_bound_of_the_cycles_is_above_the_error_and_near_it() {
         let problem = dense.problem().unwrap();
         let mut settings = mprgp();
         settings.max_iterations = 1 + (4.0 * draws.signed().abs()) as usize;
-        settings.tolerance = 10.0_f64.powf(-6.0 * draws.signed().abs());
+        settings.tolerance = Some(10.0_f64.powf(-6.0 * draws.signed().abs()));
         if let Some(found) = answer(solve(&problem, &settings)) {
             let exact = dense.enumerate();
             // With only one level the hierarchy is a factor.
@@ -226,7 +226,7 @@ fn a_body_held_by_contact_alone_has_a_bound_with_springs_on_its_rows() {
     let exact = solve(model.problem(), &Settings::with_method(Method::ActiveSet)).unwrap();
     for tolerance in [1e-4, 1e-6, 1e-9] {
         let mut settings = mprgp();
-        settings.tolerance = tolerance;
+        settings.tolerance = Some(tolerance);
         let found = solve(model.problem(), &settings).unwrap();
         let away: Vec<f64> = found.displacement.iter().zip(&exact.displacement).map(|(u, v)| u - v).collect();
         let energy =

@@ -304,7 +304,7 @@ fn a_requested_tolerance_of_1e_10_is_reached() {
     for (name, problem) in cases.into_iter().chain([("plate on an edge", on_edge)]).chain(examples) {
         let mut settings = mprgp();
         let looser = solve(&problem, &settings).unwrap();
-        settings.tolerance = 1e-10;
+        settings.tolerance = Some(1e-10);
         let found = solve(&problem, &settings).unwrap_or_else(|error| panic!("{name}: {error}"));
         let (_, worst) = found.certificate.worst();
         println!("{name}: {worst:.1e} after {} cycles; to 1e-9 {}", found.iterations, looser.iterations);

@@ -52,7 +52,7 @@ fn no_method_begins_a_step_for_which_its_time_does_not_suffice() {
         for condense in [signorini::qp::Condense::Auto, signorini::qp::Condense::Never] {
             // On a machine that is a million times slower, a minute suffices for no step.
             let mut settings = Settings::within(Duration::from_secs(60));
-            (settings.method, settings.condense, settings.tolerance) = (method, condense, 1e-6);
+            (settings.method, settings.condense, settings.tolerance) = (method, condense, Some(1e-6));
             let fast = solve(model.problem(), &settings).unwrap();
             assert!(fast.iterations > 0);
             settings.watch = Watch::default();

@@ -79,7 +79,7 @@ impl Entry {
             let mut settings = Settings::with_method(method);
             settings.condense = condense;
             if method == Method::penalty() {
-                settings.tolerance = PENALTY_TOLERANCE;
+                settings.tolerance = Some(PENALTY_TOLERANCE);
                 if let Some(penalty) = self.penalty {
                     let one = Penalty { first: penalty, last: penalty, ..Penalty::default() };
                     settings.method = Method::Penalty(one);
@@ -90,7 +90,8 @@ impl Entry {
                     let bound = Some(solution.certificate.energy_error_bound).filter(|bound| bound.is_finite());
                     // The stiffness of a scene is rounded itself; the effect grows as its smallest pivot decreases.
                     let of_entries = solution.lost_pivot.map_or(0.0, |pivot| OF_ENTRIES / pivot);
-                    let tolerance = (WRONG * settings.tolerance).max(OF_BOUND * bound.unwrap_or(0.0)).max(of_entries);
+                    let tolerance =
+                        (WRONG * settings.goal().tolerance).max(OF_BOUND * bound.unwrap_or(0.0)).max(of_entries);
                     self.judge(&solution.displacement, &solution.multiplier, tolerance)
                 }
                 Err(Error::NotCertified { .. }) => Cell::Refused("not certified".into()),

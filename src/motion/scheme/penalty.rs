@@ -27,5 +27,5 @@ pub(super) static ABOUT: About = About {
 pub(super) fn springs(settings: &Settings, penalty: f64) -> Settings {
     let one = Penalty { first: penalty, last: penalty, penetration_threshold: 0.0, ..Penalty::default() };
     // Springs yield, so that no certificate of rigid contact is possible.
-    Settings { method: Method::Penalty(one), tolerance: f64::MAX, ..settings.clone() }
+    Settings { method: Method::Penalty(one), tolerance: None, ..settings.clone() }
 }

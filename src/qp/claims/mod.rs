@@ -114,7 +114,7 @@ pub(super) fn rechecked(
         let dof = softest.map_or(0, |motion| place_of_largest(&motion));
         return Err(within_rounding(problem, dof, share)?);
     }
-    let tolerance = settings.tolerance.min(SURE_CONDITIONS);
+    let tolerance = settings.goal().tolerance.min(SURE_CONDITIONS);
     let holds = |solution: &Solution| solution.certificate.conditions_hold(tolerance);
     let solution = match before {
         Error::NotCertified { solution, .. } if holds(&solution) => *solution,
@@ -151,7 +151,7 @@ fn is_doubtful(error: &Error, settings: &Settings) -> bool {
         Error::NotConvex { .. } | Error::Unbounded { .. } | Error::UnderHeld { .. } => true,
         Error::NotCertified { solution, .. } => {
             let is_singular = solution.lost_pivot.is_some() && settings.wants_best();
-            let is_open = is_singular || solution.certificate.conditions_hold(settings.tolerance);
+            let is_open = is_singular || solution.certificate.conditions_hold(settings.goal().tolerance);
             !solution.certificate.has_bound() && is_open
         }
         _ => false,

@@ -140,7 +140,7 @@ impl Engine for Hierarchical {
         RowSelection::of(self.problem.contact(), gap)?;
         let problem = self.problem.with(case.load.force().to_vec(), gap.to_vec())?;
         let goal = settings.goal();
-        let mut tolerance = settings.accuracy.map_or(MARGIN * settings.tolerance, |accuracy| FIRST * accuracy);
+        let mut tolerance = settings.accuracy.map_or(MARGIN * goal.tolerance, |accuracy| FIRST * accuracy);
         let (mut most_cycles, worth) = (settings.max_iterations, settings.worth_cycles);
         let multigrid = &self.multigrid;
         let solve = |tolerance, most_cycles, start| {

@@ -68,7 +68,7 @@ impl Factored {
         let certificate = on_boundary(&found)?;
         let is_met = match bounded {
             true => settings.goal().is_met_by(&certificate),
-            false => certificate.conditions_hold(settings.tolerance),
+            false => certificate.conditions_hold(settings.goal().tolerance),
         };
         if is_met {
             return Ok((found, certificate));

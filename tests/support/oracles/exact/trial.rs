@@ -245,7 +245,7 @@ fn settings(draws: &mut Draws) -> Settings {
         settings.condense = Condense::Never;
     }
     if draws.one_in(4) {
-        settings.tolerance = draws.pick(&[1e-4, 1e-6, 1e-8, 1e-11]);
+        settings.tolerance = Some(draws.pick(&[1e-4, 1e-6, 1e-8, 1e-11]));
     }
     if draws.one_in(3) {
         settings.accuracy = Some(10.0_f64.powi(-draws.between(2, 10)));
@@ -268,7 +268,7 @@ fn settings(draws: &mut Draws) -> Settings {
 
 /// The settings in words, similar to the command line.
 fn words(settings: &Settings) -> String {
-    let mut words = vec![settings.method.name().to_string(), format!("tolerance {:e}", settings.tolerance)];
+    let mut words = vec![settings.method.name().to_string(), format!("tolerance {:e}", settings.goal().tolerance)];
     words.extend(settings.accuracy.map(|accuracy| format!("accuracy {accuracy:e}")));
     let marks = [
         (settings.condense == Condense::Never, "all dofs"),
