@@ -83,15 +83,15 @@ impl Integrator {
             displacement: problem.displacement().to_vec(),
             velocity: problem.velocity().to_vec(),
             acceleration: vec![0.0; problem.statics().dofs()],
-            elastic: problem.statics().stiffness().mul(problem.displacement()),
-            momentum: problem.mass().mul(problem.velocity()),
             work: 0.0,
             penalties: 0,
             multiplier: vec![0.0; rows],
             contact_set: ContactSet::from_fn(rows, |row| violation[row] >= -GAP_ROUNDING * reach),
             middle: Vec::new(),
+            elastic: Vec::new(),
+            momentum: Vec::new(),
         };
-        let state = prepared.start(&problem, step, state)?;
+        let state = prepared.start(&problem, step, state.with_forces(&problem))?;
         if watch.is_over() {
             return Err(Error::Interrupted);
         }
@@ -140,15 +140,13 @@ impl Integrator {
             ("displacement", state.displacement.len(), dofs, "dofs"),
             ("velocity", state.velocity.len(), dofs, "dofs"),
             ("acceleration", state.acceleration.len(), dofs, "dofs"),
-            ("elastic forces", state.elastic.len(), dofs, "dofs"),
-            ("momentum", state.momentum.len(), dofs, "dofs"),
             ("multiplier", state.multiplier.len(), rows, "contact rows"),
             ("contact set", state.contact_set.rows(), rows, "contact rows"),
         ];
         if let Some(&(name, found, expected, of)) = lengths.iter().find(|entry| entry.1 != entry.2) {
             return Err(Error::Length { name, found, expected, of });
         }
-        (self.state, self.before) = (state, None);
+        (self.state, self.before) = (state.with_forces(&self.problem), None);
         Ok(())
     }
 

@@ -2,9 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::DynamicProblem;
 use crate::solution::ContactSet;
 
 /// The state of a body after some steps: all data that the next step depends on.
+///
+/// The forces that follow from it, K u and M v, are computed by the integrator that goes on from it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Steps so far.
@@ -15,10 +18,6 @@ pub struct State {
     pub velocity: Vec<f64>,
     /// Acceleration a, one entry per dof, in length over time squared; only schemes of Newmark's kind and central differences store it.
     pub acceleration: Vec<f64>,
-    /// Elastic forces K u, one entry per dof, in force.
-    pub elastic: Vec<f64>,
-    /// Momentum M v, one entry per dof, in mass times length over time.
-    pub momentum: Vec<f64>,
     /// Work of the loads since the start, in energy; forces that hold prescribed displacements do none.
     pub work: f64,
     /// Penalties that the last step tried; 0 in schemes without a loop over penalties.
@@ -31,7 +30,22 @@ pub struct State {
     /// Displacement at the middle of the last step, one entry per dof, in length, if that is not the mean of both ends; otherwise empty.
     /// No later step depends on it.
     #[serde(skip)]
-    pub(crate) middle: Vec<f64>,
+    pub(super) middle: Vec<f64>,
+    /// Elastic forces K u, one entry per dof, in force.
+    #[serde(skip)]
+    pub(super) elastic: Vec<f64>,
+    /// Momentum M v, one entry per dof, in mass times length over time.
+    #[serde(skip)]
+    pub(super) momentum: Vec<f64>,
+}
+
+impl State {
+    /// The same with the elastic forces and the momentum of its displacement and velocity.
+    pub(super) fn with_forces(self, problem: &DynamicProblem) -> Self {
+        let elastic = problem.statics().stiffness().mul(&self.displacement);
+        let momentum = problem.mass().mul(&self.velocity);
+        State { elastic, momentum, ..self }
+    }
 }
 
 /// The numbers of a state: force, penetration and energies, as a line of a history shows them.

@@ -129,8 +129,6 @@ pub(super) fn next(
     State {
         steps: before.steps + 1,
         acceleration: before.acceleration.clone(),
-        elastic: problem.statics().stiffness().mul(&displacement),
-        momentum: problem.mass().mul(&velocity),
         work: before.work,
         penalties: 0,
         displacement,
@@ -138,7 +136,10 @@ pub(super) fn next(
         multiplier,
         contact_set,
         middle: Vec::new(),
+        elastic: Vec::new(),
+        momentum: Vec::new(),
     }
+    .with_forces(problem)
 }
 
 /// `a + factor b`, entry by entry.

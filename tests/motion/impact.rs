@@ -181,6 +181,23 @@ fn a_run_that_is_resumed_goes_on_bit_for_bit() {
 }
 
 #[test]
+fn a_motion_goes_on_with_the_forces_of_the_displacement_and_velocity_of_its_state() {
+    let mut integrator = Integrator::new(oscillator(0.0), Scheme::Midpoint, 0.1, &Settings::default()).unwrap();
+    // A state from a file, with an elastic force and a momentum of another displacement and velocity.
+    let mut state = serde_json::to_value(integrator.state()).unwrap();
+    for (field, value) in [("displacement", 0.5), ("velocity", 3.0), ("elastic", 7.0), ("momentum", -7.0)] {
+        state[field] = serde_json::json!([value]);
+    }
+    integrator.resume(serde_json::from_value(state).unwrap()).unwrap();
+    let seen = integrator.observe();
+    // 4 x 0.5^2 / 2 and 1 x 3^2 / 2.
+    assert_eq!((seen.strain, seen.kinetic), (0.5, 4.5));
+    // The midpoint rule preserves the energy from there on.
+    integrator.advance().unwrap();
+    assert!((integrator.observe().energy() - 5.0).abs() < 1e-14);
+}
+
+#[test]
 fn a_factor_in_single_precision_gives_the_same_motion() {
     // A block that is thrown upwards against a parabola.
     let axis = serde_json::json!({"points": [0, 1], "divisions": [16]});

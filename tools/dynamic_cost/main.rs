@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let (mut solves, mut steps, mut closed) = (Vec::new(), Vec::new(), 0);
         for _ in 0..STEPS {
             let clock = Instant::now();
-            let x = cholesky.solve(&integrator.state().elastic);
+            let x = cholesky.solve(&integrator.state().displacement);
             solves.push(clock.elapsed().as_secs_f64());
             assert_eq!(x.len(), model.problem().dofs());
             let clock = Instant::now();

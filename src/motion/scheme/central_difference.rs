@@ -19,7 +19,7 @@ use super::projection::MassProjection;
 use super::stable_step::check_step;
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{About, Advance, Parameter, plus};
+use crate::motion::step::{About, Advance, Parameter, next, plus};
 use crate::motion::{Balance, DynamicProblem, State};
 use crate::solution::ContactSet;
 
@@ -84,26 +84,10 @@ impl Advance for CentralDifference {
             contact_set = blow.contact_set;
         }
         let displacement = plus(&state.displacement, step, &velocity);
-        let elastic = statics.stiffness().mul(&displacement);
-        let steps = state.steps + 1;
-        let acceleration = self.acceleration(problem, steps as f64 * step, &elastic, &velocity);
-        let velocity = plus(&velocity, step / 2.0, &acceleration);
-        let momentum = problem.mass().mul(&velocity);
-        let work = state.work;
-        let penalties = 0;
-        Ok(State {
-            steps,
-            displacement,
-            velocity,
-            acceleration,
-            elastic,
-            momentum,
-            work,
-            penalties,
-            multiplier,
-            contact_set,
-            middle: Vec::new(),
-        })
+        let mut end = next(problem, state, [displacement, velocity], (multiplier, contact_set));
+        end.acceleration = self.acceleration(problem, end.steps as f64 * step, &end.elastic, &end.velocity);
+        end.velocity = plus(&end.velocity, step / 2.0, &end.acceleration);
+        Ok(end.with_forces(problem))
     }
 
     /// The mean of both ends: the impulse of the contact forces changes the momentum over this interval. Dampers act with the velocities

@@ -72,8 +72,6 @@ struct Massless {
     dofs: Vec<usize>,
     /// Their rows in the whole problem.
     rows: Vec<usize>,
-    /// Columns of K at these dofs.
-    columns: SparseMatrix,
     stepping: Stepping,
 }
 
@@ -84,17 +82,11 @@ impl Massless {
         dofs.iter().enumerate().for_each(|(number, &dof)| place[dof] = number);
         // Viscous forces of these dofs by their mean velocity over a step.
         let [_, viscous] = problem.damping();
-        let (mut inside, mut columns) = (Vec::new(), Vec::new());
+        let mut inside = Vec::new();
         for (row, column, value) in statics.stiffness().lower().triplets() {
             let (i, j) = (place[row], place[column]);
             if i != usize::MAX && j != usize::MAX {
                 inside.push((i.max(j), i.min(j), value * (1.0 + viscous / step)));
-            }
-            if j != usize::MAX {
-                columns.push((row, j, value));
-            }
-            if i != usize::MAX && row != column {
-                columns.push((column, i, value));
             }
         }
         let mut rows = vec![false; statics.rows()];
@@ -109,8 +101,7 @@ impl Massless {
         let of_rows = SparseMatrix::from_triplets(statics.rows(), count, &entries)?.select_rows(&rows);
         let gap = rows.iter().map(|&row| statics.gap()[row]).collect();
         let stepping = Stepping::new(&ContactProblem::new(stiffness, vec![0.0; count], of_rows, gap)?, settings)?;
-        let columns = SparseMatrix::from_triplets(statics.dofs(), count, &columns)?;
-        Ok(Massless { dofs, rows, columns, stepping })
+        Ok(Massless { dofs, rows, stepping })
     }
 
     /// Puts the dofs without mass in equilibrium with the others, which have the displacement and velocity of `state`; `before` is the
@@ -130,9 +121,7 @@ impl Massless {
             state.displacement[dof] += change;
             state.velocity[dof] = (state.displacement[dof] - before[dof]) / step;
         }
-        for (dof, column, value) in self.columns.triplets() {
-            state.elastic[dof] += value * change[column];
-        }
+        state.elastic = problem.statics().stiffness().mul(&state.displacement);
         Ok(())
     }
 }
