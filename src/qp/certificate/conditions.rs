@@ -2,7 +2,7 @@
 
 use super::EnergyNorm;
 use super::bound::{Answer, ErrorBound, Measured};
-use super::scales::{OfPart, Scales, larger, relative};
+use super::scales::{Forces, OfPart, Scales, larger, relative};
 use super::units::Units;
 use super::verdict::FORCES_ROUNDED;
 use crate::error::Error;
@@ -204,7 +204,7 @@ impl ContactProblem {
         let violation = self.accurate_violation(u);
         let (contact_terms, lengths) = (self.contact.mul_abs_transposed(lambda), self.contact.mul_abs(u));
         let forces: Vec<f64> = self.load.iter().zip(&contact_terms).map(|(f, contact)| f.abs() + contact).collect();
-        let scales = Scales::of(self, u, &forces, &elastic, strain, &terms);
+        let scales = Scales::of(self, u, strain, &Forces { applied: &forces, elastic: &elastic, terms: &terms });
 
         let share = |dof: usize, force: f64| relative(force.abs(), terms[dof] + forces[dof]);
         let mut shares_of_rows = vec![0.0; self.rows()];
@@ -250,7 +250,7 @@ impl ContactProblem {
             cancellation: Cancellation { dof: 0, forces: 0.0, left: 0.0 },
             bound_is_measured: matches!(bounding, Bounding::Cycles(..)),
         };
-        let rounding = scales.whole(strain).rounding();
+        let rounding = scales.whole.rounding();
         let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation, rounding };
         let (bound, measured, loss) = match bounding {
             Bounding::Nothing => (ErrorBound::none(), None, 1.0),
@@ -260,7 +260,7 @@ impl ContactProblem {
                 (bound, measured, measured.map_or(1.0, |measured| 1.0 / measured.ritz.min(1.0)))
             }
         };
-        let part = certificate.take_in(&bound, &scales, strain, loss);
+        let part = certificate.set_bounds(&bound, &scales, loss);
         certificate.cancellation = self.cancellation(&forces, &elastic, part);
         let Answer { residual, .. } = answer;
         let has_bound = !matches!(bounding, Bounding::Nothing);

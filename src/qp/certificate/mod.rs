@@ -18,3 +18,4 @@ mod verdict;
 pub(crate) use conditions::Examined;
 pub(crate) use energy_norm::EnergyNorm;
 pub(crate) use mode::{NullMode, Rounding};
+pub(crate) use proof::WithEvidence;

@@ -27,6 +27,14 @@ const MOST_CYCLES: usize = 20;
 /// Multiplications that the compliance of the rows in question may cost; beyond this, one dof of each row is moved alone.
 const MOST_WORK: f64 = 2e9;
 
+/// An answer whose rows are to be proven.
+pub(crate) struct WithEvidence<'a> {
+    pub displacement: &'a [f64],
+    pub multiplier: &'a [f64],
+    /// What its certificate has found, if that is known.
+    pub evidence: Option<Evidence>,
+}
+
 impl ContactProblem {
     /// The rows for which an answer (u of length n, in m; lambda of length m, in N, `<= 0` in compression) proves, by
     /// its distance and force, that they are open or closed in the exact answer; `None` if K is not positive definite
@@ -37,21 +45,17 @@ impl ContactProblem {
     pub fn prove(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Option<ProvenSet>, Error> {
         self.check_answer(displacement, multiplier)?;
         let norm = EnergyNorm::of(&self.stiffness, &self.contact)?;
-        Ok(norm.and_then(|norm| self.prove_in(&norm, displacement, multiplier, None)))
+        Ok(norm.and_then(|norm| self.prove_in(&norm, WithEvidence { displacement, multiplier, evidence: None })))
     }
 
     /// As [`ContactProblem::prove`], in an energy norm that is already available, for vectors that fit; from the evidence of
     /// their certificate if there is any.
-    pub(crate) fn prove_in(
-        &self,
-        norm: &EnergyNorm,
-        displacement: &[f64],
-        multiplier: &[f64],
-        evidence: Option<Evidence>,
-    ) -> Option<ProvenSet> {
+    pub(crate) fn prove_in(&self, norm: &EnergyNorm, answer: WithEvidence) -> Option<ProvenSet> {
+        let WithEvidence { displacement, multiplier, evidence } = answer;
         if let Some(units) = self.far_units(displacement) {
             let (problem, norm) = (self.in_units(&units).ok()?, units.norm(norm));
-            return problem.prove_in(&norm, &units.displacement(displacement), &units.force(multiplier), None);
+            let [displacement, multiplier] = [&units.displacement(displacement), &units.force(multiplier)];
+            return problem.prove_in(&norm, WithEvidence { displacement, multiplier, evidence: None });
         }
         if norm.loose_dofs() > 0 {
             return None;
@@ -60,14 +64,14 @@ impl ContactProblem {
         let Evidence { residual, violation, error, .. } =
             evidence.or_else(|| self.examine_in(Some(norm), displacement, multiplier).ok()?.evidence)?;
         let answer = Answer { displacement, multiplier, residual, violation: &violation, rounding: 0.0 };
-        let error = ROUNDED_BOUND * error;
+        let (error, widening) = (ROUNDED_BOUND * error, norm.widening());
         if !error.is_finite() {
             return None;
         }
-        let halves = Halves::of(self, norm);
-        let wide_error = norm.widening() * error;
+        let compliance = Halves::of(self, norm);
+        let wide_error = widening * error;
         // One solve saves sweeps.
-        let at_once = || halves.reach_at_once().or_else(|| self.monotone_reach(|s| Some(norm.displacement(s))));
+        let at_once = || compliance.reach_at_once().or_else(|| self.monotone_reach(|s| Some(norm.displacement(s))));
         let reach = if norm.is_over() { None } else { at_once() }.unwrap_or_else(|| self.any_reach());
         let mut open = self.open_by(&answer, wide_error, &reach);
         let least = self.least_reach();
@@ -77,14 +81,14 @@ impl ContactProblem {
             .map(|(row, distance)| (row, distance / wide_error))
             .filter(|&(row, limit)| limit > least[row] && !open.contains(row))
             .collect();
-        self.within_reach(norm, &halves, &doubtful).into_iter().for_each(|row| open.insert(row));
-        let of_force = |force: &[f64]| Some(ROUNDED_BOUND * norm.widening() * norm.of_force(force));
-        let mut closed = self.closed_by(&answer, &open, error, norm.widening(), |_, force| of_force(force));
+        self.within_reach(norm, &compliance, &doubtful).into_iter().for_each(|row| open.insert(row));
+        let of_force = ROUNDED_BOUND * widening * norm.of_force(&self.unbalanced(&answer, &open).force);
+        let mut closed = self.closed_alone(&answer, &open, widening * (of_force + error));
         let in_question: Vec<usize> = (0..rows).filter(|&row| !open.contains(row)).collect();
         let is_doubtful = |row: &usize| multiplier[*row] < 0.0 && !closed.set.contains(*row);
-        if in_question.iter().any(is_doubtful) && halves.work(in_question.len()) <= MOST_WORK {
-            for (&row, length) in in_question.iter().zip(halves.moved_together(&self.contact, &in_question)) {
-                closed.prove(row, -multiplier[row], norm.widening() * length);
+        if in_question.iter().any(is_doubtful) && compliance.work(in_question.len()) <= MOST_WORK {
+            for (&row, length) in in_question.iter().zip(compliance.moved_together(&self.contact, &in_question)) {
+                closed.prove(row, -multiplier[row], length);
             }
         }
         Some(ProvenSet { open, closed: closed.set })
@@ -96,10 +100,9 @@ impl ContactProblem {
         &self,
         multigrid: &Multigrid,
         watch: &Watch,
-        displacement: &[f64],
-        multiplier: &[f64],
-        evidence: Option<Evidence>,
+        answer: WithEvidence,
     ) -> Option<ProvenSet> {
+        let WithEvidence { displacement, multiplier, evidence } = answer;
         // A hierarchy of one level is already a factor.
         if multigrid.unknowns().len() <= 1 {
             return self.prove(displacement, multiplier).ok()?;
@@ -116,15 +119,19 @@ impl ContactProblem {
         }
         let stiffness = multigrid.preconditioning(&self.stiffness);
         let reach = self.monotone_reach(|s| stiffness.solve(s, ROUGH, MOST_CYCLES).ok().map(|found| found.solution));
-        let least = || measured.map(|measured| measured.ritz);
-        let reach = reach.or_else(|| self.measured_reach(multigrid, displacement, least()?, watch));
+        let by_eigenvalues = || {
+            let least = measured?.ritz;
+            Some(self.measured_reach(least, self.largest_eigenvalue(multigrid, displacement, watch)?))
+        };
+        let reach = reach.or_else(by_eigenvalues);
         let reach = reach.unwrap_or_else(|| self.any_reach());
         let open = self.open_by(&answer, error, &reach);
-        let of_force = |is_residual: bool, force: &[f64]| match measured {
+        let Unbalanced { force, is_residual } = self.unbalanced(&answer, &open);
+        let of_force = match measured {
             Some(measured) if is_residual => Some(measured.of_residual),
-            _ => stiffness.dual_norm(force, watch).map(|norm| ROUNDED_BOUND * norm.most),
+            _ => stiffness.dual_norm(&force, watch).map(|norm| ROUNDED_BOUND * norm.most),
         };
-        let closed = self.closed_by(&answer, &open, error, 1.0, of_force);
+        let closed = self.closed_alone(&answer, &open, of_force.map_or(f64::INFINITY, |force| force + error));
         Some(ProvenSet { open, closed: closed.set })
     }
 
@@ -151,27 +158,22 @@ impl ContactProblem {
         is_open.into_iter().collect()
     }
 
-    /// The rows that are closed, proven by one dof each. The error is `error` in the energy norm; `of_force` bounds the norm of
-    /// the displacement under a force, and takes `true` if that force is the residual.
-    fn closed_by(
-        &self,
-        answer: &Answer,
-        open: &ContactSet,
-        error: f64,
-        widening: f64,
-        of_force: impl FnOnce(bool, &[f64]) -> Option<f64>,
-    ) -> Closed {
-        let rows = self.rows();
+    /// The force that is out of balance without the multipliers of the `open` rows.
+    fn unbalanced(&self, answer: &Answer, open: &ContactSet) -> Unbalanced {
         let dropped: Vec<f64> =
-            (0..rows).map(|row| if open.contains(row) { -answer.multiplier[row] } else { 0.0 }).collect();
-        let force: Vec<f64> =
+            (0..self.rows()).map(|row| if open.contains(row) { -answer.multiplier[row] } else { 0.0 }).collect();
+        let force =
             answer.residual.iter().zip(self.contact.mul_transposed(&dropped)).map(|(r, part)| r + part).collect();
-        let is_residual = dropped.iter().all(|&force| force == 0.0);
-        let imbalance = of_force(is_residual, &force).map_or(f64::INFINITY, |force| force + error);
+        Unbalanced { force, is_residual: dropped.iter().all(|&force| force == 0.0) }
+    }
+
+    /// The rows that are closed, proven by one dof each.
+    fn closed_alone(&self, answer: &Answer, open: &ContactSet, imbalance: f64) -> Closed {
+        let rows = self.rows();
         let mut closed = Closed { set: ContactSet::open(rows), imbalance };
         let in_question: Vec<usize> = (0..rows).filter(|&row| !open.contains(row)).collect();
         for (&row, length) in in_question.iter().zip(self.moved_alone(&in_question)) {
-            closed.prove(row, -answer.multiplier[row], widening * length);
+            closed.prove(row, -answer.multiplier[row], length);
         }
         closed
     }
@@ -190,6 +192,13 @@ impl ContactProblem {
         }
         lengths
     }
+}
+
+/// The force that is left over at each dof.
+struct Unbalanced {
+    force: Vec<f64>,
+    /// `true` if it is the residual of the answer.
+    is_residual: bool,
 }
 
 /// The rows that are proven closed, and the norm of the forces that may be out of balance.
@@ -224,7 +233,7 @@ impl<'a> Halves<'a> {
         }
     }
 
-    fn half(&self, row: usize) -> Vec<f64> {
+    fn column(&self, row: usize) -> Vec<f64> {
         let boundary = self.norm.boundary().filter(|_| self.on_boundary);
         let mut column = vec![0.0; boundary.map_or(self.norm.dofs(), |boundary| boundary.len())];
         self.rows[row].iter().for_each(|&(place, b)| column[place] += b);
@@ -239,8 +248,8 @@ impl<'a> Halves<'a> {
         if self.norm.is_over() {
             return f64::INFINITY;
         }
-        let half = self.half(row);
-        ldexp(dot(&half, &half), self.norm.factor()).sqrt()
+        let column = self.column(row);
+        ldexp(dot(&column, &column), self.norm.factor()).sqrt()
     }
 
     /// Upper bounds on the reach of all rows by one sweep, if the contact boundary is known: the length of a column is at most
@@ -273,9 +282,9 @@ impl<'a> Halves<'a> {
             return none();
         };
         let basis: Vec<usize> = (0..rows.len()).filter(|&index| independent[index]).collect();
-        let in_time = |&index: &usize| if self.norm.is_over() { None } else { Some(self.half(rows[index])) };
-        let Some(halves) = basis.iter().map(in_time).collect::<Option<Vec<_>>>() else { return none() };
-        let Some(reciprocals) = inverse_lengths(halves, || self.norm.is_over()) else { return none() };
+        let in_time = |&index: &usize| if self.norm.is_over() { None } else { Some(self.column(rows[index])) };
+        let Some(columns) = basis.iter().map(in_time).collect::<Option<Vec<_>>>() else { return none() };
+        let Some(reciprocals) = inverse_lengths(columns, || self.norm.is_over()) else { return none() };
         let mut lengths = none();
         for (&index, reciprocal) in basis.iter().zip(reciprocals).filter(|entry| !takes_part[*entry.0]) {
             lengths[index] = ldexp_root(reciprocal, -self.norm.factor());
@@ -307,10 +316,10 @@ mod tests {
         let contact = SparseMatrix::from_triplets(9, dofs, &rows).unwrap();
         let problem = ContactProblem::new(stiffness, vec![1.0; dofs], contact, vec![1.0; 9]).unwrap();
         let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
-        let halves = Halves::of(&problem, &norm);
-        let at_once = halves.reach_at_once().unwrap();
+        let compliance = Halves::of(&problem, &norm);
+        let at_once = compliance.reach_at_once().unwrap();
         for (row, &bound) in at_once.iter().enumerate() {
-            let exact = halves.reach(row);
+            let exact = compliance.reach(row);
             assert!(bound >= exact && bound < 10.0 * exact, "row {row}: {bound} {exact}");
         }
     }
@@ -334,11 +343,8 @@ mod tests {
             rounding: 0.0,
         };
         for (open, balance) in [([false, true], 0.0), ([false, false], 1.0)] {
-            let closed = problem.closed_by(&answer, &open.into_iter().collect(), 0.0, 1.0, |is_residual, force| {
-                assert_eq!((is_residual, force), (!open[1], &[balance][..]));
-                Some(force[0].abs() / 2.0)
-            });
-            assert_eq!(closed.imbalance, balance / 2.0);
+            let left = problem.unbalanced(&answer, &open.into_iter().collect());
+            assert_eq!((left.is_residual, &left.force[..]), (!open[1], &[balance][..]));
         }
     }
 
@@ -355,19 +361,19 @@ mod tests {
             let problem = ContactProblem::new(stiffness, vec![1.0; dofs], contact, vec![1.0; dofs]).unwrap();
             let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
             assert_eq!(norm.boundary().is_some(), on_boundary);
-            let halves = Halves::of(&problem, &norm);
+            let compliance = Halves::of(&problem, &norm);
             // A sweep takes one multiplication for each value of the factor: those of a full triangle, or no less than those of K.
             let full = dofs * (dofs + 1) / 2;
             let least = if on_boundary { full - dofs } else { 2 * dofs - 1 };
-            assert!((least as f64..=full as f64).contains(&halves.sweep()), "{}", halves.sweep());
+            assert!((least as f64..=full as f64).contains(&compliance.sweep()), "{}", compliance.sweep());
             for row in [0, 1, dofs / 2, dofs - 1] {
                 let mut force = vec![0.0; dofs];
                 force[row] = 2.0;
                 let exact = (2.0 * norm.displacement(&force)[row]).sqrt();
-                assert!((halves.reach(row) / exact - 1.0).abs() < 1e-14, "row {row} of {dofs}");
+                assert!((compliance.reach(row) / exact - 1.0).abs() < 1e-14, "row {row} of {dofs}");
             }
             let all: Vec<usize> = (0..dofs).collect();
-            for length in halves.moved_together(problem.contact(), &all) {
+            for length in compliance.moved_together(problem.contact(), &all) {
                 assert!((length / (0.75_f64).sqrt() - 1.0).abs() < 1e-13, "{length} of {dofs}");
             }
         }

@@ -58,27 +58,15 @@ impl ContactProblem {
         Some(self.contact().mul_abs(&roots))
     }
 
-    /// Upper bounds on `sqrt(G_ii)` of every row from two measured eigenvalues: with the cycle M and `D = diag K`,
-    ///
-    /// ```text
-    /// K^-1 <= M / least(M K),     M <= largest(M D) D^-1
-    /// ```
-    ///
-    /// The first eigenvalue is `least`, the second comes from power iteration that starts at the smooth `displacement`. `None`
-    /// if the iteration does not settle.
-    pub(super) fn measured_reach(
-        &self,
-        multigrid: &Multigrid,
-        displacement: &[f64],
-        least: f64,
-        watch: &Watch,
-    ) -> Option<Vec<f64>> {
+    /// The largest eigenvalue of M D, with the cycle M and `D = diag K`, by power iteration that starts at the smooth
+    /// `displacement`. `None` if the iteration does not settle.
+    pub(super) fn largest_eigenvalue(&self, multigrid: &Multigrid, displacement: &[f64], watch: &Watch) -> Option<f64> {
         let diagonal = self.stiffness().diagonal();
         if diagonal.iter().any(|&value| value <= 0.0) {
             return None;
         }
         let mut x = displacement.to_vec();
-        let mut largest_value = 0.0_f64;
+        let mut quotient = 0.0_f64;
         for _ in 0..POWER_STEPS {
             let size = largest(&x);
             if size == 0.0 || !size.is_finite() || watch.is_over() {
@@ -87,15 +75,24 @@ impl ContactProblem {
             x.iter_mut().for_each(|value| *value /= size);
             let force: Vec<f64> = x.iter().zip(&diagonal).map(|(x, d)| x * d).collect();
             let moved = multigrid.cycle(&force);
-            largest_value = largest_value.max(dot(&force, &moved) / dot(&force, &x));
+            quotient = quotient.max(dot(&force, &moved) / dot(&force, &x));
             x = moved;
         }
-        let mu = least / (SAFETY * largest_value);
+        Some(quotient)
+    }
+
+    /// Upper bounds on `sqrt(G_ii)` of every row from two measured eigenvalues: with the cycle M and `D = diag K`,
+    ///
+    /// ```text
+    /// K^-1 <= M / least(M K),     M <= largest(M D) D^-1
+    /// ```
+    pub(super) fn measured_reach(&self, least: f64, largest: f64) -> Vec<f64> {
+        let mu = least / (SAFETY * largest);
         let mut squares = vec![0.0; self.rows()];
-        for (dof, d) in diagonal.iter().enumerate() {
+        for (dof, d) in self.stiffness().diagonal().into_iter().enumerate() {
             self.contact().column(dof).for_each(|(row, b)| squares[row] += b * b / d);
         }
-        Some(squares.into_iter().map(|square| (square / mu).sqrt()).collect())
+        squares.into_iter().map(|square| (square / mu).sqrt()).collect()
     }
 
     /// Lower bounds on `sqrt(G_ii)` of every row: the distance by which unit energy norm of a single dof moves it.
@@ -108,10 +105,10 @@ impl ContactProblem {
     }
 
     /// The rows of `rows` with a `sqrt(G_ii)` below their limit, by sweeps or by the selected inverse, whichever costs less.
-    pub(super) fn within_reach(&self, norm: &EnergyNorm, halves: &Halves, rows: &[(usize, f64)]) -> Vec<usize> {
-        let by_sweeps = rows.len() as f64 * halves.sweep();
+    pub(super) fn within_reach(&self, norm: &EnergyNorm, compliance: &Halves, rows: &[(usize, f64)]) -> Vec<usize> {
+        let by_sweeps = rows.len() as f64 * compliance.sweep();
         let at_once = FACTORISATIONS * norm.multiplications() / BLOCKED;
-        let one_by_one = |row: usize| halves.reach(row);
+        let one_by_one = |row: usize| compliance.reach(row);
         let chosen = |reach: &dyn Fn(usize) -> f64| {
             rows.iter().filter(|&&(row, limit)| reach(row) < limit).map(|&(row, _)| row).collect()
         };
@@ -122,7 +119,7 @@ impl ContactProblem {
         let entries = norm.rows_in_body(self.contact());
         chosen(&|row| match inverse.product(&entries[row]) {
             Some(square) => ldexp(norm.rounding() * square.max(0.0), norm.factor()).sqrt(),
-            None => halves.reach(row),
+            None => compliance.reach(row),
         })
     }
 }
@@ -203,7 +200,8 @@ mod tests {
             let smooth = norm.displacement(lattice.load());
             let stiffness = multigrid.preconditioning(lattice.stiffness());
             let least = stiffness.dual_norm(lattice.load(), &Watch::default()).unwrap().ritz;
-            let reach = lattice.measured_reach(&multigrid, &smooth, least, &Watch::default()).unwrap();
+            let largest = lattice.largest_eigenvalue(&multigrid, &smooth, &Watch::default()).unwrap();
+            let reach = lattice.measured_reach(least, largest);
             let exact = exact(&lattice, &norm);
             assert!(reach.iter().zip(&exact).all(|(reach, exact)| reach >= exact && *reach < 100.0 * exact));
             // Every row has the coefficient 2 and the stiffness d. The first step of the power iteration is at the smooth
@@ -220,12 +218,12 @@ mod tests {
     fn rows_are_within_reach_by_the_selected_inverse_exactly_where_they_are() {
         let lattice = lattice(14, 0.3);
         let norm = EnergyNorm::of(lattice.stiffness(), lattice.contact()).unwrap().unwrap();
-        let halves = Halves::of(&lattice, &norm);
+        let compliance = Halves::of(&lattice, &norm);
         let exact = exact(&lattice, &norm);
-        assert!(exact.len() as f64 * halves.sweep() > FACTORISATIONS * norm.multiplications() / BLOCKED);
+        assert!(exact.len() as f64 * compliance.sweep() > FACTORISATIONS * norm.multiplications() / BLOCKED);
         let limits = |share: f64| exact.iter().map(|reach| share * reach).enumerate().collect::<Vec<_>>();
-        assert_eq!(lattice.within_reach(&norm, &halves, &limits(1.0 + 1e-5)).len(), exact.len());
-        assert!(lattice.within_reach(&norm, &halves, &limits(1.0 - 1e-5)).is_empty());
+        assert_eq!(lattice.within_reach(&norm, &compliance, &limits(1.0 + 1e-5)).len(), exact.len());
+        assert!(lattice.within_reach(&norm, &compliance, &limits(1.0 - 1e-5)).is_empty());
         assert!(lattice.least_reach().iter().zip(&exact).all(|(least, exact)| least < exact && 2.0 * least > *exact));
     }
 }

@@ -13,6 +13,18 @@ pub(super) struct Scales {
     pub norm: Vec<f64>,
     /// The parts.
     pub of_parts: Vec<OfPart>,
+    /// All parts together.
+    pub whole: OfPart,
+}
+
+/// The forces that act on each dof at a displacement u.
+pub(super) struct Forces<'a> {
+    /// Loads and contact forces, `|f| + |B' lambda|`.
+    pub applied: &'a [f64],
+    /// Elastic forces, `|K u|`.
+    pub elastic: &'a [f64],
+    /// The terms of the elastic forces, `|K| |u|`.
+    pub terms: &'a [f64],
 }
 
 /// The scales of one part.
@@ -35,6 +47,21 @@ pub(super) struct OfPart {
     pub given_squares: f64,
 }
 
+impl OfPart {
+    /// The scales of all `parts` as one, without their strain.
+    fn together(parts: &[OfPart]) -> Self {
+        OfPart {
+            is_stiff: true,
+            moves: parts.iter().any(|part| part.moves),
+            strain: 0.0,
+            terms: parts.iter().map(|part| part.terms).sum(),
+            force: parts.iter().fold(0.0, |largest, part| larger(part.force, largest)),
+            force_squares: parts.iter().map(|part| part.force_squares).sum(),
+            given_squares: parts.iter().map(|part| part.given_squares).sum(),
+        }
+    }
+}
+
 /// The larger of two numbers; NaN is larger than all.
 pub(super) fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
@@ -46,16 +73,8 @@ pub(super) fn relative(value: f64, scale: f64) -> f64 {
 }
 
 impl Scales {
-    /// The scales of a displacement u of `problem` under these `forces`, the loads and contact forces `|f| + |B' lambda|`, with
-    /// its `elastic` forces |K u|, its `strain` u'K u and the `terms` |K||u|.
-    pub fn of(
-        problem: &ContactProblem,
-        u: &[f64],
-        forces: &[f64],
-        elastic: &[f64],
-        strain: f64,
-        terms: &[f64],
-    ) -> Self {
+    /// The scales of a displacement u of `problem` under these forces, with its `strain` u'K u.
+    pub fn of(problem: &ContactProblem, u: &[f64], strain: f64, forces: &Forces) -> Self {
         let (parts, diagonal) = (problem.parts(), problem.diagonal());
         let (mut reach, mut part_of_row) = (vec![0.0; problem.rows()], vec![0; problem.rows()]);
         for (dof, &root) in diagonal.roots.iter().enumerate() {
@@ -66,38 +85,25 @@ impl Scales {
                 }
             }
         }
-        let strain = if parts.count() == 1 { vec![strain] } else { problem.energies(parts, u) };
+        let strains = if parts.count() == 1 { vec![strain] } else { problem.energies(parts, u) };
         let mut of_parts = vec![OfPart::default(); parts.count()];
-        let couplings = problem.couplings(parts, u, forces);
+        let couplings = problem.couplings(parts, u, forces.applied);
         for (dof, &root) in diagonal.roots.iter().enumerate() {
             let part = &mut of_parts[parts.of_dof(dof)];
-            part.terms += u[dof].abs() * terms[dof];
+            part.terms += u[dof].abs() * forces.terms[dof];
             if root > 0.0 {
                 part.is_stiff = true;
                 part.moves |= u[dof] != 0.0;
-                let force = larger(forces[dof], couplings.get(dof).copied().unwrap_or(0.0)) / root;
+                let force = larger(forces.applied[dof], couplings.get(dof).copied().unwrap_or(0.0)) / root;
                 part.force = larger(force, part.force);
                 part.force_squares += force * force;
-                part.given_squares += (larger(problem.load[dof].abs(), elastic[dof]) / root).powi(2);
+                part.given_squares += (larger(problem.load[dof].abs(), forces.elastic[dof]) / root).powi(2);
             }
         }
-        of_parts.iter_mut().zip(&strain).for_each(|(part, &strain)| part.strain = strain);
-        let norm = strain.iter().map(|strain| strain.max(0.0).sqrt()).collect();
-        Scales { part_of_row, reach, norm, of_parts }
-    }
-
-    /// The scales of all parts together, with their `strain` u'K u.
-    pub fn whole(&self, strain: f64) -> OfPart {
-        let parts = &self.of_parts;
-        OfPart {
-            is_stiff: true,
-            moves: parts.iter().any(|part| part.moves),
-            strain,
-            terms: parts.iter().map(|part| part.terms).sum(),
-            force: parts.iter().fold(0.0, |largest, part| larger(part.force, largest)),
-            force_squares: parts.iter().map(|part| part.force_squares).sum(),
-            given_squares: parts.iter().map(|part| part.given_squares).sum(),
-        }
+        of_parts.iter_mut().zip(&strains).for_each(|(part, &strain)| part.strain = strain);
+        let norm = strains.iter().map(|strain| strain.max(0.0).sqrt()).collect();
+        let whole = OfPart { strain, ..OfPart::together(&of_parts) };
+        Scales { part_of_row, reach, norm, of_parts, whole }
     }
 
     /// The part of a row.

@@ -66,14 +66,12 @@ impl Worst {
 }
 
 impl Certificate {
-    /// Takes in a bound on the error of an answer with this `strain` u'K u, in a norm whose factor amplifies rounding by `loss`.
-    /// Returns the part that is farthest from its goal, or `None` if that is the whole.
-    pub(super) fn take_in(&mut self, bound: &ErrorBound, scales: &Scales, strain: f64, loss: f64) -> Option<usize> {
-        let parts = &scales.of_parts;
-        let whole = scales.whole(strain);
+    /// Sets the numbers that follow from a bound on the error, in a norm whose factor amplifies rounding by `loss`. Returns the part that is farthest from its goal, or `None` if that is the whole.
+    pub(super) fn set_bounds(&mut self, bound: &ErrorBound, scales: &Scales, loss: f64) -> Option<usize> {
+        let Scales { of_parts: parts, whole, .. } = scales;
         let mut worst = Worst::default();
         let of_parts = bound.of_parts.as_deref().unwrap_or(std::slice::from_ref(&bound.whole));
-        let each = if of_parts.len() == parts.len() { &parts[..] } else { std::slice::from_ref(&whole) };
+        let each = if of_parts.len() == parts.len() { &parts[..] } else { std::slice::from_ref(whole) };
         for (number, (of, &error)) in each.iter().zip(of_parts).enumerate().filter(|(_, (of, _))| of.is_stiff) {
             let error = of.widened(error);
             if of.is_rest(error, loss) {
@@ -87,7 +85,7 @@ impl Certificate {
         self.energy_error = error;
         self.energy_error_bound = relative(error, whole.certain_norm());
         if whole.moves {
-            worst.moving(error, &whole, None);
+            worst.moving(error, whole, None);
         }
         (self.part_error_bound, self.energy_error_excess) = (worst.relative, worst.excess);
         (self.parts_at_rest, self.rest_error) = (worst.resting, worst.of_rest);

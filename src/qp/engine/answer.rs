@@ -6,7 +6,7 @@ use super::factored::Factored;
 use super::found::Found;
 use super::run::last_resort;
 use crate::error::Error;
-use crate::qp::certificate::{EnergyNorm, Examined};
+use crate::qp::certificate::{EnergyNorm, Examined, WithEvidence};
 use crate::qp::judged::{answer, judged};
 use crate::qp::method::{Outcome, ScaledProblem};
 use crate::qp::problem::ContactProblem;
@@ -111,7 +111,8 @@ impl Factored {
             let clock = Instant::now();
             // A refined answer has another residual.
             let evidence = evidence.filter(|_| solution.refinements == refinements);
-            solution.proven = problem.prove_in(norm, &solution.displacement, &solution.multiplier, evidence);
+            let (displacement, multiplier) = (&solution.displacement, &solution.multiplier);
+            solution.proven = problem.prove_in(norm, WithEvidence { displacement, multiplier, evidence });
             let seconds = clock.elapsed().as_secs_f64();
             solution.seconds.proof += seconds;
             solution.seconds.solve += seconds;

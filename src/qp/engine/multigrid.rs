@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::case::{Case, Engine};
 use crate::error::Error;
-use crate::qp::certificate::Examined;
+use crate::qp::certificate::{Examined, WithEvidence};
 use crate::qp::cost::{Kept, NEAR_CYCLES, check_memory, check_time, seconds};
 use crate::qp::judged::{answer, judged};
 use crate::qp::linear::multigrid::{Multigrid, NearNullSpace};
@@ -175,8 +175,9 @@ impl Engine for Hierarchical {
         };
         let before_proof = Instant::now();
         let may_prove = settings.prove && !settings.watch.is_over();
-        let (u, lambda) = (&found.displacement, &found.multiplier);
-        let prove = || problem.prove_by_cycles(multigrid, &settings.watch, u, lambda, evidence);
+        let (displacement, multiplier) = (&found.displacement, &found.multiplier);
+        let answered = WithEvidence { displacement, multiplier, evidence };
+        let prove = || problem.prove_by_cycles(multigrid, &settings.watch, answered);
         let proven = if may_prove { prove() } else { None };
         let proof = if may_prove { before_proof.elapsed().as_secs_f64() } else { 0.0 };
         let seconds = Seconds { factor: 0.0, certificate: judging, proof, solve: clock.elapsed().as_secs_f64() };

@@ -114,7 +114,8 @@ impl Compliance {
         })?;
         let part = |b: &[f64]| self.part(&factor, &list, b);
         let ((multiplier, violation), (multiplier_slope, violation_slope)) = (part(&self.constant), part(&self.slope));
-        Ok(Linear { multiplier, violation, multiplier_slope, violation_slope })
+        let closed = closed.clone();
+        Ok(Linear { closed, multiplier, violation, multiplier_slope, violation_slope })
     }
 
     fn part(&self, factor: &Cholesky<f64, Dyn>, list: &[usize], b: &[f64]) -> (Vec<f64>, Vec<f64>) {
@@ -148,7 +149,7 @@ impl Compliance {
             let force = largest(&line.multiplier).max(largest(&line.multiplier_slope));
             let scales = Scales { length: SIGN_TOLERANCE * length, force: SIGN_TOLERANCE * force };
             let next = (0..self.rows())
-                .filter_map(|row| line.change(row, &closed, &scales).map(|t| (t.max(now), row)))
+                .filter_map(|row| line.change(row, &scales).map(|t| (t.max(now), row)))
                 .min_by(|a, b| a.0.total_cmp(&b.0));
             let end = next.map_or(1.0, |(t, _)| t.min(1.0));
             if end > now || next.is_none_or(|(t, _)| t >= 1.0) {
@@ -158,10 +159,11 @@ impl Compliance {
             match next {
                 Some((t, row)) if t < 1.0 => {
                     now = t;
-                    let undecided: Vec<usize> = (0..self.rows())
-                        .filter(|&other| other == row || line.is_weak(other, t, &closed, &scales))
-                        .collect();
-                    let after = self.turn(&closed, row, &undecided, &scales)?;
+                    let undecided: Vec<usize> =
+                        (0..self.rows()).filter(|&other| other == row || line.is_weak(other, t, &scales)).collect();
+                    let mut next = closed.clone();
+                    next.toggle(row);
+                    let after = self.turn(next, &undecided, &scales)?;
                     for &row in &undecided {
                         if after.contains(row) != closed.contains(row) {
                             events.push(Event { at: t, row, touches: after.contains(row) });
@@ -176,17 +178,9 @@ impl Compliance {
         Err(Error::Numerical { step: "the exact path", reason })
     }
 
-    /// The set that holds next: the `undecided` rows are closed with falling or open with falling violation. Found by block
-    /// pivoting on these rows, and by single pivots if that does not help.
-    fn turn(
-        &self,
-        closed: &ContactSet,
-        first: usize,
-        undecided: &[usize],
-        scales: &Scales,
-    ) -> Result<ContactSet, Error> {
-        let mut next = closed.clone();
-        next.toggle(first);
+    /// The set that holds next: the `undecided` rows are closed with falling or open with falling violation. Found from `next` by
+    /// block pivoting on these rows, and by single pivots if that does not help.
+    fn turn(&self, mut next: ContactSet, undecided: &[usize], scales: &Scales) -> Result<ContactSet, Error> {
         let mut fewest = undecided.len() + 1;
         for _ in 0..CHANGES_PER_ROW * undecided.len() {
             let line = self.respond(&next)?;
@@ -215,8 +209,9 @@ struct Scales {
     force: f64,
 }
 
-/// Multiplier and violation of every row as linear functions of t.
+/// Multiplier and violation of every row as linear functions of t, while these rows are closed.
 struct Linear {
+    closed: ContactSet,
     multiplier: Vec<f64>,
     violation: Vec<f64>,
     multiplier_slope: Vec<f64>,
@@ -225,16 +220,16 @@ struct Linear {
 
 impl Linear {
     /// The t at which the row changes sides, if it moves in that direction.
-    fn change(&self, row: usize, closed: &ContactSet, scales: &Scales) -> Option<f64> {
-        let (value, slope, least) = match closed.contains(row) {
+    fn change(&self, row: usize, scales: &Scales) -> Option<f64> {
+        let (value, slope, least) = match self.closed.contains(row) {
             true => (self.multiplier[row], self.multiplier_slope[row], scales.force),
             false => (self.violation[row], self.violation_slope[row], scales.length),
         };
         (slope > least).then(|| -value / slope)
     }
 
-    fn is_weak(&self, row: usize, t: f64, closed: &ContactSet, scales: &Scales) -> bool {
-        match closed.contains(row) {
+    fn is_weak(&self, row: usize, t: f64, scales: &Scales) -> bool {
+        match self.closed.contains(row) {
             true => (self.multiplier[row] + t * self.multiplier_slope[row]).abs() <= scales.force,
             false => (self.violation[row] + t * self.violation_slope[row]).abs() <= scales.length,
         }

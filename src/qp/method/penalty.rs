@@ -153,11 +153,12 @@ impl PenaltyLoop<'_> {
                 },
             };
             climb.history.push(Iteration { contact_set: climb.closed.clone(), penalty });
-            climb.state.advance(scaled, &cholesky, &climb.closed, penalty);
+            let springs = Springs { factor: &cholesky, closed: &climb.closed, penalty };
+            climb.state.advance(scaled.problem, &springs);
             let next = ContactSet::from_fn(scaled.problem.rows(), |row| climb.state.violation[row] > 0.0);
             climb.settled = next == climb.closed;
             if climb.settled {
-                (0..FINAL_SOLVES).for_each(|_| climb.state.advance(scaled, &cholesky, &climb.closed, penalty));
+                (0..FINAL_SOLVES).for_each(|_| climb.state.advance(scaled.problem, &springs));
             }
             climb.closed = next;
         }
@@ -238,11 +239,20 @@ fn rung_below(scaled: &ScaledProblem, rung: &Rung) -> Result<Rung, Error> {
     let mut state = State { displacement: rung.displacement.clone(), violation: Vec::new() };
     match scaled.hold(&rung.closed, penalty)? {
         Holding::Held(cholesky) => {
-            (0..=FINAL_SOLVES).for_each(|_| state.advance(scaled, &cholesky, &rung.closed, penalty));
+            let springs = Springs { factor: &cholesky, closed: &rung.closed, penalty };
+            (0..=FINAL_SOLVES).for_each(|_| state.advance(scaled.problem, &springs));
             Ok(Rung::new(&state, rung.closed.clone(), penalty))
         }
         Holding::Free(mode) => Err(mode.into_error()),
     }
+}
+
+/// Closed rows as springs of one penalty eps.
+struct Springs<'a> {
+    /// K + eps B_C'B_C.
+    factor: &'a Cholesky,
+    closed: &'a ContactSet,
+    penalty: f64,
 }
 
 /// A displacement with the violation B u - g of each row, kept to the relative precision of the change that made it.
@@ -253,17 +263,16 @@ struct State {
 
 impl State {
     /// Solves (K + eps B_C'B_C) v = (f - K u) + eps B_C'(g - B u) and moves u to u + v.
-    fn advance(&mut self, scaled: &ScaledProblem, cholesky: &Cholesky, closed: &ContactSet, penalty: f64) {
-        let problem = scaled.problem;
+    fn advance(&mut self, problem: &ContactProblem, springs: &Springs) {
         let distance: Vec<f64> = problem.violation(&self.displacement).iter().map(|violation| -violation).collect();
         let pull: Vec<f64> = distance
             .iter()
             .enumerate()
-            .map(|(row, &distance)| if closed.contains(row) { penalty * distance } else { 0.0 })
+            .map(|(row, &distance)| if springs.closed.contains(row) { springs.penalty * distance } else { 0.0 })
             .collect();
         let (elastic, spring) = (problem.stiffness().mul(&self.displacement), problem.contact().mul_transposed(&pull));
         let force: Vec<f64> = (0..problem.dofs()).map(|dof| problem.load()[dof] - elastic[dof] + spring[dof]).collect();
-        let change = cholesky.solve(&force);
+        let change = springs.factor.solve(&force);
         self.violation =
             problem.contact().mul(&change).iter().zip(&distance).map(|(moved, distance)| moved - distance).collect();
         self.displacement.iter_mut().zip(&change).for_each(|(u, v)| *u += v);
