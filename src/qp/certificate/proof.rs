@@ -68,7 +68,7 @@ impl ContactProblem {
         if !error.is_finite() {
             return None;
         }
-        let compliance = Halves::of(self, norm);
+        let compliance = ComplianceFactor::of(self, norm);
         let wide_error = widening * error;
         // One solve saves sweeps.
         let at_once = || compliance.reach_at_once().or_else(|| self.monotone_reach(|s| Some(norm.displacement(s))));
@@ -217,19 +217,19 @@ impl Closed {
 }
 
 /// The columns of `L^-1 B'`; their products are the compliance of the rows.
-pub(super) struct Halves<'a> {
+pub(super) struct ComplianceFactor<'a> {
     norm: &'a EnergyNorm,
     /// The entries of each row, in the dofs that are swept: on the boundary, or in the whole body.
     rows: Vec<Vec<(usize, f64)>>,
     on_boundary: bool,
 }
 
-impl<'a> Halves<'a> {
+impl<'a> ComplianceFactor<'a> {
     pub(super) fn of(problem: &ContactProblem, norm: &'a EnergyNorm) -> Self {
         let on_boundary = norm.boundary().and_then(|boundary| norm.rows_on(boundary, &problem.contact, |_| true));
         match on_boundary {
-            Some(rows) => Halves { norm, rows, on_boundary: true },
-            None => Halves { norm, rows: norm.rows_in_body(&problem.contact), on_boundary: false },
+            Some(rows) => ComplianceFactor { norm, rows, on_boundary: true },
+            None => ComplianceFactor { norm, rows: norm.rows_in_body(&problem.contact), on_boundary: false },
         }
     }
 
@@ -316,7 +316,7 @@ mod tests {
         let contact = SparseMatrix::from_triplets(9, dofs, &rows).unwrap();
         let problem = ContactProblem::new(stiffness, vec![1.0; dofs], contact, vec![1.0; 9]).unwrap();
         let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
-        let compliance = Halves::of(&problem, &norm);
+        let compliance = ComplianceFactor::of(&problem, &norm);
         let at_once = compliance.reach_at_once().unwrap();
         for (row, &bound) in at_once.iter().enumerate() {
             let exact = compliance.reach(row);
@@ -361,7 +361,7 @@ mod tests {
             let problem = ContactProblem::new(stiffness, vec![1.0; dofs], contact, vec![1.0; dofs]).unwrap();
             let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
             assert_eq!(norm.boundary().is_some(), on_boundary);
-            let compliance = Halves::of(&problem, &norm);
+            let compliance = ComplianceFactor::of(&problem, &norm);
             // A sweep takes one multiplication for each value of the factor: those of a full triangle, or no less than those of K.
             let full = dofs * (dofs + 1) / 2;
             let least = if on_boundary { full - dofs } else { 2 * dofs - 1 };

@@ -15,7 +15,7 @@
 //! an M-matrix.
 
 use super::EnergyNorm;
-use super::proof::Halves;
+use super::proof::ComplianceFactor;
 use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::linear::selected_inverse::FACTORISATIONS;
 use crate::qp::linear::{dot, largest, ldexp};
@@ -105,7 +105,12 @@ impl ContactProblem {
     }
 
     /// The rows of `rows` with a `sqrt(G_ii)` below their limit, by sweeps or by the selected inverse, whichever costs less.
-    pub(super) fn within_reach(&self, norm: &EnergyNorm, compliance: &Halves, rows: &[(usize, f64)]) -> Vec<usize> {
+    pub(super) fn within_reach(
+        &self,
+        norm: &EnergyNorm,
+        compliance: &ComplianceFactor,
+        rows: &[(usize, f64)],
+    ) -> Vec<usize> {
         let by_sweeps = rows.len() as f64 * compliance.sweep();
         let at_once = FACTORISATIONS * norm.multiplications() / BLOCKED;
         let one_by_one = |row: usize| compliance.reach(row);
@@ -218,7 +223,7 @@ mod tests {
     fn rows_are_within_reach_by_the_selected_inverse_exactly_where_they_are() {
         let lattice = lattice(14, 0.3);
         let norm = EnergyNorm::of(lattice.stiffness(), lattice.contact()).unwrap().unwrap();
-        let compliance = Halves::of(&lattice, &norm);
+        let compliance = ComplianceFactor::of(&lattice, &norm);
         let exact = exact(&lattice, &norm);
         assert!(exact.len() as f64 * compliance.sweep() > FACTORISATIONS * norm.multiplications() / BLOCKED);
         let limits = |share: f64| exact.iter().map(|reach| share * reach).enumerate().collect::<Vec<_>>();
