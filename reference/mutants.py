@@ -28,7 +28,7 @@ ROOT = Path(__file__).resolve().parent.parent
 OWN = ROOT / "target" / "mutants"
 REASONS = ROOT / "tests" / "mutants.toml"
 
-FILES = ("src/qp/certificate/**", "src/qp/claims/**")
+FILES = ("src/qp/certificate/**", "src/qp/existence/**")
 """The mutated files: conditions, bound, proof, infeasible rows, claims."""
 
 SEED = 20
@@ -66,7 +66,7 @@ class Stage:
 
 
 STAGES = (
-    Stage("own", ("--lib",), ("qp::certificate::", "qp::claims::")),
+    Stage("own", ("--lib",), ("qp::certificate::", "qp::existence::")),
     Stage(
         "quick",
         ("--test", "numerics"),

@@ -123,6 +123,12 @@ pub enum Error {
     /// [`Watch::stop`](crate::Watch::stop) was called before anything was found.
     #[error("interrupted before there was an answer")]
     Interrupted,
+    /// Whether there is an answer, and only one, could not be decided.
+    #[error("it is not decided whether the problem has an answer: {reason}")]
+    Undecided {
+        /// The obstacle to a decision, in words, with the remedy.
+        reason: String,
+    },
     /// An answer was found, but it does not meet the tolerance.
     #[error("{}", not_certified(solution, condition, *value, *tolerance))]
     NotCertified {
@@ -325,6 +331,7 @@ impl Error {
             Error::UnderHeld { .. } => ("under-held", "under_held", NoSolution),
             Error::OutOfTime { .. } => ("out-of-time", "out_of_time", NotCertified),
             Error::Interrupted => ("interrupted", "interrupted", NotCertified),
+            Error::Undecided { .. } => ("undecided", "not_certified", NotCertified),
             Error::NotCertified { .. } => ("not-certified", "not_certified", NotCertified),
             Error::Setting { .. } => bad_input("setting"),
             Error::NotCondensed { .. } => bad_input("not-condensed"),

@@ -106,7 +106,7 @@ pub mod internals {
     pub use crate::qp::linear::{AugmentedMatrix, Blocks, Cholesky, dot, multigrid};
     pub use crate::qp::matrix_market::format_vector;
     pub use crate::qp::method::dual_active_set::DualActiveSet;
-    pub use crate::qp::method::{Definiteness, Outcome, ScaledProblem, Solver};
+    pub use crate::qp::method::{Definiteness, Ending, Outcome, ScaledProblem, Solver};
     pub use crate::qp::panics::guarded;
     pub use crate::scene::body::BodySpec;
     pub use crate::scene::schema::AnalysisSpec;

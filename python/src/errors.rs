@@ -99,6 +99,7 @@ pub fn exception(
                 about.set_item("tolerance", tolerance)?;
                 "NotCertified"
             }
+            Error::Undecided { .. } => "Undecided",
             Error::TooLarge { bytes, allowed, .. } => {
                 about.set_item("bytes", bytes)?;
                 about.set_item("allowed", allowed)?;

@@ -68,6 +68,11 @@ impl Prepared {
         answered(py, place, find, |solution| Solution::object(py, solution))
     }
 
+    /// The attempts and steps that a solve makes, in order, each with its condition and its reason: text, a line each.
+    fn plan(&self) -> String {
+        self.inner.plan()
+    }
+
     /// Computes the exact solution for all gaps on the straight line from g0 to g1 (length m each).
     fn path(&self, py: Python<'_>, g0: &Bound<'_, PyAny>, g1: &Bound<'_, PyAny>) -> PyResult<Path> {
         let (from, to) = (reals("g0", g0)?, reals("g1", g1)?);

@@ -219,6 +219,9 @@ pub(super) struct Solve {
     /// Print the estimated seconds and memory of each method, and the reason for the choice
     #[arg(long)]
     pub explain: bool,
+    /// Print what would be tried, in order, each with its condition and its reason, and solve nothing
+    #[arg(long, conflicts_with_all = ["total_error", "resume"])]
+    pub plan: bool,
     /// Start from the answer that an earlier run with --out wrote into this folder (u.mtx, lambda.mtx)
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["total_error", "resume"])]
     pub start: Option<PathBuf>,

@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::output::gallery::{self, Pictures};
 use crate::output::page::{About, write_answer_page, write_problem_page};
 use crate::output::{solve_text, why_text};
-use crate::qp::{Method, Settings, Start, read_vector, solve_from};
+use crate::qp::{Method, Settings, Start, plan_in_words, read_vector, solve_from};
 use crate::scene::Scene;
 use crate::solution::{Goal, Solution};
 use crate::study::total_error::TotalErrorGoal;
@@ -80,6 +80,10 @@ pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome
         ladder.extrapolate = options.extrapolate;
     }
     let start = options.start.as_deref().map_or_else(|| Ok(Start::default()), earlier)?;
+    if options.plan {
+        let plan = plan_in_words(input.problem(), &start, &settings).map_err(|error| input.explain(error))?;
+        return Ok(Outcome::done(plan));
+    }
     let about = about(&input.title, "solve", &options.input, options.common.out.as_ref(), options.common.threads);
     let solution = best_of(&input, start, &settings)?;
     if options.extrapolate && !matches!(settings.method, Method::Penalty(_)) {
@@ -95,6 +99,10 @@ fn motion(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outcome, Erro
         let message =
             "a motion starts from its `initial` state, not from an earlier answer; --resume continues a motion";
         return Err(Error::Scene { path: "--start".into(), message: message.into() });
+    }
+    if options.plan {
+        let message = "a motion makes a plan for each of its steps; leave --plan out, or `analysis` out of the scene";
+        return Err(Error::Scene { path: "--plan".into(), message: message.into() });
     }
     if options.explain {
         warn("warning: --explain has no effect on a motion: it explains a single solve\n");

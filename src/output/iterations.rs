@@ -48,7 +48,7 @@ pub(super) fn iterations(model: &Arc<Model>, history: &[Iteration]) -> Result<Ve
     let held_at = if name == "iteration" { with_contact_sets(model.problem()).ok() } else { None };
     let find = |step: &Iteration| -> Found {
         match &held_at {
-            Some(held_at) => held_at(&step.contact_set).ok(),
+            Some(held_at) => held_at(&step.contact_set),
             None if step.penalty > 0.0 => of_penalty(model, step.penalty),
             None => None,
         }

@@ -24,9 +24,6 @@ pub(crate) fn plural(count: usize, noun: &str) -> String {
 /// An algebraic error below this share of the mesh error does not show in the sum of both.
 const FAR_BELOW: f64 = 1e-2;
 
-/// Number of characters that are shown of the reason of an attempt; the JSON report has all.
-const LONGEST_REASON: usize = 50;
-
 /// Length of a line beside its name, in characters.
 const LONGEST_LINE: usize = 84;
 
@@ -65,8 +62,9 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
         line("", reason.clone());
     }
     for attempt in &solution.attempts {
-        let reason: String = printable(&attempt.reason).chars().take(LONGEST_REASON).collect();
-        line("", format!("also tried: {}, {:.3} s, {reason}", attempt.method, attempt.seconds));
+        let reason = printable(&attempt.reason);
+        let words = format!("also tried: {}, {:.3} s, {reason}", attempt.method, attempt.seconds);
+        wrapped(&words).into_iter().for_each(|words| line("", words));
     }
     if let Some(penalty) = solution.history.last().map(|step| step.penalty).filter(|&penalty| penalty > 0.0) {
         line("", format!("the penalty went up to {penalty:.0e} times the local stiffness"));

@@ -3,33 +3,32 @@
 //! From a problem to its answer:
 //!
 //! ```text
-//! problem -> plan -> rows selected -> scaled -> condensed -> method -> expanded -> unscaled -> certificate -> judged
+//! problem -> plan -> run: rows selected -> scaled -> condensed -> method -> expanded -> unscaled -> certificate -> plan again
 //! ```
 //!
-//! `plan` alone decides how a problem is solved, by the seconds and bytes of `cost`; an engine prepares it, once for many loads
-//! and gaps; `judged` alone says whether an answer falls short.
+//! `plan` alone decides what is tried, by the seconds and bytes of `cost`; `run` carries it out with the data that an engine prepares
+//! once for many loads and gaps; `existence` alone says that a problem has no answer, or more than one.
 
-mod attempts;
 mod certificate;
-mod claims;
 pub(crate) mod cost;
 mod directory;
 mod engine;
-mod judged;
+mod existence;
 pub(crate) mod linear;
 pub(crate) mod matrix_market;
 pub(crate) mod method;
 pub(crate) mod panics;
 pub(crate) mod petsc;
 mod plan;
+mod prepared;
 pub(crate) mod problem;
+mod run;
 mod settings;
 pub(crate) mod transform;
 
 #[cfg(feature = "cli")]
 pub(crate) use directory::is_problem_directory;
 pub use directory::read_problem;
-pub use engine::{BoundarySolution, Path, Prepared};
 pub use linear::multigrid::NearNullSpace;
 pub use linear::{SparseMatrix, SymmetricMatrix};
 pub use matrix_market::{problem_files, read_vector, solution_files};
@@ -37,8 +36,14 @@ pub use method::Start;
 pub use method::interior_point::InteriorPoint;
 pub use method::parametric::Event;
 pub use method::penalty::Penalty;
+pub use prepared::{BoundarySolution, Path, Prepared};
 pub use problem::ContactProblem;
 pub use settings::{Condense, Method, Precision, Settings};
+
+#[cfg(feature = "cli")]
+use certificate::Bounding;
+#[cfg(feature = "cli")]
+use engine::Engine;
 
 use crate::error::Error;
 #[cfg(feature = "cli")]
@@ -73,8 +78,7 @@ use crate::solution::{ContactSet, Solution};
 /// * [`Error::Interrupted`] if the watch was asked to stop before there was an answer,
 /// * [`Error::Numerical`] if memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-    let settings = &settings.started()?;
-    judged::in_time(problem, settings, claims::rechecked(problem, settings, attempts::solved(problem, settings)))
+    run::solved(problem, &Start::default(), &settings.started()?)
 }
 
 /// The same from a start, for example the answer of a similar problem.
@@ -84,9 +88,19 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
 #[cfg(feature = "cli")]
 pub(crate) fn solve_from(problem: &ContactProblem, start: Start, settings: &Settings) -> Result<Solution, Error> {
     start.check(problem.dofs(), problem.rows())?;
+    run::solved(problem, &start, &settings.started()?)
+}
+
+/// What [`solve_from`] would try, in order, in words.
+///
+/// # Errors
+/// [`Error::Setting`] for a setting outside its range, [`Error::NoRoom`] if nothing fits into the memory, and those of an analysis of the
+/// stiffness.
+#[cfg(feature = "cli")]
+pub(crate) fn plan_in_words(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<String, Error> {
     let settings = &settings.started()?;
-    let ending = claims::rechecked(problem, settings, attempts::solved_from(start, problem, settings));
-    judged::in_time(problem, settings, ending)
+    let known = plan::Known { gaps: 1, is_whole: !start.is_unknown() };
+    plan::Ladder::of(problem, known, settings)?.in_words(problem, settings)
 }
 
 /// The certificate of an answer (u, lambda) that came from elsewhere, within the memory of `settings`: with a factor if that is
@@ -101,9 +115,16 @@ pub(crate) fn certify_within(
     answer: (&[f64], &[f64]),
     settings: &Settings,
 ) -> Result<Certificate, Error> {
-    match plan::is_bounded_by_factor(problem, seconds, settings)? {
-        true => problem.certify(answer.0, answer.1),
-        false => engine::certify_by_multigrid(problem, answer, settings),
+    let (displacement, multiplier) = answer;
+    let examine = |by: &Bounding| Ok(problem.examine(by, displacement, multiplier)?.certificate);
+    if plan::is_bounded_by_factor(problem, seconds, settings)? {
+        return examine(&Bounding::OwnFactor);
+    }
+    match engine::Hierarchical::new(problem, settings) {
+        Ok(hierarchical) => examine(&hierarchical.bounding(&settings.watch, 0.0)),
+        // A dof without stiffness, or a direction of negative energy, has no hierarchy.
+        Err(Error::NotConvex { .. }) => examine(&Bounding::Nothing),
+        Err(error) => Err(error),
     }
 }
 
@@ -115,12 +136,16 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
     solve(problem, &Settings::with_method(Method::qp()))
 }
 
+/// Displacement and multiplier of a body with some rows held at their gaps and all others free; `None` if these do not hold it.
+pub(crate) type Held = Option<(Vec<f64>, Vec<f64>)>;
+
 /// Factorises `problem` once for many sets of held rows: each call of the returned function is one iteration of the active-set loop;
 /// its multiplier may have either sign.
 ///
 /// # Errors
-/// As [`solve`], without [`Error::NotCertified`]; [`Error::Infeasible`] if the rows of the set contradict each other.
+/// As [`Prepared::new`].
 #[cfg_attr(not(feature = "pictures"), allow(dead_code))]
-pub(crate) fn with_contact_sets(problem: &ContactProblem) -> Result<impl Fn(&ContactSet) -> engine::Held, Error> {
-    engine::with_contact_sets(problem)
+pub(crate) fn with_contact_sets(problem: &ContactProblem) -> Result<impl Fn(&ContactSet) -> Held, Error> {
+    let factored = engine::Factored::new(problem, &Settings::default())?;
+    Ok(move |closed: &ContactSet| factored.with_contact_set(closed))
 }

@@ -156,8 +156,6 @@ pub struct Settings {
     pub watch: Watch,
     /// Largest number of iterations of a loop, or of cycles of MPRGP.
     pub max_iterations: usize,
-    /// Cycles of MPRGP after which another method would have been as fast.
-    pub(crate) worth_cycles: usize,
 }
 
 impl Default for Settings {
@@ -174,7 +172,6 @@ impl Default for Settings {
             memory: None,
             watch: Watch::default(),
             max_iterations: 20_000,
-            worth_cycles: usize::MAX,
         }
     }
 }
@@ -274,23 +271,6 @@ impl Settings {
         Goal { tolerance: self.tolerance.unwrap_or(ANY_FINITE), accuracy: self.accuracy }
     }
 
-    /// Returns `true` if the best possible answer is wanted. An unpolished QP and a penalty are returned as they are.
-    pub(super) fn wants_best(&self) -> bool {
-        match self.method {
-            Method::Qp(InteriorPoint { polish, .. }) => polish,
-            Method::Penalty(_) => false,
-            Method::Auto | Method::ActiveSet | Method::Mprgp => true,
-        }
-    }
-
-    /// Returns `true` if the last resort may replace an answer that misses the goal, in its worst condition, by `value`. The
-    /// answers of an unpolished QP and of a penalty below its best value are kept, and so is the penetration that the best
-    /// penalty leaves.
-    pub(super) fn allows_last_resort(&self, value: f64) -> bool {
-        let is_best_penalty = matches!(self.method, Method::Penalty(ladder) if ladder.last >= BEST_PENALTY);
-        self.wants_best() || (is_best_penalty && value > PENETRATION / BEST_PENALTY)
-    }
-
     /// Checks the range of every setting.
     ///
     /// # Errors
@@ -314,6 +294,23 @@ impl Settings {
 }
 
 impl Method {
+    /// Returns `true` if the best possible answer is wanted. An unpolished QP and a penalty are returned as they are.
+    pub(super) fn wants_best(self) -> bool {
+        match self {
+            Method::Qp(InteriorPoint { polish, .. }) => polish,
+            Method::Penalty(_) => false,
+            Method::Auto | Method::ActiveSet | Method::Mprgp => true,
+        }
+    }
+
+    /// Returns `true` if the last resort may replace an answer that misses the goal, in its worst condition, by `value`. The
+    /// answers of an unpolished QP and of a penalty below its best value are kept, and so is the penetration that the best
+    /// penalty leaves.
+    pub(super) fn allows_last_resort(self, value: f64) -> bool {
+        let is_best_penalty = matches!(self, Method::Penalty(ladder) if ladder.last >= BEST_PENALTY);
+        self.wants_best() || (is_best_penalty && value > PENETRATION / BEST_PENALTY)
+    }
+
     /// Checks the range of every option of the method.
     fn check(self) -> Result<(), Error> {
         match self {

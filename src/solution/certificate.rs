@@ -134,6 +134,33 @@ fn is_zero(count: &usize) -> bool {
 }
 
 impl Certificate {
+    /// The certificate of an answer that was not looked at yet: nothing holds.
+    pub(crate) fn unknown() -> Self {
+        let nothing = f64::INFINITY;
+        Certificate {
+            stationarity: nothing,
+            penetration: nothing,
+            adhesion: nothing,
+            complementarity: nothing,
+            duality_gap: nothing,
+            imbalance: nothing,
+            open_force: nothing,
+            energy_error: nothing,
+            energy_error_bound: nothing,
+            part_error_bound: nothing,
+            energy_error_excess: nothing,
+            met_tolerance: nothing,
+            met: None,
+            at_rest: false,
+            parts: 1,
+            parts_at_rest: 0,
+            loose_dofs: 0,
+            rest_error: 0.0,
+            cancellation: Cancellation { dof: 0, forces: 0.0, left: 0.0 },
+            bound_is_measured: false,
+        }
+    }
+
     /// The dof, from 0, at which loads and contact forces cancel most digits of the elastic force.
     pub fn worst_dof(&self) -> usize {
         self.cancellation.dof

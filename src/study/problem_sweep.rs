@@ -7,7 +7,7 @@ use super::kept_answers::KeptAnswers;
 use super::scene::{even_gaps, problem_summary};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;
-use crate::qp::{Method, Prepared, Settings, Start, solve};
+use crate::qp::{Prepared, Settings, Start};
 use crate::solution::Solution;
 
 /// One point of the path.
@@ -48,7 +48,7 @@ pub struct ProblemSweep {
 /// points that were solved before.
 ///
 /// # Errors
-/// As [`solve`]; [`Error::Interrupted`] if no point was solved.
+/// As [`solve`](crate::solve()); [`Error::Interrupted`] if no point was solved.
 pub(crate) fn sweep_problem(
     first: &ContactProblem,
     last: &ContactProblem,
@@ -58,7 +58,6 @@ pub(crate) fn sweep_problem(
     let kept = KeptAnswers::of(count, first.dofs(), settings);
     let settings = &kept.settings(settings);
     let prepared = Prepared::for_gaps(first, count, settings).map_err(|error| kept.explain(error))?;
-    let is_by_choice = settings.method == Method::Auto && prepared.hierarchy().is_some();
     let same_load = first.load() == last.load();
     let mut points: Vec<ProblemPoint> = Vec::with_capacity(count);
     for (index, t) in even_gaps(0.0, 1.0, count).into_iter().enumerate() {
@@ -69,11 +68,7 @@ pub(crate) fn sweep_problem(
             true => prepared.starting_from(known),
             false => prepared.with_load(problem.load().to_vec())?.starting_from(known),
         };
-        let solved = match prepared.solve(problem.gap()) {
-            Err(Error::NotCertified { .. }) if is_by_choice => solve(&problem, settings),
-            solved => solved,
-        };
-        let solution = match solved {
+        let solution = match prepared.solve(problem.gap()) {
             Ok(solution) => solution,
             // An interrupted solve is no answer to this point.
             Err(_) if settings.watch.acknowledge() => break,

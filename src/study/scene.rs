@@ -16,7 +16,7 @@ use crate::error::Error;
 use crate::fem::formulation::Formulation;
 #[cfg(feature = "cli")]
 use crate::qp::problem::ContactProblem;
-use crate::qp::{Event, Method, Prepared, Settings, Start, solve};
+use crate::qp::{Event, Prepared, Settings, Start, solve};
 use crate::scene::{Answer, ContactExtent, Model};
 use crate::solution::{ContactSet, Goal, Solution};
 
@@ -208,7 +208,6 @@ impl Sweep {
         let at_first = model.with_gap(first)?;
         let prepared = Prepared::for_gaps(at_first.problem(), gaps.len(), settings)
             .map_err(|error| at_first.explain(kept.explain(error)))?;
-        let is_by_choice = settings.method == Method::Auto && prepared.hierarchy().is_some();
         let points = points("gap", gaps, settings, |gap, known| {
             let clock = Instant::now();
             let model = model.with_gap(gap)?;
@@ -217,10 +216,6 @@ impl Sweep {
             let solved = match same_rows {
                 true => prepared.starting_from(known).solve(model.problem().gap()),
                 false => solve(model.problem(), settings),
-            };
-            let solved = match solved {
-                Err(Error::NotCertified { .. }) if is_by_choice => solve(model.problem(), settings),
-                solved => solved,
             };
             Ok(Solved { model, solved: solved.map_err(|error| kept.explain(error)), assemble_seconds })
         })?;

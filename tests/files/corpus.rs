@@ -19,7 +19,8 @@ use std::path::{Path, PathBuf};
 
 use damage::{damaged, fault, faults, read};
 use draws::Draws;
-use signorini::{Error, Method, Settings, solve};
+use signorini::qp::read_problem;
+use signorini::{ContactProblem, Error, InteriorPoint, Method, Penalty, Prepared, Settings, Solution, solve};
 
 fn corpus() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus")
@@ -111,5 +112,47 @@ fn damaged_files_and_random_problems_cause_no_panic() {
     }
     for seed in 0..inputs as u64 / 4 {
         problem::ending(&mut Draws(1000 * seed)).unwrap_or_else(|fault| panic!("{seed}: {fault}"));
+    }
+}
+
+/// The methods by name and by choice; an unpolished QP and a soft penalty are returned as they are.
+fn methods() -> Vec<Method> {
+    let unpolished = Method::Qp(InteriorPoint { polish: false, tolerance: 1e-9 });
+    let soft = Method::Penalty(Penalty { last: 10.0, ..Penalty::default() });
+    vec![Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp, unpolished, soft]
+}
+
+/// The codes of `solve`, of data prepared for one gap, and of data prepared at other gaps for many.
+fn codes(problem: &ContactProblem, settings: &Settings) -> [&'static str; 3] {
+    let code = |solved: Result<Solution, Error>| solved.map_or_else(|error| error.code(), |_| "solved");
+    let elsewhere = problem.gap().iter().map(|gap| gap.abs() + 1.0).collect();
+    let of_one = Prepared::for_gaps(problem, 1, settings).and_then(|prepared| prepared.solve(problem.gap()));
+    let of_many = (problem.with_gap(elsewhere))
+        .and_then(|elsewhere| Prepared::new(&elsewhere, settings))
+        .and_then(|prepared| prepared.solve(problem.gap()));
+    [solve(problem, settings), of_one, of_many].map(code)
+}
+
+/// GOAL: the ending does not depend on the door, for every method, on random problems and on every kept finding.
+#[test]
+fn one_solve_and_prepared_data_end_in_the_same_way() {
+    const RANDOM: u64 = 2000;
+    let random = (0..RANDOM).filter_map(|seed| problem::problem(&mut Draws(900_000 + seed)).ok());
+    let kept = fs::read_dir(corpus().join("findings")).unwrap();
+    let kept = kept.map(|finding| finding.unwrap().path()).filter(|folder| folder.join("K.mtx").exists());
+    let kept = kept.map(|folder| read_problem(&folder).unwrap());
+    let (mut differ, mut endings) = (Vec::new(), BTreeSet::new());
+    for (number, problem) in random.chain(kept).enumerate() {
+        for method in methods() {
+            let found = codes(&problem, &Settings::with_method(method));
+            endings.insert(found[0]);
+            if found.iter().any(|code| *code != found[0]) {
+                differ.push((number, method.name(), found));
+            }
+        }
+    }
+    assert!(differ.is_empty(), "{} differ: {differ:?}", differ.len());
+    for ending in ["solved", "infeasible", "unbounded", "under-held", "not-certified"] {
+        assert!(endings.contains(ending), "no problem is {ending}");
     }
 }

@@ -16,11 +16,11 @@ const FLOORS: [&[&str]; 18] = [
     &["qp/problem", "fem/mesh"],
     &["qp/certificate", "qp/transform", "qp/method", "fem/body"],
     &["qp/settings", "qp/matrix_market", "qp/petsc", "fem/assembly", "fem/recovery", "fem/norms"],
-    &["qp/cost", "qp/directory", "qp/judged"],
-    &["qp/plan"],
+    &["qp/cost", "qp/directory"],
+    &["qp/plan", "qp/existence"],
     &["qp/engine"],
-    &["qp/attempts"],
-    &["qp/claims"],
+    &["qp/run"],
+    &["qp/prepared"],
     &["qp"],
     &["motion", "continuum"],
     &["scene"],
@@ -103,14 +103,37 @@ fn bodies_do_not_name_contact_problems() {
 }
 
 #[test]
-fn only_judged_constructs_the_error_of_an_answer_that_is_not_certified() {
+fn only_the_ending_of_a_run_constructs_the_error_of_an_answer_that_is_not_certified() {
     let name = "Error::NotCertified {";
     let constructs = |text: &str| {
         // A pattern omits fields by `..`; a construction names all fields.
         text.match_indices(name).any(|(at, _)| !text[at..].split('}').next().unwrap().contains(".."))
     };
     let files = House::read().files.into_values().filter(|source| constructs(&source.text));
-    assert_eq!(files.map(|source| source.path).collect::<Vec<_>>(), [Path::new("qp/judged.rs")]);
+    assert_eq!(files.map(|source| source.path).collect::<Vec<_>>(), [Path::new("qp/run/ending.rs")]);
+}
+
+/// Fallbacks stand in the plan alone: the history compares answers, and existence alone says that there is no answer.
+#[test]
+fn only_the_history_compares_answers_and_only_existence_makes_claims() {
+    let files_with = |words: &[&str]| -> BTreeSet<PathBuf> {
+        let files = House::read().files.into_values();
+        let has = |text: &str| words.iter().any(|word| text.contains(word));
+        files.filter(|source| source.path.starts_with("qp") && has(&source.text)).map(|source| source.path).collect()
+    };
+    assert_eq!(files_with(&[".gains_on(", ".improves_on("]), BTreeSet::from(["qp/plan/history.rs".into()]));
+    assert_eq!(files_with(&["Err(Error::Unbounded", "Err(Error::UnderHeld"]), ["qp/existence/mod.rs".into()].into());
+    // A step takes the settings that it is given.
+    let house = House::read();
+    let steps = house
+        .files
+        .values()
+        .filter(|source| ["qp/engine", "qp/method", "qp/transform"].iter().any(|room| source.path.starts_with(room)));
+    for source in steps {
+        for word in ["Settings { method", "Settings { precision", "Settings { condense", "engine_of(", "Ladder"] {
+            assert!(!source.text.contains(word), "{}: {word}", source.path.display());
+        }
+    }
 }
 
 #[test]

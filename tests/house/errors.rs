@@ -43,6 +43,9 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
     // Rows that share a dof at an oblique angle cannot be turned into bounds.
     let oblique =
         Dense::new(&[&[1.0, 0.0], &[0.0, 1.0]], &[2.0, 0.0], &[&[1.0, 0.0], &[1.0, 1.0]], &[0.5; 2]).problem()?;
+    // The last bit of one entry holds a motion that the load drives.
+    let soft: [&[f64]; 2] = [&[1.0, -1.0], &[-1.0, 1.0 + f64::EPSILON]];
+    let held_within_rounding = Dense::new(&soft, &[1.0, 1.0], &[&[0.0, -1.0]], &[0.5]).problem()?;
     let plane = scene(("[4]", "[4]"))?.build()?;
     let still = unprepared.path(&[0.5], &[0.4]);
     let hasty = Prepared::new(&spring_and_wall, &Settings::default().with_time(Duration::ZERO));
@@ -60,6 +63,7 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
         ("Infeasible", ("infeasible", solve_qp(&spring(1.0, &[1.0, -1.0], &[0.5, -0.6])?).unwrap_err())),
         ("Unbounded", ("unbounded", solve_qp(&spring(0.0, &[-1.0], &[0.5])?).unwrap_err())),
         ("UnderHeld", ("under-held", solve_qp(&spring(0.0, &[1.0], &[0.5])?.with_load(vec![0.0])?).unwrap_err())),
+        ("Undecided", ("undecided", solve_qp(&held_within_rounding).unwrap_err())),
         ("OutOfTime", ("out-of-time", hasty.map(drop).unwrap_err())),
         ("NotCertified", ("not-certified", solve(&spring_and_wall, &never).unwrap_err())),
         ("Interrupted", ("interrupted", solve(&spring_and_wall, &stopped).unwrap_err())),

@@ -267,7 +267,8 @@ fn a_soft_support_is_not_called_none() {
     for method in ALL {
         // The doubles of the problem hold the body; whether an answer is certified is another question.
         if let Err(error) = finding.solve(method) {
-            assert!(matches!(error, Error::NotCertified { .. }), "{}: {error}", method.name());
+            let is_open = matches!(error, Error::NotCertified { .. } | Error::Undecided { .. });
+            assert!(is_open, "{}: {error}", method.name());
             assert!(!error.to_string().contains("unbounded"), "{}: {error}", method.name());
         }
     }

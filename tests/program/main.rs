@@ -16,6 +16,7 @@ mod limits;
 mod memory;
 mod motion_runs;
 mod new;
+mod plan;
 mod process;
 mod promised;
 mod schema;

@@ -176,7 +176,8 @@ fn a_smaller_memory_than_the_named_one_is_refused() {
         let problem = Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap().problem().clone();
         for condense in [Condense::Auto, Condense::Never] {
             let prepared = |memory: f64| {
-                let mut settings = Settings::default();
+                // A named method is refused; with `auto` a hierarchy would be prepared instead.
+                let mut settings = Settings::with_method(Method::ActiveSet);
                 (settings.condense, settings.memory) = (condense, Some(memory));
                 Prepared::new(&problem, &settings)
             };

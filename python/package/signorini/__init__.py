@@ -31,6 +31,7 @@ from signorini._errors import (
     SignoriniError,
     TooLarge,
     Unbounded,
+    Undecided,
     UnderHeld,
 )
 from signorini._signorini import (
@@ -80,6 +81,7 @@ __all__ = [
     "TooLarge",
     "Tradeoff",
     "Unbounded",
+    "Undecided",
     "UnderHeld",
     "__version__",
     "compare",

@@ -100,6 +100,12 @@ class NotCertified(SignoriniError):
     """The tolerance that was requested."""
 
 
+class Undecided(SignoriniError):
+    """It could not be decided whether the problem has an answer, and only one; the sentence says why."""
+
+    code = "undecided"
+
+
 class OutOfTime(SignoriniError, TimeoutError):
     """A step that cannot be interrupted is estimated to take longer than the remaining time."""
 

@@ -241,6 +241,8 @@ class Prepared:
 
         Raises the exceptions of `signorini.solve`.
         """
+    def plan(self) -> str:
+        """The attempts and steps that a solve makes, in order, each with its condition and its reason: text, a line each."""
     def path(self, g0: ArrayLike, g1: ArrayLike) -> Path:
         """Computes the exact solution for all gaps on the straight line from g0 to g1 (length m each).
 

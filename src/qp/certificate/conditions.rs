@@ -17,17 +17,18 @@ use crate::watch::Watch;
 const ENTRY_ROUNDING: f64 = f64::EPSILON;
 
 /// The means by which the error is bounded in energy.
-#[derive(Clone, Copy)]
-enum Bounding<'a> {
+pub(crate) enum Bounding<'a> {
+    /// None: the conditions are recomputed, and no bound is known.
     Nothing,
-    Factor(&'a EnergyNorm),
-    Cycles(&'a Multigrid, &'a Watch),
-}
-
-impl<'a> Bounding<'a> {
-    fn by(norm: Option<&'a EnergyNorm>) -> Self {
-        norm.map_or(Bounding::Nothing, Bounding::Factor)
-    }
+    /// A factor that is made for this certificate alone.
+    OwnFactor,
+    /// A factor that is at hand.
+    Factor(EnergyNorm),
+    /// The cycles of the hierarchy of K, which need no factor and rest on a measured eigenvalue. There is no bound if K is singular
+    /// to the precision of its levels, or if the watch is over before it is found.
+    Cycles(&'a Multigrid, Watch),
+    /// The certificates of pieces without coupling, of which the answer was put together.
+    Pieces(&'a [Certificate]),
 }
 
 /// A certificate and the evidence that it was computed from; an answer in far units has no evidence.
@@ -46,6 +47,7 @@ impl Examined {
 }
 
 /// Evidence that a certificate has found for an answer, used to prove its contact set.
+#[derive(Debug)]
 pub(crate) struct Evidence {
     /// `f + B' lambda - K u`.
     pub(super) residual: Vec<f64>,
@@ -80,94 +82,47 @@ impl ContactProblem {
     /// # Errors
     /// [`Error::Length`] for vectors that do not fit, [`Error::Numerical`] if the factorisation of K fails for lack of memory.
     pub fn certify(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Certificate, Error> {
-        Ok(self.examine(displacement, multiplier)?.certificate)
+        Ok(self.examine(&Bounding::OwnFactor, displacement, multiplier)?.certificate)
     }
 
-    /// As [`ContactProblem::certify`], with the evidence.
+    /// As [`ContactProblem::certify`], with the bound by these means, and with the evidence.
     ///
     /// # Errors
     /// As [`ContactProblem::certify`].
-    pub(crate) fn examine(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Examined, Error> {
+    pub(crate) fn examine(&self, by: &Bounding, displacement: &[f64], multiplier: &[f64]) -> Result<Examined, Error> {
         self.check_answer(displacement, multiplier)?;
-        if let Some(units) = self.far_units(displacement) {
-            let in_units = self.in_units(&units)?;
-            let examined = in_units.examine(&units.displacement(displacement), &units.force(multiplier))?;
-            return Ok(examined.in_own_units(&units));
+        if let Bounding::Pieces(pieces) = by {
+            let examined = self.examine(&Bounding::Nothing, displacement, multiplier)?;
+            let certificate = examined.certificate.with_bounds_of(pieces, &self.energy_of(displacement));
+            return Ok(Examined { certificate, ..examined });
         }
-        let norm = self.energy_norm(displacement, multiplier)?;
-        self.examine_in(norm.as_ref(), displacement, multiplier)
-    }
-
-    /// As [`ContactProblem::certify`], in an energy norm that is already available.
-    ///
-    /// # Errors
-    /// [`Error::Length`] for vectors that do not fit.
-    pub(crate) fn certify_in(
-        &self,
-        norm: Option<&EnergyNorm>,
-        displacement: &[f64],
-        multiplier: &[f64],
-    ) -> Result<Certificate, Error> {
-        Ok(self.examine_in(norm, displacement, multiplier)?.certificate)
-    }
-
-    /// As `certify_in`, with the evidence.
-    ///
-    /// # Errors
-    /// [`Error::Length`] for vectors that do not fit.
-    pub(crate) fn examine_in(
-        &self,
-        norm: Option<&EnergyNorm>,
-        displacement: &[f64],
-        multiplier: &[f64],
-    ) -> Result<Examined, Error> {
-        self.check_answer(displacement, multiplier)?;
         let Some(units) = self.far_units(displacement) else {
-            return Ok(self.recomputed(Bounding::by(norm), displacement, multiplier));
+            return match by {
+                Bounding::OwnFactor => self.examine_by_own_factor(displacement, multiplier),
+                // A hierarchy of one level is already a factor, with so few dofs that another one in double precision costs nothing.
+                Bounding::Cycles(multigrid, _) if multigrid.unknowns().len() <= 1 => {
+                    self.examine_by_own_factor(displacement, multiplier)
+                }
+                by => Ok(self.recomputed(by, displacement, multiplier)),
+            };
         };
-        let (norm, problem) = (norm.map(|norm| units.norm(norm)), self.in_units(&units)?);
-        let bounding = Bounding::by(norm.as_ref());
-        let in_units = problem.recomputed(bounding, &units.displacement(displacement), &units.force(multiplier));
+        let by = match by {
+            Bounding::OwnFactor => Bounding::OwnFactor,
+            Bounding::Factor(norm) => Bounding::Factor(units.norm(norm)),
+            _ => Bounding::Nothing,
+        };
+        let (problem, u, lambda) = (self.in_units(&units)?, units.displacement(displacement), units.force(multiplier));
+        let in_units = match by {
+            Bounding::OwnFactor => problem.examine_by_own_factor(&u, &lambda)?,
+            by => problem.recomputed(&by, &u, &lambda),
+        };
         Ok(in_units.in_own_units(&units))
     }
 
-    /// As [`ContactProblem::certify`], with the energy bound by the cycles of the hierarchy of K, which needs no factor and
-    /// rests on a measured eigenvalue. There is no bound if K is singular to the precision of its levels, or if `watch` is over
-    /// before it is found. A hierarchy of one level is already a factor, with so few dofs that another one in double precision
-    /// costs nothing.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::certify`].
-    pub(crate) fn examine_by_cycles(
-        &self,
-        multigrid: &Multigrid,
-        watch: &Watch,
-        displacement: &[f64],
-        multiplier: &[f64],
-    ) -> Result<Examined, Error> {
-        self.check_answer(displacement, multiplier)?;
-        if multigrid.unknowns().len() <= 1 {
-            return self.examine(displacement, multiplier);
-        }
-        if self.far_units(displacement).is_some() {
-            return self.examine_in(None, displacement, multiplier);
-        }
-        Ok(self.recomputed(Bounding::Cycles(multigrid, watch), displacement, multiplier))
-    }
-
-    /// The certificate of an answer that was put together from answers of pieces without coupling. The conditions are
-    /// recomputed; the bounds are those of the pieces.
-    ///
-    /// # Errors
-    /// [`Error::Length`] for vectors that do not fit.
-    pub(crate) fn certify_pieces(
-        &self,
-        pieces: &[Certificate],
-        displacement: &[f64],
-        multiplier: &[f64],
-    ) -> Result<Certificate, Error> {
-        let certificate = self.certify_in(None, displacement, multiplier)?;
-        Ok(certificate.with_bounds_of(pieces, &self.energy_of(displacement)))
+    fn examine_by_own_factor(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Examined, Error> {
+        let norm = self.energy_norm(displacement, multiplier)?;
+        let by = norm.map_or(Bounding::Nothing, Bounding::Factor);
+        Ok(self.recomputed(&by, displacement, multiplier))
     }
 
     /// The scales of a displacement, without forces.
@@ -178,28 +133,15 @@ impl ContactProblem {
         OfPart { strain, terms, moves, ..OfPart::default() }
     }
 
-    /// The displacement u with those parts at rest that may rest, if its certificate is better for it. A method leaves the
+    /// The displacement u with those parts at rest that may rest, which is an answer too; `None` if no part may. A method leaves the
     /// rounding of forces as a displacement of a part at rest, which is wrong by all of it.
-    ///
-    /// # Errors
-    /// Those of `examine`, which makes the certificate of a displacement.
-    pub(crate) fn resting(
-        &self,
-        u: Vec<f64>,
-        examined: Examined,
-        examine: impl Fn(&[f64]) -> Result<Examined, Error>,
-    ) -> Result<(Vec<f64>, Examined), Error> {
-        if examined.may_rest.is_empty() {
-            return Ok((u, examined));
-        }
-        let rests = |dof: usize| examined.may_rest.contains(&self.parts().of_dof(dof));
-        let at_rest: Vec<f64> = u.iter().enumerate().map(|(dof, &u)| if rests(dof) { 0.0 } else { u }).collect();
-        let of_rest = examine(&at_rest)?;
-        let is_better = of_rest.certificate.improves_on(&examined.certificate, 1.0);
-        Ok(if is_better { (at_rest, of_rest) } else { (u, examined) })
+    pub(crate) fn at_rest(&self, u: &[f64], may_rest: &[usize]) -> Option<Vec<f64>> {
+        let rests = |dof: usize| may_rest.contains(&self.parts().of_dof(dof));
+        let at_rest = || u.iter().enumerate().map(|(dof, &u)| if rests(dof) { 0.0 } else { u }).collect();
+        (!may_rest.is_empty()).then(at_rest)
     }
 
-    fn recomputed(&self, bounding: Bounding, u: &[f64], lambda: &[f64]) -> Examined {
+    pub(super) fn recomputed(&self, bounding: &Bounding, u: &[f64], lambda: &[f64]) -> Examined {
         let Balance { residual, elastic, strain, terms } = self.accurate_balance(u, &[lambda]);
         let violation = self.accurate_violation(u);
         let (contact_terms, lengths) = (self.contact.mul_abs_transposed(lambda), self.contact.mul_abs(u));
@@ -237,23 +179,14 @@ impl ContactProblem {
             imbalance: self.imbalance(&residual, |dof| terms[dof] + forces[dof]),
             loose_dofs: if let Bounding::Factor(norm) = bounding { norm.loose_dofs() } else { 0 },
             open_force: worst(rows().map(|row| shares_of_rows[row].min((-distance(row)).max(0.0)))),
-            energy_error: f64::INFINITY,
-            energy_error_bound: f64::INFINITY,
-            part_error_bound: f64::INFINITY,
-            energy_error_excess: f64::INFINITY,
-            met_tolerance: f64::INFINITY,
-            met: None,
-            at_rest: false,
             parts: self.parts().count(),
-            parts_at_rest: 0,
-            rest_error: 0.0,
-            cancellation: Cancellation { dof: 0, forces: 0.0, left: 0.0 },
             bound_is_measured: matches!(bounding, Bounding::Cycles(..)),
+            ..Certificate::unknown()
         };
         let rounding = scales.whole.rounding();
         let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation, rounding };
         let (bound, measured, loss) = match bounding {
-            Bounding::Nothing => (ErrorBound::none(), None, 1.0),
+            Bounding::Nothing | Bounding::OwnFactor | Bounding::Pieces(_) => (ErrorBound::none(), None, 1.0),
             Bounding::Factor(norm) => (self.energy_error_bound(norm, &answer), None, norm.loss()),
             Bounding::Cycles(multigrid, watch) => {
                 let (bound, measured) = self.energy_error_bound_by(multigrid, &answer, watch);
@@ -404,7 +337,7 @@ mod tests {
         (pieces[0].part_error_bound, pieces[1].part_error_bound) = (0.25, 7.0);
         (pieces[0].energy_error_excess, pieces[1].energy_error_excess) = (5.0, 0.5);
         pieces[0].cancellation.dof = 1;
-        let whole = problem.certify_pieces(&pieces, &u, &lambda).unwrap();
+        let whole = problem.examine(&Bounding::Pieces(&pieces), &u, &lambda).unwrap().certificate;
         // The energy norm is sqrt(4 1^2 + 16 2^2).
         let bound = 5e-3 / 68_f64.sqrt();
         assert!((whole.energy_error_bound / bound - 1.0).abs() < ROUNDED, "{whole:?}");
@@ -412,15 +345,15 @@ mod tests {
         assert_eq!((whole.met_tolerance, whole.cancellation.dof), (7.0, 1));
         pieces[1].bound_is_measured = true;
         (pieces[0].part_error_bound, pieces[1].part_error_bound) = (0.0, 0.0);
-        let whole = problem.certify_pieces(&pieces, &u, &lambda).unwrap();
+        let whole = problem.examine(&Bounding::Pieces(&pieces), &u, &lambda).unwrap().certificate;
         assert!(whole.bound_is_measured && whole.part_error_bound == whole.energy_error_bound, "{whole:?}");
         // The error of a part at rest counts in the whole.
         pieces[0].parts_at_rest = 1;
         (pieces[1].part_error_bound, pieces[0].energy_error_excess) = (1e-11, 0.0);
-        let whole = problem.certify_pieces(&pieces, &u, &lambda).unwrap();
+        let whole = problem.examine(&Bounding::Pieces(&pieces), &u, &lambda).unwrap().certificate;
         assert_eq!((whole.part_error_bound, whole.parts_at_rest), (whole.energy_error_bound, 1), "{whole:?}");
         pieces[1].energy_error_excess = 0.0;
-        let whole = problem.certify_pieces(&pieces, &u, &lambda).unwrap();
+        let whole = problem.examine(&Bounding::Pieces(&pieces), &u, &lambda).unwrap().certificate;
         assert!((whole.energy_error_excess / bound - 1.0).abs() < ROUNDED && !whole.at_rest, "{whole:?}");
     }
 

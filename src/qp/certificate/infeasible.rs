@@ -1,5 +1,6 @@
 //! Rows that contradict each other: the certificate of an infeasible problem, recomputed from the problem itself.
 
+use crate::error::Error;
 use crate::qp::linear::{Accumulator, largest};
 use crate::qp::problem::ContactProblem;
 
@@ -11,6 +12,14 @@ const OVERLAP: f64 = 4.0 * f64::EPSILON;
 const FAR: f64 = 1e8;
 
 impl ContactProblem {
+    /// The error that no displacement satisfies the contact rows `rows` together, by these weights.
+    pub(in crate::qp) fn infeasible(&self, rows: &[usize], weights: &[f64]) -> Error {
+        let overlap = self.overlap(rows, weights).unwrap_or(0.0);
+        let by = if overlap > 0.0 { format!(": they overlap by {overlap:.3e}") } else { String::new() };
+        let reason = format!("no displacement satisfies the contact rows {rows:?} together{by} (indices from 0)");
+        Error::Infeasible { reason, rows: rows.to_vec(), weights: weights.to_vec(), overlap }
+    }
+
     /// The length by which the contact rows `rows` overlap under the weights y, one for each row: `-g'y` if the largest weight
     /// is one. `None` if y proves nothing.
     ///

@@ -15,7 +15,7 @@ mod springs;
 mod units;
 mod verdict;
 
-pub(crate) use conditions::Examined;
+pub(crate) use conditions::{Bounding, Evidence, Examined};
 pub(crate) use energy_norm::EnergyNorm;
 pub(crate) use mode::{NullMode, Rounding};
 pub(crate) use proof::WithEvidence;

@@ -9,7 +9,7 @@
 
 use super::EnergyNorm;
 use super::bound::Answer;
-use super::conditions::Evidence;
+use super::conditions::{Bounding, Evidence};
 use super::energy_norm::ROUNDED_BOUND;
 use crate::error::Error;
 use crate::qp::linear::multigrid::Multigrid;
@@ -48,9 +48,18 @@ impl ContactProblem {
         Ok(norm.and_then(|norm| self.prove_in(&norm, WithEvidence { displacement, multiplier, evidence: None })))
     }
 
-    /// As [`ContactProblem::prove`], in an energy norm that is already available, for vectors that fit; from the evidence of
-    /// their certificate if there is any.
-    pub(crate) fn prove_in(&self, norm: &EnergyNorm, answer: WithEvidence) -> Option<ProvenSet> {
+    /// As [`ContactProblem::prove`], by the means of a certificate, for vectors that fit; from the evidence of that certificate if
+    /// there is any.
+    pub(crate) fn prove_by(&self, by: &Bounding, answer: WithEvidence) -> Option<ProvenSet> {
+        match by {
+            Bounding::Factor(norm) => self.prove_in(norm, answer),
+            Bounding::Cycles(multigrid, watch) => self.prove_by_cycles(multigrid, watch, answer),
+            Bounding::Nothing | Bounding::OwnFactor | Bounding::Pieces(_) => None,
+        }
+    }
+
+    /// As [`ContactProblem::prove`], in an energy norm that is already available.
+    fn prove_in(&self, norm: &EnergyNorm, answer: WithEvidence) -> Option<ProvenSet> {
         let WithEvidence { displacement, multiplier, evidence } = answer;
         if let Some(units) = self.far_units(displacement) {
             let (problem, norm) = (self.in_units(&units).ok()?, units.norm(norm));
@@ -62,7 +71,7 @@ impl ContactProblem {
         }
         let rows = self.rows();
         let Evidence { residual, violation, error, .. } =
-            evidence.or_else(|| self.examine_in(Some(norm), displacement, multiplier).ok()?.evidence)?;
+            evidence.or_else(|| self.recomputed(&Bounding::Factor(norm.clone()), displacement, multiplier).evidence)?;
         let answer = Answer { displacement, multiplier, residual, violation: &violation, rounding: 0.0 };
         let (error, widening) = (ROUNDED_BOUND * error, norm.widening());
         if !error.is_finite() {
@@ -96,12 +105,7 @@ impl ContactProblem {
 
     /// As [`ContactProblem::prove`], without a factor: with the bound by the cycles of the hierarchy of K, and one solve by
     /// cycles for an M-matrix. `None` if the cycles find no bound, or if K is singular.
-    pub(crate) fn prove_by_cycles(
-        &self,
-        multigrid: &Multigrid,
-        watch: &Watch,
-        answer: WithEvidence,
-    ) -> Option<ProvenSet> {
+    fn prove_by_cycles(&self, multigrid: &Multigrid, watch: &Watch, answer: WithEvidence) -> Option<ProvenSet> {
         let WithEvidence { displacement, multiplier, evidence } = answer;
         // A hierarchy of one level is already a factor.
         if multigrid.unknowns().len() <= 1 {

@@ -1,80 +1,62 @@
-//! The answer on the contact boundary alone: contact set, multipliers and forces, without the displacement of the body.
+//! The engine with a factor, on the contact boundary: an answer there.
 
-use std::fmt::Debug;
 use std::sync::Arc;
 
+use super::factored::{Factored, Reduced};
+use super::interface::{Body, OnBoundary, Task};
 use crate::error::Error;
-use crate::solution::{Certificate, ContactSet, Solution};
+use crate::qp::certificate::Bounding;
+use crate::solution::Certificate;
 
-/// The answer of a prepared problem on its contact boundary at some gap and load.
-///
-/// The multipliers are those of the whole answer. Nothing here costs a sweep through the factor of the body, unless it is asked
-/// for: [`displacement`](Self::displacement) takes one, [`solution`](Self::solution) two.
-#[derive(Clone, Debug)]
-pub struct BoundarySolution {
-    /// Contact multiplier lambda, one entry per contact row, in the problem's unit of force, `<= 0` in compression.
-    pub multiplier: Vec<f64>,
-    /// The closed rows.
-    pub contact_set: ContactSet,
-    /// Linear solves of the method, or its interior-point steps, as in [`Solution::iterations`].
-    pub iterations: usize,
-    /// The certificate of the *condensed* problem, in its dimensionless units: its conditions are recomputed from the condensed
-    /// stiffness, load and rows, not from the problem itself, which would need the displacement of the body.
-    pub condensed_certificate: Certificate,
-    pub(super) inside: Arc<dyn Inside>,
+/// The result on the boundary, from which the displacement of the body follows.
+#[derive(Debug)]
+struct Condensed {
+    engine: Arc<Factored>,
+    found: Reduced,
 }
 
-/// The means to compute the answer inside the body.
-pub(super) trait Inside: Debug + Send + Sync {
-    /// The displacement of the whole body, not certified.
-    fn displacement(&self) -> Vec<f64>;
-
-    /// The whole answer, certified.
-    ///
-    /// # Errors
-    /// As [`BoundarySolution::solution`].
-    fn solution(&self) -> Result<Solution, Error>;
-}
-
-impl Inside for Solution {
+impl Body for Condensed {
     fn displacement(&self) -> Vec<f64> {
-        self.displacement.clone()
-    }
-
-    fn solution(&self) -> Result<Solution, Error> {
-        Ok(self.clone())
+        self.engine.displacement(&self.found)
     }
 }
 
-impl BoundarySolution {
-    /// Total contact force `-sum(lambda)`, `>= 0`, in the problem's unit of force.
-    pub fn contact_force(&self) -> f64 {
-        -self.multiplier.iter().sum::<f64>()
-    }
-
-    /// The displacement u of the whole body, one entry per dof, in the problem's unit of length; not certified.
-    pub fn displacement(&self) -> Vec<f64> {
-        self.inside.displacement()
-    }
-
-    /// The whole answer, with the certificate of the problem itself.
+impl Factored {
+    /// The result of the method with the certificate of the condensed problem: its conditions recomputed there, and its error bound if
+    /// it is asked for. `None` if it does not meet the goal, or if the condensed problem is that of a refinement only.
     ///
     /// # Errors
-    /// [`Error::NotCertified`] and [`Error::Infeasible`], as [`solve`](crate::solve()).
-    pub fn solution(self) -> Result<Solution, Error> {
-        self.inside.solution()
+    /// As [`Engine::make`](super::interface::Engine::make).
+    pub(super) fn found_on_boundary(
+        &self,
+        task: &Task,
+        is_bounded: bool,
+    ) -> Result<Option<(Reduced, Certificate)>, Error> {
+        let settings = task.settings;
+        let found = self.find(task)?.filter(|found| found.refined.is_none());
+        let Some(found) = found else { return Ok(None) };
+        let Reduced { problem, outcome, .. } = &found;
+        let by = if is_bounded { self.condensed_bounding(problem, &settings.watch) } else { Bounding::Nothing };
+        let certificate = problem.examine(&by, &outcome.displacement, &outcome.multiplier)?.certificate;
+        let is_met = match is_bounded {
+            true => settings.goal().is_met_by(&certificate),
+            false => certificate.conditions_hold(settings.goal().tolerance),
+        };
+        Ok(is_met.then_some((found, certificate)))
     }
-}
 
-impl From<Solution> for BoundarySolution {
-    /// The boundary of an answer that was not condensed.
-    fn from(solution: Solution) -> Self {
-        BoundarySolution {
-            multiplier: solution.multiplier.clone(),
-            contact_set: solution.contact_set.clone(),
-            iterations: solution.iterations,
-            condensed_certificate: solution.certificate,
-            inside: Arc::new(solution),
-        }
+    /// The same as an answer of the whole problem.
+    ///
+    /// # Errors
+    /// As [`Engine::make`](super::interface::Engine::make).
+    pub fn answer_on_boundary(self: Arc<Self>, task: &Task, is_bounded: bool) -> Result<Option<OnBoundary>, Error> {
+        let Some((found, condensed_certificate)) = self.found_on_boundary(task, is_bounded)? else { return Ok(None) };
+        Ok(Some(OnBoundary {
+            multiplier: self.expand_multiplier(&found.outcome.multiplier, found.unit),
+            contact_set: self.expand_set(&found.outcome.contact_set),
+            iterations: found.outcome.iterations,
+            condensed_certificate,
+            body: Arc::new(Condensed { engine: self, found }),
+        }))
     }
 }

@@ -1,25 +1,21 @@
 //! The engine with a factor: everything that does not depend on load and gap is done once.
 
 use std::sync::{Arc, OnceLock};
-use std::time::Instant;
 
-use super::boundary::BoundarySolution;
-use super::case::{Case, Engine, FactorSize};
-use super::found::Found;
+use super::interface::{Engine, FactorSize, Found, OnBoundary, Task, Walk};
 use super::loading::{Load, Loading};
-use super::reduction::Reduction;
-use super::run::run;
-use super::walk::Walk;
+use super::reduction::{Norm, Reduction};
+use super::step::ScaledStep;
 use crate::error::Error;
-use crate::qp::certificate::EnergyNorm;
-use crate::qp::cost::{check_time, seconds};
+use crate::qp::certificate::{Bounding, EnergyNorm};
+use crate::qp::cost::{bytes, check_time, seconds};
 use crate::qp::linear::{AugmentedMatrix, Equilibration, dot, ldexp};
-use crate::qp::method::{ScaledProblem, active_set};
-use crate::qp::plan::{Tried, Way};
-use crate::qp::problem::{ContactProblem, check_gap};
+use crate::qp::method::{Ending, Outcome, ScaledProblem, active_set};
+use crate::qp::plan::{Basis, Step, Tried, Way};
+use crate::qp::problem::ContactProblem;
 use crate::qp::settings::{Method, Settings};
 use crate::qp::transform::Condensation;
-use crate::solution::{ContactSet, Seconds, Solution};
+use crate::solution::{ContactSet, Iteration, Seconds, Solution};
 use crate::watch::Watch;
 
 /// Factorisations for one step of a loop if K is not definite by itself.
@@ -27,7 +23,7 @@ const SINGULAR: f64 = 3.0;
 
 /// A contact problem, scaled, condensed if that pays, factorised.
 #[derive(Debug)]
-pub(super) struct Factored {
+pub(in crate::qp) struct Factored {
     pub(super) problem: ContactProblem,
     pub(super) reduction: Reduction,
     /// The smallest pivot of the scaled stiffness, if it is below [`LOST_PIVOT`](super::preparation::LOST_PIVOT).
@@ -45,9 +41,40 @@ pub(super) struct Factored {
     pub(super) seconds: Seconds,
 }
 
+/// The result of a method on the unknowns of the engine, with its load and gaps.
+#[derive(Clone, Debug)]
+pub(super) struct Reduced {
+    pub loading: Arc<Loading>,
+    pub gap: Vec<f64>,
+    /// The problem that the method worked on.
+    pub problem: ContactProblem,
+    pub unit: i32,
+    pub outcome: Outcome,
+    pub factor_seconds: f64,
+    /// State of the refinement, if the factor is in single precision.
+    pub refined: Option<Refined>,
+}
+
+/// State of the refinement so far.
+#[derive(Clone, Debug)]
+pub(super) struct Refined {
+    /// The displacement before the last step, length n.
+    pub base: Vec<f64>,
+    /// The largest measured contraction.
+    pub contraction: f64,
+    /// Steps after the first answer.
+    pub steps: usize,
+}
+
+/// A load in all its forms, and gaps of all rows.
+pub(super) struct Loaded {
+    pub loading: Arc<Loading>,
+    pub gap: Vec<f64>,
+}
+
 impl Engine for Factored {
-    fn problem(&self) -> &ContactProblem {
-        &self.problem
+    fn basis(&self) -> Basis {
+        Basis::Factor
     }
 
     fn serves(&self, method: Method) -> bool {
@@ -63,20 +90,54 @@ impl Engine for Factored {
             method: self.resolved(settings).method,
             condensed_dofs: self.is_condensed().then(|| self.condensed_dofs()),
             is_shortcut: self.is_single() || self.way.is_some_and(|way| way != Way::ActiveSet),
+            is_single: self.is_single(),
+            lost_pivot: self.lost_pivot,
+            is_singular: self.lost_pivot.is_some(),
+            multiplications: self.multiplications,
         }
     }
 
-    fn solve(&self, case: &Case) -> Result<Solution, Error> {
-        self.best(self.find(case)?, case.settings).map(|best| best.1)
+    fn make(&self, task: &Task) -> Result<Option<Found>, Error> {
+        match (task.step, task.best) {
+            (Step::Refinement, Some(best)) => Ok(self.refined_answer(task, best)),
+            (Step::Repair, Some(best)) => Ok(self.repaired(task, best)),
+            (Step::Refinement | Step::Repair, None) => Ok(None),
+            _ => Ok(self.find(task)?.map(|reduced| self.whole(reduced))),
+        }
     }
 
-    fn boundary(self: Arc<Self>, case: &Case) -> Result<BoundarySolution, Error> {
-        self.boundary_at(case)
+    fn bounding(&self, watch: &Watch, contraction: f64) -> Bounding<'_> {
+        let in_time = watch.allows(self.norm_seconds);
+        match self.norm_within(watch) {
+            Some(norm) if self.is_single() => {
+                let contraction = contraction.max(norm.contraction(self.problem.stiffness()));
+                Bounding::Factor(norm.off_by(contraction))
+            }
+            Some(norm) => Bounding::Factor(norm),
+            None if in_time => Bounding::OwnFactor,
+            None => Bounding::Nothing,
+        }
     }
 
-    fn settled(&self, case: &Case) -> Result<Option<Vec<f64>>, Error> {
-        let found = self.find(case)?;
-        Ok(found.outcome.settled.then(|| self.displacement(&found)))
+    fn bytes(&self) -> f64 {
+        let of_factor = |values: usize| bytes::of_factor(values as f64, size_of::<f64>());
+        match &self.reduction.condensation {
+            Some(condensed) => of_factor(condensed.factor_entries()) + bytes::of_dense(self.condensed_dofs() as f64),
+            None => of_factor(self.augmented.analysis().factor_entries()),
+        }
+    }
+
+    fn proof_seconds(&self) -> f64 {
+        self.proof_seconds
+    }
+
+    fn on_boundary(self: Arc<Self>, task: &Task, is_bounded: bool) -> Result<Option<OnBoundary>, Error> {
+        self.answer_on_boundary(task, is_bounded)
+    }
+
+    fn settled(&self, task: &Task) -> Result<Option<Vec<f64>>, Error> {
+        let settled = self.find(task)?.filter(|found| found.outcome.is_settled());
+        Ok(settled.map(|found| self.displacement(&found)))
     }
 
     fn response(&self, load: &Load) -> Option<Vec<f64>> {
@@ -90,7 +151,7 @@ impl Engine for Factored {
         Some(self.expand(&loading, loading.unit, &moved))
     }
 
-    fn walk(self: Arc<Self>, from: &Case, to: &[f64]) -> Result<Walk, Error> {
+    fn walk(self: Arc<Self>, from: &Task, to: &[f64]) -> Result<Option<Walk>, Error> {
         self.walk_to(from, to)
     }
 
@@ -98,7 +159,6 @@ impl Engine for Factored {
         Some(FactorSize {
             unknowns: self.condensed_dofs(),
             entries: self.reduction.condensation.as_ref().map_or(0, Condensation::factor_entries),
-            multiplications: self.multiplications,
             is_single: self.is_single(),
         })
     }
@@ -123,13 +183,16 @@ impl Factored {
         self.reduction.selection.expand_set(set)
     }
 
-    /// Runs the method, on the contact boundary if the problem is condensed.
-    pub fn find(&self, case: &Case) -> Result<Found, Error> {
-        let settings = &self.resolved(case.settings);
-        self.check_gap(case.gap)?;
-        let loading = case.load.swept(&self.reduction, &self.reduction.selection.gap(case.gap));
-        let found = self.find_step(loading, case.gap.to_vec(), case.start.contact_set.as_ref(), settings)?;
-        if self.is_single() { self.refined(found, settings) } else { Ok(found) }
+    /// The result of a method, on the contact boundary if the problem is condensed; `None` if the step has no means here.
+    pub(super) fn find(&self, task: &Task) -> Result<Option<Reduced>, Error> {
+        self.check_gap(task.problem.gap())?;
+        let gap = task.problem.gap().to_vec();
+        let loading = task.load.swept(&self.reduction, &self.reduction.selection.gap(&gap));
+        let set = task.start.contact_set.as_ref();
+        let Some(found) = self.find_step(Loaded { loading, gap }, task.step, set, task.settings)? else {
+            return Ok(None);
+        };
+        if self.is_single() { self.refined(found, task).map(Some) } else { Ok(Some(found)) }
     }
 
     /// The settings with the chosen method, if they leave the choice.
@@ -140,35 +203,92 @@ impl Factored {
         }
     }
 
-    /// One run of the method.
+    /// One run of a method, from a set of all rows if one is known.
     pub(super) fn find_step(
         &self,
-        loading: Arc<Loading>,
-        gap: Vec<f64>,
+        Loaded { loading, gap }: Loaded,
+        step: Step,
         start: Option<&ContactSet>,
         settings: &Settings,
-    ) -> Result<Found, Error> {
-        let clock = Instant::now();
+    ) -> Result<Option<Reduced>, Error> {
+        let settings = &self.resolved(settings);
         let watch = self.watch_of_loop(settings)?;
         let (problem, unit) = self.scaled(&loading, &gap)?;
         let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.definiteness()).watched(&watch);
         let start = start.map(|set| self.reduction.selection.restrict_set(set));
         let bound = |displacement: &[f64], multiplier: &[f64]| {
-            let certificate = match self.condensed_norm(&problem) {
-                Some(norm) => {
-                    let norm = norm.watched(&settings.watch.finishing());
-                    problem.certify_in(Some(&norm), displacement, multiplier)
-                }
-                None => problem.certify(displacement, multiplier),
-            };
-            let of_whole = self.share_of_boundary(&loading, unit, &problem, displacement);
-            certificate.map_or(f64::INFINITY, |certificate| certificate.energy_error_bound * of_whole)
+            let by = self.condensed_bounding(&problem, &settings.watch);
+            let examined = problem.examine(&by, displacement, multiplier);
+            let on_boundary = dot(displacement, &problem.stiffness().mul(displacement));
+            let of_whole = self.share_of_boundary(&loading, unit, on_boundary);
+            examined.map_or(f64::INFINITY, |examined| examined.certificate.energy_error_bound * of_whole)
         };
-        let outcome =
-            run(&task, start, settings, &bound).map_err(|error| self.expand_error(error, &loading.load, &gap))?;
-        let seconds =
-            Seconds { factor: task.factor_seconds(), solve: clock.elapsed().as_secs_f64(), ..Seconds::default() };
-        Ok(Found { loading, gap, problem, unit, outcome, seconds, refined: None })
+        let outcome = ScaledStep { scaled: &task, start, settings, bound: &bound }.outcome(step)?;
+        let factor_seconds = task.factor_seconds();
+        Ok(outcome.map(|outcome| Reduced { loading, gap, problem, unit, outcome, factor_seconds, refined: None }))
+    }
+
+    /// The means of a certificate of the problem that the methods work on.
+    pub(super) fn condensed_bounding(&self, problem: &ContactProblem, watch: &Watch) -> Bounding<'static> {
+        let norm = self.condensed_norm(problem).map(|norm| norm.watched(&watch.finishing()));
+        norm.map_or(Bounding::OwnFactor, Bounding::Factor)
+    }
+
+    /// What was found in terms of the whole problem.
+    fn whole(&self, found: Reduced) -> Found {
+        let displacement = self.displacement(&found);
+        let Reduced { unit, outcome, factor_seconds, refined, .. } = found;
+        let history = outcome.history.into_iter();
+        let ending = match outcome.ending {
+            Ending::Infeasible { rows, weights } => self.expand_contradiction(&rows, &weights),
+            ending => ending,
+        };
+        let outcome = Outcome {
+            displacement,
+            multiplier: self.expand_multiplier(&outcome.multiplier, unit),
+            contact_set: self.expand_set(&outcome.contact_set),
+            history: history
+                .map(|step| Iteration { contact_set: self.expand_set(&step.contact_set), ..step })
+                .collect(),
+            ending,
+            ..outcome
+        };
+        Found { outcome, factor_seconds, refined: refined.map(|refined| (refined.steps, refined.contraction)) }
+    }
+
+    /// The rows of the whole problem that contradict each other, with their weights.
+    fn expand_contradiction(&self, rows: &[usize], weights: &[f64]) -> Ending {
+        let mut scaled = vec![0.0; self.reduction.selection.kept().len()];
+        rows.iter().zip(weights).for_each(|(&row, &weight)| scaled[row] = weight);
+        // Rows are scaled like multipliers; the unit of weights is free.
+        let all = self.expand_multiplier(&scaled, self.reduction.scaling.equilibration().factor);
+        let rows: Vec<usize> = rows.iter().map(|&row| self.reduction.selection.kept()[row]).collect();
+        let weights = rows.iter().map(|&row| all[row]).collect();
+        Ending::Infeasible { rows, weights }
+    }
+
+    /// The best answer, changed by the repair of its own bound. This helps if rows hold many dofs, or no dof except for rounding, and
+    /// if forces cancel almost all of each other: then a step of a method has nothing left to improve. `None` without a factor at hand.
+    fn repaired(&self, task: &Task, best: &Solution) -> Option<Found> {
+        let norm = match &self.reduction.norm {
+            Norm::Kept(norm) if !self.is_single() => norm.watched(&task.settings.watch.finishing()),
+            _ => return None,
+        };
+        let (displacement, multiplier) = task.problem.repaired(&norm, &best.displacement, &best.multiplier)?;
+        let contact_set = multiplier.iter().map(|&force| force < 0.0).collect();
+        let at_rest = Outcome::at_rest(task.problem, Ending::Settled);
+        Some(Found {
+            outcome: Outcome { displacement, multiplier, contact_set, ..at_rest },
+            factor_seconds: 0.0,
+            refined: None,
+        })
+    }
+
+    /// The energy norm of a stiffness that is definite by itself, with bounds that end when `watch` says so; `None` also if
+    /// there is no time to make it.
+    fn norm_within(&self, watch: &Watch) -> Option<EnergyNorm> {
+        let in_time = self.reduction.is_norm_at_hand() || watch.allows(self.norm_seconds);
+        if in_time { self.reduction.norm().map(|norm| norm.watched(watch)) } else { None }
     }
 
     /// A watch that is over as soon as there is no time left for one more factorisation of a loop and for the certificate.
@@ -204,27 +324,26 @@ impl Factored {
         self.condensed_norm.get_or_init(of_boundary).clone()
     }
 
-    /// The ratio of the energy norm of a displacement of the condensed problem to that of the whole body.
-    fn share_of_boundary(&self, loading: &Loading, unit: i32, problem: &ContactProblem, displacement: &[f64]) -> f64 {
+    /// The ratio of the energy norm of a displacement of the condensed problem, of the square `on_boundary`, to that of the whole body.
+    fn share_of_boundary(&self, loading: &Loading, unit: i32, on_boundary: f64) -> f64 {
         let Some(condensed) = &self.reduction.condensation else { return 1.0 };
-        let on_boundary = dot(displacement, &problem.stiffness().mul(displacement));
         let interior = ldexp(condensed.interior_energy(&loading.sweep), 2 * (loading.unit - unit));
         if interior > 0.0 { (on_boundary / (on_boundary + interior)).max(0.0).sqrt() } else { 1.0 }
     }
 
-    /// Displacement and multiplier with the rows of `closed` held at their gaps.
-    pub(in crate::qp) fn with_contact_set(&self, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
+    /// Displacement and multiplier with the rows of `closed` held at their gaps; `None` if they do not hold the body, or contradict
+    /// each other.
+    pub(in crate::qp) fn with_contact_set(&self, closed: &ContactSet) -> Option<(Vec<f64>, Vec<f64>)> {
         let gap = self.reduction.selection.gap(self.problem.gap());
         let loading = Loading::of(&self.reduction, self.problem.load().to_vec(), &gap);
-        let (problem, unit) = self.scaled(&loading, self.problem.gap())?;
+        let (problem, unit) = self.scaled(&loading, self.problem.gap()).ok()?;
         let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.definiteness());
-        let held = active_set::with_contact_set(&task, &self.reduction.selection.restrict_set(closed))
-            .map_err(|error| self.expand_error(error, self.problem.load(), self.problem.gap()))?;
-        Ok((self.expand(&loading, unit, &held.displacement), self.expand_multiplier(&held.multiplier, unit)))
+        let held = active_set::with_contact_set(&task, &self.reduction.selection.restrict_set(closed)).ok()??;
+        Some((self.expand(&loading, unit, &held.displacement), self.expand_multiplier(&held.multiplier, unit)))
     }
 
     /// The displacement of the whole body.
-    pub(super) fn displacement(&self, found: &Found) -> Vec<f64> {
+    pub(super) fn displacement(&self, found: &Reduced) -> Vec<f64> {
         let mut displacement = self.expand(&found.loading, found.unit, &found.outcome.displacement);
         if let Some(refined) = &found.refined {
             displacement.iter_mut().zip(&refined.base).for_each(|(step, base)| *step += base);
@@ -237,17 +356,16 @@ impl Factored {
         self.reduction.is_definite() && self.reduction.condensation.as_ref().is_some_and(Condensation::is_single)
     }
 
-    /// Rows that were left out when the problem was prepared, and only these, must still be without obstacle.
+    /// Rows that were without obstacle when the problem was prepared, and only these, must still be so.
     pub(super) fn check_gap(&self, gap: &[f64]) -> Result<(), Error> {
-        check_gap(gap, self.problem.rows())?;
-        if self.reduction.selection.under(gap)?.kept() == self.reduction.selection.kept() {
-            return Ok(());
+        let changes = |(gap, before): (&f64, &f64)| gap.is_finite() != before.is_finite();
+        match gap.iter().zip(self.problem.gap()).position(changes) {
+            None => Ok(()),
+            Some(row) => {
+                let allowed = "infinite in the same rows as when the problem was prepared";
+                Err(Error::NotFinite { name: "gap vector", at: format!("entry {row}"), value: gap[row], allowed })
+            }
         }
-        let (row, &value) = (gap.iter().enumerate())
-            .find(|(row, gap)| gap.is_finite() != self.problem.gap()[*row].is_finite())
-            .unwrap_or((0, &f64::NAN));
-        let allowed = "infinite in the same rows as when the problem was prepared";
-        Err(Error::NotFinite { name: "gap vector", at: format!("entry {row}"), value, allowed })
     }
 
     /// The problem that the methods work on, and the exponent of its reference displacement.

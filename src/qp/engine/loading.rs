@@ -7,7 +7,7 @@ use crate::qp::linear::{exponent, largest, ldexp};
 
 /// A load, and its sweep through a factor once that has been used.
 #[derive(Debug)]
-pub(super) struct Load {
+pub(in crate::qp) struct Load {
     force: Vec<f64>,
     swept: OnceLock<Arc<Loading>>,
 }
@@ -25,7 +25,7 @@ impl Load {
 
     /// The load swept through the factor of `reduction`; the first call does this in a unit that fits `gap`, the gaps of the
     /// selected rows.
-    pub fn swept(&self, reduction: &Reduction, gap: &[f64]) -> Arc<Loading> {
+    pub(super) fn swept(&self, reduction: &Reduction, gap: &[f64]) -> Arc<Loading> {
         self.swept.get_or_init(|| Arc::new(Loading::of(reduction, self.force.clone(), gap))).clone()
     }
 }

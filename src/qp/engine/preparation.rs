@@ -32,7 +32,7 @@ impl Factored {
         let clock = Instant::now();
         watch.step("ordering", 0);
         seconds::learn(watch);
-        let selection = RowSelection::of(problem.contact(), problem.gap())?;
+        let selection = RowSelection::of(problem.contact(), problem.gap());
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
         let stiffest = largest(&problem.stiffness().diagonal());
         let factor_clock = Instant::now();

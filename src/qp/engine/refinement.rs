@@ -12,22 +12,18 @@
 //! in single precision that contraction is measured; it widens the bound of the certificate, which uses K~ only.
 
 use std::sync::Arc;
-use std::time::Instant;
 
-use super::factored::Factored;
-use super::found::{Found, Refined};
+use super::factored::{Factored, Loaded, Reduced, Refined};
+use super::interface::{Found, Task};
 use super::loading::Loading;
 use crate::error::Error;
 use crate::qp::linear::dot;
-use crate::qp::problem::ContactProblem;
-use crate::qp::settings::Settings;
+use crate::qp::method::{Ending, Outcome};
+use crate::qp::plan::Step;
 use crate::solution::{ContactSet, Solution};
 
 /// Number of steps after which no more digits can be gained.
 const MOST_STEPS: usize = 30;
-
-/// Steps after an answer in double precision: each gains as many digits as the factor has left.
-const MOST_CORRECTIONS: usize = 6;
 
 /// A contraction above this makes the bound of the certificate worthless.
 const LARGEST_CONTRACTION: f64 = 0.2;
@@ -46,8 +42,8 @@ impl Factored {
     ///
     /// # Errors
     /// [`Error::Numerical`] if the stiffness is too ill-conditioned for single precision, and those of the method.
-    pub(super) fn refined(&self, first: Found, settings: &Settings) -> Result<Found, Error> {
-        let (load, gap) = (first.loading.load.clone(), first.gap.clone());
+    pub(super) fn refined(&self, first: Reduced, task: &Task) -> Result<Reduced, Error> {
+        let (load, gap, settings) = (first.loading.load.clone(), first.gap.clone(), task.settings);
         let mut rest = load.clone();
         let mut found = first;
         let mut refined = Refined { base: vec![0.0; self.problem.dofs()], contraction: 0.0, steps: 0 };
@@ -75,7 +71,7 @@ impl Factored {
                 .is_some_and(|accuracy| refined.steps > 0 && length * refined.contraction <= AIM * accuracy * size);
             let no_gain = refined.steps > 0 && (length <= NOTHING * size || ratio > 0.5);
             if good_enough || no_gain || settings.watch.is_over() || refined.steps == MOST_STEPS {
-                return Ok(Found {
+                return Ok(Reduced {
                     gap,
                     loading: Arc::new(found.loading.with_load(load)),
                     refined: Some(refined),
@@ -83,10 +79,10 @@ impl Factored {
                 });
             }
             rest = load.iter().zip(&elastic).map(|(f, k)| f - k).collect();
-            let (history, iterations) = (found.outcome.history, found.outcome.iterations);
-            let (set, seconds) = (self.expand_set(&found.outcome.contact_set), found.seconds);
-            let problem = self.problem.with(load.clone(), gap.clone())?;
-            found = self.step_from(&problem, &displacement, &multiplier, &set, settings)?;
+            let (contact_set, seconds) = (self.expand_set(&found.outcome.contact_set), found.factor_seconds);
+            let answer = Answer { displacement: &displacement, multiplier: &multiplier, contact_set: &contact_set };
+            let Some(next) = self.step_from(task, &answer)? else { return Ok(found) };
+            let Outcome { history, iterations, .. } = std::mem::replace(&mut found, next).outcome;
             // A step that keeps the set adds nothing to the history.
             let kept = found
                 .outcome
@@ -95,80 +91,55 @@ impl Factored {
                 .all(|entry| Some(&entry.contact_set) == history.last().map(|last| &last.contact_set));
             found.outcome.history = if kept { history } else { [history, found.outcome.history].concat() };
             found.outcome.iterations = iterations;
-            found.seconds.factor += seconds.factor;
-            found.seconds.solve += seconds.solve;
+            found.factor_seconds += seconds;
             refined.base = displacement;
             refined.steps += 1;
             last_length = length;
         }
     }
 
-    /// The step d: the answer to the contact problem for the residual of an answer (u, lambda) to `problem`, started from its
-    /// contact set, together with the whole multiplier.
-    fn step_from(
-        &self,
-        problem: &ContactProblem,
-        displacement: &[f64],
-        multiplier: &[f64],
-        set: &ContactSet,
-        settings: &Settings,
-    ) -> Result<Found, Error> {
+    /// The step d: the answer to the contact problem for the residual of an `answer` (u, lambda), started from its contact set,
+    /// together with the whole multiplier.
+    fn step_from(&self, task: &Task, answer: &Answer) -> Result<Option<Reduced>, Error> {
+        let Answer { displacement, multiplier, contact_set } = *answer;
         // The contact force is balanced on its own dofs; only the imbalance is swept.
-        let imbalance = problem.accurate_residual(displacement, multiplier);
-        let contact = problem.contact().mul_transposed(multiplier);
+        let imbalance = task.problem.accurate_residual(displacement, multiplier);
+        let contact = task.problem.contact().mul_transposed(multiplier);
         let released: Vec<f64> = contact.iter().map(|force| -force).collect();
-        let left: Vec<f64> = problem.accurate_violation(displacement).iter().map(|violation| -violation).collect();
+        let gap: Vec<f64> = task.problem.accurate_violation(displacement).iter().map(|violation| -violation).collect();
         let loading = match self.reduction.condensation {
-            Some(_) => Loading::of(&self.reduction, imbalance, &self.reduction.selection.gap(&left))
+            Some(_) => Loading::of(&self.reduction, imbalance, &self.reduction.selection.gap(&gap))
                 .with_contact_force(&self.reduction, &released),
             None => {
                 let rest = imbalance.iter().zip(&released).map(|(r, b)| r + b).collect();
-                Loading::of(&self.reduction, rest, &self.reduction.selection.gap(&left))
+                Loading::of(&self.reduction, rest, &self.reduction.selection.gap(&gap))
             }
         };
-        self.find_step(Arc::new(loading), left, Some(set), settings)
+        let loaded = Loaded { loading: Arc::new(loading), gap };
+        self.find_step(loaded, Step::Method, Some(contact_set), task.settings)
     }
 
-    /// A solution that falls short, refined as long as that brings it closer to its goal.
-    ///
-    /// # Errors
-    /// Those of the certificate.
-    pub(super) fn corrected(
-        &self,
-        mut solution: Solution,
-        problem: &ContactProblem,
-        settings: &Settings,
-    ) -> Result<Solution, Error> {
-        // Another step must reduce the worst condition to this share.
-        const GAIN: f64 = 0.5;
-        for _ in 0..MOST_CORRECTIONS {
-            if !solution.certificate.asks_for_more(settings.goal()) || settings.watch.is_over() {
-                break;
-            }
-            let clock = Instant::now();
-            settings.watch.step("refinement", 0);
-            let (displacement, multiplier) = (&solution.displacement, &solution.multiplier);
-            // If there is no answer for the residual, the solution may still be good enough.
-            let Ok(step) = self.step_from(problem, displacement, multiplier, &solution.contact_set, settings) else {
-                break;
-            };
-            let moved = self.expand(&step.loading, step.unit, &step.outcome.displacement);
-            let displacement: Vec<f64> = displacement.iter().zip(&moved).map(|(u, d)| u + d).collect();
-            let multiplier = self.expand_multiplier(&step.outcome.multiplier, step.unit);
-            let norm = self.norm_within(&settings.watch.finishing());
-            let (displacement, examined) =
-                self.examined(problem, norm.as_ref(), (displacement, &multiplier), settings)?;
-            let certificate = examined.certificate;
-            if !certificate.gains_on(&solution.certificate, settings.goal(), GAIN) {
-                break;
-            }
-            solution.contact_set = self.expand_set(&step.outcome.contact_set);
-            (solution.displacement, solution.multiplier, solution.certificate) =
-                (displacement, multiplier, certificate);
-            solution.refinements = Some(solution.refinements.unwrap_or(0) + 1);
-            solution.seconds.solve += clock.elapsed().as_secs_f64();
-            solution.seconds.factor += step.seconds.factor;
-        }
-        Ok(solution)
+    /// The best answer, refined by one step. `None` if there is no answer for its residual: it may still be good enough.
+    pub(super) fn refined_answer(&self, task: &Task, best: &Solution) -> Option<Found> {
+        task.settings.watch.step("refinement", 0);
+        let Solution { displacement, multiplier, contact_set, .. } = best;
+        let Ok(Some(step)) = self.step_from(task, &Answer { displacement, multiplier, contact_set }) else {
+            return None;
+        };
+        let moved = self.expand(&step.loading, step.unit, &step.outcome.displacement);
+        let outcome = Outcome {
+            displacement: displacement.iter().zip(&moved).map(|(u, d)| u + d).collect(),
+            multiplier: self.expand_multiplier(&step.outcome.multiplier, step.unit),
+            contact_set: self.expand_set(&step.outcome.contact_set),
+            ..Outcome::at_rest(task.problem, Ending::Settled)
+        };
+        Some(Found { outcome, factor_seconds: step.factor_seconds, refined: None })
     }
+}
+
+/// An answer to be refined.
+struct Answer<'a> {
+    displacement: &'a [f64],
+    multiplier: &'a [f64],
+    contact_set: &'a ContactSet,
 }

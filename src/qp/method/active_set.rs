@@ -19,7 +19,7 @@ use std::collections::HashSet;
 use super::earlier_factor::{BoundedDofs, EarlierFactor, TRIAL, steps_for_a_factor};
 use super::equilibrium::{Equilibrium, WEIGHT, equilibrium, reach};
 use super::scaled::multiplier_rounding;
-use super::{FreeMode, Holding, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start};
+use super::{Ending, FreeMode, Holding, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
@@ -43,8 +43,7 @@ impl Solver for ActiveSet<'_> {
     /// Runs the loop from the contact set of `start`.
     ///
     /// # Errors
-    /// [`Error::Unbounded`] and [`Error::UnderHeld`] for a free mode that no row stops, [`Error::NotConvex`],
-    /// [`Error::Numerical`].
+    /// [`Error::Numerical`] for lack of memory.
     fn solve(&self, start: Start) -> Result<Outcome, Error> {
         let scaled = self.scaled;
         let rows = scaled.problem.rows();
@@ -53,11 +52,11 @@ impl Solver for ActiveSet<'_> {
         let mut history = Vec::new();
         let mut seen = HashSet::new();
         let mut rule = Rule::Exchange;
-        let mut settled = false;
+        let mut ending = Ending::Unsettled;
         let mut stops = 0;
         let mut balances = Balances::of_sets(scaled);
         let is_over = |done: usize| done > 0 && scaled.watch().is_over();
-        while !settled && history.len() + stops < self.most_iterations && !is_over(history.len()) {
+        while ending == Ending::Unsettled && history.len() + stops < self.most_iterations && !is_over(history.len()) {
             scaled.watch().step("active set", history.len() + 1);
             let balance = match balances.of(&closed, &displacement)? {
                 Balance::Held(balance) => balance,
@@ -69,8 +68,15 @@ impl Solver for ActiveSet<'_> {
                         continue;
                     }
                     Some(_) => break,
-                    None => return Err(mode.into_error()),
+                    None => {
+                        ending = Ending::Unheld;
+                        break;
+                    }
                 },
+                Balance::Indefinite => {
+                    ending = Ending::Unheld;
+                    break;
+                }
             };
             history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
             if !balance.consistent {
@@ -79,7 +85,7 @@ impl Solver for ActiveSet<'_> {
             (displacement, multiplier) = (balance.displacement, balance.multiplier);
             let wrong = wrong_rows(scaled.problem, &displacement, &multiplier, &closed);
             if wrong.is_empty() {
-                settled = true;
+                ending = Ending::Settled;
             } else {
                 if !seen.insert((closed.clone(), rule)) {
                     if matches!(rule, Rule::Pivoting { .. }) {
@@ -92,8 +98,9 @@ impl Solver for ActiveSet<'_> {
             }
         }
         multiplier.iter_mut().for_each(|value| *value = value.min(0.0));
-        let (iterations, variant) = (history.len(), if settled { rule.variant() } else { "-unsettled" });
-        Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, settled, variant })
+        let variant = if ending == Ending::Settled { rule.variant() } else { "-unsettled" };
+        let iterations = history.len();
+        Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, ending, variant })
     }
 }
 
@@ -107,10 +114,11 @@ struct Balances<'a> {
     earlier: Option<EarlierFactor>,
 }
 
-/// The balance of a set, or the mode that it leaves free.
+/// The balance of a set, or the reason why there is none.
 enum Balance {
     Held(Equilibrium),
     Free(FreeMode),
+    Indefinite,
 }
 
 impl<'a> Balances<'a> {
@@ -141,28 +149,20 @@ impl<'a> Balances<'a> {
                 Balance::Held(balance)
             }
             Holding::Free(mode) => Balance::Free(mode),
+            Holding::Indefinite => Balance::Indefinite,
         })
     }
 }
 
-/// Balance of forces with the rows of `closed` held at their gaps, pushing or pulling, and all others free.
+/// Balance of forces with the rows of `closed` held at their gaps, pushing or pulling, and all others free; `None` if they do not
+/// hold the body, or contradict each other.
 ///
 /// # Errors
-/// [`Error::Unbounded`] and [`Error::UnderHeld`] if they do not hold the body, [`Error::Infeasible`] if they contradict each
-/// other.
-pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Equilibrium, Error> {
-    match scaled.hold(closed, WEIGHT)? {
-        Holding::Held(cholesky) => {
-            let balance = equilibrium(scaled.problem, &cholesky, closed);
-            let reason = "the closed rows contradict each other".to_string();
-            if balance.consistent {
-                Ok(balance)
-            } else {
-                Err(Error::Infeasible { reason, rows: closed.iter().collect(), weights: Vec::new(), overlap: 0.0 })
-            }
-        }
-        Holding::Free(mode) => Err(mode.into_error()),
-    }
+/// [`Error::Numerical`] for lack of memory.
+pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Option<Equilibrium>, Error> {
+    let Holding::Held(cholesky) = scaled.hold(closed, WEIGHT)? else { return Ok(None) };
+    let balance = equilibrium(scaled.problem, &cholesky, closed);
+    Ok(Some(balance).filter(|balance| balance.consistent))
 }
 
 /// The rule by which the misclassified rows of a set give the next set.

@@ -1,7 +1,7 @@
 //! Checks whether a set of closed rows holds the body; if not, finds the direction along which it is free, and whether the
 //! load drives it.
 
-use super::scaled::{Outcome, ScaledProblem, multiplier_rounding};
+use super::scaled::ScaledProblem;
 use crate::error::Error;
 use crate::qp::linear::{Cholesky, FactorError, largest};
 use crate::solution::ContactSet;
@@ -14,9 +14,6 @@ const STEPS: usize = 5;
 
 /// Work of the load on a free mode, and other sums over a mode, are rounding below this share of their own terms.
 pub(crate) const WORK_TOLERANCE: f64 = 1e-9;
-
-/// A row this close to the obstacle, for displacements of order one, has no play.
-pub(super) const PLAY: f64 = 1e-9;
 
 /// Entries of a null vector with largest entry one, and forces on a diagonal of order one, below this are rounding.
 const NOISE: f64 = 1e-13;
@@ -35,6 +32,8 @@ pub enum Holding {
     Held(Cholesky),
     /// They do not.
     Free(FreeMode),
+    /// The energy is negative along some direction.
+    Indefinite,
 }
 
 /// A direction d with K d = 0 and B_C d = 0, largest entry one.
@@ -46,100 +45,54 @@ pub struct FreeMode {
     pub driven: bool,
 }
 
-impl FreeMode {
-    /// The error for this mode if no row stops it.
-    pub fn into_error(self) -> Error {
-        let mode = where_largest(&self.direction);
-        match self.driven {
-            true => Error::Unbounded { mode, direction: self.direction },
-            false => Error::UnderHeld { mode, direction: self.direction },
-        }
-    }
-}
-
-/// The places of the largest entries of a direction, in words.
-pub(super) fn where_largest(direction: &[f64]) -> String {
-    let mut entries: Vec<(usize, f64)> = direction.iter().copied().enumerate().collect();
-    entries.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let named: Vec<String> = entries.iter().take(3).filter(|e| e.1 != 0.0).map(|e| e.0.to_string()).collect();
-    format!("mainly at dof {} (indices from 0)", named.join(", "))
-}
-
 impl ScaledProblem<'_> {
     /// The start of a loop: C = 0 if K is definite; otherwise all rows are replaced by springs, which hold the body, and those
-    /// in compression are closed.
+    /// in compression are closed. `None` if not even all rows together hold the body, or if K is not positive semidefinite to
+    /// the largest of the shifts.
     ///
     /// # Errors
-    /// [`Error::Unbounded`] and [`Error::UnderHeld`] for a mode that not even all rows together hold,
-    /// [`Error::NotConvex`].
-    pub fn start(&self) -> Result<ContactSet, Error> {
-        let rows = self.problem.rows();
+    /// [`Error::Numerical`] for lack of memory.
+    pub fn start(&self) -> Result<Option<ContactSet>, Error> {
+        let (rows, nothing_closed) = (self.problem.rows(), ContactSet::open(self.problem.rows()));
         if self.is_definite() {
-            return Ok(ContactSet::open(rows));
+            return Ok(Some(nothing_closed));
         }
-        self.check_convex()?;
-        match self.hold(&ContactSet::closed(rows), 1.0)? {
+        match self.factor(self.matrix(&nothing_closed, 0.0, SHIFTS[SHIFTS.len() - 1])) {
+            Ok(_) => {}
+            Err(FactorError::NotPositiveDefinite) => return Ok(None),
+            Err(error) => return Err(error.into()),
+        }
+        Ok(match self.hold(&ContactSet::closed(rows), 1.0)? {
             Holding::Held(cholesky) => {
                 let pull = self.problem.contact().mul_transposed(self.problem.gap());
                 let force: Vec<f64> = self.problem.load().iter().zip(&pull).map(|(f, g)| f + g).collect();
                 let violation = self.problem.violation(&cholesky.solve(&force));
-                Ok(ContactSet::from_fn(rows, |row| violation[row] > 0.0))
+                Some(ContactSet::from_fn(rows, |row| violation[row] > 0.0))
             }
-            Holding::Free(mode) => Err(mode.into_error()),
-        }
-    }
-
-    /// Checks that the answer is unique. It is if K and the rows under pressure hold the body; if they leave a mode, the open
-    /// rows must stop it both ways without play.
-    ///
-    /// # Errors
-    /// [`Error::UnderHeld`] with a mode that changes neither force nor energy.
-    pub fn check_unique(&self, outcome: &Outcome) -> Result<(), Error> {
-        if self.is_definite() {
-            return Ok(());
-        }
-        let rounding = multiplier_rounding(self.problem, &outcome.displacement, &outcome.multiplier);
-        let pressed = ContactSet::from_fn(self.problem.rows(), |row| outcome.multiplier[row] < -rounding[row]);
-        match self.hold(&pressed, 1.0)? {
-            Holding::Held(_) => Ok(()),
-            Holding::Free(mode) if mode.driven => Ok(()),
-            Holding::Free(mode) => {
-                let violation = self.problem.violation(&outcome.displacement);
-                let approach = self.approach(&mode.direction);
-                let is_free = self.costs_nothing(&mode.direction) && pressed.iter().all(|row| approach[row] == 0.0);
-                let stopped =
-                    |way: f64| (0..self.problem.rows()).any(|row| approach[row] * way > 0.0 && violation[row] > -PLAY);
-                if !is_free || stopped(1.0) && stopped(-1.0) { Ok(()) } else { Err(mode.into_error()) }
-            }
-        }
-    }
-
-    /// Checks that K is positive semidefinite to the largest of the shifts.
-    ///
-    /// # Errors
-    /// [`Error::NotConvex`] if not, [`Error::Numerical`] for lack of memory.
-    pub(super) fn check_convex(&self) -> Result<(), Error> {
-        let nothing_closed = ContactSet::open(self.problem.rows());
-        self.factor(self.matrix(&nothing_closed, 0.0, SHIFTS[SHIFTS.len() - 1])).map(|_| ()).map_err(Error::from)
+            Holding::Free(_) | Holding::Indefinite => None,
+        })
     }
 
     /// Factorises K + weight B_C'B_C and checks whether it is definite.
     ///
     /// # Errors
-    /// [`Error::NotConvex`] if K has a negative eigenvalue, [`Error::Numerical`] for lack of memory.
+    /// [`Error::Numerical`] for lack of memory.
     pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Holding, Error> {
         let matrix = self.matrix(closed, weight, 0.0);
         // If K is definite by itself, this is not checked again.
         let looked_at = (!self.is_definite()).then(|| matrix.clone());
         match self.factor(matrix) {
             Ok(cholesky) if looked_at.is_none_or(|matrix| cholesky.is_definite(&matrix)) => Ok(Holding::Held(cholesky)),
-            Ok(_) | Err(FactorError::NotPositiveDefinite) => self.free_mode(closed, weight).map(Holding::Free),
+            Ok(_) | Err(FactorError::NotPositiveDefinite) => {
+                Ok(self.free_mode(closed, weight)?.map_or(Holding::Indefinite, Holding::Free))
+            }
             Err(error) => Err(error.into()),
         }
     }
 
-    /// The projection of the load onto the null space or, if the load does no work there, any null vector.
-    fn free_mode(&self, closed: &ContactSet, weight: f64) -> Result<FreeMode, Error> {
+    /// The projection of the load onto the null space or, if the load does no work there, any null vector; `None` if no shift makes
+    /// the matrix definite.
+    fn free_mode(&self, closed: &ContactSet, weight: f64) -> Result<Option<FreeMode>, Error> {
         // A weight does not change the null vectors, and a large one hides the shift in its rounding.
         let weight = weight.min(1.0);
         for shift in SHIFTS {
@@ -157,9 +110,9 @@ impl ScaledProblem<'_> {
             let still = self.matrix(closed, weight, 0.0).mul(&projected);
             let driven = largest(&still) <= NOISE && self.problem.share_of_work(&projected) > WORK_TOLERANCE;
             let direction = if driven { projected } else { normalised(cholesky.softest_vector()) };
-            return Ok(FreeMode { direction, driven });
+            return Ok(Some(FreeMode { direction, driven }));
         }
-        Err(Error::NotConvex { evidence: "a Cholesky pivot is negative".into() })
+        Ok(None)
     }
 
     /// The open rows that stop a mode first, if it starts from `displacement`; a mode that the load does not drive may go
@@ -191,38 +144,9 @@ impl ScaledProblem<'_> {
     }
 
     /// The rate at which each row closes on a mode: B d, zero if it is rounding of its own terms.
-    pub(super) fn approach(&self, direction: &[f64]) -> Vec<f64> {
+    fn approach(&self, direction: &[f64]) -> Vec<f64> {
         let terms = self.problem.contact().mul_abs(direction);
         let speed = self.problem.contact().mul(direction);
         speed.iter().zip(&terms).map(|(&v, term)| if v.abs() > WORK_TOLERANCE * term { v } else { 0.0 }).collect()
-    }
-
-    /// Returns `true` if a mode with largest entry one costs no energy: at each dof `K d` is rounding of its own terms, or of
-    /// the force that moves this dof alone.
-    pub(super) fn costs_nothing(&self, direction: &[f64]) -> bool {
-        let stiffness = self.problem.stiffness();
-        let (force, terms, alone) = (stiffness.mul(direction), stiffness.mul_abs(direction), stiffness.diagonal());
-        (0..force.len()).all(|dof| force[dof].abs() <= WORK_TOLERANCE * terms[dof].max(alone[dof]))
-    }
-
-    /// Returns `true` if an error's claim about a mode holds in the terms of each dof and row. The mode was found by sums of
-    /// squares, which lose terms that are small beside others.
-    pub fn is_true(&self, claim: &Error) -> bool {
-        let stops = |direction: &[f64], way: f64| self.approach(direction).iter().any(|&speed| speed * way > 0.0);
-        match claim {
-            Error::UnderHeld { direction, .. } => {
-                self.costs_nothing(direction) && !(stops(direction, 1.0) && stops(direction, -1.0))
-            }
-            Error::Unbounded { direction, .. } => self.costs_nothing(direction) && !stops(direction, 1.0),
-            _ => true,
-        }
-    }
-
-    /// Returns `true` if a claim needs no further check because the mode opens every row: the rows can then be met together,
-    /// and none can balance the load.
-    pub fn is_evident(&self, claim: &Error) -> bool {
-        let (Error::UnderHeld { direction, .. } | Error::Unbounded { direction, .. }) = claim else { return false };
-        let opens = |way: f64| self.approach(direction).iter().all(|&speed| speed * way < 0.0);
-        self.is_true(claim) && (opens(1.0) || matches!(claim, Error::UnderHeld { .. }) && opens(-1.0))
     }
 }

@@ -5,7 +5,7 @@ use clarabel::solver::{
     DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, SolverError, SolverStatus, SupportedConeT,
 };
 
-use super::{Outcome, ScaledProblem, Solver, Start};
+use super::{Ending, Outcome, ScaledProblem, Solver, Start};
 use crate::error::Error;
 use crate::qp::linear::{SparseMatrix, exponent, largest, ldexp};
 use crate::qp::panics::guarded;
@@ -70,15 +70,15 @@ impl Solver for Barrier<'_> {
     /// Solves the QP; the method has no use for a start. The contact set is that of the rows with `z / z_scale > s / s_scale`,
     /// and `iterations` counts the steps over all units that were tried.
     ///
-    /// An ending without full accuracy is no error here: the set is settled and the answer certified later. A problem that is
-    /// reported as unbounded or infeasible returns with no closed row; other methods then find the mode or the rows.
+    /// Clarabel's report that a problem is unbounded or infeasible, or that it came no further, is not believed: the outcome is then
+    /// unsettled, and at rest if there is no answer in it.
     ///
     /// # Errors
     /// [`Error::Numerical`] if the solver refuses its input.
     fn solve(&self, _: Start) -> Result<Outcome, Error> {
         let (problem, watch) = (self.scaled.problem, self.scaled.watch());
         if problem.rows() == 0 {
-            return Ok(nothing_found(problem, 0));
+            return Ok(unpolished(Outcome::at_rest(problem, Ending::Settled)));
         }
         let mut unit = Unit { displacement: 0, force: exponent(largest(problem.load())) };
         let mut iterations = 0;
@@ -105,15 +105,10 @@ impl Solver for Barrier<'_> {
     }
 }
 
-/// The answer of the interior-point method without polish.
-fn unpolished(displacement: Vec<f64>, multiplier: Vec<f64>, contact_set: ContactSet, iterations: usize) -> Outcome {
-    let history = vec![Iteration { contact_set: contact_set.clone(), penalty: 0.0 }];
-    Outcome { displacement, multiplier, contact_set, iterations, history, settled: true, variant: "-unpolished" }
-}
-
-/// No displacement and no closed row: the outcome if nothing was found or if there is no row to close.
-fn nothing_found(problem: &ContactProblem, iterations: usize) -> Outcome {
-    unpolished(vec![0.0; problem.dofs()], vec![0.0; problem.rows()], ContactSet::open(problem.rows()), iterations)
+/// The answer of the interior-point method without polish, with its set as its history.
+fn unpolished(outcome: Outcome) -> Outcome {
+    let history = vec![Iteration { contact_set: outcome.contact_set.clone(), penalty: 0.0 }];
+    Outcome { history, variant: "-unpolished", ..outcome }
 }
 
 /// Units in which the answer is of order one, as exponents of two: if a fine mesh makes the stiffness large beside the forces,
@@ -162,15 +157,7 @@ fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &W
 /// The answer of Clarabel on `rows`, in the units of the problem.
 fn read_off(problem: &ContactProblem, answer: &DefaultSolution<f64>, rows: &[usize], unit: Unit) -> Outcome {
     let iterations = answer.iterations as usize;
-    if matches!(
-        answer.status,
-        SolverStatus::PrimalInfeasible
-            | SolverStatus::AlmostPrimalInfeasible
-            | SolverStatus::DualInfeasible
-            | SolverStatus::AlmostDualInfeasible
-    ) {
-        return nothing_found(problem, iterations);
-    }
+    let displacement: Vec<f64> = answer.x.iter().map(|&x| ldexp(x, unit.displacement)).collect();
     let mut multiplier = vec![0.0; problem.rows()];
     let mut contact_set = ContactSet::open(problem.rows());
     let (z_scale, s_scale) = (largest(&answer.z), largest(&answer.s).min(1.0));
@@ -181,10 +168,19 @@ fn read_off(problem: &ContactProblem, answer: &DefaultSolution<f64>, rows: &[usi
             contact_set.insert(row);
         }
     }
-    let displacement = answer.x.iter().map(|&x| ldexp(x, unit.displacement)).collect::<Vec<_>>();
-    match displacement.iter().chain(&multiplier).all(|value| value.is_finite()) {
-        true => unpolished(displacement, multiplier, contact_set, iterations),
-        false => nothing_found(problem, iterations),
+    let is_finite = displacement.iter().chain(&multiplier).all(|value| value.is_finite());
+    let ending = Ending::of(matches!(answer.status, SolverStatus::Solved | SolverStatus::AlmostSolved));
+    let has_answer = !matches!(
+        answer.status,
+        SolverStatus::PrimalInfeasible
+            | SolverStatus::AlmostPrimalInfeasible
+            | SolverStatus::DualInfeasible
+            | SolverStatus::AlmostDualInfeasible
+    );
+    let at_rest = Outcome::at_rest(problem, Ending::Unsettled);
+    match has_answer && is_finite {
+        true => unpolished(Outcome { displacement, multiplier, contact_set, ending, iterations, ..at_rest }),
+        false => unpolished(Outcome { iterations, ..at_rest }),
     }
 }
 

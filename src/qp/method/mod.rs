@@ -15,8 +15,7 @@ pub mod penalty;
 mod scaled;
 mod start;
 
-pub(crate) use holding::WORK_TOLERANCE;
 pub use holding::{FreeMode, Holding};
 pub(crate) use scaled::SIGN_TOLERANCE;
-pub use scaled::{Definiteness, Outcome, ScaledProblem, Solver};
+pub use scaled::{Definiteness, Ending, Outcome, ScaledProblem, Solver};
 pub use start::Start;

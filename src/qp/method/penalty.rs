@@ -12,7 +12,7 @@
 
 use std::collections::HashSet;
 
-use super::{Holding, Outcome, ScaledProblem, Solver, Start};
+use super::{Ending, Holding, Outcome, ScaledProblem, Solver, Start};
 use crate::error::Error;
 use crate::qp::linear::{Cholesky, largest};
 use crate::qp::problem::ContactProblem;
@@ -88,8 +88,7 @@ impl Solver for PenaltyLoop<'_> {
     /// Climbs the ladder from the contact set of `start`.
     ///
     /// # Errors
-    /// [`Error::Unbounded`] and [`Error::UnderHeld`] for a free mode that no row stops, [`Error::NotConvex`],
-    /// [`Error::Numerical`].
+    /// [`Error::Numerical`] for lack of memory.
     fn solve(&self, start: Start) -> Result<Outcome, Error> {
         let PenaltyLoop { scaled, ladder, .. } = self;
         let mut climb = Climb::new(scaled.problem, start);
@@ -99,11 +98,11 @@ impl Solver for PenaltyLoop<'_> {
         let answer = loop {
             self.settle(&mut climb, penalty)?;
             let rung = Rung::new(&climb.state, climb.closed.clone(), penalty);
-            let answer = match self.ladder.extrapolate && climb.settled {
+            let answer = match self.ladder.extrapolate && climb.is_settled() {
                 true => self.extrapolated(&rung, rung_before.as_ref())?,
                 false => rung.clone(),
             };
-            if let Some(goal) = self.goal.filter(|_| climb.settled) {
+            if let Some(goal) = self.goal.filter(|_| climb.is_settled()) {
                 let bound = (goal.bound)(&answer.displacement, &answer.multiplier);
                 if bound <= goal.accuracy || (bound > FLOOR * last_bound && bound.is_finite()) {
                     break answer;
@@ -111,21 +110,21 @@ impl Solver for PenaltyLoop<'_> {
                 last_bound = bound;
             }
             rung_before = Some(rung);
-            let is_small = climb.settled && climb.penetrates_at_most(scaled.problem, ladder.penetration_threshold);
+            let is_small = climb.is_settled() && climb.penetrates_at_most(scaled.problem, ladder.penetration_threshold);
             let is_last = penalty * RUNG > ladder.last || climb.history.len() >= self.most_iterations;
-            if is_small || scaled.watch().is_over() || is_last {
+            if is_small || scaled.watch().is_over() || is_last || climb.ending == Ending::Unheld {
                 break answer;
             }
             penalty *= RUNG;
         };
-        let variant = match (climb.settled, ladder.extrapolate) {
+        let variant = match (climb.is_settled(), ladder.extrapolate) {
             (false, _) => "-unsettled",
             (true, false) => "",
             (true, true) => "-extrapolated",
         };
         let Rung { displacement, multiplier, .. } = answer;
-        let Climb { closed: contact_set, history, settled, .. } = climb;
-        Ok(Outcome { displacement, multiplier, contact_set, iterations: history.len(), history, settled, variant })
+        let Climb { closed: contact_set, history, ending, .. } = climb;
+        Ok(Outcome { displacement, multiplier, contact_set, iterations: history.len(), history, ending, variant })
     }
 }
 
@@ -134,8 +133,8 @@ impl PenaltyLoop<'_> {
     fn settle(&self, climb: &mut Climb, penalty: f64) -> Result<(), Error> {
         let scaled = self.scaled;
         let mut seen = HashSet::new();
-        climb.settled = false;
-        while !climb.settled
+        climb.ending = Ending::Unsettled;
+        while climb.ending == Ending::Unsettled
             && seen.insert(climb.closed.clone())
             && climb.history.len() + climb.stops < self.most_iterations
             && (climb.history.is_empty() || !scaled.watch().is_over())
@@ -149,15 +148,22 @@ impl PenaltyLoop<'_> {
                         climb.closed = stopped;
                         continue;
                     }
-                    None => return Err(mode.into_error()),
+                    None => {
+                        climb.ending = Ending::Unheld;
+                        break;
+                    }
                 },
+                Holding::Indefinite => {
+                    climb.ending = Ending::Unheld;
+                    break;
+                }
             };
             climb.history.push(Iteration { contact_set: climb.closed.clone(), penalty });
             let springs = Springs { factor: &cholesky, closed: &climb.closed, penalty };
             climb.state.advance(scaled.problem, &springs);
             let next = ContactSet::from_fn(scaled.problem.rows(), |row| climb.state.violation[row] > 0.0);
-            climb.settled = next == climb.closed;
-            if climb.settled {
+            climb.ending = Ending::of(next == climb.closed);
+            if climb.is_settled() {
                 (0..FINAL_SOLVES).for_each(|_| climb.state.advance(scaled.problem, &springs));
             }
             climb.closed = next;
@@ -169,7 +175,7 @@ impl PenaltyLoop<'_> {
     fn extrapolated(&self, rung: &Rung, before: Option<&Rung>) -> Result<Rung, Error> {
         Ok(match before {
             Some(before) if before.closed == rung.closed => rung.extrapolated(before),
-            _ => rung.extrapolated(&rung_below(self.scaled, rung)?),
+            _ => rung_below(self.scaled, rung)?.map_or_else(|| rung.clone(), |below| rung.extrapolated(&below)),
         })
     }
 }
@@ -179,8 +185,8 @@ struct Climb {
     closed: ContactSet,
     state: State,
     history: Vec<Iteration>,
-    /// `true` if the last rung ended with the set that it began with.
-    settled: bool,
+    /// Settled if the last rung ended with the set that it began with.
+    ending: Ending,
     /// Free modes that rows have stopped.
     stops: usize,
 }
@@ -189,7 +195,17 @@ impl Climb {
     fn new(problem: &ContactProblem, start: Start) -> Self {
         let state =
             State { displacement: vec![0.0; problem.dofs()], violation: vec![f64::NEG_INFINITY; problem.rows()] };
-        Climb { closed: start.into_set(problem.rows()), state, history: Vec::new(), settled: false, stops: 0 }
+        Climb {
+            closed: start.into_set(problem.rows()),
+            state,
+            history: Vec::new(),
+            ending: Ending::Unsettled,
+            stops: 0,
+        }
+    }
+
+    fn is_settled(&self) -> bool {
+        self.ending == Ending::Settled
     }
 
     /// Returns `true` if no closed row penetrates by more than this share of the largest displacement of a row.
@@ -233,17 +249,17 @@ impl Rung {
     }
 }
 
-/// The answer with the same set and a tenth of the penalty.
-fn rung_below(scaled: &ScaledProblem, rung: &Rung) -> Result<Rung, Error> {
+/// The answer with the same set and a tenth of the penalty; `None` if that set no longer holds the body.
+fn rung_below(scaled: &ScaledProblem, rung: &Rung) -> Result<Option<Rung>, Error> {
     let penalty = rung.penalty / RUNG;
     let mut state = State { displacement: rung.displacement.clone(), violation: Vec::new() };
     match scaled.hold(&rung.closed, penalty)? {
         Holding::Held(cholesky) => {
             let springs = Springs { factor: &cholesky, closed: &rung.closed, penalty };
             (0..=FINAL_SOLVES).for_each(|_| state.advance(scaled.problem, &springs));
-            Ok(Rung::new(&state, rung.closed.clone(), penalty))
+            Ok(Some(Rung::new(&state, rung.closed.clone(), penalty)))
         }
-        Holding::Free(mode) => Err(mode.into_error()),
+        Holding::Free(_) | Holding::Indefinite => Ok(None),
     }
 }
 

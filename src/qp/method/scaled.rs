@@ -22,7 +22,7 @@ pub trait Solver {
     /// The result of the method from `start`.
     ///
     /// # Errors
-    /// Those that it finds in the problem: see the methods.
+    /// [`Error::Numerical`] for lack of memory, and those of the method.
     fn solve(&self, start: Start) -> Result<Outcome, Error>;
 }
 
@@ -85,9 +85,6 @@ impl<'a> ScaledProblem<'a> {
     }
 }
 
-/// The suffix of a name after the dual active-set method; the suffix of an unsettled answer may begin with it too.
-pub(super) const LAST_RESORT: &str = "-dual";
-
 /// Multipliers of either sign below this are rounding, row by row.
 pub(super) fn multiplier_rounding(problem: &ContactProblem, u: &[f64], multiplier: &[f64]) -> Vec<f64> {
     let strongest = SIGN_TOLERANCE * largest(multiplier);
@@ -95,6 +92,31 @@ pub(super) fn multiplier_rounding(problem: &ContactProblem, u: &[f64], multiplie
     forces.iter_mut().zip(problem.load()).for_each(|(sum, f)| *sum += f.abs());
     let rounding = problem.contact().mul_abs(&forces);
     rounding.iter().map(|rounding| strongest + FORCE_ROUNDING * rounding).collect()
+}
+
+/// How a method ended. Whether a problem has an answer at all is not for a method to say.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ending {
+    /// The contact set is settled.
+    Settled,
+    /// A limit ended the loop, or it came no further.
+    Unsettled,
+    /// No row stops a motion without energy, or the energy is negative along one: there may be no answer, or more than one.
+    Unheld,
+    /// No displacement meets these rows together, as verified weights of Farkas show.
+    Infeasible {
+        /// The rows that contradict each other, from 0.
+        rows: Vec<usize>,
+        /// The weight of each of them, `>= 0`.
+        weights: Vec<f64>,
+    },
+}
+
+impl Ending {
+    /// The ending of a loop that may have settled.
+    pub(super) fn of(is_settled: bool) -> Self {
+        if is_settled { Ending::Settled } else { Ending::Unsettled }
+    }
 }
 
 /// The result of a method, in scaled quantities.
@@ -110,16 +132,23 @@ pub struct Outcome {
     pub iterations: usize,
     /// The sets on the way.
     pub history: Vec<Iteration>,
-    /// `true` if the loop ended because the set was settled.
-    pub settled: bool,
+    /// How the method ended.
+    pub ending: Ending,
     /// Empty, or the variant that ended the loop, to be appended to the method's name.
     pub variant: &'static str,
 }
 
 impl Outcome {
-    /// Returns `true` if the last resort, the dual active-set method, found this outcome.
-    pub fn is_last_resort(&self) -> bool {
-        self.variant.starts_with(LAST_RESORT)
+    /// Returns `true` if the contact set is settled.
+    pub fn is_settled(&self) -> bool {
+        self.ending == Ending::Settled
+    }
+
+    /// Nothing moves, and no row is closed.
+    pub(in crate::qp) fn at_rest(problem: &ContactProblem, ending: Ending) -> Self {
+        let (displacement, multiplier) = (vec![0.0; problem.dofs()], vec![0.0; problem.rows()]);
+        let (contact_set, history) = (ContactSet::open(problem.rows()), Vec::new());
+        Outcome { displacement, multiplier, contact_set, iterations: 0, history, ending, variant: "" }
     }
 
     /// This outcome, found after another that fell short.

@@ -1,6 +1,7 @@
 //! The contact problem as a convex QP, checked once.
 
 mod diagonal;
+mod opposed;
 mod parts;
 
 pub(in crate::qp) use parts::Parts;
@@ -8,6 +9,7 @@ pub(in crate::qp) use parts::Parts;
 use std::sync::{Arc, OnceLock};
 
 use diagonal::Diagonal;
+use opposed::OpposedRows;
 
 use crate::error::Error;
 use crate::qp::linear::multigrid::NearNullSpace;
@@ -49,6 +51,7 @@ pub struct ContactProblem {
     diagonal: FoundOnce<Diagonal>,
     parts: FoundOnce<Parts>,
     free_mode: FoundOnce<bool>,
+    opposed: FoundOnce<OpposedRows>,
 }
 
 /// Data that follow from the matrices of a problem, and some also from which rows have an obstacle: computed at the first use
@@ -111,7 +114,8 @@ impl ContactProblem {
         }
         let gap = with_infinite(gap);
         let (diagonal, parts, free_mode) = (FoundOnce::not_yet(), FoundOnce::not_yet(), FoundOnce::not_yet());
-        Ok(ContactProblem { stiffness, load, contact, gap, near_null: None, diagonal, parts, free_mode })
+        let opposed = FoundOnce::not_yet();
+        Ok(ContactProblem { stiffness, load, contact, gap, near_null: None, diagonal, parts, free_mode, opposed })
     }
 
     /// The same problem with the near-null space of its body for multigrid: displacements of almost no energy, such as the
@@ -191,8 +195,8 @@ impl ContactProblem {
         let gap = with_infinite(gap);
         let same_rows = gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
         let parts = if same_rows { self.parts.clone() } else { FoundOnce::not_yet() };
-        let (diagonal, free_mode) = (self.diagonal.clone(), self.free_mode.clone());
-        Ok(ContactProblem { stiffness, load, contact, gap, near_null, diagonal, parts, free_mode })
+        let (diagonal, free_mode, opposed) = (self.diagonal.clone(), self.free_mode.clone(), self.opposed.clone());
+        Ok(ContactProblem { stiffness, load, contact, gap, near_null, diagonal, parts, free_mode, opposed })
     }
 
     /// The diagonal of K, computed at its first use.
@@ -222,6 +226,14 @@ impl ContactProblem {
     /// The parts, computed at their first use.
     pub(in crate::qp) fn parts(&self) -> &Parts {
         self.parts.get_or_find(|| Parts::of(&self.stiffness, self.diagonal(), &self.contact, &self.gap))
+    }
+
+    /// Checks that no rows contradict each other at sight; the rows that may do so are found at the first use.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] for a row without dofs and with a negative gap, and for two opposed rows with overlapping gaps.
+    pub(in crate::qp) fn check_rows(&self) -> Result<(), Error> {
+        self.opposed.get_or_find(|| OpposedRows::of(&self.contact)).check(&self.gap)
     }
 
     /// The violation B u - g of each row, length m, in m: positive is penetration; `-inf` without an obstacle. The

@@ -24,13 +24,13 @@ mod polyhedron;
 
 use std::collections::HashSet;
 
-use super::{Outcome, ScaledProblem, Solver, Start};
+use super::{Ending, Outcome, ScaledProblem, Solver, Start};
 use crate::error::Error;
 use crate::qp::linear::norm;
 use crate::solution::{ContactSet, Iteration};
 use basis::Basis;
-use pass::{Ending, Pass, Pressures};
-use polyhedron::Polyhedron;
+use pass::{Pass, Passed, Pressures};
+use polyhedron::{Contradiction, Polyhedron};
 
 /// Largest number of passes: the second corrects errors hidden by the rounding of the first if dofs are of very different
 /// scale.
@@ -72,13 +72,13 @@ impl<'a> DualActiveSet<'a> {
 }
 
 impl Solver for DualActiveSet<'_> {
-    /// Solves the problem; it always starts from the free point.
+    /// Solves the problem, or finds rows that contradict each other; it always starts from the free point.
     ///
     /// The answer is not settled if the method was cut short or if its corrections do not converge, for example if rows and
     /// stiffness do not hold the body: the method makes no claim about that.
     ///
     /// # Errors
-    /// [`Error::Infeasible`] with verified weights, [`Error::Numerical`] for lack of memory.
+    /// None.
     fn solve(&self, _: Start) -> Result<Outcome, Error> {
         let (dofs, rows) = (self.scaled.problem.dofs(), self.scaled.problem.rows());
         let mut search = Search {
@@ -91,21 +91,31 @@ impl Solver for DualActiveSet<'_> {
             history: Vec::new(),
         };
         let mut seen = HashSet::new();
-        let mut settled = false;
+        let mut ending = Ending::Unsettled;
         for _ in 0..MOST_PASSES {
-            let ending = search.pass(self.scaled)?;
+            let passed = match search.pass(self.scaled) {
+                Ok(passed) => passed,
+                Err(Contradiction { rows, weights }) => {
+                    ending = Ending::Infeasible { rows, weights };
+                    break;
+                }
+            };
             let converged = search.correct();
             let violated = search.violates();
-            settled = ending == Ending::Met && converged && !violated;
+            ending = Ending::of(passed == Passed::Met && converged && !violated);
             let pulls = search.pressures.iter().any(|&pressure| pressure < 0.0);
             // A set that returns once would return in every further pass.
-            if settled && !pulls || self.scaled.watch().is_over() || !seen.insert(search.contact_set()) {
+            if ending == Ending::Settled && !pulls
+                || self.scaled.watch().is_over()
+                || !seen.insert(search.contact_set())
+            {
                 break;
             }
         }
         let Search { basis, displacement, pressures, history, .. } = search;
         let outcome = self.polyhedron.expand(&displacement, &pressures, basis.rows(), history);
-        Ok(if settled { outcome } else { Outcome { settled, variant: "-dual-unsettled", ..outcome } })
+        let variant = if ending == Ending::Settled { outcome.variant } else { "-dual-unsettled" };
+        Ok(Outcome { ending, variant, ..outcome })
     }
 }
 
@@ -138,7 +148,7 @@ impl Search<'_> {
     }
 
     /// One pass from the answer so far. The basis is computed from the data again, without the errors of its updates.
-    fn pass(&mut self, scaled: &ScaledProblem) -> Result<Ending, Error> {
+    fn pass(&mut self, scaled: &ScaledProblem) -> Result<Passed, Contradiction> {
         let residuals = self.residuals();
         let base = norm(&self.point);
         let pressures = Pressures { rounded: &mut self.pressures, rests: &mut self.rests };

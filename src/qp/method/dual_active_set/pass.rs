@@ -3,8 +3,7 @@
 use std::collections::HashSet;
 
 use super::basis::{Basis, DEPENDENT_ROW};
-use super::polyhedron::Polyhedron;
-use crate::error::Error;
+use super::polyhedron::{Contradiction, Polyhedron};
 use crate::qp::linear::{dot, largest, norm};
 use crate::solution::{ContactSet, Iteration};
 use crate::watch::Watch;
@@ -25,7 +24,7 @@ const WEIGHT_CORRECTIONS: usize = 3;
 
 /// The way in which a pass ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Ending {
+pub(super) enum Passed {
     /// No row is violated beyond rounding.
     Met,
     /// It was cut short, or it returned to a set because rounding decides.
@@ -80,13 +79,13 @@ impl<'a> Pass<'a> {
     /// Closes and opens rows until none is violated.
     ///
     /// # Errors
-    /// [`Error::Infeasible`] with verified weights.
-    pub fn run(&mut self) -> Result<Ending, Error> {
+    /// The rows that contradict each other, with verified weights.
+    pub fn run(&mut self) -> Result<Passed, Contradiction> {
         self.open_pulling();
         let mut seen = HashSet::new();
         while let Some((row, violation)) = self.most_violated() {
             if self.watch.is_over() || !self.polyhedron.affords(self.basis.rows().len()) {
-                return Ok(Ending::Stopped);
+                return Ok(Passed::Stopped);
             }
             self.watch.step("dual active set", self.history.len() + 1);
             if self.close(row, violation)? {
@@ -94,13 +93,13 @@ impl<'a> Pass<'a> {
                 self.basis.rows().iter().for_each(|&row| closed.insert(row));
                 self.history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
                 if !seen.insert(closed) {
-                    return Ok(Ending::Stopped);
+                    return Ok(Passed::Stopped);
                 }
             } else {
                 self.given_up.insert(row);
             }
         }
-        Ok(Ending::Met)
+        Ok(Passed::Met)
     }
 
     /// Opens rows until all closed ones push: the method needs such a set to start.
@@ -151,7 +150,7 @@ impl<'a> Pass<'a> {
     }
 
     /// Closes `row`; opens other rows if their pressure falls to zero in the step. Returns `false` if the row cannot be met.
-    fn close(&mut self, row: usize, mut violation: f64) -> Result<bool, Error> {
+    fn close(&mut self, row: usize, mut violation: f64) -> Result<bool, Contradiction> {
         let before = self.basis.rows().to_vec();
         let direction = self.polyhedron.row(row);
         loop {
@@ -204,8 +203,8 @@ impl<'a> Pass<'a> {
     /// contradict each other: weights in twice the working precision distinguish the two cases.
     ///
     /// # Errors
-    /// [`Error::Infeasible`] if it does.
-    fn check_contradiction(&self, row: usize, shares: &[f64]) -> Result<(), Error> {
+    /// The contradiction, if it does.
+    fn check_contradiction(&self, row: usize, shares: &[f64]) -> Result<(), Contradiction> {
         let Polyhedron { problem, lengths, reach, .. } = self.polyhedron;
         let mut weights = vec![0.0; problem.rows()];
         weights[row] = 1.0;

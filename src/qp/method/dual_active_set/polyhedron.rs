@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::qp::linear::{
     Accumulator, AugmentedMatrix, Cholesky, Equilibration, FactorError, SparseMatrix, exponent, ldexp, norm,
 };
-use crate::qp::method::scaled::{LAST_RESORT, Outcome, ScaledProblem};
+use crate::qp::method::{Ending, Outcome, ScaledProblem};
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 
@@ -40,6 +40,12 @@ pub(super) struct Polyhedron {
     /// Exponent of the scale of each row.
     scales: Vec<i32>,
     work: Cell<f64>,
+}
+
+/// Rows that no displacement meets together, and their weights of Farkas, `>= 0`.
+pub(super) struct Contradiction {
+    pub rows: Vec<usize>,
+    pub weights: Vec<f64>,
 }
 
 impl Polyhedron {
@@ -147,13 +153,10 @@ impl Polyhedron {
         sums.into_sums()
     }
 
-    /// The error that the rows `rows` contradict each other under `weights`, in the units of the unscaled problem.
-    pub fn contradiction(&self, rows: Vec<usize>, weights: &[f64]) -> Error {
-        let weights: Vec<f64> =
-            rows.iter().zip(weights).map(|(&row, &weight)| ldexp(weight, self.scales[row])).collect();
-        let reason = format!("no displacement satisfies all contact rows; those that contradict are {rows:?}");
-        // In the unit of the scaled gaps; the expansion of the error computes it again.
-        Error::Infeasible { reason, rows, weights, overlap: 0.0 }
+    /// The contradiction of these rows under `weights`, in the units of the unscaled problem.
+    pub fn contradiction(&self, rows: Vec<usize>, weights: &[f64]) -> Contradiction {
+        let weights = rows.iter().zip(weights).map(|(&row, &weight)| ldexp(weight, self.scales[row])).collect();
+        Contradiction { rows, weights }
     }
 
     /// The settled answer in the units of the unscaled problem; `pressures` are `-lambda`.
@@ -174,8 +177,8 @@ impl Polyhedron {
             contact_set,
             iterations: history.len(),
             history,
-            settled: true,
-            variant: LAST_RESORT,
+            ending: Ending::Settled,
+            variant: "-dual",
         }
     }
 }

@@ -1,11 +1,9 @@
 //! The state of MPRGP, and the steps that it takes.
 
-use crate::error::Error;
 use crate::qp::linear::multigrid::{Direction, Face};
 use crate::qp::linear::{dot, largest};
 use crate::qp::method::Start;
 use crate::qp::method::bounds::{Bound, Bounds};
-use crate::qp::method::holding::where_largest;
 use crate::qp::problem::ContactProblem;
 use crate::solution::Iteration;
 
@@ -392,18 +390,5 @@ impl<'a> Iterate<'a> {
             At::Upper | At::Fixed => -1.0,
         });
         Iteration { contact_set, penalty: 0.0 }
-    }
-
-    /// The error for a direction which shows that K is not positive on the face.
-    pub fn negative_energy(&self, direction: Conjugate) -> Error {
-        let Conjugate { mut p, energy, .. } = direction;
-        self.bounds.turn_back(&mut p);
-        let size = largest(&p);
-        let evidence = format!(
-            "a direction p along which nothing is held, {} and 1 there, has p'Kp = {:e}",
-            where_largest(&p),
-            energy / (size * size)
-        );
-        Error::NotConvex { evidence }
     }
 }

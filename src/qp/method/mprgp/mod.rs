@@ -19,10 +19,9 @@
 mod iterate;
 mod nested;
 mod travel;
-mod uniqueness;
 
 use super::bounds::Bounds;
-use super::{Outcome, Solver, Start};
+use super::{Ending, Outcome, Solver, Start};
 use crate::error::Error;
 use crate::qp::linear::multigrid::{Face, Multigrid};
 use crate::qp::problem::ContactProblem;
@@ -51,7 +50,7 @@ const NO_GAIN: f64 = 0.5;
 
 /// The limits at which the loop ends.
 #[derive(Clone, Copy, Debug)]
-pub struct Limits<'a> {
+pub struct Limits {
     /// Largest imbalance of forces and largest wrong-signed multiplier, relative to the largest force.
     pub tolerance: f64,
     /// Largest number of cycles of the hierarchy.
@@ -59,23 +58,24 @@ pub struct Limits<'a> {
     /// Cycles that the answer by another way is worth: the loop ends if its rate shows that clearly more are left, or after
     /// this number unless few are left.
     pub worth: usize,
-    /// The watch that may end the loop before, with the answer so far.
-    pub watch: &'a Watch,
 }
 
 /// MPRGP on an unscaled problem, with the hierarchy of its stiffness.
+#[derive(Clone, Copy)]
 pub struct Mprgp<'a> {
     /// The problem.
     pub problem: &'a ContactProblem,
     /// The hierarchy.
     pub multigrid: &'a Multigrid,
     /// The limits at which the loop ends.
-    pub limits: Limits<'a>,
+    pub limits: Limits,
+    /// The watch that may end the loop before, with the answer so far.
+    pub watch: &'a Watch,
 }
 
 impl Solver for Mprgp<'_> {
     fn solve(&self, start: Start) -> Result<Outcome, Error> {
-        solve(self.problem, self.multigrid, start, self.limits)
+        solve(self, start)
     }
 }
 
@@ -85,23 +85,23 @@ impl Solver for Mprgp<'_> {
 /// not halve the residual; those that change the face count only beyond one for each row.
 ///
 /// # Errors
-/// [`Error::Numerical`] for rows that no reflections make bounds, [`Error::NotConvex`] for a direction of negative energy
-/// in a face, [`Error::Unbounded`] for a load that drives a mode which no row stops, [`Error::UnderHeld`] for a mode
-/// that the rows under pressure leave free.
-fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: Limits) -> Result<Outcome, Error> {
+/// [`Error::Numerical`] for rows that no reflections make bounds, [`Error::NotConvex`] for a coarsest matrix of a face with a
+/// negative eigenvalue.
+fn solve(mprgp: &Mprgp, start: Start) -> Result<Outcome, Error> {
+    let Mprgp { problem, multigrid, limits, watch } = *mprgp;
     let bounds = Bounds::of(problem.contact(), problem.gap(), problem.without_stiffness())?;
-    let mut iterate = started(problem, &bounds, multigrid, start, limits);
+    let mut iterate = started(mprgp, &bounds, start);
     let mut history = vec![iterate.step()];
     let mut steps =
-        Steps { multigrid, limits, face: None, travels: Travels::default(), is_old: false, last: None, cycles: 0 };
+        Steps { multigrid, watch, face: None, travels: Travels::default(), is_old: false, last: None, cycles: 0 };
     let mut progress = Progress::default();
-    let mut settled = false;
-    let is_late = || limits.watch.is_over();
+    let mut ending = Ending::Unsettled;
+    let is_late = || watch.is_over();
     while steps.cycles < limits.most_cycles && progress.since_best < progress.patience(problem.rows()) && !is_late() {
         let residual = iterate.residual();
         if residual <= limits.tolerance {
-            settled = progress.is_fresh || progress.has_settled(&mut iterate);
-            if settled {
+            if progress.is_fresh || progress.has_settled(&mut iterate) {
+                ending = Ending::Settled;
                 break;
             }
             steps.last = None;
@@ -112,7 +112,10 @@ fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: 
             break;
         }
         let before = iterate.at.clone();
-        steps.take_one(&mut iterate)?;
+        if !steps.take_one(&mut iterate)? {
+            ending = Ending::Unheld;
+            break;
+        }
         if iterate.at != before {
             (steps.is_old, steps.last) = (true, None);
             progress.changes += 1;
@@ -120,33 +123,23 @@ fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: 
             history.push(iterate.step());
         }
     }
-    match settled {
-        true => iterate.check_unique(multigrid)?,
-        false => iterate.check_bounded(multigrid)?,
-    }
     let (multiplier, contact_set) = bounds.multipliers(|index| iterate.held_gradient(index));
     let mut displacement = iterate.x;
     bounds.turn_back(&mut displacement);
-    let variant = match settled {
-        true => "",
-        false if steps.cycles >= limits.most_cycles || is_late() || progress.is_hopeless(steps.cycles, limits) => {
+    let variant = match ending {
+        Ending::Settled => "",
+        _ if steps.cycles >= limits.most_cycles || is_late() || progress.is_hopeless(steps.cycles, limits) => {
             "-unsettled"
         }
-        false => "-stagnated",
+        _ => "-stagnated",
     };
-    Ok(Outcome { displacement, multiplier, contact_set, iterations: steps.cycles, history, settled, variant })
+    Ok(Outcome { displacement, multiplier, contact_set, iterations: steps.cycles, history, ending, variant })
 }
 
 /// The iterate at the start; if a displacement is given that is not near the answer, the better one of that and none.
-fn started<'a>(
-    problem: &'a ContactProblem,
-    bounds: &'a Bounds,
-    multigrid: &Multigrid,
-    start: Start,
-    limits: Limits,
-) -> Iterate<'a> {
-    let at = |start: Start| Iterate::new(problem, bounds, start, multigrid.threads());
-    let from_nothing = || at(nested(problem, bounds, multigrid, limits).unwrap_or_default());
+fn started<'a>(mprgp: &Mprgp<'a>, bounds: &'a Bounds, start: Start) -> Iterate<'a> {
+    let at = |start: Start| Iterate::new(mprgp.problem, bounds, start, mprgp.multigrid.threads());
+    let from_nothing = || at(nested(mprgp, bounds).unwrap_or_default());
     if start.is_unknown() {
         return from_nothing();
     }
@@ -161,11 +154,12 @@ fn started<'a>(
 }
 
 /// The start from the second level, if there is one with nodal values.
-fn nested(problem: &ContactProblem, bounds: &Bounds, multigrid: &Multigrid, limits: Limits) -> Option<Start> {
+fn nested(mprgp: &Mprgp, bounds: &Bounds) -> Option<Start> {
     let below = |problem: &ContactProblem, multigrid: &Multigrid, tolerance, most_cycles| {
-        solve(problem, multigrid, Start::default(), Limits { tolerance, most_cycles, worth: usize::MAX, ..limits })
+        let limits = Limits { tolerance, most_cycles, worth: usize::MAX };
+        solve(&Mprgp { problem, multigrid, limits, watch: mprgp.watch }, Start::default())
     };
-    nested_start(problem, bounds, multigrid, below).map(Start::near)
+    nested_start(mprgp.problem, bounds, mprgp.multigrid, below).map(Start::near)
 }
 
 /// The progress of the iteration.
@@ -230,7 +224,7 @@ impl Progress {
 /// The data that the steps keep from one to the next.
 struct Steps<'a> {
     multigrid: &'a Multigrid,
-    limits: Limits<'a>,
+    watch: &'a Watch,
     face: Option<Face<'a>>,
     travels: Travels,
     /// `true` if the set of unknowns at bounds has changed since the face was built.
@@ -240,11 +234,12 @@ struct Steps<'a> {
 }
 
 impl Steps<'_> {
-    /// Takes a proportioning, conjugate gradient or expansion step.
-    fn take_one(&mut self, iterate: &mut Iterate) -> Result<(), Error> {
+    /// Takes a proportioning, conjugate gradient or expansion step. Returns `false` at a direction along which nothing is held, or
+    /// along which the energy is negative.
+    fn take_one(&mut self, iterate: &mut Iterate) -> Result<bool, Error> {
         if iterate.is_disproportionate() {
             iterate.proportion();
-            return Ok(());
+            return Ok(true);
         }
         let gradient = iterate.free_gradient();
         let face = match self.face.take() {
@@ -260,15 +255,12 @@ impl Steps<'_> {
         let step = self.travels.preconditioned(iterate, &face, &gradient);
         self.face = Some(face);
         self.cycles += 1;
-        self.limits.watch.step("MPRGP", self.cycles);
+        self.watch.step("MPRGP", self.cycles);
         let direction = Conjugate::of(step, self.last.take(), &gradient, iterate);
-        if direction.is_free {
-            return Err(iterate.free_mode(direction.p));
-        }
-        if direction.energy < 0.0 {
-            return Err(iterate.negative_energy(direction));
+        if direction.is_free || direction.energy < 0.0 {
+            return Ok(false);
         }
         self.last = iterate.advance(direction);
-        Ok(())
+        Ok(true)
     }
 }

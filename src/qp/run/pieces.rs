@@ -1,44 +1,34 @@
 //! The answers of the pieces of a problem as one answer.
 
-use std::time::Instant;
-
 use crate::error::Error;
 use crate::qp::cost::bytes;
 use crate::qp::problem::ContactProblem;
 use crate::qp::settings::Settings;
 use crate::qp::transform::Pieces;
-use crate::solution::{ContactSet, Iteration, ProvenSet, Seconds, Solution, Why};
+use crate::solution::{Certificate, ContactSet, Iteration, ProvenSet, Seconds, Solution, Why};
 
-/// The answer put together from the pieces, each found by `solve`; it is not judged yet.
+/// The answer put together from the pieces, each found by `solve`, without a certificate, and the certificates of the pieces; `None` if a
+/// piece has no answer of its own, or more than one: that is decided for the whole.
 ///
 /// # Errors
-/// The error of the first piece without an answer; a mode that nothing stops is expanded to the whole, every other error is in
-/// terms of the piece.
+/// Those of the pieces, in the terms of a piece.
 pub(super) fn solved(
     problem: &ContactProblem,
     pieces: &Pieces,
     settings: &Settings,
     solve: impl Fn(&ContactProblem, &Settings) -> Result<Solution, Error>,
-) -> Result<Solution, Error> {
-    let clock = Instant::now();
+) -> Result<Option<(Solution, Vec<Certificate>)>, Error> {
     // The whole problem stays in memory beside the piece.
     let of_whole = bytes::of_problem(problem.dofs() as f64, problem.stiffness().entries() as f64);
     let settings = &Settings { memory: settings.memory.map(|most| most - of_whole), ..settings.clone() };
     let mut answers = Vec::with_capacity(pieces.count());
     for piece in 0..pieces.count() {
-        let own = pieces.problem(problem, piece)?;
-        let in_whole = |direction: Vec<f64>| pieces.join_dofs((0..piece).map(|_| &[][..]).chain([&direction[..]]));
-        let answer = match solve(&own, settings) {
-            Err(Error::NotCertified { solution, .. }) => *solution,
-            Err(Error::Unbounded { mode, direction }) => {
-                return Err(Error::Unbounded { mode, direction: in_whole(direction) });
-            }
-            Err(Error::UnderHeld { mode, direction }) => {
-                return Err(Error::UnderHeld { mode, direction: in_whole(direction) });
-            }
-            ended => ended?,
-        };
-        answers.push(answer);
+        match solve(&pieces.problem(problem, piece)?, settings) {
+            Ok(solution) => answers.push(solution),
+            Err(Error::NotCertified { solution, .. }) => answers.push(*solution),
+            Err(Error::Interrupted) => return Err(Error::Interrupted),
+            Err(_) => return Ok(None),
+        }
     }
     let displacement = pieces.join_dofs(answers.iter().map(|answer| &answer.displacement[..]));
     let multiplier = pieces.join_rows(answers.iter().map(|answer| &answer.multiplier[..]));
@@ -48,12 +38,11 @@ pub(super) fn solved(
         certificate
     };
     let certificates: Vec<_> = answers.iter().enumerate().map(in_whole).collect();
-    let certificate = problem.certify_pieces(&certificates, &displacement, &multiplier)?;
     let mut names: Vec<&str> = answers.iter().map(|answer| answer.method.as_str()).collect();
     names.sort_unstable();
     names.dedup();
     let sum = |of: fn(&Seconds) -> f64| answers.iter().map(|answer| of(&answer.seconds)).sum();
-    Ok(Solution {
+    let joined = Solution {
         contact_set: pieces.join_sets(answers.iter().map(|answer| Some(&answer.contact_set))),
         method: names.join(" + "),
         iterations: answers.iter().map(|answer| answer.iterations).max().unwrap_or(0),
@@ -69,13 +58,14 @@ pub(super) fn solved(
             factor: sum(|seconds| seconds.factor),
             certificate: sum(|seconds| seconds.certificate),
             proof: sum(|seconds| seconds.proof),
-            solve: clock.elapsed().as_secs_f64(),
+            solve: sum(|seconds| seconds.solve),
         },
         displacement,
         multiplier,
-        certificate,
+        certificate: Certificate::unknown(),
         attempts: answers.into_iter().flat_map(|answer| answer.attempts).collect(),
-    })
+    };
+    Ok(Some((joined, certificates)))
 }
 
 /// The reason for the way in which the largest piece was solved.

@@ -1,8 +1,8 @@
-//! Claims about a problem without a unique answer: not convex, infeasible, unbounded, or not held enough (`Error::UnderHeld`:
-//! the answer can move along a mode without energy). If a method ends with such a claim, or without a bound, the claim is
-//! examined here, from the problem alone.
+//! Whether a problem has an answer, and only one: it may be not convex, infeasible, unbounded, or not held enough (`Error::UnderHeld`:
+//! the answer can move along a mode without energy). This is decided here, from the problem alone, if a method meets a motion
+//! without energy, or if an answer has no bound.
 //!
-//! With N a basis of the null space of K, all claims depend on cones in the few coordinates a of d = N a:
+//! With N a basis of the null space of K, all of it depends on cones in the few coordinates a of d = N a:
 //!
 //! ```text
 //! unbounded         d = N a with  B d <= 0                              and  f'd > 0
@@ -11,18 +11,17 @@
 //!
 //! The point of a cone that is nearest to some c is itself the answer to a contact problem, with K = I. It is zero exactly if
 //! no direction of the cone has a positive product with c. N and the signs of all these sums have twice the working precision:
-//! a claim holds for the given doubles of the problem. If a method left no answer, steps with `K + rho E` instead of K find
+//! what is found holds for the given doubles of the problem. If a method left no answer, steps with `K + rho E` instead of K find
 //! one.
 
 mod cone;
+mod proximal;
 mod rigid;
-mod steps;
 
-use cone::{Cone, Face, Row};
+use cone::{Cone, Face, Row, Solve};
 use rigid::{is_rigid, place_of_largest};
 
 use super::cost::{Kept, check_memory, check_time, seconds};
-use super::judged::{fallen_short, judged, not_decided, within_rounding};
 use super::settings::Settings;
 use crate::error::Error;
 use crate::qp::certificate::{NullMode, Rounding};
@@ -53,84 +52,6 @@ const SETTLED_TO: f64 = 1e-11;
 /// A body moves at most this many times as far as a dof that a force moves alone: enough for bodies that are not slender.
 const BENDS: f64 = 1e3;
 
-/// An answer shows which rows press only if its conditions hold to this, for every requested tolerance.
-const SURE_CONDITIONS: f64 = 1e-9;
-
-/// The ending of a solve, with every claim rechecked; if the ending has no answer, the answer that is found here.
-///
-/// # Errors
-/// As [`solve`](super::solve()).
-pub(super) fn rechecked(
-    problem: &ContactProblem,
-    settings: &Settings,
-    ending: Result<Solution, Error>,
-) -> Result<Solution, Error> {
-    let before = match ending {
-        Err(error) if is_doubtful(&error, settings) => error,
-        // The bound does not see dofs without stiffness, which may be free to move.
-        Ok(solution) if solution.certificate.loose_dofs > 0 => fallen_short(solution, settings.goal()),
-        sure => return sure,
-    };
-    if settings.watch.is_over() {
-        return Err(not_decided(problem, settings, before)?);
-    }
-    let scaling = Scaling::of(problem.stiffness(), problem.contact())?;
-    let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
-    let scaled = match ContactProblem::new(scaling.stiffness().clone(), load, scaling.contact().clone(), gap) {
-        Ok(scaled) => scaled,
-        // Beyond the range of doubles nothing can be rechecked.
-        Err(_) => return Err(not_decided(problem, settings, before)?),
-    };
-    match check_room(&scaled, settings) {
-        Ok(()) => {}
-        Err(error @ Error::TooLarge { .. }) if !matches!(before, Error::NotCertified { .. }) => return Err(error),
-        Err(_) => return Err(not_decided(problem, settings, before)?),
-    }
-    let null = match scaled.stiffness().null_space() {
-        Ok(null) => null,
-        Err(FactorError::NotPositiveDefinite) => {
-            let direction = scaled.stiffness().negative_direction()?;
-            let claim = direction.and_then(|p| scaled.not_convex_along(&p));
-            return Err(claim.map_or_else(|| not_decided(problem, settings, before), Ok)?);
-        }
-        Err(error) => return Err(error.into()),
-    };
-    let Some(null) = null else { return Err(not_decided(problem, settings, before)?) };
-    // A rounded direction is a motion without energy only for a body that is known to float.
-    let bodies = scaled.stiffness().components().0;
-    let expanded = |vector: &[Twice]| {
-        let rounded: Vec<f64> = vector.iter().map(|value| value.rounded()).collect();
-        scaling.expand_displacement(&rounded, 0)
-    };
-    let softest =
-        null.shares.iter().zip(&null.vectors).max_by(|a, b| a.0.total_cmp(b.0)).map(|entry| expanded(entry.1));
-    let (null, share) = null.declared(|vector| is_rigid(problem, &expanded(vector), &bodies));
-    let looked = Looked::of(&scaled, &scaling, null);
-    if let Some(mode) = looked.escape() {
-        steps::check_rows(problem, &scaling, settings)?;
-        return Err(Error::Unbounded { mode: mode.in_words(), direction: looked.expanded(&mode) });
-    }
-    if share > 0.0 && !matches!(before, Error::NotCertified { .. }) {
-        let dof = softest.map_or(0, |motion| place_of_largest(&motion));
-        return Err(within_rounding(problem, dof, share)?);
-    }
-    let tolerance = settings.goal().tolerance.min(SURE_CONDITIONS);
-    let holds = |solution: &Solution| solution.certificate.conditions_hold(tolerance);
-    let solution = match before {
-        Error::NotCertified { solution, .. } if holds(&solution) => *solution,
-        before => steps::answer(problem, &scaling, settings, before)?,
-    };
-    // A problem with a displacement that meets its rows, and without a mode that the load drives, has an answer.
-    let mode = match solution.certificate.penetration <= tolerance {
-        true => looked.drift(),
-        false => None,
-    };
-    if let Some(mode) = mode.or_else(|| looked.freedom(problem, &solution).filter(|_| holds(&solution))) {
-        return Err(Error::UnderHeld { mode: mode.in_words(), direction: looked.expanded(&mode) });
-    }
-    judged(solution, settings.goal())
-}
-
 /// Refuses a factorisation of the stiffness if memory or time do not allow it.
 ///
 /// # Errors
@@ -144,39 +65,103 @@ fn check_room(problem: &ContactProblem, settings: &Settings) -> Result<(), Error
     check_time(&settings.watch, seconds::factorisation(&analysis))
 }
 
-/// Returns `true` if an error makes a claim, or leaves open whether one holds. An answer without a bound leaves it open if its
-/// conditions hold, or if a factor has shown the stiffness to be singular and the best possible answer is wanted.
-fn is_doubtful(error: &Error, settings: &Settings) -> bool {
-    match error {
-        Error::NotConvex { .. } | Error::Unbounded { .. } | Error::UnderHeld { .. } => true,
-        Error::NotCertified { solution, .. } => {
-            let is_singular = solution.lost_pivot.is_some() && settings.wants_best();
-            let is_open = is_singular || solution.certificate.conditions_hold(settings.goal().tolerance);
-            !solution.certificate.has_bound() && is_open
-        }
-        _ => false,
-    }
-}
-
 /// A scaled problem with a basis of the null space of its stiffness.
-struct Looked<'a> {
-    scaled: &'a ContactProblem,
-    scaling: &'a Scaling,
+pub(super) struct Existence {
+    scaled: ContactProblem,
+    scaling: Scaling,
     null: NullSpace,
     rounding: Rounding,
     /// `B N` of each row with a bound, and the place of the row among all.
     rows: Vec<(usize, Row)>,
     /// `-f'N`: as a row, the load stops directions against it.
     against_load: Row,
+    /// The softest motion that the stiffness holds within the rounding of its entries, and the share of its terms with which.
+    within_rounding: Option<(usize, f64)>,
+    solve: Solve,
 }
 
-impl<'a> Looked<'a> {
-    fn of(scaled: &'a ContactProblem, scaling: &'a Scaling, null: NullSpace) -> Self {
+impl Existence {
+    /// The null space of the stiffness of `problem`; `None` if the range of doubles does not allow it.
+    ///
+    /// # Errors
+    /// [`Error::NotConvex`] with a direction of negative energy; [`Error::TooLarge`], [`Error::OutOfTime`], [`Error::Numerical`].
+    pub fn of(problem: &ContactProblem, settings: &Settings, solve: Solve) -> Result<Option<Self>, Error> {
+        let scaling = Scaling::of(problem.stiffness(), problem.contact())?;
+        let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
+        let scaled = ContactProblem::new(scaling.stiffness().clone(), load, scaling.contact().clone(), gap);
+        let Ok(scaled) = scaled else { return Ok(None) };
+        check_room(&scaled, settings)?;
+        let null = match scaled.stiffness().null_space() {
+            Ok(Some(null)) => null,
+            Ok(None) => return Ok(None),
+            Err(FactorError::NotPositiveDefinite) => {
+                let direction = scaled.stiffness().negative_direction()?;
+                return direction.and_then(|p| scaled.not_convex_along(&p)).map_or(Ok(None), Err);
+            }
+            Err(error) => return Err(error.into()),
+        };
+        // A rounded direction is a motion without energy only for a body that is known to float.
+        let bodies = scaled.stiffness().components().0;
+        let expanded = |vector: &[Twice]| {
+            let rounded: Vec<f64> = vector.iter().map(|value| value.rounded()).collect();
+            scaling.expand_displacement(&rounded, 0)
+        };
+        let softest = null.shares.iter().zip(&null.vectors).max_by(|a, b| a.0.total_cmp(b.0));
+        let dof = softest.map_or(0, |(_, vector)| place_of_largest(&expanded(vector)));
+        let (null, share) = null.declared(|vector| is_rigid(problem, &expanded(vector), &bodies));
+        let within_rounding = (share > 0.0).then_some((dof, share));
+        Ok(Some(Existence { within_rounding, ..Self::with(scaled, scaling, null, solve) }))
+    }
+
+    fn with(scaled: ContactProblem, scaling: Scaling, null: NullSpace, solve: Solve) -> Self {
         let (rounding, by_row) = (Rounding::of(&null), scaled.contact().transposed());
         let bounded = (0..scaled.rows()).filter(|&row| scaled.gap()[row].is_finite());
         let rows = bounded.map(|row| (row, coordinates(&null, || by_row.column(row), rounding))).collect();
         let against_load = coordinates(&null, || scaled.load().iter().map(|f| -f).enumerate(), rounding);
-        Looked { scaled, scaling, null, rounding, rows, against_load }
+        Existence { scaled, scaling, null, rounding, rows, against_load, within_rounding: None, solve }
+    }
+
+    /// Checks that the load drives no mode without energy that no row stops.
+    ///
+    /// # Errors
+    /// [`Error::Unbounded`], or [`Error::Infeasible`] if the rows cannot be met together.
+    pub fn check_bounded(&self, problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
+        let Some(mode) = self.escape() else { return Ok(()) };
+        proximal::check_rows(&self.scaling, problem, settings, self.solve)?;
+        Err(Error::Unbounded { mode: mode.in_words(), direction: self.expanded(&mode) })
+    }
+
+    /// The reason why existence is not decided, if the stiffness holds a motion by no more than the rounding of its entries.
+    pub fn doubt(&self) -> Option<String> {
+        let (dof, share) = self.within_rounding?;
+        Some(format!(
+            "the stiffness holds a motion, mainly at dof {dof} (indices from 0), by {share:.1e} of its terms, within the rounding of its \
+             entries, {:.1e}; give the rigid-body modes if the body floats",
+            NullSpace::OF_ENTRIES
+        ))
+    }
+
+    /// Checks that no mode leads from the best answer to others. A problem with a displacement that meets its rows, and without a mode
+    /// that the load drives, has an answer.
+    ///
+    /// # Errors
+    /// [`Error::UnderHeld`] with such a mode.
+    pub fn check_unique(&self, problem: &ContactProblem, solution: &Solution, tolerance: f64) -> Result<(), Error> {
+        let certificate = &solution.certificate;
+        let drift = if certificate.penetration <= tolerance { self.drift() } else { None };
+        let freedom = || self.freedom(problem, solution).filter(|_| certificate.conditions_hold(tolerance));
+        match drift.or_else(freedom) {
+            Some(mode) => Err(Error::UnderHeld { mode: mode.in_words(), direction: self.expanded(&mode) }),
+            None => Ok(()),
+        }
+    }
+
+    /// Answers by steps with a regular stiffness in place of the singular one; see `proximal`.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] for contact rows that contradict each other.
+    pub fn proximal_steps(&self, problem: &ContactProblem, settings: &Settings) -> Result<Vec<Solution>, Error> {
+        proximal::answers(&self.scaling, problem, settings, self.solve)
     }
 
     /// The direction in the displacements of the problem itself, largest entry one.
@@ -269,7 +254,8 @@ impl<'a> Looked<'a> {
     /// The cone of the modes that close none of these rows.
     fn cone<'b>(&'b self, stops: &dyn Fn(usize) -> bool) -> Cone<'b> {
         let rows = self.rows.iter().filter(|(row, _)| stops(*row)).map(|(_, row)| row).collect();
-        Cone { rows, fixed: None, rounding: self.rounding.vanishes, is_exact: self.null.is_exact() }
+        let (rounding, is_exact) = (self.rounding.vanishes, self.null.is_exact());
+        Cone { rows, fixed: None, rounding, is_exact, solve: self.solve }
     }
 
     fn mode(&self, coordinates: &[Twice]) -> Option<NullMode> {
@@ -346,7 +332,7 @@ mod tests {
         let null = scaled.stiffness().null_space().unwrap().unwrap();
         let mut solution = solve(&alone, &Settings::default()).unwrap();
         (solution.displacement, solution.multiplier) = (vec![displacement, 0.0], vec![-force, 0.0]);
-        Looked::of(&scaled, &scaling, null).freedom(&problem, &solution).is_some()
+        Existence::with(scaled.clone(), scaling.clone(), null, solve).freedom(&problem, &solution).is_some()
     }
 
     #[test]
@@ -357,7 +343,7 @@ mod tests {
         let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
         let scaled = ContactProblem::new(scaling.stiffness().clone(), load, scaling.contact().clone(), gap).unwrap();
         let null = scaled.stiffness().null_space().unwrap().unwrap();
-        let looked = Looked::of(&scaled, &scaling, null);
+        let looked = Existence::with(scaled.clone(), scaling.clone(), null, solve);
         let is_carried = |forces: [f64; 2]| looked.is_carried_by(&scaling.multiplier(&forces, 0));
         // The force on the first wall does not act on the mode.
         assert!(is_carried([-2.0, -3.0]) && is_carried([0.0, -3.0]));

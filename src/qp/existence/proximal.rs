@@ -1,8 +1,7 @@
 //! An answer for a singular stiffness, by steps with a regular one.
 
+use super::cone::Solve;
 use crate::error::Error;
-use crate::qp::attempts;
-use crate::qp::judged::not_decided;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix, ldexp};
 use crate::qp::problem::ContactProblem;
 use crate::qp::settings::{Method, Precision, Settings};
@@ -30,35 +29,31 @@ fn added(scaling: &Scaling) -> Vec<f64> {
     equilibration.diagonal.iter().map(|d| ldexp(1.0, STEP - equilibration.factor - 2 * d)).collect()
 }
 
-/// An answer by steps with `K + rho E`, E the diagonal that the scaling makes the identity: minimise the energy plus
-/// `rho/2` times the squared distance, in E, from the last answer.
+/// Answers by steps with `K + rho E`, E the diagonal that the scaling makes the identity: minimise the energy plus
+/// `rho/2` times the squared distance, in E, from the last answer. Those of the last two steps are returned, without a certificate for
+/// the problem itself, each also without the rounding of its step.
 ///
 /// # Errors
-/// Those of the solves, with [`Error::Infeasible`] for contact rows that contradict each other.
+/// [`Error::Infeasible`] for contact rows that contradict each other.
 ///
 /// # Source
 /// R. T. Rockafellar, *Monotone operators and the proximal point algorithm*, SIAM J. Control Optim. 14 (1976) 877-898.
-pub(super) fn answer(
-    problem: &ContactProblem,
+pub(super) fn answers(
     scaling: &Scaling,
+    problem: &ContactProblem,
     settings: &Settings,
-    before: Error,
-) -> Result<Solution, Error> {
+    solve: Solve,
+) -> Result<Vec<Solution>, Error> {
     let added = added(scaling);
     let stiffness = with_diagonal(problem.stiffness(), &added)?;
     let dofs = problem.dofs();
     let settings_of_step = settings_of_step(settings);
-    // The pivot of K itself, not of the steps.
-    let lost_pivot = match &before {
-        Error::NotCertified { solution, .. } => solution.lost_pivot,
-        _ => None,
-    };
-    let mut best: Option<Solution> = None;
+    let (mut last, mut answers) = (Vec::new(), Vec::new());
     let (mut centre, mut before_last) = (vec![0.0; dofs], f64::INFINITY);
     for step in 1..=MOST_STEPS {
         let load = (problem.load().iter().zip(&added).zip(&centre)).map(|((f, e), u)| f + e * u).collect();
         let of_step = ContactProblem::new(stiffness.clone(), load, problem.contact().clone(), problem.gap().to_vec())?;
-        let found = match attempts::solved(&of_step, &settings_of_step) {
+        let found = match solve(&of_step, &settings_of_step) {
             Ok(solution) => solution,
             Err(Error::NotCertified { solution, .. }) => *solution,
             Err(infeasible @ Error::Infeasible { .. }) => return Err(infeasible),
@@ -66,38 +61,37 @@ pub(super) fn answer(
         };
         let moved = (0..dofs).map(|dof| added[dof] * (found.displacement[dof] - centre[dof]).powi(2)).sum::<f64>();
         centre.clone_from(&found.displacement);
-        // The steps become shorter until they are rounding, even if the conditions do not show it.
-        let mut is_better = moved < SHORTER * before_last;
+        // The steps become shorter until they are rounding.
+        let is_shorter = moved < SHORTER * before_last;
         before_last = moved;
-        for (displacement, multiplier) in without_rounding(problem, &added, &centre, &found.multiplier) {
-            let certificate = problem.certify(&displacement, &multiplier)?;
-            if best.as_ref().is_none_or(|best| certificate.improves_on(&best.certificate, 0.5)) {
-                let reason = Some(format!("by {step} steps with K + rho E, since the stiffness is singular: {before}"));
-                let answer = Solution { displacement, multiplier, certificate, reason, lost_pivot, ..found.clone() };
-                best = Some(answer);
-                is_better = true;
-            }
-        }
-        if settings.watch.is_over() || step >= FEWEST_STEPS && !is_better {
+        let reason = Some(format!("by {step} steps with K + rho E, since the stiffness is singular"));
+        let found = Solution { reason, why: None, attempts: Vec::new(), ..found };
+        let each = without_rounding(problem, &added, &centre, &found.multiplier).into_iter();
+        let each = each.map(|(displacement, multiplier)| Solution { displacement, multiplier, ..found.clone() });
+        answers = std::mem::replace(&mut last, each.collect());
+        if settings.watch.is_over() || step >= FEWEST_STEPS && !is_shorter {
             break;
         }
     }
-    match best {
-        Some(solution) => Ok(solution),
-        None => Err(not_decided(problem, settings, before)?),
-    }
+    answers.append(&mut last);
+    Ok(answers)
 }
 
 /// Checks that some displacement meets the rows: the nearest to rest, in E.
 ///
 /// # Errors
 /// [`Error::Infeasible`] for contact rows that contradict each other; if that is not decided, they count as met.
-pub(super) fn check_rows(problem: &ContactProblem, scaling: &Scaling, settings: &Settings) -> Result<(), Error> {
+pub(super) fn check_rows(
+    scaling: &Scaling,
+    problem: &ContactProblem,
+    settings: &Settings,
+    solve: Solve,
+) -> Result<(), Error> {
     let diagonal: Vec<_> = added(scaling).into_iter().enumerate().map(|(dof, value)| (dof, dof, value)).collect();
     let dofs = problem.dofs();
     let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &diagonal)?)?;
     let nearest = ContactProblem::new(stiffness, vec![0.0; dofs], problem.contact().clone(), problem.gap().to_vec())?;
-    match attempts::solved(&nearest, &settings_of_step(settings)) {
+    match solve(&nearest, &settings_of_step(settings)) {
         Err(infeasible @ Error::Infeasible { .. }) => Err(infeasible),
         _ => Ok(()),
     }
@@ -144,7 +138,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
-    use crate::qp::judged::in_time;
+    use crate::qp::solve;
     use crate::watch::Watch;
 
     /// Two dofs, each with its own row: `stiffness` on the diagonal.
@@ -156,24 +150,18 @@ mod tests {
     }
 
     #[test]
-    fn steps_end_with_the_answer_when_they_gain_nothing_and_keep_the_pivot_of_the_stiffness() {
+    fn steps_end_with_the_answer_when_they_gain_nothing() {
         // A dof of stiffness 2 under a force of 4 before a wall at 3, and one that a force of 3 presses to a wall at 1/2.
         let problem = two([2.0, 0.0], [4.0, 3.0], [3.0, 0.5]);
-        let scaling = Scaling::of(problem.stiffness(), problem.contact()).unwrap();
         let solves = Arc::new(AtomicUsize::new(0));
         let counted = Arc::clone(&solves);
         let watch = Watch::observed(move |watch| {
             counted.fetch_add(usize::from(watch.activity().step == "certificate"), Ordering::SeqCst);
         });
         let settings = Settings { watch, ..Settings::default() };
-        let late = Err(Error::OutOfTime { needed: 0.0, time: 0.0 });
-        let mut before = in_time(&problem, &settings, late).unwrap_err();
-        if let Error::NotCertified { solution, .. } = &mut before {
-            solution.lost_pivot = Some(1e-17);
-        }
-        let found = answer(&problem, &scaling, &settings, before).unwrap();
-        assert_eq!((&found.displacement[..], &found.multiplier[..]), (&[2.0, 0.5][..], &[0.0, -3.0][..]));
-        assert_eq!(found.lost_pivot, Some(1e-17));
+        let scaling = Scaling::of(problem.stiffness(), problem.contact()).unwrap();
+        let found = answers(&scaling, &problem, &settings, solve).unwrap();
+        assert!(found.iter().all(|found| found.displacement == [2.0, 0.5] && found.multiplier[1] == -3.0));
         // Each step multiplies the error by about 2^-20: the third leaves less than the last bit, the fourth has the length of
         // rounding, and there is no fifth.
         let solves = solves.load(Ordering::SeqCst);

@@ -5,10 +5,10 @@
 //! directions that these doubles leave.
 
 use crate::error::Error;
-use crate::qp::attempts;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix, Twice, exponent, largest, ldexp};
 use crate::qp::problem::ContactProblem;
-use crate::qp::settings::{Method, Settings};
+use crate::qp::settings::Settings;
+use crate::solution::Solution;
 
 /// If a point of a cone is nearer to its tip than this share of c, it is the tip.
 const TIP: f64 = 1e-8;
@@ -21,6 +21,9 @@ const SOLVE_ROUNDING: f64 = 1e-10;
 
 /// Number of times that a vector is made orthogonal to others: the second removes the rounding of the first.
 const TURNS: usize = 2;
+
+/// Solves another problem that a question gives rise to.
+pub(in crate::qp) type Solve = fn(&ContactProblem, &Settings) -> Result<Solution, Error>;
 
 /// A linear function of the coordinates.
 #[derive(Clone, Debug)]
@@ -44,6 +47,7 @@ pub(super) struct Cone<'a> {
     pub rounding: f64,
     /// `false` if the rows themselves are rounded: then the point slides along all rows that it is close to in doubles.
     pub is_exact: bool,
+    pub solve: Solve,
 }
 
 impl Cone<'_> {
@@ -103,7 +107,7 @@ impl Cone<'_> {
         let contact = SparseMatrix::from_triplets(rows.len(), dofs, &entries).ok()?;
         let load = c.iter().map(|value| value / size).collect();
         let problem = ContactProblem::new(stiffness, load, contact, vec![0.0; rows.len()]).ok()?;
-        let nearest = match attempts::solved(&problem, &Settings::with_method(Method::Auto)) {
+        let nearest = match (self.solve)(&problem, &Settings::default()) {
             Ok(solution) => solution.displacement,
             Err(Error::NotCertified { solution, .. }) => solution.displacement,
             Err(_) => return None,
@@ -158,6 +162,7 @@ fn size(vector: &[Twice]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::qp::solve;
 
     fn row(values: [f64; 2]) -> Row {
         Row { values: values.map(Twice::from).to_vec(), terms: values.iter().map(|value| value.abs()).sum() }
@@ -167,7 +172,7 @@ mod tests {
     fn rows_that_differ_by_a_billionth_leave_a_point_between_them_if_they_are_exact() {
         // x <= 0 and x + 1e-9 y <= 0: nearest to (1, -1) is (0, -1), which the second row lets move by 1e-9.
         let rows = [row([1.0, 0.0]), row([1.0, 1e-9])];
-        let cone = Cone { rows: rows.iter().collect(), fixed: None, rounding: 1e-28, is_exact: true };
+        let cone = Cone { rows: rows.iter().collect(), fixed: None, rounding: 1e-28, is_exact: true, solve };
         let nearest: Vec<f64> = cone.nearest(&[1.0, -1.0]).unwrap().into_iter().map(Twice::rounded).collect();
         // The distance of the point has the precision of a solve in doubles; its place on the first row is exact.
         assert!(nearest[0] == 0.0 && (nearest[1] + 1.0).abs() < TIP, "{nearest:?}");

@@ -1,0 +1,9 @@
+//! A problem prepared once, and solved for many gaps, loads and starts, by the same loop as a single solve.
+
+mod boundary;
+mod path;
+mod reuse;
+
+pub use boundary::BoundarySolution;
+pub use path::Path;
+pub use reuse::Prepared;

@@ -1,0 +1,355 @@
+//! The one loop of a solve.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::by_attempt::engine_of;
+use super::pieces;
+use crate::error::Error;
+use crate::qp::certificate::{Bounding, Examined};
+use crate::qp::engine::{Engine, Found, Hierarchical, Load, Task};
+use crate::qp::existence::Existence;
+use crate::qp::method::{Ending, Outcome, Start};
+use crate::qp::plan::{Answered, Attempt, Best, Ended, From, History, Known, Ladder, Next, Record, Step, Tried};
+use crate::qp::problem::ContactProblem;
+use crate::qp::settings::Settings;
+use crate::solution::{Certificate, Seconds, Solution};
+
+/// The answer of `problem` from a start, by the ladder of `settings`, which have a running clock.
+///
+/// # Errors
+/// As [`solve`](crate::solve()).
+pub(in crate::qp) fn solved(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<Solution, Error> {
+    problem.check_rows()?;
+    let ladder = Ladder::of(problem, Known { gaps: 1, is_whole: !start.is_unknown() }, settings)?;
+    Run::new(problem, &ladder, start, settings).solved()
+}
+
+/// The prepared data of an attempt, and its load.
+#[derive(Clone, Debug)]
+pub(in crate::qp) struct Workbench {
+    /// The number of the attempt in its ladder.
+    pub attempt: usize,
+    pub engine: Arc<dyn Engine>,
+    pub load: Arc<Load>,
+}
+
+/// A ladder that is being carried out.
+pub(in crate::qp) struct Run<'a> {
+    pub(super) problem: &'a ContactProblem,
+    pub(super) ladder: &'a Ladder,
+    start: &'a Start,
+    pub(super) settings: &'a Settings,
+    pub(super) history: History,
+    /// The data that the caller keeps prepared.
+    pub(super) kept: Option<&'a Workbench>,
+    /// The data that were prepared last.
+    pub(super) made: Option<Workbench>,
+    /// The sets of the last method, and their number, with its attempt.
+    last: Option<(usize, Outcome)>,
+    pub(super) existence: Option<Existence>,
+    pub(super) clock: Instant,
+}
+
+impl<'a> Run<'a> {
+    /// A run on `problem` from `start`, under settings with a running clock.
+    pub fn new(problem: &'a ContactProblem, ladder: &'a Ladder, start: &'a Start, settings: &'a Settings) -> Self {
+        let (history, clock) = (History::new(settings.goal()), Instant::now());
+        Run { problem, ladder, start, settings, history, kept: None, made: None, last: None, existence: None, clock }
+    }
+
+    /// The same with data that are prepared already: the first attempt is that of these data.
+    pub fn with(self, kept: &'a Workbench) -> Self {
+        Run { kept: Some(kept), history: History { first: kept.attempt, ..self.history }, ..self }
+    }
+
+    /// Carries out the ladder; the best answer, if it meets the goal.
+    ///
+    /// # Errors
+    /// As [`solve`](crate::solve()).
+    pub fn solved(mut self) -> Result<Solution, Error> {
+        self.carry_out();
+        self.ended()
+    }
+
+    /// Makes one step after the other, until the plan names none.
+    fn carry_out(&mut self) {
+        while let Some(next) = self.ladder.next(&self.history, &self.settings.watch) {
+            let clock = Instant::now();
+            let attempt = &self.ladder.attempts[next.place.attempt];
+            let step = attempt.steps[next.place.rung].step;
+            let mut record = Record::of(next, step);
+            record.ended = match self.made_step(&next, attempt, &mut record) {
+                Ok(ended) => ended,
+                Err(error @ (Error::TooLarge { .. } | Error::OutOfTime { .. })) => Ended::Refused(error),
+                Err(error @ Error::NotConvex { .. }) if step == Step::Existence => Ended::Decided(error),
+                Err(error @ (Error::Numerical { .. } | Error::NotConvex { .. })) => Ended::Failed(error),
+                Err(error) => Ended::Decided(error),
+            };
+            record.seconds = clock.elapsed().as_secs_f64();
+            self.history.records.push(record);
+        }
+    }
+
+    /// Makes a step and judges its answer.
+    fn made_step(&mut self, next: &Next, attempt: &Attempt, record: &mut Record) -> Result<Ended, Error> {
+        match record.step {
+            Step::Pieces => self.in_pieces(record),
+            Step::Existence => self.looked_at_existence(),
+            Step::Proximal => self.by_proximal_steps(record),
+            Step::Uniqueness => self.looked_at_uniqueness(),
+            _ => self.with_engine(next, attempt, record),
+        }
+    }
+
+    fn with_engine(&mut self, next: &Next, attempt: &Attempt, record: &mut Record) -> Result<Ended, Error> {
+        let Workbench { engine, load, .. } = self.prepared(next.place.attempt, record)?;
+        let settings = &attempt.settings(self.settings);
+        let tried = engine.tried(settings);
+        record.tried = Some(tried);
+        let start = self.start_from(next.start, record.step);
+        let best = self.history.best.as_ref().map(|best| &best.solution);
+        let (problem, step, limits) = (self.problem, record.step, next.limits);
+        let task = Task { step, problem, load: &load, start: &start, limits, settings, best };
+        let Some(found) = engine.make(&task)? else { return Ok(Ended::Empty) };
+        record.stages.factor += found.factor_seconds;
+        if let Ending::Infeasible { rows, weights } = &found.outcome.ending {
+            return Ok(Ended::Decided(problem.infeasible(rows, weights)));
+        }
+        let contraction = found.refined.map_or(0.0, |refined| refined.1);
+        let (ending, solution) = (found.outcome.ending.clone(), self.answer(found, &tried, record));
+        self.settings.watch.step("certificate", 0);
+        let by = engine.bounding(&self.settings.watch.finishing(), contraction);
+        let answer = Best { ending, tried: Some(tried), contraction, ..Best::of(solution, next.place.attempt) };
+        self.judged(answer, &by, record).map(Ended::Answered)
+    }
+
+    /// The prepared data of an attempt; those of another attempt are freed first, unless the caller keeps them.
+    fn prepared(&mut self, attempt: usize, record: &mut Record) -> Result<Workbench, Error> {
+        let is_of = |bench: &&Workbench| bench.attempt == attempt;
+        if let Some(bench) = self.kept.filter(is_of).or(self.made.as_ref().filter(is_of)) {
+            return Ok(bench.clone());
+        }
+        self.made = None;
+        let kept_bytes = self.kept.map_or(0.0, |kept| kept.engine.bytes());
+        let settings = Settings { memory: self.settings.memory.map(|most| most - kept_bytes), ..self.settings.clone() };
+        let engine = engine_of(self.problem, &self.ladder.attempts[attempt], &settings)?;
+        record.stages.factor += engine.seconds().factor;
+        let load = Arc::new(Load::new(self.problem.load().to_vec()));
+        Ok(self.made.insert(Workbench { attempt, engine, load }).clone())
+    }
+
+    /// The start of a step.
+    fn start_from(&self, from: From, step: Step) -> Start {
+        let best = || self.history.best.as_ref().map(|best| &best.solution);
+        match (from, step) {
+            (_, Step::Continuation | Step::Dual) => {
+                self.last.as_ref().map_or_else(Start::default, |last| Start::from(&last.1.contact_set))
+            }
+            (From::Given, _) => self.start.clone(),
+            (From::Cycles, _) if self.start.is_unknown() => {
+                let near = Hierarchical::new(self.problem, self.settings).ok();
+                near.and_then(|near| near.near(&self.settings.watch)).unwrap_or_default()
+            }
+            (From::Cycles, _) => self.start.clone(),
+            (From::Best, _) => best().map_or_else(Start::default, Start::from),
+            (From::Nothing, _) => Start::default(),
+        }
+    }
+
+    /// What was found as an answer, not judged yet.
+    fn answer(&mut self, found: Found, tried: &Tried, record: &Record) -> Solution {
+        let Found { mut outcome, refined, .. } = found;
+        let attempt = record.place.attempt;
+        match (record.improves(), &self.history.best) {
+            (true, Some(best)) => Solution {
+                displacement: outcome.displacement,
+                multiplier: outcome.multiplier,
+                contact_set: outcome.contact_set,
+                refinements: Some(best.solution.refinements.unwrap_or(0) + 1),
+                ..best.solution.clone()
+            },
+            _ => {
+                // The steps of one attempt count together.
+                if let Some((_, before)) = self.last.take().filter(|last| last.0 == attempt) {
+                    outcome = outcome.after(before);
+                }
+                let sets = Outcome { displacement: Vec::new(), multiplier: Vec::new(), ..outcome.clone() };
+                self.last = Some((attempt, sets));
+                let condensed_dofs = tried.condensed_dofs.unwrap_or(outcome.displacement.len());
+                let refinements = refined.map(|refined| refined.0);
+                let lost_pivot = tried.lost_pivot;
+                let solution = without_certificate(outcome, tried.method.name());
+                Solution { condensed_dofs, refinements, lost_pivot, ..solution }
+            }
+        }
+    }
+
+    /// Judges an answer, and the same with those parts at rest that may rest; the better one is kept if it is the best so far.
+    fn judged(&mut self, answer: Best, by: &Bounding, record: &mut Record) -> Result<Answered, Error> {
+        let clock = Instant::now();
+        let Solution { displacement, multiplier, .. } = &answer.solution;
+        let Examined { certificate, evidence, may_rest } = self.problem.examine(by, displacement, multiplier)?;
+        record.stages.certificate += clock.elapsed().as_secs_f64();
+        let wants_best = answer.tried.is_none_or(|tried| tried.method.wants_best());
+        let at_rest = self.problem.at_rest(displacement, &may_rest).filter(|_| wants_best);
+        let at_rest = at_rest.map(|displacement| Best {
+            solution: Solution { displacement, ..answer.solution.clone() },
+            ending: answer.ending.clone(),
+            evidence: None,
+            ..answer
+        });
+        let certificate = certificate.judged(self.settings.goal());
+        let solution = Solution { certificate, ..answer.solution };
+        record.answer = Some((solution.method.clone(), certificate));
+        let answered = self.history.offer(Best { solution, evidence, ..answer });
+        match at_rest {
+            Some(at_rest) => Ok(answered.or(self.judged(at_rest, by, record)?)),
+            None => Ok(answered),
+        }
+    }
+
+    /// The answers of the pieces as one.
+    fn in_pieces(&mut self, record: &mut Record) -> Result<Ended, Error> {
+        let Some(pieces) = &self.ladder.pieces else { return Ok(Ended::Empty) };
+        let pieces = Arc::clone(pieces);
+        let joined = pieces::solved(self.problem, &pieces, self.settings, |piece, settings| {
+            solved(piece, &Start::default(), settings)
+        })?;
+        let Some((solution, certificates)) = joined else { return Ok(Ended::Empty) };
+        let Seconds { factor, certificate, proof, .. } = solution.seconds;
+        record.stages = Seconds { factor, certificate, proof, solve: 0.0 };
+        let answer = Best::of(solution, record.place.attempt);
+        self.judged(answer, &Bounding::Pieces(&certificates), record).map(Ended::Answered)
+    }
+
+    /// Whether an answer exists.
+    fn looked_at_existence(&mut self) -> Result<Ended, Error> {
+        let Some(existence) = Existence::of(self.problem, self.settings, solve_any)? else { return Ok(Ended::Empty) };
+        existence.check_bounded(self.problem, self.settings)?;
+        self.existence = Some(existence);
+        Ok(Ended::MayExist)
+    }
+
+    /// Whether the best answer is the only one.
+    fn looked_at_uniqueness(&mut self) -> Result<Ended, Error> {
+        let (Some(existence), Some(best)) = (&self.existence, &self.history.best) else { return Ok(Ended::Empty) };
+        existence.check_unique(self.problem, &best.solution, self.ladder.sure_tolerance())?;
+        Ok(Ended::MayExist)
+    }
+
+    /// The answer by steps with a regular stiffness.
+    fn by_proximal_steps(&mut self, record: &mut Record) -> Result<Ended, Error> {
+        let Some(existence) = &self.existence else { return Ok(Ended::Empty) };
+        let before = self.history.records.iter().rev().find(|record| record.answer.is_some());
+        let because = before.map_or_else(String::new, |record| record.shortfall(self.settings.goal()));
+        let lost_pivot = self.history.best.as_ref().and_then(|best| best.solution.lost_pivot);
+        let found = existence.proximal_steps(self.problem, self.settings)?;
+        let mut all: Option<Answered> = None;
+        for solution in found {
+            let reason = solution.reason.map(|reason| format!("{reason}: {because}"));
+            let solution = Solution { reason, lost_pivot, ..solution };
+            let answer = Best::of(solution, record.place.attempt);
+            let answered = self.judged(answer, &Bounding::OwnFactor, record)?;
+            all = Some(all.map_or(answered, |all| all.or(answered)));
+        }
+        Ok(all.map_or(Ended::Empty, Ended::Answered))
+    }
+}
+
+/// The outcome of the method called `name` as a solution, without a certificate.
+pub(super) fn without_certificate(outcome: Outcome, name: &str) -> Solution {
+    let Outcome { displacement, multiplier, contact_set, iterations, history, variant, .. } = outcome;
+    Solution {
+        condensed_dofs: displacement.len(),
+        displacement,
+        multiplier,
+        contact_set,
+        method: format!("{name}{variant}"),
+        iterations,
+        history,
+        certificate: Certificate::unknown(),
+        proven: None,
+        cut_short: None,
+        refinements: None,
+        lost_pivot: None,
+        reason: None,
+        why: None,
+        attempts: Vec::new(),
+        seconds: Seconds::default(),
+    }
+}
+
+/// An answer for another problem that this one gives rise to.
+fn solve_any(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+    solved(problem, &Start::default(), settings)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
+    use crate::qp::method::interior_point::InteriorPoint;
+    use crate::qp::plan::Basis;
+    use crate::qp::settings::{Method, Precision};
+
+    /// A chain of springs between a support and nothing, its last dofs before walls, under a force on each dof.
+    fn chain(dofs: usize, ground: f64, walls: &[(usize, f64)], force: f64) -> ContactProblem {
+        let mut entries = vec![(0, 0, ground)];
+        for dof in 1..dofs {
+            entries.extend([(dof, dof, 1.0), (dof - 1, dof - 1, 1.0), (dof, dof - 1, -1.0)]);
+        }
+        let stiffness = SparseMatrix::from_triplets(dofs, dofs, &entries).and_then(SymmetricMatrix::from_lower);
+        let rows: Vec<_> = walls.iter().enumerate().map(|(row, wall)| (row, wall.0, 1.0)).collect();
+        let contact = SparseMatrix::from_triplets(walls.len(), dofs, &rows).unwrap();
+        let gap = walls.iter().map(|wall| wall.1).collect();
+        ContactProblem::new(stiffness.unwrap(), vec![force; dofs], contact, gap).unwrap()
+    }
+
+    fn by(method: Method) -> Settings {
+        Settings::with_method(method)
+    }
+
+    /// The steps of a run are those of its ladder, in its order; only steps that may gain are made again.
+    #[test]
+    fn the_steps_that_are_recorded_are_those_of_the_plan() {
+        let held = || chain(30, 1.0, &[(29, 1.0), (20, 0.5)], 1.0);
+        let loose = Method::Qp(InteriorPoint { polish: false, tolerance: 1e-2 });
+        let kinds: [(&str, ContactProblem, Settings, bool); 12] = [
+            ("held", held(), Settings::default(), true),
+            ("as exact as doubles", held(), Settings::default().with_tolerance(1e-300), true),
+            ("by name", held(), by(Method::ActiveSet), true),
+            ("polished", held(), by(Method::qp()), true),
+            ("unpolished", held(), by(loose), false),
+            ("penalty", held(), by(Method::penalty()), false),
+            ("multigrid", held(), by(Method::Mprgp), true),
+            ("single", held(), by(Method::ActiveSet).with_precision(Precision::Mixed), true),
+            ("held by a wall", chain(30, 0.0, &[(29, 1.0)], 1.0), Settings::default(), true),
+            ("driven away", chain(30, 0.0, &[(29, 1.0)], -1.0), Settings::default(), false),
+            ("in balance", chain(30, 0.0, &[(29, 1.0)], 0.0), Settings::default(), false),
+            ("without time", held(), Settings::default().with_time(Duration::from_nanos(1)), false),
+        ];
+        for (name, problem, settings, is_solved) in kinds {
+            let settings = settings.started().unwrap();
+            let ladder = Ladder::of(&problem, Known { gaps: 1, is_whole: false }, &settings).unwrap();
+            let start = Start::default();
+            let mut run = Run::new(&problem, &ladder, &start, &settings);
+            run.carry_out();
+            let steps: Vec<(usize, usize)> =
+                run.history.records.iter().map(|record| (record.place.attempt, record.place.rung)).collect();
+            assert!(steps.is_sorted(), "{name}: {steps:?}");
+            for (before, record) in run.history.records.iter().zip(run.history.records.iter().skip(1)) {
+                let is_by_cycles = ladder.attempts[record.place.attempt].basis == Basis::Multigrid;
+                assert!(before.place != record.place || record.improves() || is_by_cycles, "{name}: {steps:?}");
+            }
+            for record in &run.history.records {
+                let attempt = &ladder.attempts[record.place.attempt];
+                assert_eq!(attempt.steps[record.place.rung].step, record.step, "{name}");
+                assert!(record.tried.is_none() || attempt.basis != Basis::Problem, "{name}");
+            }
+            assert_eq!(run.ended().is_ok(), is_solved, "{name}: {steps:?}");
+        }
+    }
+}
