@@ -26,7 +26,7 @@ impl Factored {
     /// Scales, condenses and factorises `problem`.
     ///
     /// # Errors
-    /// As [`Prepared::new`](super::Prepared::new).
+    /// As [`Prepared::new`](crate::Prepared::new).
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         let Settings { threads, watch, .. } = settings;
         let clock = Instant::now();

@@ -49,8 +49,8 @@ pub struct Prepared {
 const MANY_GAPS: usize = 10;
 
 impl Prepared {
-    /// Prepares `problem` for the method of `settings`: a hierarchy for [`Method::Mprgp`], a factor for every other;
-    /// [`Method::Auto`] takes the one that serves ten gaps in less time, as [`Prepared::for_gaps`].
+    /// Prepares `problem` for the method of `settings`: a hierarchy for [`Method::Mprgp`](crate::Method::Mprgp), a factor for every other;
+    /// [`Method::Auto`](crate::Method::Auto) takes the one that serves ten gaps in less time, as [`Prepared::for_gaps`].
     ///
     /// # Errors
     /// * [`Error::Setting`] for a setting outside its range,
