@@ -69,6 +69,9 @@ def agree(code: int, solve: Callable[[], sg.Solution], out: Path) -> sg.Solution
     except sg.NotCertified as fell_short:
         assert code == 4
         answer = fell_short.solution
+    except sg.Undecided:
+        assert code == 4 and not (out / "u.mtx").exists()
+        return None
     assert np.array_equal(answer.u, column(out / "u.mtx"))
     assert np.array_equal(answer.multiplier, column(out / "lambda.mtx"))
     return answer

@@ -1,6 +1,7 @@
 //! The three methods on problems that are small enough to enumerate all contact sets.
 
 use crate::oracles::{Dense, Draws, random};
+use nalgebra::DMatrix;
 use signorini::{ContactProblem, Error, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve, solve_qp};
 use signorini::{InteriorPoint, Penalty};
 
@@ -368,4 +369,45 @@ fn empty_and_unloaded_problems_have_the_answer_zero() {
         let solution = answer(&still, method);
         assert_eq!((solution.displacement, solution.multiplier), (vec![0.0; 2], vec![0.0]));
     }
+}
+
+/// An interior-point method that is told 1e-12 may end far from it. The plan then makes another attempt, and keeps the better answer.
+#[test]
+fn an_interior_point_that_comes_no_further_is_followed_by_a_better_attempt() {
+    const TOLD: InteriorPoint = InteriorPoint { polish: false, tolerance: 1e-12 };
+    let mut farthest = 0.0_f64;
+    for case in 0..4000_u64 {
+        let mut random = Draws::new(case);
+        let n = 2 + (case % 12) as usize;
+        // Scales of the dofs that differ by up to eight orders of magnitude.
+        let scale: Vec<f64> = (0..n).map(|_| 10.0_f64.powf(4.0 * random.signed())).collect();
+        let factor = DMatrix::from_fn(n, n, |_, _| random.signed());
+        let product: DMatrix<f64> = &factor * factor.transpose() + DMatrix::identity(n, n) * 1e-3;
+        let lower = (0..n).flat_map(|i| (0..=i).map(move |j| (i, j)));
+        let entries: Vec<_> = lower.map(|(i, j)| (i, j, scale[i] * scale[j] * product[(i, j)])).collect();
+        let rows: Vec<_> = (0..n).map(|dof| (dof, dof, 1.0)).collect();
+        let problem = ContactProblem::new(
+            SparseMatrix::from_triplets(n, n, &entries).and_then(SymmetricMatrix::from_lower).unwrap(),
+            scale.iter().map(|scale| scale * random.signed()).collect(),
+            SparseMatrix::from_triplets(n, n, &rows).unwrap(),
+            scale.iter().map(|scale| 0.1 * random.signed().abs() / scale).collect(),
+        );
+        let problem = problem.unwrap();
+        let settings = Settings::with_method(Method::Qp(TOLD));
+        let solution = match solve(&problem, &settings) {
+            Ok(solution) => solution,
+            // Clarabel reached its own tolerance: its answer is kept as it is.
+            Err(Error::NotCertified { solution, .. }) if solution.method == "qp-unpolished" => continue,
+            Err(error) => panic!("case {case}: {error}"),
+        };
+        // Told to accept everything, the same method shows how far it came, with its true bound.
+        if solution.method != "qp-unpolished" {
+            let mut accepting = settings.clone();
+            accepting.tolerance = None;
+            let alone = solve(&problem, &accepting).unwrap();
+            assert_eq!(alone.method, "qp-unpolished", "case {case}");
+            farthest = farthest.max(alone.certificate.energy_error_bound);
+        }
+    }
+    assert!(farthest > 1e-3, "no case ends far from its tolerance: {farthest:e}");
 }

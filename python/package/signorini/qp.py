@@ -16,7 +16,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from signorini import _signorini
-from signorini._errors import BadInput, BadType, Infeasible, NotCertified, SignoriniError, Unbounded, UnderHeld
+from signorini._errors import (
+    BadInput,
+    BadType,
+    Infeasible,
+    NotCertified,
+    SignoriniError,
+    Unbounded,
+    Undecided,
+    UnderHeld,
+)
 
 __all__ = ["QPSolution", "solve_problem", "solve_qp"]
 
@@ -98,7 +107,7 @@ def solve_problem(
     `signorini.solve`.
 
     Raises `BadInput` if the arrays do not form a quadratic program, `NotConvex` if P has a negative eigenvalue, `NotCertified`, with the
-    best solution, if the tolerance is not reached, and the other exceptions of `signorini.solve`. A program without a solution is no
+    best solution, if the tolerance is not reached, `Undecided` if it is open whether there is a minimum, and the other exceptions of `signorini.solve`. A program without a solution is no
     exception: `found` is then `False`.
     """
     load = -_vector("q", q)
@@ -117,11 +126,11 @@ def solve_problem(
         return QPSolution(False, None, None, None, None, None, None, False, str(error))
     except UnderHeld:
         return _one_of_many(problem, rows, start, options)
-    except NotCertified as fell_short:
+    except (NotCertified, Undecided) as fell_short:
         # Without an error bound only the conditions can be certified. If they fail as well, the minimum is almost not
         # unique, and proximal steps are tried.
-        best = fell_short.solution
-        if best.certificate.conditions_hold(_TOLERANCE):
+        best = fell_short.solution if isinstance(fell_short, NotCertified) else None
+        if best is not None and best.certificate.conditions_hold(_TOLERANCE):
             return rows.answer(problem, best.u, best.multiplier, best.certificate, unique=False)
         try:
             return _one_of_many(problem, rows, start, options)

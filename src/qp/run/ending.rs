@@ -61,15 +61,20 @@ impl Run<'_> {
     }
 
     /// The error if it is open whether there is an answer, after a method met a motion without energy, or failed for a stiffness that
-    /// is not definite. An answer with a bound leaves nothing open.
+    /// is not definite. An answer with a bound leaves nothing open, and one of a settled method whose conditions hold stays an answer.
     fn doubt(&mut self) -> Option<Error> {
         let is_unheld = |record: &Record| match &record.ended {
             Ended::Answered(answered) => answered.is_unheld,
             Ended::Failed(Error::NotConvex { .. }) => true,
             _ => false,
         };
-        let has_bound = self.history.best.as_ref().is_some_and(|best| best.solution.certificate.has_bound());
-        if has_bound || self.settings.watch.cut().is_some() || !self.history.records.iter().any(is_unheld) {
+        let tolerance = self.settings.goal().tolerance;
+        let is_answer = |best: &Best| {
+            let certificate = &best.solution.certificate;
+            certificate.has_bound() || best.ending == Ending::Settled && certificate.conditions_hold(tolerance)
+        };
+        let has_answer = self.history.best.as_ref().is_some_and(is_answer);
+        if has_answer || self.settings.watch.cut().is_some() || !self.history.records.iter().any(is_unheld) {
             return None;
         }
         if let Some(existence) = &self.existence {
