@@ -19,7 +19,7 @@ use std::collections::HashSet;
 use super::earlier_factor::{BoundedDofs, EarlierFactor, TRIAL, steps_for_a_factor};
 use super::equilibrium::{Equilibrium, WEIGHT, equilibrium, reach};
 use super::scaled::multiplier_rounding;
-use super::{Ending, FreeMode, Holding, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start};
+use super::{Ending, FreeMode, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start, Support};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
@@ -143,13 +143,13 @@ impl<'a> Balances<'a> {
         // There is room for one factor at a time.
         self.earlier = None;
         Ok(match self.scaled.hold(closed, WEIGHT)? {
-            Holding::Held(cholesky) => {
+            Support::Held(cholesky) => {
                 let balance = equilibrium(problem, &cholesky, closed);
                 self.earlier = self.bounded.as_ref().map(|bounded| EarlierFactor::new(cholesky, bounded, closed));
                 Balance::Held(balance)
             }
-            Holding::Free(mode) => Balance::Free(mode),
-            Holding::Indefinite => Balance::Indefinite,
+            Support::Free(mode) => Balance::Free(mode),
+            Support::Indefinite => Balance::Indefinite,
         })
     }
 }
@@ -160,7 +160,7 @@ impl<'a> Balances<'a> {
 /// # Errors
 /// [`Error::Numerical`] for lack of memory.
 pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Option<Equilibrium>, Error> {
-    let Holding::Held(cholesky) = scaled.hold(closed, WEIGHT)? else { return Ok(None) };
+    let Support::Held(cholesky) = scaled.hold(closed, WEIGHT)? else { return Ok(None) };
     let balance = equilibrium(scaled.problem, &cholesky, closed);
     Ok(Some(balance).filter(|balance| balance.consistent))
 }

@@ -7,15 +7,15 @@ mod bounds;
 pub mod dual_active_set;
 mod earlier_factor;
 mod equilibrium;
-mod holding;
 pub mod interior_point;
 pub mod mprgp;
 pub mod parametric;
 pub mod penalty;
 mod scaled;
 mod start;
+mod support;
 
-pub use holding::{FreeMode, Holding};
 pub(crate) use scaled::SIGN_TOLERANCE;
 pub use scaled::{Definiteness, Ending, Outcome, ScaledProblem, Solver};
 pub use start::Start;
+pub use support::{FreeMode, Support};

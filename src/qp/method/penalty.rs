@@ -12,7 +12,7 @@
 
 use std::collections::HashSet;
 
-use super::{Ending, Holding, Outcome, ScaledProblem, Solver, Start};
+use super::{Ending, Outcome, ScaledProblem, Solver, Start, Support};
 use crate::error::Error;
 use crate::qp::linear::{Cholesky, largest};
 use crate::qp::problem::ContactProblem;
@@ -141,8 +141,8 @@ impl PenaltyLoop<'_> {
         {
             scaled.watch().step("penalty loop", climb.history.len() + 1);
             let cholesky = match scaled.hold(&climb.closed, penalty)? {
-                Holding::Held(cholesky) => cholesky,
-                Holding::Free(mode) => match scaled.stopping_rows(&mode, &climb.state.displacement, &climb.closed) {
+                Support::Held(cholesky) => cholesky,
+                Support::Free(mode) => match scaled.stopping_rows(&mode, &climb.state.displacement, &climb.closed) {
                     Some(stopped) => {
                         climb.stops += 1;
                         climb.closed = stopped;
@@ -153,7 +153,7 @@ impl PenaltyLoop<'_> {
                         break;
                     }
                 },
-                Holding::Indefinite => {
+                Support::Indefinite => {
                     climb.ending = Ending::Unheld;
                     break;
                 }
@@ -254,12 +254,12 @@ fn rung_below(scaled: &ScaledProblem, rung: &Rung) -> Result<Option<Rung>, Error
     let penalty = rung.penalty / RUNG;
     let mut state = State { displacement: rung.displacement.clone(), violation: Vec::new() };
     match scaled.hold(&rung.closed, penalty)? {
-        Holding::Held(cholesky) => {
+        Support::Held(cholesky) => {
             let springs = Springs { factor: &cholesky, closed: &rung.closed, penalty };
             (0..=FINAL_SOLVES).for_each(|_| state.advance(scaled.problem, &springs));
             Ok(Some(Rung::new(&state, rung.closed.clone(), penalty)))
         }
-        Holding::Free(_) | Holding::Indefinite => Ok(None),
+        Support::Free(_) | Support::Indefinite => Ok(None),
     }
 }
 

@@ -23,8 +23,8 @@ mod closed_rows;
 mod cycles;
 mod repair;
 mod row_by_row;
-mod settle;
 mod triangle;
+mod witness;
 
 use super::EnergyNorm;
 use super::energy_norm::Loose;

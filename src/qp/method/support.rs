@@ -13,7 +13,7 @@ const SHIFTS: [f64; 3] = [1e-12, 1e-10, 1e-8];
 const STEPS: usize = 5;
 
 /// Work of the load on a free mode, and other sums over a mode, are rounding below this share of their own terms.
-pub(crate) const WORK_TOLERANCE: f64 = 1e-9;
+const WORK_TOLERANCE: f64 = 1e-9;
 
 /// Entries of a null vector with largest entry one, and forces on a diagonal of order one, below this are rounding.
 const NOISE: f64 = 1e-13;
@@ -27,7 +27,7 @@ fn normalised(mut direction: Vec<f64>) -> Vec<f64> {
 
 /// States whether the closed rows hold the body.
 #[derive(Debug)]
-pub enum Holding {
+pub enum Support {
     /// They do; the factorisation of K + w B_C'B_C.
     Held(Cholesky),
     /// They do not.
@@ -63,13 +63,13 @@ impl ScaledProblem<'_> {
             Err(error) => return Err(error.into()),
         }
         Ok(match self.hold(&ContactSet::closed(rows), 1.0)? {
-            Holding::Held(cholesky) => {
+            Support::Held(cholesky) => {
                 let pull = self.problem.contact().mul_transposed(self.problem.gap());
                 let force: Vec<f64> = self.problem.load().iter().zip(&pull).map(|(f, g)| f + g).collect();
                 let violation = self.problem.violation(&cholesky.solve(&force));
                 Some(ContactSet::from_fn(rows, |row| violation[row] > 0.0))
             }
-            Holding::Free(_) | Holding::Indefinite => None,
+            Support::Free(_) | Support::Indefinite => None,
         })
     }
 
@@ -77,14 +77,14 @@ impl ScaledProblem<'_> {
     ///
     /// # Errors
     /// [`Error::Numerical`] for lack of memory.
-    pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Holding, Error> {
+    pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Support, Error> {
         let matrix = self.matrix(closed, weight, 0.0);
         // If K is definite by itself, this is not checked again.
         let looked_at = (!self.is_definite()).then(|| matrix.clone());
         match self.factor(matrix) {
-            Ok(cholesky) if looked_at.is_none_or(|matrix| cholesky.is_definite(&matrix)) => Ok(Holding::Held(cholesky)),
+            Ok(cholesky) if looked_at.is_none_or(|matrix| cholesky.is_definite(&matrix)) => Ok(Support::Held(cholesky)),
             Ok(_) | Err(FactorError::NotPositiveDefinite) => {
-                Ok(self.free_mode(closed, weight)?.map_or(Holding::Indefinite, Holding::Free))
+                Ok(self.free_mode(closed, weight)?.map_or(Support::Indefinite, Support::Free))
             }
             Err(error) => Err(error.into()),
         }
