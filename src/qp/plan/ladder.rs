@@ -57,7 +57,7 @@ impl Ladder {
         if !known.is_whole
             && let Some(pieces) = pieces_of(problem, settings)
         {
-            let because = format!("in {} pieces, because nothing couples them", pieces.count());
+            let because = format!("nothing couples its {} pieces", pieces.count());
             ladder.add(Attempt { steps: IN_PIECES, ..ladder.attempt(Basis::Problem, because) });
             ladder.pieces = Some(Arc::new(pieces));
         }
@@ -102,22 +102,24 @@ impl Ladder {
             let because = "a factor may give the answer that the iteration does not";
             Attempt { method, start, when: When::ShortOfMultigrid, ..ladder.attempt(Basis::Factor, because) }
         };
+        // The way stands before the colon.
+        let because = |reason: &str| reason.split_once(": ").map_or(reason, |(_, because)| because).to_string();
         match choice {
             Choice::Factor { reason } => {
-                self.with_factor(Attempt { start, ..self.attempt(Basis::Factor, reason.clone()) });
-                let because = "a factor was refused";
-                self.with_multigrid(Attempt { when: When::Refused, ..self.attempt(Basis::Multigrid, because) });
+                self.with_factor(Attempt { start, ..self.attempt(Basis::Factor, because(reason)) });
+                let refused = self.attempt(Basis::Multigrid, "it takes less memory, and begins sooner");
+                self.with_multigrid(Attempt { when: When::Refused, ..refused });
                 // The refusal was of a faster method, which takes more memory than one factor at a time.
                 self.with_factor(after(self, Method::ActiveSet));
             }
             Choice::Speed { reason, most_cycles } => {
-                let mut multigrid = self.attempt(Basis::Multigrid, reason.clone());
+                let mut multigrid = self.attempt(Basis::Multigrid, because(reason));
                 multigrid.limits.worth = *most_cycles;
                 self.with_multigrid(multigrid);
                 self.with_factor(after(self, Method::Auto));
             }
             Choice::Room { reason } => {
-                self.with_multigrid(self.attempt(Basis::Multigrid, reason.clone()));
+                self.with_multigrid(self.attempt(Basis::Multigrid, because(reason)));
                 self.with_factor(after(self, Method::Auto));
             }
         }
@@ -157,7 +159,7 @@ impl Ladder {
             self.add(Attempt { method: Method::qp(), ..attempt });
         }
         if method == Method::Auto || precision == Precision::Mixed {
-            let because = "a faster method, or a factor in single precision, fell short";
+            let because = "the rules prefer speed; the active set in double precision leaves out no digit";
             let attempt = double(self, When::ShortOfShortcut, because);
             self.add(Attempt { start: From::Nothing, ..attempt });
         }

@@ -149,11 +149,10 @@ impl Ladder {
                 !certified && is_unsettled && method.allows_last_resort(f64::INFINITY) && !is_mixed()
             }
             (When::Improvable, _) => {
+                // A repair follows a refinement also if that gained nothing.
                 let is_new = |record: &Record| match (&record.ended, record.step) {
-                    (Ended::Answered(answered), Step::Refinement) => step == Step::Repair || answered.is_best,
-                    (Ended::Answered(answered), Step::Repair) => answered.is_best,
+                    (Ended::Answered(_) | Ended::Empty, Step::Refinement) if step == Step::Repair => true,
                     (Ended::Answered(answered), _) => answered.is_best,
-                    (Ended::Empty, Step::Refinement) => step == Step::Repair,
                     _ => false,
                 };
                 let last = in_attempt().rfind(|record| record.step != Step::Existence);

@@ -132,7 +132,8 @@ impl<'a> Run<'a> {
         }
         self.made = None;
         let kept_bytes = self.kept.map_or(0.0, |kept| kept.engine.bytes());
-        let settings = Settings { memory: self.settings.memory.map(|most| most - kept_bytes), ..self.settings.clone() };
+        let memory = self.settings.memory.map(|most| (most - kept_bytes).max(0.0));
+        let settings = Settings { memory, ..self.settings.clone() };
         let engine = engine_of(self.problem, &self.ladder.attempts[attempt], &settings)?;
         record.stages.factor += engine.seconds().factor;
         let load = Arc::new(Load::new(self.problem.load().to_vec()));
