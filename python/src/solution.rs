@@ -114,7 +114,7 @@ impl Solution {
     #[getter]
     fn why(&self) -> String {
         let answer = &self.inner;
-        let reason = answer.reason.as_ref().map(|reason| format!("{}: {reason}", answer.method));
+        let reason = (!answer.reason.is_empty()).then(|| format!("{}: {}", answer.method, answer.reason));
         let attempts =
             answer.attempts.iter().map(|attempt| format!("{} was tried before: {}", attempt.method, attempt.reason));
         let said: Vec<String> = reason.into_iter().chain(attempts).collect();

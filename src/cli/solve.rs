@@ -164,8 +164,8 @@ fn reported(
         summary.strain_energy = Some(answer.model().parts_of_whole() * of_mesh.strain_energy());
     }
     let mut text = solve_text(&input.title, &summary, &input.units);
-    if let Some(why) = summary.solution.why.as_ref().filter(|_| options.explain) {
-        text += &why_text(why);
+    if options.explain {
+        text += &why_text(&summary.solution.why);
     }
     let report = Report::new(&summary, text)?;
     let status = summary.status;

@@ -113,7 +113,7 @@ fn shown<T: Serialize>(
 ) -> Result<Outcome, Error> {
     let common = &options.common;
     let summary = answer.as_ref().map(|(_, summary)| summary);
-    if let Some(why) = summary.and_then(|summary| summary.solution.why.as_ref()).filter(|_| options.explain) {
+    if let Some(why) = summary.map(|summary| &summary.solution.why).filter(|_| options.explain) {
         text += &why_text(why);
     }
     let is_part = first.parts_of_whole() > 1.0;

@@ -14,7 +14,8 @@ pub(super) fn run(options: &Verify, watch: &Watch) -> Result<Outcome, Error> {
     let displacement = read_vector(&options.displacement)?;
     let multiplier = read_vector(&options.multiplier)?;
     let problem = read_problem(&options.directory)?;
-    let settings = Settings { memory, threads: options.threads, watch: watch.clone(), ..Settings::default() };
+    let (threads, tolerance) = (options.threads, Some(options.tolerance));
+    let settings = Settings { memory, threads, tolerance, watch: watch.clone(), ..Settings::default() };
     let certificate = certify_within(&problem, options.factor_time, (&displacement, &multiplier), &settings)?;
     let verification = Verification::new(certificate, &multiplier, ModelSize::of(&problem), options.tolerance);
     let text = verify_text(&format!("Problem directory {}", options.directory.display()), &verification);

@@ -55,11 +55,14 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
         condensed => format!(", condensed to {condensed} dofs"),
     };
     line("method", format!("{}, {}{unknowns}", solution.method, plural(solution.iterations, "iteration")));
-    if let Some(steps) = solution.refinements {
-        line("", format!("factor in single precision, {}", plural(steps, "refinement")));
+    let precision = solution.single_precision.then(|| "factor in single precision".to_string());
+    let refined = (solution.refinements > 0).then(|| plural(solution.refinements, "refinement"));
+    let words: Vec<String> = precision.into_iter().chain(refined).collect();
+    if !words.is_empty() {
+        line("", words.join(", "));
     }
-    if let Some(reason) = &solution.reason {
-        line("", reason.clone());
+    if !solution.reason.is_empty() {
+        line("", solution.reason.clone());
     }
     for attempt in &solution.attempts {
         let reason = printable(&attempt.reason);

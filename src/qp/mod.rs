@@ -107,7 +107,8 @@ pub(crate) fn plan_in_words(problem: &ContactProblem, start: &Start, settings: &
 /// estimated to take at most `seconds`, else by multigrid.
 ///
 /// # Errors
-/// As [`ContactProblem::certify`]; [`Error::NoRoom`] if there is no room for either.
+/// As [`ContactProblem::certify`]; [`Error::Infeasible`] as [`solve`], if an answer misses its rows;
+/// [`Error::NoRoom`] if there is no room for either.
 #[cfg(feature = "cli")]
 pub(crate) fn certify_within(
     problem: &ContactProblem,
@@ -117,15 +118,21 @@ pub(crate) fn certify_within(
 ) -> Result<Certificate, Error> {
     let (displacement, multiplier) = answer;
     let examine = |by: &Bounding| Ok(problem.examine(by, displacement, multiplier)?.certificate);
-    if plan::is_bounded_by_factor(problem, seconds, settings)? {
-        return examine(&Bounding::OwnFactor);
+    let certificate = if plan::is_bounded_by_factor(problem, seconds, settings)? {
+        examine(&Bounding::OwnFactor)
+    } else {
+        match engine::Hierarchical::new(problem, settings) {
+            Ok(hierarchical) => examine(&hierarchical.bounding(&settings.watch, 0.0)),
+            // A dof without stiffness, or a direction of negative energy, has no hierarchy.
+            Err(Error::NotConvex { .. }) => examine(&Bounding::Nothing),
+            Err(error) => Err(error),
+        }
+    }?;
+    // An answer that meets its rows shows that they can be met.
+    if certificate.penetration > settings.goal().tolerance {
+        existence::check_rows(problem, settings, run::solve_any)?;
     }
-    match engine::Hierarchical::new(problem, settings) {
-        Ok(hierarchical) => examine(&hierarchical.bounding(&settings.watch, 0.0)),
-        // A dof without stiffness, or a direction of negative energy, has no hierarchy.
-        Err(Error::NotConvex { .. }) => examine(&Bounding::Nothing),
-        Err(error) => Err(error),
-    }
+    Ok(certificate)
 }
 
 /// Solves a contact problem as a QP by the interior-point method, polished, certified to 1e-9.
@@ -146,6 +153,6 @@ pub(crate) type Held = Option<(Vec<f64>, Vec<f64>)>;
 /// As [`Prepared::new`].
 #[cfg_attr(not(feature = "pictures"), allow(dead_code))]
 pub(crate) fn with_contact_sets(problem: &ContactProblem) -> Result<impl Fn(&ContactSet) -> Held, Error> {
-    let factored = engine::Factored::new(problem, &Settings::default())?;
+    let factored = engine::Factored::new(problem, &plan::WithFactor::BY_RULES, &Settings::default())?;
     Ok(move |closed: &ContactSet| factored.with_contact_set(closed))
 }

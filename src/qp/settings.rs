@@ -61,6 +61,24 @@ impl Method {
     }
 }
 
+/// The methods that work with a factor of the stiffness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::qp) enum ByFactor {
+    ActiveSet,
+    Qp(InteriorPoint),
+    Penalty(Penalty),
+}
+
+impl From<ByFactor> for Method {
+    fn from(method: ByFactor) -> Self {
+        match method {
+            ByFactor::ActiveSet => Method::ActiveSet,
+            ByFactor::Qp(options) => Method::Qp(options),
+            ByFactor::Penalty(ladder) => Method::Penalty(ladder),
+        }
+    }
+}
+
 /// The rule for condensing the problem onto the dofs of its contact rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]

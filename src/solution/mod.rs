@@ -11,6 +11,8 @@ pub(crate) use certificate::Met;
 pub use certificate::{Certificate, Goal};
 pub use contact_set::ContactSet;
 
+use std::ops::Not;
+
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
@@ -77,6 +79,10 @@ fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
+fn is_none(count: &usize) -> bool {
+    *count == 0
+}
+
 /// Reason for the way in which an answer was found: the ways that were compared before, and the decision.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Why {
@@ -86,6 +92,13 @@ pub struct Why {
     pub reason: String,
     /// The ways that were compared; empty if a method was requested by name.
     pub considered: Vec<Expected>,
+}
+
+impl Why {
+    /// Returns `true` if nothing was decided.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.reason.is_empty()
+    }
 }
 
 /// A way to an answer with its expected cost, before it was taken or left.
@@ -139,22 +152,24 @@ pub struct Solution {
     /// The limit that ended the search before its end, in words; `None` if it ended by itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cut_short: Option<String>,
-    /// Steps of refinement, if the factor was in single precision.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub refinements: Option<usize>,
-    /// Reason why no factor was taken, in words, if [`Method::Auto`](crate::Method::Auto) decided that.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub reason: Option<String>,
-    /// The ways that were compared before, and the decision; `None` if no method was chosen for this answer.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub why: Option<Why>,
+    /// `true` if the factor was in single precision.
+    #[serde(skip_serializing_if = "Not::not")]
+    pub single_precision: bool,
+    /// Steps of refinement, each the answer for the residual of the answer before.
+    #[serde(skip_serializing_if = "is_none")]
+    pub refinements: usize,
+    /// Reason why no factor was taken, in words, if [`Method::Auto`](crate::Method::Auto) decided that; otherwise empty.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub reason: String,
+    /// The ways that were compared before, and the decision; empty if no method was chosen for this answer.
+    #[serde(skip_serializing_if = "Why::is_empty")]
+    pub why: Why,
     /// Other attempts, in order; their time is in `seconds`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub attempts: Vec<Attempt>,
-    /// The smallest pivot of the stiffness, for a diagonal of order one, if it is so close to rounding that digits are lost; 0
-    /// if a pivot was not positive.
+    /// See [`Solution::lost_pivot`].
     #[serde(skip)]
-    pub lost_pivot: Option<f64>,
+    pub(crate) lost_pivot: Option<f64>,
     /// Unknowns that the method worked on; fewer than all if the problem was condensed.
     #[serde(skip)]
     pub condensed_dofs: usize,
@@ -164,6 +179,12 @@ pub struct Solution {
 }
 
 impl Solution {
+    /// The smallest pivot of the stiffness, for a diagonal of order one, if it is so close to rounding that digits are lost; 0
+    /// if a pivot was not positive.
+    pub fn lost_pivot(&self) -> Option<f64> {
+        self.lost_pivot
+    }
+
     /// Digits of the displacement that the entries of the stiffness determine, approximately, if they are few: each entry is
     /// rounded to double precision, and the softest motion amplifies that by one over the smallest pivot. The certificate takes
     /// the entries as exact. A dof without stiffness has no digits to lose.

@@ -87,7 +87,7 @@ pub struct Summary {
 }
 
 /// The entries of a summary that planes of symmetry leave of the meshed part. All other numbers are of the whole body.
-pub(crate) const OF_MESHED_PART: [&str; 15] = [
+pub(crate) const OF_MESHED_PART: [&str; 16] = [
     "certificate",
     "contact.count",
     "contact.force_balance",
@@ -102,6 +102,7 @@ pub(crate) const OF_MESHED_PART: [&str; 15] = [
     "refinements",
     "seconds",
     "segments",
+    "single_precision",
     "why",
 ];
 

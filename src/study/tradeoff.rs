@@ -398,7 +398,7 @@ fn timed(problem: &ContactProblem, ways: &[Way], runs: usize, watch: &Watch) -> 
         };
         let of_method = seconds - solution.seconds.certificate - solution.seconds.proof;
         let timed = Timed { solution, seconds: of_method, second: f64::INFINITY };
-        Ok((by_cycles || timed.solution.refinements.is_some() == mixed).then_some(timed))
+        Ok((by_cycles || timed.solution.single_precision == mixed).then_some(timed))
     };
     let mut fastest = ways.iter().enumerate().map(|(index, way)| run(index, way)).collect::<Result<Vec<_>, Error>>()?;
     for round in 1..MOST_RUNS * runs {

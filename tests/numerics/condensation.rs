@@ -350,7 +350,7 @@ fn digits_lost_by_condensation_are_restored_by_a_repair_or_by_a_solve_on_all_dof
         let solution = answer(&wide, &settings(method, Condense::Auto));
         let error = (solution.contact_force() / force(1e6) - 1.0).abs();
         assert!(error <= 1e-12, "{method:?}: {error:e}");
-        assert!(solution.refinements.is_some() && solution.condensed_dofs < wide.dofs(), "{method:?}");
+        assert!(solution.refinements > 0 && solution.condensed_dofs < wide.dofs(), "{method:?}");
     }
     // A penalty answer has no repair: it is the answer of the contact springs.
     let soft = settings(Method::penalty(), Condense::Auto).with_tolerance(1e-6);

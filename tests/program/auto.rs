@@ -32,7 +32,7 @@ fn an_accuracy_is_reached_and_certified() {
                 // If no bound is known, the conditions decide, to the tolerance.
                 assert!(bound <= accuracy || (bound.is_infinite() && found.certificate.meets(1e-9)), "{name}");
                 assert!(error(&problem, &found, &exact) <= accuracy, "{name}, {accuracy:e}");
-                assert!(precision != Precision::Double || found.refinements.is_none());
+                assert!(precision != Precision::Double || !found.single_precision);
             }
         }
     }

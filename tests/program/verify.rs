@@ -1,6 +1,6 @@
 //! `signorini verify` accepts the right answer of a problem directory and rejects every other.
 
-use crate::program::{Desk, Problem, Run, scene, vector};
+use crate::program::{Desk, Problem, Run, matrix, scene, vector};
 use crate::promised::{CERTIFICATE, has, vectors};
 
 /// Verifies the answer in the problem directory `p`.
@@ -53,6 +53,22 @@ fn verify_rejects_a_multiplier_of_the_wrong_sign() {
     assert!(verify(&desk, "text").ends_with(4).stdout.contains("NOT certified"));
     desk.write("p/lambda.mtx", vector(&["-1.35"]));
     verify(&desk, "text").ends_with(0);
+}
+
+/// The rows contradict each other: two at sight, three only together (`u_1 <= -1`, `u_2 <= -1`, `u_1 + u_2 >= 0`).
+#[test]
+fn verify_reports_the_infeasibility_of_solve() {
+    let b = matrix("general", "3 2", &["1 1 1", "2 2 1", "3 1 -1", "3 2 -1"]);
+    let together = Problem { b, g: vector(&["-1", "-1", "0"]), ..Problem::right() };
+    for (problem, rows) in [(Problem::infeasible(), 2), (together, 3)] {
+        let desk = Desk::new();
+        desk.problem("p", &problem);
+        let of_solve = desk.run(&["solve", "p", "--format", "json"]).fails_with(3, &["infeasible"]).json();
+        desk.write("p/u.mtx", vector(&["-1", "-1"]));
+        desk.write("p/lambda.mtx", vector(&vec!["0"; rows]));
+        let of_verify = verify(&desk, "json").fails_with(3, &["infeasible"]).json();
+        assert_eq!(of_verify["message"], of_solve["message"]);
+    }
 }
 
 /// Exports a cube whose stiffness has a hierarchy of several levels, with the answer of multigrid in its problem

@@ -89,7 +89,7 @@ impl Entry {
                 Ok(solution) => {
                     let bound = Some(solution.certificate.energy_error_bound).filter(|bound| bound.is_finite());
                     // The stiffness of a scene is rounded itself; the effect grows as its smallest pivot decreases.
-                    let of_entries = solution.lost_pivot.map_or(0.0, |pivot| OF_ENTRIES / pivot);
+                    let of_entries = solution.lost_pivot().map_or(0.0, |pivot| OF_ENTRIES / pivot);
                     let tolerance =
                         (WRONG * settings.goal().tolerance).max(OF_BOUND * bound.unwrap_or(0.0)).max(of_entries);
                     self.judge(&solution.displacement, &solution.multiplier, tolerance)

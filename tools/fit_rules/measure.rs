@@ -72,7 +72,7 @@ fn timed(problem: &ContactProblem, ways: &[Settings]) -> Vec<(f64, String)> {
                 && came_as_told(&solution, settings)
             {
                 *least = least.min(seconds);
-                *method = solution.method + if solution.refinements.is_some() { ", mixed" } else { "" };
+                *method = solution.method + if solution.single_precision { ", mixed" } else { "" };
             }
         }
         if !ran {
@@ -83,7 +83,7 @@ fn timed(problem: &ContactProblem, ways: &[Settings]) -> Vec<(f64, String)> {
 }
 
 fn came_as_told(solution: &Solution, settings: &Settings) -> bool {
-    settings.precision != Precision::Mixed || solution.refinements.is_some()
+    settings.precision != Precision::Mixed || solution.single_precision
 }
 
 /// Measures all ways of a problem, and returns one line for each.

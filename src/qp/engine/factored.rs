@@ -11,9 +11,9 @@ use crate::qp::certificate::{Bounding, EnergyNorm};
 use crate::qp::cost::{bytes, check_time, seconds};
 use crate::qp::linear::{AugmentedMatrix, Equilibration, dot, ldexp};
 use crate::qp::method::{Ending, Outcome, ScaledProblem, active_set};
-use crate::qp::plan::{Basis, Step, Tried, Way};
+use crate::qp::plan::{Means, Step, Tried, Way};
 use crate::qp::problem::ContactProblem;
-use crate::qp::settings::{Method, Settings};
+use crate::qp::settings::{ByFactor, Settings};
 use crate::qp::transform::Condensation;
 use crate::solution::{ContactSet, Iteration, Seconds, Solution};
 use crate::watch::Watch;
@@ -73,21 +73,17 @@ pub(super) struct Loaded {
 }
 
 impl Engine for Factored {
-    fn basis(&self) -> Basis {
-        Basis::Factor
-    }
-
-    fn serves(&self, method: Method) -> bool {
-        method != Method::Mprgp
+    fn serves(&self, means: &Means) -> bool {
+        matches!(means, Means::Factor(_))
     }
 
     fn seconds(&self) -> Seconds {
         self.seconds
     }
 
-    fn tried(&self, settings: &Settings) -> Tried {
+    fn tried(&self, method: Option<ByFactor>, settings: &Settings) -> Tried {
         Tried {
-            method: self.resolved(settings).method,
+            method: self.chosen(method, settings).into(),
             condensed_dofs: self.is_condensed().then(|| self.condensed_dofs()),
             is_shortcut: self.is_single() || self.way.is_some_and(|way| way != Way::ActiveSet),
             is_single: self.is_single(),
@@ -188,34 +184,23 @@ impl Factored {
         self.check_gap(task.problem.gap())?;
         let gap = task.problem.gap().to_vec();
         let loading = task.load.swept(&self.reduction, &self.reduction.selection.gap(&gap));
-        let set = task.start.contact_set.as_ref();
-        let Some(found) = self.find_step(Loaded { loading, gap }, task.step, set, task.settings)? else {
-            return Ok(None);
-        };
+        let Some(found) = self.find_step(Loaded { loading, gap }, task)? else { return Ok(None) };
         if self.is_single() { self.refined(found, task).map(Some) } else { Ok(Some(found)) }
     }
 
-    /// The settings with the chosen method, if they leave the choice.
-    pub(super) fn resolved(&self, settings: &Settings) -> Settings {
-        match settings.method {
-            Method::Auto => self.way.unwrap_or(Way::ActiveSet).settings(settings),
-            _ => settings.clone(),
-        }
+    /// The method of an attempt, which may leave it to the rules.
+    fn chosen(&self, method: Option<ByFactor>, settings: &Settings) -> ByFactor {
+        method.unwrap_or_else(|| self.way.unwrap_or(Way::ActiveSet).method(settings.accuracy))
     }
 
-    /// One run of a method, from a set of all rows if one is known.
-    pub(super) fn find_step(
-        &self,
-        Loaded { loading, gap }: Loaded,
-        step: Step,
-        start: Option<&ContactSet>,
-        settings: &Settings,
-    ) -> Result<Option<Reduced>, Error> {
-        let settings = &self.resolved(settings);
-        let watch = self.watch_of_loop(settings)?;
+    /// One run of a method, under a load at some gaps.
+    pub(super) fn find_step(&self, Loaded { loading, gap }: Loaded, task: &Task) -> Result<Option<Reduced>, Error> {
+        let Task { step, settings, .. } = *task;
+        let method = self.chosen(task.method, settings);
+        let watch = self.watch_of_loop(method, &settings.watch)?;
         let (problem, unit) = self.scaled(&loading, &gap)?;
-        let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.definiteness()).watched(&watch);
-        let start = start.map(|set| self.reduction.selection.restrict_set(set));
+        let scaled = ScaledProblem::new(&problem, &self.augmented, self.reduction.definiteness()).watched(&watch);
+        let start = task.start.contact_set.as_ref().map(|set| self.reduction.selection.restrict_set(set));
         let bound = |displacement: &[f64], multiplier: &[f64]| {
             let by = self.condensed_bounding(&problem, &settings.watch);
             let examined = problem.examine(&by, displacement, multiplier);
@@ -223,8 +208,8 @@ impl Factored {
             let of_whole = self.share_of_boundary(&loading, unit, on_boundary);
             examined.map_or(f64::INFINITY, |examined| examined.certificate.energy_error_bound * of_whole)
         };
-        let outcome = ScaledStep { scaled: &task, start, settings, bound: &bound }.outcome(step)?;
-        let factor_seconds = task.factor_seconds();
+        let outcome = ScaledStep { scaled: &scaled, start, method, settings, bound: &bound }.outcome(step)?;
+        let factor_seconds = scaled.factor_seconds();
         Ok(outcome.map(|outcome| Reduced { loading, gap, problem, unit, outcome, factor_seconds, refined: None }))
     }
 
@@ -295,20 +280,22 @@ impl Factored {
     ///
     /// # Errors
     /// [`Error::OutOfTime`] if there is no time for the first factorisation.
-    fn watch_of_loop(&self, settings: &Settings) -> Result<Watch, Error> {
-        if settings.watch.time_left().is_none() {
-            return Ok(settings.watch.clone());
+    fn watch_of_loop(&self, method: ByFactor, watch: &Watch) -> Result<Watch, Error> {
+        if watch.time_left().is_none() {
+            return Ok(watch.clone());
         }
         let analysis = self.augmented.analysis();
         // If K is not definite, the start and the test of uniqueness factorise too.
         let factors = if self.reduction.is_definite() { 1.0 } else { SINGULAR };
         let of_loop = factors * seconds::factorisation(analysis);
-        let (first, each) = match settings.method {
-            Method::Qp(_) => (2.0 * seconds::interior_point(analysis), seconds::interior_point(analysis).max(of_loop)),
+        let (first, each) = match method {
+            ByFactor::Qp(_) => {
+                (2.0 * seconds::interior_point(analysis), seconds::interior_point(analysis).max(of_loop))
+            }
             _ => (of_loop, of_loop),
         };
-        check_time(&settings.watch, first)?;
-        Ok(settings.watch.keeping(each + seconds::certificate(&self.problem)))
+        check_time(watch, first)?;
+        Ok(watch.keeping(each + seconds::certificate(&self.problem)))
     }
 
     /// The energy norm of the problem that the methods work on.

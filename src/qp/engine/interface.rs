@@ -9,9 +9,9 @@ use crate::qp::certificate::Bounding;
 use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::method::parametric::{Event, Piece};
 use crate::qp::method::{Outcome, Start};
-use crate::qp::plan::{Basis, Limits, Step, Tried};
+use crate::qp::plan::{Limits, Means, Step, Tried};
 use crate::qp::problem::ContactProblem;
-use crate::qp::settings::{Method, Settings};
+use crate::qp::settings::{ByFactor, Settings};
 use crate::solution::{Certificate, ContactSet, Seconds, Solution};
 use crate::watch::Watch;
 
@@ -23,7 +23,9 @@ pub(in crate::qp) struct Task<'a> {
     pub load: &'a Load,
     pub start: &'a Start,
     pub limits: Limits,
-    /// The settings of the attempt, with a running clock.
+    /// The method, if the attempt names it; `None` for the one that the rules chose, or the only one.
+    pub method: Option<ByFactor>,
+    /// Accuracy, limits and a running clock; method, precision and arrangement are those of the attempt.
     pub settings: &'a Settings,
     /// The best answer so far.
     pub best: Option<&'a Solution>,
@@ -83,16 +85,14 @@ pub(in crate::qp) struct FactorSize {
 
 /// A problem prepared once for many gaps, loads and starts. A function that an engine cannot provide keeps its default.
 pub(in crate::qp) trait Engine: Debug + Send + Sync {
-    fn basis(&self) -> Basis;
-
-    /// Returns `true` if `method` works on the prepared data.
-    fn serves(&self, method: Method) -> bool;
+    /// Returns `true` if the prepared data are means of this kind.
+    fn serves(&self, means: &Means) -> bool;
 
     /// The time of the preparation.
     fn seconds(&self) -> Seconds;
 
-    /// The method and its means under the settings of an attempt.
-    fn tried(&self, settings: &Settings) -> Tried;
+    /// The method of an attempt, as in a [`Task`], and its unknowns.
+    fn tried(&self, method: Option<ByFactor>, settings: &Settings) -> Tried;
 
     /// Makes a step; `None` if the step has no means here.
     ///

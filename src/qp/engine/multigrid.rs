@@ -9,9 +9,9 @@ use crate::qp::cost::{Kept, NEAR_CYCLES, bytes, check_memory, check_time, second
 use crate::qp::linear::multigrid::{Multigrid, NearNullSpace};
 use crate::qp::method::mprgp::{Limits, Mprgp, takes_travels};
 use crate::qp::method::{Solver, Start};
-use crate::qp::plan::{Basis, Tried};
+use crate::qp::plan::{Means, Tried};
 use crate::qp::problem::ContactProblem;
-use crate::qp::settings::{Method, Settings};
+use crate::qp::settings::{ByFactor, Method, Settings};
 use crate::solution::Seconds;
 use crate::watch::Watch;
 
@@ -59,19 +59,15 @@ impl Hierarchical {
 }
 
 impl Engine for Hierarchical {
-    fn basis(&self) -> Basis {
-        Basis::Multigrid
-    }
-
-    fn serves(&self, method: Method) -> bool {
-        matches!(method, Method::Mprgp | Method::Auto)
+    fn serves(&self, means: &Means) -> bool {
+        *means == Means::Multigrid
     }
 
     fn seconds(&self) -> Seconds {
         Seconds { factor: self.seconds, solve: self.seconds, ..Seconds::default() }
     }
 
-    fn tried(&self, _: &Settings) -> Tried {
+    fn tried(&self, _: Option<ByFactor>, _: &Settings) -> Tried {
         Tried { is_singular: self.multigrid.is_shifted(), ..Tried::on_all_dofs(Method::Mprgp) }
     }
 

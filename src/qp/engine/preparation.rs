@@ -10,7 +10,7 @@ use crate::qp::certificate::EnergyNorm;
 use crate::qp::cost::seconds::factor_seconds;
 use crate::qp::cost::{Kept, check_memory, check_time, seconds};
 use crate::qp::linear::{Analysis, AugmentedMatrix, Cholesky, FactorError, Width, largest};
-use crate::qp::plan::{Layout, Unknowns, Way};
+use crate::qp::plan::{Layout, WithFactor};
 use crate::qp::problem::ContactProblem;
 use crate::qp::settings::Settings;
 use crate::qp::transform::{Condensation, RowSelection, Scaling};
@@ -27,7 +27,7 @@ impl Factored {
     ///
     /// # Errors
     /// As [`Prepared::new`](crate::Prepared::new).
-    pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
+    pub fn new(problem: &ContactProblem, with: &WithFactor, settings: &Settings) -> Result<Self, Error> {
         let Settings { threads, watch, .. } = settings;
         let clock = Instant::now();
         watch.step("ordering", 0);
@@ -36,8 +36,8 @@ impl Factored {
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
         let stiffest = largest(&problem.stiffness().diagonal());
         let factor_clock = Instant::now();
-        let layout = Layout::within(problem, &scaling, settings)?;
-        let Layout { analysis, last, unknowns, multiplications, mut way, width, keeps_norm } = layout;
+        let layout = Layout::within(problem, &scaling, with, settings)?;
+        let Layout { analysis, last, size, mut way, width, keeps_norm, .. } = layout;
         if watch.acknowledge() {
             return Err(Error::Interrupted);
         }
@@ -55,12 +55,11 @@ impl Factored {
         let analysis = last.is_empty().then_some(analysis);
         if cholesky.is_none() {
             // Without a bound no accuracy can be reached, so only exact methods are left.
-            let exact = Settings { accuracy: None, ..settings.clone() };
-            way = Way::chosen(&exact, unknowns, multiplications, problem.rows());
+            way = with.way(None, size);
         }
-        let condensation = match unknowns {
-            Unknowns::ContactDofs => condensed(cholesky.as_ref(), &scaling, &last, settings)?,
-            Unknowns::AllDofs => None,
+        let condensation = match size.is_condensed {
+            true => condensed(cholesky.as_ref(), &scaling, &last, settings)?,
+            false => None,
         };
         let norm = match (cholesky, &analysis) {
             (None, _) => Norm::Missing,
@@ -75,7 +74,7 @@ impl Factored {
             lost_pivot: least_pivot.filter(|&pivot| pivot < LOST_PIVOT),
             augmented,
             way,
-            multiplications,
+            multiplications: size.multiplications,
             proof_seconds,
             norm_seconds,
             condensed_norm: OnceLock::new(),

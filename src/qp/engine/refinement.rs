@@ -116,7 +116,7 @@ impl Factored {
             }
         };
         let loaded = Loaded { loading: Arc::new(loading), gap };
-        self.find_step(loaded, Step::Method, Some(contact_set), task.settings)
+        self.find_step(loaded, &Task { step: Step::Method, start: &contact_set.into(), ..*task })
     }
 
     /// The best answer, refined by one step. `None` if there is no answer for its residual: it may still be good enough.

@@ -7,7 +7,7 @@ use crate::qp::method::interior_point::{Barrier, InteriorPoint};
 use crate::qp::method::penalty::{self, Penalty, PenaltyLoop};
 use crate::qp::method::{Ending, Outcome, ScaledProblem, Solver, Start};
 use crate::qp::plan::{PATIENCE, Step};
-use crate::qp::settings::{Method, Settings};
+use crate::qp::settings::{ByFactor, Settings};
 use crate::solution::ContactSet;
 
 /// A step on a scaled problem.
@@ -15,6 +15,7 @@ pub(super) struct ScaledStep<'a> {
     pub scaled: &'a ScaledProblem<'a>,
     /// The set that it starts from, if one is known.
     pub start: Option<ContactSet>,
+    pub method: ByFactor,
     pub settings: &'a Settings,
     /// The bound on the energy error of an answer (displacement, multiplier) to the scaled problem.
     pub bound: &'a dyn Fn(&[f64], &[f64]) -> f64,
@@ -34,15 +35,15 @@ impl ScaledStep<'_> {
         }
     }
 
-    /// The outcome of the method of the settings.
+    /// The outcome of the method.
     fn by_method(self) -> Result<Outcome, Error> {
-        let ScaledStep { scaled, start, settings, bound } = self;
+        let ScaledStep { scaled, start, method, settings, bound } = self;
         let Some(cold) = scaled.start()? else { return Ok(Outcome::at_rest(scaled.problem, Ending::Unheld)) };
         let by_sets = |start: ContactSet| {
             ActiveSet { scaled, most_iterations: settings.max_iterations.min(PATIENCE) }.solve(start.into())
         };
-        match settings.method {
-            Method::Qp(InteriorPoint { polish: true, tolerance }) => match start {
+        match method {
+            ByFactor::Qp(InteriorPoint { polish: true, tolerance }) => match start {
                 Some(start) => {
                     let outcome = by_sets(start)?;
                     Ok(Outcome { variant: if outcome.is_settled() { "-warm" } else { outcome.variant }, ..outcome })
@@ -53,15 +54,15 @@ impl ScaledStep<'_> {
                     Ok(Outcome { iterations: found.iterations, ..by_sets(found.contact_set)? })
                 }
             },
-            Method::Qp(InteriorPoint { polish: false, tolerance }) => {
+            ByFactor::Qp(InteriorPoint { polish: false, tolerance }) => {
                 Barrier { scaled, tolerance }.solve(Start::default())
             }
-            Method::Penalty(ladder) => {
+            ByFactor::Penalty(ladder) => {
                 let goal = settings.accuracy.map(|accuracy| penalty::Goal { accuracy, bound });
                 let climb = PenaltyLoop { scaled, ladder, goal, most_iterations: settings.max_iterations };
                 climb.solve(start.unwrap_or(cold).into())
             }
-            Method::Auto | Method::ActiveSet | Method::Mprgp => by_sets(start.unwrap_or(cold)),
+            ByFactor::ActiveSet => by_sets(start.unwrap_or(cold)),
         }
     }
 

@@ -65,6 +65,16 @@ fn check_room(problem: &ContactProblem, settings: &Settings) -> Result<(), Error
     check_time(&settings.watch, seconds::factorisation(&analysis))
 }
 
+/// Checks that some displacement meets all contact rows of `problem`.
+///
+/// # Errors
+/// [`Error::Infeasible`] for contact rows that contradict each other; if that is not decided, they count as met.
+pub(super) fn check_rows(problem: &ContactProblem, settings: &Settings, solve: Solve) -> Result<(), Error> {
+    problem.check_rows()?;
+    let scaling = Scaling::of(problem.stiffness(), problem.contact())?;
+    proximal::check_rows(&scaling, problem, settings, solve)
+}
+
 /// A scaled problem with a basis of the null space of its stiffness.
 pub(super) struct Existence {
     scaled: ContactProblem,

@@ -6,7 +6,7 @@ use crate::qp::linear::{SparseMatrix, SymmetricMatrix, ldexp};
 use crate::qp::problem::ContactProblem;
 use crate::qp::settings::{Method, Precision, Settings};
 use crate::qp::transform::Scaling;
-use crate::solution::Solution;
+use crate::solution::{Solution, Why};
 
 /// Exponent of rho: on a diagonal of order one, far above rounding and far below all eigenvalues except zero.
 const STEP: i32 = -20;
@@ -64,8 +64,8 @@ pub(super) fn answers(
         // The steps become shorter until they are rounding.
         let is_shorter = moved < SHORTER * before_last;
         before_last = moved;
-        let reason = Some(format!("by {step} steps with K + rho E, since the stiffness is singular"));
-        let found = Solution { reason, why: None, attempts: Vec::new(), ..found };
+        let reason = format!("by {step} steps with K + rho E, since the stiffness is singular");
+        let found = Solution { reason, why: Why::default(), attempts: Vec::new(), ..found };
         let each = without_rounding(problem, &added, &centre, &found.multiplier).into_iter();
         let each = each.map(|(displacement, multiplier)| Solution { displacement, multiplier, ..found.clone() });
         answers = std::mem::replace(&mut last, each.collect());

@@ -3,20 +3,59 @@
 use std::borrow::Cow;
 
 pub(in crate::qp) use crate::qp::method::mprgp::Limits;
-use crate::qp::settings::{Condense, Method, Precision, Settings};
+use crate::qp::settings::{ByFactor, Method, Precision};
 
 /// Iterations of the active-set loop after which its start counts as poor.
 pub(in crate::qp) const PATIENCE: usize = 16;
 
-/// The data that an attempt works on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::qp) enum Basis {
+/// The means of an attempt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::qp) enum Means {
     /// The problem alone.
     Problem,
     /// A factor of the stiffness.
-    Factor,
-    /// A multigrid hierarchy of the stiffness.
+    Factor(WithFactor),
+    /// A multigrid hierarchy of the stiffness, for MPRGP.
     Multigrid,
+}
+
+impl Means {
+    /// The method; `None` if it is left to the rules, or if there is no method but one.
+    pub fn method(self) -> Option<ByFactor> {
+        if let Means::Factor(WithFactor { method, .. }) = self { method } else { None }
+    }
+}
+
+/// A factor of the stiffness, and the method that works with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::qp) struct WithFactor {
+    /// `None` if the rules choose it, once the pattern of the stiffness is analysed.
+    pub method: Option<ByFactor>,
+    pub precision: Precision,
+    /// The first of these that fits into memory and time is taken.
+    pub arrangements: &'static [Arrangement],
+}
+
+impl WithFactor {
+    /// The method, precision and arrangements by the rules.
+    pub const BY_RULES: WithFactor =
+        WithFactor { method: None, precision: Precision::Auto, arrangements: &Arrangement::ALL };
+}
+
+/// The unknowns of a method with a factor, and the order of its elimination.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::qp) enum Arrangement {
+    /// The stiffness is condensed onto the contact dofs, if that pays.
+    Condensed,
+    /// All dofs, those of the rows last: the bound of the error takes less memory.
+    RowsLast,
+    /// All dofs in the order of the least work; one factor at a time if no more fit.
+    AnyOrder,
+}
+
+impl Arrangement {
+    pub const ALL: [Arrangement; 3] = [Arrangement::Condensed, Arrangement::RowsLast, Arrangement::AnyOrder];
+    pub const ON_ALL_DOFS: [Arrangement; 2] = [Arrangement::RowsLast, Arrangement::AnyOrder];
 }
 
 /// What is done in an attempt.
@@ -128,11 +167,7 @@ pub(in crate::qp) enum From {
 /// One attempt: its means, its start, its limits, its condition, its reason, and the steps that may follow with the same means.
 #[derive(Clone, Debug)]
 pub(in crate::qp) struct Attempt {
-    pub basis: Basis,
-    /// With [`Method::Auto`] the rules choose the method once the pattern of the stiffness is analysed.
-    pub method: Method,
-    pub precision: Precision,
-    pub condense: Condense,
+    pub means: Means,
     pub start: From,
     pub limits: Limits,
     pub when: When,
@@ -141,10 +176,13 @@ pub(in crate::qp) struct Attempt {
 }
 
 impl Attempt {
-    /// `settings` with those of the attempt.
-    pub fn settings(&self, settings: &Settings) -> Settings {
-        let Attempt { method, precision, condense, .. } = *self;
-        Settings { method, precision, condense, ..settings.clone() }
+    /// The method as it is named before its data are prepared.
+    pub fn method(&self) -> Method {
+        match self.means {
+            Means::Problem => Method::Auto,
+            Means::Factor(with) => with.method.map_or(Method::Auto, Method::from),
+            Means::Multigrid => Method::Mprgp,
+        }
     }
 }
 

@@ -3,14 +3,16 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::attempt::{Attempt, Basis, From, IN_PIECES, Limits, OF_EXISTENCE, WITH_FACTOR, WITH_MULTIGRID, When};
+use super::attempt::{
+    Arrangement, Attempt, From, IN_PIECES, Limits, Means, OF_EXISTENCE, WITH_FACTOR, WITH_MULTIGRID, When, WithFactor,
+};
 use super::choice::Choice;
 use super::pieces::pieces_of;
 use crate::error::Error;
 use crate::qp::cost::{Estimate, starts_near};
 use crate::qp::method::interior_point::InteriorPoint;
 use crate::qp::problem::ContactProblem;
-use crate::qp::settings::{Condense, Method, Precision, Settings};
+use crate::qp::settings::{ByFactor, Condense, Method, Precision, Settings};
 use crate::qp::transform::Pieces;
 
 /// MPRGP ends at this share of the tolerance of the certificate, because the scales of the two differ.
@@ -58,11 +60,13 @@ impl Ladder {
             && let Some(pieces) = pieces_of(problem, settings)
         {
             let because = format!("nothing couples its {} pieces", pieces.count());
-            ladder.add(Attempt { steps: IN_PIECES, ..ladder.attempt(Basis::Problem, because) });
+            ladder.add(Attempt { steps: IN_PIECES, ..ladder.attempt(Means::Problem, because) });
             ladder.pieces = Some(Arc::new(pieces));
         }
         let near = !known.is_whole && starts_by_multigrid(problem, settings);
         let start = if near { From::Cycles } else { From::Given };
+        let by_name =
+            |ladder: &Self, method| Attempt { start, ..ladder.attempt(ladder.factor(Some(method)), REQUESTED) };
         match settings.method {
             Method::Auto => {
                 let estimate = Estimate::of(problem).of_many(known.gaps);
@@ -70,11 +74,13 @@ impl Ladder {
                 ladder.by_choice(&choice, start);
                 ladder.choice = Some((estimate, choice));
             }
-            Method::Mprgp => ladder.with_multigrid(ladder.attempt(Basis::Multigrid, REQUESTED)),
-            _ => ladder.with_factor(Attempt { start, ..ladder.attempt(Basis::Factor, REQUESTED) }),
+            Method::Mprgp => ladder.add(ladder.attempt(Means::Multigrid, REQUESTED)),
+            Method::ActiveSet => ladder.with_factor(by_name(&ladder, ByFactor::ActiveSet)),
+            Method::Qp(options) => ladder.with_factor(by_name(&ladder, ByFactor::Qp(options))),
+            Method::Penalty(options) => ladder.with_factor(by_name(&ladder, ByFactor::Penalty(options))),
         }
         // Its steps have their own conditions, also for an answer that meets the goal.
-        ladder.attempts.push(Attempt { steps: OF_EXISTENCE, ..ladder.attempt(Basis::Problem, "") });
+        ladder.attempts.push(Attempt { steps: OF_EXISTENCE, ..ladder.attempt(Means::Problem, "") });
         Ok(ladder)
     }
 
@@ -91,36 +97,31 @@ impl Ladder {
         Some(ladder)
     }
 
-    /// The first attempt that works on these data.
-    pub fn first_on(&self, basis: Basis) -> Option<usize> {
-        self.attempts.iter().position(|attempt| attempt.basis == basis)
-    }
-
     /// The attempts of a choice between factor and multigrid.
     fn by_choice(&mut self, choice: &Choice, start: From) {
         let after = |ladder: &Self, method| {
             let because = "a factor may give the answer that the iteration does not";
-            Attempt { method, start, when: When::ShortOfMultigrid, ..ladder.attempt(Basis::Factor, because) }
+            Attempt { start, when: When::ShortOfMultigrid, ..ladder.attempt(ladder.factor(method), because) }
         };
         // The way stands before the colon.
         let because = |reason: &str| reason.split_once(": ").map_or(reason, |(_, because)| because).to_string();
         match choice {
             Choice::Factor { reason } => {
-                self.with_factor(Attempt { start, ..self.attempt(Basis::Factor, because(reason)) });
-                let refused = self.attempt(Basis::Multigrid, "it takes less memory, and begins sooner");
-                self.with_multigrid(Attempt { when: When::Refused, ..refused });
+                self.with_factor(Attempt { start, ..self.attempt(self.factor(None), because(reason)) });
+                let refused = self.attempt(Means::Multigrid, "it takes less memory, and begins sooner");
+                self.add(Attempt { when: When::Refused, ..refused });
                 // The refusal was of a faster method, which takes more memory than one factor at a time.
-                self.with_factor(after(self, Method::ActiveSet));
+                self.with_factor(after(self, Some(ByFactor::ActiveSet)));
             }
             Choice::Speed { reason, most_cycles } => {
-                let mut multigrid = self.attempt(Basis::Multigrid, because(reason));
+                let mut multigrid = self.attempt(Means::Multigrid, because(reason));
                 multigrid.limits.worth = *most_cycles;
-                self.with_multigrid(multigrid);
-                self.with_factor(after(self, Method::Auto));
+                self.add(multigrid);
+                self.with_factor(after(self, None));
             }
             Choice::Room { reason } => {
-                self.with_multigrid(self.attempt(Basis::Multigrid, because(reason)));
-                self.with_factor(after(self, Method::Auto));
+                self.add(self.attempt(Means::Multigrid, because(reason)));
+                self.with_factor(after(self, None));
             }
         }
     }
@@ -131,42 +132,45 @@ impl Ladder {
         self.attempts.push(Attempt { when, ..attempt });
     }
 
-    /// An attempt with the settings as they were given.
-    fn attempt(&self, basis: Basis, because: impl Into<Cow<'static, str>>) -> Attempt {
-        let Settings { method, precision, condense, .. } = self.settings;
-        let limits = limits(&self.settings);
-        let (start, when, because, steps) = (From::Given, When::Always, because.into(), WITH_FACTOR);
-        Attempt { basis, method, precision, condense, start, limits, when, because, steps }
+    /// A factor under the settings as they were given, with this method or that of the rules.
+    fn factor(&self, method: Option<ByFactor>) -> Means {
+        let Settings { precision, condense, .. } = self.settings;
+        let arrangements: &[Arrangement] = match condense {
+            Condense::Auto => &Arrangement::ALL,
+            Condense::Never => &Arrangement::ON_ALL_DOFS,
+        };
+        Means::Factor(WithFactor { method, precision, arrangements })
     }
 
-    /// Adds the attempt without a factor.
-    fn with_multigrid(&mut self, first: Attempt) {
-        self.add(Attempt { method: Method::Mprgp, steps: WITH_MULTIGRID, ..first });
+    /// An attempt by these means, from the start that was given.
+    fn attempt(&self, means: Means, because: impl Into<Cow<'static, str>>) -> Attempt {
+        let steps = if means == Means::Multigrid { WITH_MULTIGRID } else { WITH_FACTOR };
+        let (start, when, limits) = (From::Given, When::Always, limits(&self.settings));
+        Attempt { means, start, limits, when, because: because.into(), steps }
     }
 
     /// Adds the attempts with a factor: the `first`; after a shortcut in double precision; after a condensation on all dofs.
     fn with_factor(&mut self, first: Attempt) {
-        let Attempt { method, condense, precision, .. } = first;
+        let means = first.means;
         self.add(first);
-        let exact = if method == Method::Auto { Method::ActiveSet } else { method };
-        let double = |ladder: &Self, when, because: &'static str| {
-            let (method, precision) = (exact, Precision::Double);
-            Attempt { method, precision, when, ..ladder.attempt(Basis::Factor, because) }
-        };
-        if matches!(method, Method::Qp(InteriorPoint { polish: false, .. })) {
+        let Means::Factor(with) = means else { return };
+        if matches!(with.method, Some(ByFactor::Qp(InteriorPoint { polish: false, .. }))) {
             let because = "the interior-point method did not reach its tolerance";
-            let attempt = Attempt { when: When::ShortOfUnsettled, ..self.attempt(Basis::Factor, because) };
-            self.add(Attempt { method: Method::qp(), ..attempt });
+            let polished = self.attempt(self.factor(Some(ByFactor::Qp(InteriorPoint::DEFAULT))), because);
+            self.add(Attempt { when: When::ShortOfUnsettled, ..polished });
         }
-        if method == Method::Auto || precision == Precision::Mixed {
+        let method = Some(with.method.unwrap_or(ByFactor::ActiveSet));
+        let exact = WithFactor { method, precision: Precision::Double, ..with };
+        if with.method.is_none() || with.precision == Precision::Mixed {
             let because = "the rules prefer speed; the active set in double precision leaves out no digit";
-            let attempt = double(self, When::ShortOfShortcut, because);
-            self.add(Attempt { start: From::Nothing, ..attempt });
+            let exact = self.attempt(Means::Factor(exact), because);
+            self.add(Attempt { when: When::ShortOfShortcut, start: From::Nothing, ..exact });
         }
-        if condense == Condense::Auto {
+        if with.arrangements.contains(&Arrangement::Condensed) {
             let because = "condensing loses digits if the contact boundary feels little of the stiffness of the body";
-            let attempt = double(self, When::ShortOnCondensed, because);
-            self.add(Attempt { condense: Condense::Never, start: From::Best, ..attempt });
+            let whole = WithFactor { arrangements: &Arrangement::ON_ALL_DOFS, ..exact };
+            let whole = self.attempt(Means::Factor(whole), because);
+            self.add(Attempt { when: When::ShortOnCondensed, start: From::Best, ..whole });
         }
     }
 }

@@ -23,10 +23,10 @@ mod pieces;
 mod rules;
 mod words;
 
-pub(super) use attempt::{Attempt, Basis, From, Limits, Next, PATIENCE, Step, Tried};
+pub(super) use attempt::{Attempt, From, Limits, Means, Next, PATIENCE, Step, Tried, WithFactor};
 #[cfg(feature = "cli")]
 pub(super) use choice::is_bounded_by_factor;
 pub(super) use history::{Answered, Best, Ended, History, Record};
 pub(super) use ladder::{Known, Ladder};
-pub(super) use layout::{Layout, Unknowns};
+pub(super) use layout::Layout;
 pub(super) use rules::Way;

@@ -1,6 +1,6 @@
 //! The step that follows after what was found.
 
-use super::attempt::{Attempt, Basis, From, Limits, Next, PATIENCE, Place, Rung, Step, When};
+use super::attempt::{Attempt, From, Limits, Means, Next, PATIENCE, Place, Rung, Step, When};
 use super::history::{Answered, Ended, History, Record};
 use super::ladder::Ladder;
 use crate::error::Error;
@@ -69,7 +69,7 @@ impl Ladder {
         match last.step {
             Step::Refinement => (answered.gains && asks && in_a_row < MOST_REFINEMENTS).then_some(last.limits),
             Step::Repair => (answered.is_best && asks && in_a_row < MOST_REPAIRS).then_some(last.limits),
-            Step::Method if self.attempts[last.place.attempt].basis == Basis::Multigrid => {
+            Step::Method if self.attempts[last.place.attempt].means == Means::Multigrid => {
                 self.tighter(last, answered, history)
             }
             _ => None,
@@ -98,7 +98,7 @@ impl Ladder {
             When::Always => true,
             When::Short => !certified,
             When::ShortOfMultigrid => {
-                let is_of_multigrid = |record: &Record| self.attempts[record.place.attempt].basis == Basis::Multigrid;
+                let is_of_multigrid = |record: &Record| self.attempts[record.place.attempt].means == Means::Multigrid;
                 !certified && history.records.iter().any(is_of_multigrid)
             }
             When::ShortOfUnsettled => !certified && history.last_answer().is_some_and(|answer| !answer.is_settled),

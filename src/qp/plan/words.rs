@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::attempt::{Attempt, Basis, From, Rung, Step, Tried, When};
+use super::attempt::{Arrangement, Attempt, From, Means, Rung, Step, Tried, When};
 use super::history::{Ended, History, Record};
 use super::ladder::Ladder;
 #[cfg(feature = "cli")]
@@ -10,37 +10,40 @@ use super::layout::Layout;
 use crate::error::{Error, memory};
 #[cfg(feature = "cli")]
 use crate::qp::problem::ContactProblem;
+use crate::qp::settings::Precision;
 #[cfg(feature = "cli")]
 use crate::qp::settings::Settings;
-use crate::qp::settings::{Condense, Precision};
 #[cfg(feature = "cli")]
 use crate::qp::transform::{RowSelection, Scaling};
 use crate::solution::Why;
 
 impl Ladder {
     /// The ways that were compared before, and the decision; with the method that gave the best answer of `history`.
-    pub fn why(&self, history: &History) -> Option<Why> {
-        let best = history.best.as_ref()?;
+    pub fn why(&self, history: &History) -> Why {
+        let Some(best) = &history.best else { return Why::default() };
         let Some((estimate, choice)) = &self.choice else {
             let (chosen, first) = (self.settings.method.name().to_string(), usize::from(self.pieces.is_some()));
             let reason = format!("by {chosen}: {}", self.attempts[first].because);
-            return Some(Why { chosen, reason, considered: Vec::new() });
+            return Why { chosen, reason, considered: Vec::new() };
         };
         let why = estimate.why(choice);
-        let then = match self.attempts[best.attempt].basis {
-            Basis::Problem => None,
-            Basis::Factor => best.tried.as_ref().map(Tried::in_words),
-            Basis::Multigrid => self.without_factor(history).map(|reason| format!("in the end {reason}")),
+        let then = match self.attempts[best.attempt].means {
+            Means::Problem => None,
+            Means::Factor(_) => best.tried.as_ref().map(Tried::in_words),
+            Means::Multigrid => self.without_factor(history).map(|reason| format!("in the end {reason}")),
         };
         let reason = then.map_or_else(|| why.reason.clone(), |then| format!("{}; {then}", why.reason));
-        Some(Why { reason, ..why })
+        Why { reason, ..why }
     }
 
-    /// The reason why no factor was taken, if the program decided that and the best answer has none.
-    pub fn reason(&self, history: &History) -> Option<String> {
-        let (best, (estimate, choice)) = (history.best.as_ref()?, self.choice.as_ref()?);
-        let is_without = self.attempts[best.attempt].basis == Basis::Multigrid;
-        is_without.then(|| self.without_factor(history).unwrap_or_else(|| estimate.why(choice).reason))
+    /// The reason why no factor was taken, if the program decided that and the best answer has none; otherwise empty.
+    pub fn reason(&self, history: &History) -> String {
+        match (&history.best, &self.choice) {
+            (Some(best), Some((estimate, choice))) if self.attempts[best.attempt].means == Means::Multigrid => {
+                self.without_factor(history).unwrap_or_else(|| estimate.why(choice).reason)
+            }
+            _ => String::new(),
+        }
     }
 
     /// The ladder after the refusals of some data, which are not tried again.
@@ -71,7 +74,7 @@ impl Ladder {
         let (estimate, _) = self.choice.as_ref()?;
         let last = history.records.iter().rev().find(|record| record.step == Step::Method)?;
         let Ended::Refused(Error::TooLarge { bytes: factor, allowed, .. }) = last.ended else { return None };
-        let is_of_multigrid = |record: &&Record| self.attempts[record.place.attempt].basis == Basis::Multigrid;
+        let is_of_multigrid = |record: &&Record| self.attempts[record.place.attempt].means == Means::Multigrid;
         let ended = history.records.iter().rev().find(is_of_multigrid).map(|record| record.shortfall(history.goal));
         Some(Error::NoRoom { factor, multigrid: estimate.multigrid_bytes, allowed, ended })
     }
@@ -116,15 +119,18 @@ impl When {
 impl Attempt {
     /// Method and means in words, without its condition.
     fn in_words(&self) -> String {
-        let method = self.method.name();
-        let on = match (self.basis, self.condense) {
-            (Basis::Problem, _) if self.steps[0].step == Step::Pieces => return Step::Pieces.in_words().to_string(),
-            (Basis::Problem, _) => return "existence and uniqueness of the answer".to_string(),
-            (Basis::Multigrid, _) => return format!("{method} with a multigrid hierarchy"),
-            (Basis::Factor, Condense::Auto) => "condensed to the contact dofs if that pays",
-            (Basis::Factor, Condense::Never) => "on all dofs",
+        let method = self.method().name();
+        let with = match self.means {
+            Means::Problem if self.steps[0].step == Step::Pieces => return Step::Pieces.in_words().to_string(),
+            Means::Problem => return "existence and uniqueness of the answer".to_string(),
+            Means::Multigrid => return format!("{method} with a multigrid hierarchy"),
+            Means::Factor(with) => with,
         };
-        let precision = match self.precision {
+        let on = match with.arrangements.contains(&Arrangement::Condensed) {
+            true => "condensed to the contact dofs if that pays",
+            false => "on all dofs",
+        };
+        let precision = match with.precision {
             Precision::Auto => "",
             Precision::Double => " in double precision",
             Precision::Mixed => " in single precision",
@@ -146,12 +152,15 @@ impl Ladder {
     /// Those of the scaling, for numbers beyond the range of doubles.
     pub fn in_words(&self, problem: &ContactProblem, settings: &Settings) -> Result<String, Error> {
         let words = self.to_string();
-        let Some(first) = self.first_on(Basis::Factor) else { return Ok(words) };
-        let settings = self.attempts[first].settings(settings);
+        let factors = self.attempts.iter().enumerate().filter_map(|(number, attempt)| match attempt.means {
+            Means::Factor(with) => Some((number, with)),
+            _ => None,
+        });
+        let Some((first, with)) = { factors }.next() else { return Ok(words) };
         let selection = RowSelection::of(problem.contact(), problem.gap());
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
-        let layout = match Layout::within(problem, &scaling, &settings) {
-            Ok(layout) => layout.in_words(&settings),
+        let layout = match Layout::within(problem, &scaling, &with, settings) {
+            Ok(layout) => layout.in_words(),
             Err(error) => error.to_string(),
         };
         Ok(format!("{words}The factor of {}: {layout}.\n", first + 1))

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::qp::engine::{Body, Engine, Load, OnBoundary, Task};
 use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::method::Start;
-use crate::qp::plan::{Basis, Ended, History, Known, Ladder, Record, Step};
+use crate::qp::plan::{Attempt, Ended, History, Known, Ladder, Means, Record, Step};
 use crate::qp::problem::{ContactProblem, check_load};
 use crate::qp::run::{Run, Unprepared, Workbench, engine_of};
 use crate::qp::settings::Settings;
@@ -83,7 +83,7 @@ impl Prepared {
         while let Some(next) = ladder.next(&history, &settings.watch) {
             let number = next.place.attempt;
             let attempt = &ladder.attempts[number];
-            if attempt.basis == Basis::Problem {
+            if attempt.means == Means::Problem {
                 break;
             }
             let ended = match engine_of(problem, attempt, settings) {
@@ -113,17 +113,17 @@ impl Prepared {
     /// # Errors
     /// As [`Prepared::new`].
     pub fn with_settings(&self, settings: &Settings) -> Result<Self, Error> {
-        let engine = &self.bench.engine;
-        if !engine.serves(settings.method) {
-            let prepared = Self::new(&self.problem.with_load(self.bench.load.force().to_vec())?, settings)?;
-            return Ok(prepared.starting_from(self.start.clone()));
-        }
         settings.started()?;
         let (attempt, ladder) = match self.ladder.under(settings) {
             Some(ladder) => (self.bench.attempt, ladder),
             None => {
                 let ladder = Ladder::of(&self.problem, Known { gaps: MANY_GAPS, is_whole: true }, settings)?;
-                (ladder.first_on(engine.basis()).unwrap_or(0), ladder)
+                let serves = |attempt: &Attempt| self.bench.engine.serves(&attempt.means);
+                let Some(attempt) = ladder.attempts.iter().position(serves) else {
+                    let prepared = Self::new(&self.problem.with_load(self.bench.load.force().to_vec())?, settings)?;
+                    return Ok(prepared.starting_from(self.start.clone()));
+                };
+                (attempt, ladder)
             }
         };
         let bench = Workbench { attempt, ..self.bench.clone() };
@@ -208,9 +208,7 @@ impl Prepared {
     /// # Errors
     /// Those of the gaps and the start; [`Error::Setting`].
     pub(super) fn question(&self, gap: &[f64]) -> Result<Question, Error> {
-        let problem = self.problem_at(gap)?;
-        let settings = self.ladder.attempts[self.bench.attempt].settings(&self.settings.started()?);
-        Ok(Question { problem, settings })
+        Ok(Question { problem: self.problem_at(gap)?, settings: self.settings.started()? })
     }
 }
 
@@ -234,7 +232,7 @@ impl Inside for Condensed {
     }
 }
 
-/// A problem under some load at some gaps, and the settings of the attempt whose data are prepared, with a running clock.
+/// A problem under some load at some gaps, and settings with a running clock.
 pub(super) struct Question {
     problem: ContactProblem,
     settings: Settings,
@@ -244,8 +242,9 @@ impl Question {
     /// The first step of that attempt.
     pub fn task<'a>(&'a self, prepared: &'a Prepared, start: &'a Start) -> Task<'a> {
         let Workbench { attempt, load, .. } = &prepared.bench;
-        let (problem, limits, settings) = (&self.problem, prepared.ladder.attempts[*attempt].limits, &self.settings);
-        Task { step: Step::Method, problem, load, start, limits, settings, best: None }
+        let Attempt { means, limits, .. } = prepared.ladder.attempts[*attempt];
+        let (problem, method, settings) = (&self.problem, means.method(), &self.settings);
+        Task { step: Step::Method, problem, load, start, limits, method, settings, best: None }
     }
 }
 
@@ -272,7 +271,7 @@ impl Prepared {
 
     /// Multiplications of the factorisation of the stiffness; zero without one.
     pub fn multiplications(&self) -> f64 {
-        self.bench.engine.tried(&self.settings).multiplications
+        self.bench.engine.tried(None, &self.settings).multiplications
     }
 
     /// Returns `true` if the factor is in single precision.

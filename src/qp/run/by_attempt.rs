@@ -5,9 +5,9 @@ use std::sync::Arc;
 use crate::error::Error;
 use crate::qp::certificate::Bounding;
 use crate::qp::engine::{Engine, Factored, Found, Hierarchical, Task};
-use crate::qp::plan::{Attempt, Basis, Tried};
+use crate::qp::plan::{Attempt, Means, Tried, WithFactor};
 use crate::qp::problem::ContactProblem;
-use crate::qp::settings::{Method, Settings};
+use crate::qp::settings::{ByFactor, Settings};
 use crate::solution::Seconds;
 use crate::watch::Watch;
 
@@ -20,10 +20,10 @@ pub(in crate::qp) fn engine_of(
     attempt: &Attempt,
     settings: &Settings,
 ) -> Result<Arc<dyn Engine>, Error> {
-    let settings = &attempt.settings(settings);
-    Ok(match attempt.basis {
-        Basis::Multigrid => Arc::new(Hierarchical::new(problem, settings)?),
-        Basis::Factor | Basis::Problem => Arc::new(Factored::new(problem, settings)?),
+    Ok(match attempt.means {
+        Means::Multigrid => Arc::new(Hierarchical::new(problem, settings)?),
+        Means::Factor(with) => Arc::new(Factored::new(problem, &with, settings)?),
+        Means::Problem => Arc::new(Factored::new(problem, &WithFactor::BY_RULES, settings)?),
     })
 }
 
@@ -35,11 +35,7 @@ pub(in crate::qp) struct Unprepared {
 }
 
 impl Engine for Unprepared {
-    fn basis(&self) -> Basis {
-        self.attempt.basis
-    }
-
-    fn serves(&self, _: Method) -> bool {
+    fn serves(&self, _: &Means) -> bool {
         false
     }
 
@@ -47,8 +43,8 @@ impl Engine for Unprepared {
         Seconds::default()
     }
 
-    fn tried(&self, _: &Settings) -> Tried {
-        Tried::on_all_dofs(self.attempt.method)
+    fn tried(&self, _: Option<ByFactor>, _: &Settings) -> Tried {
+        Tried::on_all_dofs(self.attempt.method())
     }
 
     fn make(&self, task: &Task) -> Result<Option<Found>, Error> {

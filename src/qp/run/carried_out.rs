@@ -13,7 +13,7 @@ use crate::qp::method::{Ending, Outcome, Start};
 use crate::qp::plan::{Answered, Attempt, Best, Ended, From, History, Known, Ladder, Next, Record, Step, Tried};
 use crate::qp::problem::ContactProblem;
 use crate::qp::settings::Settings;
-use crate::solution::{Certificate, Seconds, Solution};
+use crate::solution::{Certificate, Seconds, Solution, Why};
 
 /// The answer of `problem` from a start, by the ladder of `settings`, which have a running clock.
 ///
@@ -104,13 +104,13 @@ impl<'a> Run<'a> {
 
     fn with_engine(&mut self, next: &Next, attempt: &Attempt, record: &mut Record) -> Result<Ended, Error> {
         let Workbench { engine, load, .. } = self.prepared(next.place.attempt, record)?;
-        let settings = &attempt.settings(self.settings);
-        let tried = engine.tried(settings);
+        let (method, settings) = (attempt.means.method(), self.settings);
+        let tried = engine.tried(method, settings);
         record.tried = Some(tried);
         let start = self.start_from(next.start, record.step);
         let best = self.history.best.as_ref().map(|best| &best.solution);
         let (problem, step, limits) = (self.problem, record.step, next.limits);
-        let task = Task { step, problem, load: &load, start: &start, limits, settings, best };
+        let task = Task { step, problem, load: &load, start: &start, limits, method, settings, best };
         let Some(found) = engine.make(&task)? else { return Ok(Ended::Empty) };
         record.stages.factor += found.factor_seconds;
         if let Ending::Infeasible { rows, weights } = &found.outcome.ending {
@@ -167,7 +167,7 @@ impl<'a> Run<'a> {
                 displacement: outcome.displacement,
                 multiplier: outcome.multiplier,
                 contact_set: outcome.contact_set,
-                refinements: Some(best.solution.refinements.unwrap_or(0) + 1),
+                refinements: best.solution.refinements + 1,
                 ..best.solution.clone()
             },
             _ => {
@@ -178,10 +178,10 @@ impl<'a> Run<'a> {
                 let sets = Outcome { displacement: Vec::new(), multiplier: Vec::new(), ..outcome.clone() };
                 self.last = Some((attempt, sets));
                 let condensed_dofs = tried.condensed_dofs.unwrap_or(outcome.displacement.len());
-                let refinements = refined.map(|refined| refined.0);
-                let lost_pivot = tried.lost_pivot;
+                let (lost_pivot, single_precision) = (tried.lost_pivot, refined.is_some());
+                let refinements = refined.map_or(0, |refined| refined.0);
                 let solution = without_certificate(outcome, tried.method.name());
-                Solution { condensed_dofs, refinements, lost_pivot, ..solution }
+                Solution { condensed_dofs, single_precision, refinements, lost_pivot, ..solution }
             }
         }
     }
@@ -248,7 +248,7 @@ impl<'a> Run<'a> {
         let found = existence.proximal_steps(self.problem, self.settings)?;
         let mut all: Option<Answered> = None;
         for solution in found {
-            let reason = solution.reason.map(|reason| format!("{reason}: {because}"));
+            let reason = format!("{}: {because}", solution.reason);
             let solution = Solution { reason, lost_pivot, ..solution };
             let answer = Best::of(solution, record.place.attempt);
             let answered = self.judged(answer, &Bounding::OwnFactor, record)?;
@@ -272,17 +272,18 @@ pub(super) fn without_certificate(outcome: Outcome, name: &str) -> Solution {
         certificate: Certificate::unknown(),
         proven: None,
         cut_short: None,
-        refinements: None,
+        single_precision: false,
+        refinements: 0,
         lost_pivot: None,
-        reason: None,
-        why: None,
+        reason: String::new(),
+        why: Why::default(),
         attempts: Vec::new(),
         seconds: Seconds::default(),
     }
 }
 
 /// An answer for another problem that this one gives rise to.
-fn solve_any(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+pub(in crate::qp) fn solve_any(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     solved(problem, &Start::default(), settings)
 }
 
@@ -293,7 +294,7 @@ mod tests {
     use super::*;
     use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
     use crate::qp::method::interior_point::InteriorPoint;
-    use crate::qp::plan::Basis;
+    use crate::qp::plan::Means;
     use crate::qp::settings::{Method, Precision};
 
     /// A chain of springs between a support and nothing, its last dofs before walls, under a force on each dof.
@@ -342,13 +343,13 @@ mod tests {
                 run.history.records.iter().map(|record| (record.place.attempt, record.place.rung)).collect();
             assert!(steps.is_sorted(), "{name}: {steps:?}");
             for (before, record) in run.history.records.iter().zip(run.history.records.iter().skip(1)) {
-                let is_by_cycles = ladder.attempts[record.place.attempt].basis == Basis::Multigrid;
+                let is_by_cycles = ladder.attempts[record.place.attempt].means == Means::Multigrid;
                 assert!(before.place != record.place || record.improves() || is_by_cycles, "{name}: {steps:?}");
             }
             for record in &run.history.records {
                 let attempt = &ladder.attempts[record.place.attempt];
                 assert_eq!(attempt.steps[record.place.rung].step, record.step, "{name}");
-                assert!(record.tried.is_none() || attempt.basis != Basis::Problem, "{name}");
+                assert!(record.tried.is_none() || attempt.means != Means::Problem, "{name}");
             }
             assert_eq!(run.ended().is_ok(), is_solved, "{name}: {steps:?}");
         }

@@ -45,8 +45,12 @@ impl Run<'_> {
         let mut attempts = self.other_attempts(&best);
         attempts.append(&mut best.solution.attempts);
         let mut solution = Solution { attempts, ..best.solution };
-        solution.why = solution.why.or(why);
-        solution.reason = solution.reason.or(reason);
+        if solution.why.is_empty() {
+            solution.why = why;
+        }
+        if solution.reason.is_empty() {
+            solution.reason = reason;
+        }
         let of =
             |stage: fn(&Seconds) -> f64| self.history.records.iter().map(|record| stage(&record.stages)).sum::<f64>();
         let proof = proven.1 + of(|stages| stages.proof);
@@ -140,7 +144,7 @@ impl Run<'_> {
                 (Step::Pieces, Some(pieces), _) => format!("{} pieces", pieces.count()),
                 (_, _, Some((method, _))) => method.clone(),
                 _ => {
-                    let named = self.ladder.attempts[record.place.attempt].method;
+                    let named = self.ladder.attempts[record.place.attempt].method();
                     record.tried.map_or(named, |tried| tried.method).name().to_string()
                 }
             };

@@ -7,4 +7,4 @@ mod ending;
 mod pieces;
 
 pub(super) use by_attempt::{Unprepared, engine_of};
-pub(super) use carried_out::{Run, Workbench, solved};
+pub(super) use carried_out::{Run, Workbench, solve_any, solved};

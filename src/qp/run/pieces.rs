@@ -48,8 +48,14 @@ pub(super) fn solved(
         iterations: answers.iter().map(|answer| answer.iterations).max().unwrap_or(0),
         history: history(pieces, &answers),
         proven: proven(pieces, &answers),
-        refinements: answers.iter().filter_map(|answer| answer.refinements).max(),
-        reason: answers.iter().find_map(|answer| answer.reason.clone()),
+        single_precision: answers.iter().any(|answer| answer.single_precision),
+        refinements: answers.iter().map(|answer| answer.refinements).max().unwrap_or(0),
+        reason: answers
+            .iter()
+            .map(|answer| &answer.reason)
+            .find(|reason| !reason.is_empty())
+            .cloned()
+            .unwrap_or_default(),
         why: why(&answers),
         cut_short: answers.iter().find_map(|answer| answer.cut_short.clone()),
         lost_pivot: answers.iter().filter_map(|answer| answer.lost_pivot).min_by(f64::total_cmp),
@@ -69,12 +75,12 @@ pub(super) fn solved(
 }
 
 /// The reason for the way in which the largest piece was solved.
-fn why(answers: &[Solution]) -> Option<Why> {
-    let largest = answers.iter().max_by_key(|answer| answer.displacement.len())?;
-    let of_piece = largest.why.clone()?;
+fn why(answers: &[Solution]) -> Why {
+    let largest = answers.iter().max_by_key(|answer| answer.displacement.len());
+    let of_piece = largest.map(|largest| largest.why.clone()).unwrap_or_default();
     let count = answers.len();
     let reason = format!("in {count} pieces, because nothing couples them; the largest {}", of_piece.reason);
-    Some(Why { reason, ..of_piece })
+    Why { reason, ..of_piece }
 }
 
 /// The sets of all pieces joined, iteration by iteration; a piece with fewer iterations stays at its last set.
