@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::interface::{Engine, FactorSize, Found, OnBoundary, Task, Walk};
+use super::interface::{Engine, Found, OnBoundary, Task, Walk};
 use super::loading::{Load, Loading};
 use super::reduction::{Norm, Reduction};
 use super::step::ScaledStep;
@@ -151,12 +151,8 @@ impl Engine for Factored {
         self.walk_to(from, to)
     }
 
-    fn factor(&self) -> Option<FactorSize> {
-        Some(FactorSize {
-            unknowns: self.condensed_dofs(),
-            entries: self.reduction.condensation.as_ref().map_or(0, Condensation::factor_entries),
-            is_single: self.is_single(),
-        })
+    fn factor_entries(&self) -> usize {
+        self.reduction.condensation.as_ref().map_or(0, Condensation::factor_entries)
     }
 }
 

@@ -73,16 +73,6 @@ pub(in crate::qp) struct Walk {
     pub to_rows: Arc<dyn Expansion>,
 }
 
-/// The factor of an engine.
-pub(in crate::qp) struct FactorSize {
-    /// Unknowns that the methods work on.
-    pub unknowns: usize,
-    /// Values of the factor; zero if the methods factorise by themselves.
-    pub entries: usize,
-    /// `true` if its values are in single precision.
-    pub is_single: bool,
-}
-
 /// A problem prepared once for many gaps, loads and starts. A function that an engine cannot provide keeps its default.
 pub(in crate::qp) trait Engine: Debug + Send + Sync {
     /// Returns `true` if the prepared data are means of this kind.
@@ -141,9 +131,9 @@ pub(in crate::qp) trait Engine: Debug + Send + Sync {
         Err(Error::NotCondensed { step: "the exact path" })
     }
 
-    /// The factor, if there is one.
-    fn factor(&self) -> Option<FactorSize> {
-        None
+    /// Values of the factor; zero if the methods factorise by themselves.
+    fn factor_entries(&self) -> usize {
+        0
     }
 
     /// The multigrid hierarchy, if there is one.

@@ -18,11 +18,6 @@ impl Load {
         Load { force, swept: OnceLock::new() }
     }
 
-    /// The load f, length n.
-    pub fn force(&self) -> &[f64] {
-        &self.force
-    }
-
     /// The load swept through the factor of `reduction`; the first call does this in a unit that fits `gap`, the gaps of the
     /// selected rows.
     pub(super) fn swept(&self, reduction: &Reduction, gap: &[f64]) -> Arc<Loading> {

@@ -23,6 +23,17 @@ pub(in crate::qp) enum Ended {
     Decided(Error),
 }
 
+impl Ended {
+    /// What came of a step that ended with an error.
+    pub fn by(error: Error) -> Self {
+        match error {
+            Error::TooLarge { .. } | Error::OutOfTime { .. } => Ended::Refused(error),
+            Error::Numerical { .. } | Error::NotConvex { .. } => Ended::Failed(error),
+            _ => Ended::Decided(error),
+        }
+    }
+}
+
 /// An answer of a step, beside those before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::qp) struct Answered {

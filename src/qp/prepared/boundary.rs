@@ -1,9 +1,10 @@
 //! The answer on the contact boundary alone: contact set, multipliers and forces, without the displacement of the body.
 
-use std::fmt::Debug;
 use std::sync::Arc;
 
+use super::reuse::Prepared;
 use crate::error::Error;
+use crate::qp::engine::{Body, OnBoundary};
 use crate::solution::{Certificate, ContactSet, Solution};
 
 /// The answer of a prepared problem on its contact boundary at some gap and load.
@@ -21,29 +22,16 @@ pub struct BoundarySolution {
     /// The certificate of the *condensed* problem, in its dimensionless units: its conditions are recomputed from the condensed
     /// stiffness, load and rows, not from the problem itself, which would need the displacement of the body.
     pub condensed_certificate: Certificate,
-    pub(super) inside: Arc<dyn Inside>,
+    inside: Inside,
 }
 
 /// The means to compute the answer inside the body.
-pub(super) trait Inside: Debug + Send + Sync {
-    /// The displacement of the whole body, not certified.
-    fn displacement(&self) -> Vec<f64>;
-
-    /// The whole answer, certified.
-    ///
-    /// # Errors
-    /// As [`BoundarySolution::solution`].
-    fn solution(&self) -> Result<Solution, Error>;
-}
-
-impl Inside for Solution {
-    fn displacement(&self) -> Vec<f64> {
-        self.displacement.clone()
-    }
-
-    fn solution(&self) -> Result<Solution, Error> {
-        Ok(self.clone())
-    }
+#[derive(Clone, Debug)]
+enum Inside {
+    /// The answer was not condensed.
+    Whole(Box<Solution>),
+    /// The whole answer is found again from the same set, at these gaps.
+    Condensed { body: Arc<dyn Body>, prepared: Box<Prepared>, gap: Vec<f64> },
 }
 
 impl BoundarySolution {
@@ -54,7 +42,10 @@ impl BoundarySolution {
 
     /// The displacement u of the whole body, one entry per dof, in the problem's unit of length; not certified.
     pub fn displacement(&self) -> Vec<f64> {
-        self.inside.displacement()
+        match &self.inside {
+            Inside::Whole(solution) => solution.displacement.clone(),
+            Inside::Condensed { body, .. } => body.displacement(),
+        }
     }
 
     /// The whole answer, with the certificate of the problem itself.
@@ -62,7 +53,12 @@ impl BoundarySolution {
     /// # Errors
     /// [`Error::NotCertified`] and [`Error::Infeasible`], as [`solve`](crate::solve()).
     pub fn solution(self) -> Result<Solution, Error> {
-        self.inside.solution()
+        match self.inside {
+            Inside::Whole(solution) => Ok(*solution),
+            Inside::Condensed { prepared, gap, .. } => {
+                Ok(Solution { iterations: self.iterations, ..prepared.solve(&gap)? })
+            }
+        }
     }
 }
 
@@ -74,7 +70,55 @@ impl From<Solution> for BoundarySolution {
             contact_set: solution.contact_set.clone(),
             iterations: solution.iterations,
             condensed_certificate: solution.certificate,
-            inside: Arc::new(solution),
+            inside: Inside::Whole(Box::new(solution)),
         }
+    }
+}
+
+impl Prepared {
+    /// Contact set, multipliers and forces with these gaps, one per contact row, in the problem's unit of length,
+    /// negative inside the body. The displacement of the body is not computed, so that a condensed problem costs only
+    /// the solve on its contact boundary.
+    ///
+    /// # Errors
+    /// As [`Prepared::solve`]; the certificate of the condensed problem must meet the tolerance.
+    pub fn boundary(&self, gap: &[f64]) -> Result<BoundarySolution, Error> {
+        self.on_boundary(gap, true)
+    }
+
+    fn on_boundary(&self, gap: &[f64], is_bounded: bool) -> Result<BoundarySolution, Error> {
+        let found = self.ask(gap, &self.start, |engine, task| engine.on_boundary(task, is_bounded));
+        // The certificate of the whole answer shows what is wrong, unless the answer meets its goal.
+        let Ok(Some(found)) = found else { return Ok(self.solve(gap)?.into()) };
+        let OnBoundary { multiplier, contact_set, iterations, condensed_certificate, body } = found;
+        let (prepared, gap) = (Box::new(self.starting_from(&contact_set)), gap.to_vec());
+        let inside = Inside::Condensed { body, prepared, gap };
+        Ok(BoundarySolution { multiplier, contact_set, iterations, condensed_certificate, inside })
+    }
+}
+
+/// The functions that a motion calls in every step.
+impl Prepared {
+    /// As [`Prepared::boundary`], for one of many steps: only its conditions must meet the tolerance, which costs no triangular
+    /// solve, unless the settings name an accuracy.
+    ///
+    /// # Errors
+    /// As [`Prepared::boundary`].
+    pub(crate) fn step(&self, gap: &[f64]) -> Result<BoundarySolution, Error> {
+        self.on_boundary(gap, self.settings.accuracy.is_some())
+    }
+
+    /// The displacement at these gaps without a certificate; `None` if the method did not settle on a set, or if its answer is
+    /// only valid with a certificate.
+    ///
+    /// # Errors
+    /// As [`Prepared::boundary`].
+    pub(crate) fn settled(&self, gap: &[f64]) -> Result<Option<Vec<f64>>, Error> {
+        self.ask(gap, &self.start, |engine, task| engine.settled(task))
+    }
+
+    /// The displacement that the load causes if no row is closed, in the precision of the factor; `None` without one.
+    pub(crate) fn response(&self) -> Option<Vec<f64>> {
+        self.bench.as_ref().and_then(|bench| bench.engine.response(&bench.load))
     }
 }

@@ -111,13 +111,10 @@ impl Prepared {
     /// condensed or has a stiffness that is not definite by itself.
     pub fn path(&self, from: &[f64], to: &[f64]) -> Result<Path, Error> {
         // A path takes a factor.
-        if self.bench.engine.factor().is_none() && self.settings.method == Method::Auto {
+        if self.hierarchy().is_some() && self.settings.method == Method::Auto {
             return self.with_settings(&self.settings.clone().exactly())?.path(from, to);
         }
-        let walk = |start: &Start| -> Result<Option<Walk>, Error> {
-            let question = self.question(from)?;
-            self.bench.engine.clone().walk(&question.task(self, start), to)
-        };
+        let walk = |start: &Start| self.ask(from, start, |engine, task| engine.walk(task, to));
         let walk = match walk(&self.start)? {
             Some(walk) => Some(walk),
             None => walk(&Start::from(&self.solve(from)?.contact_set))?,

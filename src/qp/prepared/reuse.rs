@@ -2,14 +2,13 @@
 
 use std::sync::Arc;
 
-use super::boundary::{BoundarySolution, Inside};
 use crate::error::Error;
-use crate::qp::engine::{Body, Engine, Load, OnBoundary, Task};
+use crate::qp::engine::{Engine, Load, Task};
 use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::method::Start;
-use crate::qp::plan::{Attempt, Ended, History, Known, Ladder, Means, Record, Step};
-use crate::qp::problem::{ContactProblem, check_load};
-use crate::qp::run::{Run, Unprepared, Workbench, engine_of};
+use crate::qp::plan::{Attempt, Ended, History, Known, Ladder, Means, Record, Step, Tried};
+use crate::qp::problem::ContactProblem;
+use crate::qp::run::{Run, Workbench, engine_of};
 use crate::qp::settings::Settings;
 use crate::solution::{Seconds, Solution};
 
@@ -37,11 +36,12 @@ use crate::solution::{Seconds, Solution};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Prepared {
+    /// The problem under the current load.
     problem: ContactProblem,
     pub(super) settings: Settings,
     ladder: Arc<Ladder>,
-    /// The data of the first attempt that memory and time allow, with the current load.
-    pub(super) bench: Workbench,
+    /// The data of the first attempt that memory and time allow; `None` if the stiffness cannot be prepared.
+    pub(super) bench: Option<Workbench>,
     pub(super) start: Start,
 }
 
@@ -74,37 +74,33 @@ impl Prepared {
         // A problem that is prepared stays in one piece.
         let ladder = Ladder::of(problem, Known { gaps, is_whole: true }, settings)?;
         let mut history = History::new(settings.goal());
-        let with = |ladder: Ladder, attempt: usize, engine: Arc<dyn Engine>| {
-            let load = Arc::new(Load::new(problem.load().to_vec()));
-            let (bench, ladder) = (Workbench { attempt, engine, load }, Arc::new(ladder));
-            Prepared { problem: problem.clone(), settings: given.clone(), ladder, bench, start: Start::default() }
+        let with = |ladder: Ladder, bench: Option<Workbench>| {
+            let (problem, settings, ladder) = (problem.clone(), given.clone(), Arc::new(ladder));
+            Prepared { problem, settings, ladder, bench, start: Start::default() }
         };
-        let mut failed = None;
+        let mut has_failed = false;
         while let Some(next) = ladder.next(&history, &settings.watch) {
-            let number = next.place.attempt;
-            let attempt = &ladder.attempts[number];
-            if attempt.means == Means::Problem {
+            let attempt = next.place.attempt;
+            if ladder.attempts[attempt].means == Means::Problem {
                 break;
             }
-            let ended = match engine_of(problem, attempt, settings) {
-                Ok(engine) => return Ok(with(ladder.after_refusals(&history), number, engine)),
-                Err(error @ (Error::TooLarge { .. } | Error::OutOfTime { .. })) => Ended::Refused(error),
-                Err(error @ (Error::Numerical { .. } | Error::NotConvex { .. })) => Ended::Failed(error),
-                Err(error) => return Err(error),
+            let ended = match engine_of(problem, &ladder.attempts[attempt], settings) {
+                Ok(engine) => {
+                    let load = Arc::new(Load::new(problem.load().to_vec()));
+                    return Ok(with(ladder.after_refusals(&history), Some(Workbench { attempt, engine, load })));
+                }
+                Err(error) => match Ended::by(error) {
+                    Ended::Decided(error) => return Err(error),
+                    ended => ended,
+                },
             };
-            if matches!(ended, Ended::Failed(_)) {
-                failed.get_or_insert(number);
-            }
+            has_failed |= matches!(ended, Ended::Failed(_));
             history.records.push(Record { ended, ..Record::of(next, Step::Method) });
         }
-        match failed {
-            Some(number) => {
-                let attempt = ladder.attempts[number].clone();
-                let engine = Arc::new(Unprepared { problem: problem.clone(), attempt });
-                Ok(with(ladder, number, engine))
-            }
-            None => Err(ladder.no_room(&history).or_else(|| history.into_refusal()).unwrap_or(Error::Interrupted)),
+        if has_failed {
+            return Ok(with(ladder, None));
         }
+        Err(ladder.no_room(&history).or_else(|| history.into_refusal()).unwrap_or(Error::Interrupted))
     }
 
     /// The same problem under other settings. The prepared data are kept if their method works on them, with its condensation,
@@ -114,19 +110,18 @@ impl Prepared {
     /// As [`Prepared::new`].
     pub fn with_settings(&self, settings: &Settings) -> Result<Self, Error> {
         settings.started()?;
+        let anew = || Ok(Self::new(&self.problem, settings)?.starting_from(self.start.clone()));
+        let Some(bench) = &self.bench else { return anew() };
         let (attempt, ladder) = match self.ladder.under(settings) {
-            Some(ladder) => (self.bench.attempt, ladder),
+            Some(ladder) => (bench.attempt, ladder),
             None => {
                 let ladder = Ladder::of(&self.problem, Known { gaps: MANY_GAPS, is_whole: true }, settings)?;
-                let serves = |attempt: &Attempt| self.bench.engine.serves(&attempt.means);
-                let Some(attempt) = ladder.attempts.iter().position(serves) else {
-                    let prepared = Self::new(&self.problem.with_load(self.bench.load.force().to_vec())?, settings)?;
-                    return Ok(prepared.starting_from(self.start.clone()));
-                };
+                let serves = |attempt: &Attempt| bench.engine.serves(&attempt.means);
+                let Some(attempt) = ladder.attempts.iter().position(serves) else { return anew() };
                 (attempt, ladder)
             }
         };
-        let bench = Workbench { attempt, ..self.bench.clone() };
+        let bench = Some(Workbench { attempt, ..bench.clone() });
         Ok(Prepared { settings: settings.clone(), ladder: Arc::new(ladder), bench, ..self.clone() })
     }
 
@@ -135,9 +130,10 @@ impl Prepared {
     /// # Errors
     /// [`Error::Length`] and [`Error::NotFinite`] for a load that does not fit.
     pub fn with_load(&self, load: Vec<f64>) -> Result<Self, Error> {
-        check_load(&load, self.dofs())?;
-        let bench = Workbench { load: Arc::new(Load::new(load)), ..self.bench.clone() };
-        Ok(Prepared { bench, ..self.clone() })
+        let problem = self.problem.with_load(load.clone())?;
+        let load = Arc::new(Load::new(load));
+        let bench = self.bench.clone().map(|bench| Workbench { load, ..bench });
+        Ok(Prepared { problem, bench, ..self.clone() })
     }
 
     /// The same, solved from a start, such as the contact set at the last gap.
@@ -152,7 +148,11 @@ impl Prepared {
     /// gaps that are infinite in other rows than those of the problem that was prepared.
     pub fn solve(&self, gap: &[f64]) -> Result<Solution, Error> {
         let (problem, settings) = (self.problem_at(gap)?, self.settings.started()?);
-        Run::new(&problem, &self.ladder, &self.start, &settings).with(&self.bench).solved()
+        let run = Run::new(&problem, &self.ladder, &self.start, &settings);
+        match &self.bench {
+            Some(bench) => run.with(bench).solved(),
+            None => run.solved(),
+        }
     }
 
     /// Solves with another load, length n, in N, along the positive axes, and the gaps of the problem that was
@@ -164,33 +164,6 @@ impl Prepared {
         self.with_load(load)?.solve(self.problem.gap())
     }
 
-    /// Contact set, multipliers and forces with these gaps, one per contact row, in the problem's unit of length,
-    /// negative inside the body. The displacement of the body is not computed, so that a condensed problem costs only
-    /// the solve on its contact boundary.
-    ///
-    /// # Errors
-    /// As [`Prepared::solve`]; the certificate of the condensed problem must meet the tolerance.
-    pub fn boundary(&self, gap: &[f64]) -> Result<BoundarySolution, Error> {
-        self.on_boundary(gap, true)
-    }
-
-    fn on_boundary(&self, gap: &[f64], is_bounded: bool) -> Result<BoundarySolution, Error> {
-        let question = self.question(gap)?;
-        let task = question.task(self, &self.start);
-        match self.bench.engine.clone().on_boundary(&task, is_bounded) {
-            Ok(Some(found)) => Ok(self.boundary_of(found, gap)),
-            // The certificate of the whole answer shows what is wrong, unless the answer meets its goal.
-            Ok(None) | Err(_) => Ok(self.solve(gap)?.into()),
-        }
-    }
-
-    fn boundary_of(&self, found: OnBoundary, gap: &[f64]) -> BoundarySolution {
-        let OnBoundary { multiplier, contact_set, iterations, condensed_certificate, body } = found;
-        let prepared = self.starting_from(&contact_set);
-        let inside = Arc::new(Condensed { body, prepared, gap: gap.to_vec(), iterations });
-        BoundarySolution { multiplier, contact_set, iterations, condensed_certificate, inside }
-    }
-
     /// The problem at these gaps, under the current load.
     ///
     /// # Errors
@@ -198,53 +171,26 @@ impl Prepared {
     /// other at sight.
     fn problem_at(&self, gap: &[f64]) -> Result<ContactProblem, Error> {
         self.start.check(self.problem.dofs(), self.problem.rows())?;
-        let problem = self.problem.with(self.bench.load.force().to_vec(), gap.to_vec())?;
+        let problem = self.problem.with_gap(gap.to_vec())?;
         problem.check_rows()?;
         Ok(problem)
     }
 
-    /// The question of a single step at these gaps.
+    /// What the prepared data answer to the method alone, from a start at these gaps; `None` without prepared data.
     ///
     /// # Errors
-    /// Those of the gaps and the start; [`Error::Setting`].
-    pub(super) fn question(&self, gap: &[f64]) -> Result<Question, Error> {
-        Ok(Question { problem: self.problem_at(gap)?, settings: self.settings.started()? })
-    }
-}
-
-/// The inside of an answer on the boundary: the whole answer is found from the same set.
-#[derive(Debug)]
-struct Condensed {
-    body: Arc<dyn Body>,
-    prepared: Prepared,
-    gap: Vec<f64>,
-    iterations: usize,
-}
-
-impl Inside for Condensed {
-    fn displacement(&self) -> Vec<f64> {
-        self.body.displacement()
-    }
-
-    fn solution(&self) -> Result<Solution, Error> {
-        let solution = self.prepared.solve(&self.gap)?;
-        Ok(Solution { iterations: self.iterations, ..solution })
-    }
-}
-
-/// A problem under some load at some gaps, and settings with a running clock.
-pub(super) struct Question {
-    problem: ContactProblem,
-    settings: Settings,
-}
-
-impl Question {
-    /// The first step of that attempt.
-    pub fn task<'a>(&'a self, prepared: &'a Prepared, start: &'a Start) -> Task<'a> {
-        let Workbench { attempt, load, .. } = &prepared.bench;
-        let Attempt { means, limits, .. } = prepared.ladder.attempts[*attempt];
-        let (problem, method, settings) = (&self.problem, means.method(), &self.settings);
-        Task { step: Step::Method, problem, load, start, limits, method, settings, best: None }
+    /// Those of the gaps and the start, and of the answer; [`Error::Setting`].
+    pub(super) fn ask<T>(
+        &self,
+        gap: &[f64],
+        start: &Start,
+        answer: impl FnOnce(Arc<dyn Engine>, &Task) -> Result<Option<T>, Error>,
+    ) -> Result<Option<T>, Error> {
+        let Some(Workbench { attempt, engine, load }) = &self.bench else { return Ok(None) };
+        let (problem, settings) = (&self.problem_at(gap)?, &self.settings.started()?);
+        let Attempt { means, limits, .. } = self.ladder.attempts[*attempt];
+        let (step, method, best) = (Step::Method, means.method(), None);
+        answer(Arc::clone(engine), &Task { step, problem, load, start, limits, method, settings, best })
     }
 }
 
@@ -254,14 +200,19 @@ impl Prepared {
         self.problem.dofs()
     }
 
+    /// The method and its means, if the data are prepared.
+    fn tried(&self) -> Option<Tried> {
+        self.bench.as_ref().map(|bench| bench.engine.tried(None, &self.settings))
+    }
+
     /// Number of unknowns that the methods work on.
     pub fn condensed_dofs(&self) -> usize {
-        self.bench.engine.factor().map_or(self.dofs(), |factor| factor.unknowns)
+        self.tried().and_then(|tried| tried.condensed_dofs).unwrap_or(self.dofs())
     }
 
     /// Number of values of the factor of the stiffness; zero if the methods factorise by themselves or not at all.
     pub fn factor_entries(&self) -> usize {
-        self.bench.engine.factor().map_or(0, |factor| factor.entries)
+        self.bench.as_ref().map_or(0, |bench| bench.engine.factor_entries())
     }
 
     /// Memory of the values of the factor, in bytes: 8 for each, 4 in single precision.
@@ -271,12 +222,12 @@ impl Prepared {
 
     /// Multiplications of the factorisation of the stiffness; zero without one.
     pub fn multiplications(&self) -> f64 {
-        self.bench.engine.tried(None, &self.settings).multiplications
+        self.tried().map_or(0.0, |tried| tried.multiplications)
     }
 
     /// Returns `true` if the factor is in single precision.
     pub fn is_single(&self) -> bool {
-        self.bench.engine.factor().is_some_and(|factor| factor.is_single)
+        self.tried().is_some_and(|tried| tried.is_single)
     }
 
     /// The attempts and steps that a solve makes, in order, each with its condition and its reason, a line each.
@@ -287,38 +238,11 @@ impl Prepared {
     /// The multigrid hierarchy; `None` if the stiffness was factorised.
     #[doc(hidden)]
     pub fn hierarchy(&self) -> Option<&Multigrid> {
-        self.bench.engine.hierarchy()
+        self.bench.as_ref().and_then(|bench| bench.engine.hierarchy())
     }
 
     /// The time of the preparation.
     pub fn seconds(&self) -> Seconds {
-        self.bench.engine.seconds()
-    }
-}
-
-/// The functions that a motion calls in every step.
-impl Prepared {
-    /// As [`Prepared::boundary`], for one of many steps: only its conditions must meet the tolerance, which costs no triangular
-    /// solve, unless the settings name an accuracy.
-    ///
-    /// # Errors
-    /// As [`Prepared::boundary`].
-    pub(crate) fn step(&self, gap: &[f64]) -> Result<BoundarySolution, Error> {
-        self.on_boundary(gap, self.settings.accuracy.is_some())
-    }
-
-    /// The displacement at these gaps without a certificate; `None` if the method did not settle on a set, or if its answer is
-    /// only valid with a certificate.
-    ///
-    /// # Errors
-    /// As [`Prepared::boundary`].
-    pub(crate) fn settled(&self, gap: &[f64]) -> Result<Option<Vec<f64>>, Error> {
-        let question = self.question(gap)?;
-        self.bench.engine.settled(&question.task(self, &self.start))
-    }
-
-    /// The displacement that the load causes if no row is closed, in the precision of the factor; `None` without one.
-    pub(crate) fn response(&self) -> Option<Vec<f64>> {
-        self.bench.engine.response(&self.bench.load)
+        self.bench.as_ref().map_or(Seconds::default(), |bench| bench.engine.seconds())
     }
 }

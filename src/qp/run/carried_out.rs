@@ -81,10 +81,8 @@ impl<'a> Run<'a> {
             let mut record = Record::of(next, step);
             record.ended = match self.made_step(&next, attempt, &mut record) {
                 Ok(ended) => ended,
-                Err(error @ (Error::TooLarge { .. } | Error::OutOfTime { .. })) => Ended::Refused(error),
                 Err(error @ Error::NotConvex { .. }) if step == Step::Existence => Ended::Decided(error),
-                Err(error @ (Error::Numerical { .. } | Error::NotConvex { .. })) => Ended::Failed(error),
-                Err(error) => Ended::Decided(error),
+                Err(error) => Ended::by(error),
             };
             record.seconds = clock.elapsed().as_secs_f64();
             self.history.records.push(record);

@@ -6,5 +6,5 @@ mod carried_out;
 mod ending;
 mod pieces;
 
-pub(super) use by_attempt::{Unprepared, engine_of};
+pub(super) use by_attempt::engine_of;
 pub(super) use carried_out::{Run, Workbench, solve_any, solved};
