@@ -85,7 +85,7 @@ pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome
         return Ok(Outcome::done(plan));
     }
     let about = about(&input.title, "solve", &options.input, options.common.out.as_ref(), options.common.threads);
-    let solution = best_of(&input, start, &settings)?;
+    let solution = best_of(&input, &start, &settings)?;
     if options.extrapolate && !matches!(settings.method, Method::Penalty(_)) {
         let method = &solution.method;
         warn(&format!("warning: --extrapolate changes nothing: the method is {method}; it needs --method penalty\n"));
@@ -133,7 +133,7 @@ fn assembly_seconds(scene: &Scene, options: &Solve, watch: &Watch) -> Result<f64
 }
 
 /// The answer, certified or not.
-fn best_of(input: &Input, start: Start, settings: &Settings) -> Result<Solution, Error> {
+fn best_of(input: &Input, start: &Start, settings: &Settings) -> Result<Solution, Error> {
     match solve_from(input.problem(), start, settings) {
         Err(error @ Error::NotCertified { .. }) => {
             warn(&format!("error: {error}\n"));

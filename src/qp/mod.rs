@@ -38,6 +38,8 @@ pub use method::parametric::Event;
 pub use method::penalty::Penalty;
 pub use prepared::{BoundarySolution, Path, Prepared};
 pub use problem::ContactProblem;
+#[cfg(feature = "cli")]
+pub(crate) use run::solved as solve_from;
 pub use settings::{Condense, Method, Precision, Settings};
 
 #[cfg(feature = "cli")]
@@ -78,20 +80,10 @@ use crate::solution::{ContactSet, Solution};
 /// * [`Error::Interrupted`] if the watch was asked to stop before there was an answer,
 /// * [`Error::Numerical`] if memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-    run::solved(problem, &Start::default(), &settings.started()?)
+    run::solved(problem, &Start::default(), settings)
 }
 
-/// The same from a start, for example the answer of a similar problem.
-///
-/// # Errors
-/// As [`solve`]; [`Error::Length`] for a start that does not fit.
-#[cfg(feature = "cli")]
-pub(crate) fn solve_from(problem: &ContactProblem, start: Start, settings: &Settings) -> Result<Solution, Error> {
-    start.check(problem.dofs(), problem.rows())?;
-    run::solved(problem, &start, &settings.started()?)
-}
-
-/// What [`solve_from`] would try, in order, in words.
+/// What a solve would try from a start, in order, in words.
 ///
 /// # Errors
 /// [`Error::Setting`] for a setting outside its range, [`Error::NoRoom`] if nothing fits into the memory, and those of an analysis of the

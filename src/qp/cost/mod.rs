@@ -9,7 +9,6 @@ mod smooth;
 use super::linear::Width;
 use super::method::mprgp::takes_travels;
 use super::problem::ContactProblem;
-use super::settings::Settings;
 use crate::error::Error;
 use crate::watch::Watch;
 use direct::{BodyFactor, Direct};
@@ -130,12 +129,12 @@ impl Kept {
 /// Number of factors that exist at one time if every contact set has its own.
 pub(in crate::qp) const FACTORS: f64 = 2.0;
 
-/// Refuses a problem that would take more memory than `settings` allow.
+/// Refuses a problem that would take more than these bytes, if there is a limit.
 ///
 /// # Errors
 /// [`Error::TooLarge`].
-pub(in crate::qp) fn check_memory(problem: &ContactProblem, kept: Kept, settings: &Settings) -> Result<(), Error> {
-    let Some(allowed) = settings.memory else { return Ok(()) };
+pub(in crate::qp) fn check_memory(problem: &ContactProblem, kept: Kept, most: Option<f64>) -> Result<(), Error> {
+    let Some(allowed) = most else { return Ok(()) };
     let (dofs, stiffness_entries) = (problem.dofs() as f64, problem.stiffness().entries() as f64);
     let of_interior_point = |values: f64, is_used| if is_used { bytes::of_interior_point(values) } else { 0.0 };
     let (factor_entries, beside) = match kept {

@@ -43,7 +43,7 @@ impl Hierarchical {
             let dof = problem.without_stiffness().first().copied().unwrap_or_default();
             return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is 0e0, indices from 0") });
         }
-        check_memory(problem, Kept::Multigrid, settings)?;
+        check_memory(problem, Kept::Multigrid, settings.memory)?;
         seconds::learn(watch);
         let entries = problem.stiffness().lower().entries();
         let estimate = seconds::hierarchy(problem.dofs() as f64, entries as f64);

@@ -110,7 +110,7 @@ impl Factoring<'_> {
             }
             let values = self.analysis.factor_entries();
             let kept = Kept::Condensed { values, width: Width::Double, contact_dofs, by_interior_point: false };
-            check_memory(self.problem, kept, self.settings)?;
+            check_memory(self.problem, kept, self.settings.memory)?;
             check_time(&self.settings.watch, self.seconds(Width::Double))?;
         }
         self.factor(Width::Double)

@@ -57,11 +57,11 @@ const BENDS: f64 = 1e3;
 /// # Errors
 /// [`Error::TooLarge`], [`Error::OutOfTime`], and those of the analysis.
 fn check_room(problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
-    check_memory(problem, Kept::Nothing, settings)?;
+    check_memory(problem, Kept::Nothing, settings.memory)?;
     check_time(&settings.watch, seconds::ordering(problem))?;
     let analysis = Analysis::of(problem.stiffness())?;
     let kept = Kept::Factors { values: analysis.factor_entries(), last: 0, by_interior_point: false };
-    check_memory(problem, kept, settings)?;
+    check_memory(problem, kept, settings.memory)?;
     check_time(&settings.watch, seconds::factorisation(&analysis))
 }
 

@@ -60,7 +60,7 @@ impl Layout {
                 Arrangement::AnyOrder => (Vec::new(), Kept::Nothing),
             };
             // The dense matrices on the boundary alone may be too large: the analysis would then waste memory.
-            if let Err(error) = check_memory(problem, dense, settings) {
+            if let Err(error) = check_memory(problem, dense, settings.memory) {
                 keep_least(&mut refused, error);
                 continue;
             }
@@ -104,8 +104,8 @@ impl Layout {
             (self.way, self.width, self.keeps_norm) = choice;
             let of_way = self.way.unwrap_or(Way::ActiveSet).method(settings.accuracy);
             self.method = with.method.unwrap_or(of_way);
-            let fits =
-                check_memory(problem, self.kept(), settings).and_then(|()| check_time(&settings.watch, self.seconds()));
+            let fits = check_memory(problem, self.kept(), settings.memory)
+                .and_then(|()| check_time(&settings.watch, self.seconds()));
             match fits {
                 Ok(()) => return Ok(self),
                 Err(error) => keep_least(&mut refused, error),
@@ -154,7 +154,7 @@ impl Layout {
 
 /// Refuses a problem that is too large to be ordered, with a rough estimate of its factor.
 fn check_room_to_order(problem: &ContactProblem, with: &WithFactor, settings: &Settings) -> Result<(), Error> {
-    match check_memory(problem, Kept::Nothing, settings) {
+    match check_memory(problem, Kept::Nothing, settings.memory) {
         Err(Error::TooLarge { dofs, stiffness_entries, bytes, allowed, .. }) => {
             let estimate = Estimate::of(problem);
             let may_condense = with.arrangements.contains(&Arrangement::Condensed);

@@ -6,9 +6,9 @@ use crate::error::Error;
 use crate::qp::engine::{Engine, Load, Task};
 use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::method::Start;
-use crate::qp::plan::{Attempt, Ended, History, Known, Ladder, Means, Record, Step, Tried};
+use crate::qp::plan::{Attempt, Ended, History, Known, Ladder, Record, Step, Tried};
 use crate::qp::problem::ContactProblem;
-use crate::qp::run::{Run, Workbench, engine_of};
+use crate::qp::run::{Run, Workbench, engine_by};
 use crate::qp::settings::Settings;
 use crate::solution::{Seconds, Solution};
 
@@ -81,11 +81,9 @@ impl Prepared {
         let mut has_failed = false;
         while let Some(next) = ladder.next(&history, &settings.watch) {
             let attempt = next.place.attempt;
-            if ladder.attempts[attempt].means == Means::Problem {
-                break;
-            }
-            let ended = match engine_of(problem, &ladder.attempts[attempt], settings) {
-                Ok(engine) => {
+            let ended = match engine_by(ladder.attempts[attempt].means, problem, settings) {
+                Ok(None) => break,
+                Ok(Some(engine)) => {
                     let load = Arc::new(Load::new(problem.load().to_vec()));
                     return Ok(with(ladder.after_refusals(&history), Some(Workbench { attempt, engine, load })));
                 }

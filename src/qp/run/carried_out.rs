@@ -3,26 +3,43 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::by_attempt::engine_of;
 use super::pieces;
 use crate::error::Error;
 use crate::qp::certificate::{Bounding, Examined};
-use crate::qp::engine::{Engine, Found, Hierarchical, Load, Task};
+use crate::qp::engine::{Engine, Factored, Found, Hierarchical, Load, Task};
 use crate::qp::existence::Existence;
 use crate::qp::method::{Ending, Outcome, Start};
-use crate::qp::plan::{Answered, Attempt, Best, Ended, From, History, Known, Ladder, Next, Record, Step, Tried};
+use crate::qp::plan::{Answered, Attempt, Best, Ended, From, History, Known, Ladder, Means, Next, Record, Step, Tried};
 use crate::qp::problem::ContactProblem;
 use crate::qp::settings::Settings;
 use crate::solution::{Certificate, Seconds, Solution, Why};
 
-/// The answer of `problem` from a start, by the ladder of `settings`, which have a running clock.
+/// The answer of `problem` from a start, by the ladder of `settings`.
 ///
 /// # Errors
-/// As [`solve`](crate::solve()).
-pub(in crate::qp) fn solved(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<Solution, Error> {
+/// As [`solve`](crate::solve()); [`Error::Length`] and [`Error::NotFinite`] for a start that does not fit.
+pub(crate) fn solved(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<Solution, Error> {
+    let settings = &settings.started()?;
+    start.check(problem.dofs(), problem.rows())?;
     problem.check_rows()?;
     let ladder = Ladder::of(problem, Known { gaps: 1, is_whole: !start.is_unknown() }, settings)?;
     Run::new(problem, &ladder, start, settings).solved()
+}
+
+/// The engine with these means; `None` for the problem alone.
+///
+/// # Errors
+/// Those of the engine.
+pub(in crate::qp) fn engine_by(
+    means: Means,
+    problem: &ContactProblem,
+    settings: &Settings,
+) -> Result<Option<Arc<dyn Engine>>, Error> {
+    Ok(match means {
+        Means::Problem => None,
+        Means::Multigrid => Some(Arc::new(Hierarchical::new(problem, settings)?)),
+        Means::Factor(with) => Some(Arc::new(Factored::new(problem, &with, settings)?)),
+    })
 }
 
 /// The prepared data of an attempt, and its load.
@@ -101,7 +118,8 @@ impl<'a> Run<'a> {
     }
 
     fn with_engine(&mut self, next: &Next, attempt: &Attempt, record: &mut Record) -> Result<Ended, Error> {
-        let Workbench { engine, load, .. } = self.prepared(next.place.attempt, record)?;
+        let Some(bench) = self.prepared(next.place.attempt, record)? else { return Ok(Ended::Empty) };
+        let Workbench { engine, load, .. } = bench;
         let (method, settings) = (attempt.means.method(), self.settings);
         let tried = engine.tried(method, settings);
         record.tried = Some(tried);
@@ -123,19 +141,21 @@ impl<'a> Run<'a> {
     }
 
     /// The prepared data of an attempt; those of another attempt are freed first, unless the caller keeps them.
-    fn prepared(&mut self, attempt: usize, record: &mut Record) -> Result<Workbench, Error> {
+    fn prepared(&mut self, attempt: usize, record: &mut Record) -> Result<Option<Workbench>, Error> {
         let is_of = |bench: &&Workbench| bench.attempt == attempt;
         if let Some(bench) = self.kept.filter(is_of).or(self.made.as_ref().filter(is_of)) {
-            return Ok(bench.clone());
+            return Ok(Some(bench.clone()));
         }
         self.made = None;
         let kept_bytes = self.kept.map_or(0.0, |kept| kept.engine.bytes());
         let memory = self.settings.memory.map(|most| (most - kept_bytes).max(0.0));
         let settings = Settings { memory, ..self.settings.clone() };
-        let engine = engine_of(self.problem, &self.ladder.attempts[attempt], &settings)?;
+        let engine = engine_by(self.ladder.attempts[attempt].means, self.problem, &settings)?;
+        let Some(engine) = engine else { return Ok(None) };
         record.stages.factor += engine.seconds().factor;
         let load = Arc::new(Load::new(self.problem.load().to_vec()));
-        Ok(self.made.insert(Workbench { attempt, engine, load }).clone())
+        self.made = Some(Workbench { attempt, engine, load });
+        Ok(self.made.clone())
     }
 
     /// The start of a step.
