@@ -7,12 +7,12 @@
 mod animation;
 pub(crate) mod arrows;
 mod axes;
+mod beside;
 pub(crate) mod body;
 mod certificate;
 mod colour;
 mod colour_bar;
 mod contour;
-mod curves;
 pub(crate) mod drawing;
 #[cfg(feature = "cli")]
 mod estimated_error;

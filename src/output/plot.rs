@@ -1,8 +1,9 @@
 //! Line plots: named series on linear or logarithmic axes, one panel or several side by side.
 
 use super::{
-    axes::{Axis, Frame, LARGE, LINE, Labels, NORMAL, ROOM_BELOW, TITLE, draw_heading},
-    colour::{GRID, WHITE},
+    axes::{Axis, Frame, LARGE, LINE, Labels, NORMAL, ROOM_BELOW, SMALL, TITLE, draw_heading},
+    beside::{Taken, darker},
+    colour::{Colour, FAINT, GRID, PALETTE, WHITE},
     drawing::{Anchor, Drawing, Paint},
     legend::{self, Entry, Key},
     medium::Medium,
@@ -15,10 +16,21 @@ use super::{
 const WIDTH: [f64; 2] = [1200.0, 1400.0];
 const HEIGHT: f64 = 520.0;
 const PAPER_HEIGHT: f64 = 300.0;
+/// The same with names beside the lines.
+const WIDTH_BESIDE: [f64; 2] = [1000.0, 1400.0];
+const HEIGHT_BESIDE: f64 = 600.0;
+/// Room under the smallest value of a logarithmic axis for those that it cannot show.
+const EXACT_ROOM: f64 = 56.0;
+/// Width of a band.
+const WIDE: f64 = 22.0;
 /// Markers closer than this many pixels would hide the line.
 const MARKER_DISTANCE: f64 = 16.0;
 /// Space between a legend and the frame.
 const INSET: f64 = 14.0;
+
+const BAND: Colour = Colour(0xf6, 0xdd, 0x9a);
+const BAND_INK: Colour = Colour(0x8a, 0x62, 0x00);
+const LEVEL: Colour = Colour(0x5a, 0x64, 0x72);
 
 /// One line of a plot: points that are joined in their order, with a name for the legend.
 #[derive(Clone, Debug, Default)]
@@ -55,6 +67,14 @@ pub struct Plot {
     pub y_from_zero: bool,
     /// Draws the lines from wide and pale to thin and dark, so that lines that coincide can all be seen.
     pub nested: bool,
+    /// Writes the names beside the lines and not in a legend; the first line is drawn over all others.
+    pub names_beside: bool,
+    /// A wide band under the lines; only with names beside them.
+    pub band: Option<Series>,
+    /// A named value of the vertical axis to compare with; only with names beside the lines.
+    pub level: Option<(String, f64)>,
+    /// Values from zero to this lie in a strip, called `exact`, below a logarithmic vertical axis; zero for no strip.
+    pub exact: f64,
 }
 
 impl Plot {
@@ -64,21 +84,48 @@ impl Plot {
     }
 
     fn shows(&self, [x, y]: [f64; 2]) -> bool {
-        self.scales[0].shows(x) && self.scales[1].shows(y)
+        self.scales[0].shows(x) && (self.scales[1].shows(y) || self.is_exact(y))
     }
 
+    fn is_exact(&self, y: f64) -> bool {
+        self.exact > 0.0 && (0.0..=self.exact).contains(&y)
+    }
+
+    fn points(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        let points = self.series.iter().chain(&self.band).flat_map(|series| &series.points);
+        points.copied().filter(|&point| self.shows(point))
+    }
+
+    /// The values that set the range of an axis.
     fn values(&self, axis: usize) -> impl Iterator<Item = f64> + '_ {
-        let points = self.series.iter().flat_map(|series| &series.points);
-        points.filter(|&&point| self.shows(point)).map(move |point| point[axis])
+        let of_points = self.points().map(move |point| point[axis]).filter(move |&y| axis == 0 || !self.is_exact(y));
+        of_points.chain(self.level.iter().filter(move |_| axis == 1).map(|level| level.1))
     }
 
     fn is_empty(&self) -> bool {
-        self.values(0).next().is_none()
+        self.points().next().is_none()
+    }
+
+    /// Height of the strip below the vertical axis.
+    fn strip(&self) -> f64 {
+        if self.points().any(|point| self.is_exact(point[1])) { EXACT_ROOM } else { 0.0 }
+    }
+
+    /// The pixels of the points that can be shown; not numbers for others.
+    fn places(&self, frame: &Frame, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let place = |&[x, y]: &[f64; 2]| match self.is_exact(y) {
+            true => {
+                let [along, _] = frame.place([x, frame.y.range[0]]);
+                [along, frame.corner[1] + frame.size[1] + 0.5 * EXACT_ROOM]
+            }
+            false => frame.place([x, y]),
+        };
+        points.iter().map(place).collect()
     }
 
     /// The entries of the legend; empty for a single line, which its axis names.
     fn entries(&self) -> Vec<Entry<'_>> {
-        if self.series.len() < 2 {
+        if self.series.len() < 2 || self.names_beside {
             return Vec::new();
         }
         let named = self.series.iter().enumerate().filter(|(_, series)| !series.name.trim().is_empty());
@@ -114,18 +161,77 @@ impl Plot {
 
     fn draw(&self, drawing: &mut Drawing, frame: &Frame, title: &str) {
         frame.draw_grid(drawing);
-        for (index, series) in self.series.iter().enumerate() {
-            let places: Vec<[f64; 2]> = series.points.iter().map(|&point| frame.place(point)).collect();
-            let every = (MARKER_DISTANCE * places.len() as f64 / frame.size[0]).ceil() as usize;
-            self.style(index).draw(drawing, &places, every);
+        let lines: Vec<Vec<[f64; 2]>> = self.series.iter().map(|series| self.places(frame, &series.points)).collect();
+        self.draw_below(drawing, frame);
+        let order = 0..lines.len();
+        let order: Vec<usize> = if self.names_beside { order.rev().collect() } else { order.collect() };
+        for index in order {
+            let every = (MARKER_DISTANCE * lines[index].len() as f64 / frame.size[0]).ceil() as usize;
+            self.style(index).draw(drawing, &lines[index], every);
+        }
+        if self.names_beside {
+            self.draw_names(drawing, frame, &lines);
         }
         if self.is_empty() {
             let middle = [frame.corner[0] + 0.5 * frame.size[0], frame.corner[1] + 0.5 * frame.size[1]];
             drawing.text(middle, "no data", NORMAL, Anchor::Middle);
         }
-        frame.draw_axes(drawing, Labels::Both);
+        self.draw_axes(drawing, frame);
         let (title, size) = typeface::fitted(title, LARGE, Weight::Regular, frame.size[0]);
         drawing.text([frame.corner[0] + 0.5 * frame.size[0], frame.corner[1] - 12.0], &title, size, Anchor::Middle);
+    }
+
+    /// The frame with its strip.
+    fn with_strip(&self, frame: &Frame) -> Frame {
+        Frame { size: [frame.size[0], frame.size[1] + self.strip()], ..frame.clone() }
+    }
+
+    fn draw_axes(&self, drawing: &mut Drawing, frame: &Frame) {
+        if self.strip() == 0.0 {
+            return frame.draw_axes(drawing, Labels::Both);
+        }
+        let [left, y] = [frame.corner[0], frame.corner[1] + frame.size[1]];
+        drawing.line([left, y], [left + frame.size[0], y], &Paint::stroke(FAINT, 1.0));
+        drawing.text([left - 11.0, y + 0.5 * EXACT_ROOM + 6.0], "exact", SMALL, Anchor::End);
+        // The vertical axis ends at the strip; the horizontal axis is below both.
+        let without_x = Axis { ticks: Default::default(), label: String::new(), ..frame.x.clone() };
+        Frame { x: without_x, ..frame.clone() }.draw_axes(drawing, Labels::Both);
+        let without_y = Axis { ticks: Default::default(), ..frame.y.clone() };
+        Frame { y: without_y, ..self.with_strip(frame) }.draw_axes(drawing, Labels::Horizontal);
+    }
+
+    /// The band and the level, below all lines.
+    fn draw_below(&self, drawing: &mut Drawing, frame: &Frame) {
+        if let Some(band) = &self.band {
+            let places = self.places(frame, &band.points);
+            drawing.polyline(&places, &Paint::stroke(BAND, WIDE));
+            places.iter().for_each(|&place| drawing.circle(place, 0.5 * WIDE, &Paint::fill(BAND)));
+        }
+        if let Some([left, right]) = self.ends_of_level(frame) {
+            drawing.line(left, right, &Paint::stroke(LEVEL, 1.6).dashed(&[8.0, 5.0]));
+        }
+    }
+
+    fn ends_of_level(&self, frame: &Frame) -> Option<[[f64; 2]; 2]> {
+        let (_, value) = self.level.as_ref()?;
+        let y = frame.place([frame.x.range[0], *value])[1];
+        Some([[frame.corner[0], y], [frame.corner[0] + frame.size[0], y]])
+    }
+
+    /// The names of level, lines and band beside them.
+    fn draw_names(&self, drawing: &mut Drawing, frame: &Frame, lines: &[Vec<[f64; 2]>]) {
+        let mut taken = Taken::new(&self.with_strip(frame));
+        lines.iter().for_each(|places| taken.add_line(places));
+        if let (Some((name, _)), Some([left, right])) = (&self.level, self.ends_of_level(frame)) {
+            taken.add_line(&[left, right]);
+            taken.label(drawing, name, LEVEL, &[[right[0] - 6.0, right[1]], [left[0] + 6.0, left[1]]]);
+        }
+        for (index, (series, places)) in self.series.iter().zip(lines).enumerate() {
+            taken.label(drawing, &series.name, darker(PALETTE[index % PALETTE.len()]), places);
+        }
+        if let Some(band) = &self.band {
+            taken.label(drawing, &band.name, BAND_INK, &self.places(frame, &band.points));
+        }
     }
 
     /// The upper left corner of a box of `size` within the frame that covers no line; `None` if there is no such box.
@@ -136,7 +242,7 @@ impl Plot {
         }
         let mut taken: Vec<[f64; 2]> = Vec::new();
         for series in &self.series {
-            let places: Vec<[f64; 2]> = series.points.iter().map(|&point| frame.place(point)).collect();
+            let places = self.places(frame, &series.points);
             taken.extend(places.iter().filter(|place| place[0].is_finite()));
             for pair in places.windows(2) {
                 let step = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
@@ -179,8 +285,15 @@ pub fn line_plots(title: &str, plots: &[Plot]) -> Drawing {
 /// The same for a screen or for paper.
 pub(crate) fn line_plots_for(medium: Medium, title: &str, plots: &[Plot]) -> Drawing {
     let margin = medium.margin();
-    let width = medium.width(plots.len(), WIDTH[usize::from(plots.len() > 1)]);
-    let height = if medium == Medium::Paper { PAPER_HEIGHT } else { HEIGHT };
+    let beside = plots.iter().any(|plot| plot.names_beside);
+    // Names beside the lines take the room of two columns.
+    let columns = if beside { 2 } else { plots.len() };
+    let width = medium.width(columns, if beside { WIDTH_BESIDE } else { WIDTH }[usize::from(plots.len() > 1)]);
+    let height = match medium {
+        _ if beside => HEIGHT_BESIDE,
+        Medium::Paper => PAPER_HEIGHT,
+        Medium::Screen => HEIGHT,
+    };
     let title = medium.title(typeface::wrapped(title, TITLE, Weight::Bold, width - 2.0 * margin));
     let titles: Vec<String> =
         plots.iter().enumerate().map(|(k, plot)| medium.panel_title(k, plots.len(), &plot.title)).collect();
@@ -192,6 +305,7 @@ pub(crate) fn line_plots_for(medium: Medium, title: &str, plots: &[Plot]) -> Dra
         .enumerate()
         .map(|(k, plot)| {
             // The room for the tick labels depends on the ticks, and the ticks depend only on the height.
+            let height = height - plot.strip();
             let [x, y] = plot.axes([column, height]);
             let room = y.room_left() + if k > 0 { 26.0 } else { 0.0 };
             let across = (column - room - x.overhang().max(12.0)).max(120.0);
@@ -230,5 +344,5 @@ pub(crate) fn line_plots_for(medium: Medium, title: &str, plots: &[Plot]) -> Dra
             }
         }
     }
-    drawing.on_paper(medium.millimetres(plots.len()))
+    drawing.on_paper(medium.millimetres(columns))
 }

@@ -1,12 +1,16 @@
 //! A trade-off as a picture: error over time, a curve for each method with its settings (a way).
 
-use super::Drawing;
-use super::curves::{Curve, CurvePanel, EXACT, draw_curves};
 use super::medium::Medium;
+use super::plot::line_plots_for;
 use super::report::plural;
-use super::ticks::Quantity;
 use super::tradeoff::unknowns;
+use super::{Drawing, Plot, Quantity, Scale, Series};
+#[cfg(feature = "cli")]
+use crate::study::on_front;
 use crate::study::{Tradeoff, TradeoffMesh, TradeoffPoint};
+
+/// An error below this is rounding: the answer is exact for its mesh.
+const EXACT: f64 = 3e-16;
 
 /// Most curves in one panel: more could not be distinguished.
 const MOST_CURVES: usize = 6;
@@ -33,7 +37,7 @@ fn by_way<'a>(points: impl Iterator<Item = &'a TradeoffPoint>) -> Vec<(String, V
     ways
 }
 
-/// The ways that get a curve: those on the Pareto front, then the fastest; the best are drawn last, over all others.
+/// The ways that get a curve: those on the Pareto front, then the fastest; the best come first.
 fn chosen(mut ways: Vec<(String, Vec<&TradeoffPoint>)>) -> Vec<(String, Vec<&TradeoffPoint>)> {
     let best = |points: &[&TradeoffPoint]| points.iter().filter(|point| point.best).count();
     let fastest = |points: &[&TradeoffPoint]| points.iter().map(|point| point.seconds).fold(f64::INFINITY, f64::min);
@@ -46,7 +50,6 @@ fn chosen(mut ways: Vec<(String, Vec<&TradeoffPoint>)>) -> Vec<(String, Vec<&Tra
     let rank = |points: &[&TradeoffPoint]| (best(points), usize::from(soonest.is_finite() && exact(points) == soonest));
     ways.sort_by(|a, b| rank(&b.1).cmp(&rank(&a.1)).then(fastest(&a.1).total_cmp(&fastest(&b.1))));
     ways.truncate(MOST_CURVES);
-    ways.reverse();
     ways
 }
 
@@ -63,25 +66,18 @@ pub(crate) fn tradeoff_plot_for(medium: Medium, title: &str, tradeoff: &Tradeoff
         let place = |point: &TradeoffPoint| [point.seconds, point.energy_error];
         let all = by_way(of_mesh());
         let count = all.len();
-        let curve = |(name, points): (String, Vec<&TradeoffPoint>)| Curve {
-            name,
-            points: points.into_iter().map(place).collect(),
-        };
-        let curves: Vec<Curve> = chosen(all).into_iter().map(curve).collect();
+        let series = curves(chosen(all), place);
         let mut band: Vec<[f64; 2]> = of_mesh().filter(|point| point.best).map(place).collect();
         band.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let rest = if curves.len() < count { format!(", {} of {count} ways", curves.len()) } else { String::new() };
-        CurvePanel {
+        let rest = if series.len() < count { format!(", {} of {count} ways", series.len()) } else { String::new() };
+        Plot {
             title: format!("{} dofs, {}{rest}", mesh.dofs, plural(mesh.contact_rows, "contact row")),
-            x: Quantity::new("time", "s"),
-            y: Quantity::new("relative energy error of the algebra", ""),
-            curves,
-            band: ("Pareto front".into(), band),
             level: mesh.discretisation_error.map(|error| ("error of the mesh".into(), error)),
+            ..error_over_time("relative energy error of the algebra", series, band)
         }
     };
-    let panels: Vec<CurvePanel> = tradeoff.meshes.iter().enumerate().map(panel).collect();
-    draw_curves(medium, title, &panels)
+    let panels: Vec<Plot> = tradeoff.meshes.iter().enumerate().map(panel).collect();
+    line_plots_for(medium, title, &panels)
 }
 
 /// Total error over time: a curve for each way, a point for each mesh: the cheapest answer with hardly more error than the mesh.
@@ -99,23 +95,29 @@ pub(crate) fn total_error_plot(medium: Medium, title: &str, tradeoff: &Tradeoff)
         points.dedup_by_key(|point| point.mesh);
     }
     let place = |point: &TradeoffPoint| [point.seconds, point.total_error.unwrap_or(f64::NAN)];
-    let mut all: Vec<[f64; 2]> = ways.iter().flat_map(|way| &way.1).map(|point| place(point)).collect();
-    all.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let mut band: Vec<[f64; 2]> = Vec::new();
-    for point in all {
-        if band.last().is_none_or(|last| point[1] < last[1]) {
-            band.push(point);
-        }
-    }
-    let curve =
-        |(name, points): (String, Vec<&TradeoffPoint>)| Curve { name, points: points.into_iter().map(place).collect() };
-    let panel = CurvePanel {
+    let all: Vec<[f64; 2]> = ways.iter().flat_map(|way| &way.1).map(|point| place(point)).collect();
+    let mut band: Vec<[f64; 2]> =
+        all.iter().zip(on_front(&all)).filter(|point| point.1).map(|point| *point.0).collect();
+    band.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let panel = Plot {
         title: format!("a point for each of the {} meshes", tradeoff.meshes.len()),
-        x: Quantity::new("time", "s"),
-        y: Quantity::new("relative total error, mesh estimated", ""),
-        curves: chosen(ways).into_iter().map(curve).collect(),
-        band: ("Pareto front".into(), band),
-        level: None,
+        ..error_over_time("relative total error, mesh estimated", curves(chosen(ways), place), band)
     };
-    draw_curves(medium, title, &[panel])
+    line_plots_for(medium, title, &[panel])
+}
+
+/// Error over time on logarithmic axes, the names beside the curves, with the Pareto front as a band.
+fn error_over_time(error: &str, series: Vec<Series>, front: Vec<[f64; 2]>) -> Plot {
+    Plot {
+        scales: [Scale::Logarithmic; 2],
+        names_beside: true,
+        band: Some(Series::new("Pareto front", front)),
+        exact: EXACT,
+        ..Plot::new(Quantity::new("time", "s"), Quantity::new(error, ""), series)
+    }
+}
+
+/// A curve for each way.
+fn curves(ways: Vec<(String, Vec<&TradeoffPoint>)>, place: fn(&TradeoffPoint) -> [f64; 2]) -> Vec<Series> {
+    ways.into_iter().map(|(name, points)| Series::new(name, points.into_iter().map(place).collect())).collect()
 }

@@ -36,6 +36,8 @@ pub use method::Start;
 pub use method::interior_point::InteriorPoint;
 pub use method::parametric::Event;
 pub use method::penalty::Penalty;
+#[cfg(feature = "cli")]
+pub(crate) use prepared::between;
 pub use prepared::{BoundarySolution, Path, Prepared};
 pub use problem::ContactProblem;
 #[cfg(feature = "cli")]

@@ -2,6 +2,7 @@
 
 mod compare;
 mod exact_path;
+mod front;
 mod kept_answers;
 mod motion;
 mod motion_tradeoff;
@@ -17,6 +18,8 @@ mod tradeoff;
 mod warnings;
 
 pub use compare::{Agreement, Comparison, Difference, MethodAnswer, compare};
+#[cfg(feature = "cli")]
+pub(crate) use front::on_front;
 pub use motion::{MotionContact, MotionSummary};
 pub use motion_tradeoff::{MotionPoint, MotionTradeoff, motion_tradeoff};
 #[cfg(feature = "cli")]

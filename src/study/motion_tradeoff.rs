@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use super::front::on_front;
 use crate::error::Error;
 use crate::motion::Integrator;
 use crate::motion::SchemeSpec;
@@ -104,12 +105,8 @@ pub fn motion_tradeoff(scene: &Scene, settings: &Settings) -> Result<MotionTrade
     if points.is_empty() {
         return Err(Error::Interrupted);
     }
-    let beats = |one: &MotionPoint, other: &MotionPoint| {
-        let no_worse = one.seconds <= other.seconds && one.displacement_error <= other.displacement_error;
-        no_worse && (one.seconds < other.seconds || one.displacement_error < other.displacement_error)
-    };
-    let best: Vec<bool> = points.iter().map(|point| !points.iter().any(|other| beats(other, point))).collect();
-    points.iter_mut().zip(best).for_each(|(point, best)| point.best = best);
+    let costs: Vec<[f64; 2]> = points.iter().map(|point| [point.seconds, point.displacement_error]).collect();
+    points.iter_mut().zip(on_front(&costs)).for_each(|(point, best)| point.best = best);
     let steps = SAMPLES * quarter * REFERENCE;
     let duration = own.step * own.steps as f64;
     Ok(MotionTradeoff { dofs: model.problem().dofs(), reference_step: duration / steps as f64, points })

@@ -7,7 +7,7 @@ use super::kept_answers::KeptAnswers;
 use super::scene::{even_gaps, problem_summary};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;
-use crate::qp::{Prepared, Settings, Start};
+use crate::qp::{Prepared, Settings, Start, between};
 use crate::solution::Solution;
 
 /// One point of the path.
@@ -91,10 +91,4 @@ pub(crate) fn sweep_problem(
 
 fn point(problem: &ContactProblem, t: f64, solution: Solution, settings: &Settings) -> ProblemPoint {
     ProblemPoint { t, summary: problem_summary(problem, solution, settings.goal(), 0.0) }
-}
-
-/// Entry by entry `(1 - t) first + t last`; an entry that is equal at both ends, as an infinite gap, stays unchanged.
-fn between(first: &[f64], last: &[f64], t: f64) -> Vec<f64> {
-    let mix = |(&first, &last): (&f64, &f64)| if first == last { first } else { (1.0 - t) * first + t * last };
-    first.iter().zip(last).map(mix).collect()
 }

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use super::front::on_front;
 use super::warnings::check_approach;
 use crate::error::Error;
 use crate::qp::linear::dot;
@@ -426,13 +427,10 @@ impl TradeoffPoint {
 
 /// Marks the Pareto front of each mesh.
 fn mark_best(points: &mut [TradeoffPoint]) {
-    let beats = |one: &TradeoffPoint, other: &TradeoffPoint| {
-        let [error, beaten] = [one, other].map(TradeoffPoint::error_above_rounding);
-        let no_worse = one.seconds <= other.seconds && error <= beaten;
-        one.mesh == other.mesh && no_worse && (one.seconds < other.seconds || error < beaten)
-    };
-    let best: Vec<bool> = points.iter().map(|point| !points.iter().any(|other| beats(other, point))).collect();
-    points.iter_mut().zip(best).for_each(|(point, best)| point.best = best);
+    for of_mesh in points.chunk_by_mut(|a, b| a.mesh == b.mesh) {
+        let costs: Vec<[f64; 2]> = of_mesh.iter().map(|point| [point.seconds, point.error_above_rounding()]).collect();
+        of_mesh.iter_mut().zip(on_front(&costs)).for_each(|(point, best)| point.best = best);
+    }
 }
 
 fn advice(points: &[TradeoffPoint]) -> Vec<Advice> {

@@ -6,4 +6,6 @@ mod reuse;
 
 pub use boundary::BoundarySolution;
 pub use path::Path;
+#[cfg(feature = "cli")]
+pub(crate) use path::between;
 pub use reuse::Prepared;

@@ -34,6 +34,12 @@ pub struct Path {
     walk: Walk,
 }
 
+/// Entry by entry `(1 - t) from + t to`; an entry that is equal at both ends, as an infinite gap, stays unchanged.
+pub(crate) fn between(from: &[f64], to: &[f64], t: f64) -> Vec<f64> {
+    let mix = |(&from, &to): (&f64, &f64)| if from == to { from } else { (1.0 - t) * from + t * to };
+    from.iter().zip(to).map(mix).collect()
+}
+
 impl Path {
     /// The rows that touch or release on the way, in the order of their place t.
     pub fn events(&self) -> &[Event] {
@@ -65,8 +71,7 @@ impl Path {
 
     /// The gaps at `t`, length m, in the problem's unit of length; negative if the obstacle starts inside the body.
     pub fn gap(&self, t: f64) -> Vec<f64> {
-        let mix = |(&from, &to): (&f64, &f64)| if from == to { from } else { (1.0 - t) * from + t * to };
-        self.from.iter().zip(&self.to).map(mix).collect()
+        between(&self.from, &self.to, t)
     }
 
     /// The multipliers at `t`, length m, in the problem's unit of force, `<= 0` in compression.
