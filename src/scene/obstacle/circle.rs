@@ -4,10 +4,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::frame::Local;
-use super::profile::Profile;
+use super::graph::{Form, Graph};
 use super::shape::{About, Geometry, ObstacleShape, Side, Site};
-use super::surface::{Foot, Surface};
+use super::surface::{Foot, Local, Surface};
 use crate::error::Error;
 use crate::scene::schema::json::word;
 
@@ -39,7 +38,7 @@ impl ObstacleShape for CircleSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let radius = site.positive("radius", self.radius)?;
         let apex = site.apex(self.centre, self.apex, self.side.signed(radius))?;
-        Ok(Geometry::rigid(site, Profile::new(site, site.local(apex), round(radius, self.side))))
+        Ok(Geometry::rigid(site, Graph::new(site, apex, Form::DrawnOut(round(radius, self.side)))))
     }
 
     fn radius(&self) -> f64 {

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::graph::{Form, Graph};
 use super::polyline::Polyline;
 use super::shape::{About, Geometry, ObstacleShape, Site};
-use super::solid::{Form, Solid};
 use crate::error::Error;
 
 /// A cone that opens along the approach direction.
@@ -27,6 +27,6 @@ impl ObstacleShape for ConeSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let apex = site.point("apex", &self.apex)?;
         let slope = site.positive("slope", self.slope)?;
-        Ok(Geometry::rigid(site, Solid::new(site, apex, Form::Turned(Arc::new(Polyline::wedge(slope))))))
+        Ok(Geometry::rigid(site, Graph::new(site, apex, Form::Turned(Arc::new(Polyline::wedge(slope))))))
     }
 }

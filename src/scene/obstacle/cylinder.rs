@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::circle::round;
+use super::graph::{Form, Graph};
 use super::shape::{About, Geometry, ObstacleShape, Side, Site};
-use super::solid::{Form, Solid};
 use crate::error::Error;
 use crate::fem::geometry::dot;
 use crate::scene::entry::{point, wrong};
@@ -42,7 +42,7 @@ impl ObstacleShape for CylinderSpec {
         let radius = site.positive("radius", self.radius)?;
         let apex = site.apex(self.centre, self.apex, self.side.signed(radius))?;
         let axis = axis_across(&self.axis, site)?;
-        Ok(Geometry::rigid(site, Solid::new(site, apex, Form::DrawnOut(round(radius, self.side))).along(axis)))
+        Ok(Geometry::rigid(site, Graph::new(site, apex, Form::DrawnOut(round(radius, self.side))).along(axis)))
     }
 }
 

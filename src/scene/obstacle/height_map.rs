@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::graph::{Form, Graph, Grid, across};
 use super::patch::{Foot, Patch};
 use super::shape::{About, Geometry, ObstacleShape, Site};
-use super::solid::{Form, Grid, Solid, across};
 use crate::error::Error;
 use crate::fem::geometry::dot;
 use crate::scene::entry::{PLACE_TOLERANCE, finite, number, point, wrong};
@@ -41,7 +41,7 @@ impl ObstacleShape for HeightMapSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let map = HeightMap::new(self, site)?;
         check_reach(&map, site)?;
-        Ok(Geometry::rigid(site, Solid::new(site, [0.0; 3], Form::Grid(Arc::new(map)))))
+        Ok(Geometry::rigid(site, Graph::new(site, [0.0; 3], Form::Grid(Arc::new(map)))))
     }
 }
 

@@ -4,10 +4,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::frame::Local;
-use super::profile::Profile;
+use super::graph::{Form, Graph};
 use super::shape::{About, Geometry, ObstacleShape, Site};
-use super::surface::{Foot, Surface};
+use super::surface::{Foot, Local, Surface};
 use crate::error::Error;
 
 /// Newton's method from the right of the root of a convex cubic converges monotonically; it never needs as many steps.
@@ -31,7 +30,7 @@ impl ObstacleShape for ParabolaSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let apex = site.point("apex", &self.apex)?;
         let radius = site.positive("radius", self.radius)?;
-        Ok(Geometry::rigid(site, Profile::new(site, site.local(apex), Arc::new(Parabola { radius }))))
+        Ok(Geometry::rigid(site, Graph::new(site, apex, Form::DrawnOut(Arc::new(Parabola { radius })))))
     }
 }
 

@@ -4,12 +4,11 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::frame::{Frame, Local};
-use super::profile::Profile;
+use super::graph::{Form, Graph};
 use super::row::ObstacleRow;
 use super::ruled::RigidSurface;
 use super::shape::{About, Geometry, ObstacleShape, Site};
-use super::surface::{Foot, Surface};
+use super::surface::{Foot, Local, Surface};
 use crate::error::Error;
 use crate::fem::geometry::{dot, length, minus};
 use crate::scene::entry::{point, vector, wrong};
@@ -57,8 +56,8 @@ impl ObstacleShape for PlaneSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let (point, normal) = self.checked(site)?;
         if site.body.dimension() == 2 {
-            let line = Line { normal: Frame::of(site.approach).local([normal[0], normal[1]]) };
-            return Ok(Geometry::rigid(site, Profile::new(site, site.local(point), Arc::new(line))));
+            let line = Line { normal: site.local(normal) };
+            return Ok(Geometry::rigid(site, Graph::new(site, point, Form::DrawnOut(Arc::new(line)))));
         }
         Ok(Geometry::rigid(site, HalfSpace { point, normal, approach: site.direction() }))
     }

@@ -1,7 +1,6 @@
 //! A polyline over the coordinate along it, extended by a ray at each end: wedge and table.
 
-use super::frame::Local;
-use super::surface::{Foot, Surface};
+use super::surface::{Foot, Local, Surface};
 
 /// Knots increasing along the surface, and the slopes of the rays before the first and after the last.
 #[derive(Debug)]

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::frame::{Frame, Local};
 use super::pairs::Pair;
 use super::row::Obstacle;
 use super::ruled::{RigidSurface, Ruled};
+use super::surface::Local;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::scene::entry::{COORDINATE_ROUNDING, finite, number, vector, wrong};
@@ -116,9 +116,15 @@ impl Site<'_> {
         direction
     }
 
-    /// A point of the plane in the frame of the obstacle.
-    pub fn local(&self, [x, y, _]: [f64; 3]) -> Local {
-        Frame::of(self.approach).local([x, y])
+    /// A point or a direction of the plane in the axes of the obstacle: along its surface, and towards it.
+    pub fn local(&self, global: [f64; 3]) -> Local {
+        let (axis, sense) = self.approach.axis();
+        [global[1 - axis], sense * global[axis]]
+    }
+
+    /// The name of the coordinate along an obstacle in the plane.
+    pub fn name_along(&self) -> &'static str {
+        ["y", "x"][self.approach.axis().0]
     }
 
     /// Lengths below this are rounding of coordinates.

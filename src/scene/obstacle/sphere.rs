@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::circle::round;
+use super::graph::{Form, Graph};
 use super::shape::{About, Geometry, ObstacleShape, Side, Site};
-use super::solid::{Form, Solid};
 use crate::error::Error;
 use crate::scene::schema::json::word;
 
@@ -33,7 +33,7 @@ impl ObstacleShape for SphereSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let radius = site.positive("radius", self.radius)?;
         let apex = site.apex(self.centre, self.apex, self.side.signed(radius))?;
-        Ok(Geometry::rigid(site, Solid::new(site, apex, Form::Turned(round(radius, self.side)))))
+        Ok(Geometry::rigid(site, Graph::new(site, apex, Form::Turned(round(radius, self.side)))))
     }
 
     fn radius(&self) -> f64 {

@@ -2,7 +2,8 @@
 
 use std::fmt::Debug;
 
-use super::frame::Local;
+/// Coordinates `[along, towards]`: along the surface, and towards the obstacle.
+pub(in crate::scene) type Local = [f64; 2];
 
 /// The connection from a node to the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,11 +4,10 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::frame::{Frame, Local};
+use super::graph::{Form, Graph};
 use super::polyline::Polyline;
-use super::profile::Profile;
 use super::shape::{About, Geometry, ObstacleShape, Site};
-use super::surface::Surface;
+use super::surface::{Local, Surface};
 use crate::error::Error;
 use crate::scene::entry::{PLACE_TOLERANCE, finite_pair, number, point, wrong};
 
@@ -27,12 +26,12 @@ pub(super) const ABOUT: About = About { name: "table", dimensions: &[2] };
 
 impl TableSpec {
     fn polyline(&self, site: &Site) -> Result<Polyline, Error> {
-        let (frame, path) = (Frame::of(site.approach), site.field("points"));
-        let axis = ["x", "y"][frame.along_axis()];
+        let path = site.field("points");
+        let axis = site.name_along();
         let mut knots: Vec<Local> = Vec::with_capacity(self.points.len());
         for (index, &at) in self.points.iter().enumerate() {
             finite_pair(&format!("{path}[{index}]"), at)?;
-            let knot = frame.local(at);
+            let knot = site.local([at[0], at[1], 0.0]);
             if let Some(last) = knots.last().filter(|last| knot[0] <= last[0]) {
                 let (this, before) = (number(knot[0]), number(last[0]));
                 let message =
@@ -51,26 +50,24 @@ impl ObstacleShape for TableSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let table = self.polyline(site)?;
         check_reach(&table, site)?;
-        Ok(Geometry::rigid(site, Profile::new(site, [0.0; 2], Arc::new(table))))
+        Ok(Geometry::rigid(site, Graph::new(site, [0.0; 3], Form::DrawnOut(Arc::new(table)))))
     }
 }
 
 /// Checks that every candidate lies over the surface.
 fn check_reach(table: &Polyline, site: &Site) -> Result<(), Error> {
-    let (frame, path) = (Frame::of(site.approach), site.field("points"));
-    let axis = ["x", "y"][frame.along_axis()];
+    let (axis, path) = (site.name_along(), site.field("points"));
     let (first, last) = table.range();
     for &(node, _) in site.candidates {
-        let [x, y, _] = site.body.mesh().nodes()[node];
-        let at = [x, y];
-        let along = frame.local(at)[0];
+        let at = site.body.mesh().nodes()[node];
+        let along = site.local(at)[0];
         if !(first..=last).contains(&along) {
             let corners = table.corners();
             let ends = corners.first().zip(corners.last());
             let reach = ends.map_or(String::new(), |(a, b)| format!(" from {axis} = {} to {}", number(*a), number(*b)));
             let message = format!(
                 "the table reaches{reach}, but candidate node {node} at {} needs it at {axis} = {}",
-                point(&at),
+                point(&at[..2]),
                 number(along)
             );
             return Err(wrong(path.as_str(), message));

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::graph::{Form, Graph};
 use super::polyline::Polyline;
-use super::profile::Profile;
 use super::shape::{About, Geometry, ObstacleShape, Site};
 use crate::error::Error;
 
@@ -27,6 +27,6 @@ impl ObstacleShape for WedgeSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let apex = site.point("apex", &self.apex)?;
         let slope = site.positive("slope", self.slope)?;
-        Ok(Geometry::rigid(site, Profile::new(site, site.local(apex), Arc::new(Polyline::wedge(slope)))))
+        Ok(Geometry::rigid(site, Graph::new(site, apex, Form::DrawnOut(Arc::new(Polyline::wedge(slope))))))
     }
 }

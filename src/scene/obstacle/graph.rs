@@ -1,4 +1,5 @@
-//! Obstacles in space: a graph over two coordinates, in most cases a curve of the plane rotated or extruded.
+//! Obstacles as graphs over the coordinates perpendicular to the approach direction: in most cases a curve rotated or extruded. An
+//! obstacle in the plane is a curve extruded along z.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -10,13 +11,19 @@ use super::surface::Surface;
 use crate::fem::geometry::{cross, dot};
 use crate::scene::schema::approach::{Approach, Rule};
 
-/// A surface in space, in its frame.
+/// Largest number of pieces of a pictured surface; more cannot be seen.
+const MAX_SEGMENTS: usize = 10_000;
+
+/// A surface in its frame.
 #[derive(Clone, Debug)]
-pub(super) struct Solid {
+pub(super) struct Graph {
     /// Orthonormal: two axes perpendicular to the approach direction, and the approach direction.
     axes: [[f64; 3]; 3],
     origin: [f64; 3],
     form: Form,
+    /// Extent of the pictured surface along the first axis, from the origin: beyond the body by its size on each side, so that a wall
+    /// before a slender body does not end in the picture.
+    extent: [f64; 2],
     rounding: f64,
 }
 
@@ -41,13 +48,22 @@ pub(super) trait Grid: Debug + Send + Sync {
     fn closest(&self, node: [f64; 3], tolerance: f64) -> Option<([f64; 3], f64)>;
 }
 
-impl Solid {
+impl Graph {
     /// The surface with its origin at a point.
     pub fn new(site: &Site, origin: [f64; 3], form: Form) -> Self {
-        let across = across(site.approach);
+        let [first, second] = across(site.approach);
         let mut axes = [[0.0; 3]; 3];
-        (axes[0][across[0]], axes[1][across[1]], axes[2]) = (1.0, 1.0, site.direction());
-        Solid { axes, origin, form, rounding: site.rounding() }
+        (axes[0][first], axes[1][second], axes[2]) = (1.0, 1.0, site.direction());
+        let ((low, high), margin) = (site.body.mesh().extent(), site.body.mesh().size());
+        let extent = [low[first] - margin - origin[first], high[first] + margin - origin[first]];
+        Graph { axes, origin, form, extent, rounding: site.rounding() }
+    }
+
+    /// A point in the frame, with the surface moved by `shift`.
+    fn local(&self, point: [f64; 3], shift: f64) -> [f64; 3] {
+        let from_origin = [0, 1, 2].map(|axis| point[axis] - self.origin[axis]);
+        let [t1, t2, towards] = self.axes.map(|axis| dot(axis, from_origin));
+        [t1, t2, towards - shift]
     }
 
     /// The same surface extruded along another unit vector perpendicular to the approach direction.
@@ -58,15 +74,13 @@ impl Solid {
     }
 }
 
-impl RigidSurface for Solid {
+impl RigidSurface for Graph {
     fn approach(&self) -> [f64; 3] {
         self.axes[2]
     }
 
     fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
-        let from_origin = [0, 1, 2].map(|axis| node[axis] - self.origin[axis]);
-        let [t1, t2, towards] = self.axes.map(|axis| dot(axis, from_origin));
-        let towards = towards - shift;
+        let [t1, t2, towards] = self.local(node, shift);
         let along_approach = |height: Option<f64>| height.map(|height| ([0.0, 0.0, 1.0], height - towards));
         let way = match (&self.form, rule) {
             (Form::Turned(curve), Rule::Approach) => along_approach(curve.height(t1.hypot(t2))),
@@ -92,6 +106,44 @@ impl RigidSurface for Solid {
             let normal = [0, 1, 2].map(|i| (0..3).map(|axis| local[axis] * self.axes[axis][i]).sum());
             ObstacleRow { normal, gap }
         }))
+    }
+
+    fn gap_along(&self, from: [f64; 3], to: [f64; 3], shift: f64) -> Option<([f64; 3], [f64; 2])> {
+        let Form::DrawnOut(curve) = &self.form else { return None };
+        let ([from, _, low], [to, _, high]) = (self.local(from, shift), self.local(to, shift));
+        let (first, last) = curve.range();
+        let [start, end] = [from, to].map(|along| along.clamp(first, last));
+        if start == from && end == to {
+            let (heights, off) = curve.enclosed(from, to)?;
+            return Some(([heights[0] - low, heights[1] - (low + high) / 2.0, heights[2] - high], off));
+        }
+        if start == end {
+            return None;
+        }
+        // The surface reaches only over a part of the way: take the lowest height there.
+        let ([first, middle, last], [below, _]) = curve.enclosed(start, end)?;
+        let lowest = first.min(last).min(2.0 * middle - (first + last) / 2.0) - below;
+        Some(([lowest - low.max(high); 3], [0.0, f64::INFINITY]))
+    }
+
+    fn outline(&self, shift: f64, segments: usize) -> Vec<[f64; 2]> {
+        let Form::DrawnOut(curve) = &self.form else { return Vec::new() };
+        let (reach, [low, high]) = (curve.range(), self.extent);
+        let (first, last) = (low.max(reach.0), high.min(reach.1));
+        if first >= last {
+            return Vec::new();
+        }
+        let segments = segments.clamp(1, MAX_SEGMENTS);
+        let sample = |i: usize| if i == segments { last } else { first + (last - first) * i as f64 / segments as f64 };
+        let mut along: Vec<f64> = (0..=segments).map(sample).collect();
+        along.extend(curve.corners().into_iter().filter(|&corner| corner > first && corner < last));
+        along.sort_by(f64::total_cmp);
+        along.dedup();
+        let place = |along: f64| {
+            let local = [along, 0.0, curve.height(along)? + shift];
+            Some([0, 1].map(|i| self.origin[i] + (0..3).map(|axis| local[axis] * self.axes[axis][i]).sum::<f64>()))
+        };
+        along.into_iter().filter_map(place).collect()
     }
 }
 
