@@ -34,6 +34,17 @@ impl From<FactorError> for Error {
     }
 }
 
+/// The factor of a matrix that may not be positive definite; `None` if it is not.
+///
+/// # Errors
+/// [`Error::Numerical`] if the factorisation fails for another reason, such as memory.
+pub fn if_definite<T>(factor: Result<T, FactorError>) -> Result<Option<T>, Error> {
+    match factor {
+        Err(FactorError::NotPositiveDefinite) => Ok(None),
+        factor => Ok(Some(factor?)),
+    }
+}
+
 impl From<FaerError> for FactorError {
     fn from(error: FaerError) -> Self {
         FactorError::Failed(format!("{error:?}"))

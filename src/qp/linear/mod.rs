@@ -36,7 +36,7 @@ pub use cholesky::{Analysis, Cholesky};
 pub use conjugate_gradients::{Blocks, Iterate};
 pub use dense::{LowerTriangle, UpperTriangle, dot, largest, norm, subtract, take_out, turned};
 pub use dependence::Dependence;
-pub use factor::{FactorError, Width};
+pub use factor::{FactorError, Width, if_definite};
 pub use forest::Forest;
 pub use null_space::{NullSpace, generic};
 pub use ordering::Fill;

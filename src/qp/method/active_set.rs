@@ -16,16 +16,16 @@
 
 use std::collections::HashSet;
 
-use super::earlier_factor::{BoundedDofs, EarlierFactor, TRIAL, steps_for_a_factor};
+use super::earlier_factor::{EarlierFactor, TRIAL, steps_for_a_factor};
 use super::equilibrium::{Equilibrium, WEIGHT, equilibrium, reach};
-use super::scaled::multiplier_rounding;
-use super::{Ending, FreeMode, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start, Support};
+use super::{Ending, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start};
 use crate::error::Error;
+use crate::qp::linear::largest;
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 
-/// Number of free modes that may be stopped, if there are fewer rows.
-const MOST_STOPS: usize = 100;
+/// Rounding of a multiplier, in units of the last place of the forces that balance it.
+const FORCE_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Number of block exchanges that may fail to reduce the number of violations before a single pivot.
 const PATIENCE: usize = 3;
@@ -53,28 +53,14 @@ impl Solver for ActiveSet<'_> {
         let mut seen = HashSet::new();
         let mut rule = Rule::Exchange;
         let mut ending = Ending::Unsettled;
-        let mut stops = 0;
         let mut balances = Balances::of_sets(scaled);
         let is_over = |done: usize| done > 0 && scaled.watch().is_over();
-        while ending == Ending::Unsettled && history.len() + stops < self.most_iterations && !is_over(history.len()) {
+        while ending == Ending::Unsettled && history.len() < self.most_iterations && !is_over(history.len()) {
             scaled.watch().step("active set", history.len() + 1);
-            let balance = match balances.of(&closed, &displacement)? {
-                Balance::Held(balance) => balance,
-                Balance::Free(mode) => match scaled.stopping_rows(&mode, &displacement, &closed) {
-                    // A mode that rows stop repeatedly must not continue the loop without end.
-                    Some(stopped) if stops < MOST_STOPS.max(rows) => {
-                        stops += 1;
-                        closed = stopped;
-                        continue;
-                    }
-                    Some(_) => break,
-                    None => {
-                        ending = Ending::Unheld;
-                        break;
-                    }
-                },
-                Balance::Indefinite => {
-                    ending = Ending::Unheld;
+            let balance = match balances.of(&mut closed, &displacement)? {
+                Ok(balance) => balance,
+                Err(without) => {
+                    ending = without;
                     break;
                 }
             };
@@ -108,49 +94,35 @@ impl Solver for ActiveSet<'_> {
 /// factor.
 struct Balances<'a> {
     scaled: &'a ScaledProblem<'a>,
-    most_steps: usize,
     /// Set if K is definite, every row bounds one dof, and a factor is expensive.
-    bounded: Option<BoundedDofs>,
-    earlier: Option<EarlierFactor>,
-}
-
-/// The balance of a set, or the reason why there is none.
-enum Balance {
-    Held(Equilibrium),
-    Free(FreeMode),
-    Indefinite,
+    earlier: Option<EarlierFactor<'a>>,
 }
 
 impl<'a> Balances<'a> {
     fn of_sets(scaled: &'a ScaledProblem<'a>) -> Self {
         let most_steps = steps_for_a_factor(scaled.augmented.analysis());
         let pays = scaled.is_definite() && most_steps >= TRIAL;
-        let bounded = pays.then(|| BoundedDofs::of(scaled.problem.contact())).flatten();
-        Balances { scaled, most_steps, bounded, earlier: None }
+        Balances { scaled, earlier: pays.then(|| EarlierFactor::of(scaled.problem, most_steps)).flatten() }
     }
 
-    /// The balance of `closed`, from a displacement `near` it.
+    /// The balance of `closed`, from a displacement `near` it, once the rows that hold the body have joined the set; the ending of
+    /// the loop if there is none.
     ///
     /// # Errors
-    /// As [`ScaledProblem::hold`].
-    fn of(&mut self, closed: &ContactSet, near: &[f64]) -> Result<Balance, Error> {
-        let problem = self.scaled.problem;
-        if let (Some(bounded), Some(factor)) = (&self.bounded, &self.earlier)
-            && let Some(balance) = factor.balance(&bounded.set(problem, closed), near, self.most_steps)
-        {
-            return Ok(Balance::Held(balance));
+    /// As [`ScaledProblem::hold_with_more`].
+    fn of(&mut self, closed: &mut ContactSet, near: &[f64]) -> Result<Result<Equilibrium, Ending>, Error> {
+        if let Some(balance) = self.earlier.as_mut().and_then(|earlier| earlier.balance(closed, near)) {
+            return Ok(Ok(balance));
         }
-        // There is room for one factor at a time.
-        self.earlier = None;
-        Ok(match self.scaled.hold(closed, WEIGHT)? {
-            Support::Held(cholesky) => {
-                let balance = equilibrium(problem, &cholesky, closed);
-                self.earlier = self.bounded.as_ref().map(|bounded| EarlierFactor::new(cholesky, bounded, closed));
-                Balance::Held(balance)
-            }
-            Support::Free(mode) => Balance::Free(mode),
-            Support::Indefinite => Balance::Indefinite,
-        })
+        let cholesky = match self.scaled.hold_with_more(closed, WEIGHT, near)? {
+            Ok(cholesky) => cholesky,
+            Err(ending) => return Ok(Err(ending)),
+        };
+        let balance = equilibrium(self.scaled.problem, &cholesky, closed);
+        if let Some(earlier) = &mut self.earlier {
+            earlier.keep(cholesky, closed);
+        }
+        Ok(Ok(balance))
     }
 }
 
@@ -160,7 +132,7 @@ impl<'a> Balances<'a> {
 /// # Errors
 /// [`Error::Numerical`] for lack of memory.
 pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Option<Equilibrium>, Error> {
-    let Support::Held(cholesky) = scaled.hold(closed, WEIGHT)? else { return Ok(None) };
+    let Some(cholesky) = scaled.hold(closed, WEIGHT)? else { return Ok(None) };
     let balance = equilibrium(scaled.problem, &cholesky, closed);
     Ok(Some(balance).filter(|balance| balance.consistent))
 }
@@ -209,12 +181,14 @@ impl Rule {
 /// The misclassified rows: open and penetrating, or closed and pulling, beyond rounding.
 fn wrong_rows(problem: &ContactProblem, u: &[f64], multiplier: &[f64], closed: &ContactSet) -> Vec<usize> {
     let reach = reach(problem, u);
-    let rounding = multiplier_rounding(problem, u, multiplier);
+    let mut forces = problem.stiffness().mul_abs(u);
+    forces.iter_mut().zip(problem.load()).for_each(|(sum, f)| *sum += f.abs());
+    let (forces, strongest) = (problem.contact().mul_abs(&forces), SIGN_TOLERANCE * largest(multiplier));
     let violation = problem.violation(u);
     (0..problem.rows())
         .filter(|&row| match closed.contains(row) {
             false => violation[row] > SIGN_TOLERANCE * (reach + problem.gap()[row].abs()),
-            true => multiplier[row] > rounding[row],
+            true => multiplier[row] > strongest + FORCE_ROUNDING * forces[row],
         })
         .collect()
 }

@@ -5,7 +5,7 @@
 //! than a factorisation.
 
 use super::equilibrium::Equilibrium;
-use crate::qp::linear::{Analysis, Blocks, Cholesky, Iterate, SparseMatrix, dot};
+use crate::qp::linear::{Analysis, Blocks, Cholesky, Iterate, dot};
 use crate::qp::problem::ContactProblem;
 use crate::solution::ContactSet;
 
@@ -34,89 +34,83 @@ pub fn steps_for_a_factor(analysis: &Analysis) -> usize {
     (analysis.multiplications() / (WORK_OF_STEP * values)).min(MOST_STEPS) as usize
 }
 
-/// The dof that every row bounds, with its coefficient.
-pub struct BoundedDofs {
-    dofs: usize,
+/// The factor of an earlier set of rows that bound one dof each.
+pub struct EarlierFactor<'a> {
+    problem: &'a ContactProblem,
+    /// The dof that every row bounds, with its coefficient.
     of_rows: Vec<(usize, f64)>,
+    /// Largest number of steps for one set.
+    most_steps: usize,
+    /// The factor of K + w B_C'B_C for the earlier set C, with a large w, and `true` for each dof that C holds.
+    factor: Option<(Cholesky, Vec<bool>)>,
 }
 
-impl BoundedDofs {
-    /// `None` if a row has several entries, or none.
-    pub fn of(contact: &SparseMatrix) -> Option<Self> {
-        let by_row = contact.transposed();
+impl<'a> EarlierFactor<'a> {
+    /// No factor yet, for at most `most_steps` steps from one set to the next; `None` if a row has several entries, or none.
+    pub fn of(problem: &'a ContactProblem, most_steps: usize) -> Option<Self> {
+        let by_row = problem.contact().transposed();
         let single = |row| {
             let mut entries = by_row.column(row).filter(|entry| entry.1 != 0.0);
             entries.next().filter(|_| entries.next().is_none())
         };
-        let of_rows = (0..contact.rows()).map(single).collect::<Option<Vec<_>>>()?;
-        Some(BoundedDofs { dofs: contact.columns(), of_rows })
+        let of_rows = (0..problem.rows()).map(single).collect::<Option<Vec<_>>>()?;
+        Some(EarlierFactor { problem, of_rows, most_steps, factor: None })
     }
 
-    /// A set of the rows.
-    pub fn set<'a>(&'a self, problem: &'a ContactProblem, closed: &'a ContactSet) -> BoundedSet<'a> {
-        BoundedSet { problem, bounded: self, closed }
+    /// Keeps the factor of K + w B_C'B_C for the set C, with a large w.
+    pub fn keep(&mut self, cholesky: Cholesky, closed: &ContactSet) {
+        let mut held = vec![false; self.problem.dofs()];
+        closed.iter().for_each(|row| held[self.of_rows[row].0] = true);
+        self.factor = Some((cholesky, held));
+    }
+
+    /// The balance of a set, from a displacement `near` it. `None` if that would take too many steps, or if two of its rows hold one
+    /// dof; then the factor is freed, because there is room for one at a time.
+    pub fn balance(&mut self, closed: &ContactSet, near: &[f64]) -> Option<Equilibrium> {
+        let factor = self.factor.take()?;
+        let balance = self.balance_by(&factor, closed, near)?;
+        self.factor = Some(factor);
+        Some(balance)
     }
 
     /// The values at which a set of rows holds dofs; `None` if two rows hold one dof.
-    fn held(&self, gap: &[f64], closed: &ContactSet) -> Option<Vec<Option<f64>>> {
-        let mut held = vec![None; self.dofs];
+    fn held(&self, closed: &ContactSet) -> Option<Vec<Option<f64>>> {
+        let mut held = vec![None; self.problem.dofs()];
         for row in closed.iter() {
             let (dof, coefficient) = self.of_rows[row];
-            if held[dof].replace(gap[row] / coefficient).is_some() {
+            if held[dof].replace(self.problem.gap()[row] / coefficient).is_some() {
                 return None;
             }
         }
         Some(held)
     }
-}
 
-/// A set of closed rows, which are at their gaps.
-pub struct BoundedSet<'a> {
-    problem: &'a ContactProblem,
-    bounded: &'a BoundedDofs,
-    closed: &'a ContactSet,
-}
-
-/// The factor of a set of closed rows that bound one dof each.
-pub struct EarlierFactor {
-    /// The factor of K + w B_C'B_C, with a large w.
-    cholesky: Cholesky,
-    /// `true` for each dof that is held in that set.
-    held: Vec<bool>,
-}
-
-impl EarlierFactor {
-    /// The factor of K + w B_C'B_C for the set C, with a large w.
-    pub fn new(cholesky: Cholesky, bounded: &BoundedDofs, closed: &ContactSet) -> Self {
-        let mut held = vec![false; bounded.dofs];
-        closed.iter().for_each(|row| held[bounded.of_rows[row].0] = true);
-        EarlierFactor { cholesky, held }
-    }
-
-    /// The balance of `set`, from a displacement `near` it; `None` if that would take more than `most_steps`, or if two of its rows
-    /// hold one dof.
-    pub fn balance(&self, set: &BoundedSet, near: &[f64], most_steps: usize) -> Option<Equilibrium> {
-        let BoundedSet { problem, bounded, closed } = *set;
-        let held = bounded.held(problem.gap(), closed)?;
+    fn balance_by(&self, factor: &(Cholesky, Vec<bool>), closed: &ContactSet, near: &[f64]) -> Option<Equilibrium> {
+        let (problem, held) = (self.problem, self.held(closed)?);
+        let (load, parts) = (problem.load(), problem.parts());
         let mut u: Vec<f64> = held.iter().zip(near).map(|(held, &near)| held.unwrap_or(near)).collect();
-        let energy = dot(&u, &problem.stiffness().mul(&u));
-        let (diagonal, enough) = (&problem.stiffness().diagonal(), ENOUGH * energy);
-        let task = Task { factor: self, problem, held: &held, diagonal, enough, most_steps };
-        let (mut steps, mut last) = (0, f64::INFINITY);
+        let enough = ENOUGH * dot(&u, &problem.stiffness().mul(&u));
+        let mut task = Task { factor, problem, held: &held, enough, steps_left: self.most_steps };
+        let mut last = f64::INFINITY;
         let force = loop {
-            let force = task.force(&u);
-            let residual = task.on_free(&force);
+            let elastic = problem.stiffness().mul(&u);
+            let force: Vec<f64> = elastic.iter().zip(load).map(|(elastic, load)| load - elastic).collect();
+            let residual = task.on_free(force.clone());
             let step = task.preconditioned(&residual);
             let left = dot(&residual, &step);
             if left <= enough || left > NO_GAIN * last {
-                break if task.is_balanced(&u, &residual, &step) { force } else { return None };
+                // The sum over all parts would hide a soft part beside a stiff one.
+                let left = parts.sums(|dof| residual[dof] * step[dof]);
+                let energy = parts.sums(|dof| u[dof] * elastic[dof]);
+                let is_balanced = left.iter().zip(&energy).all(|(left, energy)| *left <= ACCEPTED * energy);
+                break is_balanced.then_some(force)?;
             }
             last = left;
-            u = task.descend(Iterate::new(u, residual, Blocks::ONE), step, &mut steps)?;
+            u = task.descend(Iterate::new(u, residual, Blocks::ONE), step)?;
         };
         let mut multiplier = vec![0.0; problem.rows()];
         for row in closed.iter() {
-            let (dof, coefficient) = bounded.of_rows[row];
+            let (dof, coefficient) = self.of_rows[row];
             multiplier[row] = -force[dof] / coefficient;
         }
         Some(Equilibrium { displacement: u, multiplier, consistent: true })
@@ -125,64 +119,46 @@ impl EarlierFactor {
 
 /// A set and the data of its balance.
 struct Task<'a> {
-    factor: &'a EarlierFactor,
+    factor: &'a (Cholesky, Vec<bool>),
     problem: &'a ContactProblem,
     held: &'a [Option<f64>],
-    diagonal: &'a [f64],
     /// The remaining energy at which the displacement is balanced.
     enough: f64,
-    most_steps: usize,
+    steps_left: usize,
 }
 
 impl Task<'_> {
-    /// f - K u, on all dofs.
-    fn force(&self, u: &[f64]) -> Vec<f64> {
-        self.problem.stiffness().mul(u).iter().zip(self.problem.load()).map(|(elastic, load)| load - elastic).collect()
-    }
-
-    /// Returns `true` if almost no energy is left in any part; the sum over all would hide a soft part beside a stiff one.
-    fn is_balanced(&self, u: &[f64], residual: &[f64], direction: &[f64]) -> bool {
-        let (parts, elastic) = (self.problem.parts(), self.problem.stiffness().mul(u));
-        let left = parts.sums(|dof| residual[dof] * direction[dof]);
-        let energy = parts.sums(|dof| u[dof] * elastic[dof]);
-        left.iter().zip(&energy).all(|(left, energy)| *left <= ACCEPTED * energy)
-    }
-
-    fn on_free(&self, force: &[f64]) -> Vec<f64> {
-        force.iter().zip(self.held).map(|(&force, held)| if held.is_some() { 0.0 } else { force }).collect()
+    fn on_free(&self, mut force: Vec<f64>) -> Vec<f64> {
+        force.iter_mut().zip(self.held).filter(|entry| entry.1.is_some()).for_each(|(force, _)| *force = 0.0);
+        force
     }
 
     /// The earlier factor on the dofs that are free in both sets, the diagonal on those that became free.
     fn preconditioned(&self, residual: &[f64]) -> Vec<f64> {
-        let was_held = &self.factor.held;
+        let ((cholesky, was_held), diagonal) = (self.factor, &self.problem.diagonal().values);
         let known: Vec<f64> = residual.iter().zip(was_held).map(|(&r, &held)| if held { 0.0 } else { r }).collect();
-        let mut step = self.factor.cholesky.solve(&known);
-        for (dof, step) in step.iter_mut().enumerate() {
-            *step = match (self.held[dof], was_held[dof]) {
-                (Some(_), _) => 0.0,
-                (None, true) => residual[dof] / self.diagonal[dof],
-                (None, false) => *step,
-            };
-        }
-        step
+        let mut step = cholesky.solve(&known);
+        let became_free = (0..step.len()).filter(|&dof| was_held[dof]);
+        became_free.for_each(|dof| step[dof] = residual[dof] / diagonal[dof]);
+        self.on_free(step)
     }
 
-    /// The displacement after conjugate gradients until the remaining energy falls to `enough`; `None` if that takes too many `steps`,
-    /// those before included. `step` is the preconditioned residual.
-    fn descend(&self, mut iterate: Iterate, mut step: Vec<f64>, steps: &mut usize) -> Option<Vec<f64>> {
+    /// The displacement after conjugate gradients until the remaining energy falls to `enough`; `None` if that takes more steps than
+    /// are left. `step` is the preconditioned residual.
+    fn descend(&mut self, mut iterate: Iterate, mut step: Vec<f64>) -> Option<Vec<f64>> {
         let first = dot(&iterate.rest, &step);
-        let (mut left, mut taken) = (first, 0);
+        let (mut left, mut taken, most) = (first, 0, self.steps_left);
         while left > self.enough {
-            *steps += 1;
+            self.steps_left = self.steps_left.checked_sub(1)?;
             taken += 1;
-            if !iterate.step(step, |p| self.on_free(&self.problem.stiffness().mul(p))) {
+            if !iterate.step(step, |p| self.on_free(self.problem.stiffness().mul(p))) {
                 return None;
             }
             step = self.preconditioned(&iterate.rest);
             left = dot(&iterate.rest, &step);
             let expected = taken as f64 * (first / self.enough).ln() / (first / left).ln();
-            let is_slow = taken >= TRIAL && left > self.enough && !(expected <= self.most_steps as f64 && left < first);
-            if is_slow || *steps > self.most_steps || !left.is_finite() {
+            let is_slow = taken >= TRIAL && left > self.enough && !(expected <= most as f64 && left < first);
+            if is_slow || !left.is_finite() {
                 return None;
             }
         }
@@ -193,7 +169,7 @@ impl Task<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::linear::{AugmentedMatrix, SymmetricMatrix, largest};
+    use crate::qp::linear::{AugmentedMatrix, SparseMatrix, SymmetricMatrix, largest};
     use crate::qp::method::equilibrium::{WEIGHT, equilibrium};
 
     const SIDE: usize = 12;
@@ -225,14 +201,14 @@ mod tests {
     #[test]
     fn rows_that_change_sides_are_balanced_as_by_a_factor_of_their_own() {
         let problem = lattice();
-        let bounded = BoundedDofs::of(problem.contact()).unwrap();
         let first = ContactSet::from_fn(problem.rows(), |row| row % 7 == 0);
         let by_first = equilibrium(&problem, &factor(&problem, &first), &first);
-        let earlier = EarlierFactor::new(factor(&problem, &first), &bounded, &first);
+        let mut earlier = EarlierFactor::of(&problem, 25).unwrap();
+        earlier.keep(factor(&problem, &first), &first);
         // Some rows open, some close, none changes.
         for changes in [97, 31, usize::MAX] {
             let other = ContactSet::from_fn(problem.rows(), |row| (row % 7 == 0) != (row % changes == 21 % changes));
-            let found = earlier.balance(&bounded.set(&problem, &other), &by_first.displacement, 25).unwrap();
+            let found = earlier.balance(&other, &by_first.displacement).unwrap();
             let exact = equilibrium(&problem, &factor(&problem, &other), &other);
             for (found, exact) in [(&found.displacement, &exact.displacement), (&found.multiplier, &exact.multiplier)] {
                 let off: Vec<f64> = found.iter().zip(exact).map(|(a, b)| a - b).collect();
@@ -258,16 +234,17 @@ mod tests {
         let closed = |changed: bool| {
             ContactSet::from_fn(2 * dofs, |row| (row % dofs % 7 == 0) != (changed && row % dofs % 97 == 21))
         };
-        let bounded = BoundedDofs::of(both.contact()).unwrap();
         let first = equilibrium(&both, &factor(&both, &closed(false)), &closed(false));
-        let earlier = EarlierFactor::new(factor(&both, &closed(false)), &bounded, &closed(false));
-        if let Some(found) = earlier.balance(&bounded.set(&both, &closed(true)), &first.displacement, 25) {
+        let mut earlier = EarlierFactor::of(&both, 25).unwrap();
+        earlier.keep(factor(&both, &closed(false)), &closed(false));
+        if let Some(found) = earlier.balance(&closed(true), &first.displacement) {
             let off = (0..dofs).map(|dof| found.displacement[dof] - found.displacement[dofs + dof]).collect::<Vec<_>>();
             assert!(largest(&off) < 1e-11 * largest(&found.displacement), "{:e}", largest(&off));
         }
         // A balance that is settled in the stiff part alone is not accepted.
         let stiff_only = ContactSet::from_fn(2 * dofs, |row| row % dofs % 7 == 0 && (row < dofs || row % 2 == 0));
-        let found = earlier.balance(&bounded.set(&both, &stiff_only), &first.displacement, 25);
+        earlier.keep(factor(&both, &closed(false)), &closed(false));
+        let found = earlier.balance(&stiff_only, &first.displacement);
         let exact = equilibrium(&both, &factor(&both, &stiff_only), &stiff_only);
         if let Some(found) = found {
             let off: Vec<f64> = found.displacement.iter().zip(&exact.displacement).map(|(a, b)| a - b).collect();
@@ -278,17 +255,22 @@ mod tests {
     #[test]
     fn what_would_take_many_steps_or_holds_a_dof_twice_is_left_to_a_factor() {
         let problem = lattice();
-        let bounded = BoundedDofs::of(problem.contact()).unwrap();
         let none = ContactSet::open(problem.rows());
         let free = equilibrium(&problem, &factor(&problem, &none), &none);
-        let earlier = EarlierFactor::new(factor(&problem, &none), &bounded, &none);
+        let mut earlier = EarlierFactor::of(&problem, TRIAL).unwrap();
+        earlier.keep(factor(&problem, &none), &none);
         let checkered = ContactSet::from_fn(problem.rows(), |row| row % 2 == 0);
-        assert!(earlier.balance(&bounded.set(&problem, &checkered), &free.displacement, TRIAL).is_none());
+        assert!(earlier.balance(&checkered, &free.displacement).is_none());
         // A dof between two walls, both closed.
-        let twice = SparseMatrix::from_triplets(2, 1, &[(0, 0, 1.0), (1, 0, -1.0)]).unwrap();
-        let both = BoundedDofs::of(&twice).unwrap();
-        assert!(both.held(&[1.0, 1.0], &ContactSet::closed(2)).is_none());
-        let slanted = SparseMatrix::from_triplets(1, 2, &[(0, 0, 1.0), (0, 1, 1.0)]).unwrap();
-        assert!(BoundedDofs::of(&slanted).is_none());
+        let walled = |dofs: usize, walls: &[(usize, usize, f64)], gap: Vec<f64>| {
+            let springs: Vec<_> = (0..dofs).map(|dof| (dof, dof, 1.0)).collect();
+            let springs = SparseMatrix::from_triplets(dofs, dofs, &springs).unwrap();
+            let walls = SparseMatrix::from_triplets(gap.len(), dofs, walls).unwrap();
+            ContactProblem::new(SymmetricMatrix::from_lower(springs).unwrap(), vec![0.0; dofs], walls, gap).unwrap()
+        };
+        let both = walled(1, &[(0, 0, 1.0), (1, 0, -1.0)], vec![1.0; 2]);
+        assert!(EarlierFactor::of(&both, TRIAL).unwrap().held(&ContactSet::closed(2)).is_none());
+        let slanted = walled(2, &[(0, 0, 1.0), (0, 1, 1.0)], vec![1.0]);
+        assert!(EarlierFactor::of(&slanted, TRIAL).is_none());
     }
 }

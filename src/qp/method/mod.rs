@@ -18,4 +18,3 @@ mod support;
 pub(crate) use scaled::SIGN_TOLERANCE;
 pub use scaled::{Definiteness, Ending, Outcome, ScaledProblem, Solver};
 pub use start::Start;
-pub use support::{FreeMode, Support};

@@ -12,7 +12,7 @@
 
 use std::collections::HashSet;
 
-use super::{Ending, Outcome, ScaledProblem, Solver, Start, Support};
+use super::{Ending, Outcome, ScaledProblem, Solver, Start};
 use crate::error::Error;
 use crate::qp::linear::{Cholesky, largest};
 use crate::qp::problem::ContactProblem;
@@ -136,25 +136,14 @@ impl PenaltyLoop<'_> {
         climb.ending = Ending::Unsettled;
         while climb.ending == Ending::Unsettled
             && seen.insert(climb.closed.clone())
-            && climb.history.len() + climb.stops < self.most_iterations
+            && climb.history.len() < self.most_iterations
             && (climb.history.is_empty() || !scaled.watch().is_over())
         {
             scaled.watch().step("penalty loop", climb.history.len() + 1);
-            let cholesky = match scaled.hold(&climb.closed, penalty)? {
-                Support::Held(cholesky) => cholesky,
-                Support::Free(mode) => match scaled.stopping_rows(&mode, &climb.state.displacement, &climb.closed) {
-                    Some(stopped) => {
-                        climb.stops += 1;
-                        climb.closed = stopped;
-                        continue;
-                    }
-                    None => {
-                        climb.ending = Ending::Unheld;
-                        break;
-                    }
-                },
-                Support::Indefinite => {
-                    climb.ending = Ending::Unheld;
+            let cholesky = match scaled.hold_with_more(&mut climb.closed, penalty, &climb.state.displacement)? {
+                Ok(cholesky) => cholesky,
+                Err(ending) => {
+                    climb.ending = ending;
                     break;
                 }
             };
@@ -187,21 +176,13 @@ struct Climb {
     history: Vec<Iteration>,
     /// Settled if the last rung ended with the set that it began with.
     ending: Ending,
-    /// Free modes that rows have stopped.
-    stops: usize,
 }
 
 impl Climb {
     fn new(problem: &ContactProblem, start: Start) -> Self {
         let state =
             State { displacement: vec![0.0; problem.dofs()], violation: vec![f64::NEG_INFINITY; problem.rows()] };
-        Climb {
-            closed: start.into_set(problem.rows()),
-            state,
-            history: Vec::new(),
-            ending: Ending::Unsettled,
-            stops: 0,
-        }
+        Climb { closed: start.into_set(problem.rows()), state, history: Vec::new(), ending: Ending::Unsettled }
     }
 
     fn is_settled(&self) -> bool {
@@ -253,14 +234,10 @@ impl Rung {
 fn rung_below(scaled: &ScaledProblem, rung: &Rung) -> Result<Option<Rung>, Error> {
     let penalty = rung.penalty / RUNG;
     let mut state = State { displacement: rung.displacement.clone(), violation: Vec::new() };
-    match scaled.hold(&rung.closed, penalty)? {
-        Support::Held(cholesky) => {
-            let springs = Springs { factor: &cholesky, closed: &rung.closed, penalty };
-            (0..=FINAL_SOLVES).for_each(|_| state.advance(scaled.problem, &springs));
-            Ok(Some(Rung::new(&state, rung.closed.clone(), penalty)))
-        }
-        Support::Free(_) | Support::Indefinite => Ok(None),
-    }
+    let Some(cholesky) = scaled.hold(&rung.closed, penalty)? else { return Ok(None) };
+    let springs = Springs { factor: &cholesky, closed: &rung.closed, penalty };
+    (0..=FINAL_SOLVES).for_each(|_| state.advance(scaled.problem, &springs));
+    Ok(Some(Rung::new(&state, rung.closed.clone(), penalty)))
 }
 
 /// Closed rows as springs of one penalty eps.

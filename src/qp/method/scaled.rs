@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::start::Start;
 use crate::error::Error;
-use crate::qp::linear::{AugmentedMatrix, Cholesky, FactorError, SymmetricMatrix, largest};
+use crate::qp::linear::{AugmentedMatrix, Cholesky, SymmetricMatrix, if_definite};
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 use crate::watch::Watch;
@@ -13,9 +13,6 @@ use crate::watch::Watch;
 /// Differences below this, relative to the largest displacement or multiplier, are rounding. Without this tolerance on signs a
 /// weakly active row would close and open without end.
 pub(crate) const SIGN_TOLERANCE: f64 = 1e-12;
-
-/// Rounding of a multiplier, in units of the last place of the forces that balance it.
-const FORCE_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// A method, together with the problem that it works on.
 pub trait Solver {
@@ -77,21 +74,16 @@ impl<'a> ScaledProblem<'a> {
         self.augmented.matrix(|row| if closed.contains(row) { weight } else { 0.0 }, shift)
     }
 
-    pub(super) fn factor(&self, matrix: SymmetricMatrix) -> Result<Cholesky, FactorError> {
+    /// The factor of such a matrix; `None` if it is not positive definite.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] for lack of memory.
+    pub(super) fn factor(&self, matrix: SymmetricMatrix) -> Result<Option<Cholesky>, Error> {
         let clock = Instant::now();
-        let factor = self.augmented.factor(matrix);
+        let factor = if_definite(self.augmented.factor(matrix));
         self.factor_seconds.set(self.factor_seconds.get() + clock.elapsed().as_secs_f64());
         factor
     }
-}
-
-/// Multipliers of either sign below this are rounding, row by row.
-pub(super) fn multiplier_rounding(problem: &ContactProblem, u: &[f64], multiplier: &[f64]) -> Vec<f64> {
-    let strongest = SIGN_TOLERANCE * largest(multiplier);
-    let mut forces = problem.stiffness().mul_abs(u);
-    forces.iter_mut().zip(problem.load()).for_each(|(sum, f)| *sum += f.abs());
-    let rounding = problem.contact().mul_abs(&forces);
-    rounding.iter().map(|rounding| strongest + FORCE_ROUNDING * rounding).collect()
 }
 
 /// How a method ended. Whether a problem has an answer at all is not for a method to say.

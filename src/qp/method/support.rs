@@ -1,9 +1,9 @@
 //! Checks whether a set of closed rows holds the body; if not, finds the direction along which it is free, and whether the
 //! load drives it.
 
-use super::scaled::ScaledProblem;
+use super::scaled::{Ending, ScaledProblem};
 use crate::error::Error;
-use crate::qp::linear::{Cholesky, FactorError, largest};
+use crate::qp::linear::{Cholesky, largest};
 use crate::solution::ContactSet;
 
 /// Shifts that make a singular matrix definite, smallest first.
@@ -25,24 +25,12 @@ fn normalised(mut direction: Vec<f64>) -> Vec<f64> {
     direction
 }
 
-/// States whether the closed rows hold the body.
-#[derive(Debug)]
-pub enum Support {
-    /// They do; the factorisation of K + w B_C'B_C.
-    Held(Cholesky),
-    /// They do not.
-    Free(FreeMode),
-    /// The energy is negative along some direction.
-    Indefinite,
-}
-
 /// A direction d with K d = 0 and B_C d = 0, largest entry one.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FreeMode {
+struct FreeMode {
     /// The direction, one entry per dof.
-    pub direction: Vec<f64>,
+    direction: Vec<f64>,
     /// `true` if the load does work on it: `f'd > 0`.
-    pub driven: bool,
+    driven: bool,
 }
 
 impl ScaledProblem<'_> {
@@ -57,36 +45,50 @@ impl ScaledProblem<'_> {
         if self.is_definite() {
             return Ok(Some(nothing_closed));
         }
-        match self.factor(self.matrix(&nothing_closed, 0.0, SHIFTS[SHIFTS.len() - 1])) {
-            Ok(_) => {}
-            Err(FactorError::NotPositiveDefinite) => return Ok(None),
-            Err(error) => return Err(error.into()),
+        if self.factor(self.matrix(&nothing_closed, 0.0, SHIFTS[SHIFTS.len() - 1]))?.is_none() {
+            return Ok(None);
         }
-        Ok(match self.hold(&ContactSet::closed(rows), 1.0)? {
-            Support::Held(cholesky) => {
-                let pull = self.problem.contact().mul_transposed(self.problem.gap());
-                let force: Vec<f64> = self.problem.load().iter().zip(&pull).map(|(f, g)| f + g).collect();
-                let violation = self.problem.violation(&cholesky.solve(&force));
-                Some(ContactSet::from_fn(rows, |row| violation[row] > 0.0))
-            }
-            Support::Free(_) | Support::Indefinite => None,
-        })
+        let Some(cholesky) = self.hold(&ContactSet::closed(rows), 1.0)? else { return Ok(None) };
+        let pull = self.problem.contact().mul_transposed(self.problem.gap());
+        let force: Vec<f64> = self.problem.load().iter().zip(&pull).map(|(f, g)| f + g).collect();
+        let violation = self.problem.violation(&cholesky.solve(&force));
+        Ok(Some(ContactSet::from_fn(rows, |row| violation[row] > 0.0)))
     }
 
-    /// Factorises K + weight B_C'B_C and checks whether it is definite.
+    /// The factor of K + weight B_C'B_C; `None` if the rows of C do not hold the body.
     ///
     /// # Errors
     /// [`Error::Numerical`] for lack of memory.
-    pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Support, Error> {
+    pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Option<Cholesky>, Error> {
         let matrix = self.matrix(closed, weight, 0.0);
         // If K is definite by itself, this is not checked again.
         let looked_at = (!self.is_definite()).then(|| matrix.clone());
-        match self.factor(matrix) {
-            Ok(cholesky) if looked_at.is_none_or(|matrix| cholesky.is_definite(&matrix)) => Ok(Support::Held(cholesky)),
-            Ok(_) | Err(FactorError::NotPositiveDefinite) => {
-                Ok(self.free_mode(closed, weight)?.map_or(Support::Indefinite, Support::Free))
+        let holds = |cholesky: &Cholesky| looked_at.is_none_or(|matrix| cholesky.is_definite(&matrix));
+        Ok(self.factor(matrix)?.filter(holds))
+    }
+
+    /// The same, once those rows have joined C that stop its free modes from `displacement`. The ending of a loop if there is no factor:
+    /// no row stops a mode, the energy is negative along some direction, or time is over.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] for lack of memory.
+    pub fn hold_with_more(
+        &self,
+        closed: &mut ContactSet,
+        weight: f64,
+        displacement: &[f64],
+    ) -> Result<Result<Cholesky, Ending>, Error> {
+        loop {
+            if let Some(cholesky) = self.hold(closed, weight)? {
+                return Ok(Ok(cholesky));
             }
-            Err(error) => Err(error.into()),
+            let mode = self.free_mode(closed, weight)?;
+            if !mode.is_some_and(|mode| self.stop(&mode, displacement, closed)) {
+                return Ok(Err(Ending::Unheld));
+            }
+            if self.watch().is_over() {
+                return Ok(Err(Ending::Unsettled));
+            }
         }
     }
 
@@ -96,11 +98,7 @@ impl ScaledProblem<'_> {
         // A weight does not change the null vectors, and a large one hides the shift in its rounding.
         let weight = weight.min(1.0);
         for shift in SHIFTS {
-            let cholesky = match self.factor(self.matrix(closed, weight, shift)) {
-                Ok(cholesky) => cholesky,
-                Err(FactorError::NotPositiveDefinite) => continue,
-                Err(error) => return Err(error.into()),
-            };
+            let Some(cholesky) = self.factor(self.matrix(closed, weight, shift))? else { continue };
             let mut projected = self.problem.load().to_vec();
             for _ in 0..STEPS {
                 projected = cholesky.solve(&projected);
@@ -115,38 +113,25 @@ impl ScaledProblem<'_> {
         Ok(None)
     }
 
-    /// The open rows that stop a mode first, if it starts from `displacement`; a mode that the load does not drive may go
-    /// either way. `None` if no row stops it.
-    pub(super) fn stopping_rows(
-        &self,
-        mode: &FreeMode,
-        displacement: &[f64],
-        closed: &ContactSet,
-    ) -> Option<ContactSet> {
-        let approach = self.approach(&mode.direction);
-        let violation = self.problem.violation(displacement);
+    /// Closes the open rows that stop a mode first, if it starts from `displacement`; a mode that the load does not drive may go
+    /// either way. Returns `false` if no row stops it.
+    fn stop(&self, mode: &FreeMode, displacement: &[f64], closed: &mut ContactSet) -> bool {
+        let (contact, violation) = (self.problem.contact(), self.problem.violation(displacement));
+        let (speed, terms) = (contact.mul(&mode.direction), contact.mul_abs(&mode.direction));
         let ways: &[f64] = if mode.driven { &[1.0] } else { &[1.0, -1.0] };
         for way in ways {
-            let time = |row: usize| match approach[row] * way {
-                speed if speed > 0.0 && !closed.contains(row) => Some((-violation[row]).max(0.0) / speed),
-                _ => None,
-            };
-            let first = (0..self.problem.rows()).filter_map(time).fold(f64::INFINITY, f64::min);
+            // A speed within the rounding of its own terms is zero.
+            let is_stopped_by =
+                |row: &usize| speed[*row] * way > WORK_TOLERANCE * terms[*row] && !closed.contains(*row);
+            let time = |row: usize| (row, (-violation[row]).max(0.0) / speed[row].abs());
+            let times: Vec<(usize, f64)> = (0..violation.len()).filter(is_stopped_by).map(time).collect();
+            let first = times.iter().fold(f64::INFINITY, |first, entry| entry.1.min(first));
             if first.is_finite() {
-                let mut stopped = closed.clone();
-                (0..self.problem.rows())
-                    .filter(|&row| time(row).is_some_and(|t| t <= first * (1.0 + WORK_TOLERANCE)))
-                    .for_each(|row| stopped.insert(row));
-                return Some(stopped);
+                let is_first = |entry: &&(usize, f64)| entry.1 <= first * (1.0 + WORK_TOLERANCE);
+                times.iter().filter(is_first).for_each(|entry| closed.insert(entry.0));
+                return true;
             }
         }
-        None
-    }
-
-    /// The rate at which each row closes on a mode: B d, zero if it is rounding of its own terms.
-    fn approach(&self, direction: &[f64]) -> Vec<f64> {
-        let terms = self.problem.contact().mul_abs(direction);
-        let speed = self.problem.contact().mul(direction);
-        speed.iter().zip(&terms).map(|(&v, term)| if v.abs() > WORK_TOLERANCE * term { v } else { 0.0 }).collect()
+        false
     }
 }
