@@ -17,7 +17,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::SIGN_TOLERANCE;
 use crate::error::Error;
-use crate::qp::linear::largest;
+use crate::qp::linear::{UpperTriangle, dot, largest};
 use crate::solution::ContactSet;
 use crate::watch::Watch;
 
@@ -55,14 +55,14 @@ pub struct Piece {
     pub to: f64,
     /// The rows that are closed on it.
     pub contact_set: ContactSet,
-    constant: Vec<f64>,
-    slope: Vec<f64>,
+    line: Linear,
 }
 
 impl Piece {
     /// The multiplier of every row at `t`.
     pub fn multiplier(&self, t: f64) -> Vec<f64> {
-        self.constant.iter().zip(&self.slope).map(|(a, b)| (a + t * b).min(0.0)).collect()
+        let of_row = |row: usize| if self.contact_set.contains(row) { self.line.at(row, t).min(0.0) } else { 0.0 };
+        (0..self.contact_set.rows()).map(of_row).collect()
     }
 }
 
@@ -80,27 +80,23 @@ impl Compliance {
     /// The rows of `closed` without those that depend on others before them, which hold them already. On the walk a dependent
     /// row does not join, because its violation does not grow.
     fn independent(&self, closed: &ContactSet) -> ContactSet {
-        let mut kept: Vec<(usize, Vec<f64>)> = Vec::new();
+        let (mut kept, mut triangle) = (Vec::<usize>::new(), UpperTriangle::default());
         for row in closed.iter() {
-            // One row of a Cholesky factorisation: its entries against the kept rows, then its pivot.
-            let mut entries: Vec<f64> = Vec::with_capacity(kept.len() + 1);
-            for (other, of_other) in &kept {
-                let known: f64 = entries.iter().zip(of_other).map(|(a, b)| a * b).sum();
-                entries.push((self.matrix[(row, *other)] - known) / of_other[of_other.len() - 1]);
-            }
+            // The next column of a Cholesky factor.
+            let above = triangle.solve_lower(kept.iter().map(|&other| self.matrix[(row, other)]).collect());
             let whole = self.matrix[(row, row)];
-            let pivot = whole - entries.iter().map(|entry| entry * entry).sum::<f64>();
+            let pivot = whole - dot(&above, &above);
             if pivot > DEPENDENT_COMPLIANCE * whole {
-                entries.push(pivot.sqrt());
-                kept.push((row, entries));
+                triangle.push(above, pivot.sqrt());
+                kept.push(row);
             }
         }
         let mut set = ContactSet::open(self.rows());
-        kept.iter().for_each(|(row, _)| set.insert(*row));
+        kept.into_iter().for_each(|row| set.insert(row));
         set
     }
 
-    /// Multiplier and violation of the set `closed` as linear functions of t: constant and slope of each.
+    /// Multipliers of the set `closed`, and violations of all other rows, as linear functions of t.
     fn respond(&self, closed: &ContactSet) -> Result<Linear, Error> {
         let list: Vec<usize> = closed.iter().collect();
         let block = DMatrix::from_fn(list.len(), list.len(), |i, j| self.matrix[(list[i], list[j])]);
@@ -113,21 +109,17 @@ impl Compliance {
             reason: format!("the {} rows that would be closed together depend on each other", list.len()),
         })?;
         let part = |b: &[f64]| self.part(&factor, &list, b);
-        let ((multiplier, violation), (multiplier_slope, violation_slope)) = (part(&self.constant), part(&self.slope));
-        let closed = closed.clone();
-        Ok(Linear { closed, multiplier, violation, multiplier_slope, violation_slope })
+        Ok(Linear { closed: closed.clone(), constant: part(&self.constant), slope: part(&self.slope) })
     }
 
-    fn part(&self, factor: &Cholesky<f64, Dyn>, list: &[usize], b: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    fn part(&self, factor: &Cholesky<f64, Dyn>, list: &[usize], b: &[f64]) -> Vec<f64> {
         let right = DVector::from_iterator(list.len(), list.iter().map(|&row| -b[row]));
-        let on_list = factor.solve(&right);
-        let (mut multiplier, mut violation) = (vec![0.0; self.rows()], b.to_vec());
-        for (&row, &value) in list.iter().zip(on_list.iter()) {
-            multiplier[row] = value;
-            violation.iter_mut().zip(self.matrix.column(row).iter()).for_each(|(d, g)| *d += g * value);
+        let (multiplier, mut part) = (factor.solve(&right), b.to_vec());
+        for (&row, &value) in list.iter().zip(multiplier.iter()) {
+            part.iter_mut().zip(self.matrix.column(row).iter()).for_each(|(d, g)| *d += g * value);
         }
-        list.iter().for_each(|&row| violation[row] = 0.0);
-        (multiplier, violation)
+        list.iter().zip(multiplier.iter()).for_each(|(&row, &value)| part[row] = value);
+        part
     }
 
     /// Walks from t = 0 to t = 1, from the set that holds at the beginning.
@@ -146,15 +138,15 @@ impl Compliance {
             }
             watch.step("exact path", change + 1);
             let line = self.respond(&closed)?;
-            let force = largest(&line.multiplier).max(largest(&line.multiplier_slope));
+            let force =
+                closed.iter().map(|row| line.constant[row].abs().max(line.slope[row].abs())).fold(0.0, f64::max);
             let scales = Scales { length: SIGN_TOLERANCE * length, force: SIGN_TOLERANCE * force };
             let next = (0..self.rows())
                 .filter_map(|row| line.change(row, &scales).map(|t| (t.max(now), row)))
                 .min_by(|a, b| a.0.total_cmp(&b.0));
             let end = next.map_or(1.0, |(t, _)| t.min(1.0));
             if end > now || next.is_none_or(|(t, _)| t >= 1.0) {
-                let (constant, slope) = (line.multiplier.clone(), line.multiplier_slope.clone());
-                pieces.push(Piece { from: now, to: end, contact_set: closed.clone(), constant, slope });
+                pieces.push(Piece { from: now, to: end, contact_set: closed.clone(), line: line.clone() });
             }
             match next {
                 Some((t, row)) if t < 1.0 => {
@@ -184,14 +176,8 @@ impl Compliance {
         let mut fewest = undecided.len() + 1;
         for _ in 0..CHANGES_PER_ROW * undecided.len() {
             let line = self.respond(&next)?;
-            let wrong: Vec<usize> = undecided
-                .iter()
-                .copied()
-                .filter(|&row| match next.contains(row) {
-                    true => line.multiplier_slope[row] > scales.force,
-                    false => line.violation_slope[row] > scales.length,
-                })
-                .collect();
+            let is_wrong = |row: &usize| line.slope[*row] > line.rounding(*row, scales);
+            let wrong: Vec<usize> = undecided.iter().copied().filter(is_wrong).collect();
             if wrong.is_empty() {
                 break;
             }
@@ -209,29 +195,29 @@ struct Scales {
     force: f64,
 }
 
-/// Multiplier and violation of every row as linear functions of t, while these rows are closed.
+/// The multiplier of each closed row, and the violation of every other one, as a linear function of t.
+#[derive(Clone, Debug)]
 struct Linear {
     closed: ContactSet,
-    multiplier: Vec<f64>,
-    violation: Vec<f64>,
-    multiplier_slope: Vec<f64>,
-    violation_slope: Vec<f64>,
+    constant: Vec<f64>,
+    slope: Vec<f64>,
 }
 
 impl Linear {
+    fn at(&self, row: usize, t: f64) -> f64 {
+        self.constant[row] + t * self.slope[row]
+    }
+
+    fn rounding(&self, row: usize, scales: &Scales) -> f64 {
+        if self.closed.contains(row) { scales.force } else { scales.length }
+    }
+
     /// The t at which the row changes sides, if it moves in that direction.
     fn change(&self, row: usize, scales: &Scales) -> Option<f64> {
-        let (value, slope, least) = match self.closed.contains(row) {
-            true => (self.multiplier[row], self.multiplier_slope[row], scales.force),
-            false => (self.violation[row], self.violation_slope[row], scales.length),
-        };
-        (slope > least).then(|| -value / slope)
+        (self.slope[row] > self.rounding(row, scales)).then(|| -self.constant[row] / self.slope[row])
     }
 
     fn is_weak(&self, row: usize, t: f64, scales: &Scales) -> bool {
-        match self.closed.contains(row) {
-            true => (self.multiplier[row] + t * self.multiplier_slope[row]).abs() <= scales.force,
-            false => (self.violation[row] + t * self.violation_slope[row]).abs() <= scales.length,
-        }
+        self.at(row, t).abs() <= self.rounding(row, scales)
     }
 }
