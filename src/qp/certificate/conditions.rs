@@ -244,7 +244,7 @@ impl ContactProblem {
     }
 
     /// The same for multipliers that are given as sums, which are not rounded.
-    pub(super) fn accurate_residual_of(&self, u: &[f64], multipliers: &[&[f64]]) -> Vec<f64> {
+    pub(crate) fn accurate_residual_of(&self, u: &[f64], multipliers: &[&[f64]]) -> Vec<f64> {
         self.accurate_balance(u, multipliers).residual
     }
 

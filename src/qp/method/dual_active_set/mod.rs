@@ -27,9 +27,7 @@ use std::collections::HashSet;
 use super::{Ending, Outcome, ScaledProblem, Solver, Start};
 use crate::error::Error;
 use crate::qp::linear::norm;
-use crate::solution::{ContactSet, Iteration};
-use basis::Basis;
-use pass::{Pass, Passed, Pressures};
+use pass::{Closed, Pass, Passed};
 use polyhedron::{Contradiction, Polyhedron};
 
 /// Largest number of passes: the second corrects errors hidden by the rounding of the first if dofs are of very different
@@ -83,12 +81,9 @@ impl Solver for DualActiveSet<'_> {
         let (dofs, rows) = (self.scaled.problem.dofs(), self.scaled.problem.rows());
         let mut search = Search {
             polyhedron: &self.polyhedron,
-            basis: Basis::default(),
+            closed: Closed { pressures: vec![0.0; rows], rests: vec![0.0; rows], ..Closed::default() },
             displacement: vec![0.0; dofs],
-            pressures: vec![0.0; rows],
-            rests: vec![0.0; rows],
             point: vec![0.0; dofs],
-            history: Vec::new(),
         };
         let mut seen = HashSet::new();
         let mut ending = Ending::Unsettled;
@@ -103,61 +98,50 @@ impl Solver for DualActiveSet<'_> {
             let converged = search.correct();
             let violated = search.violates();
             ending = Ending::of(passed == Passed::Met && converged && !violated);
-            let pulls = search.pressures.iter().any(|&pressure| pressure < 0.0);
+            let pulls = search.closed.pressures.iter().any(|&pressure| pressure < 0.0);
             // A set that returns once would return in every further pass.
             if ending == Ending::Settled && !pulls
                 || self.scaled.watch().is_over()
-                || !seen.insert(search.contact_set())
+                || !seen.insert(search.closed.basis.set(rows))
             {
                 break;
             }
         }
-        let Search { basis, displacement, pressures, history, .. } = search;
-        let outcome = self.polyhedron.expand(&displacement, &pressures, basis.rows(), history);
-        let variant = if ending == Ending::Settled { outcome.variant } else { "-dual-unsettled" };
-        Ok(Outcome { ending, variant, ..outcome })
+        let Closed { basis, pressures, history, .. } = search.closed;
+        let (displacement, multiplier) = self.polyhedron.expand(&search.displacement, &pressures);
+        let (contact_set, iterations) = (basis.set(rows), history.len());
+        let variant = if ending == Ending::Settled { "-dual" } else { "-dual-unsettled" };
+        Ok(Outcome { displacement, multiplier, contact_set, iterations, history, ending, variant })
     }
 }
 
 /// The best answer so far, in the units of the polyhedron.
 struct Search<'a> {
     polyhedron: &'a Polyhedron,
-    basis: Basis,
+    closed: Closed,
     displacement: Vec<f64>,
-    /// `-lambda` of all rows.
-    pressures: Vec<f64>,
-    /// The parts of the pressures of closed rows beyond double precision: if large pressures cancel on a soft dof, their
-    /// rounding would exceed all other forces there.
-    rests: Vec<f64>,
     /// L' u.
     point: Vec<f64>,
-    history: Vec<Iteration>,
 }
 
 impl Search<'_> {
-    fn contact_set(&self) -> ContactSet {
-        let mut closed = ContactSet::open(self.pressures.len());
-        self.basis.rows().iter().for_each(|&row| closed.insert(row));
-        closed
-    }
-
     /// The imbalance `L^-1 (f - B'y - K u)`, and the distances of the rows, both from accurate sums.
     fn residuals(&self) -> (Vec<f64>, Vec<f64>) {
-        let imbalance = self.polyhedron.imbalance(&self.displacement, &self.pressures, &self.rests);
-        (self.polyhedron.of_force(&imbalance), self.polyhedron.distances(&self.displacement))
+        let problem = &self.polyhedron.problem;
+        let forces = [negative(&self.closed.pressures), negative(&self.closed.rests)];
+        let imbalance = problem.accurate_residual_of(&self.displacement, &[&forces[0], &forces[1]]);
+        (self.polyhedron.of_force(&imbalance), negative(&problem.accurate_violation(&self.displacement)))
     }
 
     /// One pass from the answer so far. The basis is computed from the data again, without the errors of its updates.
     fn pass(&mut self, scaled: &ScaledProblem) -> Result<Passed, Contradiction> {
         let residuals = self.residuals();
         let base = norm(&self.point);
-        let pressures = Pressures { rounded: &mut self.pressures, rests: &mut self.rests };
-        let parts = (&mut self.basis, pressures, &mut self.history);
-        let mut pass = Pass::new(self.polyhedron, scaled.watch(), parts, residuals, base);
-        let ending = pass.run()?;
+        let mut pass = Pass::new(self.polyhedron, &mut self.closed, residuals, base);
+        let ending = pass.run(scaled.watch())?;
         let change = pass.point;
         self.advance(&change);
-        self.basis = pass::of_rows(self.polyhedron, self.basis.rows());
+        self.closed.basis = pass::of_rows(self.polyhedron, self.closed.basis.rows());
         Ok(ending)
     }
 
@@ -169,8 +153,8 @@ impl Search<'_> {
 
     /// The change of the point that balances the forces with the closed rows at their gaps, and the change of their pressures.
     fn correction(&self, imbalance: &[f64], distances: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let on_closed: Vec<f64> = self.basis.rows().iter().map(|&row| distances[row]).collect();
-        self.basis.nearest(imbalance, &on_closed)
+        let on_closed: Vec<f64> = self.closed.basis.rows().iter().map(|&row| distances[row]).collect();
+        self.closed.basis.nearest(imbalance, &on_closed)
     }
 
     /// Corrects the answer on its set until another correction gains nothing. Returns `true` if it converges.
@@ -178,16 +162,17 @@ impl Search<'_> {
         let mut last = f64::INFINITY;
         for turn in 0..MOST_CORRECTIONS {
             let (imbalance, distances) = self.residuals();
-            let (change, pressures) = self.correction(&imbalance, &distances);
+            let (change, changes) = self.correction(&imbalance, &distances);
             let step = norm(&change);
             if turn >= CORRECTIONS && step > SHRINKS * last {
                 break;
             }
             self.advance(&change);
-            for (&row, change) in self.basis.rows().iter().zip(&pressures) {
-                let (before, change) = (self.pressures[row], self.rests[row] + change);
-                self.pressures[row] = before + change;
-                self.rests[row] = change - (self.pressures[row] - before);
+            let Closed { basis, pressures, rests, .. } = &mut self.closed;
+            for (&row, change) in basis.rows().iter().zip(&changes) {
+                let (before, change) = (pressures[row], rests[row] + change);
+                pressures[row] = before + change;
+                rests[row] = change - (pressures[row] - before);
             }
             last = step;
             if step <= NO_CHANGE * self.polyhedron.reach {
@@ -201,7 +186,7 @@ impl Search<'_> {
     /// count: otherwise two rows that differ by their scale only would be exchanged without end.
     fn violates(&self) -> bool {
         let problem = &self.polyhedron.problem;
-        let distances = self.polyhedron.distances(&self.displacement);
+        let distances = negative(&problem.accurate_violation(&self.displacement));
         let at_rest = vec![0.0; self.displacement.len()];
         let (to_closed, _) = self.correction(&at_rest, &distances);
         let explained = problem.contact().mul(&self.polyhedron.displacement(&to_closed));
@@ -209,4 +194,8 @@ impl Search<'_> {
         let violation = |row: usize| explained[row] - distances[row];
         (0..distances.len()).any(|row| violation(row) > ROW_MET * (terms[row] + problem.gap()[row].abs()))
     }
+}
+
+fn negative(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|value| -value).collect()
 }

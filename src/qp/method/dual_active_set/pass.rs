@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::basis::{Basis, DEPENDENT_ROW};
 use super::polyhedron::{Contradiction, Polyhedron};
 use crate::qp::linear::{dot, largest, norm};
-use crate::solution::{ContactSet, Iteration};
+use crate::solution::Iteration;
 use crate::watch::Watch;
 
 /// A violation below this number of units in the last place of the terms is rounding. The next pass, with accurate distances,
@@ -31,21 +31,23 @@ pub(super) enum Passed {
     Stopped,
 }
 
-/// The pressures y = -lambda of all rows, scaled, as sums of two numbers; zero on open rows.
-pub(super) struct Pressures<'a> {
+/// The closed rows with the pressures y = -lambda of all rows, scaled, as sums of two numbers; zero on open rows.
+#[derive(Default)]
+pub(super) struct Closed {
+    pub basis: Basis,
     /// Positive on closed rows.
-    pub rounded: &'a mut [f64],
-    /// The parts of the pressures of the base beyond double precision: a pass does not change them.
-    pub rests: &'a mut [f64],
+    pub pressures: Vec<f64>,
+    /// The parts of the pressures of closed rows beyond double precision: if large pressures cancel on a soft dof, their
+    /// rounding would exceed all other forces there. A pass does not change them.
+    pub rests: Vec<f64>,
+    /// The sets on the way.
+    pub history: Vec<Iteration>,
 }
 
 /// The state of a pass: the change w of the point and the pressures y.
 pub(super) struct Pass<'a> {
     polyhedron: &'a Polyhedron,
-    watch: &'a Watch,
-    pub basis: &'a mut Basis,
-    pub pressures: Pressures<'a>,
-    pub history: &'a mut Vec<Iteration>,
+    closed: &'a mut Closed,
     /// The pressures of the base, which the target does not contain.
     carried: Vec<f64>,
     /// The free point, minus the closed rows under their pressures at the base.
@@ -61,37 +63,34 @@ pub(super) struct Pass<'a> {
 }
 
 impl<'a> Pass<'a> {
-    /// A pass from a base with the given imbalance `target` and `distances`, the rows of `basis` closed under `pressures`.
+    /// A pass from a base of this length with the given imbalance `target` and `distances`, and these rows closed.
     pub fn new(
         polyhedron: &'a Polyhedron,
-        watch: &'a Watch,
-        (basis, pressures, history): (&'a mut Basis, Pressures<'a>, &'a mut Vec<Iteration>),
+        closed: &'a mut Closed,
         (target, distances): (Vec<f64>, Vec<f64>),
         base: f64,
     ) -> Self {
         let mut carried = vec![0.0; distances.len()];
-        basis.rows().iter().for_each(|&row| carried[row] = pressures.rounded[row]);
-        let point = target.clone();
-        let given_up = HashSet::new();
-        Pass { polyhedron, watch, basis, pressures, history, carried, target, distances, point, base, given_up }
+        closed.basis.rows().iter().for_each(|&row| carried[row] = closed.pressures[row]);
+        let (point, given_up) = (target.clone(), HashSet::new());
+        Pass { polyhedron, closed, carried, target, distances, point, base, given_up }
     }
 
     /// Closes and opens rows until none is violated.
     ///
     /// # Errors
     /// The rows that contradict each other, with verified weights.
-    pub fn run(&mut self) -> Result<Passed, Contradiction> {
+    pub fn run(&mut self, watch: &Watch) -> Result<Passed, Contradiction> {
         self.open_pulling();
         let mut seen = HashSet::new();
         while let Some((row, violation)) = self.most_violated() {
-            if self.watch.is_over() || !self.polyhedron.affords(self.basis.rows().len()) {
+            if watch.is_over() || !self.polyhedron.affords(self.closed.basis.rows().len()) {
                 return Ok(Passed::Stopped);
             }
-            self.watch.step("dual active set", self.history.len() + 1);
+            watch.step("dual active set", self.closed.history.len() + 1);
             if self.close(row, violation)? {
-                let mut closed = ContactSet::open(self.distances.len());
-                self.basis.rows().iter().for_each(|&row| closed.insert(row));
-                self.history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
+                let closed = self.closed.basis.set(self.distances.len());
+                self.closed.history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
                 if !seen.insert(closed) {
                     return Ok(Passed::Stopped);
                 }
@@ -106,8 +105,8 @@ impl<'a> Pass<'a> {
     fn open_pulling(&mut self) {
         loop {
             self.balance();
-            let rows = self.basis.rows().iter().enumerate();
-            let pulling = rows.map(|(place, &row)| (place, self.pressures.rounded[row])).filter(|entry| entry.1 < 0.0);
+            let rows = self.closed.basis.rows().iter().enumerate();
+            let pulling = rows.map(|(place, &row)| (place, self.closed.pressures[row])).filter(|entry| entry.1 < 0.0);
             match pulling.min_by(|a, b| a.1.total_cmp(&b.1)) {
                 Some((place, _)) => self.open(place),
                 None => return,
@@ -117,19 +116,19 @@ impl<'a> Pass<'a> {
 
     /// Point and pressures of the closed rows, from the data.
     fn balance(&mut self) {
-        let distances: Vec<f64> = self.basis.rows().iter().map(|&row| self.distances[row]).collect();
-        let (point, change) = self.basis.nearest(&self.target, &distances);
+        let distances: Vec<f64> = self.closed.basis.rows().iter().map(|&row| self.distances[row]).collect();
+        let (point, change) = self.closed.basis.nearest(&self.target, &distances);
         self.point = point;
-        for (&row, change) in self.basis.rows().iter().zip(&change) {
-            self.pressures.rounded[row] = self.carried[row] + change;
+        for (&row, change) in self.closed.basis.rows().iter().zip(&change) {
+            self.closed.pressures[row] = self.carried[row] + change;
         }
     }
 
     fn open(&mut self, place: usize) {
-        let row = self.basis.rows()[place];
-        self.basis.open(place);
-        self.pressures.rounded[row] = 0.0;
-        let carried = [std::mem::take(&mut self.carried[row]), std::mem::take(&mut self.pressures.rests[row])];
+        let row = self.closed.basis.rows()[place];
+        self.closed.basis.open(place);
+        self.closed.pressures[row] = 0.0;
+        let carried = [std::mem::take(&mut self.carried[row]), std::mem::take(&mut self.closed.rests[row])];
         if carried != [0.0; 2] {
             let direction = self.polyhedron.row(row);
             let relieved = |c: f64| carried[0] * c + carried[1] * c;
@@ -151,14 +150,14 @@ impl<'a> Pass<'a> {
 
     /// Closes `row`; opens other rows if their pressure falls to zero in the step. Returns `false` if the row cannot be met.
     fn close(&mut self, row: usize, mut violation: f64) -> Result<bool, Contradiction> {
-        let before = self.basis.rows().to_vec();
+        let before = self.closed.basis.rows().to_vec();
         let direction = self.polyhedron.row(row);
         loop {
-            let split = self.basis.split(&direction);
+            let split = self.closed.basis.split(&direction);
             let whole = if split.depends { f64::INFINITY } else { violation / dot(&split.across, &split.across) };
             let (step, first) = self.blocking(&split.weights);
             if whole <= step && whole.is_finite() {
-                self.basis.close(row, split);
+                self.closed.basis.close(row, split);
                 self.balance();
                 return Ok(true);
             }
@@ -167,8 +166,8 @@ impl<'a> Pass<'a> {
                 self.restore(&before);
                 return Ok(false);
             };
-            for (&closed, weight) in self.basis.rows().iter().zip(&split.weights) {
-                self.pressures.rounded[closed] = (self.pressures.rounded[closed] - step * weight).max(0.0);
+            for (&closed, weight) in self.closed.basis.rows().iter().zip(&split.weights) {
+                self.closed.pressures[closed] = (self.closed.pressures[closed] - step * weight).max(0.0);
             }
             if !split.depends {
                 violation -= step * dot(&split.across, &split.across);
@@ -181,8 +180,8 @@ impl<'a> Pass<'a> {
     fn blocking(&self, weights: &[f64]) -> (f64, Option<usize>) {
         let rounding = DEPENDENT_ROW * (1.0 + largest(weights));
         let mut first = (f64::INFINITY, None);
-        for (place, (&row, &weight)) in self.basis.rows().iter().zip(weights).enumerate() {
-            let step = self.pressures.rounded[row].max(0.0) / weight;
+        for (place, (&row, &weight)) in self.closed.basis.rows().iter().zip(weights).enumerate() {
+            let step = self.closed.pressures[row].max(0.0) / weight;
             if weight > rounding && step < first.0 {
                 first = (step, Some(place));
             }
@@ -192,8 +191,8 @@ impl<'a> Pass<'a> {
 
     /// Returns to a set that was closed before.
     fn restore(&mut self, rows: &[usize]) {
-        self.pressures.rounded.fill(0.0);
-        *self.basis = of_rows(self.polyhedron, rows);
+        self.closed.pressures.fill(0.0);
+        self.closed.basis = of_rows(self.polyhedron, rows);
         self.balance();
     }
 
@@ -208,12 +207,12 @@ impl<'a> Pass<'a> {
         let Polyhedron { problem, lengths, reach, .. } = self.polyhedron;
         let mut weights = vec![0.0; problem.rows()];
         weights[row] = 1.0;
-        self.basis.rows().iter().zip(shares).for_each(|(&closed, share)| weights[closed] = (-share).max(0.0));
+        self.closed.basis.rows().iter().zip(shares).for_each(|(&closed, share)| weights[closed] = (-share).max(0.0));
         let mut rest = vec![0.0; problem.rows()];
         let left = |weights: &[f64], rest: &[f64]| self.polyhedron.of_force(&self.polyhedron.force(weights, rest));
         for _ in 0..WEIGHT_CORRECTIONS {
-            let change = self.basis.solve_upper(self.basis.along(&left(&weights, &rest)));
-            for (&closed, change) in self.basis.rows().iter().zip(&change) {
+            let change = self.closed.basis.solve_upper(self.closed.basis.along(&left(&weights, &rest)));
+            for (&closed, change) in self.closed.basis.rows().iter().zip(&change) {
                 let weight = rest[closed] - change;
                 let sum = (weights[closed] + weight).max(0.0);
                 (rest[closed], weights[closed]) =
@@ -221,7 +220,9 @@ impl<'a> Pass<'a> {
             }
         }
         let left = norm(&left(&weights, &rest));
-        let (rows, weights) = taking_part(&weights, NO_WEIGHT * largest(&weights));
+        let tiny = NO_WEIGHT * largest(&weights);
+        let (rows, weights): (Vec<usize>, Vec<f64>) =
+            weights.into_iter().enumerate().filter(|entry| entry.1 > tiny).unzip();
         // The largest weight is the unit of the overlap.
         let overlap = problem.overlap(&rows, &weights).map_or(0.0, |overlap| overlap * largest(&weights));
         let nearest = rows.iter().map(|&row| problem.gap()[row].abs() / lengths[row]).fold(0.0, f64::max);
@@ -241,9 +242,4 @@ pub(super) fn of_rows(polyhedron: &Polyhedron, rows: &[usize]) -> Basis {
         basis.close(row, split);
     }
     basis
-}
-
-/// The rows with a weight above `tiny`, and their weights.
-fn taking_part(weights: &[f64], tiny: f64) -> (Vec<usize>, Vec<f64>) {
-    weights.iter().copied().enumerate().filter(|entry| entry.1 > tiny).unzip()
 }

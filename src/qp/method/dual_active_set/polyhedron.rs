@@ -8,11 +8,10 @@ use std::cell::Cell;
 
 use crate::error::Error;
 use crate::qp::linear::{
-    Accumulator, AugmentedMatrix, Cholesky, Equilibration, FactorError, SparseMatrix, exponent, ldexp, norm,
+    Accumulator, AugmentedMatrix, Cholesky, Equilibration, SparseMatrix, exponent, if_definite, ldexp, norm,
 };
-use crate::qp::method::{Ending, Outcome, ScaledProblem};
+use crate::qp::method::ScaledProblem;
 use crate::qp::problem::ContactProblem;
-use crate::solution::{ContactSet, Iteration};
 
 /// Weight of the proximal term `1/2 weight |u - u_k|^2` that makes a semidefinite K, with a diagonal between 1 and 4, definite.
 /// With 1e-6 the same number of problems is solved, with 1 about half.
@@ -59,30 +58,19 @@ impl Polyhedron {
         let stiffness = equilibration.apply(of.stiffness());
         let no_rows = SparseMatrix::from_triplets(0, of.dofs(), &[])?;
         let body = AugmentedMatrix::new(&stiffness, &no_rows)?;
-        let factor_with = |weight: f64| match body.factor(body.matrix(|_| 0.0, weight)) {
-            Ok(factor) => Ok(Some(factor)),
-            Err(FactorError::NotPositiveDefinite) => Ok(None),
-            Err(error) => Err(Error::from(error)),
-        };
-        let definite = if scaled.is_definite() { factor_with(0.0)? } else { None };
-        let factor = match definite {
-            Some(factor) => factor,
-            None => match factor_with(PROXIMAL)? {
-                Some(factor) => factor,
-                None => return Ok(None),
-            },
-        };
+        let factor_with = |weight: f64| if_definite(body.factor(body.matrix(|_| 0.0, weight)));
+        let mut factor = if scaled.is_definite() { factor_with(0.0)? } else { None };
+        if factor.is_none() {
+            factor = factor_with(PROXIMAL)?;
+        }
+        let Some(factor) = factor else { return Ok(None) };
         if (of.rows() * factor.entries()) as f64 > MOST_WORK {
             return Ok(None);
         }
         let dofs: Vec<f64> = equilibration.diagonal.iter().map(|&d| ldexp(1.0, d)).collect();
         let contact = of.contact().scaled(&vec![1.0; of.rows()], &dofs);
         let by_row = contact.transposed();
-        let length = |row: usize| {
-            let mut dense = vec![0.0; of.dofs()];
-            by_row.column(row).for_each(|(dof, b)| dense[dof] = b);
-            norm(&factor.forward(&dense))
-        };
+        let length = |row: usize| norm(&swept(&by_row, &factor, row));
         let lengths: Vec<f64> = (0..of.rows()).map(length).collect();
         let scales: Vec<i32> = lengths.iter().map(|&length| -exponent(length)).collect();
         let lengths = lengths.iter().zip(&scales).map(|(&length, &scale)| ldexp(length, scale)).collect();
@@ -107,9 +95,7 @@ impl Polyhedron {
 
     /// The row c = L^-1 b of C, length n.
     pub fn row(&self, row: usize) -> Vec<f64> {
-        let mut dense = vec![0.0; self.problem.dofs()];
-        self.by_row.column(row).for_each(|(dof, b)| dense[dof] = b);
-        self.factor.forward(&dense)
+        swept(&self.by_row, &self.factor, row)
     }
 
     /// L^-1 r of a force r.
@@ -120,27 +106,6 @@ impl Polyhedron {
     /// u = L^-T w.
     pub fn displacement(&self, point: &[f64]) -> Vec<f64> {
         self.factor.backward(point.to_vec())
-    }
-
-    /// `f - B'y - K u` for the pressures `y = pressures + rests`, rounded once.
-    pub fn imbalance(&self, displacement: &[f64], pressures: &[f64], rests: &[f64]) -> Vec<f64> {
-        let mut sums = Accumulator::new(self.problem.load());
-        let back: Vec<f64> = displacement.iter().map(|u| -u).collect();
-        sums.add_matrix_product(|column| self.problem.stiffness().lower().column(column), &back);
-        for (row, dof, b) in self.problem.contact().triplets() {
-            sums.add_product(dof, -b, pressures[row]);
-            sums.add_product(dof, -b, rests[row]);
-        }
-        sums.into_sums()
-    }
-
-    /// g - B u of each row, rounded once.
-    pub fn distances(&self, displacement: &[f64]) -> Vec<f64> {
-        let mut sums = Accumulator::new(self.problem.gap());
-        for (row, dof, b) in self.problem.contact().triplets() {
-            sums.add_product(row, -b, displacement[dof]);
-        }
-        sums.into_sums()
     }
 
     /// B'y for the rows' weights `y = weights + rest`, rounded once.
@@ -159,26 +124,17 @@ impl Polyhedron {
         Contradiction { rows, weights }
     }
 
-    /// The settled answer in the units of the unscaled problem; `pressures` are `-lambda`.
-    pub fn expand(
-        &self,
-        displacement: &[f64],
-        pressures: &[f64],
-        closed: &[usize],
-        history: Vec<Iteration>,
-    ) -> Outcome {
-        let displacement = displacement.iter().zip(&self.equilibration.diagonal).map(|(&v, &d)| ldexp(v, d)).collect();
+    /// Displacements and multipliers in the units of the unscaled problem; `pressures` are `-lambda`.
+    pub fn expand(&self, displacement: &[f64], pressures: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let of_row = |(&y, &scale): (&f64, &i32)| -ldexp(y.max(0.0), scale - self.equilibration.factor);
-        let mut contact_set = ContactSet::open(pressures.len());
-        closed.iter().for_each(|&row| contact_set.insert(row));
-        Outcome {
-            displacement,
-            multiplier: pressures.iter().zip(&self.scales).map(of_row).collect(),
-            contact_set,
-            iterations: history.len(),
-            history,
-            ending: Ending::Settled,
-            variant: "-dual",
-        }
+        let dofs = displacement.iter().zip(&self.equilibration.diagonal);
+        (dofs.map(|(&v, &d)| ldexp(v, d)).collect(), pressures.iter().zip(&self.scales).map(of_row).collect())
     }
+}
+
+/// `L^-1 b` of a row b.
+fn swept(by_row: &SparseMatrix, factor: &Cholesky, row: usize) -> Vec<f64> {
+    let mut dense = vec![0.0; by_row.rows()];
+    by_row.column(row).for_each(|(dof, b)| dense[dof] = b);
+    factor.forward(&dense)
 }
