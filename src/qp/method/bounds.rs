@@ -35,28 +35,24 @@ pub struct Bound {
     sides: [Option<Side>; 2],
 }
 
-/// `v -= 2 w (w'v)`.
-#[derive(Clone, Debug)]
-struct Reflection {
-    vector: Direction,
-}
-
-impl Reflection {
-    fn apply(&self, v: &mut [f64]) {
-        let along: f64 = self.vector.iter().map(|&(place, w)| w * v[place]).sum();
-        self.vector.iter().for_each(|&(place, w)| v[place] -= 2.0 * along * w);
-    }
+/// Reflects v at a unit vector w, in place: `v -= 2 w (w'v)`.
+fn reflect(w: &Direction, v: &mut [f64]) {
+    let along: f64 = w.iter().map(|&(place, w)| w * v[place]).sum();
+    w.iter().for_each(|&(place, w)| v[place] -= 2.0 * along * w);
 }
 
 /// Rows B u <= g as bounds on unknowns w = S H u, with H orthogonal: a product of one reflection for each row that has more
 /// than one entry beside a travel. S adds the travels.
 #[derive(Clone, Debug)]
 pub struct Bounds {
-    reflections: Vec<Reflection>,
+    /// The unit vector of each reflection.
+    reflections: Vec<Direction>,
     /// The reflections that touch each place.
     touching: HashMap<usize, Vec<usize>>,
-    bounds: Vec<Bound>,
-    travels: Vec<usize>,
+    /// The bounds.
+    pub bounds: Vec<Bound>,
+    /// The travels, the dofs without stiffness.
+    pub travels: Vec<usize>,
     rows: usize,
 }
 
@@ -95,32 +91,28 @@ impl Bounds {
             let length = entries.iter().fold(0.0, |length: f64, entry| length.hypot(entry.1));
             let turned = all.reflected(entries.iter().map(|&(place, b)| (place, b / length)).collect(), Order::Forward);
             let Some(&(first, _)) = turned.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) else { continue };
-            let taken: Vec<usize> = turned.iter().filter_map(|entry| bound_of[entry.0]).collect();
-            let index = match (taken[..].first(), turned.len()) {
-                (Some(&index), 1) => index,
-                (Some(&index), _) => {
-                    let other = all.bounds[index].sides.iter().flatten().next().map_or(0, |side| side.row);
-                    return Err(no_bound(format!(
-                        "contact rows {other} and {row} (indices from 0) share an unknown and are neither parallel nor at right angles"
-                    )));
-                }
-                (None, _) => {
-                    bound_of[first] = Some(all.bounds.len());
-                    let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
-                    all.bounds.push(Bound { unknown: first, lower, upper, travel: None, sides: [None; 2] });
-                    all.bounds.len() - 1
-                }
-            };
+            let taken = turned.iter().find_map(|entry| bound_of[entry.0]);
+            if let Some(index) = taken.filter(|_| turned.len() > 1) {
+                let other = all.bounds[index].sides.iter().flatten().next().map_or(0, |side| side.row);
+                return Err(no_bound(format!(
+                    "contact rows {other} and {row} (indices from 0) share an unknown and are neither parallel nor at right angles"
+                )));
+            }
             let sign = if turned.len() == 1 { turned[0].1.signum() } else { all.reflect(turned, first) };
             let coefficient = sign * length;
             let travel = moving.first().map(|&(travel, c)| (travel, c / coefficient));
-            if !all.bounds[index].travels_as(travel) {
+            let index = *bound_of[first].get_or_insert(all.bounds.len());
+            if index == all.bounds.len() {
+                let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
+                all.bounds.push(Bound { unknown: first, lower, upper, travel, sides: [None; 2] });
+            }
+            let bound = &mut all.bounds[index];
+            if !bound.travels_as(travel) {
                 return Err(no_bound(format!(
                     "contact row {row} (index from 0) shares an unknown with one of another travel"
                 )));
             }
-            all.bounds[index].travel = travel;
-            all.bounds[index].take(Side { row, coefficient, value: gap[row] / coefficient });
+            bound.take(Side { row, coefficient, value: gap[row] / coefficient });
         }
         Ok(all)
     }
@@ -133,20 +125,18 @@ impl Bounds {
         let mut entries: HashMap<usize, f64> = vector.into_iter().collect();
         let of_place = |place: &usize| self.touching.get(place).into_iter().flatten().copied();
         let mut waiting: BTreeSet<usize> = entries.keys().flat_map(of_place).collect();
-        let first = |waiting: &mut BTreeSet<usize>| match order {
-            Order::Forward => waiting.pop_first(),
-            Order::Backward => waiting.pop_last(),
-        };
-        let follows = |other: usize, next: usize| match order {
-            Order::Forward => other > next,
-            Order::Backward => other < next,
-        };
-        while let Some(next) = first(&mut waiting) {
-            let reflection = &self.reflections[next].vector;
+        loop {
+            let next = match order {
+                Order::Forward => waiting.pop_first(),
+                Order::Backward => waiting.pop_last(),
+            };
+            let Some(next) = next else { break };
+            let follows = |other: &usize| (*other > next) == (order == Order::Forward) && *other != next;
+            let reflection = &self.reflections[next];
             let along: f64 = reflection.iter().map(|&(p, w)| w * entries.get(&p).copied().unwrap_or(0.0)).sum();
             for &(place, w) in reflection {
                 *entries.entry(place).or_insert(0.0) -= 2.0 * along * w;
-                waiting.extend(of_place(&place).filter(|&other| follows(other, next)));
+                waiting.extend(of_place(&place).filter(follows));
             }
         }
         let mut reflected: Direction = entries.into_iter().filter(|entry| entry.1.abs() > TURNING_ROUNDING).collect();
@@ -166,18 +156,8 @@ impl Bounds {
             entry.1 /= length;
             self.touching.entry(entry.0).or_default().push(self.reflections.len());
         }
-        self.reflections.push(Reflection { vector: unit });
+        self.reflections.push(unit);
         -own.signum()
-    }
-
-    /// The bounds.
-    pub fn bounds(&self) -> &[Bound] {
-        &self.bounds
-    }
-
-    /// The travels, the dofs without stiffness.
-    pub fn travels(&self) -> &[usize] {
-        &self.travels
     }
 
     /// Returns `true` if all rows are bounds without a reflection and without a travel.
@@ -187,19 +167,19 @@ impl Bounds {
 
     /// The unknowns w = S H u of a displacement u, in place.
     pub fn turn(&self, v: &mut [f64]) {
-        self.reflections.iter().for_each(|reflection| reflection.apply(v));
+        self.reflections.iter().for_each(|reflection| reflect(reflection, v));
         self.shears().for_each(|(unknown, travel, share)| v[unknown] += share * v[travel]);
     }
 
     /// The displacement H' S^-1 w of unknowns w, in place.
     pub fn turn_back(&self, v: &mut [f64]) {
         self.shears().for_each(|(unknown, travel, share)| v[unknown] -= share * v[travel]);
-        self.reflections.iter().rev().for_each(|reflection| reflection.apply(v));
+        self.reflections.iter().rev().for_each(|reflection| reflect(reflection, v));
     }
 
     /// The forces S^-T H f along the unknowns of forces f along the dofs, in place.
     pub fn turn_forces(&self, f: &mut [f64]) {
-        self.reflections.iter().for_each(|reflection| reflection.apply(f));
+        self.reflections.iter().for_each(|reflection| reflect(reflection, f));
         self.shears().for_each(|(unknown, travel, share)| f[travel] -= share * f[unknown]);
     }
 
@@ -244,12 +224,10 @@ fn no_bound(what: String) -> Error {
 impl Bound {
     /// Returns `true` if a row with this travel may join those of the bound.
     fn travels_as(&self, travel: Option<(usize, f64)>) -> bool {
-        let is_new = self.sides.iter().all(Option::is_none);
-        is_new
-            || match (self.travel, travel) {
-                (Some((own, a)), Some((other, b))) => own == other && (a - b).abs() <= EQUAL_SHARES * a.abs(),
-                (own, other) => own == other,
-            }
+        match (self.travel, travel) {
+            (Some((own, a)), Some((other, b))) => own == other && (a - b).abs() <= EQUAL_SHARES * a.abs(),
+            (own, other) => own == other,
+        }
     }
 
     /// The value of a bound with a row in the set; the upper value if both rows are.
@@ -298,11 +276,11 @@ mod tests {
         let u = [0.3, -0.7, 0.2, 9.0, 0.5];
         let mut w = u.to_vec();
         bounds.turn(&mut w);
-        for (bound, (moved, length)) in bounds.bounds().iter().zip(contact.mul(&u).into_iter().zip([1.0, 3.0, 2.0])) {
+        for (bound, (moved, length)) in bounds.bounds.iter().zip(contact.mul(&u).into_iter().zip([1.0, 3.0, 2.0])) {
             let sign = if bound.upper.is_finite() { 1.0 } else { -1.0 };
             assert!((sign * w[bound.unknown] - moved / length).abs() < ROUNDING, "{bound:?}");
         }
-        assert_eq!((bounds.bounds()[2].unknown, bounds.bounds()[2].upper), (4, 4.0));
+        assert_eq!((bounds.bounds[2].unknown, bounds.bounds[2].upper), (4, 4.0));
         // Work is the same in both: f'u = h'w.
         let f = [2.0, -1.0, 0.5, 0.25, 3.0];
         let mut h = f.to_vec();

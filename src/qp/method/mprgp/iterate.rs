@@ -80,18 +80,18 @@ impl<'a> Iterate<'a> {
         let mut x = start.displacement.unwrap_or_else(|| vec![0.0; problem.dofs()]);
         bounds.turn(&mut x);
         let mut diagonal = problem.stiffness().diagonal();
-        for bound in bounds.bounds() {
+        for bound in &bounds.bounds {
             if let Some((travel, share)) = bound.travel {
                 diagonal[travel] += share * share * diagonal[bound.unknown];
             }
         }
-        let at = vec![At::Free; bounds.bounds().len()];
+        let at = vec![At::Free; bounds.bounds.len()];
         let mut iterate = Iterate { problem, bounds, load, diagonal, x, gradient: Vec::new(), at, threads };
         if is_unknown {
             iterate.travel_along_load();
         }
         if let Some(closed) = &start.contact_set {
-            for bound in bounds.bounds() {
+            for bound in &bounds.bounds {
                 let value = &mut iterate.x[bound.unknown];
                 if let Some(held) = bound.closed_at(closed) {
                     *value = held;
@@ -110,7 +110,7 @@ impl<'a> Iterate<'a> {
     /// Moves each travel, of a body at rest, along its load, about as far as that reaches: N closed rows resist like `sqrt(N)` single
     /// ones, as a circle of that area on a half space does. Too deep or too shallow by half costs a few cycles.
     fn travel_along_load(&mut self) {
-        for &travel in self.bounds.travels() {
+        for &travel in &self.bounds.travels {
             let (load, way) = (self.problem.load()[travel].abs(), self.problem.load()[travel].signum());
             let of_row = |bound: &Bound| {
                 let share = bound.travel.filter(|own| own.0 == travel && own.1 != 0.0)?.1;
@@ -118,7 +118,7 @@ impl<'a> Iterate<'a> {
                 let depth = way * value / share;
                 depth.is_finite().then(|| (depth, share * share * self.diagonal[bound.unknown]))
             };
-            let mut rows: Vec<(f64, f64)> = self.bounds.bounds().iter().filter_map(of_row).collect();
+            let mut rows: Vec<(f64, f64)> = self.bounds.bounds.iter().filter_map(of_row).collect();
             rows.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
             let (mut stiffness, mut force) = (0.0, 0.0);
             for (index, &(depth, own)) in rows.iter().enumerate() {
@@ -132,7 +132,7 @@ impl<'a> Iterate<'a> {
                 }
             }
         }
-        for bound in self.bounds.bounds() {
+        for bound in &self.bounds.bounds {
             if let Some((travel, share)) = bound.travel {
                 self.x[bound.unknown] = share * self.x[travel];
             }
@@ -173,7 +173,7 @@ impl<'a> Iterate<'a> {
 
     /// Moves the unknowns into their bounds, and records which are at a bound.
     fn project(&mut self) {
-        for (bound, at) in self.bounds.bounds().iter().zip(&mut self.at) {
+        for (bound, at) in self.bounds.bounds.iter().zip(&mut self.at) {
             let value = &mut self.x[bound.unknown];
             *value = value.min(bound.upper).max(bound.lower);
             *at = match (*value == bound.lower, *value == bound.upper) {
@@ -187,7 +187,7 @@ impl<'a> Iterate<'a> {
 
     /// The part of the gradient at a closed bound that the bound carries.
     pub fn held_gradient(&self, index: usize) -> f64 {
-        let gradient = self.gradient[self.bounds.bounds()[index].unknown];
+        let gradient = self.gradient[self.bounds.bounds[index].unknown];
         match self.at[index] {
             At::Free => 0.0,
             At::Lower => gradient.max(0.0),
@@ -200,7 +200,7 @@ impl<'a> Iterate<'a> {
     fn chopped_gradient(&self, index: usize) -> f64 {
         match self.at[index] {
             At::Free => 0.0,
-            _ => self.gradient[self.bounds.bounds()[index].unknown] - self.held_gradient(index),
+            _ => self.gradient[self.bounds.bounds[index].unknown] - self.held_gradient(index),
         }
     }
 
@@ -211,7 +211,7 @@ impl<'a> Iterate<'a> {
     }
 
     pub fn keep_free(&self, values: &mut [f64]) {
-        for (bound, at) in self.bounds.bounds().iter().zip(&self.at) {
+        for (bound, at) in self.bounds.bounds.iter().zip(&self.at) {
             if *at != At::Free {
                 values[bound.unknown] = 0.0;
             }
@@ -228,7 +228,7 @@ impl<'a> Iterate<'a> {
 
     /// Returns `true` if a row of the travel is at its bound.
     pub fn is_held(&self, travel: usize) -> bool {
-        let of_bounds = self.bounds.bounds().iter().zip(&self.at);
+        let of_bounds = self.bounds.bounds.iter().zip(&self.at);
         of_bounds.into_iter().any(|(bound, at)| *at != At::Free && bound.travel.is_some_and(|own| own.0 == travel))
     }
 
@@ -246,13 +246,13 @@ impl<'a> Iterate<'a> {
         let weighted = |value: f64, unknown: usize| value * value / self.diagonal[unknown];
         let free: f64 = self.free_gradient().iter().enumerate().map(|(unknown, &g)| weighted(g, unknown)).sum();
         let chopped = |(index, bound): (usize, &Bound)| weighted(self.chopped_gradient(index), bound.unknown);
-        self.bounds.bounds().iter().enumerate().map(chopped).sum::<f64>() > free
+        self.bounds.bounds.iter().enumerate().map(chopped).sum::<f64>() > free
     }
 
     /// A step along the chopped gradient to the least energy, unless other bounds end it before.
     pub fn proportion(&mut self) {
         let mut direction = vec![0.0; self.x.len()];
-        for (index, bound) in self.bounds.bounds().iter().enumerate() {
+        for (index, bound) in self.bounds.bounds.iter().enumerate() {
             direction[bound.unknown] = self.chopped_gradient(index) / self.diagonal[bound.unknown];
         }
         let moved = self.product(&direction);
@@ -276,7 +276,7 @@ impl<'a> Iterate<'a> {
                 _ => f64::INFINITY,
             }
         };
-        self.bounds.bounds().iter().map(room).fold(f64::INFINITY, f64::min)
+        self.bounds.bounds.iter().map(room).fold(f64::INFINITY, f64::min)
     }
 
     /// The step of length `room`, which the first bounds end. Their unknowns are set exactly to them; otherwise rounding could
@@ -287,7 +287,7 @@ impl<'a> Iterate<'a> {
             let met = if speed > 0.0 { bound.lower } else { bound.upper };
             (speed != 0.0 && (value - met) / speed <= room * (1.0 + FIRST)).then_some((bound.unknown, met))
         };
-        let met: Vec<(usize, f64)> = self.bounds.bounds().iter().filter_map(|bound| meets(bound, &self.x)).collect();
+        let met: Vec<(usize, f64)> = self.bounds.bounds.iter().filter_map(|bound| meets(bound, &self.x)).collect();
         self.step_along(&direction.p, &direction.moved, room);
         met.iter().for_each(|&(unknown, value)| self.x[unknown] = value);
         self.project();
@@ -328,7 +328,7 @@ impl<'a> Iterate<'a> {
         }
         let share = 1.0 / self.largest_eigenvalue();
         let mut free = self.free_gradient();
-        self.bounds.travels().iter().for_each(|&travel| free[travel] = 0.0);
+        self.bounds.travels.iter().for_each(|&travel| free[travel] = 0.0);
         for ((x, g), d) in self.x.iter_mut().zip(&free).zip(&self.diagonal) {
             *x -= share * g / d;
         }
@@ -362,23 +362,18 @@ impl<'a> Iterate<'a> {
 
     /// The held directions, in the dofs of the problem.
     pub fn held(&self) -> Vec<Direction> {
-        let closed = self.bounds.bounds().iter().zip(&self.at).filter(|entry| *entry.1 != At::Free);
+        let closed = self.bounds.bounds.iter().zip(&self.at).filter(|entry| *entry.1 != At::Free);
         closed.map(|(bound, _)| self.bounds.direction(bound)).collect()
     }
 
+    /// One cycle in a face, in which nothing travels and no bound opens.
     pub fn preconditioned(&self, face: &Face, gradient: &[f64]) -> Vec<f64> {
-        let mut step = self.cycled(face, gradient);
-        self.keep_free(&mut step);
-        step
-    }
-
-    /// One cycle in a face, in which nothing travels.
-    pub fn cycled(&self, face: &Face, force: &[f64]) -> Vec<f64> {
-        let mut force = force.to_vec();
-        self.bounds.travels().iter().for_each(|&travel| force[travel] = 0.0);
+        let mut force = gradient.to_vec();
+        self.bounds.travels.iter().for_each(|&travel| force[travel] = 0.0);
         self.bounds.turn_back(&mut force);
         let mut step = face.cycle(&force);
         self.bounds.turn(&mut step);
+        self.keep_free(&mut step);
         step
     }
 

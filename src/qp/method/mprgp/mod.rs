@@ -74,66 +74,63 @@ pub struct Mprgp<'a> {
 }
 
 impl Solver for Mprgp<'_> {
+    /// Finds displacement, multipliers and contact set; `iterations` counts the cycles of the hierarchy.
+    ///
+    /// The loop is finite. It ends at the limits, or if only rounding is left, or, as `-stagnated`, if 60 iterations together do
+    /// not halve the residual; those that change the face count only beyond one for each row.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] for rows that no reflections make bounds, [`Error::NotConvex`] for a coarsest matrix of a face with a
+    /// negative eigenvalue.
     fn solve(&self, start: Start) -> Result<Outcome, Error> {
-        solve(self, start)
-    }
-}
-
-/// Finds displacement, multipliers and contact set; `iterations` counts the cycles of the hierarchy.
-///
-/// The loop is finite. It ends at the limits, or if only rounding is left, or, as `-stagnated`, if 60 iterations together do
-/// not halve the residual; those that change the face count only beyond one for each row.
-///
-/// # Errors
-/// [`Error::Numerical`] for rows that no reflections make bounds, [`Error::NotConvex`] for a coarsest matrix of a face with a
-/// negative eigenvalue.
-fn solve(mprgp: &Mprgp, start: Start) -> Result<Outcome, Error> {
-    let Mprgp { problem, multigrid, limits, watch } = *mprgp;
-    let bounds = Bounds::of(problem.contact(), problem.gap(), problem.without_stiffness())?;
-    let mut iterate = started(mprgp, &bounds, start);
-    let mut history = vec![iterate.step()];
-    let mut steps =
-        Steps { multigrid, watch, face: None, travels: Travels::default(), is_old: false, last: None, cycles: 0 };
-    let mut progress = Progress::default();
-    let mut ending = Ending::Unsettled;
-    let is_late = || watch.is_over();
-    while steps.cycles < limits.most_cycles && progress.since_best < progress.patience(problem.rows()) && !is_late() {
-        let residual = iterate.residual();
-        if residual <= limits.tolerance {
-            if progress.is_fresh || progress.has_settled(&mut iterate) {
-                ending = Ending::Settled;
+        let Mprgp { problem, multigrid, limits, watch } = *self;
+        let bounds = Bounds::of(problem.contact(), problem.gap(), problem.without_stiffness())?;
+        let mut iterate = started(self, &bounds, start);
+        let mut history = vec![iterate.step()];
+        let mut steps =
+            Steps { multigrid, watch, face: None, travels: Travels::default(), is_old: false, last: None, cycles: 0 };
+        let mut progress = Progress::default();
+        let mut ending = Ending::Unsettled;
+        let is_late = || watch.is_over();
+        while steps.cycles < limits.most_cycles && progress.since_best < progress.patience(problem.rows()) && !is_late()
+        {
+            let residual = iterate.residual();
+            if residual <= limits.tolerance {
+                if progress.is_fresh || progress.has_settled(&mut iterate) {
+                    ending = Ending::Settled;
+                    break;
+                }
+                steps.last = None;
+                continue;
+            }
+            progress.note(residual);
+            if progress.is_hopeless(steps.cycles, limits) {
                 break;
             }
-            steps.last = None;
-            continue;
+            let before = iterate.at.clone();
+            if !steps.take_one(&mut iterate)? {
+                ending = Ending::Unheld;
+                break;
+            }
+            if iterate.at != before {
+                (steps.is_old, steps.last) = (true, None);
+                progress.changes += 1;
+                progress.on_face = (steps.cycles, residual);
+                history.push(iterate.step());
+            }
         }
-        progress.note(residual);
-        if progress.is_hopeless(steps.cycles, limits) {
-            break;
-        }
-        let before = iterate.at.clone();
-        if !steps.take_one(&mut iterate)? {
-            ending = Ending::Unheld;
-            break;
-        }
-        if iterate.at != before {
-            (steps.is_old, steps.last) = (true, None);
-            progress.changes += 1;
-            progress.on_face = (steps.cycles, residual);
-            history.push(iterate.step());
-        }
+        let (multiplier, contact_set) = bounds.multipliers(|index| iterate.held_gradient(index));
+        let mut displacement = iterate.x;
+        bounds.turn_back(&mut displacement);
+        let variant = match ending {
+            Ending::Settled => "",
+            _ if steps.cycles >= limits.most_cycles || is_late() || progress.is_hopeless(steps.cycles, limits) => {
+                "-unsettled"
+            }
+            _ => "-stagnated",
+        };
+        Ok(Outcome { displacement, multiplier, contact_set, iterations: steps.cycles, history, ending, variant })
     }
-    let (multiplier, contact_set) = bounds.multipliers(|index| iterate.held_gradient(index));
-    let mut displacement = iterate.x;
-    bounds.turn_back(&mut displacement);
-    let variant = match ending {
-        Ending::Settled => "",
-        _ if steps.cycles >= limits.most_cycles || is_late() || progress.is_hopeless(steps.cycles, limits) => {
-            "-unsettled"
-        }
-        _ => "-stagnated",
-    };
-    Ok(Outcome { displacement, multiplier, contact_set, iterations: steps.cycles, history, ending, variant })
 }
 
 /// The iterate at the start; if a displacement is given that is not near the answer, the better one of that and none.
@@ -157,7 +154,7 @@ fn started<'a>(mprgp: &Mprgp<'a>, bounds: &'a Bounds, start: Start) -> Iterate<'
 fn nested(mprgp: &Mprgp, bounds: &Bounds) -> Option<Start> {
     let below = |problem: &ContactProblem, multigrid: &Multigrid, tolerance, most_cycles| {
         let limits = Limits { tolerance, most_cycles, worth: usize::MAX };
-        solve(&Mprgp { problem, multigrid, limits, watch: mprgp.watch }, Start::default())
+        Mprgp { problem, multigrid, limits, watch: mprgp.watch }.solve(Start::default())
     };
     nested_start(mprgp.problem, bounds, mprgp.multigrid, below).map(Start::near)
 }
@@ -247,7 +244,7 @@ impl Steps<'_> {
             old => {
                 let face = self.multigrid.face(&iterate.held(), old.as_ref())?;
                 self.travels = std::mem::take(&mut self.travels).in_face(iterate, &face);
-                self.cycles += iterate.bounds.travels().len();
+                self.cycles += iterate.bounds.travels.len();
                 face
             }
         };

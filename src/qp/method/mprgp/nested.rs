@@ -28,12 +28,12 @@ pub fn nested_start(
     multigrid: &Multigrid,
     solve: impl Fn(&ContactProblem, &Multigrid, f64, usize) -> Result<Outcome, Error>,
 ) -> Option<Vec<f64>> {
-    if !bounds.is_plain() || bounds.bounds().is_empty() {
+    if !bounds.is_plain() || bounds.bounds.is_empty() {
         return None;
     }
     let coarser = multigrid.coarser()?;
     let mut intervals = vec![[f64::NEG_INFINITY, f64::INFINITY]; problem.dofs()];
-    bounds.bounds().iter().for_each(|bound| intervals[bound.unknown] = [bound.lower, bound.upper]);
+    bounds.bounds.iter().for_each(|bound| intervals[bound.unknown] = [bound.lower, bound.upper]);
     let coarse = coarser.bounds(&intervals);
     let (contact, gap) = rows_of(&coarse)?;
     let below = ContactProblem::new(coarser.matrix.clone(), coarser.load(problem.load()), contact, gap).ok()?;

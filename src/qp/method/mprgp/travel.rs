@@ -47,7 +47,7 @@ impl Travels {
     /// The displacements in another face: they start from those of the last one, and one cycle takes them nearer to balance.
     pub fn in_face(self, iterate: &Iterate, face: &Face) -> Self {
         let (mut before, mut moves) = (self.moves.into_iter(), Vec::<Move>::new());
-        for &travel in iterate.bounds.travels() {
+        for &travel in &iterate.bounds.travels {
             let mut way = before.next().map_or_else(|| iterate.alone(travel), |last| last.way);
             iterate.keep_free(&mut way);
             if way[travel] == 0.0 {
