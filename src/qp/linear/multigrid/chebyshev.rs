@@ -18,15 +18,6 @@ const CHANGED: f64 = 1.15;
 /// A pivot of a diagonal block below this share of its entry is rounding: such a direction is not smoothed.
 const SINGULAR_PIVOT: f64 = 1e-6;
 
-/// State of the residual after the smoother.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rest {
-    /// The residual of the improved vector.
-    Updated,
-    /// A residual that is not used any more; this saves one product.
-    Stale,
-}
-
 /// A symmetric smoother of a fixed degree.
 ///
 /// # Source
@@ -55,8 +46,9 @@ impl<T: Real> Chebyshev<T> {
         size_of_val(&self.inverse[..])
     }
 
-    /// Improves `x` with the residual `rest` = b - A x; `after` states what `rest` holds afterwards.
-    pub fn smooth(&self, operator: &Operator<T>, x: &mut [T], rest: &mut [T], after: Rest) {
+    /// Improves `x` with the residual `rest` = b - A x. Returns the last step, which the residual does not contain yet: that saves a
+    /// product if it is not used any more.
+    pub fn smooth(&self, operator: &Operator<T>, x: &mut [T], rest: &mut [T]) -> Vec<T> {
         let (mut step, mut moved) = (vec![T::default(); x.len()], vec![T::default(); x.len()]);
         for k in 1..=self.degree {
             let k_real = k as f64;
@@ -69,11 +61,12 @@ impl<T: Real> Chebyshev<T> {
                     *x += *step;
                 }
             });
-            if k < self.degree || after == Rest::Updated {
+            if k < self.degree {
                 operator.mul_into(&step, &mut moved);
                 operator.subtract(&moved, rest);
             }
         }
+        step
     }
 
     /// `D^-1 r`, in the face.

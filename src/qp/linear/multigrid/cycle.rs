@@ -1,6 +1,5 @@
 //! One V-cycle through a hierarchy.
 
-use super::chebyshev::Rest;
 use super::face::FaceLevels;
 use super::hierarchy::Hierarchy;
 use super::operator::Operator;
@@ -36,7 +35,7 @@ impl<T: Real> Hierarchy<T> {
         let smoother = face.and_then(|face| face.smoothers.get(depth.wrapping_sub(1))).unwrap_or(&level.smoother);
         let mut x = vec![T::default(); rest.len()];
         let force = rest.clone();
-        smoother.smooth(&operator, &mut x, &mut rest, Rest::Updated);
+        operator.subtract_product(&smoother.smooth(&operator, &mut x, &mut rest), &mut rest);
         let mut restricted = vec![T::default(); level.restriction.rows() * level.restriction.height];
         level.restriction.mul_into(&rest, &mut restricted, self.threads);
         let correction = self.descend(depth + 1, restricted, face);
@@ -47,7 +46,7 @@ impl<T: Real> Hierarchy<T> {
         operator.mul_into(&x, &mut moved);
         let mut rest = force;
         operator.subtract(&moved, &mut rest);
-        smoother.smooth(&operator, &mut x, &mut rest, Rest::Stale);
+        smoother.smooth(&operator, &mut x, &mut rest);
         x
     }
 }

@@ -38,6 +38,13 @@ impl<'a, T: Real> Operator<'a, T> {
         self.project(y);
     }
 
+    /// `y -= A x` with an `x` in the face.
+    pub fn subtract_product(&self, x: &[T], y: &mut [T]) {
+        let mut product = vec![T::default(); y.len()];
+        self.mul_into(x, &mut product);
+        self.subtract(&product, y);
+    }
+
     /// Removes the held components.
     pub fn project(&self, y: &mut [T]) {
         if let Some(held) = self.held {
