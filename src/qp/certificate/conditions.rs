@@ -154,7 +154,7 @@ impl ContactProblem {
             shares_of_rows[row] = larger(share(dof, b * lambda[row]), shares_of_rows[row]);
         }
         let length = |row: usize| {
-            let of_part = scales.norm[scales.part_of_row(row)] * scales.reach[row];
+            let of_part = scales.norm[self.parts().of_row(row)] * scales.reach[row];
             let gap = if self.gap[row].is_finite() { self.gap[row].abs() } else { 0.0 };
             larger(lengths[row], larger(gap, of_part))
         };
@@ -164,7 +164,8 @@ impl ContactProblem {
         let stationarity = worst((0..u.len()).map(|dof| share(dof, residual[dof])));
         // Rounding of u moves a row, and a part that rests is known only to the rounding of its forces.
         let is_rounding = |row: usize| {
-            violation[row].abs() <= ENTRY_ROUNDING * lengths[row] + FORCES_ROUNDED * scales.rest_of_row(row)
+            let rest = scales.rest_of_row(row, self.parts().of_row(row));
+            violation[row].abs() <= ENTRY_ROUNDING * lengths[row] + FORCES_ROUNDED * rest
         };
         let distance = |row: usize| if is_rounding(row) { 0.0 } else { relative(violation[row], length(row)) };
         let penetration = worst(rows().map(|row| distance(row).max(0.0)));
@@ -267,34 +268,37 @@ impl ContactProblem {
 
     /// `B u - g` of the given doubles, with twice the working precision; `-inf` for a row without obstacle.
     pub(crate) fn accurate_violation(&self, u: &[f64]) -> Vec<f64> {
-        let start: Vec<f64> = self.gap.iter().map(|&gap| if gap.is_finite() { -gap } else { 0.0 }).collect();
-        let mut sums = Accumulator::new(&start);
-        for (column, &at_column) in u.iter().enumerate() {
-            self.contact.column(column).for_each(|(row, b)| sums.add_product(row, b, at_column));
-        }
-        let sums = sums.into_sums();
-        sums.iter().zip(&self.gap).map(|(&sum, &gap)| if gap.is_finite() { sum } else { f64::NEG_INFINITY }).collect()
+        Distances::of(self).moved(u)
     }
 
-    /// The product with u of the entries `(row, value)` of the lower triangle that `within(column)` gives, and of their
-    /// mirror images, with twice the working precision.
-    pub(super) fn accurate_product<I: Iterator<Item = (usize, f64)>>(
-        &self,
-        within: impl Fn(usize) -> I,
-        u: &[f64],
-    ) -> Vec<f64> {
-        self.unrounded_product(within, u).into_sums()
-    }
-
-    /// The same, not yet rounded.
-    pub(super) fn unrounded_product<I: Iterator<Item = (usize, f64)>>(
-        &self,
-        within: impl Fn(usize) -> I,
-        u: &[f64],
-    ) -> Accumulator {
+    /// The forces `K u` of the given doubles, with twice the working precision.
+    pub(super) fn accurate_forces(&self, u: &[f64]) -> Accumulator {
         let mut sums = Accumulator::new(&vec![0.0; u.len()]);
-        sums.add_matrix_product(within, u);
+        sums.add_matrix_product(|column| self.stiffness.lower().column(column), u);
         sums
+    }
+}
+
+/// The distances `B u - g` of a displacement that is a sum, which is not rounded.
+pub(super) struct Distances<'a> {
+    problem: &'a ContactProblem,
+    sums: Accumulator,
+}
+
+impl<'a> Distances<'a> {
+    /// Those of no displacement.
+    pub fn of(problem: &'a ContactProblem) -> Self {
+        let start: Vec<f64> = problem.gap.iter().map(|&gap| if gap.is_finite() { -gap } else { 0.0 }).collect();
+        Distances { problem, sums: Accumulator::new(&start) }
+    }
+
+    /// Adds a displacement. Returns the distances, with twice the working precision; `-inf` for a row without obstacle.
+    pub fn moved(&mut self, by: &[f64]) -> Vec<f64> {
+        for (column, &at_column) in by.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
+            self.problem.contact.column(column).for_each(|(row, b)| self.sums.add_product(row, b, at_column));
+        }
+        let with_obstacle = |(sum, gap): (f64, &f64)| if gap.is_finite() { sum } else { f64::NEG_INFINITY };
+        self.sums.sums().zip(&self.problem.gap).map(with_obstacle).collect()
     }
 }
 

@@ -5,8 +5,7 @@ use std::sync::Arc;
 use super::springs::Springs;
 use crate::error::Error;
 use crate::qp::linear::{
-    Analysis, Cholesky, Equilibration, FactorError, LowerTriangle, SelectedInverse, SparseMatrix, SymmetricMatrix, dot,
-    generic, ldexp,
+    Analysis, Cholesky, Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, generic, if_definite, ldexp,
 };
 use crate::watch::Watch;
 
@@ -37,17 +36,20 @@ const FEW_VALUES: usize = 1_000_000;
 /// The energy norm of a positive definite stiffness and its dual, from one factorisation of K with a diagonal near one.
 #[derive(Clone, Debug)]
 pub(crate) struct EnergyNorm {
-    cholesky: Cholesky,
-    equilibration: Equilibration,
-    boundary: Option<Arc<Boundary>>,
+    /// The factor of `c D K D`.
+    pub(super) cholesky: Cholesky,
+    /// D and c, as exponents of two: `K^-1 = c D (c D K D)^-1 D`.
+    pub(super) equilibration: Equilibration,
+    /// The contact boundary, if it is known.
+    pub(super) boundary: Option<Arc<Boundary>>,
     /// Factor by which a bound in this norm is multiplied, because the factor is not exactly that of K.
-    widening: f64,
+    pub(super) widening: f64,
     /// The springs that made a singular K definite.
-    springs: Option<Arc<Springs>>,
-    /// The dofs without stiffness, if these made K singular.
-    loose: Option<Arc<Loose>>,
+    pub(super) springs: Option<Arc<Springs>>,
+    /// The dofs without stiffness, in which the matrix has a stiffness of one, if these made K singular.
+    pub(super) loose: Option<Arc<Loose>>,
     /// Time limit of the bounds in this norm.
-    watch: Watch,
+    pub(super) watch: Watch,
 }
 
 /// Dofs without stiffness, load and contact force. The energy does not see them: in the norm they have a stiffness of one, on
@@ -63,9 +65,9 @@ pub(super) struct Loose {
 /// The contact dofs t, eliminated last: their block of the factor is that of the Schur complement.
 #[derive(Clone, Debug)]
 pub(super) struct Boundary {
-    dofs: Vec<usize>,
+    pub dofs: Vec<usize>,
     /// L_tt, t x t.
-    block: LowerTriangle,
+    pub block: LowerTriangle,
 }
 
 impl EnergyNorm {
@@ -82,11 +84,8 @@ impl EnergyNorm {
         let scaled = equilibration.apply(stiffness);
         let dofs = Self::last_dofs(contact);
         let factor = Analysis::with_last(&scaled, &dofs).and_then(|analysis| analysis.factor(&scaled));
-        match factor {
-            Ok(cholesky) if cholesky.is_definite(&scaled) => Ok(Some(Self::new(cholesky, equilibration, dofs))),
-            Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
-            Err(error) => Err(error.into()),
-        }
+        let definite = if_definite(factor)?.filter(|cholesky| cholesky.is_definite(&scaled));
+        Ok(definite.map(|cholesky| Self::new(cholesky, equilibration, dofs)))
     }
 
     /// The dofs to eliminate last, so that the contact boundary is known: those that appear in the rows `contact`, or none if
@@ -103,15 +102,8 @@ impl EnergyNorm {
         let values = last.len().saturating_mul(last.len());
         let worth = !last.is_empty() && values <= FEW_VALUES.max(cholesky.entries());
         let boundary = worth.then(|| Arc::new(Boundary { block: cholesky.trailing_block(), dofs: last }));
-        EnergyNorm {
-            cholesky,
-            equilibration,
-            boundary,
-            widening: 1.0,
-            springs: None,
-            loose: None,
-            watch: Watch::default(),
-        }
+        let watch = Watch::default();
+        EnergyNorm { cholesky, equilibration, boundary, widening: 1.0, springs: None, loose: None, watch }
     }
 
     /// The energy norm of the equilibrated stiffness itself.
@@ -125,10 +117,6 @@ impl EnergyNorm {
     }
 
     /// Returns `true` if the time for a bound is over.
-    pub(super) fn watch(&self) -> &Watch {
-        &self.watch
-    }
-
     pub(super) fn is_over(&self) -> bool {
         self.watch.is_over()
     }
@@ -141,7 +129,7 @@ impl EnergyNorm {
     /// An estimate from below of `|I - K~^-1 K|` for this factor K~ and the stiffness K: by some steps of the power method,
     /// since the steps of a refinement may be too few, or too short, to show it.
     pub fn contraction(&self, stiffness: &SymmetricMatrix) -> f64 {
-        let (mut vector, mut contraction) = (generic(self.dofs(), 0), 0.0_f64);
+        let (mut vector, mut contraction) = (generic(self.cholesky.dim(), 0), 0.0_f64);
         let size = |vector: &[f64]| dot(vector, &stiffness.mul(vector)).max(0.0).sqrt();
         for _ in 0..POWER_STEPS {
             let length = size(&vector);
@@ -154,11 +142,6 @@ impl EnergyNorm {
             contraction = contraction.max(left / length);
         }
         contraction
-    }
-
-    /// The factor by which a bound in this norm is multiplied.
-    pub(super) fn widening(&self) -> f64 {
-        self.widening
     }
 
     /// Relative rounding of a norm that comes from sweeps through the factor: some units in the last place over the smallest
@@ -205,16 +188,6 @@ impl EnergyNorm {
         scaled.iter().zip(exponents).map(|(&value, exponent)| ldexp(value, exponent)).collect()
     }
 
-    /// The same norm, of a matrix that contains these springs.
-    pub(super) fn with_springs(self, springs: Springs) -> Self {
-        EnergyNorm { springs: Some(Arc::new(springs)), ..self }
-    }
-
-    /// The same norm, of a matrix in which these dofs without stiffness have a stiffness of one.
-    pub(super) fn with_loose(self, loose: Loose) -> Self {
-        EnergyNorm { loose: Some(Arc::new(loose)), ..self }
-    }
-
     /// Number of dofs without stiffness that the energy does not see.
     pub(super) fn loose_dofs(&self) -> usize {
         self.loose.as_ref().map_or(0, |loose| loose.dofs.len())
@@ -225,17 +198,7 @@ impl EnergyNorm {
         self.loose.as_ref().is_some_and(|loose| loose.rows[row])
     }
 
-    /// The springs that made a singular K definite, if there are any.
-    pub(super) fn springs(&self) -> Option<&Springs> {
-        self.springs.as_deref()
-    }
-
-    /// The contact boundary, if it is known.
-    pub(super) fn boundary(&self) -> Option<&Boundary> {
-        self.boundary.as_deref()
-    }
-
-    /// `L^-1 D r`. Its length times [`unit`](Self::unit) is the energy norm of the displacement that the force r causes: the
+    /// `L^-1 D r`, of which the [`length`](Self::length) is the energy norm of the displacement that the force r causes: the
     /// squares of the interior added up, and the entries of the boundary.
     pub(super) fn sweep(&self, force: &[f64]) -> (f64, Vec<f64>) {
         let swept = self.cholesky.forward(&self.scaled(force));
@@ -244,26 +207,20 @@ impl EnergyNorm {
         (dot(interior, interior), last.to_vec())
     }
 
-    /// `c`, as its exponent of two: `K^-1 = c D (c D K D)^-1 D`.
-    pub(super) fn factor(&self) -> i32 {
-        self.equilibration.factor
+    /// The length of a sweep, from its square, as an energy norm.
+    pub(super) fn length(&self, square: f64) -> f64 {
+        ldexp(square, self.equilibration.factor).sqrt()
     }
 
     /// The entries of each row of `contact` that `counts`, on the boundary: place among its dofs, coefficient times D; `None`
-    /// if such a row reaches beyond it.
-    pub(super) fn rows_on(
+    /// if the boundary is not known, or if such a row reaches beyond it.
+    pub(super) fn rows_on_boundary(
         &self,
-        boundary: &Boundary,
         contact: &SparseMatrix,
         counts: impl Fn(usize) -> bool,
     ) -> Option<Vec<Vec<(usize, f64)>>> {
-        let mut rows = vec![Vec::new(); contact.rows()];
         let is_entry = |entry: &(usize, f64)| entry.1 != 0.0 && counts(entry.0);
-        for (place, &dof) in boundary.dofs.iter().enumerate() {
-            for (row, value) in contact.column(dof).filter(is_entry) {
-                rows[row].push((place, ldexp(value, self.equilibration.diagonal[dof])));
-            }
-        }
+        let rows = self.rows_at(&self.boundary.as_ref()?.dofs, contact, is_entry);
         let count: usize = rows.iter().map(Vec::len).sum();
         let whole = (0..contact.columns()).flat_map(|dof| contact.column(dof)).filter(is_entry).count();
         (count == whole).then_some(rows)
@@ -271,65 +228,26 @@ impl EnergyNorm {
 
     /// The entries of each row of `contact` in the whole body: dof, coefficient times D.
     pub(super) fn rows_in_body(&self, contact: &SparseMatrix) -> Vec<Vec<(usize, f64)>> {
+        self.rows_at(&(0..contact.columns()).collect::<Vec<_>>(), contact, |entry| entry.1 != 0.0)
+    }
+
+    fn rows_at(
+        &self,
+        dofs: &[usize],
+        contact: &SparseMatrix,
+        is_entry: impl Fn(&(usize, f64)) -> bool,
+    ) -> Vec<Vec<(usize, f64)>> {
         let mut rows = vec![Vec::new(); contact.rows()];
-        for (dof, &scale) in self.equilibration.diagonal.iter().enumerate() {
-            contact
-                .column(dof)
-                .filter(|entry| entry.1 != 0.0)
-                .for_each(|(row, b)| rows[row].push((dof, ldexp(b, scale))));
+        for (place, &dof) in dofs.iter().enumerate() {
+            for (row, value) in contact.column(dof).filter(&is_entry) {
+                rows[row].push((place, ldexp(value, self.equilibration.diagonal[dof])));
+            }
         }
         rows
     }
 
-    /// Number of values of the factor.
-    pub(super) fn factor_entries(&self) -> usize {
-        self.cholesky.entries()
-    }
-
-    /// Number of multiplications of the factorisation.
-    pub(super) fn multiplications(&self) -> f64 {
-        self.cholesky.multiplications()
-    }
-
-    /// The entries of the inverse of the equilibrated stiffness in the pattern of its factor; `None` for lack of memory.
-    pub(super) fn selected_inverse(&self) -> Option<SelectedInverse<'_>> {
-        self.cholesky.selected_inverse()
-    }
-
-    /// Number of dofs.
-    pub(super) fn dofs(&self) -> usize {
-        self.cholesky.dim()
-    }
-
-    /// The sweep L^-1 b of a load in equilibrated units.
-    pub(super) fn forward(&self, b: &[f64]) -> Vec<f64> {
-        self.cholesky.forward(b)
-    }
-
     fn scaled(&self, force: &[f64]) -> Vec<f64> {
         force.iter().zip(&self.equilibration.diagonal).map(|(&r, &d)| ldexp(r, d)).collect()
-    }
-}
-
-impl Boundary {
-    /// Number of contact dofs.
-    pub fn len(&self) -> usize {
-        self.dofs.len()
-    }
-
-    /// `L_tt^-1 b`.
-    pub fn forward(&self, b: Vec<f64>) -> Vec<f64> {
-        self.block.forward(b)
-    }
-
-    /// Upper bounds on the sums of magnitudes of each column of `L_tt^-1`.
-    pub fn sums_of_inverse(&self) -> Vec<f64> {
-        self.block.sums_of_inverse()
-    }
-
-    /// `L_tt'^-1 y`.
-    pub fn backward(&self, y: Vec<f64>) -> Vec<f64> {
-        self.block.backward(y)
     }
 }
 
@@ -369,8 +287,8 @@ mod tests {
         let step = |steps: usize| (energy(steps as i32) / energy(steps as i32 - 1)).sqrt();
         let exact = (1..=POWER_STEPS).map(step).fold(0.0, f64::max);
         assert!((found - exact).abs() < 1e-14 && found <= soft, "{found} {exact} {soft}");
-        assert_eq!(norm(&stiffness).off_by(0.25).widening(), 1.0 + MEASURED * 0.25);
-        assert_eq!(norm(&stiffness).widening(), 1.0);
+        assert_eq!(norm(&stiffness).off_by(0.25).widening, 1.0 + MEASURED * 0.25);
+        assert_eq!(norm(&stiffness).widening, 1.0);
     }
 
     #[test]

@@ -115,7 +115,7 @@ impl ContactProblem {
     pub(crate) fn not_convex_along(&self, p: &[f64]) -> Option<Error> {
         let size = largest(p);
         let p: Vec<f64> = p.iter().map(|value| value / size).collect();
-        let forces = self.accurate_product(|column| self.stiffness.lower().column(column), &p);
+        let forces = self.accurate_forces(&p).into_sums();
         let energy: f64 = forces.iter().zip(&p).map(|(force, p)| force * p).sum();
         let terms: f64 = self.stiffness.mul_abs(&p).iter().zip(&p).map(|(force, p)| force * p.abs()).sum();
         let dof = p.iter().position(|value| value.abs() == 1.0).unwrap_or(0);

@@ -10,7 +10,7 @@
 use super::EnergyNorm;
 use super::bound::Answer;
 use super::conditions::{Bounding, Evidence};
-use super::energy_norm::ROUNDED_BOUND;
+use super::energy_norm::{Boundary, ROUNDED_BOUND};
 use crate::error::Error;
 use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::linear::{Dependence, SparseMatrix, dot, inverse_lengths, ldexp};
@@ -73,7 +73,7 @@ impl ContactProblem {
         let Evidence { residual, violation, error, .. } =
             evidence.or_else(|| self.recomputed(&Bounding::Factor(norm.clone()), displacement, multiplier).evidence)?;
         let answer = Answer { displacement, multiplier, residual, violation: &violation, rounding: 0.0 };
-        let (error, widening) = (ROUNDED_BOUND * error, norm.widening());
+        let (error, widening) = (ROUNDED_BOUND * error, norm.widening);
         if !error.is_finite() {
             return None;
         }
@@ -84,23 +84,23 @@ impl ContactProblem {
         let reach = if norm.is_over() { None } else { at_once() }.unwrap_or_else(|| self.any_reach());
         let mut open = self.open_by(&answer, wide_error, &reach);
         let least = self.least_reach();
-        let doubtful: Vec<(usize, f64)> = self
-            .distances(&answer)
-            .enumerate()
-            .map(|(row, distance)| (row, distance / wide_error))
-            .filter(|&(row, limit)| limit > least[row] && !open.contains(row))
-            .collect();
+        let limits = self.distances(&answer).into_iter().map(|distance| distance / wide_error).enumerate();
+        let is_doubtful = |&(row, limit): &(usize, f64)| limit > least[row] && !open.contains(row);
+        let doubtful: Vec<(usize, f64)> = limits.filter(is_doubtful).collect();
         self.within_reach(norm, &compliance, &doubtful).into_iter().for_each(|row| open.insert(row));
         let of_force = ROUNDED_BOUND * widening * norm.of_force(&self.unbalanced(&answer, &open).force);
-        let mut closed = self.closed_alone(&answer, &open, widening * (of_force + error));
+        let imbalance = widening * (of_force + error);
+        let mut closed = self.closed_alone(&answer, &open, imbalance);
         let in_question: Vec<usize> = (0..rows).filter(|&row| !open.contains(row)).collect();
-        let is_doubtful = |row: &usize| multiplier[*row] < 0.0 && !closed.set.contains(*row);
+        let is_doubtful = |row: &usize| multiplier[*row] < 0.0 && !closed.contains(*row);
         if in_question.iter().any(is_doubtful) && compliance.work(in_question.len()) <= MOST_WORK {
             for (&row, length) in in_question.iter().zip(compliance.moved_together(&self.contact, &in_question)) {
-                closed.prove(row, -multiplier[row], length);
+                if -multiplier[row] > length * imbalance {
+                    closed.insert(row);
+                }
             }
         }
-        Some(ProvenSet { open, closed: closed.set })
+        Some(ProvenSet { open, closed })
     }
 
     /// As [`ContactProblem::prove`], without a factor: with the bound by the cycles of the hierarchy of K, and one solve by
@@ -127,8 +127,7 @@ impl ContactProblem {
             let least = measured?.ritz;
             Some(self.measured_reach(least, self.largest_eigenvalue(multigrid, displacement, watch)?))
         };
-        let reach = reach.or_else(by_eigenvalues);
-        let reach = reach.unwrap_or_else(|| self.any_reach());
+        let reach = reach.or_else(by_eigenvalues).unwrap_or_else(|| self.any_reach());
         let open = self.open_by(&answer, error, &reach);
         let Unbalanced { force, is_residual } = self.unbalanced(&answer, &open);
         let of_force = match measured {
@@ -136,7 +135,7 @@ impl ContactProblem {
             _ => stiffness.dual_norm(&force, watch).map(|norm| ROUNDED_BOUND * norm.most),
         };
         let closed = self.closed_alone(&answer, &open, of_force.map_or(f64::INFINITY, |force| force + error));
-        Some(ProvenSet { open, closed: closed.set })
+        Some(ProvenSet { open, closed })
     }
 
     /// Bounds on the reach of the rows if nothing is known about it: infinite.
@@ -145,21 +144,18 @@ impl ContactProblem {
     }
 
     /// The distance `g - B u` of each row, less its possible error from rounding of u; infinite without obstacle.
-    fn distances(&self, answer: &Answer) -> impl Iterator<Item = f64> {
+    fn distances(&self, answer: &Answer) -> Vec<f64> {
         let distances = answer.violation.iter().zip(self.negligible(answer.displacement));
-        distances.map(|(violation, negligible)| -violation - negligible).collect::<Vec<_>>().into_iter()
+        distances.map(|(violation, negligible)| -violation - negligible).collect()
     }
 
     /// The rows that are open beyond an error of `error` in the energy norm; `reach` bounds the move of each row by it.
     fn open_by(&self, answer: &Answer, error: f64, reach: &[f64]) -> ContactSet {
-        let is_open: Vec<bool> = self
-            .distances(answer)
-            .zip(reach)
-            .map(|(distance, &reach)| {
-                distance > 0.0 && (distance.is_infinite() || error == 0.0 || distance > reach * error)
-            })
-            .collect();
-        is_open.into_iter().collect()
+        let distances = self.distances(answer);
+        ContactSet::from_fn(self.rows(), |row| {
+            let distance = distances[row];
+            distance > 0.0 && (distance.is_infinite() || error == 0.0 || distance > reach[row] * error)
+        })
     }
 
     /// The force that is out of balance without the multipliers of the `open` rows.
@@ -171,30 +167,17 @@ impl ContactProblem {
         Unbalanced { force, is_residual: dropped.iter().all(|&force| force == 0.0) }
     }
 
-    /// The rows that are closed, proven by one dof each.
-    fn closed_alone(&self, answer: &Answer, open: &ContactSet, imbalance: f64) -> Closed {
-        let rows = self.rows();
-        let mut closed = Closed { set: ContactSet::open(rows), imbalance };
-        let in_question: Vec<usize> = (0..rows).filter(|&row| !open.contains(row)).collect();
-        for (&row, length) in in_question.iter().zip(self.moved_alone(&in_question)) {
-            closed.prove(row, -answer.multiplier[row], length);
-        }
-        closed
-    }
-
-    /// `|w|_K` of the shift of a single dof that moves this one of `rows` only; infinite if no such dof exists.
-    fn moved_alone(&self, rows: &[usize]) -> Vec<f64> {
-        let mut place = vec![usize::MAX; self.rows()];
-        rows.iter().enumerate().for_each(|(index, &row)| place[row] = index);
-        let mut lengths = vec![f64::INFINITY; rows.len()];
+    /// The rows that are closed, proven by one dof each: the shift of that dof moves no other row that is not `open`.
+    fn closed_alone(&self, answer: &Answer, open: &ContactSet, imbalance: f64) -> ContactSet {
+        // `|w|_K` of that shift.
+        let mut lengths = vec![f64::INFINITY; self.rows()];
         for (dof, &stiffness) in self.diagonal().values.iter().enumerate() {
-            let mut felt = self.contact.column(dof).filter(|&(row, b)| b != 0.0 && place[row] != usize::MAX);
+            let mut felt = self.contact.column(dof).filter(|&(row, b)| b != 0.0 && !open.contains(row));
             if let (Some((row, b)), None) = (felt.next(), felt.next()) {
-                let length = &mut lengths[place[row]];
-                *length = length.min(stiffness.sqrt() / b.abs());
+                lengths[row] = lengths[row].min(stiffness.sqrt() / b.abs());
             }
         }
-        lengths
+        ContactSet::from_fn(self.rows(), |row| -answer.multiplier[row] > lengths[row] * imbalance)
     }
 }
 
@@ -205,45 +188,34 @@ struct Unbalanced {
     is_residual: bool,
 }
 
-/// The rows that are proven closed, and the norm of the forces that may be out of balance.
-struct Closed {
-    set: ContactSet,
-    imbalance: f64,
-}
-
-impl Closed {
-    /// Adds the row if this force, and the length of a shift that moves this row alone, prove it closed.
-    fn prove(&mut self, row: usize, force: f64, length: f64) {
-        if force > length * self.imbalance {
-            self.set.insert(row);
-        }
-    }
-}
-
 /// The columns of `L^-1 B'`; their products are the compliance of the rows.
 pub(super) struct ComplianceFactor<'a> {
     norm: &'a EnergyNorm,
     /// The entries of each row, in the dofs that are swept: on the boundary, or in the whole body.
     rows: Vec<Vec<(usize, f64)>>,
-    on_boundary: bool,
+    /// The boundary, if all rows are on it.
+    boundary: Option<&'a Boundary>,
 }
 
 impl<'a> ComplianceFactor<'a> {
     pub(super) fn of(problem: &ContactProblem, norm: &'a EnergyNorm) -> Self {
-        let on_boundary = norm.boundary().and_then(|boundary| norm.rows_on(boundary, &problem.contact, |_| true));
-        match on_boundary {
-            Some(rows) => ComplianceFactor { norm, rows, on_boundary: true },
-            None => ComplianceFactor { norm, rows: norm.rows_in_body(&problem.contact), on_boundary: false },
+        match norm.rows_on_boundary(&problem.contact, |_| true) {
+            Some(rows) => ComplianceFactor { norm, rows, boundary: norm.boundary.as_deref() },
+            None => ComplianceFactor { norm, rows: norm.rows_in_body(&problem.contact), boundary: None },
         }
     }
 
+    /// Length of a column.
+    fn length(&self) -> usize {
+        self.boundary.map_or(self.norm.cholesky.dim(), |boundary| boundary.dofs.len())
+    }
+
     fn column(&self, row: usize) -> Vec<f64> {
-        let boundary = self.norm.boundary().filter(|_| self.on_boundary);
-        let mut column = vec![0.0; boundary.map_or(self.norm.dofs(), |boundary| boundary.len())];
+        let mut column = vec![0.0; self.length()];
         self.rows[row].iter().for_each(|&(place, b)| column[place] += b);
-        match boundary {
-            Some(boundary) => boundary.forward(column),
-            None => self.norm.forward(&column),
+        match self.boundary {
+            Some(boundary) => boundary.block.forward(column),
+            None => self.norm.cholesky.forward(&column),
         }
     }
 
@@ -253,30 +225,28 @@ impl<'a> ComplianceFactor<'a> {
             return f64::INFINITY;
         }
         let column = self.column(row);
-        ldexp(dot(&column, &column), self.norm.factor()).sqrt()
+        self.norm.length(dot(&column, &column))
     }
 
     /// Upper bounds on the reach of all rows by one sweep, if the contact boundary is known: the length of a column is at most
     /// the sum of its magnitudes.
     fn reach_at_once(&self) -> Option<Vec<f64>> {
-        let sums = self.norm.boundary().filter(|_| self.on_boundary)?.sums_of_inverse();
+        let sums = self.boundary?.block.sums_of_inverse();
         let of_row = |row: &Vec<(usize, f64)>| row.iter().map(|&(place, b)| b.abs() * sums[place]).sum::<f64>();
-        Some(self.rows.iter().map(|row| ldexp(of_row(row).powi(2), self.norm.factor()).sqrt()).collect())
+        Some(self.rows.iter().map(|row| self.norm.length(of_row(row).powi(2))).collect())
     }
 
     /// Multiplications of one sweep.
     pub(super) fn sweep(&self) -> f64 {
-        match self.norm.boundary().filter(|_| self.on_boundary) {
-            Some(boundary) => boundary.len() as f64 * boundary.len() as f64 / 2.0,
-            None => self.norm.factor_entries() as f64,
+        match self.boundary {
+            Some(boundary) => (boundary.dofs.len() as f64).powi(2) / 2.0,
+            None => self.norm.cholesky.entries() as f64,
         }
     }
 
     /// Multiplications of the compliance of this number of rows.
     fn work(&self, rows: usize) -> f64 {
-        let length =
-            self.norm.boundary().filter(|_| self.on_boundary).map_or(self.norm.dofs(), |boundary| boundary.len());
-        (rows * rows) as f64 * (length + rows) as f64
+        (rows * rows) as f64 * (self.length() + rows) as f64
     }
 
     /// `sqrt((G_CC^-1)_ii)` of the rows C of `contact`; infinite for those that take part in a dependence.
@@ -291,7 +261,7 @@ impl<'a> ComplianceFactor<'a> {
         let Some(reciprocals) = inverse_lengths(columns, || self.norm.is_over()) else { return none() };
         let mut lengths = none();
         for (&index, reciprocal) in basis.iter().zip(reciprocals).filter(|entry| !takes_part[*entry.0]) {
-            lengths[index] = ldexp_root(reciprocal, -self.norm.factor());
+            lengths[index] = ldexp_root(reciprocal, -self.norm.equilibration.factor);
         }
         lengths
     }
@@ -364,7 +334,7 @@ mod tests {
             let stiffness = SymmetricMatrix::from_lower(matrix).unwrap();
             let problem = ContactProblem::new(stiffness, vec![1.0; dofs], contact, vec![1.0; dofs]).unwrap();
             let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
-            assert_eq!(norm.boundary().is_some(), on_boundary);
+            assert_eq!(norm.boundary.is_some(), on_boundary);
             let compliance = ComplianceFactor::of(&problem, &norm);
             // A sweep takes one multiplication for each value of the factor: those of a full triangle, or no less than those of K.
             let full = dofs * (dofs + 1) / 2;

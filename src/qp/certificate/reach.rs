@@ -18,7 +18,7 @@ use super::EnergyNorm;
 use super::proof::ComplianceFactor;
 use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::linear::selected_inverse::FACTORISATIONS;
-use crate::qp::linear::{dot, largest, ldexp};
+use crate::qp::linear::{dot, largest};
 use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
 
@@ -88,20 +88,27 @@ impl ContactProblem {
     /// ```
     pub(super) fn measured_reach(&self, least: f64, largest: f64) -> Vec<f64> {
         let mu = least / (SAFETY * largest);
-        let mut squares = vec![0.0; self.rows()];
-        for (dof, d) in self.stiffness().diagonal().into_iter().enumerate() {
-            self.contact().column(dof).for_each(|(row, b)| squares[row] += b * b / d);
-        }
+        let squares = self.compliance_of_rows(|square, stiffness| square / stiffness);
         squares.into_iter().map(|square| (square / mu).sqrt()).collect()
     }
 
-    /// Lower bounds on `sqrt(G_ii)` of every row: the distance by which unit energy norm of a single dof moves it.
+    /// Lower bounds on `sqrt(G_ii)` of every row, `max |b_ij| / sqrt(K_jj)` over the dofs with stiffness: the distance by which unit
+    /// energy norm of a single dof moves it.
     pub(super) fn least_reach(&self) -> Vec<f64> {
-        let mut least = vec![0.0_f64; self.rows()];
-        for (dof, stiffness) in self.stiffness().diagonal().into_iter().enumerate().filter(|entry| entry.1 > 0.0) {
-            self.contact().column(dof).for_each(|(row, b)| least[row] = least[row].max(b.abs() / stiffness.sqrt()));
+        let (roots, mut least) = (&self.diagonal().roots, vec![0.0_f64; self.rows()]);
+        for (row, dof, b) in self.contact().triplets().filter(|entry| roots[entry.1] > 0.0) {
+            least[row] = least[row].max(b.abs() / roots[dof]);
         }
         least
+    }
+
+    /// The sum over the entries b of each row of `of_entry(b^2, K_jj)`, the compliance of a row if its dofs stand alone.
+    pub(super) fn compliance_of_rows(&self, of_entry: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+        let mut compliance = vec![0.0; self.rows()];
+        for (row, dof, b) in self.contact().triplets().filter(|entry| entry.2 != 0.0) {
+            compliance[row] += of_entry(b * b, self.diagonal().values[dof]);
+        }
+        compliance
     }
 
     /// The rows of `rows` with a `sqrt(G_ii)` below their limit, by sweeps or by the selected inverse, whichever costs less.
@@ -112,7 +119,7 @@ impl ContactProblem {
         rows: &[(usize, f64)],
     ) -> Vec<usize> {
         let by_sweeps = rows.len() as f64 * compliance.sweep();
-        let at_once = FACTORISATIONS * norm.multiplications() / BLOCKED;
+        let at_once = FACTORISATIONS * norm.cholesky.multiplications() / BLOCKED;
         let one_by_one = |row: usize| compliance.reach(row);
         let chosen = |reach: &dyn Fn(usize) -> f64| {
             rows.iter().filter(|&&(row, limit)| reach(row) < limit).map(|&(row, _)| row).collect()
@@ -120,10 +127,10 @@ impl ContactProblem {
         if by_sweeps <= at_once || norm.is_over() {
             return chosen(&one_by_one);
         }
-        let Some(inverse) = norm.selected_inverse() else { return chosen(&one_by_one) };
+        let Some(inverse) = norm.cholesky.selected_inverse() else { return chosen(&one_by_one) };
         let entries = norm.rows_in_body(self.contact());
         chosen(&|row| match inverse.product(&entries[row]) {
-            Some(square) => ldexp(norm.rounding() * square.max(0.0), norm.factor()).sqrt(),
+            Some(square) => norm.length(norm.rounding() * square.max(0.0)),
             None => compliance.reach(row),
         })
     }
@@ -225,7 +232,7 @@ mod tests {
         let norm = EnergyNorm::of(lattice.stiffness(), lattice.contact()).unwrap().unwrap();
         let compliance = ComplianceFactor::of(&lattice, &norm);
         let exact = exact(&lattice, &norm);
-        assert!(exact.len() as f64 * compliance.sweep() > FACTORISATIONS * norm.multiplications() / BLOCKED);
+        assert!(exact.len() as f64 * compliance.sweep() > FACTORISATIONS * norm.cholesky.multiplications() / BLOCKED);
         let limits = |share: f64| exact.iter().map(|reach| share * reach).enumerate().collect::<Vec<_>>();
         assert_eq!(lattice.within_reach(&norm, &compliance, &limits(1.0 + 1e-5)).len(), exact.len());
         assert!(lattice.within_reach(&norm, &compliance, &limits(1.0 - 1e-5)).is_empty());

@@ -1,13 +1,11 @@
 //! The scales of an answer: the size of its norm for each part, the forces on each part, and the reach of each row.
 
+use crate::qp::linear::Accumulator;
 use crate::qp::problem::{ContactProblem, Parts};
 
 /// The scales that the errors of an answer are measured against.
 pub(super) struct Scales {
-    /// Part of each row; 0 for a row without dofs.
-    part_of_row: Vec<usize>,
-    /// `max |b_ij| / sqrt(K_jj)` of each row, over the dofs with stiffness: the distance by which a shift of unit energy norm of
-    /// a single dof moves it.
+    /// The least reach of each row: the distance by which a shift of unit energy norm of a single dof moves it.
     pub reach: Vec<f64>,
     /// Energy norm of each part, from `u_p' K_pp u_p`.
     pub norm: Vec<f64>,
@@ -76,15 +74,6 @@ impl Scales {
     /// The scales of a displacement u of `problem` under these forces, with its `strain` u'K u.
     pub fn of(problem: &ContactProblem, u: &[f64], strain: f64, forces: &Forces) -> Self {
         let (parts, diagonal) = (problem.parts(), problem.diagonal());
-        let (mut reach, mut part_of_row) = (vec![0.0; problem.rows()], vec![0; problem.rows()]);
-        for (dof, &root) in diagonal.roots.iter().enumerate() {
-            for (row, b) in problem.contact.column(dof).filter(|entry| entry.1 != 0.0) {
-                part_of_row[row] = parts.of_dof(dof);
-                if root > 0.0 {
-                    reach[row] = f64::max(reach[row], b.abs() / root);
-                }
-            }
-        }
         let strains = if parts.count() == 1 { vec![strain] } else { problem.energies(parts, u) };
         let mut of_parts = vec![OfPart::default(); parts.count()];
         let couplings = problem.couplings(parts, u, forces.applied);
@@ -103,18 +92,13 @@ impl Scales {
         of_parts.iter_mut().zip(&strains).for_each(|(part, &strain)| part.strain = strain);
         let norm = strains.iter().map(|strain| strain.max(0.0).sqrt()).collect();
         let whole = OfPart { strain, ..OfPart::together(&of_parts) };
-        Scales { part_of_row, reach, norm, of_parts, whole }
+        Scales { reach: problem.least_reach(), norm, of_parts, whole }
     }
 
-    /// The part of a row.
-    pub fn part_of_row(&self, row: usize) -> usize {
-        self.part_of_row[row]
-    }
-
-    /// The distance by which the forces on a part that rests could move a single dof of a row, its loads and elastic forces at
-    /// most; zero for a part that moves.
-    pub fn rest_of_row(&self, row: usize) -> f64 {
-        let part = &self.of_parts[self.part_of_row[row]];
+    /// The distance by which the forces on its `part`, if that rests, could move a single dof of a row, its loads and elastic forces
+    /// at most; zero for a part that moves.
+    pub fn rest_of_row(&self, row: usize, part: usize) -> f64 {
+        let part = &self.of_parts[part];
         if part.moves || !part.is_stiff {
             0.0
         } else {
@@ -130,7 +114,9 @@ impl ContactProblem {
             let of_part = move |entry: &(usize, f64)| parts.of_dof(entry.0) == parts.of_dof(column);
             self.stiffness.lower().column(column).filter(of_part)
         };
-        self.unrounded_product(within, w).products_by(w, |dof| parts.of_dof(dof), parts.count())
+        let mut sums = Accumulator::new(&vec![0.0; w.len()]);
+        sums.add_matrix_product(within, w);
+        sums.products_by(w, |dof| parts.of_dof(dof), parts.count())
     }
 
     /// The forces on each dof by other parts: by their displacements u, and by those that `forces` could give each of their dofs

@@ -36,19 +36,11 @@ impl Springs {
         residual.iter().zip(contact.mul_transposed(&pull)).map(|(r, spring)| r + spring).collect()
     }
 
-    /// Returns `true` if every spring is on a row at its gap and the force mu of the row exceeds its possible error: `rounding`
-    /// of each row, and twice the force that `left(row)`, the dual norm of the forces left over on its part, could take off.
-    pub fn hold(
-        &self,
-        multiplier: &[f64],
-        at_gap: &[bool],
-        rounding: impl Fn(usize) -> f64,
-        left: impl Fn(usize) -> f64,
-    ) -> bool {
-        let is_held = |(row, (&stiffness, (&mu, &at_gap))): (usize, (&f64, (&f64, &bool)))| {
-            stiffness == 0.0 || (at_gap && -mu > rounding(row) + 2.0 * stiffness.sqrt() * left(row))
-        };
-        self.stiffness.iter().zip(multiplier.iter().zip(at_gap)).enumerate().all(is_held)
+    /// Returns `true` if the certain force of every row with a spring, zero beside its gap, exceeds twice the force that `left(row)`, the
+    /// dual norm of the forces left over on its part, could take off.
+    pub fn hold(&self, certain_force: impl Fn(usize) -> f64, left: impl Fn(usize) -> f64) -> bool {
+        let springs = self.stiffness.iter().enumerate().filter(|spring| *spring.1 != 0.0);
+        springs.into_iter().all(|(row, stiffness)| certain_force(row) > 2.0 * stiffness.sqrt() * left(row))
     }
 
     /// The same springs in other units of stiffness, `2^unit`.

@@ -42,7 +42,6 @@ pub use null_space::{NullSpace, generic};
 pub use ordering::Fill;
 pub use orthogonal::inverse_lengths;
 pub use power_of_two::{Equilibration, exponent, ldexp};
-pub use selected_inverse::SelectedInverse;
 pub use symmetric::SymmetricMatrix;
 pub use twice::Twice;
 

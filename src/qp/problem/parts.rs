@@ -14,6 +14,8 @@ const WEAK_COUPLING: f64 = 1e-6;
 pub(in crate::qp) struct Parts {
     /// The part of each dof, length n, numbered from 0 in the order of their first dofs.
     of_dof: Vec<usize>,
+    /// The part of each row; 0 for a row without dofs.
+    of_row: Vec<usize>,
     count: usize,
 }
 
@@ -37,7 +39,9 @@ impl Parts {
             }
         }
         let (of_dof, count) = forest.into_trees();
-        Parts { of_dof, count }
+        let mut of_row = vec![0; contact.rows()];
+        contact.triplets().filter(|entry| entry.2 != 0.0).for_each(|(row, dof, _)| of_row[row] = of_dof[dof]);
+        Parts { of_dof, of_row, count }
     }
 
     /// Number of parts, at least one: a problem without dofs has an empty one.
@@ -48,6 +52,11 @@ impl Parts {
     /// The part of a dof.
     pub fn of_dof(&self, dof: usize) -> usize {
         self.of_dof[dof]
+    }
+
+    /// The part of a row; 0 for a row without dofs.
+    pub fn of_row(&self, row: usize) -> usize {
+        self.of_row[row]
     }
 
     /// The part of each dof, length n.

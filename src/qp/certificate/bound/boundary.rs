@@ -48,7 +48,7 @@ impl ContactProblem {
 
     /// The answer with the forces of the springs of the norm in its residual.
     fn beside_springs<'a>(&self, norm: &EnergyNorm, answer: &Answer<'a>) -> Answer<'a> {
-        let residual = match norm.springs() {
+        let residual = match &norm.springs {
             Some(springs) => springs.residual(&self.contact, &answer.residual, answer.violation),
             None => answer.residual.clone(),
         };
@@ -62,7 +62,7 @@ impl ContactProblem {
     /// the distance of the answer from there needs no factor.
     fn repeated(&self, first: FirstRepair, answer: &Answer) -> (Option<ErrorBound>, Moved) {
         let FirstRepair { repair, mut witness, .. } = first;
-        let (norm, boundary) = (repair.norm, repair.boundary);
+        let norm = repair.norm;
         let mut multipliers = vec![answer.multiplier.to_vec()];
         let mut next = (repair.answer(&witness), repair.expanded(&witness.change));
         let mut best: (Option<ErrorBound>, Moved) = (None, next.0.clone());
@@ -78,7 +78,7 @@ impl ContactProblem {
             let near =
                 Answer { displacement: &moved, multiplier: &multiplier, residual, violation: &violation, ..*answer };
             let near = self.beside_springs(norm, &near);
-            let Some(repair) = Repair::new(self, norm, boundary, &near) else { break };
+            let Some(repair) = Repair::new(self, norm, &near) else { break };
             let Some(settled) = repair.best_witness(&witness.closed) else { break };
             witness = settled;
             let step: Vec<f64> = moved.iter().zip(answer.displacement).map(|(v, u)| v - u).collect();
@@ -114,12 +114,12 @@ struct FirstRepair<'a> {
 impl<'a> FirstRepair<'a> {
     /// `None` if the boundary is not known, or if the rows that look closed cannot be met together.
     fn new(problem: &'a ContactProblem, norm: &'a EnergyNorm, answer: &'a Answer<'a>, closed: &[bool]) -> Option<Self> {
-        let repair = Repair::new(problem, norm, norm.boundary()?, answer)?;
+        let repair = Repair::new(problem, norm, answer)?;
         let witness = repair.best_witness(closed)?;
         let bound = repair.bound(&witness);
         // With springs the shift is large and bends little: a factor that loses digits makes its energy mere rounding.
-        let is_precise = norm.springs().is_none() || norm.loss() <= LOST_WITH_SPRINGS;
-        let is_exact = norm.widening() == 1.0 && !witness.is_rounded && is_precise;
+        let is_precise = norm.springs.is_none() || norm.loss() <= LOST_WITH_SPRINGS;
+        let is_exact = norm.widening == 1.0 && !witness.is_rounded && is_precise;
         let is_rounding = problem.parts().count() == 1 && bound.whole <= answer.rounding;
         let is_sharp = is_exact && (is_rounding || repair.vague(&witness) <= SMALL * bound.whole);
         Some(FirstRepair { repair, witness, bound, is_sharp })

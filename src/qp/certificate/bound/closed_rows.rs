@@ -4,7 +4,8 @@
 //! `D^-1 B_C' S^-1 s`, and `S^-1 B_C D^-1 r` are the forces that leave least of a force r. If no two rows share a dof, S is
 //! diagonal and one step of the iteration is exact.
 
-use crate::qp::linear::{Accumulator, SparseMatrix, dot, norm};
+use crate::qp::certificate::conditions::Distances;
+use crate::qp::linear::{SparseMatrix, dot, norm};
 use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
 
@@ -190,16 +191,8 @@ impl ContactProblem {
 
     /// The rows moved to their gaps as far as they can be together.
     fn moved_to_gaps(&self, rows: &ClosedRows, u: &[f64]) -> Moved {
-        let start: Vec<f64> = self.gap.iter().map(|&gap| if gap.is_finite() { -gap } else { 0.0 }).collect();
-        let mut sums = Accumulator::new(&start);
-        let mut add = |v: &[f64]| -> Vec<f64> {
-            for (column, &at_column) in v.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
-                self.contact.column(column).for_each(|(row, b)| sums.add_product(row, b, at_column));
-            }
-            let with_obstacle = |(sum, gap): (f64, &f64)| if gap.is_finite() { sum } else { f64::NEG_INFINITY };
-            sums.sums().zip(&self.gap).map(with_obstacle).collect()
-        };
-        let mut distance = add(u);
+        let mut distances = Distances::of(self);
+        let mut distance = distances.moved(u);
         let zeros = || vec![0.0; self.dofs()];
         let (mut shift, mut magnitude, mut last) = (zeros(), zeros(), zeros());
         let (mut before, mut gain) = (f64::INFINITY, 0.0);
@@ -213,7 +206,7 @@ impl ContactProblem {
             }
             before = size;
             last = rows.shift(rows.forces(&rows.solve(off)));
-            distance = add(&last);
+            distance = distances.moved(&last);
             for ((sum, most), step) in shift.iter_mut().zip(&mut magnitude).zip(&last) {
                 *sum += step;
                 *most += step.abs();

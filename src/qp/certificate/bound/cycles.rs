@@ -66,10 +66,8 @@ impl ContactProblem {
         let Some(left) = left else { return (ErrorBound::none(), None) };
         let ritz = left.iter().fold(f64::INFINITY, |least, dual| dual.ritz.min(least));
         let left: Vec<f64> = left.iter().map(|dual| ROUNDED_BOUND * dual.most).collect();
-        let of_rows = if are_apart { self.parts_of_rows(parts) } else { vec![0; self.rows()] };
-        if springs
-            .is_some_and(|springs| !springs.hold(answer.multiplier, &placed.closed, |_| 0.0, |row| left[of_rows[row]]))
-        {
+        let left_on = |row: usize| left[if are_apart { parts.of_row(row) } else { 0 }];
+        if springs.is_some_and(|springs| !springs.hold(|row| -kept[row], left_on)) {
             return (ErrorBound::none(), None);
         }
         let of_residual = left.iter().map(|left| left * left).sum::<f64>().sqrt();

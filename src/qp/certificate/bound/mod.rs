@@ -26,11 +26,13 @@ mod row_by_row;
 mod triangle;
 mod witness;
 
+use std::sync::Arc;
+
 use super::EnergyNorm;
 use super::energy_norm::Loose;
 use super::springs::Springs;
 use crate::error::Error;
-use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
+use crate::qp::linear::SparseMatrix;
 use crate::qp::problem::{ContactProblem, Parts};
 
 /// An answer (u, lambda) and what its certificate has computed for it.
@@ -125,7 +127,7 @@ impl ContactProblem {
             self.bound_row_by_row(norm, answer, Keeping::Closed(&closed)).smaller(as_it_stands)
         });
         let (underflow, rounding) = (self.underflow(answer), self.rounding_of_residual(answer));
-        let bound = bound.widened(norm.widening() * norm.rounding());
+        let bound = bound.widened(norm.widening * norm.rounding());
         let with_lost = |bound: f64, rounding: f64| bound + underflow + norm.loss() * rounding;
         let of_part = |(bound, rounding): (f64, &f64)| with_lost(bound, *rounding);
         ErrorBound {
@@ -162,33 +164,14 @@ impl ContactProblem {
 
     /// The rows that look closed: their force, times their compliance if all else stood still, exceeds their distance.
     fn rows_that_look_closed(&self, answer: &Answer) -> Vec<bool> {
-        let mut compliance = vec![0.0; self.rows()];
-        for (dof, &stiffness) in self.diagonal().values.iter().enumerate() {
-            self.contact
-                .column(dof)
-                .filter(|entry| entry.1 != 0.0)
-                .for_each(|(row, b)| compliance[row] += b * b / stiffness);
-        }
+        let compliance = self.compliance_of_rows(|square, stiffness| square / stiffness);
         let looks = |row: usize| -answer.multiplier[row] * compliance[row] > -answer.violation[row];
         (0..self.rows()).map(|row| self.gap[row].is_finite() && looks(row)).collect()
     }
 
-    /// The part of each row; 0 for a row without dofs.
-    fn parts_of_rows(&self, parts: &Parts) -> Vec<usize> {
-        let mut of_rows = vec![0; self.rows()];
-        (0..self.dofs()).for_each(|dof| {
-            self.contact
-                .column(dof)
-                .filter(|entry| entry.1 != 0.0)
-                .for_each(|(row, _)| of_rows[row] = parts.of_dof(dof));
-        });
-        of_rows
-    }
-
     /// The energy norm of a shift.
     fn length(&self, shift: &[f64]) -> f64 {
-        let forces = self.unrounded_product(|column| self.stiffness.lower().column(column), shift);
-        forces.products_by(shift, |_| 0, 1)[0].max(0.0).sqrt()
+        self.accurate_forces(shift).products_by(shift, |_| 0, 1)[0].max(0.0).sqrt()
     }
 
     /// The energy norms of a shift by parts, added to `sizes`.
@@ -212,30 +195,21 @@ impl ContactProblem {
         if let Some(norm) = EnergyNorm::of(&self.stiffness, &self.contact)? {
             return Ok(Some(norm));
         }
-        let Some(loose) = self.loose_dofs(multiplier) else {
-            return self.energy_norm_with_springs(&self.stiffness, displacement, multiplier);
-        };
-        let entries: Vec<_> = loose.dofs.iter().enumerate().map(|(row, &dof)| (row, dof, 1.0)).collect();
-        let rows = SparseMatrix::from_triplets(entries.len(), self.dofs(), &entries)?;
-        let held = self.stiffness.plus_squares(&rows, &vec![1.0; entries.len()])?;
-        let norm = match EnergyNorm::of(&held, &self.contact)? {
-            Some(norm) => Some(norm),
-            None => self.energy_norm_with_springs(&held, displacement, multiplier)?,
-        };
-        Ok(norm.map(|norm| norm.with_loose(loose)))
-    }
-
-    /// The energy norm of a semidefinite `stiffness` with springs on the rows that press.
-    fn energy_norm_with_springs(
-        &self,
-        stiffness: &SymmetricMatrix,
-        displacement: &[f64],
-        multiplier: &[f64],
-    ) -> Result<Option<EnergyNorm>, Error> {
+        let (mut stiffness, mut loose) = (self.stiffness.clone(), None);
+        if let Some(found) = self.loose_dofs(multiplier) {
+            let entries: Vec<_> = found.dofs.iter().enumerate().map(|(row, &dof)| (row, dof, 1.0)).collect();
+            let rows = SparseMatrix::from_triplets(entries.len(), self.dofs(), &entries)?;
+            stiffness = stiffness.plus_squares(&rows, &vec![1.0; entries.len()])?;
+            loose = Some(Arc::new(found));
+            if let Some(norm) = EnergyNorm::of(&stiffness, &self.contact)? {
+                return Ok(Some(EnergyNorm { loose, ..norm }));
+            }
+        }
         let springs = self.springs(displacement, multiplier);
-        let Some(held) = springs.added_to(stiffness, &self.contact)? else { return Ok(None) };
+        let Some(held) = springs.added_to(&stiffness, &self.contact)? else { return Ok(None) };
         let Some(norm) = EnergyNorm::of(&held, &self.contact)? else { return Ok(None) };
-        Ok(self.stiffness.is_semidefinite()?.then(|| norm.with_springs(springs)))
+        let springs = Some(Arc::new(springs));
+        Ok(self.stiffness.is_semidefinite()?.then_some(EnergyNorm { springs, loose, ..norm }))
     }
 
     /// The dofs without stiffness on which neither a load nor a row acts, if there are some.
@@ -262,16 +236,12 @@ impl ContactProblem {
     /// Springs on the rows that press, each as stiff as the row itself if only its own dofs move.
     pub(super) fn springs(&self, displacement: &[f64], multiplier: &[f64]) -> Springs {
         let parts = self.parts();
-        let mut compliance = vec![0.0; self.rows()];
-        for (dof, &stiffness) in self.diagonal().values.iter().enumerate().filter(|entry| *entry.1 > 0.0) {
-            for (row, b) in self.contact.column(dof) {
-                compliance[row] += b * b / stiffness;
-            }
-        }
+        let of_stiff = |square: f64, stiffness: f64| if stiffness > 0.0 { square / stiffness } else { 0.0 };
+        let compliance = self.compliance_of_rows(of_stiff);
         let sizes: Vec<f64> = self.energies(parts, displacement).iter().map(|energy| energy.max(0.0).sqrt()).collect();
-        let (part_of_row, violation) = (self.parts_of_rows(parts), self.accurate_violation(displacement));
+        let violation = self.accurate_violation(displacement);
         let spring = |row: usize| {
-            let (force, size) = (-multiplier[row], sizes[part_of_row[row]]);
+            let (force, size) = (-multiplier[row], sizes[parts.of_row(row)]);
             // A row that acts only on dofs without stiffness has no stiffness of its own: its force sets the scale.
             let stiffness = match compliance[row] {
                 0.0 if size > 0.0 => (force / size).powi(2),
@@ -290,6 +260,7 @@ impl ContactProblem {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::qp::linear::SymmetricMatrix;
 
     /// Two dofs of stiffness 4 and 16 that nothing couples, and one without stiffness; a row `3 u_0 + 5 u_1 <= 1` and one of zeros.
     fn apart() -> ContactProblem {

@@ -68,7 +68,7 @@ pub(super) struct Witness {
 pub(super) struct Repair<'a> {
     problem: &'a ContactProblem,
     pub norm: &'a EnergyNorm,
-    pub boundary: &'a Boundary,
+    boundary: &'a Boundary,
     answer: &'a Answer<'a>,
     /// The entries of each row: place on the boundary, coefficient.
     pub rows: Vec<Vec<(usize, f64)>>,
@@ -84,15 +84,12 @@ pub(super) struct Repair<'a> {
 }
 
 impl<'a> Repair<'a> {
-    pub fn new(
-        problem: &'a ContactProblem,
-        norm: &'a EnergyNorm,
-        boundary: &'a Boundary,
-        answer: &'a Answer<'a>,
-    ) -> Option<Self> {
+    /// `None` if the boundary is not known, or if a row reaches beyond it.
+    pub fn new(problem: &'a ContactProblem, norm: &'a EnergyNorm, answer: &'a Answer<'a>) -> Option<Self> {
+        let boundary = norm.boundary.as_deref()?;
         // A row without obstacle and without force may reach beyond the boundary.
         let counts = |row: usize| problem.gap[row].is_finite() || answer.multiplier[row] != 0.0;
-        let mut rows = norm.rows_on(boundary, &problem.contact, counts)?;
+        let mut rows = norm.rows_on_boundary(&problem.contact, counts)?;
         let largest = |row: &Vec<(usize, f64)>| row.iter().fold(0.0, |largest: f64, entry| largest.max(entry.1.abs()));
         let shift: Vec<i32> = rows.iter().map(|row| -exponent(largest(row))).collect();
         for (row, &shift) in rows.iter_mut().zip(&shift) {
@@ -101,18 +98,24 @@ impl<'a> Repair<'a> {
         let scaled = |values: &[f64], sign: i32, unit: i32| -> Vec<f64> {
             values.iter().zip(&shift).map(|(&value, &shift)| ldexp(value, sign * shift - unit)).collect()
         };
-        let (violation, multiplier) = (scaled(answer.violation, 1, norm.factor()), scaled(answer.multiplier, -1, 0));
+        let unit = norm.equilibration.factor;
+        let (violation, multiplier) = (scaled(answer.violation, 1, unit), scaled(answer.multiplier, -1, 0));
         let (interior, swept) = norm.sweep(&answer.residual);
         let halves = vec![OnceCell::new(); rows.len()];
         Some(Repair { problem, norm, boundary, answer, rows, shift, violation, multiplier, halves, interior, swept })
     }
 
     pub fn spread(&self, weights: &[f64]) -> Vec<f64> {
-        let mut sum = vec![0.0; self.boundary.len()];
+        let mut sum = vec![0.0; self.boundary.dofs.len()];
         for (row, &weight) in self.rows.iter().zip(weights).filter(|entry| *entry.1 != 0.0) {
             row.iter().for_each(|&(place, b)| sum[place] += weight * b);
         }
-        self.boundary.forward(sum)
+        self.boundary.block.forward(sum)
+    }
+
+    /// `L_tt'^-1 y`.
+    pub fn backward(&self, y: Vec<f64>) -> Vec<f64> {
+        self.boundary.block.backward(y)
     }
 
     pub fn half(&self, row: usize) -> &[f64] {
@@ -133,7 +136,7 @@ impl<'a> Repair<'a> {
     /// The energy norm of the shift that a force causes.
     fn length(&self, force: &Force) -> f64 {
         let sweep = self.sweep(force);
-        ldexp(force.alpha * force.alpha * self.interior + dot(&sweep, &sweep), self.norm.factor()).sqrt()
+        self.norm.length(force.alpha * force.alpha * self.interior + dot(&sweep, &sweep))
     }
 
     /// The energy norm of the shift that a unit force along a row causes.
@@ -142,13 +145,12 @@ impl<'a> Repair<'a> {
             return f64::INFINITY;
         }
         let half = self.half(row);
-        ldexp(dot(half, half), self.norm.factor()).sqrt()
+        self.norm.length(dot(half, half))
     }
 
     /// The shift of the whole body that a force causes, length n.
     fn shift(&self, force: &Force) -> Vec<f64> {
-        let rows: Vec<f64> = force.rows.iter().zip(&self.shift).map(|(&x, &shift)| ldexp(x, shift)).collect();
-        let contact = self.problem.contact.mul_transposed(&rows);
+        let contact = self.problem.contact.mul_transposed(&self.expanded(&force.rows));
         let total: Vec<f64> = self.answer.residual.iter().zip(contact).map(|(r, b)| force.alpha * r + b).collect();
         self.norm.displacement(&total)
     }
@@ -163,14 +165,12 @@ impl<'a> Repair<'a> {
     pub fn bound(&self, witness: &Witness) -> ErrorBound {
         let Witness { error, left, multiplier, closed, rest, .. } = witness;
         let of_left = self.length(left);
-        let springs = self.norm.springs();
+        let springs = self.norm.springs.as_deref();
         // A force that is the rounding of changes of the answer's force holds nothing.
         let terms = |row: usize| self.multiplier[row].abs() + error.terms[row] + left.terms[row];
-        let rounding: Vec<f64> = (0..rest.len()).map(|row| CANCELLED * terms(row)).collect();
-        let rounding = self.expanded(&rounding);
-        if springs
-            .is_some_and(|springs| !springs.hold(&self.expanded(multiplier), closed, |row| rounding[row], |_| of_left))
-        {
+        let force = |row: usize| if closed[row] { -multiplier[row] - CANCELLED * terms(row) } else { 0.0 };
+        let force = self.expanded(&(0..rest.len()).map(force).collect::<Vec<_>>());
+        if springs.is_some_and(|springs| !springs.hold(|row| force[row], |_| of_left)) {
             return ErrorBound::none();
         }
         // Closed rows are put exactly at their gaps, which moves the answer and its residual; forces that cancel each other
@@ -185,7 +185,7 @@ impl<'a> Repair<'a> {
         let parts = self.problem.parts();
         let of_parts = (parts.count() > 1).then(|| {
             let mut sizes = vec![0.0; parts.count()];
-            self.problem.parts_of_rows(parts).iter().zip(&put).for_each(|(&part, put)| sizes[part] += put);
+            put.iter().enumerate().for_each(|(row, put)| sizes[parts.of_row(row)] += put);
             [error, left].iter().for_each(|force| self.problem.add_sizes(parts, &self.shift(force), &mut sizes));
             sizes
         });
@@ -212,7 +212,7 @@ impl<'a> Repair<'a> {
         self.cancelled(witness) + COUNTS * witness.rest.iter().sum::<f64>()
     }
 
-    /// Multipliers in the units of the problem.
+    /// Forces on the rows in the units of the problem.
     pub fn expanded(&self, multiplier: &[f64]) -> Vec<f64> {
         multiplier.iter().zip(&self.shift).map(|(&mu, &shift)| ldexp(mu, shift)).collect()
     }
@@ -240,7 +240,7 @@ mod tests {
             violation: &[0.5],
             rounding: 0.0,
         };
-        let repair = Repair::new(&problem, &norm, norm.boundary().unwrap(), &answer).unwrap();
+        let repair = Repair::new(&problem, &norm, &answer).unwrap();
         let witness = repair.best_witness(&[true]).unwrap();
         let (moved, multiplier) = repair.answer(&witness);
         assert!((moved[0] - 1.0).abs() < ROUNDING, "{moved:?}");

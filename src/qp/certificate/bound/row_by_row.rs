@@ -29,7 +29,7 @@ impl ContactProblem {
 
     /// The bound from a displacement with the closed rows moved to their gaps, and all others out of their obstacles.
     pub(super) fn bound_row_by_row(&self, norm: &EnergyNorm, answer: &Answer, keeping: Keeping) -> ErrorBound {
-        let watched = self.watched_rows(norm.watch());
+        let watched = self.watched_rows(&norm.watch);
         let negligible = self.negligible(answer.displacement);
         let touches = |row: usize| {
             let violation = answer.violation[row];
@@ -83,8 +83,7 @@ impl ContactProblem {
     /// The forces that are out of balance at an answer moved by `repair`, with multipliers that are sums.
     fn residual_at(&self, answer: &Answer, multipliers: &[&[f64]], repair: &[f64]) -> Vec<f64> {
         let mut residual = self.accurate_residual_of(answer.displacement, multipliers);
-        let forces = self.unrounded_product(|column| self.stiffness.lower().column(column), repair);
-        residual.iter_mut().zip(forces.sums()).for_each(|(entry, force)| *entry -= force);
+        residual.iter_mut().zip(self.accurate_forces(repair).sums()).for_each(|(entry, force)| *entry -= force);
         residual
     }
 
@@ -100,9 +99,9 @@ impl ContactProblem {
         let parts = self.parts();
         let moved_by = self.contact.mul(repair);
         let mut slack_work = vec![0.0; parts.count()];
-        for (row, part) in self.parts_of_rows(parts).into_iter().enumerate() {
+        for row in 0..self.rows() {
             if multiplier[row] != 0.0 && !closed[row] {
-                slack_work[part] += (answer.violation[row] + moved_by[row]).min(0.0) * multiplier[row];
+                slack_work[parts.of_row(row)] += (answer.violation[row] + moved_by[row]).min(0.0) * multiplier[row];
             }
         }
         let length = |square: f64, slack: f64| (square + 2.0 * slack).max(0.0).sqrt();
@@ -110,7 +109,8 @@ impl ContactProblem {
         // A shift of the answer changes its residual too, by K times the shift.
         let left = length(norm.of_force(residual).powi(2), total(&slack_work));
         let rounding = |row: usize| f64::EPSILON * answer.multiplier[row].abs();
-        if norm.springs().is_some_and(|springs| !springs.hold(multiplier, closed, rounding, |_| left)) {
+        let force = |row: usize| if closed[row] { -multiplier[row] - rounding(row) } else { 0.0 };
+        if norm.springs.as_ref().is_some_and(|springs| !springs.hold(force, |_| left)) {
             return ErrorBound::none();
         }
         let whole = left + self.length(repair) + 2.0 * total(rest);

@@ -2,7 +2,6 @@
 
 use super::repair::{Force, Multipliers, Repair, Witness};
 use super::triangle::{Triangle, triangle_of};
-use crate::qp::linear::ldexp;
 
 /// Number of corrections of the set of rows that look closed; after these, rows are only added.
 const EXCHANGES: usize = 10;
@@ -133,7 +132,7 @@ impl Repair<'_> {
         let mut rest = vec![0.0; self.rows.len()];
         for (&row, length) in set.iter().zip(fitted.triangle.lengths_of_inverse()) {
             let shift = (fitted.distance[row].abs() + fitted.tolerance[row]) * length;
-            rest[row] = ldexp(shift * shift, self.norm.factor()).sqrt();
+            rest[row] = self.norm.length(shift * shift);
         }
         rest
     }
@@ -145,7 +144,7 @@ impl Repair<'_> {
         let triangle = triangle_of(&columns, || self.norm.is_over())?;
         let independent = triangle.independent();
         let (mut change, mut steps) = (vec![0.0; self.rows.len()], vec![0.0; self.rows.len()]);
-        let mut moved = self.boundary.backward(self.sweep(base));
+        let mut moved = self.backward(self.sweep(base));
         // The magnitudes of the shifts whose sum is `moved`: that keeps the rounding of each.
         let mut magnitude: Vec<f64> = moved.iter().map(|shift| shift.abs()).collect();
         let mut correction = 0;
@@ -174,9 +173,7 @@ impl Repair<'_> {
             change.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step);
             // The shifts are those of the forces, except for the rounding of each step, even if the steps cancel each other.
             steps.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step.abs());
-            for ((sum, most), step) in
-                moved.iter_mut().zip(&mut magnitude).zip(self.boundary.backward(self.spread(&added)))
-            {
+            for ((sum, most), step) in moved.iter_mut().zip(&mut magnitude).zip(self.backward(self.spread(&added))) {
                 *sum += step;
                 *most += step.abs();
             }
