@@ -2,8 +2,7 @@
 
 use super::EnergyNorm;
 use super::bound::{Answer, ErrorBound, Measured};
-use super::scales::{Forces, OfPart, Scales, larger, relative};
-use super::units::Units;
+use super::scales::{Balance, OfPart, Scales, larger, relative};
 use super::verdict::FORCES_ROUNDED;
 use crate::error::Error;
 use crate::qp::linear::Accumulator;
@@ -39,13 +38,6 @@ pub(crate) struct Examined {
     pub may_rest: Vec<usize>,
 }
 
-impl Examined {
-    /// The same in the units of the problem, without the evidence.
-    fn in_own_units(self, units: &Units) -> Self {
-        Examined { certificate: units.in_own(self.certificate), evidence: None, ..self }
-    }
-}
-
 /// Evidence that a certificate has found for an answer, used to prove its contact set.
 #[derive(Debug)]
 pub(crate) struct Evidence {
@@ -57,18 +49,6 @@ pub(crate) struct Evidence {
     pub(super) error: f64,
     /// Numbers that cycles have measured, if the bound comes from cycles.
     pub(super) measured: Option<Measured>,
-}
-
-/// The forces on each dof, with twice the working precision.
-struct Balance {
-    /// `f + B' lambda - K u`.
-    residual: Vec<f64>,
-    /// `|K u|`.
-    elastic: Vec<f64>,
-    /// `u' K u`.
-    strain: f64,
-    /// `|K| |u|`, the scale of rounding in it.
-    terms: Vec<f64>,
 }
 
 fn worst(values: impl IntoIterator<Item = f64>) -> f64 {
@@ -96,33 +76,34 @@ impl ContactProblem {
             let certificate = examined.certificate.with_bounds_of(pieces, &self.energy_of(displacement));
             return Ok(Examined { certificate, ..examined });
         }
-        let Some(units) = self.far_units(displacement) else {
-            return match by {
-                Bounding::OwnFactor => self.examine_by_own_factor(displacement, multiplier),
-                // A hierarchy of one level is already a factor, with so few dofs that another one in double precision costs nothing.
-                Bounding::Cycles(multigrid, _) if multigrid.unknowns().len() <= 1 => {
-                    self.examine_by_own_factor(displacement, multiplier)
-                }
-                by => Ok(self.recomputed(by, displacement, multiplier)),
-            };
-        };
+        let one_level = |multigrid: &Multigrid| multigrid.unknowns().len() <= 1;
         let by = match by {
-            Bounding::OwnFactor => Bounding::OwnFactor,
-            Bounding::Factor(norm) => Bounding::Factor(units.norm(norm)),
-            _ => Bounding::Nothing,
+            // A hierarchy of one level is already a factor, with so few dofs that another one in double precision costs nothing.
+            Bounding::Cycles(multigrid, _) if one_level(multigrid) => &Bounding::OwnFactor,
+            by => by,
+        };
+        let Some(units) = self.far_units(displacement) else { return self.recomputed_by(by, displacement, multiplier) };
+        let in_units;
+        let by = match by {
+            Bounding::OwnFactor => by,
+            Bounding::Factor(norm) => {
+                in_units = Bounding::Factor(norm.with_unit(units.stiffness));
+                &in_units
+            }
+            _ => &Bounding::Nothing,
         };
         let (problem, u, lambda) = (self.in_units(&units)?, units.displacement(displacement), units.force(multiplier));
-        let in_units = match by {
-            Bounding::OwnFactor => problem.examine_by_own_factor(&u, &lambda)?,
-            by => problem.recomputed(&by, &u, &lambda),
-        };
-        Ok(in_units.in_own_units(&units))
+        let found = problem.recomputed_by(by, &u, &lambda)?;
+        Ok(Examined { certificate: units.in_own(found.certificate), evidence: None, ..found })
     }
 
-    fn examine_by_own_factor(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Examined, Error> {
+    /// As [`ContactProblem::recomputed`], with a factor that is made here if there is none.
+    fn recomputed_by(&self, by: &Bounding, displacement: &[f64], multiplier: &[f64]) -> Result<Examined, Error> {
+        if !matches!(by, Bounding::OwnFactor) {
+            return Ok(self.recomputed(by, displacement, multiplier));
+        }
         let norm = self.energy_norm(displacement, multiplier)?;
-        let by = norm.map_or(Bounding::Nothing, Bounding::Factor);
-        Ok(self.recomputed(&by, displacement, multiplier))
+        Ok(self.recomputed(&norm.map_or(Bounding::Nothing, Bounding::Factor), displacement, multiplier))
     }
 
     /// The scales of a displacement, without forces.
@@ -142,11 +123,12 @@ impl ContactProblem {
     }
 
     pub(super) fn recomputed(&self, bounding: &Bounding, u: &[f64], lambda: &[f64]) -> Examined {
-        let Balance { residual, elastic, strain, terms } = self.accurate_balance(u, &[lambda]);
+        let balance = self.accurate_balance(u, &[lambda]);
         let violation = self.accurate_violation(u);
         let (contact_terms, lengths) = (self.contact.mul_abs_transposed(lambda), self.contact.mul_abs(u));
         let forces: Vec<f64> = self.load.iter().zip(&contact_terms).map(|(f, contact)| f.abs() + contact).collect();
-        let scales = Scales::of(self, u, strain, &Forces { applied: &forces, elastic: &elastic, terms: &terms });
+        let scales = Scales::of(self, u, &balance, &forces);
+        let Balance { residual, elastic, strain, terms } = balance;
 
         let share = |dof: usize, force: f64| relative(force.abs(), terms[dof] + forces[dof]);
         let mut shares_of_rows = vec![0.0; self.rows()];
@@ -154,7 +136,7 @@ impl ContactProblem {
             shares_of_rows[row] = larger(share(dof, b * lambda[row]), shares_of_rows[row]);
         }
         let length = |row: usize| {
-            let of_part = scales.norm[self.parts().of_row(row)] * scales.reach[row];
+            let of_part = scales.of_parts[self.parts().of_row(row)].strain.max(0.0).sqrt() * scales.reach[row];
             let gap = if self.gap[row].is_finite() { self.gap[row].abs() } else { 0.0 };
             larger(lengths[row], larger(gap, of_part))
         };
@@ -185,18 +167,19 @@ impl ContactProblem {
             ..Certificate::unknown()
         };
         let rounding = scales.whole.rounding();
-        let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation, rounding };
+        let answer = Answer { displacement: u, multiplier: lambda, residual, violation, rounding };
         let (bound, measured, loss) = match bounding {
             Bounding::Nothing | Bounding::OwnFactor | Bounding::Pieces(_) => (ErrorBound::none(), None, 1.0),
             Bounding::Factor(norm) => (self.energy_error_bound(norm, &answer), None, norm.loss()),
             Bounding::Cycles(multigrid, watch) => {
-                let (bound, measured) = self.energy_error_bound_by(multigrid, &answer, watch);
+                let found = self.energy_error_bound_by(multigrid, &answer, watch);
+                let (bound, measured) = found.unwrap_or((ErrorBound::none(), None));
                 (bound, measured, measured.map_or(1.0, |measured| 1.0 / measured.ritz.min(1.0)))
             }
         };
         let part = certificate.set_bounds(&bound, &scales, loss);
         certificate.cancellation = self.cancellation(&forces, &elastic, part);
-        let Answer { residual, .. } = answer;
+        let Answer { residual, violation, .. } = answer;
         let has_bound = !matches!(bounding, Bounding::Nothing);
         let evidence = has_bound.then_some(Evidence { residual, violation, error: bound.whole, measured });
         Examined { certificate, evidence, may_rest: scales.may_rest(&bound) }

@@ -11,9 +11,10 @@ use super::EnergyNorm;
 use super::bound::Answer;
 use super::conditions::{Bounding, Evidence};
 use super::energy_norm::{Boundary, ROUNDED_BOUND};
+use super::units::ldexp_root;
 use crate::error::Error;
 use crate::qp::linear::multigrid::Multigrid;
-use crate::qp::linear::{Dependence, SparseMatrix, dot, inverse_lengths, ldexp};
+use crate::qp::linear::{Dependence, SparseMatrix, dot, inverse_lengths};
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, ProvenSet};
 use crate::watch::Watch;
@@ -33,6 +34,14 @@ pub(crate) struct WithEvidence<'a> {
     pub multiplier: &'a [f64],
     /// What its certificate has found, if that is known.
     pub evidence: Option<Evidence>,
+}
+
+impl Evidence {
+    /// The same with the rounding of its bound; `None` if no bound is known.
+    fn bounded(self) -> Option<Self> {
+        let error = ROUNDED_BOUND * self.error;
+        error.is_finite().then_some(Evidence { error, ..self })
+    }
 }
 
 impl ContactProblem {
@@ -62,21 +71,17 @@ impl ContactProblem {
     fn prove_in(&self, norm: &EnergyNorm, answer: WithEvidence) -> Option<ProvenSet> {
         let WithEvidence { displacement, multiplier, evidence } = answer;
         if let Some(units) = self.far_units(displacement) {
-            let (problem, norm) = (self.in_units(&units).ok()?, units.norm(norm));
+            let (problem, norm) = (self.in_units(&units).ok()?, norm.with_unit(units.stiffness));
             let [displacement, multiplier] = [&units.displacement(displacement), &units.force(multiplier)];
             return problem.prove_in(&norm, WithEvidence { displacement, multiplier, evidence: None });
         }
         if norm.loose_dofs() > 0 {
             return None;
         }
-        let rows = self.rows();
-        let Evidence { residual, violation, error, .. } =
-            evidence.or_else(|| self.recomputed(&Bounding::Factor(norm.clone()), displacement, multiplier).evidence)?;
-        let answer = Answer { displacement, multiplier, residual, violation: &violation, rounding: 0.0 };
-        let (error, widening) = (ROUNDED_BOUND * error, norm.widening);
-        if !error.is_finite() {
-            return None;
-        }
+        let found = || self.recomputed(&Bounding::Factor(norm.clone()), displacement, multiplier).evidence;
+        let Evidence { residual, violation, error, .. } = evidence.or_else(found)?.bounded()?;
+        let answer = Answer { displacement, multiplier, residual, violation, rounding: 0.0 };
+        let widening = norm.widening;
         let compliance = ComplianceFactor::of(self, norm);
         let wide_error = widening * error;
         // One solve saves sweeps.
@@ -91,7 +96,7 @@ impl ContactProblem {
         let of_force = ROUNDED_BOUND * widening * norm.of_force(&self.unbalanced(&answer, &open).force);
         let imbalance = widening * (of_force + error);
         let mut closed = self.closed_alone(&answer, &open, imbalance);
-        let in_question: Vec<usize> = (0..rows).filter(|&row| !open.contains(row)).collect();
+        let in_question: Vec<usize> = (0..self.rows()).filter(|&row| !open.contains(row)).collect();
         let is_doubtful = |row: &usize| multiplier[*row] < 0.0 && !closed.contains(*row);
         if in_question.iter().any(is_doubtful) && compliance.work(in_question.len()) <= MOST_WORK {
             for (&row, length) in in_question.iter().zip(compliance.moved_together(&self.contact, &in_question)) {
@@ -115,12 +120,8 @@ impl ContactProblem {
         if multigrid.is_shifted() || !self.without_stiffness().is_empty() {
             return None;
         }
-        let Evidence { residual, violation, error, measured } = evidence?;
-        let answer = Answer { displacement, multiplier, residual, violation: &violation, rounding: 0.0 };
-        let error = ROUNDED_BOUND * error;
-        if !error.is_finite() {
-            return None;
-        }
+        let Evidence { residual, violation, error, measured } = evidence?.bounded()?;
+        let answer = Answer { displacement, multiplier, residual, violation, rounding: 0.0 };
         let stiffness = multigrid.preconditioning(&self.stiffness);
         let reach = self.monotone_reach(|s| stiffness.solve(s, ROUGH, MOST_CYCLES).ok().map(|found| found.solution));
         let by_eigenvalues = || {
@@ -261,15 +262,10 @@ impl<'a> ComplianceFactor<'a> {
         let Some(reciprocals) = inverse_lengths(columns, || self.norm.is_over()) else { return none() };
         let mut lengths = none();
         for (&index, reciprocal) in basis.iter().zip(reciprocals).filter(|entry| !takes_part[*entry.0]) {
-            lengths[index] = ldexp_root(reciprocal, -self.norm.equilibration.factor);
+            lengths[index] = ldexp_root(reciprocal, -self.norm.equilibration.factor, 0);
         }
         lengths
     }
-}
-
-/// `sqrt(2^e) x`
-fn ldexp_root(x: f64, e: i32) -> f64 {
-    ldexp(if e.rem_euclid(2) == 1 { x * std::f64::consts::SQRT_2 } else { x }, e.div_euclid(2))
 }
 
 #[cfg(test)]
@@ -306,16 +302,8 @@ mod tests {
             SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 4.0)]).unwrap()).unwrap();
         let problem = ContactProblem::new(stiffness, vec![8.0], rows, vec![1.0, 9.0]).unwrap();
         let (displacement, multiplier) = ([1.0], [-4.0, -0.5]);
-        let residual = problem.accurate_residual(&displacement, &multiplier);
-        assert_eq!(residual, [1.0]);
-        let violation = problem.accurate_violation(&displacement);
-        let answer = Answer {
-            displacement: &displacement,
-            multiplier: &multiplier,
-            residual,
-            violation: &violation,
-            rounding: 0.0,
-        };
+        let answer = problem.answer(&displacement, &multiplier);
+        assert_eq!(answer.residual, [1.0]);
         for (open, balance) in [([false, true], 0.0), ([false, false], 1.0)] {
             let left = problem.unbalanced(&answer, &open.into_iter().collect());
             assert_eq!((left.is_residual, &left.force[..]), (!open[1], &[balance][..]));

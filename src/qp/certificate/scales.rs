@@ -7,22 +7,22 @@ use crate::qp::problem::{ContactProblem, Parts};
 pub(super) struct Scales {
     /// The least reach of each row: the distance by which a shift of unit energy norm of a single dof moves it.
     pub reach: Vec<f64>,
-    /// Energy norm of each part, from `u_p' K_pp u_p`.
-    pub norm: Vec<f64>,
     /// The parts.
     pub of_parts: Vec<OfPart>,
     /// All parts together.
     pub whole: OfPart,
 }
 
-/// The forces that act on each dof at a displacement u.
-pub(super) struct Forces<'a> {
-    /// Loads and contact forces, `|f| + |B' lambda|`.
-    pub applied: &'a [f64],
-    /// Elastic forces, `|K u|`.
-    pub elastic: &'a [f64],
-    /// The terms of the elastic forces, `|K| |u|`.
-    pub terms: &'a [f64],
+/// The forces on each dof at a displacement u, with twice the working precision.
+pub(super) struct Balance {
+    /// `f + B' lambda - K u`.
+    pub residual: Vec<f64>,
+    /// `|K u|`.
+    pub elastic: Vec<f64>,
+    /// `u' K u`.
+    pub strain: f64,
+    /// `|K| |u|`, the terms of the elastic forces and the scale of rounding in them.
+    pub terms: Vec<f64>,
 }
 
 /// The scales of one part.
@@ -71,39 +71,35 @@ pub(super) fn relative(value: f64, scale: f64) -> f64 {
 }
 
 impl Scales {
-    /// The scales of a displacement u of `problem` under these forces, with its `strain` u'K u.
-    pub fn of(problem: &ContactProblem, u: &[f64], strain: f64, forces: &Forces) -> Self {
+    /// The scales of a displacement u of `problem` in this balance, under the loads and contact forces `applied`, `|f| + |B' lambda|`.
+    pub fn of(problem: &ContactProblem, u: &[f64], balance: &Balance, applied: &[f64]) -> Self {
         let (parts, diagonal) = (problem.parts(), problem.diagonal());
-        let strains = if parts.count() == 1 { vec![strain] } else { problem.energies(parts, u) };
+        let strains = if parts.count() == 1 { vec![balance.strain] } else { problem.energies(parts, u) };
         let mut of_parts = vec![OfPart::default(); parts.count()];
-        let couplings = problem.couplings(parts, u, forces.applied);
+        let couplings = problem.couplings(parts, u, applied);
         for (dof, &root) in diagonal.roots.iter().enumerate() {
             let part = &mut of_parts[parts.of_dof(dof)];
-            part.terms += u[dof].abs() * forces.terms[dof];
+            part.terms += u[dof].abs() * balance.terms[dof];
             if root > 0.0 {
                 part.is_stiff = true;
                 part.moves |= u[dof] != 0.0;
-                let force = larger(forces.applied[dof], couplings.get(dof).copied().unwrap_or(0.0)) / root;
+                let force = larger(applied[dof], couplings.get(dof).copied().unwrap_or(0.0)) / root;
                 part.force = larger(force, part.force);
                 part.force_squares += force * force;
-                part.given_squares += (larger(problem.load[dof].abs(), forces.elastic[dof]) / root).powi(2);
+                part.given_squares += (larger(problem.load[dof].abs(), balance.elastic[dof]) / root).powi(2);
             }
         }
         of_parts.iter_mut().zip(&strains).for_each(|(part, &strain)| part.strain = strain);
-        let norm = strains.iter().map(|strain| strain.max(0.0).sqrt()).collect();
-        let whole = OfPart { strain, ..OfPart::together(&of_parts) };
-        Scales { reach: problem.least_reach(), norm, of_parts, whole }
+        let whole = OfPart { strain: balance.strain, ..OfPart::together(&of_parts) };
+        Scales { reach: problem.least_reach(), of_parts, whole }
     }
 
     /// The distance by which the forces on its `part`, if that rests, could move a single dof of a row, its loads and elastic forces
     /// at most; zero for a part that moves.
     pub fn rest_of_row(&self, row: usize, part: usize) -> f64 {
         let part = &self.of_parts[part];
-        if part.moves || !part.is_stiff {
-            0.0
-        } else {
-            self.reach[row] * part.force_squares.min(part.given_squares).sqrt()
-        }
+        let rests = part.is_stiff && !part.moves;
+        if rests { self.reach[row] * part.force_squares.min(part.given_squares).sqrt() } else { 0.0 }
     }
 }
 

@@ -1,6 +1,5 @@
 //! Other units for data at the ends of double precision: powers of two, so that only the range changes.
 
-use super::EnergyNorm;
 use crate::error::Error;
 use crate::qp::linear::{SymmetricMatrix, exponent, largest, ldexp};
 use crate::qp::problem::ContactProblem;
@@ -33,8 +32,7 @@ impl Units {
     /// A certificate that was computed in these units, in those of the problem.
     pub fn in_own(&self, certificate: Certificate) -> Certificate {
         // An energy norm has the unit of sqrt(stiffness) times length.
-        let root = if self.stiffness % 2 == 0 { 1.0 } else { std::f64::consts::SQRT_2 };
-        let norm = |value: f64| ldexp(root * value, self.stiffness.div_euclid(2) + self.length);
+        let norm = |value: f64| ldexp_root(value, self.stiffness, self.length);
         let force = |value: f64| ldexp(value, self.stiffness + self.length);
         let Cancellation { dof, forces, left } = certificate.cancellation;
         Certificate {
@@ -43,11 +41,12 @@ impl Units {
             ..certificate
         }
     }
+}
 
-    /// An energy norm in these units of stiffness.
-    pub fn norm(&self, norm: &EnergyNorm) -> EnergyNorm {
-        norm.with_unit(self.stiffness)
-    }
+/// `2^length sqrt(2^stiffness) x`
+pub(super) fn ldexp_root(x: f64, stiffness: i32, length: i32) -> f64 {
+    let root = if stiffness % 2 == 0 { 1.0 } else { std::f64::consts::SQRT_2 };
+    ldexp(root * x, stiffness.div_euclid(2) + length)
 }
 
 impl ContactProblem {

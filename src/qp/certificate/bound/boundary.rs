@@ -37,9 +37,7 @@ impl ContactProblem {
 
     /// The answer moved to the witness of its own bound, in doubles; `None` if there is none, or if the boundary is not known.
     pub(crate) fn repaired(&self, norm: &EnergyNorm, u: &[f64], lambda: &[f64]) -> Option<Moved> {
-        let violation = self.accurate_violation(u);
-        let residual = self.accurate_residual(u, lambda);
-        let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation, rounding: 0.0 };
+        let answer = self.answer(u, lambda);
         let own = self.beside_springs(norm, &answer);
         let closed = self.rows_that_look_closed(&answer);
         let first = FirstRepair::new(self, norm, &own, &closed)?;
@@ -49,10 +47,10 @@ impl ContactProblem {
     /// The answer with the forces of the springs of the norm in its residual.
     fn beside_springs<'a>(&self, norm: &EnergyNorm, answer: &Answer<'a>) -> Answer<'a> {
         let residual = match &norm.springs {
-            Some(springs) => springs.residual(&self.contact, &answer.residual, answer.violation),
+            Some(springs) => springs.residual(&self.contact, &answer.residual, &answer.violation),
             None => answer.residual.clone(),
         };
-        Answer { residual, ..*answer }
+        Answer { residual, violation: answer.violation.clone(), ..*answer }
     }
 
     /// Repairs that start from the witness of the previous one: the best bound, if there is one, with the answer moved to its witness.
@@ -75,8 +73,7 @@ impl ContactProblem {
             let parts: Vec<&[f64]> = multipliers.iter().map(Vec::as_slice).collect();
             let violation = self.accurate_violation(&moved);
             let residual = self.accurate_residual_of(&moved, &parts);
-            let near =
-                Answer { displacement: &moved, multiplier: &multiplier, residual, violation: &violation, ..*answer };
+            let near = Answer { displacement: &moved, multiplier: &multiplier, residual, violation, ..*answer };
             let near = self.beside_springs(norm, &near);
             let Some(repair) = Repair::new(self, norm, &near) else { break };
             let Some(settled) = repair.best_witness(&witness.closed) else { break };

@@ -5,7 +5,7 @@
 //! diagonal and one step of the iteration is exact.
 
 use crate::qp::certificate::conditions::Distances;
-use crate::qp::linear::{SparseMatrix, dot, norm};
+use crate::qp::linear::{SparseMatrix, dot, largest, norm};
 use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
 
@@ -33,10 +33,11 @@ const STEPS_WHEN_OVER: usize = 50;
 /// A row is at its gap if its distance is below this share of the terms, far above the rounding of twice the working precision.
 const AT_GAP: f64 = 1e-26;
 
-/// The contact rows, each a column, and the watch over the work on them.
+/// The contact rows, each a column, with the compliance `D^-1` of each dof alone, and the watch over the work on them.
 pub(super) struct WatchedRows<'a> {
     pub by_row: SparseMatrix,
-    pub watch: &'a Watch,
+    compliance: Vec<f64>,
+    watch: &'a Watch,
 }
 
 /// A displacement at which the closed rows are at their gaps and no other row is violated.
@@ -49,43 +50,41 @@ pub(super) struct Placed {
     pub closed: Vec<bool>,
 }
 
-/// Some rows B_C with the compliance `D^-1` of each dof alone.
+/// Some rows B_C of all.
 struct ClosedRows<'a> {
-    by_row: &'a SparseMatrix,
-    watch: &'a Watch,
+    all: &'a WatchedRows<'a>,
     rows: Vec<usize>,
-    compliance: &'a [f64],
     /// `1 / sqrt(S_ii)`: with it the diagonal of S is one.
     scale: Vec<f64>,
 }
 
 impl<'a> ClosedRows<'a> {
     /// `None` if a row has no dofs.
-    fn new(watched: &'a WatchedRows, rows: Vec<usize>, compliance: &'a [f64]) -> Option<Self> {
-        let WatchedRows { by_row, watch } = watched;
-        let own = |&row: &usize| by_row.column(row).map(|(dof, b)| b * b * compliance[dof]).sum::<f64>();
+    fn new(all: &'a WatchedRows, closed: &[bool]) -> Option<Self> {
+        let rows: Vec<usize> = (0..closed.len()).filter(|&row| closed[row]).collect();
+        let own = |&row: &usize| all.by_row.column(row).map(|(dof, b)| b * b * all.compliance[dof]).sum::<f64>();
         let scale: Vec<f64> = rows.iter().map(|row| 1.0 / own(row).sqrt()).collect();
-        scale.iter().all(|scale| scale.is_finite()).then_some(ClosedRows { by_row, watch, rows, compliance, scale })
+        scale.iter().all(|scale| scale.is_finite()).then_some(ClosedRows { all, rows, scale })
     }
 
     /// `B_C v` of a displacement, rows scaled.
     fn along(&self, v: &[f64]) -> Vec<f64> {
-        let product = |row: usize| self.by_row.column(row).map(|(dof, b)| b * v[dof]).sum::<f64>();
+        let product = |row: usize| self.all.by_row.column(row).map(|(dof, b)| b * v[dof]).sum::<f64>();
         self.rows.iter().zip(&self.scale).map(|(&row, scale)| scale * product(row)).collect()
     }
 
     /// `B_C' x` of forces on scaled rows.
     fn forces(&self, x: &[f64]) -> Vec<f64> {
-        let mut forces = vec![0.0; self.compliance.len()];
+        let mut forces = vec![0.0; self.all.compliance.len()];
         for ((&row, scale), x) in self.rows.iter().zip(&self.scale).zip(x).filter(|entry| *entry.1 != 0.0) {
-            self.by_row.column(row).for_each(|(dof, b)| forces[dof] += scale * x * b);
+            self.all.by_row.column(row).for_each(|(dof, b)| forces[dof] += scale * x * b);
         }
         forces
     }
 
     /// `D^-1` times forces.
     fn shift(&self, mut forces: Vec<f64>) -> Vec<f64> {
-        forces.iter_mut().zip(self.compliance).for_each(|(force, compliance)| *force *= compliance);
+        forces.iter_mut().zip(&self.all.compliance).for_each(|(force, compliance)| *force *= compliance);
         forces
     }
 
@@ -102,7 +101,7 @@ impl<'a> ClosedRows<'a> {
         let (mut work, least) = (dot(&rest, &of_rest), SOLVED * dot(&rest, &rest));
         for taken in 0..STEPS_FOR_A_ROW * self.rows.len() + STEPS_FOR_A_ROW {
             let step = work / dot(&of_direction, &of_direction);
-            if !(step.is_finite() && work > 0.0) || (taken >= STEPS_WHEN_OVER && self.watch.is_over()) {
+            if !(step.is_finite() && work > 0.0) || (taken >= STEPS_WHEN_OVER && self.all.watch.is_over()) {
                 break;
             }
             x.iter_mut().zip(&direction).for_each(|(x, d)| *x += step * d);
@@ -124,18 +123,22 @@ impl<'a> ClosedRows<'a> {
 impl ContactProblem {
     /// The contact rows for work that ends with `watch`.
     pub(super) fn watched_rows<'a>(&self, watch: &'a Watch) -> WatchedRows<'a> {
-        WatchedRows { by_row: self.contact.transposed(), watch }
+        let own = |&stiffness: &f64| if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 };
+        let mut compliance: Vec<f64> = self.diagonal().values.iter().map(own).collect();
+        // A dof without stiffness moves at no cost.
+        let loose = Some(largest(&compliance)).filter(|&most| most > 0.0).unwrap_or(1.0);
+        compliance.iter_mut().filter(|value| **value == 0.0).for_each(|value| *value = loose);
+        WatchedRows { by_row: self.contact.transposed(), compliance, watch }
     }
 
     /// A shift of u that puts rows at their gaps, and all others within theirs. Of closed rows that follow from others only the
     /// tightest stay closed. `None` if rows contradict each other, or if the time ends before long chains are solved.
     pub(super) fn placed(&self, watched: &WatchedRows, displacement: &[f64], mut closed: Vec<bool>) -> Option<Placed> {
-        let compliance = self.compliance_alone();
-        let terms = self.terms_of_rows(displacement);
+        let terms = self.contact.mul_abs(displacement);
         for _ in 0..EXCHANGES {
-            let rows: Vec<usize> = (0..self.rows()).filter(|&row| closed[row]).collect();
-            let moved = self.moved_to_gaps(&ClosedRows::new(watched, rows, &compliance)?, displacement);
-            let is_off = |row: usize| moved.distance[row].abs() > AT_GAP * (terms[row] + moved.terms[row]);
+            let moved = self.moved_to_gaps(&ClosedRows::new(watched, &closed)?, displacement);
+            let terms = |row: usize| terms[row] + self.gap[row].abs() + moved.terms[row];
+            let is_off = |row: usize| moved.distance[row].abs() > AT_GAP * terms(row);
             let violated: Vec<usize> =
                 (0..self.rows()).filter(|&row| !closed[row] && moved.distance[row] > 0.0 && is_off(row)).collect();
             let off: Vec<usize> = (0..self.rows()).filter(|&row| closed[row] && is_off(row)).collect();
@@ -154,39 +157,13 @@ impl ContactProblem {
 
     /// The forces on the closed rows that leave least of `residual`, each in its dofs alone.
     pub(super) fn balancing(&self, watched: &WatchedRows, closed: &[bool], residual: &[f64]) -> Option<Vec<f64>> {
-        let compliance = self.compliance_alone();
-        let rows = (0..self.rows()).filter(|&row| closed[row]).collect();
-        let rows = ClosedRows::new(watched, rows, &compliance)?;
+        let rows = ClosedRows::new(watched, closed)?;
         let found = rows.solve(rows.along(&rows.shift(residual.to_vec())));
         let mut forces = vec![0.0; self.rows()];
         for ((&row, scale), x) in rows.rows.iter().zip(&rows.scale).zip(found) {
             forces[row] = -scale * x;
         }
         Some(forces)
-    }
-
-    /// `1 / K_ii`; the largest of these for a dof without stiffness, which moves at no cost.
-    fn compliance_alone(&self) -> Vec<f64> {
-        let own = |&stiffness: &f64| if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 };
-        let alone: Vec<f64> = self.diagonal().values.iter().map(own).collect();
-        let most = alone.iter().fold(0.0, |most: f64, value| most.max(*value));
-        alone
-            .iter()
-            .map(|&value| {
-                if value > 0.0 {
-                    value
-                } else if most > 0.0 {
-                    most
-                } else {
-                    1.0
-                }
-            })
-            .collect()
-    }
-
-    /// `|B| |u| + |g|`.
-    fn terms_of_rows(&self, displacement: &[f64]) -> Vec<f64> {
-        self.contact.mul_abs(displacement).iter().zip(&self.gap).map(|(terms, gap)| terms + gap.abs()).collect()
     }
 
     /// The rows moved to their gaps as far as they can be together.

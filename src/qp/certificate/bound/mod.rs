@@ -42,7 +42,7 @@ pub(super) struct Answer<'a> {
     /// f + B' lambda - K u.
     pub residual: Vec<f64>,
     /// B u - g.
-    pub violation: &'a [f64],
+    pub violation: Vec<f64>,
     /// What rounding the displacement to doubles does to its energy norm; a bound below that needs no repair.
     pub rounding: f64,
 }
@@ -97,15 +97,6 @@ impl ErrorBound {
     }
 }
 
-/// The rows that keep their forces in a repair.
-#[derive(Clone, Copy)]
-enum Keeping<'a> {
-    /// All rows; they are only moved out of their obstacles.
-    All,
-    /// The closed rows; they are moved to their gaps.
-    Closed(&'a [bool]),
-}
-
 /// The square of a number below this share of another one underflows beside it.
 const LOST: f64 = 1e-140;
 
@@ -116,6 +107,12 @@ const OF_SUMS: f64 = 4.0 * f64::EPSILON * f64::EPSILON;
 const LEAST: f64 = 1e-145;
 
 impl ContactProblem {
+    /// The answer (u, lambda), any bound of which may need repair.
+    pub(super) fn answer<'a>(&self, displacement: &'a [f64], multiplier: &'a [f64]) -> Answer<'a> {
+        let residual = self.accurate_residual(displacement, multiplier);
+        Answer { displacement, multiplier, residual, violation: self.accurate_violation(displacement), rounding: 0.0 }
+    }
+
     /// An upper bound on `|u - u*|_K`.
     pub(super) fn energy_error_bound(&self, norm: &EnergyNorm, answer: &Answer) -> ErrorBound {
         let closed = self.rows_that_look_closed(answer);
@@ -123,8 +120,7 @@ impl ContactProblem {
         // A bound that was cut short is not used.
         let on_boundary = on_boundary.filter(|bound| bound.whole.is_finite() || !norm.is_over());
         let bound = on_boundary.unwrap_or_else(|| {
-            let as_it_stands = self.bound_row_by_row(norm, answer, Keeping::All);
-            self.bound_row_by_row(norm, answer, Keeping::Closed(&closed)).smaller(as_it_stands)
+            self.bound_row_by_row(norm, answer, Some(closed)).smaller(self.bound_row_by_row(norm, answer, None))
         });
         let (underflow, rounding) = (self.underflow(answer), self.rounding_of_residual(answer));
         let bound = bound.widened(norm.widening * norm.rounding());
@@ -271,7 +267,7 @@ mod tests {
     }
 
     fn answer<'a>(displacement: &'a [f64], multiplier: &'a [f64]) -> Answer<'a> {
-        Answer { displacement, multiplier, residual: vec![0.0; 3], violation: &[-1.0, -1.0], rounding: 0.0 }
+        Answer { displacement, multiplier, residual: vec![0.0; 3], violation: vec![-1.0; 2], rounding: 0.0 }
     }
 
     #[test]

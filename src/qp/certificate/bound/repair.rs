@@ -99,7 +99,7 @@ impl<'a> Repair<'a> {
             values.iter().zip(&shift).map(|(&value, &shift)| ldexp(value, sign * shift - unit)).collect()
         };
         let unit = norm.equilibration.factor;
-        let (violation, multiplier) = (scaled(answer.violation, 1, unit), scaled(answer.multiplier, -1, 0));
+        let (violation, multiplier) = (scaled(&answer.violation, 1, unit), scaled(answer.multiplier, -1, 0));
         let (interior, swept) = norm.sweep(&answer.residual);
         let halves = vec![OnceCell::new(); rows.len()];
         Some(Repair { problem, norm, boundary, answer, rows, shift, violation, multiplier, halves, interior, swept })
@@ -233,13 +233,8 @@ mod tests {
         let stiffness = SymmetricMatrix::from_lower(one(4.0)).unwrap();
         let problem = ContactProblem::new(stiffness, vec![8.0], one(1.0), vec![1.0]).unwrap();
         let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
-        let answer = Answer {
-            displacement: &[1.5],
-            multiplier: &[-3.0],
-            residual: vec![-1.0],
-            violation: &[0.5],
-            rounding: 0.0,
-        };
+        let answer = problem.answer(&[1.5], &[-3.0]);
+        assert_eq!((&answer.residual[..], &answer.violation[..]), (&[-1.0][..], &[0.5][..]));
         let repair = Repair::new(&problem, &norm, &answer).unwrap();
         let witness = repair.best_witness(&[true]).unwrap();
         let (moved, multiplier) = repair.answer(&witness);

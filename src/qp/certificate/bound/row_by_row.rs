@@ -1,6 +1,6 @@
 //! The bound if the contact boundary is not known: the rows are repaired by their own dofs, and the body follows.
 
-use super::{Answer, EnergyNorm, ErrorBound, Keeping};
+use super::{Answer, EnergyNorm, ErrorBound};
 use crate::qp::linear::{Blocks, Iterate};
 use crate::qp::problem::ContactProblem;
 
@@ -27,18 +27,17 @@ impl ContactProblem {
         self.contact.mul_abs(&magnitude)
     }
 
-    /// The bound from a displacement with the closed rows moved to their gaps, and all others out of their obstacles.
-    pub(super) fn bound_row_by_row(&self, norm: &EnergyNorm, answer: &Answer, keeping: Keeping) -> ErrorBound {
+    /// The bound from a displacement with the `closed` rows moved to their gaps, and all others out of their obstacles. Only the closed
+    /// rows keep their forces, or all if none are named.
+    pub(super) fn bound_row_by_row(&self, norm: &EnergyNorm, answer: &Answer, closed: Option<Vec<bool>>) -> ErrorBound {
         let watched = self.watched_rows(&norm.watch);
         let negligible = self.negligible(answer.displacement);
         let touches = |row: usize| {
             let violation = answer.violation[row];
             violation > 0.0 || (answer.multiplier[row] < 0.0 && violation >= -negligible[row])
         };
-        let (keeps_all, at_gap) = match keeping {
-            Keeping::All => (true, (0..self.rows()).map(touches).collect()),
-            Keeping::Closed(closed) => (false, closed.to_vec()),
-        };
+        let keeps_all = closed.is_none();
+        let at_gap = closed.unwrap_or_else(|| (0..self.rows()).map(touches).collect());
         let Some(placed) = self.placed(&watched, answer.displacement, at_gap) else {
             return ErrorBound::none();
         };

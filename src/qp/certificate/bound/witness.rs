@@ -79,11 +79,9 @@ impl Repair<'_> {
                 let is_excused =
                     |row: usize| !closed[row] && tolerance[row] > 0.0 && distance[row].abs() <= tolerance[row];
                 let error = base.plus(change, steps);
-                return Some(Witness {
-                    rest: self.rest(&set, &fitted),
-                    is_rounded: has_dependent || (0..rows).any(is_excused),
-                    ..self.witness(error, Settled { change, closed: &closed, multipliers })
-                });
+                let is_rounded = has_dependent || (0..rows).any(is_excused);
+                let witness = self.witness(error, Settled { change, closed: &closed, multipliers });
+                return Some(Witness { rest: self.rest(&set, &fitted), is_rounded, ..witness });
             }
             // Of copies that differ by rounding the tightest comes first in the end, unless they contradict each other.
             if exchange >= EXCHANGES && deeper.iter().any(|&row| first[row] > 0) {
