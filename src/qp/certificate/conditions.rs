@@ -288,7 +288,6 @@ impl<'a> Distances<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
     use crate::qp::settings::Settings;
     use crate::qp::solve;
 
@@ -297,9 +296,8 @@ mod tests {
 
     /// Two dofs of stiffness 4 and 16, each a part, under loads of 8 and 48, before walls at 1 and 2.
     fn parts() -> ContactProblem {
-        let matrix = |entries: &[(usize, usize, f64)]| SparseMatrix::from_triplets(2, 2, entries).unwrap();
-        let stiffness = SymmetricMatrix::from_lower(matrix(&[(0, 0, 4.0), (1, 1, 16.0)])).unwrap();
-        ContactProblem::new(stiffness, vec![8.0, 48.0], matrix(&[(0, 0, 1.0), (1, 1, 1.0)]), vec![1.0, 2.0]).unwrap()
+        let walls = [(0, 0, 1.0), (1, 1, 1.0)];
+        ContactProblem::of_entries(&[(0, 0, 4.0), (1, 1, 16.0)], &[8.0, 48.0], &walls, &[1.0, 2.0])
     }
 
     #[test]
@@ -346,10 +344,8 @@ mod tests {
 
     #[test]
     fn a_load_on_the_wall_is_no_scale_of_the_error_beside_it() {
-        let matrix = |entries: &[(usize, usize, f64)]| SparseMatrix::from_triplets(2, 2, entries).unwrap();
-        let stiffness = SymmetricMatrix::from_lower(matrix(&[(0, 0, 1.0), (1, 0, -0.5), (1, 1, 1.0)])).unwrap();
-        let wall = SparseMatrix::from_triplets(1, 2, &[(0, 0, 1.0)]).unwrap();
-        let problem = ContactProblem::new(stiffness, vec![1e9, 1.0], wall, vec![1.0]).unwrap();
+        let stiffness = [(0, 0, 1.0), (1, 0, -0.5), (1, 1, 1.0)];
+        let problem = ContactProblem::of_entries(&stiffness, &[1e9, 1.0], &[(0, 0, 1.0)], &[1.0]);
         // At the wall the second dof is at 3/2; an answer with 0 there is wrong by sqrt(9/4).
         let wrong = problem.certify(&[1.0, 0.0], &[-(1e9 - 1.0)]).unwrap();
         assert!(!wrong.meets(1.0) && wrong.energy_error >= 1.5 && wrong.energy_error_bound >= 1.5, "{wrong:?}");
@@ -361,10 +357,7 @@ mod tests {
 
     #[test]
     fn a_part_at_rest_is_certified_by_its_forces_and_any_displacement_of_it_is_not() {
-        let matrix = |entries: &[(usize, usize, f64)]| SparseMatrix::from_triplets(2, 2, entries).unwrap();
-        let stiffness = SymmetricMatrix::from_lower(matrix(&[(0, 0, 4.0), (1, 1, 16.0)])).unwrap();
-        let walls = matrix(&[(0, 0, 1.0), (1, 1, 1.0)]);
-        let problem = ContactProblem::new(stiffness, vec![0.3, 48.0], walls, vec![0.0, 2.0]).unwrap();
+        let problem = parts().with(vec![0.3, 48.0], vec![0.0, 2.0]).unwrap();
         let rests = problem.certify(&[0.0, 2.0], &[-0.3, -16.0]).unwrap();
         assert!(rests.meets(1e-12) && !rests.at_rest, "{rests:?}");
         assert_eq!((rests.parts, rests.parts_at_rest), (2, 1));
@@ -389,10 +382,8 @@ mod tests {
     #[test]
     fn dofs_without_stiffness_or_force_out_of_balance_do_not_hide_the_bound() {
         // A dof of stiffness 4 under a force of 8 before a wall at 1, and a loose dof between two walls without clearance.
-        let stiffness = SparseMatrix::from_triplets(2, 2, &[(0, 0, 4.0)]).unwrap();
-        let rows = SparseMatrix::from_triplets(3, 2, &[(0, 0, 1.0), (1, 1, 1.0), (2, 1, -1.0)]).unwrap();
-        let stiffness = SymmetricMatrix::from_lower(stiffness).unwrap();
-        let problem = ContactProblem::new(stiffness, vec![8.0, 0.0], rows, vec![1.0, 0.0, 0.0]).unwrap();
+        let walls = [(0, 0, 1.0), (1, 1, 1.0), (2, 1, -1.0)];
+        let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[8.0, 0.0], &walls, &[1.0, 0.0, 0.0]);
         let right = problem.certify(&[1.0, 0.0], &[-4.0, 0.0, 0.0]).unwrap();
         assert!(right.meets(1e-12), "{right:?}");
         let off = problem.certify(&[0.75, 0.0], &[-5.0, 0.0, 0.0]).unwrap();

@@ -52,14 +52,10 @@ impl ContactProblem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
     /// A dof between two rows: `u <= g_0` and `-b u <= g_1`.
     fn between(b: f64, gap: [f64; 2]) -> ContactProblem {
-        let stiffness =
-            SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]).unwrap()).unwrap();
-        let contact = SparseMatrix::from_triplets(2, 1, &[(0, 0, 1.0), (1, 0, -b)]).unwrap();
-        ContactProblem::new(stiffness, vec![0.0], contact, gap.to_vec()).unwrap()
+        ContactProblem::of_entries(&[(0, 0, 1.0)], &[0.0], &[(0, 0, 1.0), (1, 0, -b)], &gap)
     }
 
     #[test]

@@ -271,7 +271,6 @@ impl<'a> ComplianceFactor<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::linear::SymmetricMatrix;
 
     /// A chain of springs of both signs across, with a row `b u_i - u_(i-1) <= 1` at every fifth of its 50 dofs.
     #[test]
@@ -280,11 +279,8 @@ mod tests {
         let stiff = |i: usize| 3.0 + (i % 7) as f64;
         let mut entries: Vec<_> = (0..dofs).map(|i| (i, i, stiff(i))).collect();
         entries.extend((1..dofs).map(|i| (i, i - 1, if i % 3 == 0 { 1.0 } else { -1.4 })));
-        let stiffness =
-            SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap()).unwrap();
         let rows: Vec<_> = (0..9).flat_map(|r| [(r, 5 * r + 1, 2.0), (r, 5 * r, -1.0)]).collect();
-        let contact = SparseMatrix::from_triplets(9, dofs, &rows).unwrap();
-        let problem = ContactProblem::new(stiffness, vec![1.0; dofs], contact, vec![1.0; 9]).unwrap();
+        let problem = ContactProblem::of_entries(&entries, &vec![1.0; dofs], &rows, &[1.0; 9]);
         let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
         let compliance = ComplianceFactor::of(&problem, &norm);
         let at_once = compliance.reach_at_once().unwrap();
@@ -297,10 +293,7 @@ mod tests {
     #[test]
     fn what_is_out_of_balance_without_the_open_rows_is_free_of_their_forces() {
         // K = 4, f = 8 and u = 1: a row that is proven open has no force in the exact answer, and -4 on the other balances.
-        let rows = SparseMatrix::from_triplets(2, 1, &[(0, 0, 1.0), (1, 0, -2.0)]).unwrap();
-        let stiffness =
-            SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 4.0)]).unwrap()).unwrap();
-        let problem = ContactProblem::new(stiffness, vec![8.0], rows, vec![1.0, 9.0]).unwrap();
+        let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[8.0], &[(0, 0, 1.0), (1, 0, -2.0)], &[1.0, 9.0]);
         let (displacement, multiplier) = ([1.0], [-4.0, -0.5]);
         let answer = problem.answer(&displacement, &multiplier);
         assert_eq!(answer.residual, [1.0]);
@@ -316,11 +309,8 @@ mod tests {
         for (dofs, on_boundary) in [(30, true), (400, false)] {
             let diagonal = (0..dofs).map(|i| (i, i, 3.0));
             let entries: Vec<_> = diagonal.chain((1..dofs).map(|i| (i, i - 1, -1.0))).collect();
-            let matrix = SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap();
             let rows: Vec<_> = (0..dofs).map(|row| (row, row, 2.0)).collect();
-            let contact = SparseMatrix::from_triplets(dofs, dofs, &rows).unwrap();
-            let stiffness = SymmetricMatrix::from_lower(matrix).unwrap();
-            let problem = ContactProblem::new(stiffness, vec![1.0; dofs], contact, vec![1.0; dofs]).unwrap();
+            let problem = ContactProblem::of_entries(&entries, &vec![1.0; dofs], &rows, &vec![1.0; dofs]);
             let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
             assert_eq!(norm.boundary.is_some(), on_boundary);
             let compliance = ComplianceFactor::of(&problem, &norm);

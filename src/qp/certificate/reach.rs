@@ -140,14 +140,11 @@ impl ContactProblem {
 mod tests {
     use super::*;
     use crate::qp::linear::multigrid::NearNullSpace;
-    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
     /// A row on every unknown, twice the unknown.
     fn problem(dofs: usize, entries: &[(usize, usize, f64)]) -> ContactProblem {
-        let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, entries).unwrap()).unwrap();
         let rows: Vec<_> = (0..dofs).map(|dof| (dof, dof, 2.0)).collect();
-        let contact = SparseMatrix::from_triplets(dofs, dofs, &rows).unwrap();
-        ContactProblem::new(stiffness, vec![1.0; dofs], contact, vec![1.0; dofs]).unwrap()
+        ContactProblem::of_entries(entries, &vec![1.0; dofs], &rows, &vec![1.0; dofs])
     }
 
     /// Five points on a square of `n` unknowns along a side; with `twist` an entry of either sign across each cell.

@@ -169,7 +169,7 @@ impl Task<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::linear::{AugmentedMatrix, SparseMatrix, SymmetricMatrix, largest};
+    use crate::qp::linear::{AugmentedMatrix, largest};
     use crate::qp::method::equilibrium::{WEIGHT, equilibrium};
 
     const SIDE: usize = 12;
@@ -185,12 +185,9 @@ mod tests {
             let inside = near.into_iter().filter(|&(a, b, c)| a < SIDE && b < SIDE && c < SIDE);
             entries.extend(inside.map(|(a, b, c)| (at(a, b, c), own, -1.0)));
         }
-        let stiffness =
-            SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap()).unwrap();
         let rows: Vec<_> = (0..dofs).map(|dof| (dof, dof, -2.0)).collect();
-        let contact = SparseMatrix::from_triplets(dofs, dofs, &rows).unwrap();
-        let gap = (0..dofs).map(|dof| 1.0 + 0.1 * (dof as f64).sin()).collect();
-        ContactProblem::new(stiffness, vec![-0.1; dofs], contact, gap).unwrap()
+        let gap: Vec<f64> = (0..dofs).map(|dof| 1.0 + 0.1 * (dof as f64).sin()).collect();
+        ContactProblem::of_entries(&entries, &vec![-0.1; dofs], &rows, &gap)
     }
 
     fn factor(problem: &ContactProblem, closed: &ContactSet) -> Cholesky {
@@ -225,12 +222,12 @@ mod tests {
         let (dofs, soft) = (one.dofs(), 2.0_f64.powi(-60));
         let twice = |entries: Vec<(usize, usize, f64)>, scale: f64| {
             let second: Vec<_> = entries.iter().map(|&(i, j, value)| (i + dofs, j + dofs, scale * value)).collect();
-            SparseMatrix::from_triplets(2 * dofs, 2 * dofs, &[entries, second].concat()).unwrap()
+            [entries, second].concat()
         };
-        let stiffness = SymmetricMatrix::from_lower(twice(one.stiffness().lower().triplets().collect(), soft)).unwrap();
-        let load = one.load().iter().copied().chain(one.load().iter().map(|f| soft * f)).collect();
+        let stiffness = twice(one.stiffness().lower().triplets().collect(), soft);
+        let load: Vec<f64> = one.load().iter().copied().chain(one.load().iter().map(|f| soft * f)).collect();
         let contact = twice(one.contact().triplets().collect(), 1.0);
-        let both = ContactProblem::new(stiffness, load, contact, one.gap().repeat(2)).unwrap();
+        let both = ContactProblem::of_entries(&stiffness, &load, &contact, &one.gap().repeat(2));
         let closed = |changed: bool| {
             ContactSet::from_fn(2 * dofs, |row| (row % dofs % 7 == 0) != (changed && row % dofs % 97 == 21))
         };
@@ -262,15 +259,10 @@ mod tests {
         let checkered = ContactSet::from_fn(problem.rows(), |row| row % 2 == 0);
         assert!(earlier.balance(&checkered, &free.displacement).is_none());
         // A dof between two walls, both closed.
-        let walled = |dofs: usize, walls: &[(usize, usize, f64)], gap: Vec<f64>| {
-            let springs: Vec<_> = (0..dofs).map(|dof| (dof, dof, 1.0)).collect();
-            let springs = SparseMatrix::from_triplets(dofs, dofs, &springs).unwrap();
-            let walls = SparseMatrix::from_triplets(gap.len(), dofs, walls).unwrap();
-            ContactProblem::new(SymmetricMatrix::from_lower(springs).unwrap(), vec![0.0; dofs], walls, gap).unwrap()
-        };
-        let both = walled(1, &[(0, 0, 1.0), (1, 0, -1.0)], vec![1.0; 2]);
+        let both = ContactProblem::of_entries(&[(0, 0, 1.0)], &[0.0], &[(0, 0, 1.0), (1, 0, -1.0)], &[1.0; 2]);
         assert!(EarlierFactor::of(&both, TRIAL).unwrap().held(&ContactSet::closed(2)).is_none());
-        let slanted = walled(2, &[(0, 0, 1.0), (0, 1, 1.0)], vec![1.0]);
+        let springs = [(0, 0, 1.0), (1, 1, 1.0)];
+        let slanted = ContactProblem::of_entries(&springs, &[0.0; 2], &[(0, 0, 1.0), (0, 1, 1.0)], &[1.0]);
         assert!(EarlierFactor::of(&slanted, TRIAL).is_none());
     }
 }

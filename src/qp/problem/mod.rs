@@ -290,3 +290,19 @@ pub(crate) fn check_gap(gap: &[f64], rows: usize) -> Result<(), Error> {
         None => Ok(()),
     }
 }
+
+#[cfg(test)]
+impl ContactProblem {
+    /// The problem with these entries `(row, column, value)` of the lower triangle of K, and of B.
+    pub(in crate::qp) fn of_entries(
+        stiffness: &[(usize, usize, f64)],
+        load: &[f64],
+        contact: &[(usize, usize, f64)],
+        gap: &[f64],
+    ) -> Self {
+        let stiffness = SparseMatrix::from_triplets(load.len(), load.len(), stiffness).unwrap();
+        let contact = SparseMatrix::from_triplets(gap.len(), load.len(), contact).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(stiffness).unwrap();
+        ContactProblem::new(stiffness, load.to_vec(), contact, gap.to_vec()).unwrap()
+    }
+}

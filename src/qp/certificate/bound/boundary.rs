@@ -132,7 +132,6 @@ fn gains_nothing(rest: f64, bound: f64, best: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
     /// Rounding of a handful of operations.
     const ROUNDING: f64 = 1e-14;
@@ -141,10 +140,8 @@ mod tests {
     fn an_answer_is_repaired_to_the_equilibrium_of_the_rows_that_look_closed() {
         // K = (2, -1; -1, 2) under forces of 3 and 1, a wall before the first dof at 1, and one far from the second. At the wall
         // the second dof is at 1, and a force of 2 is left on the first.
-        let matrix = |entries: &[(usize, usize, f64)]| SparseMatrix::from_triplets(2, 2, entries).unwrap();
-        let stiffness = SymmetricMatrix::from_lower(matrix(&[(0, 0, 2.0), (1, 0, -1.0), (1, 1, 2.0)])).unwrap();
-        let walls = matrix(&[(0, 0, 1.0), (1, 1, 1.0)]);
-        let problem = ContactProblem::new(stiffness, vec![3.0, 1.0], walls, vec![1.0, 9.0]).unwrap();
+        let (stiffness, walls) = ([(0, 0, 2.0), (1, 0, -1.0), (1, 1, 2.0)], [(0, 0, 1.0), (1, 1, 1.0)]);
+        let problem = ContactProblem::of_entries(&stiffness, &[3.0, 1.0], &walls, &[1.0, 9.0]);
         let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
         for (u, lambda) in [([1.25, 0.5], [-1.0, 0.0]), ([1.0, 1.0], [-2.0, 0.0]), ([0.75, 2.0], [-5.0, -1e-3])] {
             let (moved, multiplier) = problem.repaired(&norm, &u, &lambda).unwrap();

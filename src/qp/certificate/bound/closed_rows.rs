@@ -210,23 +210,18 @@ struct Moved {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::linear::SymmetricMatrix;
 
     /// Rounding of a handful of operations.
     const ROUNDING: f64 = 1e-14;
 
     /// Dofs of these stiffnesses, which nothing couples, and rows with gaps.
     fn problem(stiffness: &[f64], rows: &[&[f64]], gap: &[f64]) -> ContactProblem {
-        let dofs = stiffness.len();
         let diagonal: Vec<_> = stiffness.iter().enumerate().map(|(dof, &value)| (dof, dof, value)).collect();
-        let stiffness = SparseMatrix::from_triplets(dofs, dofs, &diagonal).unwrap();
         let entries: Vec<_> = (rows.iter().enumerate())
             .flat_map(|(row, of_row)| of_row.iter().enumerate().map(move |(dof, &b)| (row, dof, b)))
             .filter(|entry| entry.2 != 0.0)
             .collect();
-        let contact = SparseMatrix::from_triplets(rows.len(), dofs, &entries).unwrap();
-        let stiffness = SymmetricMatrix::from_lower(stiffness).unwrap();
-        ContactProblem::new(stiffness, vec![0.0; dofs], contact, gap.to_vec()).unwrap()
+        ContactProblem::of_entries(&diagonal, &vec![0.0; stiffness.len()], &entries, gap)
     }
 
     fn placed(problem: &ContactProblem, u: &[f64], closed: &[bool]) -> Option<Placed> {

@@ -134,24 +134,26 @@ mod tests {
     /// Rounding of sums over all points.
     const ROUNDING: f64 = 1e-9;
 
-    /// Five points on a square: 4 on the diagonal, -1 to each neighbour, and `more` on the diagonal.
-    fn square(more: f64) -> SymmetricMatrix {
+    /// Five points on a square: 4 on the diagonal, -1 to each neighbour, and `more` on the diagonal. The walls are at one.
+    fn square(more: f64, walls: &[(usize, usize, f64)]) -> ContactProblem {
         let dofs = SIDE * SIDE;
         let mut entries: Vec<_> = (0..dofs).map(|own| (own, own, 4.0 + more)).collect();
         entries.extend((0..dofs).filter(|own| own % SIDE + 1 < SIDE).map(|own| (own + 1, own, -1.0)));
         entries.extend((0..dofs - SIDE).map(|own| (own + SIDE, own, -1.0)));
-        SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap()).unwrap()
+        ContactProblem::of_entries(&entries, &vec![0.0; dofs], walls, &vec![1.0; walls.len()])
+    }
+
+    fn cycles(problem: &ContactProblem) -> Multigrid {
+        let near_null = NearNullSpace::constants(problem.stiffness()).unwrap();
+        Multigrid::new(problem.stiffness(), &near_null, 1).unwrap()
     }
 
     #[test]
     fn a_stiffness_is_semidefinite_unless_a_direction_of_negative_energy_is_met_or_time_is_over() {
-        let definite = square(0.0);
-        let near_null = NearNullSpace::constants(&definite).unwrap();
-        let multigrid = Multigrid::new(&definite, &near_null, 1).unwrap();
+        let multigrid = cycles(&square(0.0, &[]));
         // The least eigenvalue is 8 sin^2(pi / 98), less than a hundredth.
         for (more, is_semidefinite) in [(0.0, true), (-0.1, false)] {
-            let none = SparseMatrix::from_triplets(0, SIDE * SIDE, &[]).unwrap();
-            let problem = ContactProblem::new(square(more), vec![0.0; SIDE * SIDE], none, Vec::new()).unwrap();
+            let problem = square(more, &[]);
             assert_eq!(problem.is_semidefinite_by(&multigrid, &Watch::default()), is_semidefinite, "{more}");
             assert!(!problem.is_semidefinite_by(&multigrid, &Watch::default().within(0.0)), "{more}");
         }
@@ -161,13 +163,10 @@ mod tests {
     fn rows_that_press_over_an_open_gap_are_moved_to_it_at_the_cost_of_their_shifts() {
         // Five points on a square, a wall before each at 1, and the load under which they press there by 1 - 0.1 K 1 or more.
         let dofs = SIDE * SIDE;
-        let stiffness = square(0.0);
-        let rows: Vec<_> = (0..dofs).map(|dof| (dof, dof, 1.0)).collect();
-        let contact = SparseMatrix::from_triplets(dofs, dofs, &rows).unwrap();
-        let load = stiffness.mul(&vec![0.9; dofs]).iter().map(|force| force + 1.0).collect();
-        let problem = ContactProblem::new(stiffness, load, contact, vec![1.0; dofs]).unwrap();
-        let near_null = NearNullSpace::constants(problem.stiffness()).unwrap();
-        let multigrid = Multigrid::new(problem.stiffness(), &near_null, 1).unwrap();
+        let problem = square(0.0, &(0..dofs).map(|dof| (dof, dof, 1.0)).collect::<Vec<_>>());
+        let load = problem.stiffness().mul(&vec![0.9; dofs]).iter().map(|force| force + 1.0).collect();
+        let problem = problem.with_load(load).unwrap();
+        let multigrid = cycles(&problem);
         assert!(multigrid.unknowns().len() > 1);
         // Forces that balance u = 0.9, which is open by 0.1 everywhere.
         let (u, lambda) = (vec![0.9; dofs], vec![-1.0; dofs]);
@@ -194,10 +193,8 @@ mod tests {
     fn the_forces_of_a_travel_are_enlarged_until_they_balance_it() {
         // Rows 1 and 2 press with 3 and 1 against a travel with the load 5: each lacks a quarter of its force.
         let entries = [(0, 0, 1.0), (0, 2, 1.0), (1, 1, 2.0), (1, 2, 1.0)];
-        let contact = SparseMatrix::from_triplets(2, 3, &entries).unwrap();
-        let stiffness = SparseMatrix::from_triplets(3, 3, &[(0, 0, 1.0), (1, 1, 1.0)]).unwrap();
-        let stiffness = SymmetricMatrix::from_lower(stiffness).unwrap();
-        let problem = ContactProblem::new(stiffness, vec![0.0, 0.0, 5.0], contact, vec![0.0; 2]).unwrap();
+        let stiffness = [(0, 0, 1.0), (1, 1, 1.0)];
+        let problem = ContactProblem::of_entries(&stiffness, &[0.0, 0.0, 5.0], &entries, &[0.0; 2]);
         let by_row = problem.contact.transposed();
         let mut residual = vec![0.1, 0.2, 1.0];
         assert!(problem.balance_travels(&by_row, &[-3.0, -1.0], &mut residual));

@@ -256,14 +256,11 @@ impl ContactProblem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::linear::SymmetricMatrix;
 
     /// Two dofs of stiffness 4 and 16 that nothing couples, and one without stiffness; a row `3 u_0 + 5 u_1 <= 1` and one of zeros.
     fn apart() -> ContactProblem {
-        let stiffness = SparseMatrix::from_triplets(3, 3, &[(0, 0, 4.0), (1, 1, 16.0)]).unwrap();
-        let contact = SparseMatrix::from_triplets(2, 3, &[(0, 0, 3.0), (0, 1, 5.0)]).unwrap();
-        let stiffness = SymmetricMatrix::from_lower(stiffness).unwrap();
-        ContactProblem::new(stiffness, vec![8.0, 0.0, 7.0], contact, vec![1.0, 1.0]).unwrap()
+        let (stiffness, contact) = ([(0, 0, 4.0), (1, 1, 16.0)], [(0, 0, 3.0), (0, 1, 5.0)]);
+        ContactProblem::of_entries(&stiffness, &[8.0, 0.0, 7.0], &contact, &[1.0, 1.0])
     }
 
     fn answer<'a>(displacement: &'a [f64], multiplier: &'a [f64]) -> Answer<'a> {

@@ -221,7 +221,6 @@ impl<'a> Repair<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
     /// Rounding of a handful of operations.
     const ROUNDING: f64 = 1e-12;
@@ -229,9 +228,7 @@ mod tests {
     #[test]
     fn a_spring_behind_its_wall_is_repaired_by_its_penetration() {
         // K = 4, f = 8, g = 1; u = 3/2 under a force of 3 leaves -1 out of balance. The repair is u = 1 under a force of 4.
-        let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]).unwrap();
-        let stiffness = SymmetricMatrix::from_lower(one(4.0)).unwrap();
-        let problem = ContactProblem::new(stiffness, vec![8.0], one(1.0), vec![1.0]).unwrap();
+        let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[8.0], &[(0, 0, 1.0)], &[1.0]);
         let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
         let answer = problem.answer(&[1.5], &[-3.0]);
         assert_eq!((&answer.residual[..], &answer.violation[..]), (&[-1.0][..], &[0.5][..]));

@@ -148,15 +148,12 @@ impl ContactProblem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
     #[test]
     fn the_rest_of_the_body_follows_a_force_to_its_equilibrium() {
         // A chain of four springs between two walls: K = tridiag(-1, 2, -1) has (n - i) / n of a force on the first dof at dof i.
         let entries: Vec<_> = (0..4).map(|i| (i, i, 2.0)).chain((1..4).map(|i| (i, i - 1, -1.0))).collect();
-        let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(4, 4, &entries).unwrap()).unwrap();
-        let none = SparseMatrix::from_triplets(0, 4, &[]).unwrap();
-        let problem = ContactProblem::new(stiffness, vec![0.0; 4], none, Vec::new()).unwrap();
+        let problem = ContactProblem::of_entries(&entries, &[0.0; 4], &[], &[]);
         for (last_is_held, exact) in [(false, [0.8, 0.6, 0.4, 0.2]), (true, [0.75, 0.5, 0.25, 0.0])] {
             let found = problem.relaxed(&[1.0, 0.0, 0.0, 0.0], &[false, false, false, last_is_held]);
             let is_near = |(a, b): (&f64, &f64)| (a - b).abs() < SUM_ROUNDING;
