@@ -120,19 +120,15 @@ impl ContactProblem {
     ) -> Vec<usize> {
         let by_sweeps = rows.len() as f64 * compliance.sweep();
         let at_once = FACTORISATIONS * norm.cholesky.multiplications() / BLOCKED;
-        let one_by_one = |row: usize| compliance.reach(row);
-        let chosen = |reach: &dyn Fn(usize) -> f64| {
-            rows.iter().filter(|&&(row, limit)| reach(row) < limit).map(|&(row, _)| row).collect()
+        let one_by_one = by_sweeps <= at_once || norm.is_over();
+        let inverse = if one_by_one { None } else { norm.cholesky.selected_inverse() };
+        let inverse = inverse.map(|inverse| (inverse, norm.rows_in_body(self.contact())));
+        let reach = |row: usize| {
+            let square = inverse.as_ref().and_then(|(inverse, entries)| inverse.product(&entries[row]));
+            let of_square = |square: f64| norm.length(norm.rounding() * square.max(0.0));
+            square.map_or_else(|| compliance.reach(row), of_square)
         };
-        if by_sweeps <= at_once || norm.is_over() {
-            return chosen(&one_by_one);
-        }
-        let Some(inverse) = norm.cholesky.selected_inverse() else { return chosen(&one_by_one) };
-        let entries = norm.rows_in_body(self.contact());
-        chosen(&|row| match inverse.product(&entries[row]) {
-            Some(square) => norm.length(norm.rounding() * square.max(0.0)),
-            None => compliance.reach(row),
-        })
+        rows.iter().filter(|&&(row, limit)| reach(row) < limit).map(|&(row, _)| row).collect()
     }
 }
 

@@ -53,11 +53,11 @@ impl Solver for ActiveSet<'_> {
         let mut seen = HashSet::new();
         let mut rule = Rule::Exchange;
         let mut ending = Ending::Unsettled;
-        let mut balances = Balances::of_sets(scaled);
+        let mut earlier = earlier_factor(scaled);
         let is_over = |done: usize| done > 0 && scaled.watch().is_over();
         while ending == Ending::Unsettled && history.len() < self.most_iterations && !is_over(history.len()) {
             scaled.watch().step("active set", history.len() + 1);
-            let balance = match balances.of(&mut closed, &displacement)? {
+            let balance = match balance(scaled, &mut earlier, &mut closed, &displacement)? {
                 Ok(balance) => balance,
                 Err(without) => {
                     ending = without;
@@ -90,40 +90,34 @@ impl Solver for ActiveSet<'_> {
     }
 }
 
-/// The balances of the sets of a loop: by the factor of an earlier set if that takes few steps, otherwise each by its own
-/// factor.
-struct Balances<'a> {
-    scaled: &'a ScaledProblem<'a>,
-    /// Set if K is definite, every row bounds one dof, and a factor is expensive.
-    earlier: Option<EarlierFactor<'a>>,
+/// The factor of an earlier set for the steps of a loop, if K is definite, every row bounds one dof, and a factor is expensive.
+fn earlier_factor<'a>(scaled: &ScaledProblem<'a>) -> Option<EarlierFactor<'a>> {
+    let most_steps = steps_for_a_factor(scaled.augmented.analysis());
+    let pays = scaled.is_definite() && most_steps >= TRIAL;
+    if pays { EarlierFactor::of(scaled.problem, most_steps) } else { None }
 }
 
-impl<'a> Balances<'a> {
-    fn of_sets(scaled: &'a ScaledProblem<'a>) -> Self {
-        let most_steps = steps_for_a_factor(scaled.augmented.analysis());
-        let pays = scaled.is_definite() && most_steps >= TRIAL;
-        Balances { scaled, earlier: pays.then(|| EarlierFactor::of(scaled.problem, most_steps)).flatten() }
+/// The balance of `closed`, from a displacement `near` it, once the rows that hold the body have joined the set: by the factor of an
+/// `earlier` set if that takes few steps, otherwise by its own. The ending of the loop if there is none.
+///
+/// # Errors
+/// As [`ScaledProblem::hold_with_more`].
+fn balance(
+    scaled: &ScaledProblem,
+    earlier: &mut Option<EarlierFactor>,
+    closed: &mut ContactSet,
+    near: &[f64],
+) -> Result<Result<Equilibrium, Ending>, Error> {
+    if let Some(balance) = earlier.as_mut().and_then(|earlier| earlier.balance(closed, near)) {
+        return Ok(Ok(balance));
     }
-
-    /// The balance of `closed`, from a displacement `near` it, once the rows that hold the body have joined the set; the ending of
-    /// the loop if there is none.
-    ///
-    /// # Errors
-    /// As [`ScaledProblem::hold_with_more`].
-    fn of(&mut self, closed: &mut ContactSet, near: &[f64]) -> Result<Result<Equilibrium, Ending>, Error> {
-        if let Some(balance) = self.earlier.as_mut().and_then(|earlier| earlier.balance(closed, near)) {
-            return Ok(Ok(balance));
-        }
-        let cholesky = match self.scaled.hold_with_more(closed, WEIGHT, near)? {
-            Ok(cholesky) => cholesky,
-            Err(ending) => return Ok(Err(ending)),
-        };
-        let balance = equilibrium(self.scaled.problem, &cholesky, closed);
-        if let Some(earlier) = &mut self.earlier {
+    Ok(scaled.hold_with_more(closed, WEIGHT, near)?.map(|cholesky| {
+        let balance = equilibrium(scaled.problem, &cholesky, closed);
+        if let Some(earlier) = earlier {
             earlier.keep(cholesky, closed);
         }
-        Ok(Ok(balance))
-    }
+        balance
+    }))
 }
 
 /// Balance of forces with the rows of `closed` held at their gaps, pushing or pulling, and all others free; `None` if they do not

@@ -170,18 +170,18 @@ fn read_off(problem: &ContactProblem, answer: &DefaultSolution<f64>, rows: &[usi
     }
     let is_finite = displacement.iter().chain(&multiplier).all(|value| value.is_finite());
     let ending = Ending::of(matches!(answer.status, SolverStatus::Solved | SolverStatus::AlmostSolved));
-    let has_answer = !matches!(
+    let is_claim = matches!(
         answer.status,
         SolverStatus::PrimalInfeasible
             | SolverStatus::AlmostPrimalInfeasible
             | SolverStatus::DualInfeasible
             | SolverStatus::AlmostDualInfeasible
     );
-    let at_rest = Outcome::at_rest(problem, Ending::Unsettled);
-    match has_answer && is_finite {
-        true => unpolished(Outcome { displacement, multiplier, contact_set, ending, iterations, ..at_rest }),
-        false => unpolished(Outcome { iterations, ..at_rest }),
-    }
+    let at_rest = Outcome { iterations, ..Outcome::at_rest(problem, Ending::Unsettled) };
+    unpolished(match is_finite && !is_claim {
+        true => Outcome { displacement, multiplier, contact_set, ending, ..at_rest },
+        false => at_rest,
+    })
 }
 
 fn csc(matrix: &SparseMatrix) -> CscMatrix<f64> {

@@ -47,25 +47,16 @@ impl Repair<'_> {
         for exchange in 0..=rows + EXCHANGES {
             // The deepest first: of two rows that contradict each other as equalities the tighter one is kept.
             let mut set: Vec<usize> = (0..rows).filter(|&row| closed[row]).collect();
-            set.sort_by(|&a, &b| {
-                (first[b], self.violation[b])
-                    .partial_cmp(&(first[a], self.violation[a]))
-                    .unwrap_or(std::cmp::Ordering::Equal)
-            });
-            let base = self.base(&closed, multipliers);
-            let fitted = self.fit(&set, &base)?;
-            let Fitted { change, steps, distance, tolerance, triangle } = &fitted;
+            set.sort_by(|&a, &b| first[b].cmp(&first[a]).then(self.violation[b].total_cmp(&self.violation[a])));
+            let fitted = self.fit(&set, &self.base(&closed, multipliers))?;
+            let Fitted { change, distance, tolerance, triangle, .. } = &fitted;
             let independent = triangle.independent();
             let violated: Vec<usize> =
                 (0..rows).filter(|&row| !closed[row] && distance[row] > tolerance[row]).collect();
             let missed = |row: usize| closed[row] && distance[row].abs() > tolerance[row];
-            let follows: Vec<usize> = set
-                .iter()
-                .zip(&independent)
-                .filter(|entry| !*entry.1 && missed(*entry.0))
-                .map(|entry| *entry.0)
-                .collect();
-            let (deeper, looser): (Vec<usize>, Vec<usize>) = follows.iter().partition(|&&row| distance[row] > 0.0);
+            let follows =
+                set.iter().zip(&independent).filter(|entry| !*entry.1 && missed(*entry.0)).map(|entry| *entry.0);
+            let (deeper, looser): (Vec<usize>, Vec<usize>) = follows.partition(|&row| distance[row] > 0.0);
             let pulling: Vec<usize> = match multipliers {
                 Multipliers::InEquilibrium => {
                     set.iter().copied().filter(|&row| self.multiplier[row] + change[row] > 0.0).collect()
@@ -78,10 +69,9 @@ impl Repair<'_> {
                 // Whether such a row is violated is rounding of the way.
                 let is_excused =
                     |row: usize| !closed[row] && tolerance[row] > 0.0 && distance[row].abs() <= tolerance[row];
-                let error = base.plus(change, steps);
                 let is_rounded = has_dependent || (0..rows).any(is_excused);
-                let witness = self.witness(error, Settled { change, closed: &closed, multipliers });
-                return Some(Witness { rest: self.rest(&set, &fitted), is_rounded, ..witness });
+                let rest = self.rest(&set, &fitted);
+                return Some(Witness { rest, is_rounded, ..self.witness(fitted, closed, multipliers) });
             }
             // Of copies that differ by rounding the tightest comes first in the end, unless they contradict each other.
             if exchange >= EXCHANGES && deeper.iter().any(|&row| first[row] > 0) {
@@ -98,8 +88,8 @@ impl Repair<'_> {
         None
     }
 
-    /// The witness of rows that are at their gaps under the force `error`, which includes the change of the multipliers.
-    fn witness(&self, error: Force, Settled { change, closed, multipliers }: Settled) -> Witness {
+    /// The witness of closed rows that are at their gaps after a fit, without the way to the gaps that rounding leaves.
+    fn witness(&self, Fitted { change, error, .. }: Fitted, closed: Vec<bool>, multipliers: Multipliers) -> Witness {
         let in_equilibrium = multipliers == Multipliers::InEquilibrium;
         let balanced = |row: usize| self.multiplier[row] + if in_equilibrium { change[row] } else { 0.0 };
         // A force that pulls is no multiplier, and nothing balances one on a loose dof.
@@ -114,9 +104,8 @@ impl Repair<'_> {
         let rows = (0..change.len()).map(left).collect();
         let pushes = |row: usize| multiplier[row] < 0.0;
         let change = (0..change.len()).map(|row| if in_equilibrium && pushes(row) { change[row] } else { 0.0 });
-        let (change, left, closed) = (change.collect(), Force::new(1.0 - error.alpha, rows), closed.to_vec());
-        let rest = vec![0.0; closed.len()];
-        Witness { error, left, multiplier, change, closed, rest, is_rounded: false }
+        let (change, left) = (change.collect(), Force::new(1.0 - error.alpha, rows));
+        Witness { error, left, multiplier, change, closed, rest: Vec::new(), is_rounded: false }
     }
 
     /// For each row an upper bound on the energy norm of the shift that moves it from its place after a fit exactly to its gap
@@ -161,7 +150,7 @@ impl Repair<'_> {
             }
             let is_met = |(&row, &kept): (&usize, &bool)| !kept || distance[row].abs() <= tolerance[row];
             if set.iter().zip(&independent).all(is_met) || correction == CORRECTIONS {
-                return Some(Fitted { change, steps, distance, tolerance, triangle });
+                return Some(Fitted { error: base.plus(&change, &steps), change, distance, tolerance, triangle });
             }
             correction += 1;
             let back: Vec<f64> = set.iter().map(|&row| -distance[row]).collect();
@@ -179,18 +168,11 @@ impl Repair<'_> {
     }
 }
 
-/// Closed rows that are at their gaps, and the change of the multipliers that puts them there.
-struct Settled<'a> {
-    change: &'a [f64],
-    closed: &'a [bool],
-    multipliers: Multipliers,
-}
-
 /// Rows after a fit: the change of each multiplier, the distances and their rounding, and the triangle of the rows of the set.
 struct Fitted {
     change: Vec<f64>,
-    /// The magnitudes of the steps of which the change is the sum.
-    steps: Vec<f64>,
+    /// The force that puts them there, which includes the change of the multipliers and the magnitudes of its steps.
+    error: Force,
     distance: Vec<f64>,
     tolerance: Vec<f64>,
     triangle: Triangle,

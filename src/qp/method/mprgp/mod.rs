@@ -91,8 +91,9 @@ impl Solver for Mprgp<'_> {
             Steps { multigrid, watch, face: None, travels: Travels::default(), is_old: false, last: None, cycles: 0 };
         let mut progress = Progress::default();
         let mut ending = Ending::Unsettled;
-        let is_late = || watch.is_over();
-        while steps.cycles < limits.most_cycles && progress.since_best < progress.patience(problem.rows()) && !is_late()
+        while steps.cycles < limits.most_cycles
+            && progress.since_best < progress.patience(problem.rows())
+            && !watch.is_over()
         {
             let residual = iterate.residual();
             if residual <= limits.tolerance {
@@ -124,7 +125,10 @@ impl Solver for Mprgp<'_> {
         bounds.turn_back(&mut displacement);
         let variant = match ending {
             Ending::Settled => "",
-            _ if steps.cycles >= limits.most_cycles || is_late() || progress.is_hopeless(steps.cycles, limits) => {
+            _ if steps.cycles >= limits.most_cycles
+                || watch.is_over()
+                || progress.is_hopeless(steps.cycles, limits) =>
+            {
                 "-unsettled"
             }
             _ => "-stagnated",
