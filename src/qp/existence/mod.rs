@@ -75,6 +75,15 @@ pub(super) fn check_rows(problem: &ContactProblem, settings: &Settings, solve: S
     proximal::check_rows(&scaling, problem, settings, solve)
 }
 
+/// The problem in the units of `scaling`.
+///
+/// # Errors
+/// [`Error::NotFinite`] if its numbers leave the range of doubles.
+fn scaled(problem: &ContactProblem, scaling: &Scaling) -> Result<ContactProblem, Error> {
+    let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
+    ContactProblem::new(scaling.stiffness().clone(), load, scaling.contact().clone(), gap)
+}
+
 /// A scaled problem with a basis of the null space of its stiffness.
 pub(super) struct Existence {
     scaled: ContactProblem,
@@ -97,9 +106,7 @@ impl Existence {
     /// [`Error::NotConvex`] with a direction of negative energy; [`Error::TooLarge`], [`Error::OutOfTime`], [`Error::Numerical`].
     pub fn of(problem: &ContactProblem, settings: &Settings, solve: Solve) -> Result<Option<Self>, Error> {
         let scaling = Scaling::of(problem.stiffness(), problem.contact())?;
-        let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
-        let scaled = ContactProblem::new(scaling.stiffness().clone(), load, scaling.contact().clone(), gap);
-        let Ok(scaled) = scaled else { return Ok(None) };
+        let Ok(scaled) = scaled(problem, &scaling) else { return Ok(None) };
         check_room(&scaled, settings)?;
         let null = match scaled.stiffness().null_space() {
             Ok(Some(null)) => null,
@@ -314,46 +321,37 @@ fn shares_of_forces(problem: &ContactProblem, solution: &Solution) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
     use crate::qp::solve;
 
     /// A dof of stiffness 2 under a force of 4 before a wall at 1, with that dof alone or with a second one that only a wall at
     /// 5 holds.
     fn before_a_wall(dofs: usize) -> ContactProblem {
-        let diagonal = SparseMatrix::from_triplets(dofs, dofs, &[(0, 0, 2.0)]).unwrap();
-        let entries: Vec<_> = (0..dofs).map(|dof| (dof, dof, 1.0)).collect();
-        let contact = SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap();
-        let stiffness = SymmetricMatrix::from_lower(diagonal).unwrap();
-        ContactProblem::new(stiffness, [4.0, 0.0][..dofs].to_vec(), contact, [1.0, 5.0][..dofs].to_vec()).unwrap()
+        let walls: Vec<_> = (0..dofs).map(|dof| (dof, dof, 1.0)).collect();
+        ContactProblem::of_entries(&[(0, 0, 2.0)], &[4.0, 0.0][..dofs], &walls, &[1.0, 5.0][..dofs])
+    }
+
+    /// What is looked at to decide on `problem`, with its scaling.
+    fn looked_at(problem: &ContactProblem) -> (Existence, Scaling) {
+        let scaling = Scaling::of(problem.stiffness(), problem.contact()).unwrap();
+        let scaled = scaled(problem, &scaling).unwrap();
+        let null = scaled.stiffness().null_space().unwrap().unwrap();
+        (Existence::with(scaled, scaling.clone(), null, solve), scaling)
     }
 
     /// Returns `true` if `freedom` finds a mode for this displacement of the first dof and this force of its wall; the second
     /// dof is at rest.
     fn is_free(displacement: f64, force: f64) -> bool {
         let (problem, alone) = (before_a_wall(2), before_a_wall(1));
-        let scaling = Scaling::of(problem.stiffness(), problem.contact()).unwrap();
-        let scaled = ContactProblem::new(
-            scaling.stiffness().clone(),
-            scaling.load(problem.load(), 0),
-            scaling.contact().clone(),
-            scaling.gap(problem.gap(), 0),
-        );
-        let scaled = scaled.unwrap();
-        let null = scaled.stiffness().null_space().unwrap().unwrap();
         let mut solution = solve(&alone, &Settings::default()).unwrap();
         (solution.displacement, solution.multiplier) = (vec![displacement, 0.0], vec![-force, 0.0]);
-        Existence::with(scaled.clone(), scaling.clone(), null, solve).freedom(&problem, &solution).is_some()
+        looked_at(&problem).0.freedom(&problem, &solution).is_some()
     }
 
     #[test]
     fn forces_carry_a_load_if_they_balance_it_on_every_mode() {
         // Only its wall holds the second dof, under a force of 3.
         let problem = before_a_wall(2).with_load(vec![4.0, 3.0]).unwrap();
-        let scaling = Scaling::of(problem.stiffness(), problem.contact()).unwrap();
-        let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
-        let scaled = ContactProblem::new(scaling.stiffness().clone(), load, scaling.contact().clone(), gap).unwrap();
-        let null = scaled.stiffness().null_space().unwrap().unwrap();
-        let looked = Existence::with(scaled.clone(), scaling.clone(), null, solve);
+        let (looked, scaling) = looked_at(&problem);
         let is_carried = |forces: [f64; 2]| looked.is_carried_by(&scaling.multiplier(&forces, 0));
         // The force on the first wall does not act on the mode.
         assert!(is_carried([-2.0, -3.0]) && is_carried([0.0, -3.0]));
@@ -373,10 +371,9 @@ mod tests {
 
     #[test]
     fn a_force_out_of_balance_moves_a_row_a_thousand_times_as_far_as_its_dof_alone() {
-        let stiffness = SparseMatrix::from_triplets(3, 3, &[(0, 0, 2.0), (1, 1, 8.0)]).unwrap();
-        let rows = SparseMatrix::from_triplets(2, 3, &[(0, 0, -3.0), (0, 1, 1.0), (1, 2, 1.0)]).unwrap();
-        let stiffness = SymmetricMatrix::from_lower(stiffness).unwrap();
-        let problem = ContactProblem::new(stiffness, vec![4.0, 16.0, 1.0], rows, vec![1.0, 1.0]).unwrap();
+        let springs = [(0, 0, 2.0), (1, 1, 8.0)];
+        let rows = [(0, 0, -3.0), (0, 1, 1.0), (1, 2, 1.0)];
+        let problem = ContactProblem::of_entries(&springs, &[4.0, 16.0, 1.0], &rows, &[1.0, 1.0]);
         // 4 / 2 through a coefficient of three, and 16 / 8; the third dof has no stiffness, and moves nothing.
         assert_eq!(moved_by_residual(&problem, &[0.0; 3], &[0.0; 2]), [BENDS * (3.0 * 2.0 + 2.0), 0.0]);
     }

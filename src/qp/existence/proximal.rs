@@ -143,10 +143,8 @@ mod tests {
 
     /// Two dofs, each with its own row: `stiffness` on the diagonal.
     fn two(stiffness: [f64; 2], load: [f64; 2], gap: [f64; 2]) -> ContactProblem {
-        let diagonal =
-            |values: [f64; 2]| SparseMatrix::from_triplets(2, 2, &[(0, 0, values[0]), (1, 1, values[1])]).unwrap();
-        let stiffness = SymmetricMatrix::from_lower(diagonal(stiffness)).unwrap();
-        ContactProblem::new(stiffness, load.to_vec(), diagonal([1.0; 2]), gap.to_vec()).unwrap()
+        let diagonal = |values: [f64; 2]| [(0, 0, values[0]), (1, 1, values[1])];
+        ContactProblem::of_entries(&diagonal(stiffness), &load, &diagonal([1.0; 2]), &gap)
     }
 
     #[test]

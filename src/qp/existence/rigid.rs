@@ -49,15 +49,11 @@ pub(super) fn place_of_largest(values: &[f64]) -> usize {
 mod tests {
     use super::*;
     use crate::qp::linear::multigrid::NearNullSpace;
-    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
     #[test]
     fn a_motion_is_rigid_if_it_is_one_of_those_declared_on_its_own_body() {
         // Two bodies of three dofs on a line, with a translation and a rotation of the whole space.
-        let none = || SparseMatrix::from_triplets(0, 6, &[]).unwrap();
-        let stiffness =
-            SymmetricMatrix::from_lower(SparseMatrix::from_triplets(6, 6, &[(0, 0, 1.0)]).unwrap()).unwrap();
-        let problem = ContactProblem::new(stiffness, vec![0.0; 6], none(), Vec::new()).unwrap();
+        let problem = ContactProblem::of_entries(&[(0, 0, 1.0)], &[0.0; 6], &[], &[]);
         let bodies = [0, 0, 0, 1, 1, 1];
         let translation = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0];
         assert!(!is_rigid(&problem, &translation, &bodies));

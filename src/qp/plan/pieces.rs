@@ -30,13 +30,11 @@ pub(super) fn pieces_of(problem: &ContactProblem, settings: &Settings) -> Option
 #[cfg(test)]
 mod tests {
     use super::{PIECE, pieces_of};
-    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
     use crate::qp::problem::ContactProblem;
     use crate::qp::settings::{Method, Settings};
 
     /// Chains of springs, of these lengths.
     fn chains(lengths: &[usize]) -> ContactProblem {
-        let dofs = lengths.iter().sum();
         let mut entries = Vec::new();
         let mut first = 0;
         for length in lengths {
@@ -44,9 +42,7 @@ mod tests {
             entries.extend((first + 1..first + length).map(|dof| (dof, dof - 1, -1.0)));
             first += length;
         }
-        let stiffness = SparseMatrix::from_triplets(dofs, dofs, &entries).and_then(SymmetricMatrix::from_lower);
-        let contact = SparseMatrix::from_triplets(1, dofs, &[(0, 0, 1.0)]).unwrap();
-        ContactProblem::new(stiffness.unwrap(), vec![1.0; dofs], contact, vec![1.0]).unwrap()
+        ContactProblem::of_entries(&entries, &vec![1.0; first], &[(0, 0, 1.0)], &[1.0])
     }
 
     #[test]

@@ -310,7 +310,6 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
-    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
     use crate::qp::method::interior_point::InteriorPoint;
     use crate::qp::plan::Means;
     use crate::qp::settings::{Method, Precision};
@@ -321,11 +320,9 @@ mod tests {
         for dof in 1..dofs {
             entries.extend([(dof, dof, 1.0), (dof - 1, dof - 1, 1.0), (dof, dof - 1, -1.0)]);
         }
-        let stiffness = SparseMatrix::from_triplets(dofs, dofs, &entries).and_then(SymmetricMatrix::from_lower);
         let rows: Vec<_> = walls.iter().enumerate().map(|(row, wall)| (row, wall.0, 1.0)).collect();
-        let contact = SparseMatrix::from_triplets(walls.len(), dofs, &rows).unwrap();
-        let gap = walls.iter().map(|wall| wall.1).collect();
-        ContactProblem::new(stiffness.unwrap(), vec![force; dofs], contact, gap).unwrap()
+        let gap: Vec<f64> = walls.iter().map(|wall| wall.1).collect();
+        ContactProblem::of_entries(&entries, &vec![force; dofs], &rows, &gap)
     }
 
     fn by(method: Method) -> Settings {
