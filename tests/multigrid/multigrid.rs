@@ -7,7 +7,7 @@ use crate::bodies::{built, clamped_block, clamped_square, largest};
 use crate::oracles::Draws;
 use serde_json::json;
 use signorini::internals::Cholesky;
-use signorini::internals::multigrid::{Multigrid, NearNullSpace, Precision};
+use signorini::internals::multigrid::{Multigrid, NearNullSpace, Width};
 use signorini::{ContactProblem, Error, SparseMatrix, SymmetricMatrix};
 
 /// Relative residual at which the iteration ends.
@@ -39,7 +39,7 @@ fn square_on_rollers(cells: usize) -> ContactProblem {
     built(&scene).problem().clone()
 }
 
-fn hierarchy(problem: &ContactProblem, precision: Precision, threads: usize) -> Multigrid {
+fn hierarchy(problem: &ContactProblem, precision: Width, threads: usize) -> Multigrid {
     let near_null = problem.near_null().expect("a body has rigid-body modes");
     Multigrid::with_precision(problem.stiffness(), near_null, threads, precision).unwrap()
 }
@@ -53,7 +53,7 @@ fn conjugate_gradients_with_one_cycle_agree_with_the_cholesky_factor() {
     for problem in [block(10), square_on_rollers(40)] {
         let load = pressed(&problem);
         let exact = Cholesky::of(problem.stiffness()).unwrap().solve(&load);
-        let multigrid = hierarchy(&problem, Precision::Single, 1);
+        let multigrid = hierarchy(&problem, Width::Single, 1);
         let found = multigrid.preconditioning(problem.stiffness()).solve(&load, TOLERANCE, 50).unwrap();
         assert!(multigrid.unknowns().len() > 1, "there is no coarse level");
         assert!(found.residual <= TOLERANCE && found.cycles <= MOST_CYCLES, "{} cycles", found.cycles);
@@ -66,7 +66,7 @@ fn conjugate_gradients_with_one_cycle_agree_with_the_cholesky_factor() {
 fn cycles_hardly_grow_with_the_number_of_unknowns() {
     let cycles = [8, 16, 24].map(|cells| {
         let problem = block(cells);
-        let multigrid = hierarchy(&problem, Precision::Single, 1);
+        let multigrid = hierarchy(&problem, Width::Single, 1);
         multigrid.preconditioning(problem.stiffness()).solve(&pressed(&problem), TOLERANCE, 50).unwrap().cycles
     });
     assert!(cycles[2] <= MOST_CYCLES && cycles[2] <= cycles[0] + 4, "{cycles:?} cycles");
@@ -75,7 +75,7 @@ fn cycles_hardly_grow_with_the_number_of_unknowns() {
 #[test]
 fn single_and_double_precision_need_the_same_number_of_cycles() {
     let problem = block(10);
-    let cycles = [Precision::Single, Precision::Double].map(|precision| {
+    let cycles = [Width::Single, Width::Double].map(|precision| {
         let multigrid = hierarchy(&problem, precision, 1);
         multigrid.preconditioning(problem.stiffness()).solve(&pressed(&problem), TOLERANCE, 50).unwrap().cycles
     });
@@ -85,7 +85,7 @@ fn single_and_double_precision_need_the_same_number_of_cycles() {
 #[test]
 fn the_cycle_is_symmetric_and_the_same_with_two_threads() {
     let problem = block(16);
-    let one = hierarchy(&problem, Precision::Single, 1);
+    let one = hierarchy(&problem, Width::Single, 1);
     let mut draws = Draws::new(7);
     let [x, y]: [Vec<f64>; 2] = [0, 1].map(|_| (0..problem.dofs()).map(|_| draws.signed()).collect());
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -93,7 +93,7 @@ fn the_cycle_is_symmetric_and_the_same_with_two_threads() {
     let size = (product(&x, &of_x) * product(&y, &of_y)).sqrt();
     assert!(product(&x, &of_x) > 0.0);
     assert!((product(&y, &of_x) - product(&x, &of_y)).abs() <= SYMMETRIC * size);
-    assert_eq!(hierarchy(&problem, Precision::Single, 2).cycle(&x), of_x);
+    assert_eq!(hierarchy(&problem, Width::Single, 2).cycle(&x), of_x);
     // The products in double precision are the same as well: their sums are over fixed parts, whichever thread computes
     // them.
     let large = block(20);

@@ -31,19 +31,19 @@ const WORKSPACE: f64 = 1.15;
 /// Bytes of a value of a dense matrix on the contact dofs; a method keeps several such matrices.
 const OF_DENSE: f64 = 64.0;
 
-/// Bytes of an entry of the stiffness in the matrices of the contact sets: their pattern, if it differs from that of the stiffness,
-/// their values, and the structure of their factors.
-const OF_SETS: f64 = 20.0;
+/// Bytes of an entry of the stiffness K in the matrices K + w B'B of the contact sets, without their factors: their pattern, if it
+/// differs from that of the stiffness, their values, and the structure of their factors.
+pub const OF_SETS: f64 = 20.0;
 
-/// Bytes of an entry of the stiffness in the matrix of one contact set at a time: its values, and memory that earlier attempts have not
-/// released.
-const OF_SET: f64 = 10.0;
+/// Bytes of an entry of the stiffness K in the matrix K + w B'B of one contact set at a time, without its factor: its values, and
+/// memory that earlier attempts have not released.
+pub const OF_SET: f64 = 10.0;
 
 /// Bytes of a value of a dense triangle on the contact dofs that come last.
 const OF_BOUNDARY: f64 = 24.0;
 
 /// Bytes of a value of the factor of the interior point, with its index and workspace; its ordering has more fill-in than ours.
-const OF_INTERIOR_POINT: f64 = 16.0;
+pub const OF_INTERIOR_POINT: f64 = 16.0;
 
 /// Bytes of a mesh of `nodes` nodes; its elements have `connections` nodes together.
 pub fn of_mesh(nodes: f64, connections: f64) -> f64 {
@@ -102,16 +102,6 @@ pub fn of_dense(contact_dofs: f64) -> f64 {
     OF_DENSE * contact_dofs * contact_dofs
 }
 
-/// Bytes of the matrices K + w B'B of the contact sets, without their factors, for this number of `entries` of K.
-pub fn of_sets(entries: f64) -> f64 {
-    OF_SETS * entries
-}
-
-/// Bytes of the matrix K + w B'B of one contact set, without its factor, for this number of `entries` of K.
-pub fn of_set(entries: f64) -> f64 {
-    OF_SET * entries
-}
-
 /// Factors, beside those of the method, of a singular stiffness with springs: that of the bound, that which shows it semidefinite, and
 /// what their fill-in has more.
 const WITH_SPRINGS: f64 = 3.0;
@@ -124,9 +114,4 @@ pub fn of_springs(values: f64, entries: f64) -> f64 {
 /// Bytes of the dense triangle on this number of contact dofs that come last in a factor of all dofs.
 pub fn of_boundary(contact_dofs: f64) -> f64 {
     OF_BOUNDARY * contact_dofs * contact_dofs
-}
-
-/// Bytes of the interior point on a matrix with this number of `values` in its own factor.
-pub fn of_interior_point(values: f64) -> f64 {
-    OF_INTERIOR_POINT * values
 }

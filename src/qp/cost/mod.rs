@@ -136,9 +136,9 @@ pub(in crate::qp) const FACTORS: f64 = 2.0;
 pub(in crate::qp) fn check_memory(problem: &ContactProblem, kept: Kept, most: Option<f64>) -> Result<(), Error> {
     let Some(allowed) = most else { return Ok(()) };
     let (dofs, stiffness_entries) = (problem.dofs() as f64, problem.stiffness().entries() as f64);
-    let of_interior_point = |values: f64, is_used| if is_used { bytes::of_interior_point(values) } else { 0.0 };
+    let of_interior_point = |values: f64, is_used| if is_used { bytes::OF_INTERIOR_POINT * values } else { 0.0 };
     let (factor_entries, beside) = match kept {
-        Kept::Nothing => (0, 0.0),
+        Kept::Nothing | Kept::Multigrid => (0, 0.0),
         Kept::Condensed { values, width, contact_dofs, by_interior_point } => {
             let dense = contact_dofs as f64;
             let on_boundary = bytes::of_dense(dense) + of_interior_point(dense * dense / 2.0, by_interior_point);
@@ -146,13 +146,12 @@ pub(in crate::qp) fn check_memory(problem: &ContactProblem, kept: Kept, most: Op
         }
         Kept::Factors { values, last, by_interior_point } => {
             let factors = FACTORS * bytes::of_factor(values as f64, size_of::<f64>());
-            let beside = bytes::of_sets(stiffness_entries) + bytes::of_boundary(last as f64);
+            let beside = bytes::OF_SETS * stiffness_entries + bytes::of_boundary(last as f64);
             (values, factors + beside + of_interior_point(values as f64, by_interior_point))
         }
         Kept::OneFactor { values } => {
-            (values, bytes::of_factor(values as f64, size_of::<f64>()) + bytes::of_set(stiffness_entries))
+            (values, bytes::of_factor(values as f64, size_of::<f64>()) + bytes::OF_SET * stiffness_entries)
         }
-        Kept::Multigrid => (0, 0.0),
     };
     let is_factor = !matches!(kept, Kept::Nothing | Kept::Multigrid);
     // The bound of a singular stiffness needs further factors, with springs.

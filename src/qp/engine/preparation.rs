@@ -154,11 +154,7 @@ fn condensed(
     let Some(factor) = factor else { return Ok(None) };
     check_time(&settings.watch, seconds::dense(last.len()))?;
     let last = last.to_vec();
-    match cholesky {
-        Some(_) => Condensation::new(factor, last, scaling.contact()),
-        None => Condensation::without_rows(factor, last, scaling.contact()),
-    }
-    .map(Some)
+    Condensation::new(factor, cholesky.is_none(), last, scaling.contact()).map(Some)
 }
 
 /// The matrices that the methods factorise, analysed; an `analysis` of the stiffness is reused for them.

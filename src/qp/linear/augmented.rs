@@ -58,16 +58,12 @@ impl AugmentedMatrix {
         let mut squares = Vec::new();
         let mut row_starts = vec![0];
         for row in 0..by_row.columns() {
-            for (first, a) in by_row.column(row) {
-                for (second, b) in by_row.column(row).filter(|entry| entry.0 >= first) {
-                    squares.push((first, second, a * b));
-                }
-            }
+            squares.extend(by_row.square(row));
             row_starts.push(squares.len());
         }
-        let stiffness = with_places(stiffness.lower(), squares.iter().map(|&(first, second, _)| (first, second)));
+        let stiffness = with_places(stiffness.lower(), squares.iter().map(|&(second, first, _)| (first, second)));
         let products = (squares.iter())
-            .map(|&(first, second, product)| {
+            .map(|&(second, first, product)| {
                 let (start, rows) = (stiffness.column_starts()[first], stiffness.column_rows(first));
                 (start + rows.partition_point(|&row| row < second), product)
             })
@@ -131,18 +127,13 @@ fn with_places(lower: &SparseMatrix, added: impl Iterator<Item = (usize, usize)>
     starts.push(0);
     let mut missing = missing.into_iter().peekable();
     for column in 0..lower.columns() {
-        let mut missing_before = |end: usize| missing.next_if(|&(at, row)| at == column && row < end);
-        for (row, value) in lower.column(column) {
-            while let Some((_, zero)) = missing_before(row) {
-                rows.push(zero);
-                values.push(0.0);
-            }
-            rows.push(row);
-            values.push(value);
-        }
-        while let Some((_, zero)) = missing_before(usize::MAX) {
-            rows.push(zero);
-            values.push(0.0);
+        let first = rows.len();
+        rows.extend_from_slice(lower.column_rows(column));
+        values.extend(lower.column(column).map(|entry| entry.1));
+        while let Some((_, row)) = missing.next_if(|place| place.0 == column) {
+            let place = first + rows[first..].partition_point(|&known| known < row);
+            rows.insert(place, row);
+            values.insert(place, 0.0);
         }
         starts.push(rows.len());
     }

@@ -5,62 +5,16 @@
 //! kept.
 
 use super::SparseMatrix;
+use super::columns::{Columns, Taken};
 use crate::error::Error;
 
 /// Two triangles count as equal if mirrored entries differ by at most this times the larger diagonal entry of their row and column:
 /// assembly in another order differs by rounding, and 1e-10 is far above it.
 const SYMMETRY_TOLERANCE: f64 = 1e-10;
 
-/// Compressed columns with indices of any type, as given.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Columns<'a, I> {
-    pub starts: &'a [I],
-    pub rows: &'a [I],
-    pub values: &'a [f64],
-}
-
-/// The triangle that gives the values if mirrored entries differ by rounding: the lower one for columns, the upper one for rows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Taken {
-    Lower,
-    Upper,
-}
-
-/// A symmetric matrix that takes its rows, with both triangles, one after another.
-pub struct SymmetricRows {
-    lower: Lower,
-}
-
-impl SymmetricRows {
-    /// Before the first of `dim` rows with this number of entries in all.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] if memory does not suffice.
-    pub fn new(dim: usize, entries: usize) -> Result<Self, Error> {
-        Ok(SymmetricRows { lower: Lower::new(dim, entries, Taken::Upper)? })
-    }
-
-    /// Takes the next row: columns from 0, increasing, and values.
-    ///
-    /// # Errors
-    /// [`Error::Pattern`], [`Error::IndexOutOfRange`], [`Error::NotFinite`]; [`Error::NotSymmetric`] for an entry that differs from
-    /// its mirror image in a row before.
-    pub fn take(&mut self, columns: &[u32], values: &[f64]) -> Result<(), Error> {
-        self.lower.take(columns, values)
-    }
-
-    /// The lower triangle; a negligible entry may be in one triangle only.
-    ///
-    /// # Errors
-    /// [`Error::NotSymmetric`] for an entry of the upper triangle without a mirror image.
-    pub fn lower(mut self) -> Result<SparseMatrix, Error> {
-        self.lower.all_matched()?;
-        Ok(self.lower.into_matrix())
-    }
-}
-
-/// The lower triangle under construction.
-struct Lower {
+/// A symmetric matrix that takes its columns, or its rows, with both triangles, one after another: its lower triangle under
+/// construction.
+pub struct SymmetricLines {
     dim: usize,
     starts: Vec<usize>,
     rows: Vec<usize>,
@@ -79,7 +33,7 @@ impl<I: Copy + TryInto<usize>> Columns<'_, I> {
     /// [`Error::Length`], [`Error::Pattern`] and [`Error::IndexOutOfRange`] for arrays that are no sorted columns,
     /// [`Error::NotFinite`], [`Error::NotSymmetric`].
     pub fn lower(self) -> Result<SparseMatrix, Error> {
-        Ok(self.walked(Taken::Lower)?.into_matrix())
+        self.walked(Taken::Lower)?.lower()
     }
 
     /// The transposed upper triangle; `None` if a negligible entry is on one side of the diagonal only.
@@ -87,47 +41,17 @@ impl<I: Copy + TryInto<usize>> Columns<'_, I> {
     /// # Errors
     /// As [`Columns::lower`].
     pub fn upper(self) -> Result<Option<SparseMatrix>, Error> {
-        let upper = self.walked(Taken::Upper)?;
+        let mut upper = self.walked(Taken::Upper)?;
+        upper.all_matched()?;
         Ok((!upper.is_one_sided).then(|| upper.into_matrix()))
     }
 
     /// The entries on and below the diagonal, of the values of the triangle `taken`.
-    fn walked(self, taken: Taken) -> Result<Lower, Error> {
-        let (dim, entries) = (self.starts.len().saturating_sub(1), self.values.len());
-        if self.rows.len() != entries {
-            let (name, found) = ("row indices", self.rows.len());
-            return Err(Error::Length { name, found, expected: entries, of: "values" });
-        }
-        if self.start(0)? != 0 || self.start(dim)? != entries {
-            let message = format!("the column starts must begin with 0 and end with the number of values, {entries}");
-            return Err(Error::Pattern { message });
-        }
-        let mut lower = Lower::new(dim, entries, taken)?;
-        let mut first = 0;
-        for column in 0..dim {
-            let end = self.start(column + 1)?;
-            let (Some(rows), Some(values)) = (self.rows.get(first..end), self.values.get(first..end)) else {
-                let message = format!("the column starts decrease after column {column} (indices from 0)");
-                return Err(Error::Pattern { message });
-            };
-            lower.take(rows, values)?;
-            first = end;
-        }
-        lower.all_matched()?;
-        Ok(lower)
+    fn walked(self, taken: Taken) -> Result<SymmetricLines, Error> {
+        let mut lines = SymmetricLines::new(self.starts.len().saturating_sub(1), self.values.len(), taken)?;
+        self.each(|_, rows, values| lines.take(rows, values))?;
+        Ok(lines)
     }
-
-    fn start(&self, column: usize) -> Result<usize, Error> {
-        let start = self.starts.get(column).and_then(|&start| start.try_into().ok());
-        start.ok_or_else(|| Error::Pattern { message: format!("the start of column {column} is no index (from 0)") })
-    }
-}
-
-/// An entry of the matrix.
-struct Entry {
-    row: usize,
-    column: usize,
-    value: f64,
 }
 
 /// An empty vector with room for this number of entries.
@@ -139,22 +63,43 @@ fn with_room<T>(entries: usize) -> Result<Vec<T>, Error> {
     }
 }
 
-impl Lower {
-    /// Before the first of `dim` lines with this number of entries in all.
+impl SymmetricLines {
+    /// Before the first of `dim` rows with this number of entries in all.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] if memory does not suffice.
+    pub fn of_rows(dim: usize, entries: usize) -> Result<Self, Error> {
+        Self::new(dim, entries, Taken::Upper)
+    }
+
     fn new(dim: usize, entries: usize, taken: Taken) -> Result<Self, Error> {
         let room = entries / 2 + dim;
         let mut starts = with_room(dim + 1)?;
         starts.push(0);
         let (rows, values, cursor) = (with_room(room)?, with_room(room)?, with_room(dim)?);
-        Ok(Lower { dim, starts, rows, values, cursor, taken, is_one_sided: false })
+        Ok(SymmetricLines { dim, starts, rows, values, cursor, taken, is_one_sided: false })
+    }
+
+    /// The lower triangle; a negligible entry may be in one triangle only.
+    ///
+    /// # Errors
+    /// [`Error::NotSymmetric`] for an entry of the upper triangle without a mirror image.
+    pub fn lower(mut self) -> Result<SparseMatrix, Error> {
+        self.all_matched()?;
+        Ok(self.into_matrix())
     }
 
     fn into_matrix(self) -> SparseMatrix {
         SparseMatrix::from_parts(self.dim, self.starts, self.rows, self.values)
     }
 
-    /// Takes the entries of the next column on and below the diagonal, and compares those above.
-    fn take<I: Copy + TryInto<usize>>(&mut self, rows: &[I], values: &[f64]) -> Result<(), Error> {
+    /// Takes the next row or column: indices from 0, increasing, and values. Keeps what lies on and below the diagonal of a column,
+    /// and compares what lies above.
+    ///
+    /// # Errors
+    /// [`Error::Pattern`], [`Error::IndexOutOfRange`], [`Error::NotFinite`]; [`Error::NotSymmetric`] for an entry that differs from
+    /// its mirror image in a row or column before.
+    pub fn take<I: Copy + TryInto<usize>>(&mut self, rows: &[I], values: &[f64]) -> Result<(), Error> {
         let column = self.cursor.len();
         let (start, mut above, mut least) = (self.rows.len(), 0, 0);
         for (&row, &value) in rows.iter().zip(values) {
@@ -163,7 +108,7 @@ impl Lower {
                 break;
             }
             if !self.is_mirrored(row, column, value) {
-                self.compare(Entry { row, column, value }, || diagonal_of(column, rows, values))?;
+                self.compare((row, column), value, || diagonal_of(column, rows, values))?;
             }
             (above, least) = (above + 1, row + 1);
         }
@@ -175,7 +120,7 @@ impl Lower {
         let lies_below = rest.first().is_none_or(|&row| row >= column) && rest.last().is_none_or(|&row| row < self.dim);
         let increases = rest.windows(2).all(|pair| pair[0] < pair[1]);
         if !(lies_below && increases && of_rest.iter().all(|value| value.is_finite())) {
-            return Err(self.fault(rows, values));
+            return self.taken.check((self.dim, self.dim), column, rows, values);
         }
         self.starts.push(self.rows.len());
         let has_diagonal = self.rows.get(start) == Some(&column);
@@ -192,40 +137,14 @@ impl Lower {
         is_same
     }
 
-    /// The error of the next column, with rows that do not increase or lie outside, or with values that are not finite.
-    #[cold]
-    fn fault<I: Copy + TryInto<usize>>(&self, rows: &[I], values: &[f64]) -> Error {
-        let (dim, column) = (self.dim, self.cursor.len());
-        let [line, entry] = self.taken.words();
-        let mut before = None;
-        for (&row, &value) in rows.iter().zip(values) {
-            let Ok(row) = row.try_into() else { break };
-            let place = self.taken.place(row, column);
-            if row >= dim {
-                return Error::IndexOutOfRange { row: place.0, column: place.1, rows: dim, columns: dim };
-            }
-            if let Some(before) = before.filter(|&before| before >= row) {
-                let where_to = format!("{entry} {row} of {line} {column} does not lie beyond {entry} {before}");
-                return Error::Pattern { message: format!("{where_to}, the one before (indices from 0)") };
-            }
-            before = Some(row);
-            if !value.is_finite() {
-                return Error::NotFinite { name: "matrix", at: format!("{place:?}"), value, allowed: "finite" };
-            }
-        }
-        Error::Pattern { message: format!("a {entry} of {line} {column} is negative (indices from 0)") }
-    }
-
     /// Compares an entry above the diagonal with its mirror image in column `row`.
-    fn compare(&mut self, above: Entry, diagonal: impl Fn() -> f64) -> Result<(), Error> {
-        let Entry { row, column, value } = above;
-        let mirror = |value: f64| Entry { row: column, column: row, value };
+    fn compare(&mut self, (row, column): (usize, usize), value: f64, diagonal: impl Fn() -> f64) -> Result<(), Error> {
         let end = self.starts[row + 1];
         loop {
             let place = self.cursor[row];
             if place >= end || self.rows[place] > column {
                 self.is_one_sided = true;
-                return self.alike(mirror(0.0), value, diagonal());
+                return self.alike((column, row), [0.0, value], diagonal());
             }
             self.cursor[row] += 1;
             let below = self.values[place];
@@ -236,7 +155,7 @@ impl Lower {
                 if self.taken == Taken::Upper {
                     self.values[place] = value;
                 }
-                return self.alike(mirror(below), value, diagonal());
+                return self.alike((column, row), [below, value], diagonal());
             }
             // A column before this one had no entry in that row.
             self.alone(place, row)?;
@@ -257,7 +176,7 @@ impl Lower {
     fn alone(&mut self, place: usize, column: usize) -> Result<(), Error> {
         self.is_one_sided = true;
         let row = self.rows[place];
-        self.alike(Entry { row, column, value: self.values[place] }, 0.0, self.diagonal(row))
+        self.alike((row, column), [self.values[place], 0.0], self.diagonal(row))
     }
 
     /// The size of the diagonal entry of a column that was walked.
@@ -269,8 +188,8 @@ impl Lower {
 
     /// Makes sure that an entry below the diagonal and its mirror image differ by rounding at most; `diagonal` is the size of the
     /// diagonal entry of its row.
-    fn alike(&self, below: Entry, mirrored: f64, diagonal: f64) -> Result<(), Error> {
-        let Entry { row, column, value } = below;
+    fn alike(&self, (row, column): (usize, usize), values: [f64; 2], diagonal: f64) -> Result<(), Error> {
+        let [value, mirrored] = values;
         let size = self.diagonal(column).max(diagonal);
         let scale = if size > 0.0 { size } else { value.abs().max(mirrored.abs()) };
         if (value - mirrored).abs() > SYMMETRY_TOLERANCE * scale {
@@ -278,24 +197,6 @@ impl Lower {
             return Err(Error::NotSymmetric { row, column, value, mirrored });
         }
         Ok(())
-    }
-}
-
-impl Taken {
-    /// A walked line of the matrix is a row or a column; this names its entries in errors.
-    fn words(self) -> [&'static str; 2] {
-        match self {
-            Taken::Lower => ["column", "row"],
-            Taken::Upper => ["row", "column"],
-        }
-    }
-
-    /// Row and column of an entry, or of a pair of mirrored entries, in a line that is walked as a column.
-    fn place<T>(self, row: T, column: T) -> (T, T) {
-        match self {
-            Taken::Lower => (row, column),
-            Taken::Upper => (column, row),
-        }
     }
 }
 

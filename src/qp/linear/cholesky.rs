@@ -8,7 +8,8 @@ use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{self as fc, supernodal};
 use faer::{Par, Side};
 
-use super::factor::{self, FactorError, Real, Width, call};
+use super::factor::{self, Factor, FactorError, Real, Width, call};
+use super::grouped::group_starts;
 use super::{Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, ldexp, ordering};
 
 /// Fill-reducing ordering and structure of the factor, for all matrices of one sparsity pattern.
@@ -34,24 +35,20 @@ enum Values {
     Single(Arc<Vec<f32>>),
 }
 
-/// Calls a function of `factor` for the values in their precision.
+/// Calls a function of the factor in its precision; gives `None` for a matrix without columns.
 macro_rules! by_precision {
-    ($values:expr, $slice:ident => $call:expr) => {
-        match &$values {
-            Values::Double($slice) => $call,
-            Values::Single($slice) => $call,
-        }
+    ($cholesky:expr, $factor:ident => $call:expr) => {
+        $cholesky.supernodes().map(|nodes| match &$cholesky.values {
+            Values::Double(values) => {
+                let $factor = Factor::new(nodes, values);
+                $call
+            }
+            Values::Single(values) => {
+                let $factor = Factor::new(nodes, values);
+                $call
+            }
+        })
     };
-}
-
-fn structure(matrix: &SparseMatrix) -> SymbolicSparseColMatRef<'_, usize> {
-    SymbolicSparseColMatRef::new_checked(
-        matrix.rows(),
-        matrix.columns(),
-        matrix.column_starts(),
-        None,
-        matrix.row_indices(),
-    )
 }
 
 impl Analysis {
@@ -79,7 +76,9 @@ impl Analysis {
         };
         let symbolic = call(|| {
             let order = fc::SymmetricOrdering::Custom(PermRef::new_checked(&order, &place, order.len()));
-            Ok(fc::factorize_symbolic_cholesky(structure(lower), Side::Lower, order, params)?)
+            let (starts, rows) = (lower.column_starts(), lower.row_indices());
+            let structure = SymbolicSparseColMatRef::new_checked(lower.rows(), lower.columns(), starts, None, rows);
+            Ok(fc::factorize_symbolic_cholesky(structure, Side::Lower, order, params)?)
         })?;
         Ok(Analysis { symbolic: Arc::new(symbolic), trailing: last.len(), threads: 1 })
     }
@@ -122,8 +121,7 @@ impl Analysis {
     pub fn factor_last(&self, matrix: SymmetricMatrix) -> Result<Cholesky, FactorError> {
         let permuted = self.permuted(matrix.lower(), |_, _, value| value);
         drop(matrix);
-        let (values, smallest_pivot) = self.factorised(permuted)?;
-        Ok(Cholesky { analysis: self.clone(), values: Values::Double(Arc::new(values)), smallest_pivot })
+        self.factorised(permuted, Values::Double)
     }
 
     /// Factorises the equilibrated `c D A D` of `matrix` without building it, in double precision or, with half the
@@ -139,22 +137,25 @@ impl Analysis {
     ) -> Result<Cholesky, FactorError> {
         let scale = &equilibration.diagonal;
         let entry = |row: usize, column: usize, value| ldexp(value, equilibration.factor + scale[row] + scale[column]);
-        let (values, smallest_pivot) = if width == Width::Single {
+        if width == Width::Single {
             let rounded = |row: usize, column: usize, value| entry(row, column, value) as f32;
-            let (values, pivot) = self.factorised(self.permuted(matrix.lower(), rounded))?;
-            (Values::Single(Arc::new(values)), pivot)
-        } else {
-            let (values, pivot) = self.factorised(self.permuted(matrix.lower(), entry))?;
-            (Values::Double(Arc::new(values)), pivot)
-        };
-        Ok(Cholesky { analysis: self.clone(), values, smallest_pivot })
+            return self.factorised(self.permuted(matrix.lower(), rounded), Values::Single);
+        }
+        self.factorised(self.permuted(matrix.lower(), entry), Values::Double)
     }
 
-    fn factorised<T: Real>(&self, (permuted, entries): (SparseMatrix, Vec<T>)) -> Result<(Vec<T>, f64), FactorError> {
-        // Only a matrix without columns has no supernodes.
-        let Some(supernodes) = self.supernodes() else { return Ok((Vec::new(), f64::INFINITY)) };
+    fn factorised<T: Real>(
+        &self,
+        (permuted, entries): (SparseMatrix, Vec<T>),
+        shared: fn(Arc<Vec<T>>) -> Values,
+    ) -> Result<Cholesky, FactorError> {
         let par = if self.threads > 1 { Par::rayon(self.threads) } else { Par::Seq };
-        call(|| factor::factorise(supernodes, &permuted, &entries, par))
+        let (values, smallest_pivot) = match self.supernodes() {
+            Some(supernodes) => call(|| factor::factorise(supernodes, &permuted, &entries, par))?,
+            // Only a matrix without columns has no supernodes.
+            None => (Vec::new(), f64::INFINITY),
+        };
+        Ok(Cholesky { analysis: self.clone(), values: shared(Arc::new(values)), smallest_pivot })
     }
 
     /// The structure of the lower triangle of P A P', rows in no order, and its entries as `entry(row, column, value)`
@@ -165,13 +166,10 @@ impl Analysis {
         entry: impl Fn(usize, usize, f64) -> T,
     ) -> (SparseMatrix, Vec<T>) {
         let place = self.symbolic.perm().map_or(&[][..], |perm| perm.arrays().1);
-        let mut starts = vec![0_usize; lower.columns() + 1];
-        for (column, &to) in place.iter().enumerate() {
-            lower.column(column).for_each(|(row, _)| starts[to.min(place[row]) + 1] += 1);
-        }
-        (0..lower.columns()).for_each(|column| starts[column + 1] += starts[column]);
+        let first = |(row, column, _): (usize, usize, f64)| place[column].min(place[row]);
+        let starts = group_starts(lower.columns(), lower.triplets().map(first));
         let mut next = starts.clone();
-        let (mut rows, mut values) = (vec![0; lower.entries()], vec![T::rounded(0.0); lower.entries()]);
+        let (mut rows, mut values) = (vec![0; lower.entries()], vec![T::default(); lower.entries()]);
         for (column, &to) in place.iter().enumerate() {
             for (row, value) in lower.column(column) {
                 let (first, second) = (to.min(place[row]), to.max(place[row]));
@@ -207,7 +205,7 @@ impl Cholesky {
 
     /// Number of values of the factor, zeros inside supernodes included.
     pub fn entries(&self) -> usize {
-        by_precision!(self.values, values => values.len())
+        self.analysis.factor_entries()
     }
 
     /// Returns `true` if its values are in single precision.
@@ -218,7 +216,7 @@ impl Cholesky {
     /// The solution x of A x = b, length `dim`. If faer fails or b does not fit, every entry of x is NaN, which no certificate
     /// accepts.
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
-        by_precision!(self.values, values => factor::solve(&self.analysis.symbolic, values, b.to_vec()))
+        if b.len() == self.dim() { self.backward(self.forward(b)) } else { vec![f64::NAN; b.len()] }
     }
 
     /// `b' A^-1 b`: the squared length of L^-1 P b, by one sweep; a solution takes two.
@@ -230,15 +228,13 @@ impl Cholesky {
     /// The sweep L y = P b through the factor, in the order of elimination; its last entries belong to the columns that
     /// were put last.
     pub fn forward(&self, b: &[f64]) -> Vec<f64> {
-        let Some(nodes) = self.analysis.supernodes() else { return Vec::new() };
         let ordered: Vec<f64> = self.order().iter().map(|&column| b.get(column).copied().unwrap_or(f64::NAN)).collect();
-        by_precision!(self.values, values => factor::forward(nodes, values, ordered))
+        by_precision!(self, factor => factor::forward(factor, &ordered)).unwrap_or_default()
     }
 
     /// The sweep L' P x = y, `y` in the order of elimination, `x` in that of the matrix.
     pub fn backward(&self, y: Vec<f64>) -> Vec<f64> {
-        let Some(nodes) = self.analysis.supernodes() else { return Vec::new() };
-        let ordered = by_precision!(self.values, values => factor::backward(nodes, values, y));
+        let ordered = by_precision!(self, factor => factor::backward(factor, &y)).unwrap_or_default();
         let mut x = vec![0.0; ordered.len()];
         self.order().iter().zip(&ordered).for_each(|(&column, &value)| x[column] = value);
         x
@@ -247,10 +243,9 @@ impl Cholesky {
     /// The trailing block of L that belongs to the columns put last, m x m. Its product with its transpose is their Schur
     /// complement.
     pub fn trailing_block(&self) -> LowerTriangle {
-        let (size, dim) = (self.analysis.trailing, self.analysis.symbolic.nrows());
-        let Some(nodes) = self.analysis.supernodes() else { return LowerTriangle::new(0, Vec::new()) };
-        let block = by_precision!(self.values, values => factor::trailing_block(nodes, values, dim - size, size));
-        LowerTriangle::new(size, block)
+        let size = self.analysis.trailing;
+        let block = by_precision!(self, factor => factor::trailing_block(factor, size));
+        LowerTriangle::new(size, block.unwrap_or_default())
     }
 
     /// The structure of the factor, in block columns.
@@ -260,10 +255,7 @@ impl Cholesky {
 
     /// The values of block column `node`: the rows of its own columns, then those below.
     pub(super) fn block_column(&self, node: usize) -> faer::Mat<f64> {
-        match self.supernodes() {
-            Some(nodes) => by_precision!(self.values, values => factor::block_column(nodes, values, node)),
-            None => faer::Mat::new(),
-        }
+        by_precision!(self, factor => factor::block_column(factor, node)).unwrap_or_else(faer::Mat::new)
     }
 
     /// Number of multiplications of its factorisation, counted as if each column were eliminated by itself.

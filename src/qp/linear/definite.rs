@@ -54,11 +54,7 @@ impl SymmetricMatrix {
             return Ok(false);
         }
         let shift = LEAST_NEGATIVE.max(NEGATIVE_BY_COLUMN * self.dim() as f64);
-        match Equilibration::of(self).apply(self).shifted_factor(shift) {
-            Ok(_) => Ok(true),
-            Err(FactorError::NotPositiveDefinite) => Ok(false),
-            Err(error) => Err(error),
-        }
+        Ok(Equilibration::of(self).apply(self).shifted_factor(shift)?.is_some())
     }
 }
 

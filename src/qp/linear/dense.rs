@@ -1,5 +1,7 @@
 //! Dense vectors and triangles.
 
+use crate::error::Error;
+
 /// The largest magnitude of the entries; 0 for an empty slice.
 pub fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest, value| value.abs().max(largest))
@@ -25,6 +27,26 @@ pub fn take_out(vector: &mut [f64], direction: &[f64]) -> f64 {
     let share = dot(vector, direction);
     subtract(vector, share, direction);
     share
+}
+
+/// Checks that a vector has the right length, with what it counts, and allowed values.
+///
+/// # Errors
+/// [`Error::Length`], [`Error::NotFinite`].
+pub fn check_vector(
+    name: &'static str,
+    values: &[f64],
+    (expected, of): (usize, &'static str),
+    is_allowed: fn(f64) -> bool,
+    allowed: &'static str,
+) -> Result<(), Error> {
+    if values.len() != expected {
+        return Err(Error::Length { name, found: values.len(), expected, of });
+    }
+    match values.iter().enumerate().find(|entry| !is_allowed(*entry.1)) {
+        Some((index, &value)) => Err(Error::NotFinite { name, at: format!("entry {index}"), value, allowed }),
+        None => Ok(()),
+    }
 }
 
 /// A lower triangle L (n x n), such as the last block of a Cholesky factor.

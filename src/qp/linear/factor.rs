@@ -3,12 +3,12 @@
 //! Loads and answers are doubles. For a factor in single precision a load is scaled by a power of two to order one, so
 //! that it neither under- nor overflows, and rounded.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::solvers::LltError;
-use faer::sparse::linalg::cholesky::{self as fc, supernodal};
+use faer::sparse::linalg::cholesky::supernodal;
 use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::traits::RealField;
-use faer::{Conj, MatMut, Par};
+use faer::{Conj, Mat, MatMut, Par};
 
 use super::{SparseMatrix, exponent, largest, ldexp};
 use crate::error::Error;
@@ -56,6 +56,11 @@ pub(super) fn call<T>(work: impl FnOnce() -> Result<T, FactorError>) -> Result<T
     guarded(work).map_err(FactorError::Failed)?
 }
 
+/// Memory for a call of faer.
+pub(super) fn memory(request: StackReq) -> Result<MemBuffer, FactorError> {
+    MemBuffer::try_new(request).map_err(|_| FactorError::Failed("out of memory".into()))
+}
+
 /// Precision of the values of a factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
@@ -75,46 +80,38 @@ impl Width {
     }
 }
 
-/// `f64` or `f32`.
-pub(super) trait Real: RealField + Copy + Into<f64> {
+/// `f64` or `f32`: the precisions in which a factor, or a hierarchy, may be stored.
+pub trait Real: RealField + Copy + Default + Into<f64> + Send + Sync + 'static {
+    /// A unit in the last place of one.
+    const EPSILON: f64;
+
     /// The nearest value.
-    fn rounded(value: f64) -> Self;
+    fn of(value: f64) -> Self;
 
-    /// A load, scaled by a power of two and rounded, and the exponent of its unit; doubles are taken as they are.
-    fn scaled(load: Vec<f64>) -> (Vec<Self>, i32);
-
-    /// The answer to a load of that unit.
-    fn unscaled(answer: Vec<Self>, unit: i32) -> Vec<f64>;
+    /// The same value in double precision.
+    fn double(self) -> f64 {
+        self.into()
+    }
 }
 
 impl Real for f64 {
-    fn rounded(value: f64) -> Self {
+    const EPSILON: f64 = f64::EPSILON;
+
+    fn of(value: f64) -> Self {
         value
-    }
-
-    fn scaled(load: Vec<f64>) -> (Vec<f64>, i32) {
-        (load, 0)
-    }
-
-    fn unscaled(answer: Vec<f64>, _: i32) -> Vec<f64> {
-        answer
     }
 }
 
 impl Real for f32 {
-    fn rounded(value: f64) -> Self {
+    const EPSILON: f64 = f32::EPSILON as f64;
+
+    fn of(value: f64) -> Self {
         value as f32
     }
-
-    fn scaled(load: Vec<f64>) -> (Vec<f32>, i32) {
-        let unit = exponent(largest(&load));
-        (load.into_iter().map(|value| ldexp(value, -unit) as f32).collect(), unit)
-    }
-
-    fn unscaled(answer: Vec<f32>, unit: i32) -> Vec<f64> {
-        answer.into_iter().map(|value| ldexp(value.into(), unit)).collect()
-    }
 }
+
+/// The values of a factor with its structure.
+pub(super) type Factor<'a, T> = supernodal::SupernodalLltRef<'a, usize, T>;
 
 /// Factorises the lower triangle with the structure of `permuted` and these `entries`, rows in any order.
 ///
@@ -131,17 +128,12 @@ pub(super) fn factorise<T: Real>(
     // from the system.
     let request = Vec::<T>::new().try_reserve_exact(size);
     request.map_err(|_| FactorError::Failed("out of memory".into()))?;
-    let mut values = vec![T::rounded(0.0); size];
+    let mut values = vec![T::default(); size];
     let scratch = supernodal::factorize_supernodal_numeric_llt_scratch::<usize, T>(supernodes, par, Default::default());
-    let mut buffer = MemBuffer::try_new(scratch).map_err(|_| FactorError::Failed("out of memory".into()))?;
+    let mut buffer = memory(scratch)?;
     // faer takes columns in any order of their rows.
-    let structure = SymbolicSparseColMatRef::new_unsorted_checked(
-        permuted.rows(),
-        permuted.columns(),
-        permuted.column_starts(),
-        None,
-        permuted.row_indices(),
-    );
+    let (dim, starts, rows) = (permuted.columns(), permuted.column_starts(), permuted.row_indices());
+    let structure = SymbolicSparseColMatRef::new_unsorted_checked(dim, dim, starts, None, rows);
     supernodal::factorize_supernodal_numeric_llt(
         &mut values,
         SparseColMatRef::new(structure, entries),
@@ -159,11 +151,11 @@ pub(super) fn factorise<T: Real>(
 /// The smallest pivot, and `true` if all entries are finite: every entry enters the pivot of its row.
 fn pivots<T: Real>(supernodes: &supernodal::SymbolicSupernodalCholesky<usize>, values: &[T]) -> (f64, bool) {
     let (mut smallest, mut finite) = (f64::INFINITY, true);
-    let factor = supernodal::SupernodalLltRef::new(supernodes, values);
+    let factor = Factor::new(supernodes, values);
     for node in 0..supernodes.n_supernodes() {
         let block = factor.supernode(node).val();
         for j in 0..block.ncols() {
-            let entry: f64 = block[(j, j)].into();
+            let entry = block[(j, j)].double();
             smallest = smallest.min(entry * entry);
             finite &= entry.is_finite();
         }
@@ -171,78 +163,50 @@ fn pivots<T: Real>(supernodes: &supernodal::SymbolicSupernodalCholesky<usize>, v
     (smallest, finite)
 }
 
-/// A vector swept through a factor of `dim` columns: scaled and rounded before, converted back to doubles after. If the sweep
-/// fails or the vector does not fit, every entry is NaN.
-fn swept<T: Real>(
-    load: Vec<f64>,
-    dim: usize,
-    scratch: faer::dyn_stack::StackReq,
-    sweep: impl FnOnce(MatMut<T>, &mut MemStack),
-) -> Vec<f64> {
-    let (mut x, unit) = T::scaled(load);
-    let rows = x.len();
-    if rows != dim {
-        return vec![f64::NAN; rows];
+/// A vector swept through a factor: scaled and rounded before, if the factor is in single precision, and converted back to doubles
+/// after. If the sweep fails or the vector does not fit, every entry is NaN.
+fn swept<T: Real>(factor: Factor<T>, load: &[f64], sweep: impl FnOnce(MatMut<T>, &mut MemStack)) -> Vec<f64> {
+    if load.len() != factor.symbolic().nrows() {
+        return vec![f64::NAN; load.len()];
     }
+    let unit = if T::EPSILON > f64::EPSILON { exponent(largest(load)) } else { 0 };
+    let mut x: Vec<T> = load.iter().map(|&value| T::of(ldexp(value, -unit))).collect();
+    let scratch = factor.symbolic().solve_in_place_scratch::<T>(1, Par::Seq);
     let done = call(|| {
-        let mut buffer = MemBuffer::try_new(scratch).map_err(|_| FactorError::Failed("out of memory".into()))?;
-        sweep(MatMut::from_column_major_slice_mut(&mut x, rows, 1), MemStack::new(&mut buffer));
+        let mut buffer = memory(scratch)?;
+        sweep(MatMut::from_column_major_slice_mut(&mut x, load.len(), 1), MemStack::new(&mut buffer));
         Ok(())
     });
-    if done.is_err() {
-        return vec![f64::NAN; rows];
+    match done {
+        Ok(()) => x.into_iter().map(|value| ldexp(value.double(), unit)).collect(),
+        Err(_) => vec![f64::NAN; load.len()],
     }
-    T::unscaled(x, unit)
-}
-
-/// The solution of L L' x = b, both in the order of the matrix.
-pub(super) fn solve<T: Real>(symbolic: &fc::SymbolicCholesky<usize>, values: &[T], b: Vec<f64>) -> Vec<f64> {
-    swept::<T>(b, symbolic.nrows(), symbolic.solve_in_place_scratch::<T>(1, Par::Seq), |x, stack| {
-        fc::LltRef::new(symbolic, values).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
-    })
 }
 
 /// The solution of L y = b, both in the order of elimination.
-pub(super) fn forward<T: Real>(
-    nodes: &supernodal::SymbolicSupernodalCholesky<usize>,
-    values: &[T],
-    b: Vec<f64>,
-) -> Vec<f64> {
-    swept::<T>(b, nodes.nrows(), nodes.solve_in_place_scratch::<T>(1, Par::Seq), |y, stack| {
-        supernodal::SupernodalLltRef::new(nodes, values).l_solve_with_conj(Conj::No, y, Par::Seq, stack);
-    })
+pub(super) fn forward<T: Real>(factor: Factor<T>, b: &[f64]) -> Vec<f64> {
+    swept(factor, b, |y, stack| factor.l_solve_with_conj(Conj::No, y, Par::Seq, stack))
 }
 
 /// The solution of L' x = y, both in the order of elimination.
-pub(super) fn backward<T: Real>(
-    nodes: &supernodal::SymbolicSupernodalCholesky<usize>,
-    values: &[T],
-    y: Vec<f64>,
-) -> Vec<f64> {
-    swept::<T>(y, nodes.nrows(), nodes.solve_in_place_scratch::<T>(1, Par::Seq), |x, stack| {
-        supernodal::SupernodalLltRef::new(nodes, values).l_transpose_solve_with_conj(Conj::No, x, Par::Seq, stack);
-    })
+pub(super) fn backward<T: Real>(factor: Factor<T>, y: &[f64]) -> Vec<f64> {
+    swept(factor, y, |x, stack| factor.l_transpose_solve_with_conj(Conj::No, x, Par::Seq, stack))
 }
 
 /// The last `size` rows and columns of L, column by column with zeros above the diagonal.
-pub(super) fn trailing_block<T: Real>(
-    nodes: &supernodal::SymbolicSupernodalCholesky<usize>,
-    values: &[T],
-    first: usize,
-    size: usize,
-) -> Vec<f64> {
+pub(super) fn trailing_block<T: Real>(factor: Factor<T>, size: usize) -> Vec<f64> {
+    let first = factor.symbolic().nrows() - size;
     let mut block = vec![0.0; size * size];
-    let factor = supernodal::SupernodalLltRef::new(nodes, values);
-    for node in 0..nodes.n_supernodes() {
+    for node in 0..factor.symbolic().n_supernodes() {
         let node = factor.supernode(node);
         let (start, values) = (node.start(), node.val());
         for j in first.saturating_sub(start)..values.ncols() {
             let column = start + j - first;
             for i in j..values.ncols() {
-                block[column * size + start + i - first] = values[(i, j)].into();
+                block[column * size + start + i - first] = values[(i, j)].double();
             }
             for (i, &row) in node.pattern().iter().enumerate() {
-                block[column * size + row - first] = values[(values.ncols() + i, j)].into();
+                block[column * size + row - first] = values[(values.ncols() + i, j)].double();
             }
         }
     }
@@ -250,11 +214,7 @@ pub(super) fn trailing_block<T: Real>(
 }
 
 /// The values of block column `node`, as doubles.
-pub(super) fn block_column<T: Real>(
-    nodes: &supernodal::SymbolicSupernodalCholesky<usize>,
-    values: &[T],
-    node: usize,
-) -> faer::Mat<f64> {
-    let block = supernodal::SupernodalLltRef::new(nodes, values).supernode(node).val();
-    faer::Mat::from_fn(block.nrows(), block.ncols(), |i, j| block[(i, j)].into())
+pub(super) fn block_column<T: Real>(factor: Factor<T>, node: usize) -> Mat<f64> {
+    let block = factor.supernode(node).val();
+    Mat::from_fn(block.nrows(), block.ncols(), |i, j| block[(i, j)].double())
 }

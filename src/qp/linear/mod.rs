@@ -4,13 +4,14 @@ mod accumulator;
 mod augmented;
 mod both_triangles;
 mod cholesky;
+mod columns;
 mod conjugate_gradients;
 mod definite;
 mod dense;
 mod dependence;
-mod elimination;
 mod factor;
 mod forest;
+mod grouped;
 pub mod multigrid;
 mod null_space;
 #[cfg(feature = "faer")]
@@ -31,10 +32,10 @@ pub mod twice;
 
 pub use accumulator::Accumulator;
 pub use augmented::AugmentedMatrix;
-pub use both_triangles::SymmetricRows;
+pub use both_triangles::SymmetricLines;
 pub use cholesky::{Analysis, Cholesky};
 pub use conjugate_gradients::{Blocks, Iterate};
-pub use dense::{LowerTriangle, UpperTriangle, dot, largest, norm, subtract, take_out, turned};
+pub use dense::{LowerTriangle, UpperTriangle, check_vector, dot, largest, norm, subtract, take_out, turned};
 pub use dependence::Dependence;
 pub use factor::{FactorError, Width, if_definite};
 pub use forest::Forest;
@@ -48,6 +49,8 @@ pub use twice::Twice;
 use std::sync::Arc;
 
 use crate::error::Error;
+use columns::{Columns, Taken};
+use grouped::group_starts;
 
 /// A real matrix in compressed columns: rows sorted within each column, no duplicates, all values finite.
 ///
@@ -82,7 +85,6 @@ impl SparseMatrix {
     /// # Errors
     /// [`Error::IndexOutOfRange`] for an entry outside, [`Error::NotFinite`] for a value that is not finite.
     pub fn from_triplets(rows: usize, columns: usize, triplets: &[(usize, usize, f64)]) -> Result<Self, Error> {
-        let mut starts = vec![0_usize; columns + 1];
         for &(row, column, value) in triplets {
             if row >= rows || column >= columns {
                 return Err(Error::IndexOutOfRange { row, column, rows, columns });
@@ -91,11 +93,8 @@ impl SparseMatrix {
                 let at = format!("({row}, {column})");
                 return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
             }
-            starts[column + 1] += 1;
         }
-        for column in 0..columns {
-            starts[column + 1] += starts[column];
-        }
+        let starts = group_starts(columns, triplets.iter().map(|entry| entry.1));
         let mut place = starts.clone();
         let mut entries = vec![(0_usize, 0.0_f64); triplets.len()];
         for &(row, column, value) in triplets {
@@ -106,17 +105,11 @@ impl SparseMatrix {
         let (mut row_indices, mut values) = (Vec::with_capacity(triplets.len()), Vec::with_capacity(triplets.len()));
         column_starts.push(0);
         for column in 0..columns {
-            let start = row_indices.len();
             let of_column = &mut entries[starts[column]..starts[column + 1]];
             of_column.sort_by_key(|entry| entry.0);
-            for &(row, value) in of_column.iter() {
-                match (row_indices[start..].last(), values.last_mut()) {
-                    (Some(&last), Some(sum)) if last == row => *sum += value,
-                    _ => {
-                        row_indices.push(row);
-                        values.push(value);
-                    }
-                }
+            for alike in of_column.chunk_by(|a, b| a.0 == b.0) {
+                row_indices.push(alike[0].0);
+                values.push(alike.iter().map(|entry| entry.1).sum());
             }
             column_starts.push(row_indices.len());
         }
@@ -144,41 +137,9 @@ impl SparseMatrix {
         row_indices: Vec<usize>,
         values: Vec<f64>,
     ) -> Result<Self, Error> {
-        let entries = values.len();
-        if row_indices.len() != entries {
-            return Err(Error::Length {
-                name: "row indices",
-                found: row_indices.len(),
-                expected: entries,
-                of: "values",
-            });
-        }
-        let columns = column_starts.len().saturating_sub(1);
-        if column_starts.first() != Some(&0) || column_starts.last() != Some(&entries) {
-            let message = format!("the column starts must begin with 0 and end with the number of values, {entries}");
-            return Err(Error::Pattern { message });
-        }
-        for (column, ends) in column_starts.windows(2).enumerate() {
-            let Some(of_column) = row_indices.get(ends[0]..ends[1]) else {
-                let message = format!("the column starts decrease after column {column} (indices from 0)");
-                return Err(Error::Pattern { message });
-            };
-            if let Some(&row) = of_column.iter().find(|&&row| row >= rows) {
-                return Err(Error::IndexOutOfRange { row, column, rows, columns });
-            }
-            if let Some(pair) = of_column.windows(2).find(|pair| pair[0] >= pair[1]) {
-                let message = format!(
-                    "row {} of column {column} does not lie beyond row {}, the one before (indices from 0)",
-                    pair[1], pair[0]
-                );
-                return Err(Error::Pattern { message });
-            }
-            let of_column = &values[ends[0]..ends[1]];
-            if let Some(place) = of_column.iter().position(|value| !value.is_finite()) {
-                let at = format!("({}, {column})", row_indices[ends[0] + place]);
-                return Err(Error::NotFinite { name: "matrix", at, value: of_column[place], allowed: "finite" });
-            }
-        }
+        let shape = (rows, column_starts.len().saturating_sub(1));
+        let columns = Columns { starts: &column_starts, rows: &row_indices, values: &values };
+        columns.each(|column, rows, values| Taken::Lower.check(shape, column, rows, values))?;
         Ok(Self::from_parts(rows, column_starts, row_indices, values))
     }
 
@@ -291,13 +252,7 @@ impl SparseMatrix {
 
     /// The transposed matrix: its columns are the rows of this one.
     pub fn transposed(&self) -> Self {
-        let mut starts = vec![0_usize; self.rows + 1];
-        for &row in self.row_indices() {
-            starts[row + 1] += 1;
-        }
-        for row in 0..self.rows {
-            starts[row + 1] += starts[row];
-        }
+        let starts = group_starts(self.rows, self.row_indices().iter().copied());
         let mut place = starts.clone();
         let mut row_indices = vec![0; self.entries()];
         let mut values = vec![0.0; self.entries()];
@@ -320,16 +275,35 @@ impl SparseMatrix {
         for (new, &old) in kept.iter().enumerate() {
             new_row[old] = new;
         }
-        let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
-        for column in 0..self.columns() {
+        let place = |row: usize| Some(new_row[row]).filter(|&row| row != usize::MAX);
+        self.select(kept.len(), place, 0..self.columns())
+    }
+
+    /// The given columns, as a matrix of `rows` rows; `place` gives the new place of a row, increasing, or `None` to leave it out.
+    pub(crate) fn select(
+        &self,
+        rows: usize,
+        place: impl Fn(usize) -> Option<usize>,
+        columns: impl Iterator<Item = usize>,
+    ) -> Self {
+        let (mut starts, mut row_indices, mut values) = (vec![0], Vec::new(), Vec::new());
+        for column in columns {
             for (row, value) in self.column(column) {
-                if new_row[row] != usize::MAX {
-                    rows.push(new_row[row]);
+                if let Some(row) = place(row) {
+                    row_indices.push(row);
                     values.push(value);
                 }
             }
-            starts.push(rows.len());
+            starts.push(row_indices.len());
         }
-        Self::from_parts(kept.len(), starts, rows, values)
+        Self::from_parts(rows, starts, row_indices, values)
+    }
+
+    /// The entries `(second, first, product)` of b b' on and below the diagonal, for one column b.
+    pub(crate) fn square(&self, column: usize) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        self.column(column).flat_map(move |(first, a)| {
+            let below = self.column(column).filter(move |entry| entry.0 >= first);
+            below.map(move |(second, b)| (second, first, a * b))
+        })
     }
 }

@@ -1,7 +1,9 @@
 //! The null vectors of a positive semidefinite matrix.
 
 use super::definite::NULL_ROUNDING;
-use super::{AugmentedMatrix, Cholesky, FactorError, Forest, SparseMatrix, SymmetricMatrix, Twice, dot, largest};
+use super::{
+    AugmentedMatrix, Cholesky, FactorError, Forest, SparseMatrix, SymmetricMatrix, Twice, dot, largest, norm, take_out,
+};
 
 /// Added to a diagonal of order one, so that a singular matrix has a factor: far below its other eigenvalues, far above
 /// rounding.
@@ -75,7 +77,7 @@ impl SymmetricMatrix {
     /// # Errors
     /// [`FactorError::NotPositiveDefinite`] if an eigenvalue is clearly negative, and those of the factorisation.
     pub(crate) fn null_space(&self) -> Result<Option<NullSpace>, FactorError> {
-        let factor = self.shifted_factor(SHIFT)?;
+        let factor = self.shifted_factor(SHIFT)?.ok_or(FactorError::NotPositiveDefinite)?;
         let (mut found, components): (Vec<Vec<f64>>, _) = (Vec::new(), self.components());
         while found.len() < self.dim() {
             let Some(vector) = self.null_vector(&factor, &found) else { break };
@@ -154,10 +156,9 @@ impl SymmetricMatrix {
             vector = factor.solve(&vector);
             // A second pass removes the rounding of the first.
             for other in found.iter().chain(found) {
-                let share = dot(&vector, other);
-                vector.iter_mut().zip(other).for_each(|(value, other)| *value -= share * other);
+                take_out(&mut vector, other);
             }
-            let length = dot(&vector, &vector).sqrt();
+            let length = norm(&vector);
             vector.iter_mut().for_each(|value| *value /= length);
             let resistance = largest(&self.mul(&vector));
             if resistance <= NULL_ROUNDING * terms {
@@ -211,13 +212,9 @@ impl SymmetricMatrix {
         let most = 2.0 * largest(&self.mul_abs(&vec![1.0; self.dim()]));
         let mut shift = SHIFT;
         while shift < 4.0 * most {
-            let factor = match self.shifted_factor(shift) {
-                Ok(factor) => factor,
-                Err(FactorError::NotPositiveDefinite) => {
-                    shift *= 4.0;
-                    continue;
-                }
-                Err(error) => return Err(error),
+            let Some(factor) = self.shifted_factor(shift)? else {
+                shift *= 4.0;
+                continue;
             };
             // With a shift close above the least eigenvalue, inverse iteration converges to its vector.
             let mut vector = generic(self.dim(), 0);
@@ -231,11 +228,18 @@ impl SymmetricMatrix {
         Ok(None)
     }
 
-    /// The factor of `A + shift I`.
-    pub(super) fn shifted_factor(&self, shift: f64) -> Result<Cholesky, FactorError> {
+    /// The factor of `A + shift I`; `None` if that is not positive definite.
+    ///
+    /// # Errors
+    /// Those of the factorisation, except for [`FactorError::NotPositiveDefinite`].
+    pub(super) fn shifted_factor(&self, shift: f64) -> Result<Option<Cholesky>, FactorError> {
         let no_rows = SparseMatrix::from_parts(0, vec![0; self.dim() + 1], Vec::new(), Vec::new());
         let augmented = AugmentedMatrix::new(self, &no_rows)?;
-        augmented.factor(augmented.matrix(|_| 0.0, shift))
+        match augmented.factor(augmented.matrix(|_| 0.0, shift)) {
+            Ok(factor) => Ok(Some(factor)),
+            Err(FactorError::NotPositiveDefinite) => Ok(None),
+            Err(error) => Err(error),
+        }
     }
 }
 

@@ -1,13 +1,14 @@
 //! Fill-reducing orderings for the Cholesky factorisation: minimum degree or nested dissection on the graph of alike
 //! columns, chosen columns last, postordered so that columns of one supernode are neighbours.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::MemStack;
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
+use faer::sparse::linalg::cholesky::simplicial::prefactorize_symbolic_cholesky;
+use faer::sparse::linalg::qr::{postorder, postorder_scratch};
 use feral_metis::{CscPattern, metis_order};
 
-use super::elimination::Elimination;
-use super::factor::call;
+use super::factor::{call, memory};
 use super::quotient::Quotient;
 use super::{FactorError, SparseMatrix, SymmetricMatrix};
 
@@ -54,15 +55,15 @@ pub(super) fn order(lower: &SparseMatrix, last: &[usize]) -> Result<Vec<usize>, 
     let mut quotient = Quotient::of(lower);
     let (by_degree, fill) = minimum_degree(&quotient)?;
     quotient.remove(last);
-    let mut elimination = Elimination::of(&quotient, by_degree);
+    let mut elimination = Elimination::of(&quotient, by_degree)?;
     if fill.is_dissected {
-        let dissected = Elimination::of(&quotient, nested_dissection(&quotient)?);
-        if dissected.multiplications(&quotient) < elimination.multiplications(&quotient) {
+        let dissected = Elimination::of(&quotient, nested_dissection(&quotient)?)?;
+        if dissected.multiplications < elimination.multiplications {
             elimination = dissected;
         }
     }
     let mut columns = Vec::with_capacity(lower.columns());
-    elimination.postorder().into_iter().for_each(|group| columns.extend_from_slice(quotient.members(group)));
+    elimination.postorder.into_iter().for_each(|group| columns.extend_from_slice(quotient.members(group)));
     columns.extend_from_slice(last);
     Ok(columns)
 }
@@ -71,11 +72,11 @@ pub(super) fn order(lower: &SparseMatrix, last: &[usize]) -> Result<Vec<usize>, 
 fn minimum_degree(quotient: &Quotient) -> Result<(Vec<u32>, Fill), FactorError> {
     let count = quotient.count();
     let graph =
-        SymbolicSparseColMatRef::new_unsorted_checked(count, count, quotient.starts(), None, quotient.all_neighbours());
+        SymbolicSparseColMatRef::new_unsorted_checked(count, count, &quotient.starts, None, &quotient.all_neighbours);
     // The memory request assumes stored diagonals, and falls short without them.
-    let entries = quotient.all_neighbours().len() + DIAGONALS * count;
+    let entries = quotient.all_neighbours.len() + DIAGONALS * count;
     let request = amd::order_maybe_unsorted_scratch::<u32>(count, entries);
-    let mut buffer = MemBuffer::try_new(request).map_err(|_| FactorError::Failed("out of memory".into()))?;
+    let mut buffer = memory(request)?;
     let (mut order, mut place) = (vec![0; count], vec![0; count]);
     let stack = MemStack::new(&mut buffer);
     let work = amd::order_maybe_unsorted(&mut order, &mut place, graph, amd::Control::default(), stack)?;
@@ -90,11 +91,48 @@ fn minimum_degree(quotient: &Quotient) -> Result<(Vec<u32>, Fill), FactorError> 
 fn nested_dissection(quotient: &Quotient) -> Result<Vec<u32>, FactorError> {
     let signed = |values: &[u32]| values.iter().map(|&value| value as i32).collect::<Vec<_>>();
     let failed = || FactorError::Failed("nested dissection".into());
-    let (starts, mut neighbours) = (signed(quotient.starts()), signed(quotient.all_neighbours()));
+    let (starts, mut neighbours) = (signed(&quotient.starts), signed(&quotient.all_neighbours));
     starts.windows(2).for_each(|pair| neighbours[pair[0] as usize..pair[1] as usize].sort_unstable());
     let graph = CscPattern::new(quotient.count(), &starts, &neighbours).ok_or_else(failed)?;
     let order = metis_order(&graph).map_err(|_| failed())?;
     Ok(order.into_iter().map(|group| group as u32).collect())
+}
+
+/// The elimination of the groups of a quotient graph in some order; groups without columns are left out.
+struct Elimination {
+    /// The groups in postorder of the elimination tree: each after all of its descendants, and these next to each other.
+    postorder: Vec<u32>,
+    /// Multiplications of the factorisation, approximately.
+    multiplications: f64,
+}
+
+impl Elimination {
+    fn of(quotient: &Quotient, mut order: Vec<u32>) -> Result<Self, FactorError> {
+        order.retain(|&group| !quotient.members(group).is_empty());
+        let count = order.len();
+        // Groups that are left out come last.
+        let mut place = vec![count as u32; quotient.count()];
+        order.iter().zip(0..).for_each(|(&group, position)| place[group as usize] = position);
+        let (mut starts, mut before) = (vec![0], Vec::with_capacity(quotient.edges()));
+        for (&group, position) in order.iter().zip(0..) {
+            let places = quotient.neighbours(group).iter().map(|&neighbour| place[neighbour as usize]);
+            before.extend(places.filter(|&place| place < position));
+            starts.push(before.len() as u32);
+        }
+        let graph = SymbolicSparseColMatRef::new_unsorted_checked(count, count, &starts, None, &before);
+        let (mut parents, mut entries, mut post) = (vec![0; count], vec![0; count], vec![0; count]);
+        let mut buffer = memory(postorder_scratch::<u32>(count))?;
+        let stack = MemStack::new(&mut buffer);
+        let tree = prefactorize_symbolic_cholesky(&mut parents, &mut entries, graph, stack);
+        postorder(&mut post, tree, stack);
+        let work = |(&group, &entries): (&u32, &u32)| {
+            let (size, below) = (quotient.members(group).len() as f64, f64::from(entries - 1));
+            size * (below * quotient.mean_size() + size / 2.0).powi(2) / 2.0
+        };
+        let multiplications = order.iter().zip(&entries).map(work).sum();
+        let postorder = post.into_iter().map(|position| order[position as usize]).collect();
+        Ok(Elimination { postorder, multiplications })
+    }
 }
 
 #[cfg(test)]
@@ -125,7 +163,7 @@ mod tests {
             let matrix = lattice(sides);
             let (fill, quotient) = (Fill::by_minimum_degree(&matrix).unwrap(), Quotient::of(matrix.lower()));
             let (order, _) = minimum_degree(&quotient).unwrap();
-            let eliminated = Elimination::of(&quotient, order).multiplications(&quotient);
+            let eliminated = Elimination::of(&quotient, order).unwrap().multiplications;
             let ratio = fill.multiplications / eliminated;
             assert!((0.9..=1.1).contains(&ratio), "{sides:?}: {ratio}");
             // Supernodes add zeros to the factor; for a chain they are as many as its values.

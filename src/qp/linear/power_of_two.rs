@@ -18,18 +18,10 @@ pub fn exponent(x: f64) -> i32 {
 /// `x 2^e`, exact unless the result itself leaves the range of double precision.
 pub fn ldexp(x: f64, e: i32) -> f64 {
     const STEP: i32 = 1000;
-    if e.abs() <= STEP {
-        // The bits of 2^e, because this is called once for each entry of the stiffness.
-        return x * f64::from_bits(((1023 + e) as u64) << 52);
-    }
-    let mut result = x;
-    let mut rest = e.clamp(-4 * STEP, 4 * STEP);
-    while rest != 0 {
-        let step = rest.clamp(-STEP, STEP);
-        result *= 2.0_f64.powi(step);
-        rest -= step;
-    }
-    result
+    let step = e.clamp(-STEP, STEP);
+    // The bits of the power of two, because this is called once for each entry of the stiffness.
+    let result = x * f64::from_bits(((1023 + step) as u64) << 52);
+    if step == e { result } else { ldexp(result, (e - step).clamp(-3 * STEP, 3 * STEP)) }
 }
 
 /// The exponents of a dimensionless diagonal D and a factor c that give `c D A D` a diagonal between 1 and 4.

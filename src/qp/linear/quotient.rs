@@ -1,6 +1,7 @@
 //! The graph of a symmetric matrix with alike columns merged into one: for a stiffness, the graph of its nodes.
 
 use super::SparseMatrix;
+use super::grouped::grouped;
 
 /// No group has this number.
 const NONE: u32 = u32::MAX;
@@ -10,27 +11,21 @@ pub(super) struct Quotient {
     /// Group of each column.
     of_column: Vec<u32>,
     /// Members of a group follow each other.
-    member_starts: Vec<u32>,
+    member_starts: Vec<usize>,
     columns: Vec<usize>,
-    /// Neighbours of a group, on both sides, in no order.
-    starts: Vec<u32>,
-    neighbours: Vec<u32>,
+    /// The start of the neighbours of each group.
+    pub starts: Vec<u32>,
+    /// The neighbours of all groups, on both sides, in no order.
+    pub all_neighbours: Vec<u32>,
 }
 
 impl Quotient {
     /// The quotient graph of a matrix given by its lower triangle.
     pub fn of(lower: &SparseMatrix) -> Self {
         let (of_column, count) = groups(lower);
-        let mut member_starts = vec![0_u32; count + 1];
-        of_column.iter().for_each(|&group| member_starts[group as usize + 1] += 1);
-        (0..count).for_each(|group| member_starts[group + 1] += member_starts[group]);
-        let mut place = member_starts.clone();
-        let mut columns = vec![0; lower.columns()];
-        for (column, &group) in of_column.iter().enumerate() {
-            columns[place[group as usize] as usize] = column;
-            place[group as usize] += 1;
-        }
-        let mut quotient = Quotient { of_column, member_starts, columns, starts: Vec::new(), neighbours: Vec::new() };
+        let (member_starts, columns) = grouped(count, &of_column);
+        let mut quotient =
+            Quotient { of_column, member_starts, columns, starts: Vec::new(), all_neighbours: Vec::new() };
         quotient.connect(lower);
         quotient
     }
@@ -66,7 +61,7 @@ impl Quotient {
                 put(neighbour, group as u32);
             }
         }
-        (self.starts, self.neighbours) = (starts, neighbours);
+        (self.starts, self.all_neighbours) = (starts, neighbours);
     }
 
     /// Number of groups.
@@ -76,7 +71,7 @@ impl Quotient {
 
     /// Number of pairs of groups that meet.
     pub fn edges(&self) -> usize {
-        self.neighbours.len() / 2
+        self.all_neighbours.len() / 2
     }
 
     /// Columns of a group, on average.
@@ -86,22 +81,12 @@ impl Quotient {
 
     /// The columns of a group.
     pub fn members(&self, group: u32) -> &[usize] {
-        &self.columns[self.member_starts[group as usize] as usize..self.member_starts[group as usize + 1] as usize]
+        &self.columns[self.member_starts[group as usize]..self.member_starts[group as usize + 1]]
     }
 
     /// The groups that meet a group.
     pub fn neighbours(&self, group: u32) -> &[u32] {
-        &self.neighbours[self.starts[group as usize] as usize..self.starts[group as usize + 1] as usize]
-    }
-
-    /// Start of the neighbours of each group in [`all_neighbours`](Self::all_neighbours).
-    pub fn starts(&self) -> &[u32] {
-        &self.starts
-    }
-
-    /// The neighbours of all groups.
-    pub fn all_neighbours(&self) -> &[u32] {
-        &self.neighbours
+        &self.all_neighbours[self.starts[group as usize] as usize..self.starts[group as usize + 1] as usize]
     }
 
     /// Removes columns from their groups, which may become empty; the graph stays.
@@ -110,12 +95,12 @@ impl Quotient {
         columns.iter().for_each(|&column| is_kept[column] = false);
         let mut kept = Vec::with_capacity(self.columns.len());
         for group in 0..self.count() {
-            let members = self.member_starts[group] as usize..self.member_starts[group + 1] as usize;
-            self.member_starts[group] = kept.len() as u32;
+            let members = self.member_starts[group]..self.member_starts[group + 1];
+            self.member_starts[group] = kept.len();
             kept.extend(self.columns[members].iter().copied().filter(|&column| is_kept[column]));
         }
         let count = self.count();
-        self.member_starts[count] = kept.len() as u32;
+        self.member_starts[count] = kept.len();
         self.columns = kept;
     }
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::SparseMatrix;
-use super::both_triangles::Columns;
+use super::columns::Columns;
 use super::threads::in_order;
 use crate::error::Error;
 
@@ -114,10 +114,7 @@ impl SymmetricMatrix {
         let by_row = rows.transposed();
         let mut entries: Vec<(usize, usize, f64)> = self.lower.triplets().collect();
         for (row, &weight) in weights.iter().enumerate() {
-            for (first, a) in by_row.column(row) {
-                let below = by_row.column(row).filter(|entry| entry.0 >= first);
-                entries.extend(below.map(|(second, b)| (second, first, weight * a * b)));
-            }
+            entries.extend(by_row.square(row).map(|(second, first, product)| (second, first, weight * product)));
         }
         Self::from_lower(SparseMatrix::from_triplets(self.dim(), self.dim(), &entries)?)
     }
@@ -129,7 +126,7 @@ impl SymmetricMatrix {
 
     /// Number of entries of both triangles.
     pub fn entries(&self) -> usize {
-        let has_diagonal = |&column: &usize| self.lower.column_slices(column).0.first() == Some(&column);
+        let has_diagonal = |&column: &usize| self.lower.column_rows(column).first() == Some(&column);
         2 * self.lower.entries() - (0..self.dim()).filter(has_diagonal).count()
     }
 
@@ -152,7 +149,7 @@ impl SymmetricMatrix {
 
     /// The product A x, length `dim`; `x` has length `dim`.
     pub fn mul(&self, x: &[f64]) -> Vec<f64> {
-        self.product(x, |value| value)
+        self.product(0..self.dim(), x, |value| value)
     }
 
     /// The product A x, length `dim`, on this number of threads; `x` has length `dim`. The sums run over parts of the
@@ -170,7 +167,7 @@ impl SymmetricMatrix {
         let columns: Vec<Range<usize>> = bounds.windows(2).map(|pair| pair[0]..pair[1]).collect();
         let runs = columns.chunks(parts.div_ceil(threads.clamp(1, parts))).collect();
         let of_run = |run: &[Range<usize>]| -> Vec<Vec<f64>> {
-            run.iter().map(|columns| self.product_of_columns(columns.clone(), x)).collect()
+            run.iter().map(|columns| self.product(columns.clone(), x, |value| value)).collect()
         };
         let sums: Vec<Vec<f64>> = in_order(runs, of_run).into_iter().flatten().collect();
         let mut y = vec![0.0; self.dim()];
@@ -180,36 +177,21 @@ impl SymmetricMatrix {
         y
     }
 
-    /// The contribution of some columns, and of the rows with the same numbers, to A x, from the first column on.
-    fn product_of_columns(&self, columns: Range<usize>, x: &[f64]) -> Vec<f64> {
-        let first = columns.start;
-        let (starts, rows) = (self.lower.column_starts(), self.lower.row_indices());
-        let last = |column: usize| rows[starts[column]..starts[column + 1]].last().map_or(first, |row| row + 1);
-        let length = columns.clone().map(last).fold(columns.end, usize::max) - first;
-        let mut y = vec![0.0; length];
-        for column in columns {
-            let mut sum = 0.0;
-            for (row, value) in self.lower.column(column) {
-                sum += value * x[row];
-                if row != column {
-                    y[row - first] += value * x[column];
-                }
-            }
-            y[column - first] += sum;
-        }
-        y
-    }
-
     /// The product |A| |x|, length `dim`, entry by entry: the scale of rounding in A x; `x` has length `dim`.
     pub fn mul_abs(&self, x: &[f64]) -> Vec<f64> {
         let magnitude: Vec<f64> = x.iter().map(|value| value.abs()).collect();
-        self.product(&magnitude, f64::abs)
+        self.product(0..self.dim(), &magnitude, f64::abs)
     }
 
-    fn product(&self, x: &[f64], entry: impl Fn(f64) -> f64) -> Vec<f64> {
-        let mut y = vec![0.0; self.dim()];
-        for (column, &at_column) in x.iter().enumerate().take(self.dim()) {
+    /// The contribution of some columns, and of the rows with the same numbers, to A x, from the first column on as far as they reach;
+    /// `entry` makes the entries of A.
+    fn product(&self, columns: Range<usize>, x: &[f64], entry: impl Fn(f64) -> f64) -> Vec<f64> {
+        let first = columns.start;
+        let end = |column: usize| self.lower.column_rows(column).last().map_or(first, |row| row + 1);
+        let mut y = vec![0.0; columns.clone().map(end).fold(columns.end, usize::max) - first];
+        for column in columns {
             let (mut rows, mut values) = self.lower.column_slices(column);
+            let at_column = x[column];
             let mut sum = 0.0;
             // Rows increase: the diagonal entry comes first if there is one.
             if let ([row, rows_below @ ..], [value, values_below @ ..]) = (rows, values)
@@ -221,9 +203,9 @@ impl SymmetricMatrix {
             for (&row, &value) in rows.iter().zip(values) {
                 let value = entry(value);
                 sum += value * x[row];
-                y[row] += value * at_column;
+                y[row - first] += value * at_column;
             }
-            y[column] += sum;
+            y[column - first] += sum;
         }
         y
     }

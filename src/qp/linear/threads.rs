@@ -48,30 +48,28 @@ impl SharedRows<'_> {
         ys: [&mut [T]; N],
         work: impl Fn(Range<usize>, [&mut [T]; N]) + Sync,
     ) {
-        let mut rest = ys;
-        let with_parts = |rows: Range<usize>| {
-            let parts = rest.each_mut().map(|rest| split_off(rest, rows.len() * height));
-            (rows, parts)
-        };
-        in_order(self.runs().into_iter().map(with_parts).collect(), |(rows, parts)| work(rows, parts));
+        self.with_parts(ys, |rows| rows.len() * height, work);
     }
 
     /// Runs `work` on runs of rows, each with the values of its blocks, `size` for each.
     pub fn with_blocks<T: Send>(&self, size: usize, values: &mut [T], work: impl Fn(Range<usize>, &mut [T]) + Sync) {
-        let mut rest = values;
-        let with_part = |rows: Range<usize>| {
-            let part = split_off(&mut rest, (self.starts[rows.end] - self.starts[rows.start]) * size);
-            (rows, part)
-        };
-        in_order(self.runs().into_iter().map(with_part).collect(), |(rows, part)| work(rows, part));
+        let length = |rows: &Range<usize>| (self.starts[rows.end] - self.starts[rows.start]) * size;
+        self.with_parts([values], length, |rows, [part]| work(rows, part));
     }
-}
 
-/// Takes the first `length` entries off a slice.
-fn split_off<'a, T>(rest: &mut &'a mut [T], length: usize) -> &'a mut [T] {
-    let (part, others) = std::mem::take(rest).split_at_mut(length);
-    *rest = others;
-    part
+    /// Runs `work` on runs of rows, each with the next entries of the vectors `ys`, as many as the `length` of the run.
+    fn with_parts<T: Send, const N: usize>(
+        &self,
+        mut ys: [&mut [T]; N],
+        length: impl Fn(&Range<usize>) -> usize,
+        work: impl Fn(Range<usize>, [&mut [T]; N]) + Sync,
+    ) {
+        let with_parts = |rows: Range<usize>| {
+            let parts = ys.each_mut().map(|rest| rest.split_off_mut(..length(&rows)).unwrap_or_default());
+            (rows, parts)
+        };
+        in_order(self.runs().into_iter().map(with_parts).collect(), |(rows, parts)| work(rows, parts));
+    }
 }
 
 #[cfg(test)]

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::parse::{Content, Quotes, Values, parse};
-use super::{format_matrix, format_symmetric, format_vector};
 #[cfg(feature = "cli")]
-use super::{write_columns, write_entries};
+use super::write_columns;
+use super::{format_vector, text, write_entries};
 use crate::error::Error;
 #[cfg(feature = "cli")]
 use crate::file::Streamed;
@@ -19,6 +19,9 @@ use crate::solution::Solution;
 
 /// The file that makes a directory one of Matrix Market files.
 pub const STIFFNESS: &str = "K.mtx";
+
+/// Largest number of empty rows or columns: nothing is allocated from an announced size alone.
+const MOST_EMPTY: usize = 1_000_000;
 
 /// Reads the problem of a directory.
 ///
@@ -91,7 +94,7 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
 /// The dofs of a node then follow each other and are all free.
 fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Error> {
     let file = directory.join("near_null.mtx");
-    let (file, vectors) = if file.exists() {
+    if file.exists() {
         let content = read(&file, Values::Finite)?;
         if content.rows != dofs || content.columns == 0 {
             let found = format!("it is {} x {}", content.rows, content.columns);
@@ -100,27 +103,26 @@ fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Err
                 format!("{found}, but it must have {dofs} rows, one per dof, and a column at least"),
             ));
         }
-        (file, columns(content))
-    } else {
-        let file = directory.join("coordinates.mtx");
-        if !file.exists() {
-            return Ok(None);
-        }
-        let content = read(&file, Values::Finite)?;
-        let (nodes, dimension) = (content.rows, content.columns);
-        if !(1..=3).contains(&dimension) || nodes.checked_mul(dimension) != Some(dofs) {
-            let message = format!(
-                "it is {nodes} x {dimension}, which makes {} dofs, but there are {dofs}; it must have a row for \
-                 each node and a column for each coordinate, 1 to 3 (if supports have removed dofs, use \
-                 near_null.mtx)",
-                nodes.saturating_mul(dimension)
-            );
-            return Err(fault(file, message));
-        }
-        let of_nodes = NearNullSpace::of_nodes(&columns(content));
-        return of_nodes.map(Some).map_err(|error| fault(file, error.to_string()));
-    };
-    NearNullSpace::new(vectors, dofs).map(Some).map_err(|error| fault(file, error.to_string()))
+        let near_null = NearNullSpace::new(columns(content), dofs);
+        return near_null.map(Some).map_err(|error| fault(file, error.to_string()));
+    }
+    let file = directory.join("coordinates.mtx");
+    if !file.exists() {
+        return Ok(None);
+    }
+    let content = read(&file, Values::Finite)?;
+    let (nodes, dimension) = (content.rows, content.columns);
+    if !(1..=3).contains(&dimension) || nodes.checked_mul(dimension) != Some(dofs) {
+        let message = format!(
+            "it is {nodes} x {dimension}, which makes {} dofs, but there are {dofs}; it must have a row for \
+             each node and a column for each coordinate, 1 to 3 (if supports have removed dofs, use \
+             near_null.mtx)",
+            nodes.saturating_mul(dimension)
+        );
+        return Err(fault(file, message));
+    }
+    let of_nodes = NearNullSpace::of_nodes(&columns(content));
+    of_nodes.map(Some).map_err(|error| fault(file, error.to_string()))
 }
 
 fn fault(file: PathBuf, message: String) -> Error {
@@ -177,9 +179,9 @@ fn vector(file: &Path, values: Values) -> Result<Vec<f64>, Error> {
 /// `B.mtx`, `g.mtx`.
 pub fn problem_files(problem: &ContactProblem) -> [(&'static str, String); 4] {
     [
-        (STIFFNESS, format_symmetric(problem.stiffness())),
+        (STIFFNESS, text(|out| write_entries(out, problem.stiffness().lower(), "symmetric"))),
         ("f.mtx", format_vector(problem.load())),
-        ("B.mtx", format_matrix(problem.contact())),
+        ("B.mtx", text(|out| write_entries(out, problem.contact(), "general"))),
         ("g.mtx", format_vector(problem.gap())),
     ]
 }
@@ -208,10 +210,10 @@ fn quotes(file: &Path) -> Quotes {
 
 /// Refuses a number of rows or columns (`lines`) that is not credible for the entries of a file.
 fn check_filled(file: &Path, content: &Content, lines: usize) -> Result<(), Error> {
-    if content.believes(lines) {
+    let (rows, columns, entries) = (content.rows, content.columns, content.entries.len());
+    if lines <= entries.saturating_add(MOST_EMPTY) {
         return Ok(());
     }
-    let (rows, columns, entries) = (content.rows, content.columns, content.entries.len());
     let message = format!("a matrix of {rows} x {columns} with {entries} entries is almost empty; correct its size");
     Err(Error::FileSyntax { file: file.to_path_buf(), line: content.line, message })
 }

@@ -1,6 +1,6 @@
 //! The lines of a text that is not held in memory.
 
-use std::io::{self, BufRead, BufReader};
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
@@ -59,26 +59,12 @@ impl Lines {
     /// Reads a line; `false` at the end of the file.
     fn advance(&mut self) -> io::Result<bool> {
         self.bytes.clear();
-        let mut is_there = false;
-        loop {
-            let piece = match self.reader.fill_buf() {
-                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
-                piece => piece?,
-            };
-            if piece.is_empty() {
-                break;
-            }
-            is_there = true;
-            let end = piece.iter().position(|&byte| byte == b'\n');
-            let (line, used) = end.map_or((piece, piece.len()), |end| (&piece[..end], end + 1));
-            self.bytes.extend_from_slice(&line[..line.len().min(LONGEST - self.bytes.len())]);
-            self.reader.consume(used);
-            if end.is_some() {
-                break;
-            }
-        }
-        if !is_there {
+        self.reader.by_ref().take(LONGEST as u64).read_until(b'\n', &mut self.bytes)?;
+        if self.bytes.is_empty() {
             return Ok(false);
+        }
+        if self.bytes.len() == LONGEST && !self.bytes.ends_with(b"\n") {
+            self.reader.skip_until(b'\n')?;
         }
         self.number += 1;
         // Comments of older collections hold names in other encodings; the numbers are always ASCII.

@@ -18,17 +18,7 @@ pub use directory::{read_other_end, streamed_files};
 
 use std::io::{self, Write};
 
-use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
-
-/// The text of a general sparse matrix.
-pub fn format_matrix(matrix: &SparseMatrix) -> String {
-    text(|out| write_entries(out, matrix, "general"))
-}
-
-/// The text of a symmetric matrix: its lower triangle.
-pub fn format_symmetric(matrix: &SymmetricMatrix) -> String {
-    text(|out| write_entries(out, matrix.lower(), "symmetric"))
-}
+use crate::qp::linear::SparseMatrix;
 
 /// The text of a vector, as an array of one column.
 pub fn format_vector(vector: &[f64]) -> String {

@@ -9,9 +9,6 @@ use crate::file::Capped;
 /// More rows or columns than this are refused before anything is allocated.
 const LARGEST_DIMENSION: usize = 100_000_000;
 
-/// Largest number of empty rows or columns: nothing is allocated from an announced size alone.
-const MOST_EMPTY: usize = 1_000_000;
-
 /// The content of a file: shape, entries (indices from 0), and whether only one triangle is stored.
 #[derive(Debug)]
 pub(super) struct Content {
@@ -88,20 +85,16 @@ impl Source<'_> {
         Error::FileSyntax { file: self.file.to_path_buf(), line, message: message.into() }
     }
 
-    fn excerpt(&self, words: &str) -> String {
-        self.quotes.excerpt(words)
-    }
-
     fn header(&self, first: &str) -> Result<Header, Error> {
         let words: Vec<String> = first.split_whitespace().map(str::to_lowercase).collect();
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let ["%%matrixmarket", "matrix", layout, field, symmetry] = words[..] else {
             let expected = "%%MatrixMarket matrix coordinate|array real|integer general|symmetric";
-            let message = format!("the first line is {}; it must be `{expected}`", self.excerpt(first));
+            let message = format!("the first line is {}; it must be `{expected}`", self.quotes.excerpt(first));
             return Err(self.fault(1, message));
         };
         let wrong = |what: &str, found: &str, allowed: &str| {
-            self.fault(1, format!("the {what} is {}; it must be {allowed}", self.excerpt(found)))
+            self.fault(1, format!("the {what} is {}; it must be {allowed}", self.quotes.excerpt(found)))
         };
         let is_array = match layout {
             "coordinate" => false,
@@ -126,7 +119,7 @@ impl Source<'_> {
             (Some(&[rows, columns, announced]), false) => (rows, columns, announced),
             (_, is_array) => {
                 let names = if is_array { "2 whole numbers (rows and columns)" } else { COORDINATE_SIZES };
-                let message = format!("the sizes are {}; they must be {names}", self.excerpt(sizes));
+                let message = format!("the sizes are {}; they must be {names}", self.quotes.excerpt(sizes));
                 return Err(self.fault(line, message));
             }
         };
@@ -148,8 +141,8 @@ impl Source<'_> {
         let mut places =
             (0..columns).flat_map(|column| (if symmetric { column } else { 0 }..rows).map(move |row| (row, column)));
         while let Some((line, word)) = lines.next_data()? {
-            let not_a_number = || self.fault(line, format!("{} is not a number", self.excerpt(word)));
-            let value = number(word).ok_or_else(not_a_number)?;
+            let not_a_number = |_| self.fault(line, format!("{} is not a number", self.quotes.excerpt(word)));
+            let value = word.parse().map_err(not_a_number)?;
             self.values.check(value).map_err(|message| self.fault(line, message))?;
             let Some((row, column)) = places.next() else {
                 return Err(self.fault(line, format!("there are more values than the {rows} x {columns} announced")));
@@ -199,12 +192,12 @@ impl Source<'_> {
         let mut word = || words.next();
         let entry = match (word(), word(), word(), word()) {
             (Some(row), Some(column), Some(value), None) => {
-                row.parse().ok().zip(column.parse().ok()).zip(number(value))
+                row.parse().ok().zip(column.parse().ok()).zip(value.parse().ok())
             }
             _ => None,
         };
         let Some(((row, column), value)): Option<((usize, usize), f64)> = entry else {
-            return Err(format!("{} is not an entry; it must be `row column value`", self.excerpt(line)));
+            return Err(format!("{} is not an entry; it must be `row column value`", self.quotes.excerpt(line)));
         };
         if row == 0 || column == 0 || row > rows || column > columns {
             return Err(format!("entry ({row}, {column}) lies outside {rows} x {columns} (indices from 1)"));
@@ -214,13 +207,6 @@ impl Source<'_> {
             return Err(format!("entry ({row}, {column}) lies above the diagonal; {rule}"));
         }
         Ok((row - 1, column - 1, value))
-    }
-}
-
-impl Content {
-    /// Returns `true` if there are enough entries to make this number of rows or columns credible.
-    pub fn believes(&self, lines: usize) -> bool {
-        lines <= self.entries.len().saturating_add(MOST_EMPTY)
     }
 }
 
@@ -248,8 +234,4 @@ impl Quotes {
             (Quotes::Allowed, None) => format!("`{words}`"),
         }
     }
-}
-
-fn number(word: &str) -> Option<f64> {
-    word.parse().ok()
 }

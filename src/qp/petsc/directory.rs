@@ -8,7 +8,7 @@ use super::{BLOCK_SIZE, CONTACT, COORDINATES, FREE, GAP, INFO, LOAD, NEAR_NULL, 
 use crate::error::Error;
 use crate::file::read_text_capped;
 use crate::qp::linear::multigrid::NearNullSpace;
-use crate::qp::linear::{SparseMatrix, SymmetricMatrix, SymmetricRows};
+use crate::qp::linear::{SparseMatrix, SymmetricLines, SymmetricMatrix};
 use crate::qp::problem::ContactProblem;
 
 /// Gaps from this value on mean no obstacle: PETSc has no other infinity for bounds.
@@ -126,7 +126,7 @@ impl Places {
     }
 
     fn stiffness(&self, mut rows: Rows) -> Result<SymmetricMatrix, Error> {
-        let mut matrix = SymmetricRows::new(self.free.len(), rows.entries)?;
+        let mut matrix = SymmetricLines::of_rows(self.free.len(), rows.entries)?;
         let mut row = Row::default();
         while rows.read(&mut row)? {
             let own = rows.row();

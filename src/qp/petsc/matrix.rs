@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::source::{INTEGER, REAL, Source};
-use super::{Class, DENSE, TOO_MANY};
+use super::{DENSE, MATRIX, TOO_MANY};
 use crate::error::Error;
 
 /// Bytes before the lengths of the rows of a sparse matrix, or the values of a dense one.
@@ -14,7 +14,7 @@ const ENTRIES: u64 = 3 * INTEGER;
 
 /// The header of a matrix: rows and columns, and the number of entries or what takes its place.
 fn read_header(path: &Path) -> Result<(Source, [usize; 2], i32), Error> {
-    let mut source = Source::open(path, Class::Matrix)?;
+    let mut source = Source::open(path, MATRIX)?;
     let shape = [source.count("rows")?, source.count("columns")?];
     let entries = source.integer()?;
     Ok((source, shape, entries))
@@ -58,7 +58,7 @@ impl Rows {
             return Err(source.fault(ENTRIES, message));
         }
         let after_lengths = HEADER + INTEGER * rows as u64;
-        if source.is_shorter_than(after_lengths) {
+        if source.length < after_lengths {
             source.ends_at(after_lengths, || format!("the header of a matrix of {rows} rows"))?;
         }
         let mut lengths = Vec::with_capacity(rows);
@@ -80,7 +80,7 @@ impl Rows {
         let after_columns = after_lengths + INTEGER * entries;
         let holds = || format!("a matrix of {rows} rows and {entries} entries");
         source.ends_at(after_columns + REAL * entries, holds)?;
-        let values = source.beside(after_columns)?;
+        let values = Source::from_byte(path, after_columns)?;
         let (shape, entries) = ((rows, columns), entries as usize);
         Ok(Rows { shape, entries, lengths, columns: source, values, next: 0, byte: after_columns })
     }
@@ -108,12 +108,7 @@ impl Rows {
         }
         self.byte = self.values.byte();
         for &column in &into.columns {
-            let (byte, value) = (self.values.byte(), self.values.real()?);
-            if !value.is_finite() {
-                let message = format!("entry ({row}, {column}) is {value} (indices from 0); it must be finite");
-                return Err(self.values.fault(byte, message));
-            }
-            into.values.push(value);
+            into.values.push(self.values.real(f64::is_finite, not_finite(row, column as usize))?);
         }
         self.next += 1;
         Ok(true)
@@ -154,13 +149,13 @@ pub(super) fn dense_columns(path: &Path, rows: usize) -> Result<Vec<Vec<f64>>, E
     let mut columns = vec![Vec::with_capacity(rows); count];
     for row in 0..rows {
         for (index, column) in columns.iter_mut().enumerate() {
-            let (byte, value) = (source.byte(), source.real()?);
-            if !value.is_finite() {
-                let message = format!("entry ({row}, {index}) is {value} (indices from 0); it must be finite");
-                return Err(source.fault(byte, message));
-            }
-            column.push(value);
+            column.push(source.real(f64::is_finite, not_finite(row, index))?);
         }
     }
     Ok(columns)
+}
+
+/// The message for an entry with a value that is not finite.
+fn not_finite(row: usize, column: usize) -> impl FnOnce(f64) -> String {
+    move |value| format!("entry ({row}, {column}) is {value} (indices from 0); it must be finite")
 }

@@ -46,34 +46,16 @@ const FREE: &str = "free.petsc";
 const COORDINATES: &str = "coordinates.petsc";
 const NEAR_NULL: &str = "near_null.petsc";
 
-/// The class of the object in a file.
+/// The class of the object in a file: the number that the file begins with, and its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Class {
-    Matrix,
-    Vector,
-    Indices,
+struct Class {
+    number: i32,
+    words: &'static str,
 }
 
-impl Class {
-    const ALL: [Class; 3] = [Class::Matrix, Class::Vector, Class::Indices];
-
-    /// The number that a file begins with.
-    fn number(self) -> i32 {
-        match self {
-            Class::Matrix => 1_211_216,
-            Class::Vector => 1_211_214,
-            Class::Indices => 1_211_218,
-        }
-    }
-
-    fn words(self) -> &'static str {
-        match self {
-            Class::Matrix => "a matrix (Mat)",
-            Class::Vector => "a vector (Vec)",
-            Class::Indices => "an index set (IS)",
-        }
-    }
-}
+const MATRIX: Class = Class { number: 1_211_216, words: "a matrix (Mat)" };
+const VECTOR: Class = Class { number: 1_211_214, words: "a vector (Vec)" };
+const INDICES: Class = Class { number: 1_211_218, words: "an index set (IS)" };
 
 /// Takes the place of the number of entries of a matrix that is stored with all entries.
 const DENSE: i32 = -1;

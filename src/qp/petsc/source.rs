@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use super::Class;
+use super::{Class, INDICES, MATRIX, VECTOR};
 use crate::error::Error;
 use crate::file::open_regular;
 
@@ -20,7 +20,8 @@ pub(super) struct Source {
     path: PathBuf,
     reader: BufReader<File>,
     byte: u64,
-    length: u64,
+    /// Bytes of the file.
+    pub length: u64,
 }
 
 impl Source {
@@ -30,18 +31,18 @@ impl Source {
     /// [`Error::File`] for a file that cannot be read, [`Error::FileBytes`] for one of another class.
     pub fn open(path: &Path, class: Class) -> Result<Self, Error> {
         let mut source = Self::from_byte(path, 0)?;
-        let number = class.number();
+        let number = class.number;
         if source.length < 2 * INTEGER {
-            let message = format!("the file ends here; {} begins with {number} and its size", class.words());
+            let message = format!("the file ends here; {} begins with {number} and its size", class.words);
             return Err(source.fault(source.length, message));
         }
         let found = source.integer()?;
         if found == number {
             return Ok(source);
         }
-        let known = |number: i32| Class::ALL.into_iter().find(|class| class.number() == number);
+        let known = |number: i32| [MATRIX, VECTOR, INDICES].into_iter().find(|class| class.number == number);
         let message = if let Some(other) = known(found) {
-            format!("the class is {found}, {}; it must be {number}, {}", other.words(), class.words())
+            format!("the class is {found}, {}; it must be {number}, {}", other.words, class.words)
         } else if known(found.swap_bytes()).is_some() {
             let little = found.swap_bytes();
             format!("the class is {found}, which is {little} in little-endian order; PETSc files are big-endian")
@@ -50,21 +51,17 @@ impl Source {
                 (0, next) if known(next).is_some() => {
                     format!("the integers have 64 bits; they must have 32: write {next} and all others in 4 bytes")
                 }
-                _ => format!("the class is {found}; it must be {number}, {}", class.words()),
+                _ => format!("the class is {found}; it must be {number}, {}", class.words),
             }
         };
         Err(source.fault(0, message))
     }
 
-    /// The same file from another byte on, read beside this one.
+    /// A file from some byte on, which may be read elsewhere too.
     ///
     /// # Errors
     /// [`Error::File`].
-    pub fn beside(&self, byte: u64) -> Result<Self, Error> {
-        Self::from_byte(&self.path, byte)
-    }
-
-    fn from_byte(path: &Path, byte: u64) -> Result<Self, Error> {
+    pub fn from_byte(path: &Path, byte: u64) -> Result<Self, Error> {
         let (mut file, length) = open_regular(path)?;
         let sought = if byte == 0 { Ok(0) } else { file.seek(SeekFrom::Start(byte)) };
         sought.map_err(|source| Error::File { action: "read", path: path.into(), source })?;
@@ -100,12 +97,13 @@ impl Source {
         usize::try_from(count).map_err(negative)
     }
 
-    /// The next real.
+    /// The next real, which must be allowed; `message` says what is wrong with another one.
     ///
     /// # Errors
-    /// As [`Source::integer`].
-    pub fn real(&mut self) -> Result<f64, Error> {
-        self.bytes().map(f64::from_be_bytes)
+    /// As [`Source::integer`]; [`Error::FileBytes`] for a value that is not allowed.
+    pub fn real(&mut self, is_allowed: fn(f64) -> bool, message: impl FnOnce(f64) -> String) -> Result<f64, Error> {
+        let (byte, value) = (self.byte, self.bytes().map(f64::from_be_bytes)?);
+        if is_allowed(value) { Ok(value) } else { Err(self.fault(byte, message(value))) }
     }
 
     fn bytes<const COUNT: usize>(&mut self) -> Result<[u8; COUNT], Error> {
@@ -116,11 +114,6 @@ impl Source {
         })?;
         self.byte += COUNT as u64;
         Ok(bytes)
-    }
-
-    /// Returns `true` if the file has fewer bytes.
-    pub fn is_shorter_than(&self, bytes: u64) -> bool {
-        self.length < bytes
     }
 
     /// Refuses a file that does not end with the byte before `end`, the end of the object that `holds` names.
@@ -143,16 +136,13 @@ impl Source {
 /// # Errors
 /// [`Error::File`], [`Error::FileBytes`].
 pub(super) fn vector(path: &Path, is_allowed: fn(f64) -> bool, allowed: &str) -> Result<Vec<f64>, Error> {
-    let mut source = Source::open(path, Class::Vector)?;
+    let mut source = Source::open(path, VECTOR)?;
     let length = source.count("values")?;
     source.ends_at(2 * INTEGER + REAL * length as u64, || format!("a vector of {length} values"))?;
     let mut values = Vec::with_capacity(length);
     for index in 0..length {
-        let (byte, value) = (source.byte(), source.real()?);
-        if !is_allowed(value) {
-            return Err(source.fault(byte, format!("value {index} is {value} (from 0); it must be {allowed}")));
-        }
-        values.push(value);
+        let message = |value| format!("value {index} is {value} (from 0); it must be {allowed}");
+        values.push(source.real(is_allowed, message)?);
     }
     Ok(values)
 }
@@ -162,7 +152,7 @@ pub(super) fn vector(path: &Path, is_allowed: fn(f64) -> bool, allowed: &str) ->
 /// # Errors
 /// [`Error::File`], [`Error::FileBytes`].
 pub(super) fn indices(path: &Path, most: usize) -> Result<Vec<u32>, Error> {
-    let mut source = Source::open(path, Class::Indices)?;
+    let mut source = Source::open(path, INDICES)?;
     let length = source.count("indices")?;
     source.ends_at(INTEGER * (2 + length as u64), || format!("an index set of {length}"))?;
     let mut indices: Vec<u32> = Vec::with_capacity(length);

@@ -3,7 +3,8 @@
 use std::io::{self, Write};
 
 use super::{
-    BLOCK_SIZE, CONTACT, COORDINATES, Class, DENSE, FREE, GAP, INFO, LOAD, Layout, NEAR_NULL, STIFFNESS, TOO_MANY,
+    BLOCK_SIZE, CONTACT, COORDINATES, Class, DENSE, FREE, GAP, INDICES, INFO, LOAD, Layout, MATRIX, NEAR_NULL,
+    STIFFNESS, TOO_MANY, VECTOR,
 };
 use crate::file::Streamed;
 use crate::qp::linear::multigrid::NearNullSpace;
@@ -22,7 +23,7 @@ pub fn streamed_files<'a>(problem: &'a ContactProblem, layout: &'a Layout) -> Ve
         Streamed::new(GAP, |out| write_vector(out, problem.gap())),
         Streamed::new(COORDINATES, |out| write_vector(out, &layout.coordinates)),
         Streamed::new(FREE, |out| {
-            write_header(out, Class::Indices, &[place.len()])?;
+            write_header(out, INDICES, &[place.len()])?;
             write_integers(out, place)
         }),
     ];
@@ -33,7 +34,7 @@ pub fn streamed_files<'a>(problem: &'a ContactProblem, layout: &'a Layout) -> Ve
 
 /// The class and the sizes of an object.
 fn write_header(out: &mut dyn Write, class: Class, sizes: &[usize]) -> io::Result<()> {
-    out.write_all(&class.number().to_be_bytes())?;
+    out.write_all(&class.number.to_be_bytes())?;
     sizes.iter().try_for_each(|&size| out.write_all(&integer(size)?.to_be_bytes()))
 }
 
@@ -52,19 +53,19 @@ fn write_reals(out: &mut dyn Write, values: &[f64]) -> io::Result<()> {
 }
 
 fn write_vector(out: &mut dyn Write, values: &[f64]) -> io::Result<()> {
-    write_header(out, Class::Vector, &[values.len()])?;
+    write_header(out, VECTOR, &[values.len()])?;
     write_reals(out, values)
 }
 
 /// The load, with 0 at supported components.
 fn write_load(out: &mut dyn Write, load: &[f64], layout: &Layout) -> io::Result<()> {
-    write_header(out, Class::Vector, &[layout.len()])?;
+    write_header(out, VECTOR, &[layout.len()])?;
     layout.each_place(|_, dof| out.write_all(&dof.map_or(0.0, |dof| load[dof]).to_be_bytes()))
 }
 
 /// The vectors as columns, with 0 at supported components.
 fn write_modes(out: &mut dyn Write, modes: &NearNullSpace, layout: &Layout) -> io::Result<()> {
-    write_header(out, Class::Matrix, &[layout.len(), modes.count()])?;
+    write_header(out, MATRIX, &[layout.len(), modes.count()])?;
     out.write_all(&DENSE.to_be_bytes())?;
     layout.each_place(|_, dof| {
         let mut vectors = modes.vectors().iter();
@@ -74,7 +75,7 @@ fn write_modes(out: &mut dyn Write, modes: &NearNullSpace, layout: &Layout) -> i
 
 /// The contact rows, each a column of `contact`.
 fn write_contact(out: &mut dyn Write, contact: &SparseMatrix, layout: &Layout) -> io::Result<()> {
-    write_header(out, Class::Matrix, &[contact.columns(), layout.len(), contact.entries()])?;
+    write_header(out, MATRIX, &[contact.columns(), layout.len(), contact.entries()])?;
     for column in contact.column_starts().windows(2) {
         out.write_all(&integer(column[1] - column[0])?.to_be_bytes())?;
     }
@@ -87,48 +88,39 @@ fn write_stiffness(out: &mut dyn Write, stiffness: &SymmetricMatrix, layout: &La
     let lengths = stiffness.row_lengths();
     let supported = layout.len() - stiffness.dim();
     let entries = lengths.iter().map(|&length| u64::from(length)).sum::<u64>() + supported as u64;
-    write_header(out, Class::Matrix, &[layout.len(), layout.len()])?;
+    write_header(out, MATRIX, &[layout.len(), layout.len()])?;
     out.write_all(&i32::try_from(entries).unwrap_or(TOO_MANY).to_be_bytes())?;
     layout.each_place(|_, dof| out.write_all(&dof.map_or(1, |dof| lengths[dof]).to_be_bytes()))?;
     drop(lengths);
     let place = &layout.place;
-    let rows = PlacedRows { stiffness, layout };
     let own = |place: usize| (place as u32).to_be_bytes();
-    rows.write(out, own, |column, _| place[column as usize].to_be_bytes())?;
+    write_rows(out, stiffness, layout, own, |column, _| place[column as usize].to_be_bytes())?;
     let diagonal = stiffness.diagonal();
     let mean = diagonal.iter().map(|value| value.abs()).sum::<f64>() / diagonal.len().max(1) as f64;
     drop(diagonal);
-    rows.write(out, |_| mean.to_be_bytes(), |_, value| value.to_be_bytes())
+    write_rows(out, stiffness, layout, |_| mean.to_be_bytes(), |_, value| value.to_be_bytes())
 }
 
-/// The rows of the stiffness at their places.
-struct PlacedRows<'a> {
-    stiffness: &'a SymmetricMatrix,
-    layout: &'a Layout,
-}
-
-impl PlacedRows<'_> {
-    /// The `bytes` of each entry of the stiffness, row by row, and those of `own` if a component is supported.
-    fn write<const COUNT: usize>(
-        &self,
-        out: &mut dyn Write,
-        own: impl Fn(usize) -> [u8; COUNT],
-        bytes: impl Fn(u32, f64) -> [u8; COUNT],
-    ) -> io::Result<()> {
-        let PlacedRows { stiffness, layout } = self;
-        let (mut row, mut place) = (Vec::new(), 0);
-        let mut free = layout.place.iter().map(|&free| free as usize);
-        let mut supported = |out: &mut dyn Write, end: usize| {
-            let written = (place..end).try_for_each(|place| out.write_all(&own(place)));
-            place = end + 1;
-            written
-        };
-        stiffness.each_row(|columns, values| {
-            supported(out, free.next().unwrap_or(layout.len()))?;
-            row.clear();
-            columns.iter().zip(values).for_each(|(&column, &value)| row.extend_from_slice(&bytes(column, value)));
-            out.write_all(&row)
-        })?;
-        supported(out, layout.len())
-    }
+/// The `bytes` of each entry of the stiffness, row by row at their places, and those of `own` if a component is supported.
+fn write_rows<const COUNT: usize>(
+    out: &mut dyn Write,
+    stiffness: &SymmetricMatrix,
+    layout: &Layout,
+    own: impl Fn(usize) -> [u8; COUNT],
+    bytes: impl Fn(u32, f64) -> [u8; COUNT],
+) -> io::Result<()> {
+    let (mut row, mut place) = (Vec::new(), 0);
+    let mut free = layout.place.iter().map(|&free| free as usize);
+    let mut supported = |out: &mut dyn Write, end: usize| {
+        let written = (place..end).try_for_each(|place| out.write_all(&own(place)));
+        place = end + 1;
+        written
+    };
+    stiffness.each_row(|columns, values| {
+        supported(out, free.next().unwrap_or(layout.len()))?;
+        row.clear();
+        columns.iter().zip(values).for_each(|(&column, &value)| row.extend_from_slice(&bytes(column, value)));
+        out.write_all(&row)
+    })?;
+    supported(out, layout.len())
 }

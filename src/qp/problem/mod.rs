@@ -13,7 +13,7 @@ use opposed::OpposedRows;
 
 use crate::error::Error;
 use crate::qp::linear::multigrid::NearNullSpace;
-use crate::qp::linear::{Accumulator, SparseMatrix, SymmetricMatrix, largest};
+use crate::qp::linear::{Accumulator, SparseMatrix, SymmetricMatrix, check_vector, largest};
 
 /// Frictionless unilateral contact as a convex quadratic program:
 ///
@@ -41,7 +41,7 @@ use crate::qp::linear::{Accumulator, SparseMatrix, SymmetricMatrix, largest};
 /// assert!(!problem.certify(&[1.0, 1.0], &[-2.0])?.meets(1e-2));
 /// # Ok::<(), signorini::Error>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct ContactProblem {
     pub(in crate::qp) stiffness: SymmetricMatrix,
     pub(in crate::qp) load: Vec<f64>,
@@ -56,23 +56,14 @@ pub struct ContactProblem {
 
 /// Data that follow from the matrices of a problem, and some also from which rows have an obstacle: computed at the first use
 /// and shared by the same problem under other loads and gaps.
-#[derive(Clone, Debug)]
-struct FoundOnce<T>(Arc<OnceLock<T>>);
+type FoundOnce<T> = Arc<OnceLock<T>>;
 
-impl<T> FoundOnce<T> {
-    fn not_yet() -> Self {
-        FoundOnce(Arc::new(OnceLock::new()))
-    }
-
-    fn get_or_find(&self, find: impl FnOnce() -> T) -> &T {
-        self.0.get_or_init(find)
-    }
-}
-
-impl<T> PartialEq for FoundOnce<T> {
+impl PartialEq for ContactProblem {
     /// Data that follow from equal data are equal.
-    fn eq(&self, _: &Self) -> bool {
-        true
+    fn eq(&self, other: &Self) -> bool {
+        let same_matrices = self.stiffness == other.stiffness && self.contact == other.contact;
+        let same_vectors = self.load == other.load && self.gap == other.gap;
+        same_matrices && same_vectors && self.near_null == other.near_null
     }
 }
 
@@ -113,8 +104,8 @@ impl ContactProblem {
             return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
         }
         let gap = with_infinite(gap);
-        let (diagonal, parts, free_mode) = (FoundOnce::not_yet(), FoundOnce::not_yet(), FoundOnce::not_yet());
-        let opposed = FoundOnce::not_yet();
+        let (diagonal, parts, free_mode) = (FoundOnce::default(), FoundOnce::default(), FoundOnce::default());
+        let opposed = FoundOnce::default();
         Ok(ContactProblem { stiffness, load, contact, gap, near_null: None, diagonal, parts, free_mode, opposed })
     }
 
@@ -129,7 +120,7 @@ impl ContactProblem {
         if found != expected {
             return Err(Error::Length { name: "near-null vector", found, expected, of: "dofs" });
         }
-        Ok(ContactProblem { near_null: Some(near_null), free_mode: FoundOnce::not_yet(), ..self })
+        Ok(ContactProblem { near_null: Some(near_null), free_mode: FoundOnce::default(), ..self })
     }
 
     /// The near-null space, if one was given.
@@ -194,14 +185,14 @@ impl ContactProblem {
         let (stiffness, contact, near_null) = (self.stiffness.clone(), self.contact.clone(), self.near_null.clone());
         let gap = with_infinite(gap);
         let same_rows = gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
-        let parts = if same_rows { self.parts.clone() } else { FoundOnce::not_yet() };
+        let parts = if same_rows { self.parts.clone() } else { FoundOnce::default() };
         let (diagonal, free_mode, opposed) = (self.diagonal.clone(), self.free_mode.clone(), self.opposed.clone());
         Ok(ContactProblem { stiffness, load, contact, gap, near_null, diagonal, parts, free_mode, opposed })
     }
 
     /// The diagonal of K, computed at its first use.
     pub(in crate::qp) fn diagonal(&self) -> &Diagonal {
-        self.diagonal.get_or_find(|| Diagonal::of(&self.stiffness))
+        self.diagonal.get_or_init(|| Diagonal::of(&self.stiffness))
     }
 
     /// The dofs without stiffness, in increasing order.
@@ -215,7 +206,7 @@ impl ContactProblem {
         let is_free =
             |mode: &Vec<f64>| largest(&self.stiffness.mul(mode)) <= FREE * largest(&self.stiffness.mul_abs(mode));
         let any_is_free = || self.near_null().is_some_and(|modes| modes.vectors().iter().any(is_free));
-        *self.free_mode.get_or_find(any_is_free)
+        *self.free_mode.get_or_init(any_is_free)
     }
 
     /// Returns `true` if the stiffness is known to be singular: contact alone holds a dof or a mode.
@@ -225,7 +216,7 @@ impl ContactProblem {
 
     /// The parts, computed at their first use.
     pub(in crate::qp) fn parts(&self) -> &Parts {
-        self.parts.get_or_find(|| Parts::of(&self.stiffness, self.diagonal(), &self.contact, &self.gap))
+        self.parts.get_or_init(|| Parts::of(&self.stiffness, self.diagonal(), &self.contact, &self.gap))
     }
 
     /// Checks that no rows contradict each other at sight; the rows that may do so are found at the first use.
@@ -233,7 +224,7 @@ impl ContactProblem {
     /// # Errors
     /// [`Error::Infeasible`] for a row without dofs and with a negative gap, and for two opposed rows with overlapping gaps.
     pub(in crate::qp) fn check_rows(&self) -> Result<(), Error> {
-        self.opposed.get_or_find(|| OpposedRows::of(&self.contact)).check(&self.gap)
+        self.opposed.get_or_init(|| OpposedRows::of(&self.contact)).check(&self.gap)
     }
 
     /// The violation B u - g of each row, length m, in m: positive is penetration; `-inf` without an obstacle. The
@@ -262,16 +253,7 @@ impl ContactProblem {
 /// # Errors
 /// [`Error::Length`], [`Error::NotFinite`].
 pub(crate) fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
-    if load.len() != dofs {
-        return Err(Error::Length { name: "load vector", found: load.len(), expected: dofs, of: "dofs" });
-    }
-    match load.iter().enumerate().find(|entry| !entry.1.is_finite()) {
-        Some((index, &value)) => {
-            let at = format!("entry {index}");
-            Err(Error::NotFinite { name: "load vector", at, value, allowed: "finite" })
-        }
-        None => Ok(()),
-    }
+    check_vector("load vector", load, (dofs, "dofs"), f64::is_finite, "finite")
 }
 
 /// Checks that `gap` has the right length and allowed values.
@@ -279,16 +261,8 @@ pub(crate) fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
 /// # Errors
 /// [`Error::Length`], [`Error::NotFinite`] for a gap that is NaN or minus infinity.
 pub(crate) fn check_gap(gap: &[f64], rows: usize) -> Result<(), Error> {
-    if gap.len() != rows {
-        return Err(Error::Length { name: "gap vector", found: gap.len(), expected: rows, of: "contact rows" });
-    }
-    match gap.iter().enumerate().find(|entry| entry.1.is_nan() || *entry.1 == f64::NEG_INFINITY) {
-        Some((index, &value)) => {
-            let allowed = "finite, or +inf for a row without obstacle";
-            Err(Error::NotFinite { name: "gap vector", at: format!("entry {index}"), value, allowed })
-        }
-        None => Ok(()),
-    }
+    let allowed = "finite, or +inf for a row without obstacle";
+    check_vector("gap vector", gap, (rows, "contact rows"), |gap| gap > f64::NEG_INFINITY, allowed)
 }
 
 #[cfg(test)]

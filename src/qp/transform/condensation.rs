@@ -68,50 +68,24 @@ impl Condensation {
         DENSE_MATRICES * (contact_dofs as f64).powi(2) <= FEW_VALUES.max(factor_entries)
     }
 
-    /// Condenses with a factorisation of K that put `contact_dofs` last.
+    /// Condenses with a factorisation of K, or if it `holds_rows` of K + B'B, that put `contact_dofs` last; the rows are subtracted
+    /// from the Schur complement.
     ///
     /// # Errors
     /// Those of the sparse matrices, if the data leave the range of double precision.
-    pub fn new(cholesky: Cholesky, contact_dofs: Vec<usize>, contact: &SparseMatrix) -> Result<Self, Error> {
-        let contact = on_dofs(contact, &contact_dofs)?;
-        let trailing = cholesky.trailing_block();
-        let schur = trailing.times_transpose();
-        Self::of((cholesky, trailing), schur, contact_dofs, contact)
-    }
-
-    /// The same with a factorisation of K + B'B; the rows are subtracted from the Schur complement.
-    ///
-    /// # Errors
-    /// As [`Condensation::new`].
-    pub fn without_rows(cholesky: Cholesky, contact_dofs: Vec<usize>, contact: &SparseMatrix) -> Result<Self, Error> {
-        let contact = on_dofs(contact, &contact_dofs)?;
-        let (trailing, size) = (cholesky.trailing_block(), contact_dofs.len());
-        let mut schur = trailing.times_transpose();
-        let before = schur.clone();
-        let by_row = contact.transposed();
-        for row in 0..by_row.columns() {
-            for (i, a) in by_row.column(row) {
-                for (j, b) in by_row.column(row).filter(|entry| entry.0 <= i) {
-                    schur[j * size + i] -= a * b;
-                }
-            }
-        }
-        // The difference of equal terms is rounding, and would hold a body that nothing holds.
-        for (entry, before) in schur.iter_mut().zip(&before) {
-            if entry.abs() <= LEFT_OVER * before.abs() {
-                *entry = 0.0;
-            }
-        }
-        Self::of((cholesky, trailing), schur, contact_dofs, contact)
-    }
-
-    fn of(
-        (cholesky, trailing): (Cholesky, LowerTriangle),
-        schur: Vec<f64>,
+    pub fn new(
+        cholesky: Cholesky,
+        holds_rows: bool,
         contact_dofs: Vec<usize>,
-        contact: SparseMatrix,
+        contact: &SparseMatrix,
     ) -> Result<Self, Error> {
-        let stiffness = SymmetricMatrix::from_lower(dense_triangle(schur, contact_dofs.len())?)?;
+        let contact = contact.select(contact.rows(), Some, contact_dofs.iter().copied());
+        let trailing = cholesky.trailing_block();
+        let mut schur = trailing.times_transpose();
+        if holds_rows {
+            subtract_rows(&mut schur, &contact);
+        }
+        let stiffness = SymmetricMatrix::from_lower(dense_triangle(&schur, contact_dofs.len())?)?;
         Ok(Condensation { contact_dofs, cholesky, trailing, stiffness, contact })
     }
 
@@ -199,18 +173,25 @@ impl Condensation {
     }
 }
 
-/// The rows B restricted to the contact dofs.
-fn on_dofs(contact: &SparseMatrix, contact_dofs: &[usize]) -> Result<SparseMatrix, Error> {
-    let column = |(column, &dof)| contact.column(dof).map(move |(row, value)| (row, column, value));
-    let entries: Vec<_> = contact_dofs.iter().enumerate().flat_map(column).collect();
-    SparseMatrix::from_triplets(contact.rows(), contact_dofs.len(), &entries)
+/// Subtracts B'B from a dense lower triangle, column by column.
+fn subtract_rows(schur: &mut [f64], contact: &SparseMatrix) {
+    let (before, by_row) = (schur.to_vec(), contact.transposed());
+    for (i, j, product) in (0..contact.rows()).flat_map(|row| by_row.square(row)) {
+        schur[j * contact.columns() + i] -= product;
+    }
+    // The difference of equal terms is rounding, and would hold a body that nothing holds.
+    for (entry, before) in schur.iter_mut().zip(&before) {
+        if entry.abs() <= LEFT_OVER * before.abs() {
+            *entry = 0.0;
+        }
+    }
 }
 
 /// The lower triangle of a dense matrix (n x n, column by column), zeros included.
 ///
 /// # Errors
 /// [`Error::NotFinite`] for an entry that is not finite.
-fn dense_triangle(matrix: Vec<f64>, size: usize) -> Result<SparseMatrix, Error> {
+fn dense_triangle(matrix: &[f64], size: usize) -> Result<SparseMatrix, Error> {
     let entries = size * (size + 1) / 2;
     let (mut starts, mut rows, mut values) =
         (Vec::with_capacity(size + 1), Vec::with_capacity(entries), Vec::with_capacity(entries));

@@ -48,15 +48,7 @@ impl Pieces {
     pub fn problem(&self, problem: &ContactProblem, piece: usize) -> Result<ContactProblem, Error> {
         let (dofs, rows) = (&self.dofs[piece], &self.rows[piece]);
         let columns = |matrix: &SparseMatrix, of: &[usize], place: &[usize], count: usize| {
-            let (mut starts, mut indices, mut values) = (vec![0], Vec::new(), Vec::new());
-            for &dof in dofs {
-                for (row, value) in matrix.column(dof).filter(|entry| of[entry.0] == piece) {
-                    indices.push(place[row]);
-                    values.push(value);
-                }
-                starts.push(indices.len());
-            }
-            SparseMatrix::from_parts(count, starts, indices, values)
+            matrix.select(count, |row| (of[row] == piece).then_some(place[row]), dofs.iter().copied())
         };
         let lower = columns(problem.stiffness().lower(), &self.of_dof, &self.place_of_dof, dofs.len());
         let contact = columns(problem.contact(), &self.of_row, &self.place_of_row, rows.len());

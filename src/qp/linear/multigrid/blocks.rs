@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::real::Real;
+use crate::qp::linear::factor::Real;
+use crate::qp::linear::grouped::group_starts;
 use crate::qp::linear::threads::SharedRows;
 
 /// A sparse matrix of blocks of `height` x `width` values, row by row, each block row by row.
@@ -90,37 +91,39 @@ impl<T: Real> BlockMatrix<T> {
         BlockMatrix { height, width, columns, starts: vec![0; rows + 1], indices: Vec::new(), values: Vec::new() }
     }
 
+    /// Adds a row of `A x` to `sums`.
+    fn add_row_product(&self, row: usize, x: &[T], sums: &mut [T]) {
+        for (column, block) in self.row(row) {
+            let part = &x[column * self.width..(column + 1) * self.width];
+            for (sum, of_row) in sums.iter_mut().zip(block.chunks_exact(self.width)) {
+                of_row.iter().zip(part).for_each(|(&a, &x)| *sum += a * x);
+            }
+        }
+    }
+
+    /// The rows with entries, for a matrix with mostly empty rows.
+    fn filled_rows(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.rows()).filter(|&row| self.starts[row] < self.starts[row + 1])
+    }
+
     /// `y -= A x`, for a matrix with mostly empty rows.
     pub fn subtract_product(&self, x: &[T], y: &mut [T]) {
-        let (height, width) = (self.height, self.width);
-        let mut sums = vec![T::default(); height];
-        for row in (0..self.rows()).filter(|&row| self.starts[row] < self.starts[row + 1]) {
+        let mut sums = vec![T::default(); self.height];
+        for row in self.filled_rows() {
             sums.fill(T::default());
-            for (column, block) in self.row(row) {
-                let part = &x[column * width..(column + 1) * width];
-                for (sum, of_row) in sums.iter_mut().zip(block.chunks_exact(width)) {
-                    of_row.iter().zip(part).for_each(|(&a, &x)| *sum += a * x);
-                }
-            }
-            y[row * height..(row + 1) * height].iter_mut().zip(&sums).for_each(|(y, &sum)| *y -= sum);
+            self.add_row_product(row, x, &mut sums);
+            y[row * self.height..][..self.height].iter_mut().zip(&sums).for_each(|(y, &sum)| *y -= sum);
         }
     }
 
     /// `y -= A y`, for a matrix with mostly empty rows.
     pub fn subtract_from(&self, y: &mut [T]) {
-        let (height, width) = (self.height, self.width);
-        let rows = || (0..self.rows()).filter(|&row| self.starts[row] < self.starts[row + 1]);
-        let mut sums = vec![T::default(); rows().count() * height];
-        for (row, sums) in rows().zip(sums.chunks_exact_mut(height)) {
-            for (column, block) in self.row(row) {
-                let part = &y[column * width..(column + 1) * width];
-                for (sum, of_row) in sums.iter_mut().zip(block.chunks_exact(width)) {
-                    of_row.iter().zip(part).for_each(|(&a, &x)| *sum += a * x);
-                }
-            }
+        let mut sums = vec![T::default(); self.filled_rows().count() * self.height];
+        for (row, sums) in self.filled_rows().zip(sums.chunks_exact_mut(self.height)) {
+            self.add_row_product(row, y, sums);
         }
-        for (row, sums) in rows().zip(sums.chunks_exact(height)) {
-            y[row * height..(row + 1) * height].iter_mut().zip(sums).for_each(|(y, &sum)| *y -= sum);
+        for (row, sums) in self.filled_rows().zip(sums.chunks_exact(self.height)) {
+            y[row * self.height..][..self.height].iter_mut().zip(sums).for_each(|(y, &sum)| *y -= sum);
         }
     }
 
@@ -163,9 +166,7 @@ impl<T: Real> BlockMatrix<T> {
 
     /// The transposed matrix.
     pub fn transposed(&self) -> Self {
-        let mut starts = vec![0_usize; self.columns + 1];
-        self.indices.iter().for_each(|&column| starts[column as usize + 1] += 1);
-        (0..self.columns).for_each(|column| starts[column + 1] += starts[column]);
+        let starts = group_starts(self.columns, self.indices.iter().map(|&column| column as usize));
         let mut next = starts.clone();
         let mut indices = vec![0; self.indices.len()];
         let mut values = vec![T::default(); self.values.len()];
@@ -191,14 +192,7 @@ impl<T: Real> BlockMatrix<T> {
         let parts = self
             .shared(threads)
             .map(|rows| with_block_size!(product_rows, (self.height, self.width), (self, other, rows)));
-        let mut product = BlockMatrix {
-            height: self.height,
-            width: other.width,
-            columns: other.columns,
-            starts: vec![0],
-            indices: Vec::new(),
-            values: Vec::new(),
-        };
+        let mut product = Self::empty(0, other.columns, (self.height, other.width));
         for (starts, indices, values) in parts {
             let before = product.indices.len();
             product.starts.extend(starts.iter().map(|start| before + start));
@@ -220,15 +214,9 @@ fn multiply_rows<T: Real, const H: usize, const W: usize>(
     y: &mut [T],
 ) {
     if H == 0 {
-        let (height, width) = (matrix.height, matrix.width);
-        for (row, sums) in rows.zip(y.chunks_exact_mut(height)) {
+        for (row, sums) in rows.zip(y.chunks_exact_mut(matrix.height)) {
             sums.fill(T::default());
-            for (column, block) in matrix.row(row) {
-                let part = &x[column * width..(column + 1) * width];
-                for (sum, of_row) in sums.iter_mut().zip(block.chunks_exact(width)) {
-                    of_row.iter().zip(part).for_each(|(&a, &x)| *sum += a * x);
-                }
-            }
+            matrix.add_row_product(row, x, sums);
         }
         return;
     }

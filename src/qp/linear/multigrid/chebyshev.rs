@@ -3,7 +3,7 @@
 use super::blocks::BlockMatrix;
 use super::coarsest::LOST_DIAGONAL;
 use super::operator::Operator;
-use super::real::Real;
+use crate::qp::linear::factor::Real;
 use crate::qp::linear::power_iteration::power_iteration;
 
 /// Products that estimate the largest eigenvalue of D^-1 A.
@@ -39,11 +39,6 @@ impl<T: Real> Chebyshev<T> {
         let mut smoother = Chebyshev { degree, inverse, largest: 1.0 };
         smoother.largest = SAFETY * smoother.largest_eigenvalue(&Operator::whole(matrix, threads));
         smoother
-    }
-
-    /// Bytes of memory that it holds.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.inverse[..])
     }
 
     /// Improves `x` with the residual `rest` = b - A x. Returns the last step, which the residual does not contain yet: that saves a

@@ -5,8 +5,8 @@
 
 use super::coarsest::lower_part;
 use super::hierarchy::{Hierarchy, Level};
-use super::real::Real;
 use super::{Levels, Multigrid};
+use crate::qp::linear::factor::Real;
 use crate::qp::linear::{SymmetricMatrix, ldexp};
 
 /// An unknown starts at its bound if more than this share of the unknowns that it is interpolated from is at their bounds.
@@ -15,26 +15,23 @@ const CLOSED_SHARE: f64 = 0.7;
 /// Lower and upper bound of an unknown, infinite without a bound.
 pub type Interval = [f64; 2];
 
-/// The second level of a hierarchy with one unknown for each node: matrix, hierarchy, and the transfer from and to the first.
+/// The second level of a hierarchy with one unknown for each node: matrix, hierarchy, and the transfer from and to the first, by the
+/// first prolongator P.
 #[derive(Debug)]
 pub struct Coarser {
     /// The Galerkin matrix.
     pub matrix: SymmetricMatrix,
     /// Its hierarchy: the levels below the first.
     pub multigrid: Multigrid,
-    transfer: Transfer,
-}
-
-/// The first prolongator P, by its rows, in double precision, and the near-null vector that it carries.
-#[derive(Debug)]
-struct Transfer {
     /// The place of each dof.
     place: Vec<u32>,
     /// The exponent of the load: the matrix of the hierarchy is `2^shift` times that of the problem.
     shift: i32,
+    /// P by its rows, in double precision.
     starts: Vec<usize>,
     columns: Vec<u32>,
     values: Vec<f64>,
+    /// The near-null vector that P carries.
     near_null: Vec<f64>,
 }
 
@@ -56,25 +53,25 @@ fn coarser_of<T: Real>(hierarchy: &Hierarchy<T>, levels: fn(Hierarchy<T>) -> Lev
         return None;
     }
     let matrix = below.levels.first().map_or(&*below.coarsest_matrix, |level| &level.matrix);
-    let transfer = Transfer {
+    Some(Coarser {
+        matrix: lower_part(matrix),
+        multigrid: Multigrid { levels: levels(below) },
         place: hierarchy.nodes.place.clone(),
         shift: hierarchy.shift,
         starts: first.prolongator.starts.clone(),
         columns: first.prolongator.indices.clone(),
         values: first.prolongator.values.iter().map(|value| value.double()).collect(),
         near_null: first.near_null.values.clone(),
-    };
-    Some(Coarser { matrix: lower_part(matrix), multigrid: Multigrid { levels: levels(below) }, transfer })
+    })
 }
 
 impl Coarser {
     /// The load of the second level, `P' f`.
     pub fn load(&self, load: &[f64]) -> Vec<f64> {
-        let transfer = &self.transfer;
-        let mut coarse = vec![0.0; transfer.near_null.len()];
-        for (&place, &value) in transfer.place.iter().zip(load) {
-            let value = ldexp(value, transfer.shift);
-            transfer.row(place).for_each(|(column, weight)| coarse[column] += weight * value);
+        let mut coarse = vec![0.0; self.near_null.len()];
+        for (&place, &value) in self.place.iter().zip(load) {
+            let value = ldexp(value, self.shift);
+            self.row(place).for_each(|(column, weight)| coarse[column] += weight * value);
         }
         coarse
     }
@@ -82,12 +79,11 @@ impl Coarser {
     /// The bounds of the second level: for each unknown the mean of the bounds of the first-level unknowns that it reaches,
     /// weighted by the fourth power of P, relative to the near-null vector.
     pub fn bounds(&self, bounds: &[Interval]) -> Vec<Interval> {
-        let transfer = &self.transfer;
-        let count = transfer.near_null.len();
+        let count = self.near_null.len();
         let (mut sums, mut bounded, mut all) = (vec![[0.0; 2]; count], vec![[0.0; 2]; count], vec![0.0; count]);
-        for (&place, interval) in transfer.place.iter().zip(bounds) {
-            let carried: f64 = transfer.row(place).map(|(column, weight)| weight * transfer.near_null[column]).sum();
-            for (column, weight) in transfer.row(place) {
+        for (&place, interval) in self.place.iter().zip(bounds) {
+            let carried: f64 = self.row(place).map(|(column, weight)| weight * self.near_null[column]).sum();
+            for (column, weight) in self.row(place) {
                 let weight = weight.powi(4);
                 all[column] += weight;
                 for side in 0..2 {
@@ -100,7 +96,7 @@ impl Coarser {
             }
         }
         let of_column = |column: usize| {
-            let near_null = transfer.near_null[column];
+            let near_null = self.near_null[column];
             let side = |side: usize, none: f64| match 2.0 * bounded[column][side] > all[column] && near_null > 0.0 {
                 true => near_null * sums[column][side] / bounded[column][side],
                 false => none,
@@ -116,7 +112,7 @@ impl Coarser {
     pub fn interpolated(&self, coarse: &[f64], coarse_bounds: &[Interval], bounds: &[Interval]) -> Vec<f64> {
         let value_of = |(&place, &[lower, upper]): (&u32, &Interval)| {
             let (mut value, mut all, mut at) = (0.0, 0.0, [0.0; 2]);
-            for (column, weight) in self.transfer.row(place) {
+            for (column, weight) in self.row(place) {
                 value += weight * coarse[column];
                 all += weight.abs();
                 for (at, &bound) in at.iter_mut().zip(&coarse_bounds[column]) {
@@ -129,11 +125,9 @@ impl Coarser {
                 _ => value.min(upper).max(lower),
             }
         };
-        self.transfer.place.iter().zip(bounds).map(value_of).collect()
+        self.place.iter().zip(bounds).map(value_of).collect()
     }
-}
 
-impl Transfer {
     /// The entries of P in the row of a place.
     fn row(&self, place: u32) -> impl Iterator<Item = (usize, f64)> + '_ {
         let range = self.starts[place as usize]..self.starts[place as usize + 1];

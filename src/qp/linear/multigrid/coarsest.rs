@@ -1,7 +1,7 @@
 //! The factor of the coarsest matrix.
 
 use super::blocks::BlockMatrix;
-use super::real::Real;
+use crate::qp::linear::factor::Real;
 use crate::qp::linear::{Cholesky, Equilibration, FactorError, SparseMatrix, SymmetricMatrix, ldexp};
 
 /// Pivots of the coarsest matrix below this many units in the last place are rounding: the body is not supported. The
@@ -20,7 +20,8 @@ const SHIFT: f64 = 1e-3;
 pub(super) struct Coarsest {
     cholesky: Cholesky,
     equilibration: Equilibration,
-    is_shifted: bool,
+    /// The matrix was singular to the precision of its entries.
+    pub is_shifted: bool,
 }
 
 impl Coarsest {
@@ -37,10 +38,7 @@ impl Coarsest {
                 Ok(Coarsest { cholesky, equilibration, is_shifted: false })
             }
             Ok(_) | Err(FactorError::NotPositiveDefinite) => {
-                let mut lower = matrix.lower().clone();
-                let held = lower.triplets().map(|(i, j, v)| if i == j { v + SHIFT } else { v }).collect();
-                lower = lower.with_values(held);
-                let cholesky = Cholesky::of(&SymmetricMatrix::from_sorted_lower(lower))?;
+                let cholesky = matrix.shifted_factor(SHIFT)?.ok_or(FactorError::NotPositiveDefinite)?;
                 Ok(Coarsest { cholesky, equilibration, is_shifted: true })
             }
             Err(error) => Err(error),
@@ -55,26 +53,19 @@ impl Coarsest {
     pub fn in_face<T: Real>(matrix: &BlockMatrix<T>, change: &BlockMatrix<T>) -> Result<Self, FactorError> {
         let mut rest = matrix.plus(-1.0, change);
         let size = rest.height;
-        let diagonal_of = |blocks: &BlockMatrix<T>| -> Vec<f64> {
-            let at = |node: usize, i: usize| {
-                blocks.diagonal_place(node).map_or(0.0, |place| blocks.block(place)[i * size + i].double())
-            };
-            (0..blocks.rows()).flat_map(|node| (0..size).map(move |i| at(node, i))).collect()
+        let diagonal = |blocks: &BlockMatrix<T>, unknown: usize| {
+            let place = blocks.diagonal_place(unknown / size);
+            place.map_or(0.0, |place| blocks.block(place)[unknown % size * (size + 1)].double())
         };
-        let is_gone: Vec<bool> = diagonal_of(&rest)
-            .iter()
-            .zip(diagonal_of(matrix))
-            .map(|(rest, whole)| *rest <= LOST_DIAGONAL * T::EPSILON * whole)
-            .collect();
-        if is_gone.contains(&true) {
-            for node in 0..rest.rows() {
-                for place in rest.starts[node]..rest.starts[node + 1] {
-                    let other = rest.indices[place] as usize;
-                    for (i, j) in (0..size).flat_map(|i| (0..size).map(move |j| (i, j))) {
-                        let value = &mut rest.values[(place * size + i) * size + j];
-                        if is_gone[node * size + i] || is_gone[other * size + j] {
-                            *value = T::of(f64::from(u8::from(node == other && i == j)));
-                        }
+        let lost = |unknown: usize| diagonal(&rest, unknown) <= LOST_DIAGONAL * T::EPSILON * diagonal(matrix, unknown);
+        let is_gone: Vec<bool> = (0..rest.rows() * size).map(lost).collect();
+        for node in 0..rest.rows() {
+            for place in rest.starts[node]..rest.starts[node + 1] {
+                let other = rest.indices[place] as usize;
+                for (i, j) in (0..size).flat_map(|i| (0..size).map(move |j| (i, j))) {
+                    if is_gone[node * size + i] || is_gone[other * size + j] {
+                        let one = f64::from(u8::from(node == other && i == j));
+                        rest.values[(place * size + i) * size + j] = T::of(one);
                     }
                 }
             }
@@ -85,11 +76,6 @@ impl Coarsest {
     /// Number of values of the factor.
     pub fn entries(&self) -> usize {
         self.cholesky.entries()
-    }
-
-    /// Returns `true` if the matrix was singular to the precision of its entries, so that it was shifted.
-    pub fn is_shifted(&self) -> bool {
-        self.is_shifted
     }
 
     /// The displacement under a force.

@@ -3,7 +3,7 @@
 use super::face::FaceLevels;
 use super::hierarchy::Hierarchy;
 use super::operator::Operator;
-use super::real::Real;
+use crate::qp::linear::factor::Real;
 
 impl<T: Real> Hierarchy<T> {
     /// Approximately `A^-1 r`, by one V-cycle, in the given face; r is `force` times `2^exponent`.

@@ -18,8 +18,8 @@ use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
 use super::coarsest::Coarsest;
 use super::hierarchy::Hierarchy;
-use super::real::Real;
 use crate::qp::linear::FactorError;
+use crate::qp::linear::factor::Real;
 
 /// A unit vector along which nothing moves: dofs and coefficients. The directions of one face are orthogonal.
 pub type Direction = Vec<(usize, f64)>;
@@ -116,19 +116,15 @@ fn projection<T: Real>(hierarchy: &Hierarchy<T>, directions: &[Direction]) -> Bl
     let node = |place: u32| place as usize / size;
     entries.sort_unstable_by_key(|&(row, column, _)| (node(row), node(column)));
     let mut held = BlockMatrix::empty(0, count, (size, size));
-    let mut next = 0;
-    for row in 0..count {
-        while let Some(&(place, column, value)) = entries.get(next).filter(|entry| node(entry.0) == row) {
-            let is_new = held.indices.len() == held.starts[row] || held.indices.last() != Some(&(node(column) as u32));
-            if is_new {
-                held.indices.push(node(column) as u32);
-                held.values.resize(held.values.len() + size * size, T::default());
-            }
-            let block = held.values.len() - size * size;
-            held.values[block + place as usize % size * size + column as usize % size] += T::of(value);
-            next += 1;
+    for block in entries.chunk_by(|a, b| (node(a.0), node(a.1)) == (node(b.0), node(b.1))) {
+        held.starts.resize(node(block[0].0) + 1, held.indices.len());
+        held.indices.push(node(block[0].1) as u32);
+        let start = held.values.len();
+        held.values.resize(start + size * size, T::default());
+        for &(row, column, value) in block {
+            held.values[start + row as usize % size * size + column as usize % size] += T::of(value);
         }
-        held.starts.push(held.indices.len());
     }
+    held.starts.resize(count + 1, held.indices.len());
     held
 }

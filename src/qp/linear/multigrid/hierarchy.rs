@@ -6,11 +6,11 @@ use super::aggregation::{aggregate, strong_connections};
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
 use super::coarsest::Coarsest;
-use super::lines::{BothLevels, Lines};
+use super::lines::Lines;
 use super::near_null::NearNullSpace;
 use super::nodes::{Nodes, fill_empty_diagonal};
 use super::prolongator::{Candidates, smoothed, tentative};
-use super::real::Real;
+use crate::qp::linear::factor::Real;
 use crate::qp::linear::{FactorError, SymmetricMatrix};
 
 /// Strength of connection on the finest level; it is halved from level to level, as in the source.
@@ -92,10 +92,7 @@ impl<T: Real> Hierarchy<T> {
             let (flat, coarse) = tentative::<T>(&candidates, blocks.height, &of_node, aggregates);
             drop(of_node);
             let moved = match lines {
-                Some(lines) => {
-                    let levels = BothLevels { fine: &candidates, coarse: &coarse };
-                    lines.product(&blocks, &flat, levels)
-                }
+                Some(lines) => lines.product(&blocks, &flat, &candidates, &coarse),
                 None => blocks.product(&flat, threads),
             };
             let prolongator = smoothed(&flat, moved, &smoother, threads);
@@ -133,21 +130,17 @@ impl<T: Real> Hierarchy<T> {
 
     /// Unknowns of each level, the finest first.
     pub fn unknowns(&self) -> Vec<usize> {
-        let of_level = |level: &Arc<Level<T>>| level.matrix.rows() * level.matrix.height;
-        let coarsest = self.coarsest_matrix.rows() * self.coarsest_matrix.height;
-        self.levels.iter().map(of_level).chain([coarsest]).collect()
+        self.matrices().map(|matrix| matrix.rows() * matrix.height).collect()
     }
 
     /// Bytes of memory that it holds.
     pub fn bytes(&self) -> usize {
         let of_level = |level: &Arc<Level<T>>| {
-            level.matrix.bytes() + level.prolongator.bytes() + level.restriction.bytes() + level.smoother.bytes()
+            level.matrix.bytes()
+                + level.prolongator.bytes()
+                + level.restriction.bytes()
+                + size_of_val(&level.smoother.inverse[..])
         };
         self.levels.iter().map(of_level).sum::<usize>() + size_of::<f64>() * self.coarsest.entries()
-    }
-
-    /// Returns `true` if the coarsest matrix was shifted, like that of a body without supports.
-    pub fn is_shifted(&self) -> bool {
-        self.coarsest.is_shifted()
     }
 }

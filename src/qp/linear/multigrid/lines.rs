@@ -8,7 +8,7 @@
 use super::aggregation::{Graph, aggregate, strong_connections};
 use super::blocks::BlockMatrix;
 use super::prolongator::Candidates;
-use super::real::Real;
+use crate::qp::linear::factor::Real;
 
 /// Strength of the connections along a line, on every level.
 const ALONG_LINES: f64 = 0.4;
@@ -25,12 +25,6 @@ pub struct Lines {
     pub aggregates: usize,
 }
 
-/// The near-null vectors of a level and of the next one.
-pub struct BothLevels<'a> {
-    pub fine: &'a Candidates,
-    pub coarse: &'a Candidates,
-}
-
 impl Lines {
     /// `None` if nodes do not lie on lines, or are close to all others.
     pub fn of<T: Real>(matrix: &BlockMatrix<T>) -> Option<Self> {
@@ -41,12 +35,13 @@ impl Lines {
     }
 
     /// `A T` of the tentative prolongator T of these aggregates, without the couplings across lines: its columns stay those of
-    /// the aggregates of strong neighbours.
+    /// the aggregates of strong neighbours. `fine` and `coarse` are the near-null vectors of the level and of the next one.
     pub fn product<T: Real>(
         &self,
         matrix: &BlockMatrix<T>,
         tentative: &BlockMatrix<T>,
-        BothLevels { fine, coarse }: BothLevels,
+        fine: &Candidates,
+        coarse: &Candidates,
     ) -> BlockMatrix<T> {
         let (height, width) = (tentative.height, tentative.width);
         let size = height * width;
@@ -148,7 +143,7 @@ mod tests {
         // Constants, and vectors that grow along the lines.
         let fine = Candidates { count: 2, values: (0..nx * ny).flat_map(|node| [1.0, (node % nx) as f64]).collect() };
         let (flat, coarse) = tentative::<f64>(&fine, 1, &lines.of_node, lines.aggregates);
-        let product = lines.product(&matrix, &flat, BothLevels { fine: &fine, coarse: &coarse });
+        let product = lines.product(&matrix, &flat, &fine, &coarse);
         let line_of_aggregate: Vec<usize> = (0..lines.aggregates)
             .map(|aggregate| line_of(lines.of_node.iter().position(|&of| of as usize == aggregate).unwrap()))
             .collect();

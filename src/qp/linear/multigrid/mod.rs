@@ -24,7 +24,6 @@ mod near_null;
 mod nodes;
 mod operator;
 mod prolongator;
-pub(super) mod real;
 
 pub use coarser::Interval;
 pub use conjugate_gradients::{ConjugateGradients, Preconditioned};
@@ -32,20 +31,11 @@ pub use dual_norm::DualNorm;
 pub use face::Direction;
 pub use near_null::NearNullSpace;
 
+pub use super::Width;
 use super::{FactorError, SymmetricMatrix, exponent, largest};
 use crate::error::Error;
 use face::FaceLevels;
 use hierarchy::Hierarchy;
-
-/// The precision in which the levels are stored; the iteration around them is always in double precision.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Precision {
-    /// Half the memory, and the same number of cycles except for nearly singular matrices.
-    #[default]
-    Single,
-    /// All digits.
-    Double,
-}
 
 /// The hierarchy of a symmetric positive (semi)definite matrix: one cycle approximates its inverse.
 #[derive(Debug)]
@@ -53,10 +43,21 @@ pub struct Multigrid {
     levels: Levels,
 }
 
+/// The levels in the precision in which they are stored; the iteration around them is always in double precision.
 #[derive(Debug)]
 enum Levels {
     Single(Hierarchy<f32>),
     Double(Hierarchy<f64>),
+}
+
+/// Calls a function of the levels in their precision.
+macro_rules! by_precision {
+    ($levels:expr, $hierarchy:ident => $call:expr) => {
+        match &$levels {
+            Levels::Single($hierarchy) => $call,
+            Levels::Double($hierarchy) => $call,
+        }
+    };
 }
 
 impl Multigrid {
@@ -67,8 +68,8 @@ impl Multigrid {
     /// [`Error::Length`] for a near-null space of other than n dofs, [`Error::NotConvex`] for a diagonal entry that is negative,
     /// or zero beside a coupling, and for a coarse matrix with a negative eigenvalue, [`Error::Numerical`] for lack of memory.
     pub fn new(matrix: &SymmetricMatrix, near_null: &NearNullSpace, threads: usize) -> Result<Self, Error> {
-        match Self::with_precision(matrix, near_null, threads, Precision::Single) {
-            Err(Error::NotConvex { .. }) => Self::with_precision(matrix, near_null, threads, Precision::Double),
+        match Self::with_precision(matrix, near_null, threads, Width::Single) {
+            Err(Error::NotConvex { .. }) => Self::with_precision(matrix, near_null, threads, Width::Double),
             built => built,
         }
     }
@@ -81,7 +82,7 @@ impl Multigrid {
         matrix: &SymmetricMatrix,
         near_null: &NearNullSpace,
         threads: usize,
-        precision: Precision,
+        precision: Width,
     ) -> Result<Self, Error> {
         if near_null.dofs() != matrix.dim() {
             let (found, expected) = (near_null.dofs(), matrix.dim());
@@ -89,18 +90,15 @@ impl Multigrid {
         }
         check_diagonal(matrix)?;
         let levels = match precision {
-            Precision::Single => Hierarchy::new(matrix, near_null, threads).map(Levels::Single),
-            Precision::Double => Hierarchy::new(matrix, near_null, threads).map(Levels::Double),
+            Width::Single => Hierarchy::new(matrix, near_null, threads).map(Levels::Single),
+            Width::Double => Hierarchy::new(matrix, near_null, threads).map(Levels::Double),
         };
         Ok(Multigrid { levels: levels.map_err(located)? })
     }
 
     /// One cycle: approximately the solution x of A x = b, linear in b and symmetric.
     pub fn cycle(&self, b: &[f64]) -> Vec<f64> {
-        match &self.levels {
-            Levels::Single(hierarchy) => hierarchy.cycle(b, to_order_one(b), None),
-            Levels::Double(hierarchy) => hierarchy.cycle(b, to_order_one(b), None),
-        }
+        by_precision!(self.levels, hierarchy => hierarchy.cycle(b, to_order_one(b), None))
     }
 
     /// The hierarchy if nothing moves along `directions`, orthonormal vectors of few dofs each; `last` is a face of the same
@@ -126,34 +124,22 @@ impl Multigrid {
 
     /// Number of threads.
     pub fn threads(&self) -> usize {
-        match &self.levels {
-            Levels::Single(hierarchy) => hierarchy.threads,
-            Levels::Double(hierarchy) => hierarchy.threads,
-        }
+        by_precision!(self.levels, hierarchy => hierarchy.threads)
     }
 
     /// Unknowns of each level, the finest first.
     pub fn unknowns(&self) -> Vec<usize> {
-        match &self.levels {
-            Levels::Single(hierarchy) => hierarchy.unknowns(),
-            Levels::Double(hierarchy) => hierarchy.unknowns(),
-        }
+        by_precision!(self.levels, hierarchy => hierarchy.unknowns())
     }
 
     /// Bytes of memory that it holds.
     pub fn bytes(&self) -> usize {
-        match &self.levels {
-            Levels::Single(hierarchy) => hierarchy.bytes(),
-            Levels::Double(hierarchy) => hierarchy.bytes(),
-        }
+        by_precision!(self.levels, hierarchy => hierarchy.bytes())
     }
 
     /// Returns `true` if the matrix was singular to the precision of its levels, so that the coarsest one was shifted.
     pub fn is_shifted(&self) -> bool {
-        match &self.levels {
-            Levels::Single(hierarchy) => hierarchy.is_shifted(),
-            Levels::Double(hierarchy) => hierarchy.is_shifted(),
-        }
+        by_precision!(self.levels, hierarchy => hierarchy.coarsest.is_shifted)
     }
 }
 
@@ -182,8 +168,8 @@ impl Face<'_> {
     /// shifted.
     pub fn is_shifted(&self) -> bool {
         match &self.levels {
-            LevelsInFace::Single(_, face) => face.coarsest.is_shifted(),
-            LevelsInFace::Double(_, face) => face.coarsest.is_shifted(),
+            LevelsInFace::Single(_, face) => face.coarsest.is_shifted,
+            LevelsInFace::Double(_, face) => face.coarsest.is_shifted,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::nodes::Nodes;
 use crate::error::Error;
-use crate::qp::linear::{SymmetricMatrix, dot, largest};
+use crate::qp::linear::{SymmetricMatrix, check_vector, largest, norm, take_out};
 
 /// A vector follows from those before it if less than this share of its length is left after their components are removed.
 const DEPENDENT_VECTOR: f64 = 1e-8;
@@ -32,14 +32,7 @@ impl NearNullSpace {
             });
         }
         for vector in &vectors {
-            if vector.len() != dofs {
-                let found = vector.len();
-                return Err(Error::Length { name: "near-null vector", found, expected: dofs, of: "dofs" });
-            }
-            if let Some((dof, &value)) = vector.iter().enumerate().find(|entry| !entry.1.is_finite()) {
-                let at = format!("entry {dof}");
-                return Err(Error::NotFinite { name: "near-null vector", at, value, allowed: "finite" });
-            }
+            check_vector("near-null vector", vector, (dofs, "dofs"), f64::is_finite, "finite")?;
         }
         match first_dependent(&vectors) {
             Some(index) => Err(Error::Setting {
@@ -140,12 +133,11 @@ fn first_dependent(vectors: &[Vec<f64>]) -> Option<usize> {
             return Some(index);
         }
         let mut rest: Vec<f64> = vector.iter().map(|value| value / size).collect();
-        let whole = dot(&rest, &rest).sqrt();
+        let whole = norm(&rest);
         for known in &orthonormal {
-            let along = dot(known, &rest);
-            rest.iter_mut().zip(known).for_each(|(rest, known)| *rest -= along * known);
+            take_out(&mut rest, known);
         }
-        let length = dot(&rest, &rest).sqrt();
+        let length = norm(&rest);
         if length <= DEPENDENT_VECTOR * whole {
             return Some(index);
         }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::blocks::BlockMatrix;
-use super::real::Real;
+use crate::qp::linear::factor::Real;
 
 /// A matrix A minus the change by a face: on the finest level the face is the range of I - Q, on coarser ones A becomes A - C.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,8 @@
 
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
-use super::real::Real;
+use crate::qp::linear::factor::Real;
+use crate::qp::linear::grouped::grouped;
 use crate::qp::linear::threads::SharedRows;
 
 /// A near-null vector is no separate mode within an aggregate if less than this share of its length there is left after those
@@ -39,15 +40,7 @@ pub fn tentative<T: Real>(
     aggregates: usize,
 ) -> (BlockMatrix<T>, Candidates) {
     let count = fine.count;
-    let mut starts = vec![0_usize; aggregates + 1];
-    of_node.iter().for_each(|&aggregate| starts[aggregate as usize + 1] += 1);
-    (0..aggregates).for_each(|aggregate| starts[aggregate + 1] += starts[aggregate]);
-    let mut next = starts.clone();
-    let mut members = vec![0_usize; of_node.len()];
-    for (node, &aggregate) in of_node.iter().enumerate() {
-        members[next[aggregate as usize]] = node;
-        next[aggregate as usize] += 1;
-    }
+    let (starts, members) = grouped(aggregates, of_node);
     let mut values = vec![T::default(); of_node.len() * size * count];
     let mut coarse = Candidates { count, values: vec![0.0; aggregates * count * count] };
     let mut local: Vec<f64> = Vec::new();
