@@ -204,7 +204,9 @@ impl Factored {
             let of_whole = self.share_of_boundary(&loading, unit, on_boundary);
             examined.map_or(f64::INFINITY, |examined| examined.certificate.energy_error_bound * of_whole)
         };
-        let outcome = ScaledStep { scaled: &scaled, start, method, settings, bound: &bound }.outcome(step)?;
+        let (accuracy, most_iterations) = (settings.accuracy, settings.max_iterations);
+        let made = ScaledStep { scaled: &scaled, start, method, accuracy, most_iterations, bound: &bound };
+        let outcome = made.outcome(step)?;
         let factor_seconds = scaled.factor_seconds();
         Ok(outcome.map(|outcome| Reduced { loading, gap, problem, unit, outcome, factor_seconds, refined: None }))
     }

@@ -7,7 +7,7 @@ use crate::qp::method::interior_point::{Barrier, InteriorPoint};
 use crate::qp::method::penalty::{self, Penalty, PenaltyLoop};
 use crate::qp::method::{Ending, Outcome, ScaledProblem, Solver, Start};
 use crate::qp::plan::{PATIENCE, Step};
-use crate::qp::settings::{ByFactor, Settings};
+use crate::qp::settings::ByFactor;
 use crate::solution::ContactSet;
 
 /// A step on a scaled problem.
@@ -16,7 +16,9 @@ pub(super) struct ScaledStep<'a> {
     /// The set that it starts from, if one is known.
     pub start: Option<ContactSet>,
     pub method: ByFactor,
-    pub settings: &'a Settings,
+    /// The relative accuracy that is good enough.
+    pub accuracy: Option<f64>,
+    pub most_iterations: usize,
     /// The bound on the energy error of an answer (displacement, multiplier) to the scaled problem.
     pub bound: &'a dyn Fn(&[f64], &[f64]) -> f64,
 }
@@ -37,10 +39,10 @@ impl ScaledStep<'_> {
 
     /// The outcome of the method.
     fn by_method(self) -> Result<Outcome, Error> {
-        let ScaledStep { scaled, start, method, settings, bound } = self;
+        let ScaledStep { scaled, start, method, accuracy, most_iterations, bound } = self;
         let Some(cold) = scaled.start()? else { return Ok(Outcome::at_rest(scaled.problem, Ending::Unheld)) };
         let by_sets = |start: ContactSet| {
-            ActiveSet { scaled, most_iterations: settings.max_iterations.min(PATIENCE) }.solve(start.into())
+            ActiveSet { scaled, most_iterations: most_iterations.min(PATIENCE) }.solve(start.into())
         };
         match method {
             ByFactor::Qp(InteriorPoint { polish: true, tolerance }) => match start {
@@ -58,8 +60,8 @@ impl ScaledStep<'_> {
                 Barrier { scaled, tolerance }.solve(Start::default())
             }
             ByFactor::Penalty(ladder) => {
-                let goal = settings.accuracy.map(|accuracy| penalty::Goal { accuracy, bound });
-                let climb = PenaltyLoop { scaled, ladder, goal, most_iterations: settings.max_iterations };
+                let goal = accuracy.map(|accuracy| penalty::Goal { accuracy, bound });
+                let climb = PenaltyLoop { scaled, ladder, goal, most_iterations };
                 climb.solve(start.unwrap_or(cold).into())
             }
             ByFactor::ActiveSet => by_sets(start.unwrap_or(cold)),
@@ -75,7 +77,7 @@ impl ScaledStep<'_> {
     /// K. Ito and K. Kunisch, *Semi-smooth Newton methods for variational inequalities of the first kind*, ESAIM: M2AN 37
     /// (2003) 41-62.
     fn continued(self) -> Result<Outcome, Error> {
-        let (scaled, most_iterations) = (self.scaled, self.settings.max_iterations);
+        let (scaled, most_iterations) = (self.scaled, self.most_iterations);
         let ladder = Penalty { penetration_threshold: 0.0, ..Penalty::default() };
         let start = self.start.unwrap_or_else(|| ContactSet::open(scaled.problem.rows()));
         let approach = PenaltyLoop { scaled, ladder, goal: None, most_iterations }.solve(start.into())?;
