@@ -69,6 +69,7 @@ fn check_room(problem: &ContactProblem, settings: &Settings) -> Result<(), Error
 ///
 /// # Errors
 /// [`Error::Infeasible`] for contact rows that contradict each other; if that is not decided, they count as met.
+#[cfg(feature = "cli")]
 pub(super) fn check_rows(problem: &ContactProblem, settings: &Settings, solve: Solve) -> Result<(), Error> {
     problem.check_rows()?;
     let scaling = Scaling::of(problem.stiffness(), problem.contact())?;

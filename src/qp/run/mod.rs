@@ -5,5 +5,7 @@ mod carried_out;
 mod ending;
 mod pieces;
 
+#[cfg(feature = "cli")]
+pub(super) use carried_out::solve_any;
 pub(crate) use carried_out::solved;
-pub(super) use carried_out::{Run, Workbench, engine_by, solve_any};
+pub(super) use carried_out::{Run, Workbench, engine_by};
