@@ -3,7 +3,7 @@
 use super::{
     colour::{FAINT, GRID, INK},
     drawing::{Anchor, Drawing, Paint},
-    ticks::{Quantity, Scale, Ticks},
+    ticks::{Quantity, Scale, Ticks, common_exponent},
     typeface::{self, Weight},
 };
 
@@ -165,6 +165,32 @@ impl Frame {
             let baseline = x0 - TICK - GAP - self.y.widest() - 2.0 * GAP;
             drawing.upward_text([baseline, y0 + 0.5 * height], &label, size, Anchor::Middle);
         }
+    }
+}
+
+/// The axes of a plane that is drawn with the same scale in both directions.
+pub(crate) struct Plane {
+    /// Width and height in pixels.
+    pub size: [f64; 2],
+    pub x: Axis,
+    pub y: Axis,
+}
+
+impl Plane {
+    /// The axes of a window `[[x from, x to], [y from, y to]]`, as large as the larger of two sizes in pixels allows; white space fills
+    /// what is missing to the smaller one.
+    pub fn of([mut x, mut y]: [[f64; 2]; 2], [most, least]: [[f64; 2]; 2], names: &[Quantity; 2]) -> Self {
+        let scale = (most[0] / (x[1] - x[0])).min(most[1] / (y[1] - y[0]));
+        for (range, smallest) in [(&mut x, least[0]), (&mut y, least[1])] {
+            let missing = 0.5 * (smallest / scale - (range[1] - range[0])).max(0.0);
+            *range = [range[0] - missing, range[1] + missing];
+        }
+        let size = [x, y].map(|range| scale * (range[1] - range[0]));
+        // One factor for both axes; otherwise one length would have two different numbers.
+        let exponent = common_exponent([x, y].as_flattened().iter().fold(0.0, |largest, end| end.abs().max(largest)));
+        let x = Axis::horizontal(&names[0], Scale::Linear, x, size[0]).in_powers_of(&names[0], exponent);
+        let y = Axis::vertical(&names[1], Scale::Linear, y, size[1]).in_powers_of(&names[1], exponent);
+        Plane { size, x, y }
     }
 }
 

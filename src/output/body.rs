@@ -4,15 +4,15 @@ use std::borrow::Cow;
 
 use super::{
     arrows::{self, Arrow},
-    axes::{Axis, Frame, LARGE, LINE, Labels, ROOM_BELOW, TITLE, draw_heading},
+    axes::{Frame, LARGE, LINE, Labels, Plane, ROOM_BELOW, TITLE, draw_heading},
     colour_bar::{ColourRange, Outside},
     drawing::{Anchor, Drawing},
     legend::{self, Entry},
     magnified::obstacle_name,
-    mark::Candidate,
+    mark,
     medium::Medium,
     obstacle,
-    ticks::{Quantity, Scale, brief, common_exponent},
+    ticks::{Quantity, Scale, brief},
     typeface::{self, Weight},
 };
 use crate::error::Error;
@@ -224,23 +224,14 @@ impl ContactPicture<'_> {
     }
 
     /// Frames with the same window and the same scale in both directions: one for each field, then that of the displaced mesh.
-    fn layout(&self, [mut x, mut y]: [[f64; 2]; 2]) -> Layout {
+    fn layout(&self, window: [[f64; 2]; 2]) -> Layout {
         let (count, columns, margin) = (self.fields.len() + 1, self.columns(), self.medium.margin());
         let most = match self.medium {
             Medium::Screen => PANELS[usize::from(count > 2)],
             Medium::Paper => PAPER_PANEL,
         };
-        let scale = (most[0] / (x[1] - x[0])).min(most[1] / (y[1] - y[0]));
-        for (range, smallest) in [(&mut x, SMALLEST[0]), (&mut y, SMALLEST[1])] {
-            let missing = 0.5 * (smallest / scale - (range[1] - range[0])).max(0.0);
-            *range = [range[0] - missing, range[1] + missing];
-        }
-        let size = [x, y].map(|range| scale * (range[1] - range[0]));
         let names = self.axes.map(|name| Quantity::new(name, self.length_unit));
-        // One factor for both axes; otherwise one length would have two different numbers.
-        let exponent = common_exponent([x, y].as_flattened().iter().fold(0.0, |largest, end| end.abs().max(largest)));
-        let horizontal = Axis::horizontal(&names[0], Scale::Linear, x, size[0]).in_powers_of(&names[0], exponent);
-        let vertical = Axis::vertical(&names[1], Scale::Linear, y, size[1]).in_powers_of(&names[1], exponent);
+        let Plane { size, x: horizontal, y: vertical } = Plane::of(window, [most, SMALLEST], &names);
         let overhang = horizontal.overhang();
         let column = size[0].max(if self.medium == Medium::Paper { PAPER_PANEL[0] } else { COLUMN });
         let aside = 0.5 * (column - size[0]);
@@ -266,18 +257,7 @@ impl ContactPicture<'_> {
     }
 
     fn legend(&self, frame: &Frame) -> Vec<Entry<'_>> {
-        let closed = self.closed.iter().filter(|&&closed| closed).count();
-        let open = self.closed.len() - closed;
-        let counts = [("closed nodes", closed, Candidate::Closed), ("open candidates", open, Candidate::Open)];
-        let mut entries: Vec<Entry> = counts
-            .into_iter()
-            .filter(|&(_, count, _)| count > 0)
-            .map(|(name, count, mark)| Entry {
-                name: format!("{name} ({count})"),
-                key_width: 12.0,
-                key: Box::new(move |drawing, centre| mark.draw(drawing, centre, 5.0)),
-            })
-            .collect();
+        let mut entries = mark::entries(self.closed);
         if !self.obstacles.is_empty() {
             let is_seen = self.obstacles.iter().any(|obstacle| obstacle.is_seen(frame));
             let name = if is_seen { obstacle_name(self.magnification) } else { "obstacle: outside the picture" };

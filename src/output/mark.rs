@@ -3,6 +3,7 @@
 use super::{
     colour::{Colour, WHITE},
     drawing::{Drawing, Paint},
+    legend::Entry,
 };
 
 const CLOSED: Colour = Colour(0xd5, 0x2b, 0x1e);
@@ -22,4 +23,17 @@ impl Candidate {
             Candidate::Open => drawing.circle(place, 0.62 * radius, &Paint::fill(WHITE).with_stroke(OPEN, 1.1)),
         }
     }
+}
+
+/// An entry for the closed candidates and one for the open ones, with their numbers; `closed` has a flag for each candidate.
+pub(super) fn entries(closed: &[bool]) -> Vec<Entry<'static>> {
+    let count = closed.iter().filter(|&&closed| closed).count();
+    let counts =
+        [("closed nodes", count, Candidate::Closed), ("open candidates", closed.len() - count, Candidate::Open)];
+    let entry = |(name, count, mark): (&str, usize, Candidate)| Entry {
+        name: format!("{name} ({count})"),
+        key_width: 12.0,
+        key: Box::new(move |drawing, centre| mark.draw(drawing, centre, 5.0)),
+    };
+    counts.into_iter().filter(|&(_, count, _)| count > 0).map(entry).collect()
 }

@@ -1,14 +1,12 @@
 //! The contact of a body in space with an obstacle, in plan view.
 
 use super::{
-    axes::{Axis, Frame, Labels, ROOM_BELOW},
+    axes::{Frame, Labels, Plane, ROOM_BELOW},
     body::{ContactPicture, FieldPanel},
     colour_bar::ColourRange,
     drawing::Drawing,
-    legend::Entry,
-    mark::Candidate,
     medium::Medium,
-    ticks::{Quantity, Scale, common_exponent},
+    ticks::Quantity,
 };
 
 /// Room for the plan view, on a screen and on paper.
@@ -36,15 +34,10 @@ pub(super) struct Plan {
 impl Plan {
     /// The frame of the plan view; its corner gives the room left of the frame.
     pub fn frame(&self, length_unit: &str, medium: Medium) -> Frame {
-        let [x, y] = self.window;
-        let room = PLANS[medium as usize];
-        let scale = (room[0] / (x[1] - x[0])).min((room[1] - ROOM_BELOW) / (y[1] - y[0]));
-        let size = [scale * (x[1] - x[0]), scale * (y[1] - y[0])];
+        let [across, down] = PLANS[medium as usize];
         let names = self.axes.map(|name| Quantity::new(name, length_unit));
-        let exponent = common_exponent([x, y].as_flattened().iter().fold(0.0, |largest, end| end.abs().max(largest)));
-        let horizontal = Axis::horizontal(&names[0], Scale::Linear, x, size[0]).in_powers_of(&names[0], exponent);
-        let vertical = Axis::vertical(&names[1], Scale::Linear, y, size[1]).in_powers_of(&names[1], exponent);
-        Frame { corner: [vertical.room_left(), 0.0], size, x: horizontal, y: vertical }
+        let Plane { size, x, y } = Plane::of(self.window, [[across, down - ROOM_BELOW], [0.0; 2]], &names);
+        Frame { corner: [y.room_left(), 0.0], size, x, y }
     }
 
     fn picture<'a>(
@@ -87,21 +80,5 @@ impl Plan {
         picture.draw_plan(drawing, frame);
         frame.draw_axes(drawing, Labels::Both);
         range.draw(drawing, bar_at, bar, fields[0].outside(limits));
-    }
-
-    pub fn entries(&self) -> Vec<Entry<'_>> {
-        let closed = self.closed.iter().filter(|&&closed| closed).count();
-        let counts = [
-            ("closed nodes", closed, Candidate::Closed),
-            ("open candidates", self.closed.len() - closed, Candidate::Open),
-        ];
-        let shown = counts.into_iter().filter(|&(_, count, _)| count > 0);
-        shown
-            .map(|(name, count, mark)| Entry {
-                name: format!("{name} ({count})"),
-                key_width: 12.0,
-                key: Box::new(move |drawing, centre| mark.draw(drawing, centre, 5.0)),
-            })
-            .collect()
     }
 }

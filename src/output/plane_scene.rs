@@ -13,6 +13,7 @@ use super::ticks::{Quantity, amount, brief};
 use super::write_picture;
 use crate::error::Error;
 use crate::fem::mesh::Mesh;
+use crate::fem::recovery::Stress;
 use crate::scene::{Answer, Model};
 
 /// Pieces of the line of an obstacle.
@@ -21,16 +22,13 @@ pub(super) const OUTLINE_SEGMENTS: usize = 400;
 /// The content of one picture.
 pub(super) struct PlaneScene {
     title: String,
-    axes: [&'static str; 2],
-    length_unit: String,
-    quantities: [Quantity; 2],
-    nodes: Vec<[f64; 2]>,
+    pub axes: [&'static str; 2],
+    pub length_unit: String,
+    pub nodes: Vec<[f64; 2]>,
     elements: Vec<Vec<usize>>,
     displacement: Vec<f64>,
-    /// Second principal stress and von Mises stress.
-    fields: [Vec<f64>; 2],
-    /// The range of each field without singular nodes.
-    limits: [[f64; 2]; 2],
+    /// Second principal stress and von Mises stress; none before the model is solved.
+    fields: Vec<Field>,
     /// The largest stress.
     largest: f64,
     /// Magnification of the displacement that suits this answer.
@@ -41,8 +39,18 @@ pub(super) struct PlaneScene {
     arrows: Vec<Arrow>,
 }
 
+/// A field at the nodes.
+struct Field {
+    quantity: Quantity,
+    values: Vec<f64>,
+    /// Its range without singular nodes.
+    limits: [f64; 2],
+}
+
 /// The surface of a rigid obstacle.
 struct Outline {
+    /// Its number in the model.
+    obstacle: usize,
     line: Vec<[f64; 2]>,
     inside: [f64; 2],
     /// Its shift in the picture for each unit of magnification beyond 1.
@@ -50,41 +58,69 @@ struct Outline {
 }
 
 impl PlaneScene {
-    pub(super) fn new(answer: &Answer, title: String) -> Result<Self, Error> {
-        let (model, set) = (answer.model(), answer.contact_set());
+    /// The model before it is solved.
+    #[cfg(feature = "cli")]
+    pub(super) fn of_model(model: &Model) -> Self {
+        let mut scene = PlaneScene::unsolved(model, |index| model.obstacles()[index].shift(model.gap()));
+        scene.elements = scene.polygons(model.mesh());
+        scene
+    }
+
+    /// Nodes, candidates and obstacles, each moved by its `shift`; nothing is displaced, and no candidate is closed.
+    fn unsolved(model: &Model, shift: impl Fn(usize) -> f64) -> Self {
         let mut candidates: Vec<usize> = model.rows().iter().map(|row| row.node).collect();
         candidates.sort_unstable();
         candidates.dedup();
-        let mut is_closed = vec![false; model.mesh().nodes().len()];
-        set.iter().for_each(|row| is_closed[model.rows()[row].node] = true);
-        let stress = &answer.stress()?.nodes;
+        let nodes: Vec<[f64; 2]> = model.mesh().nodes().iter().map(|&[x, y, _]| [x, y]).collect();
+        let rigid = (0..model.obstacles().len()).filter(|&index| model.obstacles()[index].rigid().is_some());
+        let outline = |index: usize| {
+            let [x, y, _] = model.obstacles()[index].approach();
+            let line = model.obstacles()[index].outline(shift(index), OUTLINE_SEGMENTS);
+            Outline { obstacle: index, line, inside: [x, y], carried: [0.0; 2] }
+        };
+        PlaneScene {
+            title: String::new(),
+            axes: axes(model),
+            length_unit: model.units().length.clone(),
+            elements: Vec::new(),
+            displacement: vec![0.0; 2 * nodes.len()],
+            nodes,
+            fields: Vec::new(),
+            largest: 0.0,
+            magnification: 1.0,
+            obstacles: rigid.map(outline).collect(),
+            closed: vec![false; candidates.len()],
+            candidates,
+            arrows: Vec::new(),
+        }
+    }
+
+    pub(super) fn new(answer: &Answer, title: String) -> Result<Self, Error> {
+        let (model, stress) = (answer.model(), &answer.stress()?.nodes);
         let largest = stress.iter().fold(0.0, |largest: f64, of| largest.max(of.sigma_1.abs()).max(of.sigma_2.abs()));
         // Values this small beside the largest stress are rounding.
         let without_rounding = |value: f64| if value.abs() <= ROUNDING * largest { 0.0 } else { value };
-        let stress_unit = model.units().pressure();
-        let mut scene = PlaneScene {
-            title,
-            axes: axes(model),
-            length_unit: model.units().length.clone(),
-            quantities: ["second principal stress σ₂", "von Mises stress"]
-                .map(|name| Quantity::new(name, &stress_unit)),
-            nodes: model.mesh().nodes().iter().map(|&[x, y, _]| [x, y]).collect(),
-            elements: Vec::new(),
-            displacement: answer.displacement().to_vec(),
-            fields: [
-                stress.iter().map(|of| without_rounding(of.sigma_2)).collect(),
-                stress.iter().map(|of| without_rounding(of.von_mises)).collect(),
-            ],
-            limits: [[f64::NAN; 2]; 2],
-            largest,
-            magnification: magnification(answer),
-            obstacles: outlines(answer),
-            closed: candidates.iter().map(|&node| is_closed[node]).collect(),
-            candidates,
-            arrows: arrows(answer)?,
-        };
         let singular = singular(model);
-        scene.limits = [0, 1].map(|field| limits_without(&singular, &scene.fields[field]));
+        let field = |name: &str, of: fn(&Stress) -> f64| {
+            let values: Vec<f64> = stress.iter().map(|stress| without_rounding(of(stress))).collect();
+            let (quantity, limits) =
+                (Quantity::new(name, model.units().pressure()), limits_without(&singular, &values));
+            Field { quantity, values, limits }
+        };
+        let fields = vec![
+            field("second principal stress σ₂", |stress| stress.sigma_2),
+            field("von Mises stress", |stress| stress.von_mises),
+        ];
+        let (displacement, magnification, arrows) =
+            (answer.displacement().to_vec(), magnification(answer), arrows(answer)?);
+        let unsolved = PlaneScene::unsolved(model, |index| answer.shift(index));
+        let mut scene = PlaneScene { title, displacement, fields, largest, magnification, arrows, ..unsolved };
+        let mut is_closed = vec![false; model.mesh().nodes().len()];
+        answer.contact_set().iter().for_each(|row| is_closed[model.rows()[row].node] = true);
+        scene.closed = scene.candidates.iter().map(|&node| is_closed[node]).collect();
+        for outline in &mut scene.obstacles {
+            outline.carried = [0, 1].map(|axis| drawn_shift(answer, outline.obstacle, 2.0)[axis]);
+        }
         scene.elements = scene.polygons(model.mesh());
         Ok(scene)
     }
@@ -121,10 +157,10 @@ impl PlaneScene {
             |value: &dyn Fn(usize) -> f64| ends.iter().zip(WEIGHTS).map(|(&end, weight)| weight * value(end)).sum();
         let place = [0, 1].map(|axis| mean(&|node| self.nodes[node][axis]));
         let moved: [f64; 2] = [0, 1].map(|axis| mean(&|node| self.displacement[2 * node + axis]));
-        let values: [f64; 2] = [0, 1].map(|field| mean(&|node| self.fields[field][node]));
+        let values: Vec<f64> = self.fields.iter().map(|field| mean(&|node| field.values[node])).collect();
         self.nodes.push(place);
         self.displacement.extend(moved);
-        self.fields.iter_mut().zip(values).for_each(|(field, value)| field.push(value));
+        self.fields.iter_mut().zip(values).for_each(|(field, value)| field.values.push(value));
         self.nodes.len() - 1
     }
 
@@ -139,8 +175,12 @@ impl PlaneScene {
 
     /// The fields, each with its own range as the ends of its colours.
     pub(super) fn fields(&self) -> Vec<FieldPanel<'_>> {
-        let panels = self.fields.iter().zip(&self.quantities).zip(self.limits);
-        panels.map(|((values, quantity), limits)| FieldPanel { values, quantity: quantity.clone(), limits }).collect()
+        let panels = self.fields.iter().map(|Field { quantity, values, limits }| FieldPanel {
+            values,
+            quantity: quantity.clone(),
+            limits: *limits,
+        });
+        panels.collect()
     }
 
     /// The scene by itself, with its own magnification.
@@ -193,20 +233,6 @@ pub(super) fn axes(model: &Model) -> [&'static str; 2] {
     if model.body().formulation().is_axisymmetric() { ["r", "z"] } else { ["x", "y"] }
 }
 
-fn outlines(answer: &Answer) -> Vec<Outline> {
-    let model = answer.model();
-    let rigid = (0..model.obstacles().len()).filter(|&index| model.obstacles()[index].rigid().is_some());
-    let outline = |index: usize| {
-        let [x, y, _] = model.obstacles()[index].approach();
-        Outline {
-            line: model.obstacles()[index].outline(answer.shift(index), OUTLINE_SEGMENTS),
-            inside: [x, y],
-            carried: [0, 1].map(|axis| drawn_shift(answer, index, 2.0)[axis]),
-        }
-    };
-    rigid.map(outline).collect()
-}
-
 /// Contact forces, reactions of supports and loads, each with its point of application and the displacement of that point.
 fn arrows(answer: &Answer) -> Result<Vec<Arrow>, Error> {
     let model = answer.model();
@@ -242,14 +268,15 @@ pub(super) fn draw_series(
 ) -> Result<(), Error> {
     let leading_scenes = || series.iter().take(leading).map(|(_, scene)| scene);
     let magnification = leading_scenes().map(|scene| scene.magnification).fold(f64::INFINITY, f64::min);
-    let limits = [0, 1].map(|field| match common_limits(leading_scenes().map(|scene| &scene.limits[field][..])) {
-        // If this field is zero, the other fields give the scale of a small stress.
-        [low, high] if low == 0.0 && high == 0.0 => {
-            let largest = leading_scenes().map(|scene| scene.largest).fold(0.0, f64::max);
-            [-largest, largest]
-        }
-        limits => limits,
-    });
+    let limits =
+        [0, 1].map(|field| match common_limits(leading_scenes().map(|scene| &scene.fields[field].limits[..])) {
+            // If this field is zero, the other fields give the scale of a small stress.
+            [low, high] if low == 0.0 && high == 0.0 => {
+                let largest = leading_scenes().map(|scene| scene.largest).fold(0.0, f64::max);
+                [-largest, largest]
+            }
+            limits => limits,
+        });
     let outlines: Vec<_> = series.iter().map(|(_, scene)| scene.obstacles(magnification)).collect();
     let lines: Vec<Vec<ObstacleLine>> = outlines.iter().map(|outlines| lines(outlines)).collect();
     let fields: Vec<Vec<FieldPanel>> = series

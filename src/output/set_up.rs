@@ -1,18 +1,17 @@
 //! The picture of a scene before it is solved: body, mesh, supports, loads, and the obstacles at their gap.
 
 use super::{
-    ContactPicture, Quantity,
-    axes::{Axis, Frame, LINE, Labels, MARGIN, ROOM_BELOW, TITLE, draw_heading},
+    Quantity,
+    axes::{Frame, LINE, Labels, MARGIN, Plane, ROOM_BELOW, TITLE, draw_heading},
     colour::{Colour, PALETTE, WHITE},
     drawing::{Drawing, Paint},
     gallery::headline,
     legend::{self, Entry},
     mark::Candidate,
-    medium::Medium,
     obstacle::{self, ObstacleLine},
-    plane_scene::{OUTLINE_SEGMENTS, axes, pressing_amounts, state},
+    plane_scene::{PlaneScene, lines, pressing_amounts, state},
     space_scene::space_set_up,
-    ticks::{Scale, amount, brief, common_exponent},
+    ticks::{amount, brief},
     typeface::{self, Weight},
 };
 use crate::error::Error;
@@ -54,13 +53,14 @@ pub(crate) fn set_up_picture(model: &Model) -> Result<Drawing, Error> {
         3 => return Ok(space_set_up(model, &title)),
         _ => {}
     }
-    let shown = Shown::of(model);
-    let lines: Vec<ObstacleLine> =
-        shown.outlines.iter().map(|(points, inside)| ObstacleLine { points, inside: *inside }).collect();
-    let picture = shown.picture(&lines);
-    let (frame, title) = framed(obstacle::window(shown.nodes.iter().copied(), &lines), &shown, &title);
-    let arrows = arrows(model, &shown, &frame);
-    let symbols = symbols(model.held_nodes(), &shown, &frame);
+    let scene = PlaneScene::of_model(model);
+    let outlines = scene.obstacles(1.0);
+    let lines = lines(&outlines);
+    let picture = scene.picture(&[], &lines, 1.0);
+    let (frame, title) = framed(obstacle::window(scene.nodes.iter().copied(), &lines), &scene, &title);
+    let body = Outwards::of(model);
+    let arrows = arrows(model, &body, &frame);
+    let symbols = symbols(model.held_nodes(), &body, &frame);
     let entries = entries(model, &symbols, !arrows.is_empty(), (&lines, &frame));
 
     let width = frame.corner[0] + frame.size[0] + MARGIN + frame.x.overhang();
@@ -68,7 +68,7 @@ pub(crate) fn set_up_picture(model: &Model) -> Result<Drawing, Error> {
     let available = width - 2.0 * MARGIN;
     let mut drawing = Drawing::new(width, below + legend::rows_height(&entries, available) + MARGIN);
     draw_heading(&mut drawing, &title, 0.5 * width, MARGIN);
-    picture.draw_moved(&mut drawing, &frame, &shown.nodes);
+    picture.draw_moved(&mut drawing, &frame, &scene.nodes);
     drawing.clipped(frame.corner, frame.size, |drawing| {
         symbols.iter().for_each(|symbol| symbol.draw(drawing));
         arrows.iter().for_each(|[from, to]| draw_arrow(drawing, *from, *to));
@@ -90,99 +90,40 @@ fn title(model: &Model) -> String {
     parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
-/// The content of the picture, as plain data.
-struct Shown {
-    axes: [&'static str; 2],
-    length_unit: String,
+/// The nodes of a body, each with the vector from the mean of the centroids of the cells around it; it points out of the body at nodes of
+/// the boundary.
+struct Outwards {
     nodes: Vec<[f64; 2]>,
-    elements: Vec<Vec<usize>>,
-    nothing: Vec<f64>,
-    outlines: Vec<(Vec<[f64; 2]>, [f64; 2])>,
-    candidates: Vec<usize>,
-    open: Vec<bool>,
-    /// Vector from the middle of the cells around each node to the node; it points out of the body at nodes of the boundary.
     out: Vec<[f64; 2]>,
 }
 
-impl Shown {
+impl Outwards {
     fn of(model: &Model) -> Self {
         let mesh = model.mesh();
         let nodes: Vec<[f64; 2]> = mesh.nodes().iter().map(|&[x, y, _]| [x, y]).collect();
-        let corners = mesh.kind().corners();
-        let mut candidates: Vec<usize> = model.rows().iter().map(|row| row.node).collect();
-        candidates.sort_unstable();
-        candidates.dedup();
-        let rigid = (0..model.obstacles().len()).filter(|&index| model.obstacles()[index].rigid().is_some());
-        let outline = |index: usize| {
-            let [x, y, _] = model.obstacles()[index].approach();
-            (model.obstacle_outline(index, OUTLINE_SEGMENTS), [x, y])
+        let (mut sums, mut counts) = (vec![[0.0; 2]; nodes.len()], vec![0.0_f64; nodes.len()]);
+        for element in mesh.elements() {
+            let share = 1.0 / element.len().max(1) as f64;
+            let centroid = [0, 1].map(|axis| element.iter().map(|&node| share * nodes[node][axis]).sum::<f64>());
+            for &node in element {
+                counts[node] += 1.0;
+                (0..2).for_each(|axis| sums[node][axis] += centroid[axis]);
+            }
+        }
+        let out = |((node, sum), count): ((&[f64; 2], [f64; 2]), f64)| {
+            [0, 1].map(|axis| node[axis] - sum[axis] / count.max(1.0))
         };
-        let elements: Vec<Vec<usize>> = mesh.elements().map(|nodes| nodes[..corners].to_vec()).collect();
-        Shown {
-            axes: axes(model),
-            length_unit: model.units().length.clone(),
-            out: outwards(&nodes, &mesh.elements().map(<[usize]>::to_vec).collect::<Vec<_>>()),
-            elements,
-            nothing: vec![0.0; 2 * nodes.len()],
-            outlines: rigid.map(outline).collect(),
-            open: vec![false; candidates.len()],
-            candidates,
-            nodes,
-        }
+        let out = nodes.iter().zip(sums).zip(counts).map(out).collect();
+        Outwards { nodes, out }
     }
-
-    /// The mesh with its candidates under the obstacles, drawn by the panel of the displaced mesh of an answer.
-    fn picture<'a>(&'a self, obstacles: &'a [ObstacleLine<'a>]) -> ContactPicture<'a> {
-        ContactPicture {
-            title: "",
-            length_unit: &self.length_unit,
-            nodes: &self.nodes,
-            elements: &self.elements,
-            displacement: &self.nothing,
-            magnification: 1.0,
-            axes: self.axes,
-            fields: &[],
-            obstacles,
-            candidates: &self.candidates,
-            closed: &self.open,
-            arrows: &[],
-            medium: Medium::Screen,
-            window: None,
-        }
-    }
-}
-
-/// From the mean of the centroids of the cells around each node to the node.
-fn outwards(nodes: &[[f64; 2]], elements: &[Vec<usize>]) -> Vec<[f64; 2]> {
-    let (mut sums, mut counts) = (vec![[0.0; 2]; nodes.len()], vec![0.0_f64; nodes.len()]);
-    for element in elements {
-        let share = 1.0 / element.len().max(1) as f64;
-        let centroid = [0, 1].map(|axis| element.iter().map(|&node| share * nodes[node][axis]).sum::<f64>());
-        for &node in element {
-            counts[node] += 1.0;
-            (0..2).for_each(|axis| sums[node][axis] += centroid[axis]);
-        }
-    }
-    let out =
-        |((node, sum), count): ((&[f64; 2], [f64; 2]), f64)| [0, 1].map(|axis| node[axis] - sum[axis] / count.max(1.0));
-    nodes.iter().zip(sums).zip(counts).map(out).collect()
 }
 
 /// The frame of a window with room around it, under a title in lines.
-fn framed(window: [[f64; 2]; 2], shown: &Shown, title: &str) -> (Frame, Vec<String>) {
+fn framed(window: [[f64; 2]; 2], scene: &PlaneScene, title: &str) -> (Frame, Vec<String>) {
     let longest = window.iter().map(|[low, high]| high - low).fold(0.0, f64::max);
-    let [mut x, mut y] = window.map(|[low, high]| [low - ROOM * longest, high + ROOM * longest]);
-    let scale = (PANEL[0] / (x[1] - x[0])).min(PANEL[1] / (y[1] - y[0]));
-    for (range, smallest) in [(&mut x, SMALLEST[0]), (&mut y, SMALLEST[1])] {
-        let missing = 0.5 * (smallest / scale - (range[1] - range[0])).max(0.0);
-        *range = [range[0] - missing, range[1] + missing];
-    }
-    let size = [x, y].map(|range| scale * (range[1] - range[0]));
-    let names = shown.axes.map(|name| Quantity::new(name, &shown.length_unit));
-    // One factor for both axes; otherwise one length would have two different numbers.
-    let exponent = common_exponent([x, y].as_flattened().iter().fold(0.0, |largest, end| end.abs().max(largest)));
-    let horizontal = Axis::horizontal(&names[0], Scale::Linear, x, size[0]).in_powers_of(&names[0], exponent);
-    let vertical = Axis::vertical(&names[1], Scale::Linear, y, size[1]).in_powers_of(&names[1], exponent);
+    let with_room = window.map(|[low, high]| [low - ROOM * longest, high + ROOM * longest]);
+    let names = scene.axes.map(|name| Quantity::new(name, &scene.length_unit));
+    let Plane { size, x: horizontal, y: vertical } = Plane::of(with_room, [PANEL, SMALLEST], &names);
     let left = MARGIN + vertical.room_left();
     let title = typeface::wrapped(title, TITLE, Weight::Bold, left + size[0]);
     let top = MARGIN + TITLE * LINE * title.len() as f64 + 8.0;
@@ -192,9 +133,9 @@ fn framed(window: [[f64; 2]; 2], shown: &Shown, title: &str) -> (Frame, Vec<Stri
 /// The arrows of the loads in pixels, from tail to tip; the loads of nodes in one square share an arrow.
 ///
 /// A pulling force begins at its point of application; a pressing force ends there.
-fn arrows(model: &Model, shown: &Shown, frame: &Frame) -> Vec<[[f64; 2]; 2]> {
+fn arrows(model: &Model, body: &Outwards, frame: &Frame) -> Vec<[[f64; 2]; 2]> {
     let mut squares = std::collections::BTreeMap::<[i64; 2], Gathered>::new();
-    for ((node, out), load) in shown.nodes.iter().zip(&shown.out).zip(model.nodal_load().chunks_exact(2)) {
+    for ((node, out), load) in body.nodes.iter().zip(&body.out).zip(model.nodal_load().chunks_exact(2)) {
         let size = load[0].hypot(load[1]);
         let place = frame.place(*node);
         if size > 0.0 && place.iter().all(|part| part.is_finite()) {
@@ -306,7 +247,7 @@ struct Symbol {
 }
 
 /// One symbol for each held node, unless another symbol is too close.
-fn symbols(held: Vec<HeldNode>, shown: &Shown, frame: &Frame) -> Vec<Symbol> {
+fn symbols(held: Vec<HeldNode>, body: &Outwards, frame: &Frame) -> Vec<Symbol> {
     let mut symbols: Vec<Symbol> = Vec::new();
     for HeldNode { node, hold, directions } in held {
         let direction = directions.first().copied().unwrap_or_default();
@@ -316,13 +257,13 @@ fn symbols(held: Vec<HeldNode>, shown: &Shown, frame: &Frame) -> Vec<Symbol> {
             Hold::Spring => Kind::Spring,
             Hold::RigidFace => Kind::RigidFace,
         };
-        let place = frame.place(shown.nodes[node]);
+        let place = frame.place(body.nodes[node]);
         let is_near =
             |other: &Symbol| other.kind == kind && (other.place[0] - place[0]).hypot(other.place[1] - place[1]) < APART;
         if place.iter().any(|part| !part.is_finite()) || symbols.iter().any(is_near) {
             continue;
         }
-        symbols.push(Symbol { kind, place, towards: towards(shown.out[node], direction, kind) });
+        symbols.push(Symbol { kind, place, towards: towards(body.out[node], direction, kind) });
     }
     symbols
 }

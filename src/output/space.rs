@@ -7,6 +7,7 @@ use super::{
     colour_bar::ColourRange,
     drawing::{Anchor, Drawing, Paint},
     legend::{self, Entry},
+    mark,
     medium::Medium,
     plan::Plan,
     ticks::{Scale, amount},
@@ -141,7 +142,7 @@ impl SpacePicture<'_> {
         let top = margin + TITLE * LINE * title.len() as f64 + LARGE * LINE + 14.0;
         let down = (size[1] + TRIAD).max(plan.as_ref().map_or(0.0, |(_, frame)| frame.size[1] + ROOM_BELOW));
         let below = top + down + 18.0;
-        let mut entries = plan.as_ref().map_or_else(Vec::new, |(plan, _)| plan.entries());
+        let mut entries = plan.as_ref().map_or_else(Vec::new, |(plan, _)| mark::entries(&plan.closed));
         if let Colouring::Faces { names, .. } = self.colouring {
             entries.extend(names.iter().map(|&(name, colour)| face_entry(name, colour)));
         }
