@@ -35,6 +35,8 @@ fn the_plan_of_ten_kinds_of_problem_is_printed_without_solving_them() {
         &[&["1. auto with a factor"], &of_factor[..], &["on all dofs", "mprgp"], &last].concat(),
     );
     assert!(by_choice.contains("The factor of 1: active-set, condensed to 21 dofs"), "{by_choice}");
+    let forms = ["condensed to the contact dofs, if that pays; ", "those of the rows last; ", "one factor at a time"];
+    comes_in_order(&by_choice, &forms);
 
     let by_name = plan(&desk, &square, &["--method", "active-set"]);
     comes_in_order(&by_name, &[&["1. active-set", "it was requested"], &of_factor[..], &last].concat());

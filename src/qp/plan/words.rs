@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::attempt::{Arrangement, Attempt, From, Means, Rung, Step, Tried, When};
+use super::attempt::{Arrangement, Attempt, From, Means, Rung, Step, Tried, When, WithFactor};
 use super::history::{Ended, History, Record};
 use super::ladder::Ladder;
 #[cfg(feature = "cli")]
@@ -80,6 +80,16 @@ impl Ladder {
     }
 }
 
+impl Ladder {
+    /// The attempts with a factor, by their numbers.
+    fn factors(&self) -> impl Iterator<Item = (usize, WithFactor)> {
+        self.attempts.iter().enumerate().filter_map(|(number, attempt)| match attempt.means {
+            Means::Factor(with) => Some((number, with)),
+            _ => None,
+        })
+    }
+}
+
 impl Step {
     fn in_words(self) -> &'static str {
         match self {
@@ -112,6 +122,16 @@ impl When {
             When::Doubtful => "if an answer has no bound",
             When::Exists => "if there is an answer, and none was found",
             When::WasDoubtful => "if that was open",
+        }
+    }
+}
+
+impl Arrangement {
+    fn in_words(self) -> &'static str {
+        match self {
+            Arrangement::Condensed => "condensed to the contact dofs, if that pays",
+            Arrangement::RowsLast => "all dofs, those of the rows last",
+            Arrangement::AnyOrder => "all dofs in the order of least work, one factor at a time if no more fit",
         }
     }
 }
@@ -152,11 +172,7 @@ impl Ladder {
     /// Those of the scaling, for numbers beyond the range of doubles.
     pub fn in_words(&self, problem: &ContactProblem, settings: &Settings) -> Result<String, Error> {
         let words = self.to_string();
-        let factors = self.attempts.iter().enumerate().filter_map(|(number, attempt)| match attempt.means {
-            Means::Factor(with) => Some((number, with)),
-            _ => None,
-        });
-        let Some((first, with)) = { factors }.next() else { return Ok(words) };
+        let Some((first, with)) = self.factors().next() else { return Ok(words) };
         let selection = RowSelection::of(problem.contact(), problem.gap());
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
         let layout = match Layout::within(problem, &scaling, &with, settings) {
@@ -187,6 +203,12 @@ impl fmt::Display for Ladder {
                 writeln!(f, "   - {}: {} ({})", rung.when.in_words(), rung.step.in_words(), rung.because)?;
             }
         }
-        Ok(())
+        match self.factors().next() {
+            Some((_, with)) => {
+                let words: Vec<&str> = with.arrangements.iter().map(|arrangement| arrangement.in_words()).collect();
+                writeln!(f, "A factor has the first of these forms that memory and time allow: {}.", words.join("; "))
+            }
+            None => Ok(()),
+        }
     }
 }
