@@ -29,6 +29,7 @@ mod entry;
 mod explain;
 mod files;
 mod held;
+mod json;
 #[cfg(feature = "cli")]
 mod json_schema;
 mod load;
@@ -61,7 +62,6 @@ mod springs;
 mod start;
 mod suspect;
 mod symmetry;
-mod syntax;
 mod unknowns;
 mod unstrained;
 mod warning;

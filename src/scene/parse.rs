@@ -1,12 +1,13 @@
 //! From text to a typed scene: every failure has a path, a line and a column.
 
-use std::borrow::Cow;
 use std::io;
 use std::path::Path;
 
+use serde::Deserialize;
+
 use super::Scene;
-use super::schema::json::object;
-use super::syntax::Fault;
+use super::absent::other_format;
+use super::json::{Typed, line_and_column, parsed, plain};
 use crate::error::Error;
 use crate::file::{MOST_OF_SCENE, read_text_capped};
 
@@ -16,19 +17,13 @@ impl Scene {
     /// # Errors
     /// [`Error::SceneSyntax`] for text that is not JSON, or does not have the form of a scene.
     pub fn from_json(text: &str, source_name: &str) -> Result<Scene, Error> {
-        // Some editors write a byte order mark at the start.
-        let text = without_comments(text.strip_prefix('\u{feff}').unwrap_or(text));
-        let mut json = serde_json::Deserializer::from_str(&text);
-        let mut track = serde_path_to_error::Track::new();
-        let scene = object(serde_path_to_error::Deserializer::new(&mut json, &mut track));
-        let fail = |path: String, error: serde_json::Error| {
-            let (line, column) = (error.line(), error.column().max(1));
-            let (path, message) = Fault { text: &text, path, error }.in_words();
+        let text = plain(text);
+        parsed(&text).and_then(|scene| Scene::deserialize(Typed(&scene))).map_err(|fault| {
+            let (line, column) = line_and_column(&text, fault.at.unwrap_or_default());
+            let message = other_format(&text).unwrap_or_else(|| fault.to_string());
+            let path = if fault.path.is_empty() { ".".into() } else { fault.path };
             Error::SceneSyntax { source_name: source_name.into(), line, column, path, message }
-        };
-        let scene = scene.map_err(|error| fail(known_path(track), error))?;
-        json.end().map_err(|error| fail(".".into(), error))?;
-        Ok(scene)
+        })
     }
 
     /// Reads a scene from a JSON file; relative names of other files start in its folder.
@@ -44,22 +39,5 @@ impl Scene {
         let text = read_text_capped(path, MOST_OF_SCENE)?;
         let scene = Self::from_json(&text, &path.display().to_string())?;
         Ok(Scene { folder: path.parent().map(Path::to_path_buf), ..scene })
-    }
-}
-
-/// The text with empty lines instead of comments, so that all other lines keep their numbers.
-fn without_comments(text: &str) -> Cow<'_, str> {
-    let is_comment = |line: &str| line.trim_start().starts_with("//");
-    if !text.lines().any(is_comment) {
-        return Cow::Borrowed(text);
-    }
-    Cow::Owned(text.split('\n').map(|line| if is_comment(line) { "" } else { line }).collect::<Vec<_>>().join("\n"))
-}
-
-/// The position of the parser, without the key that it could not read.
-fn known_path(track: serde_path_to_error::Track) -> String {
-    match track.path().to_string().trim_end_matches('?').trim_end_matches('.') {
-        "" => ".".into(),
-        path => path.into(),
     }
 }

@@ -7,7 +7,6 @@ use crate::error::Error;
 use crate::fem::mesh::{Boundary, ElementKind, FacetKind, Mesh, check_lines};
 use crate::fem::{Axis, Integration};
 use crate::scene::files::Files;
-use crate::scene::schema::json::object;
 
 /// A bar along x.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -15,7 +14,6 @@ use crate::scene::schema::json::object;
 #[serde(deny_unknown_fields)]
 pub struct BarSpec {
     /// The axis along x.
-    #[serde(deserialize_with = "object")]
     pub x: Axis,
     /// Cross-section, positive.
     #[serde(default = "unit_area")]

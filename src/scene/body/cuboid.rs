@@ -8,7 +8,6 @@ use crate::fem::mesh::{Boundary, ElementKind, Mesh, check_lines, fail};
 use crate::fem::{Axis, Integration};
 use crate::scene::files::Files;
 use crate::scene::schema::cells::SolidElementSpec;
-use crate::scene::schema::json::{object, word};
 
 /// The corners of a cell, in steps along x, y and z, in the order of a brick.
 const CORNERS: [[usize; 3]; 8] =
@@ -36,19 +35,16 @@ const SIDES: [(&str, usize, bool, [usize; 4]); 6] = [
 #[serde(deny_unknown_fields)]
 pub struct BoxSpec {
     /// The axis along x.
-    #[serde(deserialize_with = "object")]
     pub x: Axis,
     /// The axis along y.
-    #[serde(deserialize_with = "object")]
     pub y: Axis,
     /// The axis along z.
-    #[serde(deserialize_with = "object")]
     pub z: Axis,
     /// The element.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub element: SolidElementSpec,
     /// The integration of its stiffness.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub integration: Integration,
 }
 

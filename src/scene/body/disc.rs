@@ -9,7 +9,6 @@ use crate::fem::Integration;
 use crate::fem::mesh::{Boundary, ElementKind, Mesh, Zone, fail};
 use crate::scene::files::Files;
 use crate::scene::schema::cells::ElementSpec;
-use crate::scene::schema::json::{object, word};
 
 /// A disc, graded towards its lowest and its highest point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,16 +22,15 @@ pub struct DiscSpec {
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub radius: f64,
     /// The finely meshed zone around the lowest and the highest point.
-    #[serde(deserialize_with = "object")]
     pub zone: Zone,
     /// Only the part right of the centre; the plane x = centre becomes the boundary `symmetry-x`.
     #[serde(default)]
     pub symmetric: bool,
     /// The element.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub element: ElementSpec,
     /// The integration of its stiffness.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub integration: Integration,
 }
 

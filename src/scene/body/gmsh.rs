@@ -9,7 +9,6 @@ use crate::fem::mesh::gmsh::GmshFile;
 use crate::fem::mesh::{ElementKind, Mesh};
 use crate::scene::entry::{refused, wrong};
 use crate::scene::files::Files;
-use crate::scene::schema::json::word;
 
 /// Approximate bytes of a mesh file for one node and its elements: files of Gmsh of either version, ASCII or binary, have 87 to 237.
 const OF_MESH_FILE: f64 = 150.0;
@@ -27,10 +26,10 @@ pub struct GmshSpec {
     pub scale: f64,
     /// The physical group of the body; may be left out if at most one group has elements of the highest dimension, or if `materials` name
     /// the groups.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
     /// The integration of the stiffness.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub integration: Integration,
 }
 

@@ -11,7 +11,6 @@ use crate::fem::mesh::{ElementKind, MAX_NODES, Mesh, Zone, fail};
 use crate::scene::entry::wrong;
 use crate::scene::files::Files;
 use crate::scene::schema::cells::{HalfSpec, SolidElementSpec};
-use crate::scene::schema::json::{object, word, words};
 
 /// Corners of a face of the core, in steps along its two directions, counterclockwise seen from outside.
 const AROUND: [[usize; 2]; 4] = [[0, 0], [1, 0], [1, 1], [0, 1]];
@@ -25,23 +24,22 @@ pub struct HalfBallSpec {
     #[serde(default)]
     pub centre: [f64; 3],
     /// The half; the upper half is the mirror image of the lower half, graded towards its highest point.
-    #[serde(default, deserialize_with = "word", skip_serializing_if = "HalfSpec::is_lower")]
+    #[serde(default, skip_serializing_if = "HalfSpec::is_lower")]
     pub half: HalfSpec,
     /// Radius, positive.
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub radius: f64,
     /// The finely meshed zone around the lowest (highest) point.
-    #[serde(deserialize_with = "object")]
     pub zone: Zone,
     /// Axes along which only the part beyond the centre is meshed; the planes through the centre become the boundaries
     /// `symmetry-x` and `symmetry-y`.
-    #[serde(default, deserialize_with = "words")]
+    #[serde(default)]
     pub symmetric: Vec<SymmetrySpec>,
     /// The element: `hex8`, or `hex20` with edges that follow the sphere.
-    #[serde(default, deserialize_with = "word", skip_serializing_if = "SolidElementSpec::is_default")]
+    #[serde(default, skip_serializing_if = "SolidElementSpec::is_default")]
     pub element: SolidElementSpec,
     /// The integration of its stiffness.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub integration: Integration,
 }
 

@@ -10,7 +10,6 @@ use crate::fem::mesh::round::{Grading, mirrored};
 use crate::fem::mesh::{ElementKind, MAX_NODES, Mesh, Zone, fail};
 use crate::scene::files::Files;
 use crate::scene::schema::cells::{ElementSpec, HalfSpec};
-use crate::scene::schema::json::{object, word};
 
 /// Half of a disc, the lower half by default.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,22 +20,21 @@ pub struct HalfDiscSpec {
     #[serde(default)]
     pub centre: [f64; 2],
     /// The half; the upper half is the mirror image of the lower half, graded towards its highest point.
-    #[serde(default, deserialize_with = "word", skip_serializing_if = "HalfSpec::is_lower")]
+    #[serde(default, skip_serializing_if = "HalfSpec::is_lower")]
     pub half: HalfSpec,
     /// Radius, positive.
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub radius: f64,
     /// The finely meshed zone around the lowest (highest) point.
-    #[serde(deserialize_with = "object")]
     pub zone: Zone,
     /// Only the part right of the centre; the plane x = centre becomes the boundary `symmetry-x`.
     #[serde(default)]
     pub symmetric: bool,
     /// The element.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub element: ElementSpec,
     /// The integration of its stiffness.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub integration: Integration,
 }
 

@@ -23,7 +23,6 @@ pub(super) use shape::{BodyShape, Site};
 
 use serde::{Deserialize, Serialize};
 
-use super::schema::json::object;
 use shape::About;
 
 /// The elastic body.
@@ -33,25 +32,25 @@ use shape::About;
 pub enum BodySpec {
     /// A rectangle with a structured mesh; its boundaries are `left`, `right`, `bottom`, `top`. In an axisymmetric model it is the
     /// section of the body.
-    Rectangle(#[serde(deserialize_with = "object")] RectangleSpec),
+    Rectangle(RectangleSpec),
     /// A bar along x; its boundaries are `left`, `right`.
-    Bar(#[serde(deserialize_with = "object")] BarSpec),
+    Bar(BarSpec),
     /// A box with a structured mesh; its boundaries are `left`, `right` (along x), `front`, `back` (along y), `bottom`,
     /// `top` (along z).
-    Box(#[serde(deserialize_with = "object")] BoxSpec),
+    Box(BoxSpec),
     /// A disc, graded towards its lowest and its highest point; its boundaries are `lower`, `upper` and, if only its right part is
     /// meshed, `symmetry-x`. In an axisymmetric model the right part with its centre at x = 0 is a ball.
-    Disc(#[serde(deserialize_with = "object")] DiscSpec),
+    Disc(DiscSpec),
     /// Half of a disc, graded towards its lowest (highest) point; its boundaries are `cut` (flat), `arc` and, if only its right part is
     /// meshed, `symmetry-x`. In an axisymmetric model the right part with its centre at x = 0 is half a ball.
-    HalfDisc(#[serde(deserialize_with = "object")] HalfDiscSpec),
+    HalfDisc(HalfDiscSpec),
     /// Half of a ball, or a quarter or an eighth of one, graded towards its lowest (highest) point; its boundaries are
     /// `cut` (flat), `round` and the planes `symmetry-x` and `symmetry-y`.
-    HalfBall(#[serde(deserialize_with = "object")] HalfBallSpec),
+    HalfBall(HalfBallSpec),
     /// A ring or a sector of a ring; its boundaries are `inner`, `outer` and, if it is not closed, `start` and `end`.
-    Ring(#[serde(deserialize_with = "object")] RingSpec),
+    Ring(RingSpec),
     /// A mesh written by Gmsh; its physical groups are the boundaries.
-    Gmsh(#[serde(deserialize_with = "object")] GmshSpec),
+    Gmsh(GmshSpec),
 }
 
 /// The names of all body shapes, in the order of messages.

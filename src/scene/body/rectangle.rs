@@ -9,7 +9,6 @@ use crate::fem::mesh::{Boundary, ElementKind, Mesh, check_lines, fail};
 use crate::fem::{Axis, Integration};
 use crate::scene::files::Files;
 use crate::scene::schema::cells::ElementSpec;
-use crate::scene::schema::json::{object, word};
 
 /// Marks a place without a node: the middle of a quadratic quadrilateral.
 const NO_NODE: usize = usize::MAX;
@@ -20,16 +19,14 @@ const NO_NODE: usize = usize::MAX;
 #[serde(deny_unknown_fields)]
 pub struct RectangleSpec {
     /// The axis along x.
-    #[serde(deserialize_with = "object")]
     pub x: Axis,
     /// The axis along y.
-    #[serde(deserialize_with = "object")]
     pub y: Axis,
     /// The element.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub element: ElementSpec,
     /// The integration of its stiffness.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub integration: Integration,
 }
 

@@ -9,7 +9,6 @@ use crate::fem::mesh::{ElementKind, Mesh, check_lines, fail};
 use crate::fem::{Axis, Integration};
 use crate::scene::files::Files;
 use crate::scene::schema::cells::ElementSpec;
-use crate::scene::schema::json::{object, word};
 
 /// A ring or a sector of a ring: the product of a radial axis and an angle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -20,16 +19,14 @@ pub struct RingSpec {
     #[serde(default)]
     pub centre: [f64; 2],
     /// The radial axis, from the inner to the outer radius.
-    #[serde(deserialize_with = "object")]
     pub radius: Axis,
     /// The angle in degrees, counterclockwise from x; the ring is closed if the angle spans 360.
-    #[serde(deserialize_with = "object")]
     pub angle: Axis,
     /// The element.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub element: ElementSpec,
     /// The integration of its stiffness.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub integration: Integration,
 }
 

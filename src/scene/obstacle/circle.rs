@@ -8,7 +8,6 @@ use super::graph::{Form, Graph};
 use super::shape::{About, Geometry, ObstacleShape, Side, Site};
 use super::surface::{Foot, Local, Surface};
 use crate::error::Error;
-use crate::scene::schema::json::word;
 
 /// A node inside and behind the centre lies beside it if it is farther than this share of the radius from the axis through the centre.
 pub(super) const BESIDE: f64 = 0.5;
@@ -19,16 +18,16 @@ pub(super) const BESIDE: f64 = 0.5;
 #[serde(deny_unknown_fields)]
 pub struct CircleSpec {
     /// The centre.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub centre: Option<[f64; 2]>,
     /// The centre minus the radius along the approach direction, the point nearest to the body; from inside, the centre plus the radius.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 2]>,
     /// Radius, positive. Nodes beyond its reach have no contact row.
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub radius: f64,
     /// The side of the body: `outside`, or `inside`, as a pin in a hole, with the obstacle all around.
-    #[serde(default, deserialize_with = "word", skip_serializing_if = "Side::is_outside")]
+    #[serde(default, skip_serializing_if = "Side::is_outside")]
     pub side: Side,
 }
 

@@ -8,7 +8,6 @@ use super::shape::{About, Geometry, ObstacleShape, Side, Site};
 use crate::error::Error;
 use crate::fem::geometry::dot;
 use crate::scene::entry::{point, wrong};
-use crate::scene::schema::json::word;
 
 /// Deviation of a cylinder's axis from the right angle that is rounding of its written components.
 const PERPENDICULAR: f64 = 1e-9;
@@ -19,11 +18,11 @@ const PERPENDICULAR: f64 = 1e-9;
 #[serde(deny_unknown_fields)]
 pub struct CylinderSpec {
     /// Any point of the axis.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub centre: Option<[f64; 3]>,
     /// Any point of the axis minus the radius along the approach direction, on the line nearest to the body; from inside, plus the
     /// radius.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 3]>,
     /// Direction of the axis, perpendicular to the approach direction, of any length except zero.
     pub axis: [f64; 3],
@@ -31,7 +30,7 @@ pub struct CylinderSpec {
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub radius: f64,
     /// The side of the body: `outside`, or `inside`, as a pin in a hole, with the obstacle all around.
-    #[serde(default, deserialize_with = "word", skip_serializing_if = "Side::is_outside")]
+    #[serde(default, skip_serializing_if = "Side::is_outside")]
     pub side: Side,
 }
 

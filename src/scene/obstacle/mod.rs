@@ -39,7 +39,6 @@ pub use wedge::WedgeSpec;
 
 use serde::{Deserialize, Serialize};
 
-use super::schema::json::object;
 use shape::{About, ObstacleShape};
 
 /// The surface of an obstacle, over the coordinates perpendicular to the approach direction.
@@ -48,29 +47,29 @@ use shape::{About, ObstacleShape};
 #[serde(rename_all = "kebab-case")]
 pub enum ShapeSpec {
     /// A plane.
-    Plane(#[serde(deserialize_with = "object")] PlaneSpec),
+    Plane(PlaneSpec),
     /// A parabola t^2/(2 radius) that bulges towards the body.
-    Parabola(#[serde(deserialize_with = "object")] ParabolaSpec),
+    Parabola(ParabolaSpec),
     /// A circle, seen from outside or inside.
-    Circle(#[serde(deserialize_with = "object")] CircleSpec),
+    Circle(CircleSpec),
     /// A wedge slope |t| that points at the body.
-    Wedge(#[serde(deserialize_with = "object")] WedgeSpec),
+    Wedge(WedgeSpec),
     /// A polyline.
-    Table(#[serde(deserialize_with = "object")] TableSpec),
+    Table(TableSpec),
     /// In space: a sphere, seen from outside or inside.
-    Sphere(#[serde(deserialize_with = "object")] SphereSpec),
+    Sphere(SphereSpec),
     /// In space: a cylinder, seen from outside or inside, with its axis perpendicular to the approach direction.
-    Cylinder(#[serde(deserialize_with = "object")] CylinderSpec),
+    Cylinder(CylinderSpec),
     /// In space: a cone that points at the body, with its axis along the approach direction.
-    Cone(#[serde(deserialize_with = "object")] ConeSpec),
+    Cone(ConeSpec),
     /// In space: heights on a grid, bilinear in between.
-    HeightMap(#[serde(deserialize_with = "object")] HeightMapSpec),
+    HeightMap(HeightMapSpec),
     /// In space: a torus, with its axis along the approach direction or perpendicular to it.
-    Torus(#[serde(deserialize_with = "object")] TorusSpec),
+    Torus(TorusSpec),
     /// In space: a closed surface of triangles from a file.
-    Surface(#[serde(deserialize_with = "object")] SurfaceSpec),
+    Surface(SurfaceSpec),
     /// The surface of another elastic body, node to node.
-    Body(#[serde(deserialize_with = "object")] FacingSpec),
+    Body(FacingSpec),
 }
 
 /// The names of all shapes, in the order of messages.

@@ -6,7 +6,6 @@ use super::circle::round;
 use super::graph::{Form, Graph};
 use super::shape::{About, Geometry, ObstacleShape, Side, Site};
 use crate::error::Error;
-use crate::scene::schema::json::word;
 
 /// A sphere, given by its centre or by its apex.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -14,16 +13,16 @@ use crate::scene::schema::json::word;
 #[serde(deny_unknown_fields)]
 pub struct SphereSpec {
     /// The centre.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub centre: Option<[f64; 3]>,
     /// The centre minus the radius along the approach direction, the point nearest to the body; from inside, the centre plus the radius.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 3]>,
     /// Radius, positive. Nodes beyond its reach have no contact row.
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub radius: f64,
     /// The side of the body: `outside`, or `inside`, as a ball in a cup, with the obstacle all around.
-    #[serde(default, deserialize_with = "word", skip_serializing_if = "Side::is_outside")]
+    #[serde(default, skip_serializing_if = "Side::is_outside")]
     pub side: Side,
 }
 

@@ -13,7 +13,6 @@ use crate::fem::surface::{ClosedSurface, Crossing};
 use crate::scene::entry::located;
 use crate::scene::files::Files;
 use crate::scene::schema::approach::{Approach, Rule};
-use crate::scene::schema::json::word;
 
 /// Approximate bytes of memory for a byte of the file: 2.5 for a binary STL, the densest form.
 const OF_FILE: f64 = 3.0;
@@ -37,7 +36,7 @@ pub struct SurfaceSpec {
     #[serde(default, skip_serializing_if = "is_origin")]
     pub origin: [f64; 3],
     /// The side of the body: `outside` of a solid, or `inside` a hole, with the obstacle all around.
-    #[serde(default, deserialize_with = "word", skip_serializing_if = "Side::is_outside")]
+    #[serde(default, skip_serializing_if = "Side::is_outside")]
     pub side: Side,
 }
 

@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::json::{choice, choices, given, given_object, object, objects, word};
 use crate::motion::SchemeSpec;
 
 /// The analysis; a scene without one is static.
@@ -11,7 +10,7 @@ use crate::motion::SchemeSpec;
 #[serde(rename_all = "kebab-case")]
 pub enum AnalysisSpec {
     /// The motion from given displacements and velocities.
-    Dynamic(#[serde(deserialize_with = "object")] DynamicSpec),
+    Dynamic(DynamicSpec),
 }
 
 /// The motion of the bodies: the scene integrated in time. Every material needs a density.
@@ -23,56 +22,56 @@ pub struct DynamicSpec {
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub duration: f64,
     /// Time step, positive. If it is left out, `courant` determines it.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub step: Option<f64>,
     /// Time step over the time in which a pressure wave crosses the shortest distance between two nodes of an element, 0.5 if left out.
     /// With `central-difference`: the step over the largest stable step, at most 1, and 0.9 if left out.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub courant: Option<f64>,
     /// The scheme.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub scheme: SchemeSpec,
     /// The form of the mass. If left out: `redistributed` for `midpoint`, `lumped` for `central-difference`, `consistent` for the others.
-    #[serde(default, deserialize_with = "given_word", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub mass: Option<MassSpec>,
     /// Damping of `hht`: from -1/3 to 0, -0.1 if left out.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("minimum" = -1.0 / 3.0, "maximum" = 0)))]
     pub alpha: Option<f64>,
     /// Stiffness of `penalty` in multiples of the local stiffness of a step, positive; 10 if left out.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub penalty: Option<f64>,
     /// Penetration at which the loop of `penalty-loop` ends, as the norm over all closed rows, relative to the largest displacement of
     /// the body; positive and at most 0.1, 1e-6 if left out.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0, "maximum" = 0.1)))]
     pub threshold: Option<f64>,
     /// Velocity of a node after its impact over that before, in `central-difference`, from 0 to 1; 0 if left out. Above 0 the energy of a
     /// mesh can grow; smaller steps reduce the growth.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("minimum" = 0, "maximum" = 1)))]
     pub restitution: Option<f64>,
     /// Rayleigh damping.
-    #[serde(default, deserialize_with = "object")]
+    #[serde(default)]
     pub damping: DampingSpec,
     /// Initial displacements and velocities; zero if left out. Of two entries for one body the later one counts.
-    #[serde(default, deserialize_with = "objects")]
+    #[serde(default)]
     pub initial: Vec<InitialSpec>,
     /// The treatment of nodes that start inside an obstacle.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub initial_penetration: PenetrationSpec,
     /// The change of the loads of the scene with time; a load that is not mentioned is constant.
-    #[serde(default, deserialize_with = "objects")]
+    #[serde(default)]
     pub loads_in_time: Vec<LoadInTimeSpec>,
     /// States of the body that are written and shown, evenly over the duration, besides the first; at most 10000.
     #[serde(default = "frames")]
     #[cfg_attr(feature = "cli", schemars(extend("minimum" = 1, "maximum" = 10000)))]
     pub frames: usize,
     /// Points with output at every step: time, displacement, velocity and contact force, in `watch.csv` of `--out`.
-    #[serde(default, deserialize_with = "choices", skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub watch: Vec<WatchSpec>,
 }
 
@@ -123,13 +122,13 @@ pub struct DampingSpec {
 #[serde(deny_unknown_fields)]
 pub struct InitialSpec {
     /// Name of a further body; all bodies if left out.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
     /// Initial displacement.
-    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub displacement: Option<FieldSpec>,
     /// Initial velocity.
-    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub velocity: Option<FieldSpec>,
 }
 
@@ -165,7 +164,6 @@ pub struct LoadInTimeSpec {
     /// Number of the entry of `loads`, from 0.
     pub load: usize,
     /// Its factor over time.
-    #[serde(deserialize_with = "choice")]
     pub factor: FactorSpec,
 }
 
@@ -175,13 +173,13 @@ pub struct LoadInTimeSpec {
 #[serde(rename_all = "kebab-case")]
 pub enum FactorSpec {
     /// Straight lines between points; constant before the first and after the last.
-    Table(#[serde(deserialize_with = "object")] FactorTableSpec),
+    Table(FactorTableSpec),
     /// `sin(2 pi frequency t + phase)`.
-    Sine(#[serde(deserialize_with = "object")] SineSpec),
+    Sine(SineSpec),
     /// A straight line from 0 at `start` to 1 at `end`; constant before and after.
-    Ramp(#[serde(deserialize_with = "object")] IntervalSpec),
+    Ramp(IntervalSpec),
     /// Half a sine wave from `start` to `end`; 0 before and after.
-    Pulse(#[serde(deserialize_with = "object")] IntervalSpec),
+    Pulse(IntervalSpec),
 }
 
 /// Points of a factor over time.
@@ -220,14 +218,4 @@ pub struct IntervalSpec {
     pub start: f64,
     /// End of the interval, later than its start.
     pub end: f64,
-}
-
-fn given_word<'de, D: serde::Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
-    word(deserializer).map(Some)
-}
-
-pub(super) fn given_choice<'de, D: serde::Deserializer<'de>, T: Deserialize<'de>>(
-    deserializer: D,
-) -> Result<Option<T>, D::Error> {
-    choice(deserializer).map(Some)
 }

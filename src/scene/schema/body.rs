@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::json::{choice, given, given_object, object, objects};
 use super::part::PartBoxSpec;
 use crate::scene::body::BodySpec;
 
@@ -12,21 +11,21 @@ use crate::scene::body::BodySpec;
 #[serde(deny_unknown_fields)]
 pub struct MaterialSpec {
     /// Young's modulus, positive, in force per area.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub young: Option<f64>,
     /// Poisson's ratio: above -1, at most 0.5 in a bar and in plane stress, below 0.5 elsewhere.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = -1, "maximum" = 0.5)))]
     pub poisson: Option<f64>,
     /// Elasticity with three planes of symmetry, instead of `young` and `poisson`.
-    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub orthotropic: Option<OrthotropicSpec>,
     /// Thermal expansion in all directions, in strain per degree; needed for a `temperature`.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub expansion: Option<f64>,
     /// Density, positive, in mass per volume; needed for a dynamic analysis, gravity and centrifugal forces.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub density: Option<f64>,
 }
@@ -47,13 +46,13 @@ pub struct OrthotropicSpec {
     #[cfg_attr(feature = "cli", schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0})))]
     pub shear: [f64; 3],
     /// Thermal expansion along axes 1, 2, 3, in strain per degree.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub expansion: Option<[f64; 3]>,
     /// The angle from x to axis 1, counterclockwise, in degrees; only in plane and axisymmetric models.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub angle: Option<f64>,
     /// In space a vector along axis 1, and a second one: axis 2 lies in the plane of both vectors, at right angles to axis 1.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub axes: Option<[Vec<f64>; 2]>,
 }
 
@@ -65,13 +64,12 @@ pub struct OrthotropicSpec {
 #[serde(deny_unknown_fields)]
 pub struct MaterialPartSpec {
     /// A physical group of the mesh file.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
     /// A box along the coordinate axes.
-    #[serde(rename = "box", default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
     pub cuboid: Option<PartBoxSpec>,
     /// The material.
-    #[serde(deserialize_with = "object")]
     pub material: MaterialSpec,
 }
 
@@ -82,10 +80,10 @@ pub struct MaterialPartSpec {
 #[serde(deny_unknown_fields)]
 pub struct TemperatureSpec {
     /// A physical group of the mesh file.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
     /// A box along the coordinate axes.
-    #[serde(rename = "box", default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
     pub cuboid: Option<PartBoxSpec>,
     /// The temperature difference at the origin, in degrees.
     pub value: f64,
@@ -104,10 +102,10 @@ pub struct TemperatureSpec {
 #[serde(deny_unknown_fields)]
 pub struct InitialStressSpec {
     /// A physical group of the mesh file.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
     /// A box along the coordinate axes.
-    #[serde(rename = "box", default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
     pub cuboid: Option<PartBoxSpec>,
     /// Normal stress along x.
     #[serde(default)]
@@ -138,18 +136,17 @@ pub struct FurtherBodySpec {
     #[cfg_attr(feature = "cli", schemars(extend("minLength" = 1)))]
     pub name: String,
     /// The body.
-    #[serde(deserialize_with = "choice")]
     pub body: BodySpec,
     /// The material of all elements outside `materials`.
-    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub material: Option<MaterialSpec>,
     /// The materials of its parts.
-    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<MaterialPartSpec>,
     /// Its temperatures above the stress-free one.
-    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub temperature: Vec<TemperatureSpec>,
     /// Stresses that act without strain.
-    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub initial_stress: Vec<InitialStressSpec>,
 }

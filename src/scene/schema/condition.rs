@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::json::{choice, given, given_object, number};
 use super::profile::ProfileSpec;
 
 /// The place on the body.
@@ -25,24 +24,23 @@ pub enum Place {
 #[serde(deny_unknown_fields)]
 pub struct SupportSpec {
     /// The place.
-    #[serde(deserialize_with = "choice")]
     pub on: Place,
     /// Prescribed displacement along x.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub x: Option<f64>,
     /// Prescribed displacement along y.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub y: Option<f64>,
     /// Prescribed displacement along z.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub z: Option<f64>,
     /// Normal of an inclined plane, of either sense and of any length except zero.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub normal: Option<Vec<f64>>,
     /// Prescribed displacement along the normal, in length; 0 if left out.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
     /// A factor for all these displacements that changes along a direction.
-    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub profile: Option<ProfileSpec>,
 }

@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::json::{given, given_object, object};
 use super::profile::ProfileSpec;
 
 /// An external load. Body forces, gravity and centrifugal forces act on all bodies.
@@ -11,19 +10,19 @@ use super::profile::ProfileSpec;
 #[serde(rename_all = "kebab-case")]
 pub enum LoadSpec {
     /// A traction on a boundary.
-    Traction(#[serde(deserialize_with = "object")] TractionSpec),
+    Traction(TractionSpec),
     /// A pressure on a boundary, against its outward normal.
-    Pressure(#[serde(deserialize_with = "object")] PressureSpec),
+    Pressure(PressureSpec),
     /// A force at a node, or on a boundary.
-    Force(#[serde(deserialize_with = "object")] ForceSpec),
+    Force(ForceSpec),
     /// A moment on a boundary.
-    Moment(#[serde(deserialize_with = "object")] MomentSpec),
+    Moment(MomentSpec),
     /// A constant body force, in force per volume.
     BodyForce(Vec<f64>),
     /// The acceleration of gravity, in length per time squared: a body force of density times acceleration. Needs a density.
     Gravity(Vec<f64>),
     /// The centrifugal force of a rotation. Needs a density.
-    Centrifugal(#[serde(deserialize_with = "object")] CentrifugalSpec),
+    Centrifugal(CentrifugalSpec),
 }
 
 impl LoadSpec {
@@ -43,7 +42,7 @@ pub struct TractionSpec {
     /// The traction, in force per area.
     pub value: Vec<f64>,
     /// A factor for the traction that changes along a direction.
-    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub profile: Option<ProfileSpec>,
 }
 
@@ -57,7 +56,7 @@ pub struct PressureSpec {
     /// The pressure, in force per area; a positive pressure pushes on the body.
     pub value: f64,
     /// A factor for the pressure that changes along a direction.
-    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub profile: Option<ProfileSpec>,
 }
 
@@ -67,10 +66,10 @@ pub struct PressureSpec {
 #[serde(deny_unknown_fields)]
 pub struct ForceSpec {
     /// The point; a node must lie there.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<Vec<f64>>,
     /// The boundary, instead of a point.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub boundary: Option<String>,
     /// The force on the whole thickness, or on the full circle of a body of revolution; its radial component is summed around the circle.
     pub value: Vec<f64>,
@@ -84,12 +83,12 @@ pub struct ForceSpec {
 #[serde(deny_unknown_fields)]
 pub struct MomentSpec {
     /// The boundary; required.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(required))]
     pub boundary: Option<String>,
     /// Refused: a node of a solid has no rotation, and cannot carry a moment.
     #[cfg_attr(feature = "cli", schemars(skip))]
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<Vec<f64>>,
     /// The moment, in force times length: `[m]` about z in the plane, on the whole thickness, counterclockwise; three components in
     /// space.
@@ -106,9 +105,9 @@ pub struct CentrifugalSpec {
     /// The angular velocity, in radians per time.
     pub omega: f64,
     /// The direction of the axis, of any length except zero; only in space, and required there.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub axis: Option<Vec<f64>>,
     /// A point on the axis; the origin if left out; not in an axisymmetric model.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub point: Option<Vec<f64>>,
 }

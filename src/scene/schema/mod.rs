@@ -1,13 +1,13 @@
 //! The scene as it is written: typed, with defaults, unknown fields refused.
 
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 
 mod analysis;
 pub(super) mod approach;
 mod body;
 pub(super) mod cells;
 mod condition;
-pub(super) mod json;
 pub(super) mod load;
 pub(super) mod model;
 pub(super) mod obstacle;
@@ -34,7 +34,9 @@ pub use symmetry::SymmetryPlane;
 use std::path::PathBuf;
 
 use super::body::BodySpec;
-use json::{choice, choices, format, given, given_object, object, objects, word, words};
+
+/// The format of scenes that this program reads.
+const FORMAT: u32 = 1;
 
 /// A contact scene: an elastic body, its supports and loads, and the obstacles around it.
 ///
@@ -45,7 +47,7 @@ use json::{choice, choices, format, given, given_object, object, objects, word, 
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Scene {
     /// Path of the JSON Schema of scenes, for editors: a file that `signorini schema` printed. The program does not read it.
-    #[serde(rename = "$schema", default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "$schema", skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
     /// Version of the format of scenes: 1, the only one so far. Later formats will have other numbers, and be refused by programs that do
     /// not read them.
@@ -56,60 +58,59 @@ pub struct Scene {
     #[serde(default)]
     pub title: String,
     /// Names of the units, for tables and pictures.
-    #[serde(default, deserialize_with = "object")]
+    #[serde(default)]
     pub units: Units,
     /// The space that holds the physics, and what happens in the directions that it leaves out.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub model: ModelSpec,
     /// Depth across the plane, positive; only in plane strain and plane stress.
     #[serde(default = "one")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub thickness: f64,
     /// The shape and the mesh of the elastic body.
-    #[serde(deserialize_with = "choice")]
     pub body: BodySpec,
     /// The material of the body, except of the elements that `materials` name.
-    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub material: Option<MaterialSpec>,
     /// The materials of parts of the body, by groups of the mesh file or by boxes.
-    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<MaterialPartSpec>,
     /// Temperature above that of the body without stress.
-    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub temperature: Vec<TemperatureSpec>,
     /// Stresses at zero strain.
-    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub initial_stress: Vec<InitialStressSpec>,
     /// Further elastic bodies, joined to the first and to each other by contact only.
-    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub further_bodies: Vec<FurtherBodySpec>,
     /// Parts of boundaries, each with a name that is a boundary like any other.
-    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub parts: Vec<PartSpec>,
     /// Prescribed displacements.
-    #[serde(default, deserialize_with = "objects")]
+    #[serde(default)]
     pub supports: Vec<SupportSpec>,
     /// Boundaries that move as rigid plates.
-    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rigid_faces: Vec<RigidFaceSpec>,
     /// Springs between the body and the ground.
-    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub springs: Vec<SpringSpec>,
     /// Planes of symmetry: the body is a half, a quarter or an eighth of a whole. Each is supported, and forces and areas in
     /// reports are those of the whole.
-    #[serde(default, deserialize_with = "words", skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub symmetry: Vec<SymmetryPlane>,
     /// External loads; they add up.
-    #[serde(default, deserialize_with = "choices")]
+    #[serde(default)]
     pub loads: Vec<LoadSpec>,
     /// Frictionless obstacles: rigid ones, or the surfaces of other bodies.
-    #[serde(default, deserialize_with = "objects")]
+    #[serde(default)]
     pub obstacles: Vec<ObstacleSpec>,
     /// Shift of every obstacle along its own approach direction; a negative shift moves it towards, and into, the body.
     #[serde(default)]
     pub gap: f64,
     /// The analysis: the equilibrium if this is left out.
-    #[serde(default, deserialize_with = "analysis::given_choice", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub analysis: Option<AnalysisSpec>,
     /// The folder of the scene file: relative file names start there. Not part of the text.
     #[serde(skip)]
@@ -117,6 +118,16 @@ pub struct Scene {
     /// `true` if the scene may name files outside its folder. Not part of the text.
     #[serde(skip)]
     pub reads_outside: bool,
+}
+
+/// Accepts the number of the one format of scenes.
+fn format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<u32>, D::Error> {
+    match u32::deserialize(deserializer)? {
+        FORMAT => Ok(Some(FORMAT)),
+        other => Err(D::Error::custom(format_args!(
+            "format {other} of scenes is not known; this program reads format {FORMAT}"
+        ))),
+    }
 }
 
 fn one() -> f64 {

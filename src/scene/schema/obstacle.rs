@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::approach::{Approach, Rule};
-use super::json::{choice, number, word};
 use crate::scene::obstacle::ShapeSpec;
 
 /// A frictionless obstacle and the boundary that may touch it.
@@ -14,21 +13,19 @@ pub struct ObstacleSpec {
     /// The boundary that contains the candidate nodes.
     pub boundary: String,
     /// The direction from the body to the obstacle.
-    #[serde(deserialize_with = "word")]
     pub approach: Approach,
     /// The rule for the contact row of a node.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub rule: Rule,
     /// Shift of this obstacle along its approach direction, in addition to that of the whole scene; a negative shift moves it towards the
     /// body.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub gap: Option<f64>,
     /// The force, positive, that presses the obstacle against its approach direction; the obstacle moves only along this direction. In
     /// force; for a body of revolution that of the full circle. The travel of the obstacle is computed.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub force: Option<f64>,
     /// The surface of the obstacle.
-    #[serde(deserialize_with = "choice")]
     pub shape: ShapeSpec,
 }

@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::json::{given, given_object};
-
 /// A part of a boundary: all its facets with the centroid in the box and in the sphere, and with the outward normal around the direction.
 /// A condition that is left out is always met.
 ///
@@ -16,16 +14,16 @@ pub struct PartSpec {
     #[cfg_attr(feature = "cli", schemars(extend("minLength" = 1)))]
     pub name: String,
     /// The boundary, or a further body to choose its whole surface; the whole surface of the first body if left out.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub of: Option<String>,
     /// A box along the coordinate axes.
-    #[serde(rename = "box", default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
     pub cuboid: Option<PartBoxSpec>,
     /// A sphere; in the plane a circle.
-    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub sphere: Option<PartSphereSpec>,
     /// Directions of outward normals.
-    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub normal: Option<PartNormalSpec>,
 }
 

@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::json::{given, given_object, number};
-
 /// A boundary that moves as a rigid plate: a displacement of its centre and a rotation about it. Components that are not prescribed
 /// follow from the force and the moment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -13,25 +11,25 @@ pub struct RigidFaceSpec {
     /// The boundary.
     pub boundary: String,
     /// The centre of rotation, at which the force acts; the centroid of the boundary's area if left out.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub centre: Option<Vec<f64>>,
     /// Prescribed displacement of the centre along x.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub x: Option<f64>,
     /// Prescribed displacement of the centre along y.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub y: Option<f64>,
     /// Prescribed displacement of the centre along z.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub z: Option<f64>,
     /// Prescribed rotations about the centre.
-    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub rotation: Option<RotationSpec>,
     /// The force on it; zero if left out.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub force: Option<Vec<f64>>,
     /// The moment on it about the centre: about z in the plane, three components in space; zero if left out.
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub moment: Option<Vec<f64>>,
 }
 
@@ -41,12 +39,12 @@ pub struct RigidFaceSpec {
 #[serde(deny_unknown_fields)]
 pub struct RotationSpec {
     /// About x, in space.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub x: Option<f64>,
     /// About y, in space.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub y: Option<f64>,
     /// About z.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub z: Option<f64>,
 }

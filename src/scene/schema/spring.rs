@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::condition::Place;
-use super::json::{choice, number, word};
 
 /// Springs between the body and the ground, which act in tension and compression: at a node, or spread over a boundary as an elastic
 /// foundation.
@@ -14,26 +13,25 @@ use super::json::{choice, number, word};
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct SpringSpec {
     /// The place.
-    #[serde(deserialize_with = "choice")]
     pub on: Place,
     /// Stiffness along x, positive.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub x: Option<f64>,
     /// Stiffness along y, positive.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub y: Option<f64>,
     /// Stiffness along z, positive.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub z: Option<f64>,
     /// Stiffness along the normal of the boundary at every place, positive.
-    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub normal: Option<f64>,
     /// The reference of the stiffnesses.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub stiffness: StiffnessOf,
 }
 
