@@ -14,6 +14,9 @@ use super::fault::{Fault, What};
 /// Characters of the text that a message quotes.
 const QUOTED: usize = 20;
 
+/// Arrays and objects inside each other that a path names; no scene has as many.
+const DEEPEST: usize = 10;
+
 const CONTROL_CHARACTER: &str = "a string may contain no line break and no other control character; its closing `\"` is \
                                  missing, or write \\n or \\t";
 
@@ -129,8 +132,8 @@ impl<'a> Trail<'a> {
     /// A fault at a place, with the path as far as it is known.
     fn fault(&self, at: usize, words: impl Into<String>) -> Fault {
         let is_named = matches!(self.next, Next::Value | Next::Colon);
-        let known = self.open.iter().rev().skip(usize::from(!is_named));
-        known.fold(Fault::at(at, What::Other(words.into())), |fault, open| match open {
+        let known = self.open.len().saturating_sub(usize::from(!is_named)).min(DEEPEST);
+        self.open[..known].iter().rev().fold(Fault::at(at, What::Other(words.into())), |fault, open| match open {
             Open::Object(key) => fault.inside(key.as_deref().unwrap_or_default(), at),
             Open::Array(index) => fault.inside(&format!("[{index}]"), at),
         })
@@ -154,8 +157,9 @@ impl<'a> Trail<'a> {
                 ),
             },
             Kind::NestingDepthExceeded => {
-                let words = "more than 127 arrays and objects lie inside each other; that is not allowed";
-                Fault::at(at, What::Other(words.into()))
+                self.open.truncate(1);
+                self.next = Next::Value;
+                self.fault(at, "more than 127 arrays and objects lie inside each other; that is not allowed")
             }
             Kind::TrailingCommasNotAllowed => {
                 self.next = Next::Separator;

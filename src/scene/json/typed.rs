@@ -111,10 +111,10 @@ impl<'de> Deserializer<'de> for Typed<'de> {
     fn deserialize_struct<V: Visitor<'de>>(self, _: &'static str, _: Names, visitor: V) -> Result<V::Value, Fault> {
         let Value::Object(object) = self.0 else { return self.not(OBJECT) };
         let mut fields = Fields { rest: object.properties.iter(), last: None };
-        // A fault without a place is one of the object as a whole, or of a key that has come before.
+        // A fault without a place is one of a key that has come before, or of one that may stand before the closing bracket.
         visitor.visit_map(&mut fields).map_err(|fault| match (&fault.what, fields.last) {
             (&What::KeyTwice(key), Some(last)) if fault.at.is_none() => fault.inside(key, last.start()),
-            _ => fault.placed(self.0.start()),
+            _ => fault.placed(self.0.end() - 1),
         })
     }
 
