@@ -92,7 +92,8 @@ impl<'a> Trail<'a> {
     /// The place of the first token from `right` on, or of the token with `right` inside. A control character in a string and an unusual
     /// space before it, which the parser lets pass, are faults.
     fn follow_to(&mut self, right: usize) -> Result<usize, Fault> {
-        let mut scanner = Scanner::new(self.text, &ScannerOptions::default());
+        let options = ScannerOptions { allow_extended_string_escapes: false, ..ScannerOptions::default() };
+        let mut scanner = Scanner::new(self.text, &options);
         loop {
             let end = scanner.token_end();
             let token = scanner.scan();
