@@ -124,7 +124,7 @@ pub fn node_normals(body: &ElasticBody, boundary: &Boundary) -> Vec<(usize, [f64
 /// The centre of each facet of a boundary, with the outward unit normal there.
 pub(crate) fn facet_centres(body: &ElasticBody, boundary: &Boundary) -> Vec<([f64; 3], [f64; 3])> {
     let reference = boundary.kind.reference();
-    let table = Tabulated::with_rule(reference, vec![QuadraturePoint { at: reference.centroid, weight: 1.0 }]);
+    let table = Tabulated::with_rule(reference, vec![QuadraturePoint { at: reference.centroid(), weight: 1.0 }]);
     let mut centres = Vec::with_capacity(boundary.facet_count());
     for_each_point_of(body, boundary, &|_| Cow::Borrowed(&table), &mut |point| centres.push((point.at, point.normal)));
     centres

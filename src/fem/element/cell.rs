@@ -115,7 +115,7 @@ impl Cell {
     /// The reference coordinates of a point in or near the cell, by Newton's method.
     pub fn reference_coordinates(&self, point: [f64; 3]) -> [f64; 3] {
         let reference = self.reference;
-        let mut at = reference.centroid;
+        let mut at = reference.centroid();
         for _ in 0..LOCATING_STEPS {
             let place = self.place(&(reference.shape)(at));
             let away = [0, 1, 2].map(|axis| (point[axis] - place[axis]) / self.unit);

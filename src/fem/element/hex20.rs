@@ -8,7 +8,8 @@ use super::reference::{FacetKind, LatticeCounts, PerNode, ReferenceElement, Shap
 const EDGES: [[usize; 2]; 12] =
     [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
 
-const NODES: [[f64; 3]; 20] = [
+/// The corners, which are those of the trilinear hexahedron too, then the mid-sides.
+pub(super) const NODES: [[f64; 3]; 20] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
     [1.0, 1.0, -1.0],
@@ -52,7 +53,6 @@ pub(super) static HEX20: ReferenceElement = ReferenceElement {
     derivative,
     quadrature: &CUBE_3X3X3,
     quadrature_revolved: &CUBE_3X3X3,
-    centroid: [0.0; 3],
     facet: FacetKind::Q8,
     gmsh: 17,
     gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15],

@@ -2,6 +2,7 @@
 
 use super::quadrature::fine;
 use super::{Part, QuadraturePoint, ReferenceElement, Shape};
+use crate::fem::geometry::minus;
 
 /// A corner of a piece: reference coordinates, and the value of the function.
 type Corner = ([f64; 3], f64);
@@ -42,7 +43,6 @@ fn clipped(piece: &[Corner], level: f64, keeps: impl Fn(f64) -> bool) -> Vec<Cor
 
 /// The points of a piece: a line, or a polygon that is cut into triangles around its first corner.
 fn points(dimension: usize, piece: &[Corner]) -> Vec<QuadraturePoint> {
-    let minus = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|axis| a[axis] - b[axis]);
     match (dimension, piece) {
         (1, &[(from, _), (to, _)]) => {
             let way = minus(to, from);

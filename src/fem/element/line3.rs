@@ -1,7 +1,7 @@
 //! Line3, the quadratic edge: N = (xi (xi - 1)/2, xi (xi + 1)/2, 1 - xi^2), ends first.
 
 use super::quadrature::INTERVAL_3;
-use super::reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape, padded};
 
 /// The quadratic line.
 pub(super) static LINE3: ReferenceElement = ReferenceElement {
@@ -17,7 +17,6 @@ pub(super) static LINE3: ReferenceElement = ReferenceElement {
     derivative,
     quadrature: &INTERVAL_3,
     quadrature_revolved: &INTERVAL_3,
-    centroid: [0.0; 3],
     facet: FacetKind::Point1,
     gmsh: 8,
     gmsh_order: &[0, 1, 2],
@@ -26,15 +25,9 @@ pub(super) static LINE3: ReferenceElement = ReferenceElement {
 };
 
 fn shape([xi, ..]: [f64; 3]) -> PerNode<f64> {
-    let mut values = [0.0; MAX_NODES];
-    values[..3].copy_from_slice(&[xi * (xi - 1.0) / 2.0, xi * (xi + 1.0) / 2.0, (1.0 - xi) * (1.0 + xi)]);
-    values
+    padded([xi * (xi - 1.0) / 2.0, xi * (xi + 1.0) / 2.0, (1.0 - xi) * (1.0 + xi)])
 }
 
 fn derivative([xi, ..]: [f64; 3]) -> PerNode<[f64; 3]> {
-    let mut slopes = [[0.0; 3]; MAX_NODES];
-    for (slope, value) in slopes.iter_mut().zip([xi - 0.5, xi + 0.5, -2.0 * xi]) {
-        slope[0] = value;
-    }
-    slopes
+    padded([xi - 0.5, xi + 0.5, -2.0 * xi].map(|slope| [slope, 0.0, 0.0]))
 }

@@ -17,7 +17,6 @@ pub(super) static POINT1: ReferenceElement = ReferenceElement {
     derivative: |_| [[0.0; 3]; MAX_NODES],
     quadrature: &POINT,
     quadrature_revolved: &POINT,
-    centroid: [0.0; 3],
     facet: FacetKind::Point1,
     gmsh: 15,
     gmsh_order: &[0],

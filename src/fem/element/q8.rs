@@ -8,7 +8,8 @@ use super::reference::{FacetKind, LatticeCounts, PerNode, ReferenceElement, Shap
 /// The corners between which each mid-side node lies.
 const SIDES: [[usize; 2]; 4] = [[0, 1], [1, 2], [2, 3], [3, 0]];
 
-const NODES: [[f64; 3]; 8] = [
+/// The corners, which are those of the bilinear quadrilateral too, then the mid-sides.
+pub(super) const NODES: [[f64; 3]; 8] = [
     [-1.0, -1.0, 0.0],
     [1.0, -1.0, 0.0],
     [1.0, 1.0, 0.0],
@@ -33,7 +34,6 @@ pub(super) static Q8: ReferenceElement = ReferenceElement {
     derivative,
     quadrature: &SQUARE_3X3,
     quadrature_revolved: &SQUARE_3X3,
-    centroid: [0.0; 3],
     facet: FacetKind::Line3,
     gmsh: 16,
     gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7],

@@ -25,53 +25,30 @@ pub(super) const INTERVAL_2: [QuadraturePoint; 2] = [point(-GAUSS_2, 0.0, 0.0, 1
 pub(super) const INTERVAL_3: [QuadraturePoint; 3] =
     [point(-GAUSS_3, 0.0, 0.0, 5.0 / 9.0), point(0.0, 0.0, 0.0, 8.0 / 9.0), point(GAUSS_3, 0.0, 0.0, 5.0 / 9.0)];
 
-/// Two by two Gauss points on the square, exact for cubics in each coordinate.
-pub(super) const SQUARE_2X2: [QuadraturePoint; 4] = {
-    let mut points = [point(0.0, 0.0, 0.0, 0.0); 4];
+/// The product of a rule on the interval with itself: on the square for as many points as its square has, else on the cube.
+const fn product<const M: usize, const N: usize>(line: [QuadraturePoint; M]) -> [QuadraturePoint; N] {
+    let mut points = [point(0.0, 0.0, 0.0, 1.0); N];
     let mut k = 0;
-    while k < 4 {
-        let (p, q) = (INTERVAL_2[k % 2], INTERVAL_2[k / 2]);
-        points[k] = point(p.at[0], q.at[0], 0.0, p.weight * q.weight);
+    while k < N {
+        let (p, q) = (line[k % M], line[k / M % M]);
+        let r = if N > M * M { line[k / M / M] } else { POINT[0] };
+        points[k] = point(p.at[0], q.at[0], r.at[0], p.weight * q.weight * r.weight);
         k += 1;
     }
     points
-};
+}
+
+/// Two by two Gauss points on the square, exact for cubics in each coordinate.
+pub(super) const SQUARE_2X2: [QuadraturePoint; 4] = product(INTERVAL_2);
 
 /// Three by three Gauss points on the square, exact for quintics in each coordinate.
-pub(super) const SQUARE_3X3: [QuadraturePoint; 9] = {
-    let mut points = [point(0.0, 0.0, 0.0, 0.0); 9];
-    let mut k = 0;
-    while k < 9 {
-        let (p, q) = (INTERVAL_3[k % 3], INTERVAL_3[k / 3]);
-        points[k] = point(p.at[0], q.at[0], 0.0, p.weight * q.weight);
-        k += 1;
-    }
-    points
-};
+pub(super) const SQUARE_3X3: [QuadraturePoint; 9] = product(INTERVAL_3);
 
 /// Two by two by two Gauss points on the cube, exact for cubics in each coordinate.
-pub(super) const CUBE_2X2X2: [QuadraturePoint; 8] = {
-    let mut points = [point(0.0, 0.0, 0.0, 0.0); 8];
-    let mut k = 0;
-    while k < 8 {
-        let (p, q, r) = (INTERVAL_2[k % 2], INTERVAL_2[k / 2 % 2], INTERVAL_2[k / 4]);
-        points[k] = point(p.at[0], q.at[0], r.at[0], p.weight * q.weight * r.weight);
-        k += 1;
-    }
-    points
-};
+pub(super) const CUBE_2X2X2: [QuadraturePoint; 8] = product(INTERVAL_2);
 
 /// Three by three by three Gauss points on the cube, exact for quintics in each coordinate.
-pub(super) const CUBE_3X3X3: [QuadraturePoint; 27] = {
-    let mut points = [point(0.0, 0.0, 0.0, 0.0); 27];
-    let mut k = 0;
-    while k < 27 {
-        let (p, q, r) = (INTERVAL_3[k % 3], INTERVAL_3[k / 3 % 3], INTERVAL_3[k / 9]);
-        points[k] = point(p.at[0], q.at[0], r.at[0], p.weight * q.weight * r.weight);
-        k += 1;
-    }
-    points
-};
+pub(super) const CUBE_3X3X3: [QuadraturePoint; 27] = product(INTERVAL_3);
 
 /// The centroid of the triangle (0,0), (1,0), (0,1), exact for linear functions.
 pub(super) const TRIANGLE_1: [QuadraturePoint; 1] = [point(1.0 / 3.0, 1.0 / 3.0, 0.0, 0.5)];

@@ -58,8 +58,6 @@ pub struct ReferenceElement {
     pub quadrature: &'static [QuadraturePoint],
     /// The same for a cell of a body of revolution: the radius adds one degree.
     pub quadrature_revolved: &'static [QuadraturePoint],
-    /// Reference coordinates of the centroid.
-    pub centroid: [f64; 3],
     /// The kind of a face of the element; for points and edges, which are no elements of a plane body, the kind of its ends.
     pub facet: FacetKind,
     /// The number of the element in a file of Gmsh.
@@ -91,6 +89,12 @@ impl LatticeCounts {
 }
 
 impl ReferenceElement {
+    /// Reference coordinates of the centroid: the mean of the corners.
+    pub fn centroid(&self) -> [f64; 3] {
+        let corners = &self.nodes[..self.corners];
+        [0, 1, 2].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>() / self.corners as f64)
+    }
+
     /// The local nodes in the order of a mirrored element: that of the cell with xi and eta exchanged, or, on a line, with xi reversed.
     pub fn mirrored(&self) -> Vec<usize> {
         let mirror = |[xi, eta, zeta]: [f64; 3]| match self.dimension {

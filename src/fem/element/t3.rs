@@ -1,7 +1,8 @@
 //! T3, the linear triangle: N = (1 - xi - eta, xi, eta); strain and stress are constant in the plane.
 
 use super::quadrature::{TRIANGLE_1, TRIANGLE_3};
-use super::reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, ReferenceElement, Shape};
+use super::simplex::{linear, linear_slopes};
 
 /// The linear triangle.
 ///
@@ -15,26 +16,13 @@ pub(super) static T3: ReferenceElement = ReferenceElement {
     mid_sides: &[],
     faces: &[&[0, 1], &[1, 2], &[2, 0]],
     along: &[0, 1, 2],
-    shape,
-    derivative,
+    shape: |at| linear(3, at),
+    derivative: |_| linear_slopes(3),
     quadrature: &TRIANGLE_1,
     quadrature_revolved: &TRIANGLE_3,
-    centroid: [1.0 / 3.0, 1.0 / 3.0, 0.0],
     facet: FacetKind::Line2,
     gmsh: 2,
     gmsh_order: &[0, 1, 2],
     vtk: 5,
     counts: LatticeCounts { nodes: 1.0, line: 1.0, connections: 6.0, neighbours: 7.0 },
 };
-
-fn shape([xi, eta, _]: [f64; 3]) -> PerNode<f64> {
-    let mut values = [0.0; MAX_NODES];
-    values[..3].copy_from_slice(&[1.0 - xi - eta, xi, eta]);
-    values
-}
-
-fn derivative(_: [f64; 3]) -> PerNode<[f64; 3]> {
-    let mut slopes = [[0.0; 3]; MAX_NODES];
-    slopes[..3].copy_from_slice(&[[-1.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
-    slopes
-}

@@ -1,13 +1,11 @@
 //! T6, the quadratic triangle: N = L_a (2 L_a - 1) at corners, 4 L_a L_b at the mid-sides, L = (1 - xi - eta, xi, eta).
 
 use super::quadrature::TRIANGLE_6;
-use super::reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, ReferenceElement, Shape};
+use super::simplex::{quadratic, quadratic_slopes};
 
 /// The sides, each with the corners between which its mid-side node lies.
 const SIDES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
-
-/// The slopes of the barycentric coordinates.
-const SLOPES: [[f64; 2]; 3] = [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]];
 
 /// The quadratic triangle; its rule integrates the stiffness exactly if the sides are straight, in bodies of revolution too, except the
 /// hoop terms.
@@ -20,38 +18,13 @@ pub(super) static T6: ReferenceElement = ReferenceElement {
     mid_sides: &SIDES,
     faces: &[&[0, 1, 3], &[1, 2, 4], &[2, 0, 5]],
     along: &[0, 1, 2, 3, 4, 5],
-    shape,
-    derivative,
+    shape: |at| quadratic(3, &SIDES, at),
+    derivative: |at| quadratic_slopes(3, &SIDES, at),
     quadrature: &TRIANGLE_6,
     quadrature_revolved: &TRIANGLE_6,
-    centroid: [1.0 / 3.0, 1.0 / 3.0, 0.0],
     facet: FacetKind::Line3,
     gmsh: 9,
     gmsh_order: &[0, 1, 2, 3, 4, 5],
     vtk: 22,
     counts: LatticeCounts { nodes: 4.0, line: 2.0, connections: 12.0, neighbours: 11.5 },
 };
-
-fn shape([xi, eta, _]: [f64; 3]) -> PerNode<f64> {
-    let l = [1.0 - xi - eta, xi, eta];
-    let mut values = [0.0; MAX_NODES];
-    for corner in 0..3 {
-        let [a, b] = SIDES[corner];
-        values[corner] = l[corner] * (2.0 * l[corner] - 1.0);
-        values[3 + corner] = 4.0 * l[a] * l[b];
-    }
-    values
-}
-
-fn derivative([xi, eta, _]: [f64; 3]) -> PerNode<[f64; 3]> {
-    let l = [1.0 - xi - eta, xi, eta];
-    let mut slopes = [[0.0; 3]; MAX_NODES];
-    for corner in 0..3 {
-        let [a, b] = SIDES[corner];
-        for axis in 0..2 {
-            slopes[corner][axis] = (4.0 * l[corner] - 1.0) * SLOPES[corner][axis];
-            slopes[3 + corner][axis] = 4.0 * (SLOPES[a][axis] * l[b] + l[a] * SLOPES[b][axis]);
-        }
-    }
-    slopes
-}

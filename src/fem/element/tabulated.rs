@@ -69,7 +69,7 @@ impl Tabulated {
             reference,
             points: rule.iter().map(|point| at(point.at, point.weight)).collect(),
             nodes: reference.nodes.iter().map(|&node| at(node, 0.0)).collect(),
-            centroid: at(reference.centroid, 0.0),
+            centroid: at(reference.centroid(), 0.0),
             rule,
         }
     }
