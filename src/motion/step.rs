@@ -80,6 +80,11 @@ impl Stepping {
         Self::new(&ContactProblem::new(matrix, vec![0.0; statics.dofs()], contact, gap)?, settings)
     }
 
+    /// Factorises the mass of a motion, for initial accelerations, projected predictions and impulses.
+    pub fn of_mass(problem: &DynamicProblem, settings: &Settings) -> Result<Self, Error> {
+        Self::of(problem, problem.mass().clone(), settings)
+    }
+
     /// Factorises the matrix of `problem`; its load and gaps only determine which rows exist.
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         Stepping { prepared: Prepared::new(problem, settings)? }.under(settings)
@@ -92,16 +97,20 @@ impl Stepping {
         Ok(Stepping { prepared: self.prepared.with_settings(&unhurried)? })
     }
 
-    /// Number of dofs.
-    pub fn dofs(&self) -> usize {
-        self.prepared.dofs()
-    }
-
     /// Solves with a force and gaps, from the set of the last step.
     pub fn solve(&self, force: Vec<f64>, gap: Vec<f64>, start: &ContactSet) -> Result<Found, Error> {
         let boundary = self.prepared.with_load(force)?.starting_from(start).step(&gap)?;
         let change = boundary.displacement();
         Ok(Found { change, multiplier: boundary.multiplier, contact_set: boundary.contact_set })
+    }
+
+    /// The smallest change in the norm of the matrix with these gaps; `None`, without a solve, if that is zero.
+    pub fn smallest(&self, gap: Vec<f64>, start: &ContactSet) -> Result<Option<Found>, Error> {
+        if gap.iter().all(|&gap| gap >= 0.0) {
+            return Ok(None);
+        }
+        let closed = ContactSet::from_fn(start.rows(), |row| gap[row] < 0.0);
+        self.solve(vec![0.0; self.prepared.dofs()], gap, &closed).map(Some)
     }
 
     /// The change under a force alone, as if no row were closed; `None` without a factor of the matrix.

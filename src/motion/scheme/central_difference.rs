@@ -15,11 +15,10 @@
 //! J. J. Moreau, *Numerical aspects of the sweeping process*, Comput. Methods Appl. Mech. Eng. 177 (1999) 329-349: the
 //! impact law.
 
-use super::projection::MassProjection;
 use super::stable_step::check_step;
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{About, Advance, Parameter, next, plus};
+use crate::motion::step::{About, Advance, Parameter, Stepping, next, plus};
 use crate::motion::{Balance, DynamicProblem, State};
 use crate::solution::ContactSet;
 
@@ -40,7 +39,7 @@ pub(super) static ABOUT: About = About {
     unstable_in_contact: &[],
     prepare: |problem, step, restitution, settings| {
         check_step(problem, step)?;
-        let mass = MassProjection::new(problem, settings)?;
+        let mass = Stepping::of_mass(problem, settings)?;
         Ok(Box::new(CentralDifference { restitution, mass, diagonal: problem.mass().diagonal() }))
     },
 };
@@ -48,7 +47,7 @@ pub(super) static ABOUT: About = About {
 #[derive(Debug)]
 struct CentralDifference {
     restitution: f64,
-    mass: MassProjection,
+    mass: Stepping,
     diagonal: Vec<f64>,
 }
 

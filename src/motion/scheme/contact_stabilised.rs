@@ -9,33 +9,28 @@
 //! P. Deuflhard, R. Krause, S. Ertel, *A contact-stabilized Newmark method for dynamical contact problems*, Int. J.
 //! Numer. Methods Eng. 73 (2008) 1274-1290.
 
-use super::projection::MassProjection;
+use super::trapezoidal;
 use crate::error::Error;
-use crate::fem::assembly::MassForm;
 use crate::motion::step::{About, Advance, Stepping, next, plus};
 use crate::motion::{Balance, DynamicProblem, State};
 
 pub(super) static ABOUT: About = About {
     name: "contact-stabilised",
-    parameter: None,
-    masses: &[MassForm::Consistent, MassForm::Lumped],
     gains_energy: false,
-    penetrates: false,
-    is_explicit: false,
     load_times: &[0.5],
-    unstable_in_contact: &[],
     prepare: |problem, step, _, settings| {
         // The equation above, multiplied by two.
         let matrix = problem.combination(4.0 / (step * step), 2.0 / step, 1.0)?;
         let stepping = Stepping::of(problem, matrix, settings)?;
-        Ok(Box::new(ContactStabilised { stepping, mass: MassProjection::new(problem, settings)? }))
+        Ok(Box::new(ContactStabilised { stepping, mass: Stepping::of_mass(problem, settings)? }))
     },
+    ..trapezoidal::ABOUT
 };
 
 #[derive(Debug)]
 struct ContactStabilised {
     stepping: Stepping,
-    mass: MassProjection,
+    mass: Stepping,
 }
 
 impl Advance for ContactStabilised {

@@ -1,6 +1,7 @@
 //! HHT-alpha: Newmark's rule with beta = (1 - alpha)^2/4 and gamma = 1/2 - alpha, which damps short waves.
 
-use super::newmark::{MASSES, Newmark};
+use super::newmark::Newmark;
+use super::trapezoidal;
 use crate::motion::step::{About, Parameter};
 
 pub(super) static ABOUT: About = About {
@@ -11,11 +12,6 @@ pub(super) static ABOUT: About = About {
         allows: |alpha| (-1.0 / 3.0..=0.0).contains(&alpha),
         range: "from -1/3 to 0",
     }),
-    masses: MASSES,
-    gains_energy: true,
-    penetrates: false,
-    is_explicit: false,
-    load_times: &[0.0, 1.0],
-    unstable_in_contact: &[],
     prepare: |problem, step, alpha, settings| Ok(Box::new(Newmark::new(problem, step, alpha, settings, settings)?)),
+    ..trapezoidal::ABOUT
 };

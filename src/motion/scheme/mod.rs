@@ -7,7 +7,6 @@ mod midpoint;
 mod newmark;
 mod penalty;
 mod penalty_loop;
-mod projection;
 mod stable_step;
 mod trapezoidal;
 

@@ -9,15 +9,10 @@
 //! H. M. Hilber, T. J. R. Hughes, R. L. Taylor, *Improved numerical dissipation for time integration algorithms in
 //! structural dynamics*, Earthq. Eng. Struct. Dyn. 5 (1977) 283-292.
 
-use super::projection::MassProjection;
 use crate::error::Error;
-use crate::fem::assembly::MassForm;
 use crate::motion::step::{Advance, Found, Stepping, next, plus};
 use crate::motion::{Balance, DynamicProblem, State};
 use crate::qp::Settings;
-
-/// The forms of the mass that the family can use.
-pub(super) const MASSES: &[MassForm] = &[MassForm::Consistent, MassForm::Lumped];
 
 #[derive(Debug)]
 pub(super) struct Newmark {
@@ -25,7 +20,7 @@ pub(super) struct Newmark {
     beta: f64,
     gamma: f64,
     pub stepping: Stepping,
-    mass: MassProjection,
+    mass: Stepping,
 }
 
 /// The start of a step: displacement and velocity as they would be without its acceleration, and the contact problem of the change.
@@ -50,12 +45,7 @@ impl Newmark {
         let weight = 1.0 + alpha;
         let matrix = problem.combination(inertia, weight * gamma / (beta * step), weight)?;
         let stepping = Stepping::of(problem, matrix, settings)?;
-        Ok(Newmark { alpha, beta, gamma, stepping, mass: MassProjection::new(problem, rigid)? })
-    }
-
-    /// The contact problems of the steps with the same factor and other settings.
-    pub fn under(&self, settings: &Settings) -> Result<Stepping, Error> {
-        self.stepping.under(settings)
+        Ok(Newmark { alpha, beta, gamma, stepping, mass: Stepping::of_mass(problem, rigid)? })
     }
 
     /// The contact problem of the step from `state`.

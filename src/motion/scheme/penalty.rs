@@ -1,6 +1,7 @@
 //! The trapezoidal rule with springs of `penalty` times the local stiffness instead of closed rows.
 
-use super::newmark::{MASSES, Newmark};
+use super::newmark::Newmark;
+use super::trapezoidal;
 use crate::motion::step::{About, Parameter};
 use crate::qp::{Method, Penalty, Settings};
 
@@ -12,15 +13,11 @@ pub(super) static ABOUT: About = About {
         allows: |penalty| penalty.is_finite() && penalty > 0.0,
         range: "positive and finite",
     }),
-    masses: MASSES,
-    gains_energy: true,
     penetrates: true,
-    is_explicit: false,
-    load_times: &[0.0, 1.0],
-    unstable_in_contact: &[],
     prepare: |problem, step, penalty, settings| {
         Ok(Box::new(Newmark::new(problem, step, 0.0, &springs(settings, penalty), settings)?))
     },
+    ..trapezoidal::ABOUT
 };
 
 /// The settings with springs of one penalty, in multiples of the local stiffness, instead of closed rows.

@@ -8,8 +8,9 @@
 //!
 //! The contact set of a penalty starts from that of the penalty before, the first from that of the last step.
 
-use super::newmark::{MASSES, Newmark};
+use super::newmark::Newmark;
 use super::penalty::springs;
+use super::trapezoidal;
 use crate::error::Error;
 use crate::motion::step::{About, Advance, Parameter, Stepping};
 use crate::motion::{Balance, DynamicProblem, State};
@@ -27,18 +28,14 @@ pub(super) static ABOUT: About = About {
         allows: |threshold| threshold > 0.0 && threshold <= 0.1,
         range: "positive and at most 0.1",
     }),
-    masses: MASSES,
-    gains_energy: true,
     penetrates: true,
-    is_explicit: false,
-    load_times: &[0.0, 1.0],
-    unstable_in_contact: &[],
     prepare: |problem, step, threshold, settings| {
         let newmark = Newmark::new(problem, step, 0.0, &springs(settings, 1.0), settings)?;
-        let stiffer = (1..PENALTIES).map(|power| newmark.under(&springs(settings, 10.0_f64.powi(power))));
+        let stiffer = (1..PENALTIES).map(|power| newmark.stepping.under(&springs(settings, 10.0_f64.powi(power))));
         let stiffer = stiffer.collect::<Result<Vec<_>, Error>>()?;
         Ok(Box::new(PenaltyLoop { threshold, newmark, stiffer }))
     },
+    ..trapezoidal::ABOUT
 };
 
 #[derive(Debug)]

@@ -1,12 +1,14 @@
 //! The trapezoidal rule: Newmark's with beta = 1/4 and gamma = 1/2.
 
-use super::newmark::{MASSES, Newmark};
+use super::newmark::Newmark;
+use crate::fem::assembly::MassForm;
 use crate::motion::step::About;
 
-pub(super) static ABOUT: About = About {
+/// The other rules of its kind name only what differs.
+pub(super) const ABOUT: About = About {
     name: "trapezoidal",
     parameter: None,
-    masses: MASSES,
+    masses: &[MassForm::Consistent, MassForm::Lumped],
     gains_energy: true,
     penetrates: false,
     is_explicit: false,
