@@ -8,16 +8,9 @@ use crate::error::Error;
 use crate::fem::mesh::outline::chained;
 use crate::fem::mesh::{Boundary, Mesh};
 
-/// The treatment of facets of a group that are not faces of the body.
-pub(super) enum OffBody {
-    /// They are an error of the file.
-    Refused,
-    /// They are left out: the body is a part of the file.
-    LeftOut,
-}
-
-/// The boundaries of `mesh`, in the order of the file.
-pub(super) fn of(file: &GmshFile, mesh: &Mesh, numbers: &Numbers, off_body: &OffBody) -> Result<Vec<Boundary>, Error> {
+/// The boundaries of `mesh`, in the order of the file. Facets of a group that are not faces of the body are left out if the body is a
+/// part of the file, and else an error of the file.
+pub(super) fn of(file: &GmshFile, mesh: &Mesh, numbers: &Numbers, is_part: bool) -> Result<Vec<Boundary>, Error> {
     let dimension = mesh.dimension() - 1;
     let mut boundaries = Vec::new();
     for (_, name) in file.names_in_use().into_iter().filter(|(other, _)| *other == dimension) {
@@ -30,13 +23,12 @@ pub(super) fn of(file: &GmshFile, mesh: &Mesh, numbers: &Numbers, off_body: &Off
             match face {
                 // Version 2.2 writes an element once for each of its groups.
                 Some(face) if known.insert(face) => connectivity.extend(nodes_of(mesh, face)),
-                Some(_) => {}
-                None if matches!(off_body, OffBody::LeftOut) => {}
-                None => {
+                None if !is_part => {
                     let message =
                         format!("element {} of the physical group `{name}` is not a face of the body", facet.tag);
                     return Err(file.fault(facet.line, message));
                 }
+                _ => {}
             }
         }
         if !connectivity.is_empty() {

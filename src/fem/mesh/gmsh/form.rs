@@ -12,7 +12,7 @@ pub(super) enum Form {
     /// As bytes. A position is a byte, from 0.
     Binary {
         order: ByteOrder,
-        tags: TagWidth,
+        version: Version,
         /// The byte at which each section begins, and its line: a line ends at every byte 10, as in an editor.
         sections: Vec<(usize, usize)>,
     },
@@ -25,13 +25,13 @@ pub(super) enum ByteOrder {
     Big,
 }
 
-/// The width of tags and counts in binary form.
+/// The versions of the format that are read; each has its width of tags and counts in binary form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum TagWidth {
-    /// Four bytes, signed, as in version 2.2.
-    Int,
-    /// Eight bytes, unsigned, as in version 4.1.
-    Size,
+pub(super) enum Version {
+    /// 2.2: four bytes, signed.
+    V2,
+    /// 4.1: eight bytes, unsigned.
+    V4,
 }
 
 impl Form {

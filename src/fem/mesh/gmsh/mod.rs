@@ -49,7 +49,6 @@ mod version4;
 
 use std::path::Path;
 
-use boundaries::OffBody;
 pub use file::{GmshFile, PhysicalGroup};
 
 use super::Mesh;
@@ -107,8 +106,7 @@ impl GmshFile {
         }
         let body = body::Body::select(self, domain)?;
         let (mut mesh, numbers) = body.mesh(self, scale)?;
-        let off_body = if domain.is_some() { OffBody::LeftOut } else { OffBody::Refused };
-        mesh.boundaries = boundaries::of(self, &mesh, &numbers, &off_body)?;
+        mesh.boundaries = boundaries::of(self, &mesh, &numbers, domain.is_some())?;
         Ok(mesh)
     }
 }

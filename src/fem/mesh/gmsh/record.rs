@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::str::FromStr;
 
-use super::form::{ByteOrder, Form, TagWidth};
+use super::form::{ByteOrder, Form, Version};
 use super::source::{Source, shortened};
 use crate::error::Error;
 
@@ -21,7 +21,7 @@ enum Numbers<'a> {
         line: &'a [u8],
         rest: &'a [u8],
     },
-    Bytes(ByteOrder, TagWidth),
+    Bytes(ByteOrder, Version),
 }
 
 impl<'a> Source<'a> {
@@ -38,12 +38,12 @@ impl<'a> Source<'a> {
 
     /// The next record of a section; `what` names the expected content.
     pub fn record<D: Display>(&mut self, what: impl Fn() -> D) -> Result<Record<'_, 'a>, Error> {
-        let Form::Binary { order, tags, .. } = *self.form() else { return self.line(what) };
+        let Form::Binary { order, version, .. } = *self.form() else { return self.line(what) };
         self.begin();
         if self.is_at_end() {
             return Err(self.fault(format!("the file ends where {} should stand", what())));
         }
-        Ok(Record { source: self, numbers: Numbers::Bytes(order, tags) })
+        Ok(Record { source: self, numbers: Numbers::Bytes(order, version) })
     }
 }
 
@@ -57,8 +57,8 @@ impl<'a> Record<'_, 'a> {
     pub fn whole(&mut self, name: impl Display) -> Result<usize, Error> {
         match self.numbers {
             Numbers::Words { .. } => self.word(name, WHOLE),
-            Numbers::Bytes(_, TagWidth::Int) => self.code(name),
-            Numbers::Bytes(order, TagWidth::Size) => {
+            Numbers::Bytes(_, Version::V2) => self.code(name),
+            Numbers::Bytes(order, Version::V4) => {
                 let value = u64::from_le_bytes(self.bytes(order, &name, WHOLE)?);
                 usize::try_from(value).map_err(|_| self.not_allowed(name, value, WHOLE))
             }

@@ -4,17 +4,10 @@ use std::path::Path;
 
 use super::content::Content;
 use super::file::GmshFile;
-use super::form::{ByteOrder, TagWidth};
+use super::form::{ByteOrder, Version};
 use super::source::{Source, shortened};
 use super::{groups, version2, version4};
 use crate::error::Error;
-
-/// The versions of the format that are read.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Version {
-    V2,
-    V4,
-}
 
 /// Error for a file without a mesh header; it quotes no content, which may be private.
 const NO_MESH: &str = "this is not a mesh of Gmsh: the section `$MeshFormat`, with the version, must begin here";
@@ -76,10 +69,10 @@ fn format(source: &mut Source) -> Result<Version, Error> {
     let mut line = source.line(|| "the version of the format")?;
     let number = line.finite("the version of the format")?;
     let form = line.whole("the file type, 0 for ASCII or 1 for binary,")?;
-    let (version, tags) = if number == 4.1 {
-        (Version::V4, TagWidth::Size)
+    let version = if number == 4.1 {
+        Version::V4
     } else if number == 2.2 {
-        (Version::V2, TagWidth::Int)
+        Version::V2
     } else {
         let message = format!(
             "version {number} of the format is not supported; save the mesh in version 4.1 or 2.2 (in Gmsh, \
@@ -96,7 +89,7 @@ fn format(source: &mut Source) -> Result<Version, Error> {
             }
             line.end()?;
             let order = byte_order(source)?;
-            source.turn_binary(order, tags, begin);
+            source.turn_binary(order, version, begin);
         }
         other => return Err(line.fault(format!("the file type is {other}; it must be 0 for ASCII or 1 for binary"))),
     }

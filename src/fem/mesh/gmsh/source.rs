@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::form::{ByteOrder, Form, TagWidth};
+use super::form::{ByteOrder, Form, Version};
 use crate::error::Error;
 
 /// A file that is read from its first byte to its last: as text, until it says that it is binary.
@@ -44,8 +44,8 @@ impl<'a> Source<'a> {
     }
 
     /// Continues in binary form, in a section that begins in line `line`.
-    pub fn turn_binary(&mut self, order: ByteOrder, tags: TagWidth, line: usize) {
-        self.form = Form::Binary { order, tags, sections: vec![(0, line)] };
+    pub fn turn_binary(&mut self, order: ByteOrder, version: Version, line: usize) {
+        self.form = Form::Binary { order, version, sections: vec![(0, line)] };
     }
 
     /// The position of the last item read; in an empty file the first line.
