@@ -1,4 +1,4 @@
-//! Vectors in space, `[x, y, z]`, with z = 0 in the plane; symmetric tensors.
+//! Vectors in space, `[x, y, z]`, with z = 0 in the plane; symmetric tensors; edges, and the cells around points.
 
 /// The scalar product.
 #[inline]
@@ -49,4 +49,43 @@ pub(crate) fn turned([xx, yy, zz, xy, yz, zx]: Symmetric, axes: &[[f64; 3]; 3]) 
     let rows = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];
     let along = |a: usize, b: usize| dot(axes[a], rows.map(|row| dot(row, axes[b])));
     [along(0, 0), along(1, 1), along(2, 2), along(0, 1), along(1, 2), along(2, 0)]
+}
+
+/// The key of an edge: its two nodes, increasing.
+pub(crate) fn key(a: usize, b: usize) -> [usize; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// The cells around every point, by one counting sort.
+#[derive(Debug)]
+pub(crate) struct Around {
+    starts: Vec<u32>,
+    cells: Vec<u32>,
+}
+
+impl Around {
+    /// From the points of each cell, in the order of the cells: less than 2^32 in all.
+    pub fn new<C: IntoIterator<Item = usize>>(points: usize, cells: impl Iterator<Item = C> + Clone) -> Self {
+        let mut starts = vec![0_u32; points + 1];
+        cells.clone().flatten().for_each(|point| starts[point + 1] += 1);
+        for point in 0..points {
+            starts[point + 1] += starts[point];
+        }
+        let mut around = vec![0; starts[points] as usize];
+        // Each start moves to its end while its list is filled, and ends up as the start of the next point.
+        for (index, cell) in cells.enumerate() {
+            for point in cell {
+                around[starts[point] as usize] = index as u32;
+                starts[point] += 1;
+            }
+        }
+        starts.rotate_right(1);
+        starts[0] = 0;
+        Around { starts, cells: around }
+    }
+
+    /// The cells around a point, increasing.
+    pub fn at(&self, point: usize) -> &[u32] {
+        &self.cells[self.starts[point] as usize..self.starts[point + 1] as usize]
+    }
 }

@@ -62,8 +62,8 @@ pub(crate) fn nodal_mass(body: &ElasticBody, form: MassForm, contact_nodes: &[us
                         triplets.extend(nodes.iter().zip(lumped(element)).map(|(&a, mass)| (a, a, mass)))
                     }
                     _ => {
-                        for (&row, of_row) in nodes.iter().zip(element.rows()) {
-                            triplets.extend(nodes.iter().zip(of_row).map(|(&column, &mass)| (row, column, mass)));
+                        for (&row, of_row) in nodes.iter().zip(element.column_iter()) {
+                            triplets.extend(nodes.iter().zip(&of_row).map(|(&column, &mass)| (row, column, mass)));
                         }
                     }
                 }
@@ -80,11 +80,13 @@ pub(crate) fn nodal_mass(body: &ElasticBody, form: MassForm, contact_nodes: &[us
 fn element_masses(body: &ElasticBody) -> Result<Vec<ElementMass>, Error> {
     let table = Tabulated::fine(body.mesh().kind().reference());
     let of_element = |(BodyElement { nodes, cell, .. }, density): (BodyElement<'_>, f64)| {
-        let mut mass = ElementMass::zero(nodes.len());
+        let mut mass = ElementMass::zeros(nodes.len(), nodes.len());
         let scale = density * cell.unit().powi(body.dimension() as i32);
         for at in &table.points {
             let weight = body.point(&cell, at).weight * scale;
-            mass.add(weight, &at.shape[..nodes.len()]);
+            for (mut column, share) in mass.column_iter_mut().zip(at.shape) {
+                column.iter_mut().zip(at.shape).for_each(|(mass, other)| *mass += weight * share * other);
+            }
         }
         mass
     };
@@ -93,13 +95,11 @@ fn element_masses(body: &ElasticBody) -> Result<Vec<ElementMass>, Error> {
 
 /// The lumped mass of an element, node by node.
 fn lumped(element: &ElementMass) -> Vec<f64> {
-    let mut diagonal: Vec<f64> = element.rows().map(|row| row.iter().sum()).collect();
-    let own: Vec<f64> = element.rows().enumerate().map(|(a, row)| row[a]).collect();
-    if diagonal.iter().any(|&sum| sum <= 1e-12 * own[0].abs()) {
-        let (total, trace) = (diagonal.iter().sum::<f64>(), own.iter().sum::<f64>());
-        diagonal = own.into_iter().map(|mass| mass * total / trace).collect();
-    }
-    diagonal
+    let (sums, own) = (element.row_sum(), element.diagonal());
+    let is_small = |&sum: &f64| sum <= 1e-12 * own[0].abs();
+    let (total, trace) = (sums.sum(), own.sum());
+    let scaled = own.iter().map(|mass| mass * total / trace);
+    if sums.iter().any(is_small) { scaled.collect() } else { sums.iter().copied().collect() }
 }
 
 /// The mass of the free dofs from that of the nodes, as [`nodal_mass`].

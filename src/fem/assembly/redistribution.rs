@@ -12,31 +12,8 @@ const MASS_TOLERANCE: f64 = 1e-10;
 /// A factor on the density of an element below this is not a small correction: the mesh is too coarse.
 const LEAST_FACTOR: f64 = 0.1;
 
-/// The mass of one element, node by node.
-pub(super) struct ElementMass {
-    nodes: usize,
-    /// Row by row.
-    values: Vec<f64>,
-}
-
-impl ElementMass {
-    /// The zero mass of an element with this number of nodes.
-    pub fn zero(nodes: usize) -> Self {
-        ElementMass { nodes, values: vec![0.0; nodes * nodes] }
-    }
-
-    /// The masses that each node shares with all nodes.
-    pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
-        self.values.chunks_exact(self.nodes)
-    }
-
-    /// Adds `weight` times the products of the values of the shape functions at a point.
-    pub fn add(&mut self, weight: f64, shape: &[f64]) {
-        for (row, share) in self.values.chunks_exact_mut(self.nodes).zip(shape) {
-            row.iter_mut().zip(shape).for_each(|(mass, other)| *mass += weight * share * other);
-        }
-    }
-}
+/// The mass of one element: each column has the masses that a node shares with all nodes.
+pub(super) type ElementMass = DMatrix<f64>;
 
 /// The nodes that take over the mass of each contact node, and the factor on the density of each element.
 pub(super) struct Redistribution {
@@ -66,8 +43,8 @@ impl Redistribution {
     pub fn triplets(&self, body: &ElasticBody, elements: &[ElementMass]) -> Vec<(usize, usize, f64)> {
         let mut triplets = Vec::new();
         for ((nodes, element), factor) in body.mesh().elements().zip(elements).zip(&self.factors) {
-            for (&a, row) in nodes.iter().zip(element.rows()) {
-                for (&b, &mass) in nodes.iter().zip(row) {
+            for (&a, row) in nodes.iter().zip(element.column_iter()) {
+                for (&b, &mass) in nodes.iter().zip(&row) {
                     match self.loser(a, b) {
                         None => triplets.push((a, b, factor * mass)),
                         Some(node) => {
@@ -111,8 +88,8 @@ impl Redistribution {
         for element in region.elements() {
             let of_element = body.mesh().element(element);
             let (mut moment, mut redistributed) = ([0.0; 4], [0.0; 4]);
-            for (&a, row) in of_element.iter().zip(elements[element].rows()) {
-                for (&b, &mass) in of_element.iter().zip(row) {
+            for (&a, row) in of_element.iter().zip(elements[element].column_iter()) {
+                for (&b, &mass) in of_element.iter().zip(&row) {
                     let (was, is) = (place(nodes[a]), at_node(self.loser(a, b).unwrap_or(a)));
                     for axis in 0..4 {
                         moment[axis] += mass * was[axis];
@@ -156,8 +133,8 @@ fn heirs(body: &ElasticBody, elements: &[ElementMass], massless: &[usize]) -> Re
     massless.iter().filter(|&&node| node < count).for_each(|&node| waiting[node] = true);
     let mut shared: Vec<Vec<(usize, f64)>> = vec![Vec::new(); count];
     for (nodes, element) in body.mesh().elements().zip(elements) {
-        for (&a, row) in nodes.iter().zip(element.rows()).filter(|(a, _)| waiting[**a]) {
-            shared[a].extend(nodes.iter().zip(row).filter(|(b, _)| **b != a).map(|(&b, mass)| (b, mass.abs())));
+        for (&a, row) in nodes.iter().zip(element.column_iter()).filter(|(a, _)| waiting[**a]) {
+            shared[a].extend(nodes.iter().zip(&row).filter(|(b, _)| **b != a).map(|(&b, mass)| (b, mass.abs())));
         }
     }
     let mut heirs: Vec<Vec<(usize, f64)>> = vec![Vec::new(); count];

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::{Boundary, ElementKind, Mesh};
 use crate::error::Error;
-use crate::fem::geometry::distance;
+use crate::fem::geometry::{cross, distance, dot, key, minus};
 
 /// Number of times that a marked tetrahedron is halved. Measured on a block under a sphere: 1 needs more meshes, and 3 refines too much.
 const GENERATIONS: usize = 2;
@@ -169,11 +169,6 @@ impl Marked {
     }
 }
 
-/// The key of an edge: its two nodes, increasing.
-fn key(a: usize, b: usize) -> [usize; 2] {
-    [a.min(b), a.max(b)]
-}
-
 fn sorted(mut nodes: [usize; 3]) -> [usize; 3] {
     nodes.sort_unstable();
     nodes
@@ -187,23 +182,18 @@ fn turned(places: &[[f64; 3]], nodes: [usize; 4]) -> [usize; 4] {
 
 /// The volume of a tetrahedron, positive if its corners stand in the order of its kind.
 fn volume([a, b, c, d]: [[f64; 3]; 4]) -> f64 {
-    let edge = |to: [f64; 3]| [0, 1, 2].map(|axis| to[axis] - a[axis]);
-    let ([x, y, z], [p, q, r], [u, v, w]) = (edge(b), edge(c), edge(d));
-    (x * (q * w - r * v) - y * (p * w - r * u) + z * (p * v - q * u)) / 6.0
+    dot(minus(b, a), cross(minus(c, a), minus(d, a))) / 6.0
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fem::geometry::length;
     use crate::fem::mesh::gmsh::GmshFile;
 
     /// The ratio of the radii of inscribed and circumscribed sphere, times three: 1 for the regular tetrahedron, 0 for a flat one.
     fn quality(corners: [[f64; 3]; 4]) -> f64 {
-        let area = |[a, b, c]: [[f64; 3]; 3]| {
-            let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
-            let cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-            cross.iter().map(|entry| entry * entry).sum::<f64>().sqrt() / 2.0
-        };
+        let area = |[a, b, c]: [[f64; 3]; 3]| length(cross(minus(b, a), minus(c, a))) / 2.0;
         let [a, b, c, d] = corners;
         let faces = area([b, c, d]) + area([a, c, d]) + area([a, b, d]) + area([a, b, c]);
         let volume = volume(corners).abs();
@@ -258,14 +248,11 @@ mod tests {
             assert_eq!(before.name, after.name);
             let on = |mesh: &Mesh, boundary: &Boundary| {
                 let corner = |node: usize| mesh.nodes()[node];
-                let cross = |f: &[usize]| {
-                    let (u, v) = (
-                        [0, 1, 2].map(|k| corner(f[1])[k] - corner(f[0])[k]),
-                        [0, 1, 2].map(|k| corner(f[2])[k] - corner(f[0])[k]),
-                    );
-                    [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
-                };
-                boundary.facets().map(cross).fold([0.0; 3], |sum, one| [0, 1, 2].map(|k| sum[k] + one[k]))
+                let side = |f: &[usize], to: usize| minus(corner(f[to]), corner(f[0]));
+                boundary
+                    .facets()
+                    .map(|f| cross(side(f, 1), side(f, 2)))
+                    .fold([0.0; 3], |sum, one| [0, 1, 2].map(|k| sum[k] + one[k]))
             };
             // The vector of area: size and side of the facets.
             let (one, two) = (on(&first, before), on(&refined, after));

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::{Boundary, ElementKind, MAX_NODES, Mesh, fail};
 use crate::error::Error;
-use crate::fem::geometry::{length, minus};
+use crate::fem::geometry::{key, length, minus};
 
 impl Mesh {
     /// The same mesh of a quadratic `kind`, whose corners are the nodes of its elements; edges stay straight. The new nodes follow
@@ -61,7 +61,7 @@ impl Middles {
         connectivity.extend(corners);
         for edge in edges {
             let [a, b] = edge.map(|local| corners[local]);
-            let middle = *self.of.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+            let middle = *self.of.entry(key(a, b)).or_insert_with(|| {
                 let (one, other) = (self.nodes[a], self.nodes[b]);
                 self.nodes.push([0, 1, 2].map(|axis| one[axis] + (other[axis] - one[axis]) / 2.0));
                 self.nodes.len() - 1

@@ -2,7 +2,7 @@
 
 use super::{Mesh, fail};
 use crate::error::Error;
-use crate::fem::geometry::distance;
+use crate::fem::geometry::{distance, key};
 
 /// A mid-edge node that lies off the chord by less than this, relative to the chord, is rounding.
 const STRAIGHT: f64 = 1e-9;
@@ -58,12 +58,11 @@ impl TrianglePieces {
 
     /// The edges of triangles that form a boundary, each by its two nodes, increasing.
     pub fn edges_of(&self, mesh: &Mesh, boundary: &str) -> Vec<[usize; 2]> {
-        let key = |a: usize, b: usize| Some([a.min(b), a.max(b)]);
         let of_facet = |facet: &[usize]| {
             let number = |place: usize| facet.get(place).and_then(|&node| self.numbers[node]);
             match (number(0), number(1), number(2)) {
-                (Some(a), Some(b), Some(middle)) => [key(a, middle), key(middle, b)],
-                (Some(a), Some(b), None) => [key(a, b), None],
+                (Some(a), Some(b), Some(middle)) => [Some(key(a, middle)), Some(key(middle, b))],
+                (Some(a), Some(b), None) => [Some(key(a, b)), None],
                 _ => [None; 2],
             }
         };

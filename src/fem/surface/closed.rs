@@ -4,7 +4,7 @@ use super::facets::Facets;
 use super::tree::{Limits, NOWHERE, Tree, joined};
 use super::triangle::Triangle;
 use crate::error::Error;
-use crate::fem::geometry::{distance, dot, length, minus};
+use crate::fem::geometry::{Around, distance, dot, length, minus};
 
 /// A volume below this times area and extent is rounding: a sheet folded onto itself encloses no volume.
 const NO_VOLUME: f64 = 1e-13;
@@ -15,44 +15,16 @@ pub struct ClosedSurface {
     vertices: Vec<[f64; 3]>,
     /// Counterclockwise seen from outside.
     corners: Vec<[u32; 3]>,
+    /// The triangles around each vertex.
     around: Around,
     tree: Tree,
-}
-
-/// The triangles around each vertex.
-#[derive(Debug)]
-struct Around {
-    starts: Vec<u32>,
-    triangles: Vec<u32>,
-}
-
-impl Around {
-    fn new(vertices: usize, corners: &[[u32; 3]]) -> Self {
-        let mut starts = vec![0; vertices + 1];
-        corners.iter().flatten().for_each(|&vertex| starts[vertex as usize + 1] += 1);
-        for vertex in 0..vertices {
-            starts[vertex + 1] += starts[vertex];
-        }
-        let (mut next, mut triangles) = (starts.clone(), vec![0; 3 * corners.len()]);
-        for (triangle, corners) in corners.iter().enumerate() {
-            for &vertex in corners {
-                triangles[next[vertex as usize] as usize] = triangle as u32;
-                next[vertex as usize] += 1;
-            }
-        }
-        Around { starts, triangles }
-    }
-
-    fn at(&self, vertex: u32) -> &[u32] {
-        let vertex = vertex as usize;
-        &self.triangles[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
-    }
 }
 
 impl ClosedSurface {
     /// Checks that the triangles form closed surfaces, reverses them if all run clockwise, and builds the tree.
     pub(super) fn new(mut facets: Facets) -> Result<Self, Error> {
-        let around = Around::new(facets.vertices.len(), &facets.corners);
+        let of_triangles = facets.corners.iter().map(|corners| corners.map(|vertex| vertex as usize));
+        let around = Around::new(facets.vertices.len(), of_triangles);
         check_edges(&facets, &around)?;
         let place = |corners: &[u32; 3]| Triangle(corners.map(|vertex| facets.vertices[vertex as usize]));
         let has_area = |&triangle: &u32| place(&facets.corners[triangle as usize]).area_normal() != [0.0; 3];
@@ -91,7 +63,7 @@ impl ClosedSurface {
 
     /// The triangles around a vertex.
     pub(super) fn around(&self, vertex: u32) -> &[u32] {
-        self.around.at(vertex)
+        self.around.at(vertex as usize)
     }
 }
 
@@ -117,7 +89,7 @@ fn check_edges(facets: &Facets, around: &Around) -> Result<(), Error> {
         // An edge is counted at its end with the lower number, as the other end and a triangle along it. They are sorted: the tip of a
         // cone and copies of one triangle have very many.
         edges.clear();
-        for &triangle in around.at(vertex) {
+        for &triangle in around.at(vertex as usize) {
             let corners = facets.corners[triangle as usize];
             for (corner, from) in corners.into_iter().enumerate() {
                 let to = corners[(corner + 1) % 3];
