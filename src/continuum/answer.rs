@@ -3,13 +3,10 @@
 use super::bound::Bracket;
 use super::johnson_mercier::at;
 use super::problem::Tensor;
-use super::triangulation::Point;
+use super::triangulation::{CENTRE, Point};
 use crate::error::Error;
 use crate::fem::ElementKind;
 use crate::fem::mesh::{Boundary, Mesh};
-
-/// The centroid of a part of a triangle.
-const CENTRE: [f64; 3] = [1.0 / 3.0; 3];
 
 /// The answer on a mesh of triangles of six nodes: the corners, then the middles of the edges.
 #[derive(Clone, Debug)]

@@ -14,7 +14,7 @@ use super::johnson_mercier::{PartStress, at, mean_over_parts, traction};
 use super::problem::{PlaneProblem, Tensor, work};
 use super::stress::{Place, Stresses};
 use super::system::{Row, Unknowns};
-use super::triangulation::{Triangulation, outward, twice_area};
+use super::triangulation::{Point, Triangulation, outward, twice_area};
 use crate::error::Error;
 use crate::fem::material::Lame;
 use crate::qp::problem::ContactProblem;
@@ -279,18 +279,31 @@ impl<'a> Bracket<'a> {
 
     /// The work of the tractions of a stress with the prescribed displacements.
     pub fn work_on_supports(&self, stress: &[PartStress]) -> f64 {
+        let at_ends = self.jumps(stress);
         let mut sum = 0.0;
-        for (triangle, local, edge, condition) in self.mesh.outline() {
-            let (normal, _) = outward(self.mesh.corners(triangle), local);
-            let held = self.problem.conditions[condition].held;
-            for end in 0..2 {
-                let pull = traction(stress[triangle][local][1 + end], normal);
-                (0..2).for_each(|axis| {
-                    sum += self.stresses.half_area(edge) * pull[axis] * held[axis].unwrap_or(0.0);
-                });
+        for (_, _, edge, condition) in self.mesh.outline() {
+            let held = self.problem.conditions[condition].held.map(Option::unwrap_or_default);
+            for pull in at_ends[edge] {
+                sum += self.stresses.half_area(edge) * (pull[0] * held[0] + pull[1] * held[1]);
             }
         }
         sum
+    }
+
+    /// The sum of the tractions of a stress on both sides of each edge, at both of its ends: on the outline the traction itself.
+    pub(super) fn jumps(&self, stress: &[PartStress]) -> Vec<[Point; 2]> {
+        let mut jumps = vec![[[0.0; 2]; 2]; self.mesh.edges.len()];
+        for (triangle, sides) in self.mesh.sides.iter().enumerate() {
+            for (local, &edge) in sides.iter().enumerate() {
+                let (normal, _) = outward(self.mesh.corners(triangle), local);
+                for next in 1..3 {
+                    let pull = traction(stress[triangle][local][next], normal);
+                    let sum = &mut jumps[edge][self.mesh.end_at(triangle, local, next)];
+                    (0..2).for_each(|axis| sum[axis] += pull[axis]);
+                }
+            }
+        }
+        jumps
     }
 }
 

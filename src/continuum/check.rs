@@ -2,7 +2,7 @@
 
 use super::bound::Bracket;
 use super::johnson_mercier::{part, traction};
-use super::triangulation::{outward, twice_area};
+use super::triangulation::{CENTRE, outward, twice_area};
 use crate::error::Error;
 
 /// Rounding of jumps of tractions over the largest stress, and of forces of the wrong sign over the largest force: fifty times the value
@@ -62,7 +62,6 @@ impl Bracket<'_> {
 
     /// The largest stress, in balance or of the displacement: the former is rounding if nothing touches yet.
     fn largest_stress(&self) -> f64 {
-        const CENTRE: [f64; 3] = [1.0 / 3.0; 3];
         let strain = |triangle: usize| self.displacements.strain(&self.primal.values, triangle, CENTRE);
         let of_displacement = (0..self.stress.len()).map(|triangle| self.problem.stress(strain(triangle)));
         let in_balance = self.stress.iter().flatten().flatten().copied();
@@ -72,21 +71,9 @@ impl Bracket<'_> {
     /// The largest jump of a traction between triangles, difference of traction and load, and sum of divergence and body force times
     /// length, over the largest stress.
     fn imbalance(&self) -> f64 {
-        let mut left = vec![[[0.0; 2]; 2]; self.mesh.edges.len()];
-        let mut worst: f64 = 0.0;
-        for triangle in 0..self.mesh.triangles.len() {
-            let corners = self.mesh.corners(triangle);
-            for local in 0..3 {
-                let (edge, (normal, _)) = (self.mesh.sides[triangle][local], outward(corners, local));
-                for end in 0..2 {
-                    let node = self.mesh.triangles[triangle][(local + 1 + end) % 3];
-                    let pull = traction(self.stress[triangle][local][1 + end], normal);
-                    let sum = &mut left[edge][usize::from(self.mesh.edges[edge][0] != node)];
-                    (0..2).for_each(|axis| sum[axis] += pull[axis]);
-                }
-            }
-            worst = worst.max(self.divergence(triangle));
-        }
+        let mut left = self.jumps(&self.stress);
+        let mut worst =
+            (0..self.mesh.triangles.len()).fold(0.0, |worst: f64, triangle| worst.max(self.divergence(triangle)));
         for (triangle, local, edge, condition) in self.mesh.outline() {
             let condition = &self.problem.conditions[condition];
             let pull = condition.pull(outward(self.mesh.corners(triangle), local).0);

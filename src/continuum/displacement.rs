@@ -5,11 +5,8 @@ use std::collections::BTreeMap;
 
 use super::problem::{Condition, PlaneProblem, Tensor, work};
 use super::system::{Block, LOCAL, Row, Unknowns};
-use super::triangulation::{Point, Triangulation, distance, outward, twice_area};
+use super::triangulation::{MIDDLES, Point, Triangulation, distance, outward, slopes, twice_area};
 use crate::error::Error;
-
-/// The mid-sides of a triangle: the mean of a quadratic function at these points is its mean over the triangle.
-pub const MIDDLES: [[f64; 3]; 3] = [[0.0, 0.5, 0.5], [0.5, 0.0, 0.5], [0.5, 0.5, 0.0]];
 
 /// Displacements on a mesh.
 #[derive(Debug)]
@@ -17,7 +14,7 @@ pub struct Displacements<'a> {
     problem: &'a PlaneProblem,
     mesh: &'a Triangulation,
     /// The six functions of each triangle, along both axes.
-    numbers: Vec<[usize; LOCAL]>,
+    pub numbers: Vec<[usize; LOCAL]>,
 }
 
 impl<'a> Displacements<'a> {
@@ -86,11 +83,6 @@ impl<'a> Displacements<'a> {
         Ok(rows)
     }
 
-    /// The functions of each triangle.
-    pub fn numbers(&self) -> impl Iterator<Item = &[usize; LOCAL]> + '_ {
-        self.numbers.iter()
-    }
-
     /// The functions of each triangle, with its stiffness.
     pub fn blocks(&self) -> impl Iterator<Item = (&[usize; LOCAL], Block)> + '_ {
         self.numbers.iter().enumerate().map(|(triangle, numbers)| (numbers, self.stiffness(triangle)))
@@ -145,15 +137,6 @@ impl<'a> Displacements<'a> {
         }
         strain
     }
-}
-
-/// The gradients of the barycentric coordinates.
-fn slopes(corners: [Point; 3]) -> [Point; 3] {
-    let area = twice_area(corners);
-    [0, 1, 2].map(|local| {
-        let [from, to] = [corners[(local + 1) % 3], corners[(local + 2) % 3]];
-        [(from[1] - to[1]) / area, (to[0] - from[0]) / area]
-    })
 }
 
 /// The strains of the twelve functions at a point: `l_k^2` of the corners, then `2 l_i l_j` of the sides, each along x and y.

@@ -15,10 +15,9 @@
 use std::collections::BTreeSet;
 
 use super::bound::{Bracket, Side, minus};
-use super::johnson_mercier::{PartStress, at, mean_over_parts, traction};
+use super::johnson_mercier::{PartStress, at, mean_over_parts};
 use super::problem::work;
 use super::system::{Block, Unknowns};
-use super::triangulation::outward;
 use crate::error::Error;
 use crate::fem::material::Lame;
 use crate::qp::linear::Cholesky;
@@ -173,7 +172,7 @@ impl Bracket<'_> {
     fn bonded_displacement(&self, bonded: &mut [bool], blocks: &[Block]) -> Result<Option<Vec<f64>>, Error> {
         for _ in 0..ROUNDS {
             let (unknowns, load) = with_contact_held(&self.primal, bonded);
-            let posed = unknowns.problem(self.displacements.numbers().zip(blocks.iter().copied()), &load, &[])?;
+            let posed = unknowns.problem(self.displacements.numbers.iter().zip(blocks.iter().copied()), &load, &[])?;
             let Some(free) = linear(&posed) else { return Ok(None) };
             let values = unknowns.expanded(&free);
             let wrong: Vec<usize> = (0..bonded.len())
@@ -194,7 +193,8 @@ impl Bracket<'_> {
     fn bonded_stress(&self, pressed: &mut [bool], blocks: &Blocks) -> Result<Option<Pressed>, Error> {
         for _ in 0..ROUNDS {
             let (unknowns, load) = with_contact_held(&self.dual, pressed);
-            let posed = unknowns.problem(self.stresses.numbers().zip(blocks.stress.iter().copied()), &load, &[])?;
+            let posed =
+                unknowns.problem(self.stresses.numbers.iter().zip(blocks.stress.iter().copied()), &load, &[])?;
             let Some(free) = linear(&posed) else { return Ok(None) };
             let mut stress = self.stresses.stresses(&unknowns.expanded(&free));
             // The difference of two answers under the same body force has no body force.
@@ -225,15 +225,7 @@ impl Bracket<'_> {
 
     /// The force of a stress at each place, along the obstacle.
     fn pulls(&self, stress: &[PartStress]) -> Vec<f64> {
-        let mut at_ends = vec![[[0.0; 2]; 2]; self.mesh.edges.len()];
-        for (triangle, local, edge, _) in self.mesh.outline() {
-            let (normal, _) = outward(self.mesh.corners(triangle), local);
-            for end in 0..2 {
-                let node = self.mesh.triangles[triangle][(local + 1 + end) % 3];
-                let place = usize::from(self.mesh.edges[edge][0] != node);
-                at_ends[edge][place] = traction(stress[triangle][local][1 + end], normal);
-            }
-        }
+        let at_ends = self.jumps(stress);
         let pull = |place: &super::stress::Place| {
             let facing = &self.problem.obstacles[place.obstacle];
             facing.sense * at_ends[place.edge][place.end][facing.axis] * self.stresses.half_area(place.edge)

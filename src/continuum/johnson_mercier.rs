@@ -7,18 +7,17 @@
 
 use std::sync::OnceLock;
 
+use nalgebra::{Cholesky, Const, SMatrix, SVector};
+
 use super::problem::{PlaneProblem, Tensor, work};
 use super::system::{Block, LOCAL};
-use super::triangulation::{Point, outward, twice_area};
+use super::triangulation::{MIDDLES, Point, outward, slopes, twice_area};
 
 /// Stresses without divergence.
 pub const FREE: usize = 9;
 
 /// A stress on a triangle: for part k, next to the side opposite to corner k, its values at the centre and at the corners k+1 and k+2.
 pub type PartStress = [[Tensor; 3]; 3];
-
-/// The values of a part at its mid-sides, from those at its corners.
-const HALVES: [[f64; 3]; 3] = [[0.0, 0.5, 0.5], [0.5, 0.0, 0.5], [0.5, 0.5, 0.0]];
 
 /// The triangle on which the stresses are computed once.
 const REFERENCE: [Point; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
@@ -30,13 +29,13 @@ pub struct Element {
     /// A stress in balance with the body force.
     particular: PartStress,
     /// Works of the tractions of each stress with the twelve unknowns of the sides.
-    tractions: [[f64; LOCAL]; FREE],
+    tractions: SMatrix<f64, FREE, LOCAL>,
     /// The same of the particular stress.
-    particular_tractions: [f64; LOCAL],
-    /// The Cholesky factor, lower, of the complementary energies.
-    factor: [[f64; FREE]; FREE],
+    particular_tractions: SVector<f64, LOCAL>,
+    /// The factor of the complementary energies.
+    factor: Cholesky<f64, Const<FREE>>,
     /// The complementary energies of each stress with the particular one.
-    particular_energies: [f64; FREE],
+    particular_energies: SVector<f64, FREE>,
 }
 
 /// The corners of part k: the centre, then corners k+1 and k+2.
@@ -47,7 +46,7 @@ pub fn part(corners: [Point; 3], k: usize) -> [Point; 3] {
 
 /// The mean over a triangle of the product of two functions that are linear on each part, from the values at the mid-sides.
 pub fn mean_over_parts(product: impl Fn(usize, [f64; 3]) -> f64) -> f64 {
-    let points = (0..3).flat_map(|k| HALVES.map(|weights| (k, weights)));
+    let points = (0..3).flat_map(|k| MIDDLES.map(|weights| (k, weights)));
     points.map(|(k, weights)| product(k, weights)).sum::<f64>() / 9.0
 }
 
@@ -70,15 +69,12 @@ impl Element {
         let energy = |a: &PartStress, b: &PartStress| {
             volume * mean_over_parts(|k, weights| work(at(a, k, weights), problem.compliance(at(b, k, weights))))
         };
-        let mut energies = [[0.0; FREE]; FREE];
-        for (row, stress) in stresses.iter().enumerate() {
-            (0..=row).for_each(|column| energies[row][column] = energy(stress, &stresses[column]));
-        }
+        let works = stresses.map(|stress| tractions(&stress, corners, problem.thickness));
         Element {
-            tractions: stresses.map(|stress| tractions(&stress, corners, problem.thickness)),
-            particular_tractions: tractions(&particular, corners, problem.thickness),
-            factor: cholesky(energies),
-            particular_energies: std::array::from_fn(|row| energy(&stresses[row], &particular)),
+            tractions: SMatrix::from_fn(|row, unknown| works[row][unknown]),
+            particular_tractions: tractions(&particular, corners, problem.thickness).into(),
+            factor: Cholesky::new_unchecked(SMatrix::from_fn(|row, column| energy(&stresses[row], &stresses[column]))),
+            particular_energies: SVector::from_fn(|row, _| energy(&stresses[row], &particular)),
             stresses,
             particular,
         }
@@ -86,45 +82,29 @@ impl Element {
 
     /// The stiffness at the sides.
     pub fn block(&self) -> Block {
-        let mut halves = [[0.0; FREE]; LOCAL];
-        for (unknown, half) in halves.iter_mut().enumerate() {
-            *half = forward(&self.factor, self.tractions.map(|of_stress| of_stress[unknown]));
-        }
-        std::array::from_fn(|row| std::array::from_fn(|column| product(&halves[row], &halves[column])))
+        let mut halves = self.tractions;
+        self.factor.l_dirty().solve_lower_triangular_unchecked_mut(&mut halves);
+        halves.tr_mul(&halves).into()
     }
 
     /// The load of the body force on the sides.
     pub fn load(&self) -> [f64; LOCAL] {
-        let amounts = self.solved(self.particular_energies);
-        let of_stresses = |unknown: usize| (0..FREE).map(|k| self.tractions[k][unknown] * amounts[k]).sum::<f64>();
-        std::array::from_fn(|unknown| of_stresses(unknown) - self.particular_tractions[unknown])
+        let amounts = self.factor.solve(&self.particular_energies);
+        (self.tractions.tr_mul(&amounts) - self.particular_tractions).into()
     }
 
     /// The stress under displacements of the sides.
     pub fn stress(&self, sides: [f64; LOCAL]) -> PartStress {
-        let pulled = std::array::from_fn(|k| product(&self.tractions[k], &sides) - self.particular_energies[k]);
-        let amounts = self.solved(pulled);
+        let pulled = self.tractions * SVector::from(sides) - self.particular_energies;
+        let amounts = self.factor.solve(&pulled);
         let mut stress = self.particular;
-        for (amount, of_amount) in amounts.into_iter().zip(&self.stresses) {
+        for (amount, of_amount) in amounts.iter().zip(&self.stresses) {
             for (values, parts) in stress.iter_mut().flatten().zip(of_amount.iter().flatten()) {
                 (0..3).for_each(|entry| values[entry] += amount * parts[entry]);
             }
         }
         stress
     }
-
-    fn solved(&self, right: [f64; FREE]) -> [f64; FREE] {
-        let mut solution = forward(&self.factor, right);
-        for row in (0..FREE).rev() {
-            solution[row] /= self.factor[row][row];
-            (0..row).for_each(|column| solution[column] -= self.factor[row][column] * solution[row]);
-        }
-        solution
-    }
-}
-
-fn product<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The works of the tractions with the unknowns of the sides: for each side, opposite to corner k, at its ends k+1 and k+2 along x and y.
@@ -188,11 +168,8 @@ fn conditions() -> Vec<[f64; VALUES]> {
     let mut conditions = Vec::with_capacity(18);
     for k in 0..3 {
         let corners = part(REFERENCE, k);
-        let area = twice_area(corners);
         let mut divergence = [[0.0; VALUES]; 2];
-        for corner in 0..3 {
-            let [from, to] = [corners[(corner + 1) % 3], corners[(corner + 2) % 3]];
-            let slope = [(from[1] - to[1]) / area, (to[0] - from[0]) / area];
+        for (corner, slope) in slopes(corners).into_iter().enumerate() {
             divergence[0][place(k, corner, 0)] = slope[0];
             divergence[0][place(k, corner, 2)] = slope[1];
             divergence[1][place(k, corner, 2)] = slope[0];
@@ -242,26 +219,6 @@ fn null_space(mut rows: Vec<[f64; VALUES]>) -> Vec<[f64; VALUES]> {
     free.map(vector).collect()
 }
 
-fn cholesky(mut matrix: [[f64; FREE]; FREE]) -> [[f64; FREE]; FREE] {
-    for column in 0..FREE {
-        let square: f64 = matrix[column][..column].iter().map(|value| value * value).sum();
-        matrix[column][column] = (matrix[column][column] - square).sqrt();
-        for row in column + 1..FREE {
-            let sum: f64 = (0..column).map(|k| matrix[row][k] * matrix[column][k]).sum();
-            matrix[row][column] = (matrix[row][column] - sum) / matrix[column][column];
-        }
-    }
-    matrix
-}
-
-fn forward(factor: &[[f64; FREE]; FREE], mut right: [f64; FREE]) -> [f64; FREE] {
-    for row in 0..FREE {
-        let sum: f64 = (0..row).map(|column| factor[row][column] * right[column]).sum();
-        right[row] = (right[row] - sum) / factor[row][row];
-    }
-    right
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -278,6 +235,10 @@ mod tests {
             obstacles: Vec::new(),
             boundaries: Vec::new(),
         }
+    }
+
+    fn product(a: &[f64; LOCAL], b: &[f64; LOCAL]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| a * b).sum()
     }
 
     const CORNERS: [Point; 3] = [[0.25, -0.5], [2.0, 0.125], [0.75, 1.5]];

@@ -14,7 +14,8 @@ pub struct Stresses<'a> {
     problem: &'a PlaneProblem,
     mesh: &'a Triangulation,
     elements: Vec<Element>,
-    numbers: Vec<[usize; LOCAL]>,
+    /// The unknowns of each triangle.
+    pub numbers: Vec<[usize; LOCAL]>,
 }
 
 /// The place at which a contact row of the stress acts.
@@ -36,8 +37,7 @@ impl<'a> Stresses<'a> {
             for side in 0..3 {
                 let edge = mesh.sides[triangle][side];
                 for end in 0..2 {
-                    let node = mesh.triangles[triangle][(side + 1 + end) % 3];
-                    let of_edge = usize::from(mesh.edges[edge][0] != node);
+                    let of_edge = mesh.end_at(triangle, side, 1 + end);
                     for axis in 0..2 {
                         numbers[4 * side + 2 * end + axis] = unknown(edge, of_edge, axis);
                     }
@@ -83,11 +83,6 @@ impl<'a> Stresses<'a> {
             }
         }
         (rows, places)
-    }
-
-    /// The unknowns of each triangle.
-    pub fn numbers(&self) -> impl Iterator<Item = &[usize; LOCAL]> + '_ {
-        self.numbers.iter()
     }
 
     /// The unknowns of each triangle, with its stiffness.

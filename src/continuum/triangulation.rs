@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use crate::fem::geometry::key;
+
 /// Coordinates or components `[x, y]`.
 pub type Point = [f64; 2];
 
@@ -24,13 +26,14 @@ pub struct Triangulation {
     parents: Vec<[usize; 2]>,
 }
 
+/// The mid-sides of a triangle: the mean of a quadratic function at these points is its mean over the triangle.
+pub const MIDDLES: [[f64; 3]; 3] = [[0.0, 0.5, 0.5], [0.5, 0.0, 0.5], [0.5, 0.5, 0.0]];
+
+/// The barycentric coordinates of the centroid.
+pub const CENTRE: [f64; 3] = [1.0 / 3.0; 3];
+
 /// If moved nodes leave a triangle less than this share of its area, it is nearly flat or folded.
 const FOLDED: f64 = 0.1;
-
-/// The key of an edge: its two nodes, increasing.
-fn key(a: usize, b: usize) -> [usize; 2] {
-    [a.min(b), a.max(b)]
-}
 
 impl Triangulation {
     /// The triangulation of these triangles (counterclockwise), pieces of the elements `origins`, with corners rotated so that the
@@ -83,6 +86,12 @@ impl Triangulation {
     /// The corners of a triangle.
     pub fn corners(&self, triangle: usize) -> [Point; 3] {
         self.triangles[triangle].map(|node| self.nodes[node])
+    }
+
+    /// The end, 0 or 1, of the edge of a side at which the corner stands that follows `next` corners after the one opposite to the side.
+    pub fn end_at(&self, triangle: usize, local: usize, next: usize) -> usize {
+        let node = self.triangles[triangle][(local + next) % 3];
+        usize::from(self.edges[self.sides[triangle][local]][0] != node)
     }
 
     /// The sides of the outline: triangle, local number of the side, edge and condition.
@@ -162,6 +171,15 @@ pub fn distance(a: Point, b: Point) -> f64 {
 /// Twice the area of a triangle; positive if its corners stand counterclockwise.
 pub fn twice_area([a, b, c]: [Point; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// The gradients of the barycentric coordinates.
+pub fn slopes(corners: [Point; 3]) -> [Point; 3] {
+    let area = twice_area(corners);
+    [0, 1, 2].map(|local| {
+        let [from, to] = [corners[(local + 1) % 3], corners[(local + 2) % 3]];
+        [(from[1] - to[1]) / area, (to[0] - from[0]) / area]
+    })
 }
 
 /// The outward unit normal of the side opposite to corner `local`, and its length.
