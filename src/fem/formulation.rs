@@ -4,6 +4,14 @@ use std::f64::consts::TAU;
 
 use crate::error::Error;
 
+/// Checks that a setting is positive and finite; a number without all its digits, close to zero, counts as zero.
+pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), Error> {
+    match value.is_normal() && value > 0.0 {
+        true => Ok(()),
+        false => Err(Error::Setting { name, value, allowed: "positive and finite" }),
+    }
+}
+
 /// The dimension of a model and the assumption for the directions that it leaves out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Formulation {
@@ -41,11 +49,7 @@ impl Formulation {
             Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => ("thickness", thickness),
             Formulation::Axisymmetric | Formulation::Space => return Ok(()),
         };
-        if value.is_normal() && value > 0.0 {
-            Ok(())
-        } else {
-            Err(Error::Setting { name, value, allowed: "positive and finite" })
-        }
+        positive(name, value)
     }
 
     /// The components of `[xx, yy, zz, xy, yz, zx]` in which there may be stress.

@@ -18,14 +18,12 @@ pub fn internal_force(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<f6
     let mut force = vec![0.0; displacement.len()];
     for element in body.elements() {
         let (nodes, cell) = (element.nodes, &element.cell);
-        let local = body.gather(displacement, nodes);
-        let mean = body.mean_dilatation(cell, &table, &local);
+        let strained = body.strained(&table, displacement, &element);
         let scale = cell.unit().powi(dimension as i32 - 1);
         for at in &table.points {
-            let point = body.point(cell, at);
-            let strain = point.strain(&local, cell.unit());
+            let (point, stress) = strained.at(at);
             let weight = point.weight * scale;
-            let [xx, yy, zz, xy, yz, zx] = element.stress(at, &strain, mean).map(|component| component * weight);
+            let [xx, yy, zz, xy, yz, zx] = stress.map(|component| component * weight);
             let rows = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];
             for (local, &node) in nodes.iter().enumerate() {
                 let g = point.gradients[local];

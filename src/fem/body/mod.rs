@@ -284,13 +284,19 @@ impl ElasticBody {
         }
     }
 
-    /// The mean dilatation of an element, per length, if its integration needs it; `None` otherwise.
-    pub(crate) fn mean_dilatation(
-        &self,
-        cell: &Cell,
+    /// An element under the nodal displacement of the body; `table` is the body's [`tabulated`](Self::tabulated) element.
+    pub(crate) fn strained<'a>(
+        &'a self,
         table: &Tabulated,
-        displacement: &PerNode<[f64; 3]>,
-    ) -> Option<f64> {
+        displacement: &[f64],
+        element: &'a BodyElement<'a>,
+    ) -> Strained<'a> {
+        let local = self.gather(displacement, element.nodes);
+        Strained { body: self, element, local, mean_dilatation: self.mean_dilatation(&element.cell, table, &local) }
+    }
+
+    /// The mean dilatation of an element, per length, if its integration needs it; `None` otherwise.
+    fn mean_dilatation(&self, cell: &Cell, table: &Tabulated, displacement: &PerNode<[f64; 3]>) -> Option<f64> {
         if self.integration() != Integration::MeanDilatation {
             return None;
         }
@@ -313,6 +319,25 @@ impl ElasticBody {
             return Err(Error::Length { name, found, expected, of: "nodal dofs" });
         }
         Ok(())
+    }
+}
+
+/// An element with its displacement.
+pub(crate) struct Strained<'a> {
+    body: &'a ElasticBody,
+    element: &'a BodyElement<'a>,
+    local: PerNode<[f64; 3]>,
+    mean_dilatation: Option<f64>,
+}
+
+impl Strained<'_> {
+    /// A tabulated point of the element in place, and the stress there.
+    #[inline]
+    pub fn at(&self, at: &TabulatedPoint) -> (LocalPoint, Symmetric) {
+        let cell = &self.element.cell;
+        let point = self.body.point(cell, at);
+        let stress = self.element.stress(at, &point.strain(&self.local, cell.unit()), self.mean_dilatation);
+        (point, stress)
     }
 }
 

@@ -7,7 +7,7 @@ pub use law::{Lame, Law, Stiffness};
 use orthotropic::Orthotropic;
 
 use crate::error::Error;
-use crate::fem::formulation::Formulation;
+use crate::fem::formulation::{Formulation, positive};
 use crate::fem::geometry::Symmetric;
 
 /// A linear elastic material, checked once, when it is built.
@@ -31,9 +31,7 @@ impl Material {
     /// # Errors
     /// [`Error::Setting`] for a modulus that is not positive and finite, or a ratio outside -1 < nu <= 0.5.
     pub fn new(young: f64, poisson: f64) -> Result<Self, Error> {
-        if !(young.is_normal() && young > 0.0) {
-            return Err(Error::Setting { name: "young", value: young, allowed: "positive and finite" });
-        }
+        positive("young", young)?;
         if !(poisson > -1.0 && poisson <= 0.5) {
             return Err(Error::Setting { name: "poisson", value: poisson, allowed: "above -1 and at most 0.5" });
         }
@@ -71,9 +69,7 @@ impl Material {
     /// # Errors
     /// [`Error::Setting`] for a density that is not positive and finite.
     pub fn with_density(self, density: f64) -> Result<Self, Error> {
-        if !(density.is_normal() && density > 0.0) {
-            return Err(Error::Setting { name: "density", value: density, allowed: "positive and finite" });
-        }
+        positive("density", density)?;
         Ok(Material { density: Some(density), ..self })
     }
 

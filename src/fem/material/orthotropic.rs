@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use super::law::{Matrices, Matrix};
 use crate::error::Error;
-use crate::fem::formulation::Formulation;
+use crate::fem::formulation::{Formulation, positive};
 use crate::fem::geometry::{Symmetric, cross, dot, length, turned, unit};
 
 /// Axes that deviate by less than this, as a sine, deviate by rounding.
@@ -36,9 +36,7 @@ impl Orthotropic {
             ("orthotropic.shear[1]", shear[1]),
             ("orthotropic.shear[2]", shear[2]),
         ];
-        if let Some(&(name, value)) = names.iter().find(|(_, value)| !(value.is_normal() && *value > 0.0)) {
-            return Err(Error::Setting { name, value, allowed: "positive and finite" });
-        }
+        names.into_iter().try_for_each(|(name, value)| positive(name, value))?;
         // The other ratio of each pair: nu_ji = nu_ij E_j / E_i.
         let [nu12, nu23, nu13] = poisson;
         let [nu21, nu32, nu31] = [nu12 * young[1] / young[0], nu23 * young[2] / young[1], nu13 * young[2] / young[0]];

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::MAX_NODES;
 use crate::error::Error;
+use crate::fem::formulation::positive;
 
 /// The finely meshed zone around the lowest (highest) point of a round body.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,9 +34,7 @@ const SMALLEST: f64 = 1e-8;
 impl Zone {
     pub(crate) fn check(&self, radius: f64) -> Result<(), Error> {
         let fail = |name, value, allowed| Err(Error::Setting { name, value, allowed });
-        if !(radius.is_normal() && radius > 0.0) {
-            return fail("radius", radius, "positive and finite");
-        }
+        positive("radius", radius)?;
         if !(self.width > 0.0 && self.width <= radius) {
             return fail("zone.width", self.width, "positive, and at most the radius");
         }

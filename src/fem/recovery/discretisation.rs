@@ -54,8 +54,7 @@ impl EstimatedError {
         let (mut whole, mut unstrained) = (0.0, 0.0);
         for element in body.elements() {
             let (nodes, cell, law) = (element.nodes, &element.cell, element.phase.law());
-            let local = body.gather(displacement, nodes);
-            let mean = body.mean_dilatation(cell, &standard, &local);
+            let strained = body.strained(&standard, displacement, &element);
             let mut recovered: PerNode<Symmetric> = [[0.0; 6]; MAX_NODES];
             for (stress, &node) in recovered.iter_mut().zip(nodes) {
                 *stress = field.within(node, element.phase_number).components();
@@ -63,9 +62,7 @@ impl EstimatedError {
             let volume = cell.unit().powi(body.dimension() as i32);
             let mut difference = 0.0;
             for at in &table.points {
-                let point = body.point(cell, at);
-                let strain = point.strain(&local, cell.unit());
-                let stress = element.stress(at, &strain, mean);
+                let (point, stress) = strained.at(at);
                 let mut away = stress;
                 for (share, of_node) in at.shape.iter().zip(&recovered) {
                     away.iter_mut().zip(of_node).for_each(|(entry, component)| *entry -= share * component);

@@ -9,8 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Matrix3;
 
 use crate::error::Error;
-use crate::fem::body::{BodyElement, ElasticBody};
-use crate::fem::element::{PerNode, Tabulated, TabulatedPoint};
+use crate::fem::body::ElasticBody;
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::Symmetric;
 
@@ -152,10 +151,10 @@ pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, E
     let (interfaces, mut sides) = (interfaces(body), BTreeMap::<(usize, u32), (Symmetric, usize)>::new());
     for element in body.elements() {
         let nodes = element.nodes;
-        let strained = Strained::new(body, &table, displacement, &element);
-        elements.push(finished(body, strained.stress(&table.centroid)));
+        let strained = body.strained(&table, displacement, &element);
+        elements.push(finished(body, strained.at(&table.centroid).1));
         for (index, at) in table.points.iter().enumerate() {
-            let at_point = strained.stress(at);
+            let at_point = strained.at(at).1;
             for (local, &node) in nodes.iter().enumerate() {
                 let weight = extrapolation[(local, index)];
                 add(&mut sums[node].0, weight, &at_point);
@@ -187,11 +186,11 @@ pub(crate) fn stress_at(body: &ElasticBody, displacement: &[f64], nodes: &BTreeS
     let mut is_wanted = vec![false; body.mesh().nodes().len()];
     nodes.iter().for_each(|&node| is_wanted[node] = true);
     for element in body.elements().filter(|element| element.nodes.iter().any(|&node| is_wanted[node])) {
-        let strained = Strained::new(body, &table, displacement, &element);
+        let strained = body.strained(&table, displacement, &element);
         let at_points: Vec<Symmetric> = if is_quadratic {
-            table.points.iter().map(|at| strained.stress(at)).collect()
+            table.points.iter().map(|at| strained.at(at).1).collect()
         } else {
-            vec![strained.stress(&table.centroid)]
+            vec![strained.at(&table.centroid).1]
         };
         for (local, &node) in element.nodes.iter().enumerate().filter(|&(_, &node)| is_wanted[node]) {
             let (sum, count) = sums.entry(node).or_default();
@@ -201,27 +200,6 @@ pub(crate) fn stress_at(body: &ElasticBody, displacement: &[f64], nodes: &BTreeS
     }
     let average = |(sum, count): (Symmetric, usize)| finished(body, sum.map(|component| component / count as f64));
     sums.into_iter().map(|(node, sum)| (node, average(sum))).collect()
-}
-
-/// An element with its displacement.
-struct Strained<'a> {
-    body: &'a ElasticBody,
-    element: &'a BodyElement<'a>,
-    local: PerNode<[f64; 3]>,
-    mean_dilatation: Option<f64>,
-}
-
-impl<'a> Strained<'a> {
-    fn new(body: &'a ElasticBody, table: &Tabulated, displacement: &[f64], element: &'a BodyElement<'a>) -> Self {
-        let local = body.gather(displacement, element.nodes);
-        Strained { body, element, local, mean_dilatation: body.mean_dilatation(&element.cell, table, &local) }
-    }
-
-    fn stress(&self, at: &TabulatedPoint) -> Symmetric {
-        let cell = &self.element.cell;
-        let strain = self.body.point(cell, at).strain(&self.local, cell.unit());
-        self.element.stress(at, &strain, self.mean_dilatation)
-    }
 }
 
 fn finished(body: &ElasticBody, s: Symmetric) -> Stress {

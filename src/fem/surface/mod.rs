@@ -19,6 +19,7 @@ pub use closest::Closest;
 pub(crate) use crossings::Crossing;
 
 use crate::error::Error;
+use crate::fem::formulation::positive;
 use crate::file::{MOST_OF_SURFACE, read_capped};
 
 impl ClosedSurface {
@@ -30,9 +31,7 @@ impl ClosedSurface {
     /// [`Error::FileSyntax`] with a line, or [`Error::FileBytes`] with an offset, for a file of another form, coordinates
     /// that are not finite or too large, and triangles that do not close to the surface of a solid. No error quotes the file.
     pub fn read(file: &Path, scale: f64, origin: [f64; 3]) -> Result<Self, Error> {
-        if !(scale.is_normal() && scale > 0.0) {
-            return Err(Error::Setting { name: "scale", value: scale, allowed: "positive and finite" });
-        }
+        positive("scale", scale)?;
         let ending = file.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
         let parse = match ending.as_deref() {
             Some("stl") => stl::read,

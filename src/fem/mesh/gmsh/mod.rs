@@ -53,6 +53,7 @@ pub use file::{GmshFile, PhysicalGroup};
 
 use super::Mesh;
 use crate::error::Error;
+use crate::fem::formulation::positive;
 use crate::file::{MOST_OF_TABLE, read_capped};
 
 impl GmshFile {
@@ -101,9 +102,7 @@ impl GmshFile {
     /// an element that is inverted or has no volume, a group with facets that are not faces of the body. [`Error::Mesh`] for a `domain`
     /// that does not exist, [`Error::Setting`] for a scale that is not positive and finite.
     pub fn mesh(&self, domain: Option<&str>, scale: f64) -> Result<Mesh, Error> {
-        if !(scale.is_normal() && scale > 0.0) {
-            return Err(Error::Setting { name: "scale", value: scale, allowed: "positive and finite" });
-        }
+        positive("scale", scale)?;
         let body = body::Body::select(self, domain)?;
         let (mut mesh, numbers) = body.mesh(self, scale)?;
         mesh.boundaries = boundaries::of(self, &mesh, &numbers, domain.is_some())?;
