@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::error::Error;
 
-/// Checks that a setting is positive and finite; a number without all its digits, close to zero, counts as zero.
+/// Checks that a setting is positive and finite; a subnormal number counts as zero.
 pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), Error> {
     match value.is_normal() && value > 0.0 {
         true => Ok(()),

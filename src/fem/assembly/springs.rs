@@ -1,14 +1,12 @@
 //! Springs between nodes and the ground: K_ab = integral over a boundary of k N_a N_b n n', or k n n' at a node.
 
 use super::DofMap;
+use super::element_blocks::Block;
 use super::surface::for_each_point;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::mesh::Boundary;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
-
-/// A block for a pair of nodes: row axis, column axis.
-type Block = [[f64; 3]; 3];
 
 /// Springs to the ground, in force per length.
 #[derive(Clone, Debug, Default)]

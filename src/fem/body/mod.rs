@@ -16,7 +16,7 @@ use crate::fem::element::{Cell, ElementKind, MAX_NODES, PerNode, Rule, Tabulated
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::{Symmetric, trace};
 use crate::fem::material::{Material, Stiffness};
-use crate::fem::mesh::{Boundary, Mesh};
+use crate::fem::mesh::{Boundary, Mesh, fail};
 
 /// Radii of a body of revolution that are negative by less than this times its size are rounding of zero.
 const ON_THE_AXIS: f64 = 1e-12;
@@ -71,7 +71,6 @@ impl ElasticBody {
     pub fn new(mesh: Mesh, material: Material, formulation: Formulation) -> Result<Self, Error> {
         formulation.check()?;
         let phase = Phase::new(material, &formulation)?;
-        let fail = |message| Err(Error::Mesh { message });
         if mesh.dimension() != formulation.dimension() {
             let (element, name) = (mesh.kind().name(), formulation.name());
             return fail(format!("a mesh of {element} does not fit {name}"));
@@ -105,13 +104,12 @@ impl ElasticBody {
             let element = self.mesh.kind();
             if !element.takes_mean_dilatation() {
                 let (those, name) = (ElementKind::of_mean_dilatation("and"), element.name());
-                let message = format!("mean dilatation is for {those} elements, not for {name}");
-                return Err(Error::Mesh { message });
+                return fail(format!("mean dilatation is for {those} elements, not for {name}"));
             }
             if !self.formulation.can_lock() {
-                let message =
-                    "mean dilatation has no effect in plane stress, because no element locks; take `standard`".into();
-                return Err(Error::Mesh { message });
+                return fail(
+                    "mean dilatation has no effect in plane stress, because no element locks; take `standard`".into(),
+                );
             }
         }
         self.integration = integration;
@@ -123,7 +121,7 @@ impl ElasticBody {
     fn check_integration(&self) -> Result<(), Error> {
         let is_general = |phase: &Phase| matches!(phase.law().stiffness(), Stiffness::General(_));
         match self.integration == Integration::MeanDilatation && self.phases.iter().any(is_general) {
-            true => Err(Error::Mesh { message: "mean dilatation is for isotropic materials only".into() }),
+            true => fail("mean dilatation is for isotropic materials only".into()),
             false => Ok(()),
         }
     }
@@ -135,7 +133,6 @@ impl ElasticBody {
     /// # Errors
     /// [`Error::Mesh`] if formulation, element or integration of the two differ, or a boundary of that name exists.
     pub fn beside(mut self, other: &ElasticBody, name: &str) -> Result<Self, Error> {
-        let fail = |message| Err(Error::Mesh { message });
         if self.formulation != other.formulation {
             let (one, two) = (self.formulation.name(), other.formulation.name());
             return fail(format!(

@@ -4,6 +4,7 @@ use super::{ElasticBody, Phase, Region, Temperature};
 use crate::error::Error;
 use crate::fem::geometry::Symmetric;
 use crate::fem::material::Material;
+use crate::fem::mesh::fail;
 
 impl ElasticBody {
     /// The same body with another material in some `elements`: their indices, from 0, in any order.
@@ -49,14 +50,13 @@ impl ElasticBody {
     /// The same with another phase in some elements, made from their present phase.
     fn with_phase(mut self, elements: &[usize], make: impl Fn(&Phase) -> Result<Phase, Error>) -> Result<Self, Error> {
         if self.regions.len() > 1 {
-            return Err(Error::Mesh { message: "bodies have their materials before they are joined".into() });
+            return fail("bodies have their materials before they are joined".into());
         }
         let mut made: Vec<Option<u32>> = vec![None; self.phases.len()];
         for &element in elements {
             let count = self.of_elements.len();
             let Some(own) = self.of_elements.get_mut(element) else {
-                let message = format!("there is no element {element}; the mesh has {count}, from 0");
-                return Err(Error::Mesh { message });
+                return fail(format!("there is no element {element}; the mesh has {count}, from 0"));
             };
             // An element that is named twice already has its new phase.
             let Some(place) = made.get_mut(*own as usize) else { continue };

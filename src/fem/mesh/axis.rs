@@ -107,23 +107,14 @@ impl Axis {
             return fail("points".into(), "the length of the axis is not finite".into());
         }
         let intervals = points.len() - 1;
-        if self.divisions.len() != intervals {
-            let found = self.divisions.len();
-            return fail(
-                "divisions".into(),
-                format!(
+        let ratios = if self.ratios.is_empty() { intervals } else { self.ratios.len() };
+        for (field, found) in [("divisions", self.divisions.len()), ("ratios", ratios)] {
+            if found != intervals {
+                let message = format!(
                     "the array has length {found}, but must have {intervals}: one entry for each interval between points"
-                ),
-            );
-        }
-        if !self.ratios.is_empty() && self.ratios.len() != intervals {
-            let found = self.ratios.len();
-            return fail(
-                "ratios".into(),
-                format!(
-                    "the array has length {found}, but must have {intervals}: one entry for each interval between points"
-                ),
-            );
+                );
+                return fail(field.into(), message);
+            }
         }
         if let Some(index) = self.ratios.iter().position(|ratio| !(ratio.is_finite() && *ratio > 0.0)) {
             let message =
