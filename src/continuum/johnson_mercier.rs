@@ -69,11 +69,16 @@ impl Element {
         let energy = |a: &PartStress, b: &PartStress| {
             volume * mean_over_parts(|k, weights| work(at(a, k, weights), problem.compliance(at(b, k, weights))))
         };
+        // The factor needs the lower triangle only.
+        let lower = |row: usize, column: usize| match column <= row {
+            true => energy(&stresses[row], &stresses[column]),
+            false => 0.0,
+        };
         let works = stresses.map(|stress| tractions(&stress, corners, problem.thickness));
         Element {
             tractions: SMatrix::from_fn(|row, unknown| works[row][unknown]),
             particular_tractions: tractions(&particular, corners, problem.thickness).into(),
-            factor: Cholesky::new_unchecked(SMatrix::from_fn(|row, column| energy(&stresses[row], &stresses[column]))),
+            factor: Cholesky::new_unchecked(SMatrix::from_fn(lower)),
             particular_energies: SVector::from_fn(|row, _| energy(&stresses[row], &particular)),
             stresses,
             particular,
