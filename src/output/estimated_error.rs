@@ -1,6 +1,5 @@
 //! An answer with its estimated total error: report, meshes, fields and pictures.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use super::gallery::{Pictures, Wanted};
@@ -8,9 +7,9 @@ use super::medium::Medium;
 use super::mesh_series::{MeshPanel, mesh_series};
 use super::msh::msh;
 use super::plot::line_plots_for;
-use super::report::{columns, entry, of_part, plural, wrapped};
+use super::report::{comma_separated, entry, of_part, plural, table, wrapped};
 use super::text::printable;
-use super::total_error::{of_last_mesh, percent, verdict};
+use super::total_error::{needed, of_last_mesh, percent, search_text, verdict};
 use super::{Drawing, Plot, Quantity, Scale, Series, write_files, write_picture};
 use crate::error::Error;
 use crate::scene::Units;
@@ -37,50 +36,34 @@ pub(crate) fn estimated_error_text(title: &str, found: &Estimated, answer: &Summ
             &format!("{meshes}; the last: {} elements, {} unknowns{}", last.elements, last.dofs, of_part(answer)),
         );
     }
+    let errors: Vec<[f64; 2]> = found.levels.iter().map(|level| [level.dofs as f64, level.total_error]).collect();
     match found.ended {
         Ended::Goal => {}
-        Ended::Time => text += &entry("ended", &format!("no time for a finer mesh; {}", needed(found))),
-        Ended::Memory => text += &entry("ended", &format!("no memory for a finer mesh; {}", needed(found))),
+        Ended::Time => text += &entry("ended", &format!("no time for a finer mesh; {}", needed(&errors, goal))),
+        Ended::Memory => text += &entry("ended", &format!("no memory for a finer mesh; {}", needed(&errors, goal))),
         Ended::Mesh => {
             text += &entry("ended", "a mesh from a file cannot be refined here; mesh the body with smaller cells")
         }
     }
-    text += &entry("seconds", &format!("{:.3}", found.seconds));
-    text.push('\n');
-    let heading =
-        ["elements", "unknowns", "rows", "method", "total error", "of the algebra", "depth", "force", "seconds"];
-    let mut table = vec![heading.map(String::from).to_vec()];
-    table.extend(found.levels.iter().map(row));
-    for line in columns(&table).lines() {
-        let _ = writeln!(text, "  {line}");
-    }
+    let levels = table(
+        &found.levels,
+        &[
+            ("elements", &|level| level.elements.to_string()),
+            ("unknowns", &|level| level.dofs.to_string()),
+            ("rows", &|level| level.contact_rows.to_string()),
+            ("method", &|level| level.method.clone()),
+            ("total error", &|level| format!("{:.2e}", level.total_error)),
+            ("of the algebra", &|level| format!("{:.1e}", level.energy_error_bound)),
+            ("depth", &|level| format!("{:.1e}", level.depth_between_nodes)),
+            ("force", &|level| format!("{:.6e}", level.contact_force)),
+            ("seconds", &|level| format!("{:.3}", level.seconds)),
+        ],
+    );
+    text += &search_text(found.seconds, &levels);
     if answer.parts_of_whole.is_some() {
         text += "  total error and force are of the whole body, all other columns of the meshed part\n";
     }
     text + &of_last_mesh(title, answer, units)
-}
-
-fn row(level: &EstimatedLevel) -> Vec<String> {
-    vec![
-        level.elements.to_string(),
-        level.dofs.to_string(),
-        level.contact_rows.to_string(),
-        level.method.clone(),
-        format!("{:.2e}", level.total_error),
-        format!("{:.1e}", level.energy_error_bound),
-        format!("{:.1e}", level.depth_between_nodes),
-        format!("{:.6e}", level.contact_force),
-        format!("{:.3}", level.seconds),
-    ]
-}
-
-/// The unknowns that the goal would need, from the rate of the last meshes.
-fn needed(found: &Estimated) -> String {
-    let [.., before, last] = &found.levels[..] else {
-        return "a second mesh is needed to estimate the unknowns for the goal".into();
-    };
-    let rate = (before.total_error / last.total_error).ln() / (last.dofs as f64 / before.dofs as f64).ln();
-    super::total_error::unknowns_needed(rate, last.total_error / found.goal.total_error, last.dofs)
 }
 
 /// Writes the last mesh, the table of meshes and the plot of the errors into a folder.
@@ -119,29 +102,21 @@ pub(crate) fn estimated_meshes_picture(title: &str, found: &Estimated) -> Option
 }
 
 fn csv(found: &Estimated) -> String {
-    let mut text = String::from(
-        "elements,dofs,contact_rows,method,discretisation_error,energy_error_bound,total_error,depth_between_nodes,contact_force,seconds\n",
-    );
-    for level in &found.levels {
-        let EstimatedLevel {
-            elements,
-            dofs,
-            contact_rows,
-            method,
-            discretisation_error,
-            energy_error_bound,
-            total_error,
-            depth_between_nodes,
-            contact_force,
-            seconds,
-        } = level;
-        let _ = writeln!(
-            text,
-            "{elements},{dofs},{contact_rows},{method},{discretisation_error},{energy_error_bound},{total_error},\
-             {depth_between_nodes},{contact_force},{seconds}"
-        );
-    }
-    text
+    comma_separated(&table(
+        &found.levels,
+        &[
+            ("elements", &|level| level.elements.to_string()),
+            ("dofs", &|level| level.dofs.to_string()),
+            ("contact_rows", &|level| level.contact_rows.to_string()),
+            ("method", &|level| level.method.clone()),
+            ("discretisation_error", &|level| level.discretisation_error.to_string()),
+            ("energy_error_bound", &|level| level.energy_error_bound.to_string()),
+            ("total_error", &|level| level.total_error.to_string()),
+            ("depth_between_nodes", &|level| level.depth_between_nodes.to_string()),
+            ("contact_force", &|level| level.contact_force.to_string()),
+            ("seconds", &|level| level.seconds.to_string()),
+        ],
+    ))
 }
 
 /// The errors over the unknowns.

@@ -3,7 +3,7 @@
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
-use super::report::{columns, entry, in_unit, plural, quantity, warnings_text};
+use super::report::{columns, entry, in_unit, plural, quantity, table, warnings_text};
 use super::text::printable;
 use crate::qp::Method;
 use crate::scene::{Dynamics, Model};
@@ -100,15 +100,19 @@ fn named<'a>(model: &'a Model, summary: &'a MotionSummary) -> impl Iterator<Item
 /// The table of obstacles and pairs of bodies, a line for each that was touched.
 fn obstacle_lines(model: &Model, summary: &MotionSummary) -> Vec<String> {
     let units = model.units();
-    let header =
-        ["obstacle", "from", "to", "impulse", &in_unit("largest", &units.force), &in_unit("mean", &units.force)];
-    let row = |(name, of): (String, &MotionContact)| {
-        let time = |time: Option<f64>| time.map_or_else(|| "-".to_string(), |time| format!("{time:.5e}"));
-        let forces = [of.impulse, of.force_max, of.force_mean_max()].map(|value| format!("{value:.5e}"));
-        [name, time(of.first), time(of.last)].into_iter().chain(forces).collect()
-    };
-    let rows: Vec<Vec<String>> =
-        std::iter::once(header.map(String::from).to_vec()).chain(named(model, summary).map(row)).collect();
+    let time = |time: Option<f64>| time.map_or_else(|| "-".to_string(), |time| format!("{time:.5e}"));
+    let force = |force: f64| format!("{force:.5e}");
+    let rows = table(
+        &named(model, summary).collect::<Vec<_>>(),
+        &[
+            ("obstacle", &|(name, _)| name.clone()),
+            ("from", &|(_, of)| time(of.first)),
+            ("to", &|(_, of)| time(of.last)),
+            ("impulse", &|(_, of)| force(of.impulse)),
+            (&in_unit("largest", &units.force), &|(_, of)| force(of.force_max)),
+            (&in_unit("mean", &units.force), &|(_, of)| force(of.force_mean_max())),
+        ],
+    );
     columns(&rows).lines().map(String::from).collect()
 }
 

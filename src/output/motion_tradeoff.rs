@@ -3,58 +3,52 @@
 use super::certificate::number;
 use super::medium::Medium;
 use super::plot::line_plots_for;
-use super::report::columns;
+use super::report::{columns, comma_separated, table};
 use super::text::printable;
 use super::{Drawing, Plot, Quantity, Scale, Series};
-use crate::study::{MotionPoint, MotionTradeoff};
-
-const HEADING: [&str; 8] =
-    ["scheme", "step", "steps", "seconds", "displacement error", "impulse error", "energy change", "penetration"];
+use crate::study::MotionTradeoff;
 
 /// The table of a trade-off of motions, one line for each scheme and step; a star marks the Pareto front.
 pub fn motion_tradeoff_text(title: &str, tradeoff: &MotionTradeoff) -> String {
-    let mut table = vec![HEADING.map(String::from).to_vec()];
-    table.extend(tradeoff.points.iter().map(|point| {
-        let star = if point.best { " *" } else { "" };
-        vec![
-            format!("{}{star}", point.scheme),
-            format!("{:.3e}", point.step),
-            point.steps.to_string(),
-            format!("{:.4}", point.seconds),
-            number(point.displacement_error),
-            number(point.impulse_error),
-            format!("{:.1e}", point.energy_change),
-            number(point.penetration),
-        ]
-    }));
+    let points = table(
+        &tradeoff.points,
+        &[
+            ("scheme", &|point| format!("{}{}", point.scheme, if point.best { " *" } else { "" })),
+            ("step", &|point| format!("{:.3e}", point.step)),
+            ("steps", &|point| point.steps.to_string()),
+            ("seconds", &|point| format!("{:.4}", point.seconds)),
+            ("displacement error", &|point| number(point.displacement_error)),
+            ("impulse error", &|point| number(point.impulse_error)),
+            ("energy change", &|point| format!("{:.1e}", point.energy_change)),
+            ("penetration", &|point| number(point.penetration)),
+        ],
+    );
     format!(
         "{}\n\n{} dofs; errors against `midpoint` on the same mesh with the step {:.3e}\n{}\nA star: no other row \
          is both faster and as accurate.\n",
         printable(title),
         tradeoff.dofs,
         tradeoff.reference_step,
-        columns(&table)
+        columns(&points)
     )
 }
 
 /// The points of a trade-off of motions as comma-separated values, one line each under a heading.
 pub fn motion_tradeoff_csv(tradeoff: &MotionTradeoff) -> String {
-    let heading = "scheme,step,steps,seconds,displacement_error,impulse_error,energy_change,penetration,best\n";
-    let row = |p: &MotionPoint| {
-        format!(
-            "{},{:e},{},{:e},{:e},{:e},{:e},{:e},{}\n",
-            p.scheme,
-            p.step,
-            p.steps,
-            p.seconds,
-            p.displacement_error,
-            p.impulse_error,
-            p.energy_change,
-            p.penetration,
-            p.best
-        )
-    };
-    heading.to_string() + &tradeoff.points.iter().map(row).collect::<String>()
+    comma_separated(&table(
+        &tradeoff.points,
+        &[
+            ("scheme", &|point| point.scheme.to_string()),
+            ("step", &|point| format!("{:e}", point.step)),
+            ("steps", &|point| point.steps.to_string()),
+            ("seconds", &|point| format!("{:e}", point.seconds)),
+            ("displacement_error", &|point| format!("{:e}", point.displacement_error)),
+            ("impulse_error", &|point| format!("{:e}", point.impulse_error)),
+            ("energy_change", &|point| format!("{:e}", point.energy_change)),
+            ("penetration", &|point| format!("{:e}", point.penetration)),
+            ("best", &|point| point.best.to_string()),
+        ],
+    ))
 }
 
 /// A picture of the error over the seconds of a run, a line for each scheme, on logarithmic axes.

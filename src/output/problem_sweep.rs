@@ -5,7 +5,7 @@ use std::path::Path;
 use super::certificate::conditions;
 use super::gallery::{Pictures, Wanted};
 use super::plot::line_plots_for;
-use super::report::{MOST_EVENTS, columns, plural};
+use super::report::{columns, events_text, plural, table};
 use super::text::printable;
 use super::{Plot, Quantity, Series, write_files, write_picture};
 use crate::error::Error;
@@ -14,39 +14,22 @@ use crate::study::{ProblemPoint, ProblemSweep};
 
 /// The table of a sweep, and the events between its points.
 pub(crate) fn problem_sweep_text(title: &str, sweep: &ProblemSweep) -> String {
-    let header = ["t", "iterations", "contact", "-sum(lambda)", "energy error <=", "status"].map(String::from);
-    let row = |point: &ProblemPoint| {
-        let summary = &point.summary;
-        vec![
-            format!("{:.6}", point.t),
-            summary.solution.iterations.to_string(),
-            summary.contact.count.to_string(),
-            format!("{:.9e}", summary.contact.force),
-            conditions(&summary.solution.certificate)[5].2.clone(),
-            summary.status.words().to_owned(),
-        ]
-    };
-    let table: Vec<Vec<String>> = std::iter::once(header.to_vec()).chain(sweep.points.iter().map(row)).collect();
-    let mut text = format!("{}, from t = 0 to its other end at t = 1\n\n{}", printable(title), columns(&table));
-    let Some(events) = &sweep.events else { return text };
-    let times = plural(events.len(), "time");
-    text += &format!(
-        "\nBetween the ends a row touches or releases {times}{}\n",
-        if events.is_empty() { "" } else { ", exactly at" }
+    let points = table(
+        &sweep.points,
+        &[
+            ("t", &|point| format!("{:.6}", point.t)),
+            ("iterations", &|point| point.summary.solution.iterations.to_string()),
+            ("contact", &|point| point.summary.contact.count.to_string()),
+            ("-sum(lambda)", &|point| format!("{:.9e}", point.summary.contact.force)),
+            ("energy error <=", &|point| conditions(&point.summary.solution.certificate)[5].2.clone()),
+            ("status", &|point| point.summary.status.words().to_owned()),
+        ],
     );
-    let lines: Vec<Vec<String>> = events
-        .iter()
-        .take(MOST_EVENTS)
-        .map(|event| {
-            let what = if event.touches { "touches" } else { "releases" };
-            vec![format!("  {:.12}", event.t), format!("row {}", event.row), what.to_string()]
-        })
-        .collect();
-    text += &columns(&lines);
-    if events.len() > MOST_EVENTS {
-        text += &format!("  and {} more; --format json has all\n", events.len() - MOST_EVENTS);
-    }
-    text
+    let text = format!("{}, from t = 0 to its other end at t = 1\n\n{}", printable(title), columns(&points));
+    let Some(events) = &sweep.events else { return text };
+    let (times, exactly) = (plural(events.len(), "time"), if events.is_empty() { "" } else { ", exactly at" });
+    let lines = events_text(events.iter().map(|event| (event.t, format!("row {}", event.row), event.touches)));
+    format!("{text}\nBetween the ends a row touches or releases {times}{exactly}\n{lines}")
 }
 
 /// Writes the answer of each point (`point-01/u.mtx`, `point-01/lambda.mtx`, ...), from which a later solve may start.

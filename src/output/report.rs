@@ -39,38 +39,36 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
         _ => String::new(),
     };
     let mut text = format!("{}\n", printable(title));
-    let mut line = |name: &str, content: String| text += &entry(name, &content);
     let of_part = of_part(summary);
-    line("model", format!("{mesh}{} dofs, {}{of_part}", model.dofs, plural(model.contact_rows, "contact row")));
+    let mut lines = |name: &str, content: Vec<String>| text += &entries(name, content);
+    lines("model", vec![format!("{mesh}{} dofs, {}{of_part}", model.dofs, plural(model.contact_rows, "contact row"))]);
     if summary.parts_of_whole.is_some() {
-        wrapped(OF_SYMMETRY).into_iter().enumerate().for_each(|(number, sentence)| {
-            line(if number == 0 { "symmetry" } else { "" }, sentence);
-        });
+        lines("symmetry", wrapped(OF_SYMMETRY));
     }
     if let Some(overlap) = &summary.initial_overlap {
-        wrapped(&printable(overlap)).into_iter().for_each(|overlap| line("", overlap));
+        lines("", wrapped(&printable(overlap)));
     }
     let unknowns = match model.condensed_dofs {
         all if all == model.dofs => ", on all dofs".to_string(),
         condensed => format!(", condensed to {condensed} dofs"),
     };
-    line("method", format!("{}, {}{unknowns}", solution.method, plural(solution.iterations, "iteration")));
+    lines("method", vec![format!("{}, {}{unknowns}", solution.method, plural(solution.iterations, "iteration"))]);
     let precision = solution.single_precision.then(|| "factor in single precision".to_string());
     let refined = (solution.refinements > 0).then(|| plural(solution.refinements, "refinement"));
     let words: Vec<String> = precision.into_iter().chain(refined).collect();
     if !words.is_empty() {
-        line("", words.join(", "));
+        lines("", vec![words.join(", ")]);
     }
     if !solution.reason.is_empty() {
-        line("", solution.reason.clone());
+        lines("", vec![solution.reason.clone()]);
     }
     for attempt in &solution.attempts {
         let reason = printable(&attempt.reason);
         let words = format!("also tried: {}, {:.3} s, {reason}", attempt.method, attempt.seconds);
-        wrapped(&words).into_iter().for_each(|words| line("", words));
+        lines("", wrapped(&words));
     }
     if let Some(penalty) = solution.history.last().map(|step| step.penalty).filter(|&penalty| penalty > 0.0) {
-        line("", format!("the penalty went up to {penalty:.0e} times the local stiffness"));
+        lines("", vec![format!("the penalty went up to {penalty:.0e} times the local stiffness")]);
     }
     let (closed, force) = (plural(contact.count, "closed row"), quantity(contact.force, &units.force));
     let basis = if summary.force_basis.is_empty() { String::new() } else { format!(" {}", summary.force_basis) };
@@ -87,15 +85,13 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
         false => extent_lines(contact, units),
         true => obstacle_lines(contact, units),
     });
-    of_contact.into_iter().enumerate().for_each(|(number, sentence)| {
-        line(if number == 0 { "contact" } else { "" }, sentence);
-    });
+    lines("contact", of_contact);
     if let Some(proven) = &solution.proven {
         let part = if of_part.is_empty() { String::new() } else { format!(",{of_part}") };
-        line("", proven_text(proven) + &part);
+        lines("", vec![proven_text(proven) + &part]);
     }
     if let Some(balance) = contact.force_balance {
-        line("", format!("loads, reactions and contact forces{of_part} balance to {balance:.1e}"));
+        lines("", vec![format!("loads, reactions and contact forces{of_part} balance to {balance:.1e}")]);
     }
     text += &resultants_text(summary, units);
     text += &displacement_text(summary, units);
@@ -297,11 +293,7 @@ fn listed(name: &str, sentences: Vec<String>) -> String {
     let more = sentences.len().saturating_sub(MOST_LINES);
     let shown = sentences.into_iter().take(MOST_LINES);
     let more = (more > 0).then(|| format!("and {more} more in the JSON report"));
-    let mut text = String::new();
-    for line in shown.chain(more).flat_map(|sentence| wrapped(&sentence)) {
-        text += &entry(if text.is_empty() { name } else { "" }, &line);
-    }
-    text
+    entries(name, shown.chain(more).flat_map(|sentence| wrapped(&sentence)))
 }
 
 /// Undecided rows that are named; the JSON report names all.
@@ -326,11 +318,7 @@ pub(super) fn proven_text(proven: &ProvenSet) -> String {
 
 /// The warnings in full sentences.
 pub(super) fn warnings_text(warnings: &[AnswerWarning]) -> String {
-    let lines = |message: &str| {
-        let lines = wrapped(&printable(message)).into_iter().enumerate();
-        lines.map(|(number, line)| entry(if number == 0 { "warning" } else { "" }, &line)).collect::<String>()
-    };
-    warnings.iter().map(|warning| lines(&warning.message)).collect()
+    warnings.iter().map(|warning| entries("warning", wrapped(&printable(&warning.message)))).collect()
 }
 
 /// The mesh error, and a comparison with the algebraic error.
@@ -378,12 +366,18 @@ pub(super) fn entry(name: &str, content: &str) -> String {
     format!("  {name:<14}{content}\n")
 }
 
+/// Lines beside one name: the first has it, the others are below.
+pub(super) fn entries(name: &str, lines: impl IntoIterator<Item = String>) -> String {
+    let names = std::iter::once(name).chain(std::iter::repeat(""));
+    names.zip(lines).map(|(name, line)| entry(name, &line)).collect()
+}
+
 /// The conditions that an answer was checked against, and the result.
 fn certificate_text(certificate: &Certificate, goal: Goal) -> String {
     let CertificateWords { verdict, conditions, notes } = CertificateWords::of(certificate, goal);
-    let condition = |(name, formula, value): &(&str, &str, String)| format!("{name:<18}{formula:<38}{value}");
-    let lines = conditions.iter().map(condition).chain(notes);
-    entry("certificate", &verdict) + &lines.map(|line| entry("", &line)).collect::<String>()
+    let condition = |(name, formula, value)| format!("{name:<18}{formula:<38}{value}");
+    let conditions = conditions.into_iter().map(condition);
+    entries("certificate", std::iter::once(verdict).chain(conditions).chain(notes))
 }
 
 /// The report of a verification, in lines of at most 100 characters: sizes, total force, every condition with its
@@ -398,7 +392,17 @@ pub fn verify_text(title: &str, verification: &Verification) -> String {
 }
 
 /// Events of a sweep that its text shows; the rest is in the JSON form.
-pub(super) const MOST_EVENTS: usize = 40;
+const MOST_EVENTS: usize = 40;
+
+/// The first events of a sweep, a line for each: the place, what touches or releases there, and `true` if it touches.
+pub(super) fn events_text(events: impl ExactSizeIterator<Item = (f64, String, bool)>) -> String {
+    let more = events.len().saturating_sub(MOST_EVENTS);
+    let line = |(place, what, touches): (f64, String, bool)| {
+        vec![format!("  {place:.12}"), what, if touches { "touches" } else { "releases" }.to_string()]
+    };
+    let shown = columns(&events.take(MOST_EVENTS).map(line).collect::<Vec<_>>());
+    shown + &if more > 0 { format!("  and {more} more; --format json has all\n") } else { String::new() }
+}
 
 /// The table of a sweep, one line for each gap or force, and the events between its gaps.
 pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
@@ -470,14 +474,8 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
         let times = plural(sweep.events.len(), "time");
         let row = format!("a row{}", sweep.points.first().map_or("", |point| of_part(&point.summary)));
         text += &format!("\nBetween the first and the last gap {row} touches or releases {times}, exactly at\n");
-        let event = |event: &SweepEvent| {
-            let what = if event.touches { "touches" } else { "releases" };
-            vec![format!("  {:.12}", event.gap), format!("node {}", event.node), what.to_string()]
-        };
-        text += &columns(&sweep.events.iter().take(MOST_EVENTS).map(event).collect::<Vec<_>>());
-        if sweep.events.len() > MOST_EVENTS {
-            text += &format!("  and {} more; --format json has all\n", sweep.events.len() - MOST_EVENTS);
-        }
+        let event = |event: &SweepEvent| (event.gap, format!("node {}", event.node), event.touches);
+        text += &events_text(sweep.events.iter().map(event));
     }
     text
 }
@@ -502,28 +500,21 @@ pub fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Agreement
         (active_set, zero(agreement.active_set.displacement), zero(agreement.active_set.multiplier)),
         (penalty, zero(agreement.penalty.displacement), zero(agreement.penalty.multiplier)),
     ];
-    let mut table = vec![vec![
-        "method".to_string(),
-        "iterations".to_string(),
-        "contact".to_string(),
-        in_unit("-sum(lambda)", &units.force),
-        in_unit("peak pressure", &units.pressure()),
-        "max |du|".to_string(),
-        "max |dlambda|".to_string(),
-        "seconds".to_string(),
-    ]];
-    for (summary, displacement, multiplier) in rows {
-        table.push(vec![
-            summary.solution.method.clone(),
-            summary.solution.iterations.to_string(),
-            summary.contact.count.to_string(),
-            format!("{:.9e}", summary.contact.force),
-            summary.contact.pressure_max.map_or("-".to_string(), |pressure| format!("{pressure:.6e}")),
-            displacement,
-            multiplier,
-            format!("{:.4}", summary.seconds.factor + summary.seconds.solve),
-        ]);
-    }
+    let methods = table(
+        &rows,
+        &[
+            ("method", &|(of, ..)| of.solution.method.clone()),
+            ("iterations", &|(of, ..)| of.solution.iterations.to_string()),
+            ("contact", &|(of, ..)| of.contact.count.to_string()),
+            (&in_unit("-sum(lambda)", &units.force), &|(of, ..)| format!("{:.9e}", of.contact.force)),
+            (&in_unit("peak pressure", &units.pressure()), &|(of, ..)| {
+                of.contact.pressure_max.map_or("-".to_string(), |pressure| format!("{pressure:.6e}"))
+            }),
+            ("max |du|", &|(_, displacement, _)| displacement.clone()),
+            ("max |dlambda|", &|(.., multiplier)| multiplier.clone()),
+            ("seconds", &|(of, ..)| format!("{:.4}", of.seconds.factor + of.seconds.solve)),
+        ],
+    );
     let mut text = format!(
         "{}\n{} dofs, {}{}\n\n",
         printable(title),
@@ -531,7 +522,7 @@ pub fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Agreement
         plural(qp.model.contact_rows, "contact row"),
         of_part(qp)
     );
-    text += &columns(&table);
+    text += &columns(&methods);
     if qp.parts_of_whole.is_some() {
         text += "-sum(lambda) and peak pressure are of the whole body, all other columns of the meshed part.\n";
     }
@@ -569,6 +560,21 @@ fn verdict(summaries: &[Summary; 3], agreement: &Agreement) -> String {
         }
     };
     format!("{exact}; the penalty answer is {certified}, {distance}.")
+}
+
+/// A column of a table: its heading, and its cell for an item.
+pub(super) type Column<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
+
+/// A table of items, the headings first and then a row for each.
+pub(super) fn table<'a, T: 'a>(items: impl IntoIterator<Item = &'a T>, columns: &[Column<T>]) -> Vec<Vec<String>> {
+    let headings = columns.iter().map(|(heading, _)| heading.to_string()).collect();
+    let row = |item| columns.iter().map(|(_, cell)| cell(item)).collect();
+    std::iter::once(headings).chain(items.into_iter().map(row)).collect()
+}
+
+/// A table as comma-separated values.
+pub(super) fn comma_separated(table: &[Vec<String>]) -> String {
+    table.iter().map(|row| row.join(",") + "\n").collect()
 }
 
 /// A table with the first column on the left and the others on the right.

@@ -1,6 +1,5 @@
 //! An answer with its guaranteed error: report, fields, meshes.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use super::{
@@ -10,7 +9,7 @@ use super::{
     mesh_series::{MeshPanel, mesh_series},
     msh::msh,
     plot::line_plots_for,
-    report::{columns, entry, plural, quantity, solve_text, warnings_text, wrapped},
+    report::{columns, comma_separated, entries, entry, plural, quantity, solve_text, table, warnings_text, wrapped},
     text::printable,
     write_files, write_picture,
 };
@@ -29,9 +28,7 @@ pub(crate) fn total_error_text(title: &str, found: &TotalError, answer: Option<&
         &entry("total error", &format!("guaranteed at most {}, {}", percent(bound), verdict(bound, goal.total_error)));
     text += &entry("", "of the displacement, against the continuum, in the energy norm");
     text += &entry("", &format!("guaranteed at most {} for the mean stress", percent(found.mean_stress_error.bound)));
-    for (line, name) in force_lines(found, units).iter().zip(["contact force", ""]) {
-        text += &entry(name, line);
-    }
+    text += &entries("contact force", force_lines(found, units));
     if let Some(wanted) = goal.force_error {
         let half = found.levels.last().and_then(half_width).unwrap_or(f64::INFINITY);
         text += &entry("", &verdict(half, wanted));
@@ -57,9 +54,7 @@ pub(crate) fn total_error_text(title: &str, found: &TotalError, answer: Option<&
             text += &entry("", &format!("(estimated {})", percent(last.estimated)));
         }
         (_, Err(reason)) => {
-            for (number, line) in wrapped(&format!("no answer on it: {reason}")).iter().enumerate() {
-                text += &entry(if number == 0 { "last mesh" } else { "" }, line);
-            }
+            text += &entries("last mesh", wrapped(&format!("no answer on it: {reason}")));
         }
         _ => {}
     }
@@ -71,22 +66,37 @@ pub(crate) fn total_error_text(title: &str, found: &TotalError, answer: Option<&
     text += &entry("domain", domain);
     let next =
         found.next_triangles.map_or(String::new(), |count| format!(" a mesh of {count} triangles would come next;"));
-    match found.ended {
-        Ended::Goal | Ended::Mesh => {}
-        Ended::Time => text += &entry("ended", &format!("the time is up;{next} {}", needed(found))),
-        Ended::Memory => text += &entry("ended", &format!("memory does not suffice;{next} {}", needed(found))),
+    let short = match found.ended {
+        Ended::Goal | Ended::Mesh => None,
+        Ended::Time => Some("the time is up"),
+        Ended::Memory => Some("memory does not suffice"),
+    };
+    if let Some(short) = short {
+        let bounds: Vec<[f64; 2]> = found.levels.iter().map(|level| [level.dofs as f64, level.bound]).collect();
+        text += &entry("ended", &format!("{short};{next} {}", needed(&bounds, goal.total_error)));
     }
     text += &warnings_text(&found.warnings);
-    text += &entry("seconds", &format!("{:.3}", found.seconds));
-    text.push('\n');
-    let heading =
-        ["triangles", "unknowns", "of the stress", "total error", "mean stress", "force", "half width", "seconds"];
-    let mut table = vec![heading.map(String::from).to_vec()];
-    table.extend(found.levels.iter().map(row));
-    for line in columns(&table).lines() {
-        let _ = writeln!(text, "  {line}");
-    }
+    let levels = table(
+        &found.levels,
+        &[
+            ("triangles", &|level| level.triangles.to_string()),
+            ("unknowns", &|level| level.dofs.to_string()),
+            ("of the stress", &|level| level.stress_dofs.to_string()),
+            ("total error", &|level| format!("{:.2e}", level.bound)),
+            ("mean stress", &|level| format!("{:.2e}", level.mean_stress_bound)),
+            ("force", &|level| format!("{:.6e}", level.contact_force)),
+            ("half width", &|level| half_width(level).map_or("-".into(), |half| format!("{half:.1e}"))),
+            ("seconds", &|level| format!("{:.3}", level.seconds)),
+        ],
+    );
+    text += &search_text(found.seconds, &levels);
     text + &answer.map_or_else(String::new, |answer| of_last_mesh(title, answer, units))
+}
+
+/// The seconds of a search, and the table of its levels.
+pub(super) fn search_text(seconds: f64, levels: &[Vec<String>]) -> String {
+    let lines: String = columns(levels).lines().map(|line| format!("  {line}\n")).collect();
+    entry("seconds", &format!("{seconds:.3}")) + "\n" + &lines
 }
 
 /// The answer on the last mesh, as `solve` reports it.
@@ -102,19 +112,6 @@ pub(super) fn percent(share: f64) -> String {
 pub(super) fn verdict(error: f64, goal: f64) -> String {
     let is_met = if error <= goal { "within the goal" } else { "ABOVE the goal" };
     format!("{is_met} of {}", percent(goal))
-}
-
-fn row(level: &TotalErrorLevel) -> Vec<String> {
-    vec![
-        level.triangles.to_string(),
-        level.dofs.to_string(),
-        level.stress_dofs.to_string(),
-        format!("{:.2e}", level.bound),
-        format!("{:.2e}", level.mean_stress_bound),
-        format!("{:.6e}", level.contact_force),
-        half_width(level).map_or("-".into(), |half| format!("{half:.1e}")),
-        format!("{:.3}", level.seconds),
-    ]
 }
 
 /// The force and what carries it, then its interval.
@@ -135,20 +132,15 @@ fn force_lines(found: &TotalError, units: &Units) -> [String; 2] {
     [force.trim_end().into(), interval]
 }
 
-/// The unknowns that the goal would need, from the rate of the last meshes.
-fn needed(found: &TotalError) -> String {
-    let [.., before, last] = &found.levels[..] else {
+/// The unknowns that a goal would need, if the error falls with a power of the unknowns: from unknowns and error of each level.
+pub(super) fn needed(levels: &[[f64; 2]], goal: f64) -> String {
+    let [.., [dofs_before, before], [dofs, last]] = levels else {
         return "a second mesh is needed to estimate the unknowns for the goal".into();
     };
-    let rate = (before.bound / last.bound).ln() / (last.dofs as f64 / before.dofs as f64).ln();
-    unknowns_needed(rate, last.bound / found.goal.total_error, last.dofs)
-}
-
-/// The unknowns needed for an error smaller by the factor `times`, if the error falls with a power of the unknowns.
-pub(super) fn unknowns_needed(rate: f64, times: f64, dofs: usize) -> String {
-    let more = times.powf(1.0 / rate);
+    let rate = (before / last).ln() / (dofs / dofs_before).ln();
+    let more = (last / goal).powf(1.0 / rate);
     match rate > 0.0 && more.is_finite() {
-        true => format!("the goal needs about {:.1e} unknowns", more.max(1.0) * dofs as f64),
+        true => format!("the goal needs about {:.1e} unknowns", more.max(1.0) * dofs),
         false => "the last meshes do not give an estimate of the unknowns for the goal".into(),
     }
 }
@@ -186,19 +178,23 @@ pub(crate) fn meshes_picture(title: &str, found: &TotalError, units: &Units) -> 
 }
 
 fn csv(found: &TotalError) -> String {
-    let mut text =
-        String::from("triangles,dofs,stress_dofs,bound,mean_stress_bound,contact_force,force_low,force_high,seconds\n");
-    for level in &found.levels {
-        let [low, high] =
-            level.force_interval.map_or([String::new(), String::new()], |ends| ends.map(|end| end.to_string()));
-        let TotalErrorLevel { triangles, dofs, stress_dofs, bound, mean_stress_bound, contact_force, seconds, .. } =
-            level;
-        let _ = writeln!(
-            text,
-            "{triangles},{dofs},{stress_dofs},{bound},{mean_stress_bound},{contact_force},{low},{high},{seconds}"
-        );
-    }
-    text
+    let end = |level: &TotalErrorLevel, end: usize| {
+        level.force_interval.map_or_else(String::new, |ends| ends[end].to_string())
+    };
+    comma_separated(&table(
+        &found.levels,
+        &[
+            ("triangles", &|level| level.triangles.to_string()),
+            ("dofs", &|level| level.dofs.to_string()),
+            ("stress_dofs", &|level| level.stress_dofs.to_string()),
+            ("bound", &|level| level.bound.to_string()),
+            ("mean_stress_bound", &|level| level.mean_stress_bound.to_string()),
+            ("contact_force", &|level| level.contact_force.to_string()),
+            ("force_low", &|level| end(level, 0)),
+            ("force_high", &|level| end(level, 1)),
+            ("seconds", &|level| level.seconds.to_string()),
+        ],
+    ))
 }
 
 /// The fields for ParaView: the displacement at the nodes, mean stress and share of the bound on triangles.

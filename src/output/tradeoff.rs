@@ -1,7 +1,7 @@
 //! A trade-off as a table and as comma-separated values.
 
 use super::certificate::number;
-use super::report::{columns, plural};
+use super::report::{Column, columns, comma_separated, plural, table};
 use super::text::printable;
 use crate::study::{Tradeoff, TradeoffPoint};
 
@@ -10,22 +10,6 @@ const LOOSE: f64 = 1e-2;
 
 /// A relative error of the force below this is rounding.
 const LEAST_LOST: f64 = 1e-10;
-
-/// The columns of the table.
-const HEADING: [&str; 12] = [
-    "method",
-    "setting",
-    "unknowns",
-    "precision",
-    "seconds",
-    "certificate",
-    "proof",
-    "energy error",
-    "bound",
-    "force error",
-    "pressure error",
-    "misclassified rows",
-];
 
 /// The tables of a trade-off, mesh by mesh, and the recommended choice. A star marks the Pareto front.
 pub fn tradeoff_text(title: &str, tradeoff: &Tradeoff) -> String {
@@ -40,9 +24,7 @@ pub fn tradeoff_text(title: &str, tradeoff: &Tradeoff) -> String {
             None => ("matrices".to_string(), String::new()),
         };
         text += &format!("\n{cells}: {} dofs, {}{off}\n", mesh.dofs, plural(mesh.contact_rows, "contact row"));
-        let mut table = vec![HEADING.map(String::from).to_vec()];
-        table.extend(tradeoff.points.iter().filter(|point| point.mesh == index).map(row));
-        text += &columns(&table);
+        text += &columns(&table(tradeoff.points.iter().filter(|point| point.mesh == index), &COLUMNS));
     }
     text += &format!(
         "\nEach time is the fastest of at least {}, from the data to the answer; certificate and proof have \
@@ -59,23 +41,24 @@ pub fn tradeoff_text(title: &str, tradeoff: &Tradeoff) -> String {
     text + &advice(tradeoff)
 }
 
-fn row(point: &TradeoffPoint) -> Vec<String> {
-    let star = if point.best { " *" } else { "" };
-    vec![
-        format!("{}{star}", point.method),
-        point.knob.map_or_else(|| "-".to_string(), |knob| format!("{knob:.0e}")),
-        unknowns(point).to_string(),
-        precision(point).to_string(),
-        format!("{:.5}", point.seconds),
-        number(point.certificate_seconds),
-        number(point.proof_seconds),
-        number(point.energy_error),
-        if point.energy_error_bound.is_finite() { number(point.energy_error_bound) } else { "none".to_string() },
-        number(point.force_error),
-        point.pressure_error.map_or_else(|| "-".to_string(), number),
-        point.rows_wrong.to_string(),
-    ]
-}
+/// The columns of the table.
+const COLUMNS: [Column<TradeoffPoint>; 12] = [
+    ("method", &|point| format!("{}{}", point.method, if point.best { " *" } else { "" })),
+    ("setting", &|point| point.knob.map_or_else(|| "-".to_string(), |knob| format!("{knob:.0e}"))),
+    ("unknowns", &|point| unknowns(point).to_string()),
+    ("precision", &|point| precision(point).to_string()),
+    ("seconds", &|point| format!("{:.5}", point.seconds)),
+    ("certificate", &|point| number(point.certificate_seconds)),
+    ("proof", &|point| number(point.proof_seconds)),
+    ("energy error", &|point| number(point.energy_error)),
+    ("bound", &|point| match point.energy_error_bound {
+        bound if bound.is_finite() => number(bound),
+        _ => "none".to_string(),
+    }),
+    ("force error", &|point| number(point.force_error)),
+    ("pressure error", &|point| point.pressure_error.map_or_else(|| "-".to_string(), number)),
+    ("misclassified rows", &|point| point.rows_wrong.to_string()),
+];
 
 pub(super) fn unknowns(point: &TradeoffPoint) -> &'static str {
     if point.condensed { "contact" } else { "all" }
@@ -165,34 +148,29 @@ fn losses(points: &[TradeoffPoint]) -> String {
 /// The points as comma-separated values, a line each under a heading.
 pub fn tradeoff_csv(tradeoff: &Tradeoff) -> String {
     let given = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:e}"));
-    let mut text =
-        "mesh,divided_by,dofs,contact_rows,discretisation_error,method,knob,unknowns,precision,seconds,certificate_seconds,proof_seconds,energy_error,\
-                    total_error,energy_error_bound,force_error,pressure_error,rows_wrong,best\n"
-            .to_string();
-    for point in &tradeoff.points {
-        let Some(mesh) = tradeoff.meshes.get(point.mesh) else { continue };
-        text += &format!(
-            "{},{},{},{},{},\"{}\",{},{},{},{:e},{:e},{:e},{:e},{},{:e},{:e},{},{},{}\n",
-            point.mesh,
-            mesh.divided_by,
-            mesh.dofs,
-            mesh.contact_rows,
-            given(mesh.discretisation_error),
-            point.method,
-            given(point.knob),
-            unknowns(point),
-            precision(point),
-            point.seconds,
-            point.certificate_seconds,
-            point.proof_seconds,
-            point.energy_error,
-            given(point.total_error),
-            point.energy_error_bound,
-            point.force_error,
-            given(point.pressure_error),
-            point.rows_wrong,
-            u8::from(point.best)
-        );
-    }
-    text
+    let points = tradeoff.points.iter().filter_map(|point| Some((tradeoff.meshes.get(point.mesh)?, point)));
+    comma_separated(&table(
+        &points.collect::<Vec<_>>(),
+        &[
+            ("mesh", &|(_, point)| point.mesh.to_string()),
+            ("divided_by", &|(mesh, _)| mesh.divided_by.to_string()),
+            ("dofs", &|(mesh, _)| mesh.dofs.to_string()),
+            ("contact_rows", &|(mesh, _)| mesh.contact_rows.to_string()),
+            ("discretisation_error", &|(mesh, _)| given(mesh.discretisation_error)),
+            ("method", &|(_, point)| format!("\"{}\"", point.method)),
+            ("knob", &|(_, point)| given(point.knob)),
+            ("unknowns", &|(_, point)| unknowns(point).to_string()),
+            ("precision", &|(_, point)| precision(point).to_string()),
+            ("seconds", &|(_, point)| format!("{:e}", point.seconds)),
+            ("certificate_seconds", &|(_, point)| format!("{:e}", point.certificate_seconds)),
+            ("proof_seconds", &|(_, point)| format!("{:e}", point.proof_seconds)),
+            ("energy_error", &|(_, point)| format!("{:e}", point.energy_error)),
+            ("total_error", &|(_, point)| given(point.total_error)),
+            ("energy_error_bound", &|(_, point)| format!("{:e}", point.energy_error_bound)),
+            ("force_error", &|(_, point)| format!("{:e}", point.force_error)),
+            ("pressure_error", &|(_, point)| given(point.pressure_error)),
+            ("rows_wrong", &|(_, point)| point.rows_wrong.to_string()),
+            ("best", &|(_, point)| u8::from(point.best).to_string()),
+        ],
+    ))
 }
