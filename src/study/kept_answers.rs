@@ -1,8 +1,41 @@
-//! The memory of the answers that a sweep keeps.
+//! The answers of a sweep, one after the other, and the memory that they take.
 
 use crate::error::Error;
-use crate::qp::Settings;
 use crate::qp::cost::bytes;
+use crate::qp::{Settings, Start};
+use crate::solution::Solution;
+
+/// The points of a sweep at all `values` of the quantity `name`: `solved_at` a value gives the solution, started from the last one, with
+/// what else `point` needs. An answer that is not certified counts as an answer. An interrupted sweep holds the points before.
+///
+/// # Errors
+/// Those of both functions; [`Error::Interrupted`] if no point was solved.
+pub(super) fn points<T, P>(
+    name: &'static str,
+    values: &[f64],
+    settings: &Settings,
+    solved_at: impl Fn(f64, Start) -> Result<(T, Result<Solution, Error>), Error>,
+    point: impl Fn(f64, T, Solution) -> Result<P, Error>,
+) -> Result<Vec<P>, Error> {
+    let (mut points, mut known) = (Vec::with_capacity(values.len()), Start::default());
+    for (index, &value) in values.iter().enumerate() {
+        settings.watch.part(name, index + 1, values.len());
+        let (of_value, solved) = solved_at(value, known)?;
+        let solution = match solved {
+            Ok(solution) => solution,
+            // An interrupted solve is no answer to this value.
+            Err(_) if settings.watch.acknowledge() => break,
+            Err(Error::NotCertified { solution, .. }) => *solution,
+            Err(error) => return Err(error),
+        };
+        known = Start::from(&solution);
+        points.push(point(value, of_value, solution)?);
+        if settings.watch.acknowledge() {
+            break;
+        }
+    }
+    if points.is_empty() { Err(Error::Interrupted) } else { Ok(points) }
+}
 
 /// The answers that a sweep keeps until its report: they leave less of the allowed memory to each solve.
 pub(super) struct KeptAnswers {

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::Summary;
-use super::kept_answers::KeptAnswers;
+use super::kept_answers::{KeptAnswers, points};
 use super::scene::{even_gaps, problem_summary};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;
@@ -59,36 +59,21 @@ pub(crate) fn sweep_problem(
     let settings = &kept.settings(settings);
     let prepared = Prepared::for_gaps(first, count, settings).map_err(|error| kept.explain(error))?;
     let same_load = first.load() == last.load();
-    let mut points: Vec<ProblemPoint> = Vec::with_capacity(count);
-    for (index, t) in even_gaps(0.0, 1.0, count).into_iter().enumerate() {
-        settings.watch.part("point", index + 1, count);
-        let known = points.last().map_or_else(Start::default, |point| Start::from(&point.summary.solution));
+    let solved_at = |t: f64, known: Start| {
         let problem = first.with(between(first.load(), last.load(), t), between(first.gap(), last.gap(), t))?;
         let prepared = match same_load {
             true => prepared.starting_from(known),
             false => prepared.with_load(problem.load().to_vec())?.starting_from(known),
         };
-        let solution = match prepared.solve(problem.gap()) {
-            Ok(solution) => solution,
-            // An interrupted solve is no answer to this point.
-            Err(_) if settings.watch.acknowledge() => break,
-            Err(Error::NotCertified { solution, .. }) => *solution,
-            Err(error) => return Err(kept.explain(error)),
-        };
-        points.push(point(&problem, t, solution, settings));
-        if settings.watch.acknowledge() {
-            break;
-        }
-    }
-    if points.is_empty() {
-        return Err(Error::Interrupted);
-    }
+        let solved = prepared.solve(problem.gap()).map_err(|error| kept.explain(error));
+        Ok((problem, solved))
+    };
+    let point = |t: f64, problem: ContactProblem, solution: Solution| {
+        Ok(ProblemPoint { t, summary: problem_summary(&problem, solution, settings.goal(), 0.0) })
+    };
+    let points = points("point", &even_gaps(0.0, 1.0, count), settings, solved_at, point)?;
     let is_known = same_load && !settings.watch.acknowledge() && prepared.hierarchy().is_none();
     let path = if is_known { prepared.path(first.gap(), last.gap()).ok() } else { None };
     let event = |event: &crate::qp::Event| ProblemEvent { t: event.at, row: event.row, touches: event.touches };
     Ok(ProblemSweep { points, events: path.map(|path| path.events().iter().map(event).collect()) })
-}
-
-fn point(problem: &ContactProblem, t: f64, solution: Solution, settings: &Settings) -> ProblemPoint {
-    ProblemPoint { t, summary: problem_summary(problem, solution, settings.goal(), 0.0) }
 }

@@ -6,7 +6,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::exact_path::ExactPath;
-use super::kept_answers::KeptAnswers;
+use super::kept_answers::{KeptAnswers, points};
 use super::summary::{LargestDisplacement, OF_MESHED_PART};
 #[cfg(feature = "cli")]
 use super::warnings::untouched;
@@ -132,9 +132,17 @@ pub struct SweepPoint {
     pub answer: Answer,
 }
 
-#[cfg(feature = "pictures")]
 impl SweepPoint {
+    /// The point of a model that was built in `assemble_seconds`.
+    fn of((model, assemble_seconds): (Model, f64), solution: Solution, settings: &Settings) -> Result<Self, Error> {
+        let gap = model.gap();
+        let answer = Answer::of(Arc::new(model), &solution)?;
+        let summary = scene_summary(&answer, solution, settings.goal(), assemble_seconds)?;
+        Ok(SweepPoint { gap, force: None, summary, answer })
+    }
+
     /// The displacement of the pressed obstacle, in a sweep over forces.
+    #[cfg(feature = "pictures")]
     pub(crate) fn travel(&self) -> Option<f64> {
         self.force?;
         (0..self.answer.model().obstacles().len()).find_map(|obstacle| self.answer.travel(obstacle))
@@ -208,7 +216,7 @@ impl Sweep {
         let at_first = model.with_gap(first)?;
         let prepared = Prepared::for_gaps(at_first.problem(), gaps.len(), settings)
             .map_err(|error| at_first.explain(kept.explain(error)))?;
-        let points = points("gap", gaps, settings, |gap, known| {
+        let solved_at = |gap: f64, known: Start| {
             let clock = Instant::now();
             let model = model.with_gap(gap)?;
             let assemble_seconds = clock.elapsed().as_secs_f64();
@@ -217,7 +225,11 @@ impl Sweep {
                 true => prepared.starting_from(known).solve(model.problem().gap()),
                 false => solve(model.problem(), settings),
             };
-            Ok(Solved { model, solved: solved.map_err(|error| kept.explain(error)), assemble_seconds })
+            let solved = solved.map_err(|error| model.explain(kept.explain(error)));
+            Ok(((model, assemble_seconds), solved))
+        };
+        let points = points("gap", gaps, settings, solved_at, |gap, of_gap, solution| {
+            Ok(SweepPoint { gap, ..SweepPoint::of(of_gap, solution, settings)? })
         })?;
         if settings.watch.acknowledge() {
             return Ok(Sweep { points, ..Sweep::default() });
@@ -241,7 +253,7 @@ impl Sweep {
         let kept = KeptAnswers::of(forces.len(), model.problem().dofs(), settings);
         let settings = &kept.settings(settings);
         let prepared = Prepared::new(model.problem(), settings).map_err(|error| model.explain(kept.explain(error)))?;
-        let mut points = points("force", forces, settings, |force, known| {
+        let solved_at = |force: f64, known: Start| {
             let clock = Instant::now();
             let model = model.pressed_by(force)?;
             let assemble_seconds = clock.elapsed().as_secs_f64();
@@ -249,49 +261,14 @@ impl Sweep {
                 true => prepared.starting_from(known).solve_load(model.problem().load().to_vec()),
                 false => model.touched(settings),
             };
-            Ok(Solved { model, solved: solved.map_err(|error| kept.explain(error)), assemble_seconds })
+            let solved = solved.map_err(|error| model.explain(kept.explain(error)));
+            Ok(((model, assemble_seconds), solved))
+        };
+        let points = points("force", forces, settings, solved_at, |force, of_force, solution| {
+            Ok(SweepPoint { force: Some(force), ..SweepPoint::of(of_force, solution, settings)? })
         })?;
-        for (point, &force) in points.iter_mut().zip(forces) {
-            (point.gap, point.force) = (point.answer.model().gap(), Some(force));
-        }
         Ok(Sweep { points, ..Sweep::default() })
     }
-}
-
-/// A model of a sweep with its solution.
-struct Solved {
-    model: Model,
-    solved: Result<Solution, Error>,
-    assemble_seconds: f64,
-}
-
-/// The answers at all values of the swept quantity; each solve starts from the last answer.
-fn points(
-    name: &'static str,
-    values: &[f64],
-    settings: &Settings,
-    solved_at: impl Fn(f64, Start) -> Result<Solved, Error>,
-) -> Result<Vec<SweepPoint>, Error> {
-    let mut points: Vec<SweepPoint> = Vec::new();
-    for (index, &value) in values.iter().enumerate() {
-        settings.watch.part(name, index + 1, values.len());
-        let known = points.last().map_or_else(Start::default, |point| Start::from(&point.summary.solution));
-        let Solved { model, solved, assemble_seconds } = solved_at(value, known)?;
-        let solution = match solved {
-            Ok(solution) => solution,
-            // An interrupted solve is no answer to this value.
-            Err(_) if settings.watch.acknowledge() => break,
-            Err(Error::NotCertified { solution, .. }) => *solution,
-            Err(error) => return Err(model.explain(error)),
-        };
-        let answer = Answer::of(Arc::new(model), &solution)?;
-        let summary = scene_summary(&answer, solution, settings.goal(), assemble_seconds)?;
-        points.push(SweepPoint { gap: value, force: None, summary, answer });
-        if settings.watch.acknowledge() {
-            break;
-        }
-    }
-    if points.is_empty() { Err(Error::Interrupted) } else { Ok(points) }
 }
 
 /// The exact path between two gaps; `None` if the rows rotate on the path, or if the body is not condensed.
