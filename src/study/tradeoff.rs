@@ -259,25 +259,16 @@ impl Measured<'_> {
         ways.extend(multigrid_ways());
         ways.iter_mut().for_each(|way| way.settings = watched(way.settings.clone()));
         for (way, timed) in ways.iter().zip(timed(self.problem, &ways, grid.runs.max(1), watch)?) {
-            let Some(Timed { solution, seconds, second }) = timed else { continue };
-            points.push(TradeoffPoint {
-                mesh: self.mesh,
-                mixed: way.settings.precision == Precision::Mixed,
-                method: way.method,
-                knob: way.knob,
-                condensed: way.settings.condense == Condense::Auto,
-                seconds,
-                certificate_seconds: solution.seconds.certificate,
-                proof_seconds: solution.seconds.proof,
-                is_repeated: second < (1.0 + REPEATED) * seconds,
-                ..self.errors(&solution, &exact)?
-            });
+            if let Some(timed) = timed {
+                points.push(self.point(way, &timed, &exact)?);
+            }
         }
         Ok(Some(exact))
     }
 
-    /// The errors of an answer against the exact one.
-    fn errors(&self, solution: &Solution, exact: &Solution) -> Result<TradeoffPoint, Error> {
+    /// The time of an answer, and its errors against the exact one.
+    fn point(&self, way: &Way, timed: &Timed, exact: &Solution) -> Result<TradeoffPoint, Error> {
+        let Timed { solution, seconds, second } = timed;
         let norm = |u: &[f64]| dot(u, &self.problem.stiffness().mul(u)).max(0.0).sqrt();
         let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { (value / scale).abs() };
         let away: Vec<f64> = solution.displacement.iter().zip(&exact.displacement).map(|(u, v)| u - v).collect();
@@ -286,15 +277,15 @@ impl Measured<'_> {
             (self.peak)(solution)?.zip((self.peak)(exact)?).map(|(peak, exact)| relative(peak - exact, exact));
         let differs = |row: &usize| solution.contact_set.contains(*row) != exact.contact_set.contains(*row);
         Ok(TradeoffPoint {
-            mesh: 0,
-            method: "",
-            knob: None,
-            condensed: false,
-            mixed: false,
-            seconds: 0.0,
-            certificate_seconds: 0.0,
-            proof_seconds: 0.0,
-            is_repeated: false,
+            mesh: self.mesh,
+            method: way.method,
+            knob: way.knob,
+            condensed: way.settings.condense == Condense::Auto,
+            mixed: way.settings.precision == Precision::Mixed,
+            seconds: *seconds,
+            certificate_seconds: solution.seconds.certificate,
+            proof_seconds: solution.seconds.proof,
+            is_repeated: *second < (1.0 + REPEATED) * seconds,
             energy_error: relative(norm(&away), norm(&solution.displacement)),
             total_error: None,
             force_error: relative(solution.contact_force() - force, force),
