@@ -57,6 +57,20 @@ pub(crate) struct JudgedMesh {
     pub estimated: f64,
 }
 
+impl JudgedMesh {
+    /// The judgement of an answer of this norm, which is at most `distance` from the continuum.
+    fn of(answer: &Answer, distance: f64, norm: f64) -> Result<Self, Error> {
+        let model = answer.model();
+        let bound = if distance == 0.0 { 0.0 } else { distance / norm };
+        Ok(JudgedMesh {
+            element: model.mesh().kind().name(),
+            dofs: model.problem().dofs(),
+            total_error: Bound { bound, guaranteed: true },
+            estimated: answer.discretisation_error()?,
+        })
+    }
+}
+
 /// The body for which a bound holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -175,13 +189,7 @@ fn on_last_mesh(
     let of_bound = found.answer.displacement.as_flattened();
     let away: Vec<f64> = answer.displacement().iter().zip(of_bound).map(|(own, other)| own - other).collect();
     let distance = found.total_error.bound * size(of_bound)? + size(&away)?;
-    let bound = if distance == 0.0 { 0.0 } else { distance / size(answer.displacement())? };
-    let judged = JudgedMesh {
-        element: model.mesh().kind().name(),
-        dofs: model.problem().dofs(),
-        total_error: Bound { bound, guaranteed: true },
-        estimated: answer.discretisation_error()?,
-    };
+    let judged = JudgedMesh::of(&answer, distance, size(answer.displacement())?)?;
     Ok((OnLastMesh { answer, solution }, judged))
 }
 
@@ -222,7 +230,11 @@ impl Search<'_> {
             }
             // The answer on the scene's own mesh belongs to the polygon of the first mesh.
             if is_first || !self.problem.has_circles() && (is_met || is_late) {
-                now.own_mesh = own.as_ref().map(|own| self.own_mesh(own, &bracket)).transpose()?;
+                let judged_by = |own: &Answer| {
+                    let Judged { bound, norm, .. } = judged(own, &bracket);
+                    JudgedMesh::of(own, bound, norm)
+                };
+                now.own_mesh = own.as_ref().map(judged_by).transpose()?;
             }
             now.seconds = self.clock.elapsed().as_secs_f64();
             if is_met {
@@ -294,18 +306,6 @@ impl Search<'_> {
         let Ok(answer) = Answer::of(self.model.clone(), &solution) else { return Ok(None) };
         let warnings = of_refined(&answer, &solution)?;
         Ok(Some((answer, warnings)))
-    }
-
-    /// Judges that answer by a bracket.
-    fn own_mesh(&self, own: &Answer, bracket: &Bracket) -> Result<JudgedMesh, Error> {
-        let (model, judged) = (self.model, judged(own, bracket));
-        let bound = if judged.bound == 0.0 { 0.0 } else { judged.bound / judged.norm };
-        Ok(JudgedMesh {
-            element: model.mesh().kind().name(),
-            dofs: model.problem().dofs(),
-            total_error: Bound { bound, guaranteed: true },
-            estimated: own.discretisation_error()?,
-        })
     }
 
     /// The numbers of a mesh; the interval of the force if it is requested, or if nothing else is.
