@@ -98,46 +98,22 @@ impl Drawing {
 
     /// A text in the colour of axes with its baseline at `position`.
     pub(crate) fn text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
-        self.coloured_text(position, text, size, anchor, INK);
+        self.any_text(regular(position, text, size, anchor));
     }
 
     /// The same in the given colour.
     pub(crate) fn coloured_text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor, ink: Colour) {
-        self.any_text(Text {
-            position,
-            text: text.to_owned(),
-            size,
-            anchor,
-            weight: Weight::Regular,
-            upward: false,
-            ink,
-        });
+        self.any_text(Text { ink, ..regular(position, text, size, anchor) });
     }
 
     /// A bold text with its baseline at `position`.
     pub(crate) fn bold_text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
-        self.any_text(Text {
-            position,
-            text: text.to_owned(),
-            size,
-            anchor,
-            weight: Weight::Bold,
-            upward: false,
-            ink: INK,
-        });
+        self.any_text(Text { weight: Weight::Bold, ..regular(position, text, size, anchor) });
     }
 
     /// A text that reads upwards, with its baseline through `position`.
     pub(crate) fn upward_text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
-        self.any_text(Text {
-            position,
-            text: text.to_owned(),
-            size,
-            anchor,
-            weight: Weight::Regular,
-            upward: true,
-            ink: INK,
-        });
+        self.any_text(Text { upward: true, ..regular(position, text, size, anchor) });
     }
 
     fn any_text(&mut self, text: Text) {
@@ -177,6 +153,11 @@ impl Drawing {
     pub(super) fn pixels(&self, scale: f64) -> Result<Pixmap, Error> {
         raster::painted([self.width, self.height], &self.shapes, scale)
     }
+}
+
+/// A text from left to right in the colour of axes.
+fn regular(position: [f64; 2], text: &str, size: f64, anchor: Anchor) -> Text {
+    Text { position, text: text.to_owned(), size, anchor, weight: Weight::Regular, upward: false, ink: INK }
 }
 
 /// Returns `true` if a point is finite and near enough to be drawn.

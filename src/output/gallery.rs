@@ -8,6 +8,7 @@ use super::medium::Medium;
 use super::plane_scene::{PlaneScene, draw_series, state};
 use super::plot::line_plots_for;
 use super::pressure::pressure_plots;
+use super::report::plural;
 use super::space_scene::{SpaceScene, draw_space_series};
 use super::tables;
 use super::{Plot, Quantity, Series, write_atomically, write_files, write_picture, write_streamed};
@@ -226,9 +227,5 @@ fn closed_nodes(model: &Model, set: &ContactSet) -> String {
     let mut nodes: Vec<usize> = set.iter().map(|row| model.rows()[row].node).collect();
     nodes.sort_unstable();
     nodes.dedup();
-    let part = model.of_part();
-    match nodes.len() {
-        1 => format!("1 closed node{part}"),
-        count => format!("{count} closed nodes{part}"),
-    }
+    plural(nodes.len(), "closed node") + model.of_part()
 }

@@ -50,7 +50,7 @@ impl Unstructured<'_> {
         let _ = writeln!(text, "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">");
         text.push_str("<Points>\n");
         let coordinates: Vec<f64> = self.nodes.iter().flatten().copied().collect();
-        tuples::<3>(&mut text, "Points", &coordinates)?;
+        tuples(&mut text, "Points", 3, &coordinates)?;
         text.push_str("</Points>\n");
         self.write_cells(&mut text)?;
         write_data(&mut text, "PointData", self.point_data, points, "nodes")?;
@@ -97,26 +97,20 @@ impl Unstructured<'_> {
 fn write_data(text: &mut String, tag: &str, arrays: &[Array], expected: usize, of: &'static str) -> Result<(), Error> {
     let _ = writeln!(text, "<{tag}>");
     for array in arrays {
-        let (found, expected) = match array {
-            Array::Scalars(_, values) => (values.len(), expected),
-            Array::Vectors(_, values) => (values.len(), 3 * expected),
-            Array::Tensors(_, values) => (values.len(), 6 * expected),
-            Array::Flags(_, values) => (values.len(), expected),
+        let (found, components) = match array {
+            Array::Scalars(_, values) => (values.len(), 1),
+            Array::Vectors(_, values) => (values.len(), 3),
+            Array::Tensors(_, values) => (values.len(), 6),
+            Array::Flags(_, values) => (values.len(), 1),
         };
+        let expected = components * expected;
         if found != expected {
             return Err(Error::Length { name: "an array of a .vtu file", found, expected, of });
         }
         match array {
-            Array::Scalars(name, values) => {
-                let lines = values
-                    .iter()
-                    .enumerate()
-                    .map(|(k, &value)| finite(name, k, value))
-                    .collect::<Result<Vec<_>, _>>()?;
-                write_array(text, "Float64", name, 1, &lines);
+            Array::Scalars(name, values) | Array::Vectors(name, values) | Array::Tensors(name, values) => {
+                tuples(text, name, components, values)?;
             }
-            Array::Vectors(name, values) => tuples::<3>(text, name, values)?,
-            Array::Tensors(name, values) => tuples::<6>(text, name, values)?,
             Array::Flags(name, values) => {
                 let lines: Vec<String> = values.iter().map(|&flag| u8::from(flag).to_string()).collect();
                 write_array(text, "UInt8", name, 1, &lines);
@@ -127,14 +121,14 @@ fn write_data(text: &mut String, tag: &str, arrays: &[Array], expected: usize, o
     Ok(())
 }
 
-/// Entries of `N` components each.
-fn tuples<const N: usize>(text: &mut String, name: &str, values: &[f64]) -> Result<(), Error> {
+/// Entries of `components` numbers each.
+fn tuples(text: &mut String, name: &str, components: usize, values: &[f64]) -> Result<(), Error> {
     let line = |(k, tuple): (usize, &[f64])| {
         let parts = tuple.iter().map(|&value| finite(name, k, value)).collect::<Result<Vec<_>, _>>()?;
         Ok(parts.join(" "))
     };
-    let lines = values.chunks_exact(N).enumerate().map(line).collect::<Result<Vec<_>, Error>>()?;
-    write_array(text, "Float64", name, N, &lines);
+    let lines = values.chunks_exact(components).enumerate().map(line).collect::<Result<Vec<_>, Error>>()?;
+    write_array(text, "Float64", name, components, &lines);
     Ok(())
 }
 
