@@ -10,12 +10,10 @@ pub(super) fn msh(mesh: &Mesh, bodies: &[(&str, Range<usize>)]) -> String {
     let dimension = mesh.dimension();
     let mut text = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n");
     let _ = writeln!(text, "{}", mesh.boundaries().len() + bodies.len());
-    for (index, boundary) in mesh.boundaries().iter().enumerate() {
-        let _ = writeln!(text, "{} {} \"{}\"", dimension - 1, index + 1, boundary.name);
-    }
-    let first = mesh.boundaries().len() + 1;
-    for (index, (name, _)) in bodies.iter().enumerate() {
-        let _ = writeln!(text, "{dimension} {} \"{name}\"", first + index);
+    let boundaries = mesh.boundaries().iter().map(|boundary| (dimension - 1, &*boundary.name));
+    let groups = boundaries.chain(bodies.iter().map(|&(name, _)| (dimension, name)));
+    for (index, (dimension, name)) in groups.enumerate() {
+        let _ = writeln!(text, "{dimension} {} \"{name}\"", index + 1);
     }
     let _ = writeln!(text, "$EndPhysicalNames\n$Nodes\n{}", mesh.nodes().len());
     for (number, [x, y, z]) in mesh.nodes().iter().enumerate() {
@@ -39,7 +37,7 @@ pub(super) fn msh(mesh: &Mesh, bodies: &[(&str, Range<usize>)]) -> String {
     let kind = mesh.kind().reference().gmsh;
     for (element, nodes) in mesh.elements().enumerate() {
         let body = bodies.iter().position(|(_, elements)| elements.contains(&element)).unwrap_or(0);
-        line(kind, first + body, nodes);
+        line(kind, mesh.boundaries().len() + 1 + body, nodes);
     }
     text += "$EndElements\n";
     text
