@@ -100,10 +100,21 @@ impl MotionFolder {
                 _ => {}
             }
         }
-        let history = MotionTable::new(folder.join(HISTORY), HEADING)?;
-        let resultants = MotionTable::new(folder.join(RESULTANTS), &resultants_heading(model))?;
+        MotionFolder::with_tables(folder, scene, model, watched, |path, heading, _| MotionTable::new(path, heading))
+    }
+
+    /// A run without frames, whose tables `open` opens: each at its path, with its heading, by its number.
+    fn with_tables(
+        folder: &Path,
+        scene: String,
+        model: &Model,
+        watched: &[WatchedPoint],
+        open: impl Fn(PathBuf, &str, usize) -> Result<MotionTable, Error>,
+    ) -> Result<Self, Error> {
+        let history = open(folder.join(HISTORY), HEADING, 0)?;
+        let resultants = open(folder.join(RESULTANTS), &resultants_heading(model), 1)?;
         let watch = match watch_heading(model, watched) {
-            Some(heading) => Some((watched.to_vec(), MotionTable::new(folder.join(WATCH), &heading)?)),
+            Some(heading) => Some((watched.to_vec(), open(folder.join(WATCH), &heading, 2)?)),
             None => None,
         };
         Ok(MotionFolder { folder: folder.into(), scene, history, resultants, watch, times: Vec::new() })
@@ -132,20 +143,13 @@ impl MotionFolder {
         if found.scene != scene && undated(&found.scene) != undated(&scene) {
             return Err(wrong("it belongs to another scene; give that scene, or another folder".into()));
         }
-        let history = MotionTable::resume(folder.join(HISTORY), HEADING, found.history_bytes)?;
-        let resultants = folder.join(RESULTANTS);
-        let resultants = MotionTable::resume(resultants, &resultants_heading(model), found.resultants_bytes)?;
-        let watch = match watch_heading(model, watched) {
-            Some(heading) => {
-                let table = MotionTable::resume(folder.join(WATCH), &heading, found.watch_bytes)?;
-                Some((watched.to_vec(), table))
-            }
-            None => None,
-        };
+        let bytes = [found.history_bytes, found.resultants_bytes, found.watch_bytes];
+        let run = MotionFolder::with_tables(folder, scene, model, watched, |path, heading, table| {
+            MotionTable::resume(path, heading, bytes[table])
+        })?;
         let mut state = found.state;
         state.contact_set = closed_of(state.multiplier.len(), &found.closed);
-        let run = MotionFolder { folder: folder.into(), scene, history, resultants, watch, times: found.frame_times };
-        Ok((run, state, found.summary))
+        Ok((MotionFolder { times: found.frame_times, ..run }, state, found.summary))
     }
 
     /// Adds a line to the history, to the resultants, and to the watched points: `seen`, the current state of `integrator`, and the
@@ -238,10 +242,13 @@ impl MotionFolder {
         self.folder.join(format!("frames/{number:05}.json"))
     }
 
-    fn read_frame(&self, number: usize) -> Result<Frame, Error> {
+    /// The time of a frame, and its answer.
+    fn read_frame(&self, model: &Arc<Model>, number: usize) -> Result<(f64, Answer), Error> {
         let path = self.frame_path(number);
         let text = read_text_capped(&path, MOST_OF_TABLE)?;
-        serde_json::from_str(&text).map_err(|error| not_ours(&path, "frame of a motion", &error))
+        let frame: Frame = serde_json::from_str(&text).map_err(|error| not_ours(&path, "frame of a motion", &error))?;
+        let set = closed_of(model.rows().len(), &frame.closed);
+        Ok((frame.time, Answer::new(model.clone(), &frame.displacement, &frame.multiplier, &set)?))
     }
 
     /// Draws force and energies over time (`history`), and an animation of a body in the plane (`motion.png`).
@@ -271,11 +278,8 @@ impl MotionFolder {
             return Ok(());
         }
         let scene = |number: usize| -> Result<PlaneScene, Error> {
-            let frame = self.read_frame(number)?;
-            let set = closed_of(model.rows().len(), &frame.closed);
-            let time = amount(frame.time, model.units().time());
-            let title = format!("{}, t = {time}", model.title());
-            let shown = Answer::new(model.clone(), &frame.displacement, &frame.multiplier, &set)?;
+            let (time, shown) = self.read_frame(model, number)?;
+            let title = format!("{}, t = {}", model.title(), amount(time, model.units().time()));
             Ok(PlaneScene::new(&shown, title)?.in_place())
         };
         // First the limits that all frames share, then the frames: only one is in memory at a time.
@@ -306,11 +310,7 @@ impl MotionFolder {
     /// [`Error::File`], and those of the recovery of stresses.
     #[cfg(feature = "cli")]
     pub(crate) fn write_page(&self, model: &Arc<Model>, about: &About, report: Value) -> Result<(), Error> {
-        let answer = |number: usize| -> Result<Answer, Error> {
-            let frame = self.read_frame(number)?;
-            let set = closed_of(model.rows().len(), &frame.closed);
-            Answer::new(model.clone(), &frame.displacement, &frame.multiplier, &set)
-        };
+        let answer = |number: usize| self.read_frame(model, number).map(|(_, answer)| answer);
         let history = self.read_history()?;
         let frames = MotionFrames { history: &history, times: &self.times, answer: &answer };
         write_motion_page(&self.folder, about, model, report, &frames)
