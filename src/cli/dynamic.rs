@@ -7,7 +7,7 @@ use std::time::Instant;
 use super::about::about;
 use super::input::{scene_title, warnings};
 use super::options::Solve;
-use super::outcome::{Outcome, Report, warn};
+use super::outcome::{Outcome, Report, unfit, warn};
 use super::settings::settings;
 use crate::error::Error;
 use crate::motion::Integrator;
@@ -107,7 +107,6 @@ impl<'a> Run<'a> {
         path: &Path,
         scene: String,
     ) -> Result<Self, Error> {
-        let wrong = |field: &str, message: String| Error::Scene { path: format!("analysis.dynamic.{field}"), message };
         let (folder, state, summary) = MotionFolder::resume(path, scene, model, &dynamics.watched)?;
         if state.steps > dynamics.steps {
             let message = format!(
@@ -115,16 +114,13 @@ impl<'a> Run<'a> {
                  one",
                 state.steps
             );
-            return Err(wrong("duration", message));
+            return unfit("analysis.dynamic.duration", message);
         }
         integrator.resume(state)?;
         if integrator.time() != summary.time {
-            return Err(wrong(
-                "step",
-                "the motion in the folder of --out has another step, because its duration was shorter than one \
-                 step; start it anew"
-                    .into(),
-            ));
+            let message = "the motion in the folder of --out has another step, because its duration was shorter than \
+                           one step; start it anew";
+            return unfit("analysis.dynamic.step", message);
         }
         Ok(Run { model, dynamics, integrator, summary, folder: Some(folder) })
     }

@@ -2,7 +2,7 @@
 
 use super::input::{build, rests, scene_of, warnings};
 use super::options::{Export, Form};
-use super::outcome::{Outcome, warn};
+use super::outcome::{Outcome, unfit, warn};
 use crate::error::Error;
 use crate::file::Streamed;
 use crate::output::{make_folder, tables, write_streamed};
@@ -48,7 +48,7 @@ fn layout_of(model: &Model) -> Result<petsc::Layout, Error> {
     if model.meanings().any(|meaning| !matches!(meaning, Meaning::Node { .. })) {
         let message = "the form petsc has only the unknowns of nodes, but rigid faces and obstacles that a force \
                        presses have further unknowns; take --format matrix-market";
-        return Err(Error::Scene { path: "--format".into(), message: message.into() });
+        return unfit("--format", message);
     }
     Ok(petsc::Layout::of(model.body().dimension(), model.dofs().free(), model.mesh().nodes()))
 }

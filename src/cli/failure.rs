@@ -21,17 +21,13 @@ pub(super) fn sentence(error: &Error) -> String {
     head.iter().chain(&[' ', '.', '.', '.', ' ']).chain(tail).collect()
 }
 
-/// The exit code of an error.
-fn ending(error: &Error) -> Ending {
-    match error.failure() {
+/// The outcome of a command that ended with an error, with its exit code; in JSON it is an object.
+pub(super) fn failed(error: &Error, format: Format) -> Outcome {
+    let ending = match error.failure() {
         Failure::BadInput => Ending::BadInput,
         Failure::NoSolution => Ending::NoSolution,
         Failure::NotCertified => Ending::NotCertified,
-    }
-}
-
-/// The outcome of a command that ended with an error; in JSON it is an object.
-pub(super) fn failed(error: &Error, format: Format) -> Outcome {
+    };
     let text = match format {
         Format::Text => String::new(),
         Format::Json => {
@@ -39,5 +35,5 @@ pub(super) fn failed(error: &Error, format: Format) -> Outcome {
             format!("{report:#}\n")
         }
     };
-    Outcome { ending: ending(error), ..Outcome::done(text) }
+    Outcome { ending, ..Outcome::done(text) }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::options::Limits;
+use super::outcome::unfit;
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;
 use crate::qp::read_problem;
@@ -132,7 +133,7 @@ pub(super) fn rests(scene: &Scene) -> Result<(), Error> {
     }
     let message = "the scene is a motion, which only the commands `solve` and `tradeoff` compute; remove `analysis` \
                    for its equilibrium";
-    Err(Error::Scene { path: "analysis".into(), message: message.into() })
+    unfit("analysis", message)
 }
 
 /// Reads a scene of any size.

@@ -1,6 +1,7 @@
 //! The arguments. Types of the argument parser are used only here and in `shell`, which describes them to shells and manuals.
 
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::builder::PossibleValue;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
@@ -304,10 +305,7 @@ fn parse_gaps(text: &str) -> Result<Gaps, String> {
 }
 
 fn parse_points(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(points) if (2..=MOST_GAPS).contains(&points) => Ok(points),
-        _ => Err(format!("it must be a whole number from 2 to {MOST_GAPS}")),
-    }
+    allowed(text, |points| (2..=MOST_GAPS).contains(points), || format!("a whole number from 2 to {MOST_GAPS}"))
 }
 
 fn parse_forces(text: &str) -> Result<Gaps, String> {
@@ -338,29 +336,26 @@ fn parse_range(text: &str, of: &str, form: &str) -> Result<Gaps, String> {
 }
 
 fn parse_seconds(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        _ => Err("it must be a positive number of seconds, such as 2.5".to_string()),
-    }
+    let form = || "a positive number of seconds, such as 2.5".to_string();
+    allowed(text, |value: &f64| value.is_finite() && *value > 0.0, form)
+}
+
+/// The value of an option, or the form that it must have.
+fn allowed<T: FromStr>(text: &str, is_allowed: fn(&T) -> bool, form: impl Fn() -> String) -> Result<T, String> {
+    text.parse().ok().filter(is_allowed).ok_or_else(|| format!("it must be {}", form()))
 }
 
 /// A relative error above this has no meaning.
 const LARGEST_TOLERANCE: f64 = 0.1;
 
 fn parse_tolerance(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value <= LARGEST_TOLERANCE => Ok(value),
-        _ => Err(format!(
-            "it must be a number above 0 and at most {LARGEST_TOLERANCE}, such as 1e-9: it is a relative error"
-        )),
-    }
+    let form = || format!("a number above 0 and at most {LARGEST_TOLERANCE}, such as 1e-9: it is a relative error");
+    allowed(text, |&value| value > 0.0 && value <= LARGEST_TOLERANCE, form)
 }
 
 fn parse_total_error(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
-        _ => Err("it must be a number above 0 and below 1, such as 1e-2: it is a relative error".to_string()),
-    }
+    let form = || "a number above 0 and below 1, such as 1e-2: it is a relative error".to_string();
+    allowed(text, |&value| value > 0.0 && value < 1.0, form)
 }
 
 /// The value of `--accuracy`.
@@ -385,10 +380,7 @@ fn parse_accuracy(text: &str) -> Result<Accuracy, String> {
 const MOST_THREADS: usize = 1024;
 
 fn parse_threads(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(threads) if (1..=MOST_THREADS).contains(&threads) => Ok(threads),
-        _ => Err(format!("it must be a whole number from 1 to {MOST_THREADS}")),
-    }
+    allowed(text, |threads| (1..=MOST_THREADS).contains(threads), || format!("a whole number from 1 to {MOST_THREADS}"))
 }
 
 /// Limits of memory and files for a scene or a problem.
@@ -410,7 +402,7 @@ impl Limits {
 }
 
 /// The memory in bytes: `allowed`, or else what is available, within the address space.
-fn most_memory(allowed: Option<f64>) -> f64 {
+pub(super) fn most_memory(allowed: Option<f64>) -> f64 {
     allowed.unwrap_or_else(memory::available).min(memory::address_space_left())
 }
 
@@ -521,13 +513,6 @@ pub(super) struct Verify {
     /// Form of the report
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
-}
-
-impl Verify {
-    /// The memory, in bytes.
-    pub fn most_memory(&self) -> f64 {
-        most_memory(self.max_memory)
-    }
 }
 
 impl Command {

@@ -41,6 +41,11 @@ pub(super) fn warn(text: &str) {
     let _ = io::stderr().write_all(format!("{erased}{text}").as_bytes());
 }
 
+/// The error for an option, or a part of a scene, that does not fit the input.
+pub(super) fn unfit<T>(path: &str, message: impl Into<String>) -> Result<T, Error> {
+    Err(Error::Scene { path: path.into(), message: message.into() })
+}
+
 /// A report in both forms: text and JSON.
 pub(super) struct Report {
     text: String,

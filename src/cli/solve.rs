@@ -7,7 +7,7 @@ use super::dynamic;
 use super::input::{Input, Source};
 use super::interrupt::Kept;
 use super::options::{Accuracy, Solve};
-use super::outcome::{Outcome, Report, warn};
+use super::outcome::{Outcome, Report, unfit, warn};
 use super::settings::settings;
 use super::total_error;
 use crate::error::Error;
@@ -43,17 +43,14 @@ pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome
             let name = options.input.display();
             let message =
                 format!("{name} is a problem directory, which has no mesh to refine; a total error needs a scene");
-            return Err(Error::Scene { path: "--total-error".into(), message });
+            return unfit("--total-error", message);
         };
         let goal = TotalErrorGoal { total_error: bound, force_error: options.force_error };
         return total_error::run(options, scene, goal, watch, kept);
     }
     if options.resume {
-        let path = "analysis".into();
-        return Err(Error::Scene {
-            path,
-            message: "the scene has no `analysis`, so that there is no motion to resume; leave --resume out".into(),
-        });
+        let message = "the scene has no `analysis`, so that there is no motion to resume; leave --resume out";
+        return unfit("analysis", message);
     }
     let input = match source {
         Source::Scene(scene, read_seconds) => {
@@ -98,11 +95,11 @@ fn motion(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outcome, Erro
     if options.start.is_some() {
         let message =
             "a motion starts from its `initial` state, not from an earlier answer; --resume continues a motion";
-        return Err(Error::Scene { path: "--start".into(), message: message.into() });
+        return unfit("--start", message);
     }
     if options.plan {
         let message = "a motion makes a plan for each of its steps; leave --plan out, or `analysis` out of the scene";
-        return Err(Error::Scene { path: "--plan".into(), message: message.into() });
+        return unfit("--plan", message);
     }
     if options.explain {
         warn("warning: --explain has no effect on a motion: it explains a single solve\n");

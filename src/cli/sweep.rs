@@ -3,7 +3,7 @@
 use super::about::about;
 use super::input::{Input, scene_title, still_model, warnings};
 use super::options::{Gaps, Sweep};
-use super::outcome::{Outcome, Report, warn};
+use super::outcome::{Outcome, Report, unfit, warn};
 use super::settings::settings;
 use crate::error::{Error, memory as written};
 use crate::memory;
@@ -30,12 +30,11 @@ pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
                 "{name} is a problem directory, which is swept from g.mtx, f.mtx to g1.mtx, f1.mtx; give --points \
                  instead"
             );
-            Err(Error::Scene { path: given.into(), message })
+            unfit(given, message)
         }
         (false, Some(_)) => {
             let name = options.scene.display();
-            let message = format!("{name} is not a problem directory; a scene is swept over --gaps or --forces");
-            Err(Error::Scene { path: "--points".into(), message })
+            unfit("--points", format!("{name} is not a problem directory; a scene is swept over --gaps or --forces"))
         }
         (false, None) => of_scene(options, watch),
     }

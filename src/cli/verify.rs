@@ -1,6 +1,6 @@
 //! `signorini verify`: the certificate of an answer that came from elsewhere.
 
-use super::options::Verify;
+use super::options::{Verify, most_memory};
 use super::outcome::{Outcome, Report};
 use crate::error::Error;
 use crate::output::verify_text;
@@ -10,7 +10,7 @@ use crate::watch::Watch;
 
 pub(super) fn run(options: &Verify, watch: &Watch) -> Result<Outcome, Error> {
     // The available memory is asked for before the problem takes its own.
-    let memory = Some(options.most_memory());
+    let memory = Some(most_memory(options.max_memory));
     let displacement = read_vector(&options.displacement)?;
     let multiplier = read_vector(&options.multiplier)?;
     let problem = read_problem(&options.directory)?;
