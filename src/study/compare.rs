@@ -79,23 +79,18 @@ pub struct Comparison {
 /// # Errors
 /// As [`solve`], but an answer that is not certified is an answer here; [`Error::Interrupted`] if not all three answers were computed.
 pub fn compare(problem: &ContactProblem, settings: &Settings) -> Result<Comparison, Error> {
-    let answer = |method| {
-        let mut settings = settings.clone();
-        settings.method = method;
-        match solve(problem, &settings) {
+    let mut number = 0;
+    let mut answer = |method| {
+        number += 1;
+        settings.watch.part("method", number, 3);
+        match solve(problem, &Settings { method, ..settings.clone() }) {
             Ok(solution) => Ok(MethodAnswer { solution, certified: true }),
             Err(_) if settings.watch.acknowledge() => Err(Error::Interrupted),
             Err(Error::NotCertified { solution, .. }) => Ok(MethodAnswer { solution: *solution, certified: false }),
             Err(error) => Err(error),
         }
     };
-    let mut number = 0;
-    let mut next = |method| {
-        number += 1;
-        settings.watch.part("method", number, 3);
-        answer(method)
-    };
-    let [qp, active_set, penalty] = [next(Method::qp())?, next(Method::ActiveSet)?, next(Method::penalty())?];
+    let [qp, active_set, penalty] = [answer(Method::qp())?, answer(Method::ActiveSet)?, answer(Method::penalty())?];
     let to_active_set = difference(problem, &active_set.solution, &qp.solution);
     let to_penalty = difference(problem, &penalty.solution, &qp.solution);
     let agreement = Agreement {

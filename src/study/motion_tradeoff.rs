@@ -6,8 +6,7 @@ use serde::Serialize;
 
 use super::front::on_front;
 use crate::error::Error;
-use crate::motion::Integrator;
-use crate::motion::SchemeSpec;
+use crate::motion::{Integrator, SchemeSpec};
 use crate::qp::Settings;
 use crate::scene::schema::AnalysisSpec;
 use crate::scene::{Dynamics, Model, Scene};
