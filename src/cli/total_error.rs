@@ -70,10 +70,11 @@ pub(super) fn run(
     };
     match total_error(scene, &model, goal, &settings, &keep).map_err(|error| model.explain(error))? {
         Found::Guaranteed(found) => {
-            let answer = found.last.as_ref().ok().map(|last| (last.answer.clone(), last.solution.clone()));
             let estimated = found.last_mesh.map(|last| last.estimated);
-            let answer = answer.map(|(answer, solution)| summed(answer, solution, settings.goal(), estimated, seconds));
-            let answer = answer.transpose()?;
+            let answer = match found.last.clone() {
+                Ok(last) => Some(summed(last.0, last.1, settings.goal(), estimated, seconds)?),
+                Err(_) => None,
+            };
             let text = total_error_text(&title, &found, answer.as_ref().map(|(_, summary)| summary), &units);
             let files = |folder: &Path| write_total_error(folder, &title, &found, &units, wanted);
             let meshes = Some(meshes_picture(&title, &found, &units));

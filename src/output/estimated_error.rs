@@ -6,11 +6,10 @@ use super::gallery::{Pictures, Wanted};
 use super::medium::Medium;
 use super::mesh_series::{MeshPanel, mesh_series};
 use super::msh::msh;
-use super::plot::line_plots_for;
 use super::report::{comma_separated, entry, of_part, plural, table, wrapped};
 use super::text::printable;
-use super::total_error::{needed, of_last_mesh, percent, search_text, verdict};
-use super::{Drawing, Plot, Quantity, Scale, Series, write_files, write_picture};
+use super::total_error::{error_plot, needed, of_last_mesh, percent, search_text, verdict};
+use super::{Drawing, Series, write_files, write_picture};
 use crate::error::Error;
 use crate::scene::Units;
 use crate::study::Summary;
@@ -125,6 +124,5 @@ fn plot(medium: Medium, title: &str, found: &Estimated) -> Drawing {
         Series::new(name, found.levels.iter().map(|level| [level.dofs as f64, value(level)]).collect())
     };
     let series = vec![line("estimated", &|level| level.total_error), line("goal", &|_| found.goal.total_error)];
-    let (x, y) = (Quantity::new("unknowns", ""), Quantity::new("total error, relative", ""));
-    line_plots_for(medium, title, &[Plot { scales: [Scale::Logarithmic; 2], ..Plot::new(x, y, series) }])
+    error_plot(medium, title, ["unknowns", "total error, relative"], series)
 }

@@ -203,8 +203,7 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep, wanted: Wanted) -> Result<(), E
         None => vec![force],
     };
     let plots: Vec<Plot> = of_forces.into_iter().chain([extent, peak]).collect();
-    write_picture(folder, "force-width", &line_plots_for(medium, first.answer.model().title(), &plots))?;
-    Ok(())
+    write_picture(folder, "force-width", &line_plots_for(medium, first.answer.model().title(), &plots)).map(drop)
 }
 
 /// A plotted value of an item.

@@ -163,8 +163,7 @@ pub(crate) fn write_total_error(
         return Ok(());
     }
     write_picture(folder, "total-error", &plot(wanted.medium, title, found))?;
-    write_picture(folder, "meshes", &meshes_picture(title, found, units))?;
-    Ok(())
+    write_picture(folder, "meshes", &meshes_picture(title, found, units)).map(drop)
 }
 
 /// The meshes of the levels.
@@ -225,15 +224,18 @@ fn plot(medium: Medium, title: &str, found: &TotalError) -> Drawing {
         let point = |level: &TotalErrorLevel| Some([level.dofs as f64, value(level)?]);
         Series::new(name, found.levels.iter().filter_map(point).collect())
     };
-    let goal =
-        Series::new("goal", found.levels.iter().map(|level| [level.dofs as f64, found.goal.total_error]).collect());
     let series = vec![
         line("displacement", &|level| Some(level.bound)),
         line("mean stress", &|level| Some(level.mean_stress_bound)),
         line("contact force", &half_width),
-        goal,
+        line("goal", &|_| Some(found.goal.total_error)),
     ];
     let series = series.into_iter().filter(|series| !series.points.is_empty()).collect();
-    let (x, y) = (Quantity::new("unknowns of the displacement", ""), Quantity::new("guaranteed relative error", ""));
+    error_plot(medium, title, ["unknowns of the displacement", "guaranteed relative error"], series)
+}
+
+/// Errors over unknowns, with the names of both axes.
+pub(super) fn error_plot(medium: Medium, title: &str, axes: [&str; 2], series: Vec<Series>) -> Drawing {
+    let [x, y] = axes.map(|name| Quantity::new(name, ""));
     line_plots_for(medium, title, &[Plot { scales: [Scale::Logarithmic; 2], ..Plot::new(x, y, series) }])
 }

@@ -119,19 +119,13 @@ pub(crate) struct TotalError {
     /// The displacement and the stresses.
     #[serde(skip)]
     pub answer: PlaneAnswer,
-    /// The answer of `solve` on the last mesh, or the reason for which there is none.
+    /// The answer of `solve` on the last mesh, or the reason for which there is none: its rows are at nodes, those of the bound hold
+    /// between them as well.
     #[serde(skip)]
-    pub last: Result<Box<OnLastMesh>, String>,
+    pub last: Result<Box<(Answer, Solution)>, String>,
     /// The meshes, from the first to the last.
     #[serde(skip)]
     pub meshes: Vec<Triangulation>,
-}
-
-/// The answer on the last mesh, as `solve` finds it: its rows are at nodes, those of the bound hold between them as well.
-#[derive(Clone, Debug)]
-pub(crate) struct OnLastMesh {
-    pub answer: Answer,
-    pub solution: Solution,
 }
 
 /// A function that is called with what was found, after each mesh but the last.
@@ -179,7 +173,7 @@ fn on_last_mesh(
     first: &Model,
     found: &TotalError,
     settings: &Settings,
-) -> Result<(OnLastMesh, JudgedMesh), Error> {
+) -> Result<((Answer, Solution), JudgedMesh), Error> {
     let model = Arc::new(scene.on_last_mesh(first, &found.answer)?);
     let solution = solve(model.problem(), settings)?;
     let answer = Answer::of(model.clone(), &solution)?;
@@ -190,7 +184,7 @@ fn on_last_mesh(
     let away: Vec<f64> = answer.displacement().iter().zip(of_bound).map(|(own, other)| own - other).collect();
     let distance = found.total_error.bound * size(of_bound)? + size(&away)?;
     let judged = JudgedMesh::of(&answer, distance, size(answer.displacement())?)?;
-    Ok((OnLastMesh { answer, solution }, judged))
+    Ok(((answer, solution), judged))
 }
 
 /// The data that stay the same from mesh to mesh.
