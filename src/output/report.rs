@@ -111,14 +111,12 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
 /// The estimates before a solve and the reason of the choice, in lines of at most 100 characters.
 #[cfg(feature = "cli")]
 pub fn why_text(why: &Why) -> String {
-    let mut text = listed("why", vec![why.reason.clone()]);
-    for (number, expected) in why.considered.iter().enumerate() {
-        let name = if number == 0 { "expected" } else { "" };
+    let expected = why.considered.iter().map(|expected| {
         let taken = if expected.method == why.chosen { ", chosen" } else { "" };
         let (seconds, memory) = (expected.seconds, memory(expected.bytes));
-        text += &entry(name, &format!("{:<8}{seconds:.1e} s, {memory}{taken}", expected.method));
-    }
-    text
+        format!("{:<8}{seconds:.1e} s, {memory}{taken}", expected.method)
+    });
+    listed("why", vec![why.reason.clone()]) + &entries("expected", expected)
 }
 
 /// A number with its uncertainty, if it has one above rounding, and its unit.
@@ -164,46 +162,40 @@ fn obstacle_table(name: &str, contacts: &[(String, &ContactSummary)], units: &Un
     let all = || contacts.iter().flat_map(|(_, contact)| &contact.obstacles);
     let has_width = all().any(|one| one.estimate.is_some_and(|estimate| estimate.width.is_some()));
     let is_pressed = all().any(|one| one.travel.is_some());
-    let square = if units.length.is_empty() { String::new() } else { format!("{}²", units.length) };
     let shown = |value: Option<f64>| value.map_or_else(|| "-".to_string(), |value| format!("{value:.5e}"));
     let within = |value: Option<f64>, off: Option<f64>| match (value, off) {
         (Some(size), Some(off)) if off > SHOWN * size => format!("{size:.5e} ± {off:.1e}"),
         _ => shown(value),
     };
-    let header = [
-        name.to_string(),
-        "obstacle".to_string(),
-        in_unit("force", &units.force),
-        in_unit("travel", &units.length),
-        in_unit("peak p", &units.pressure()),
-        if has_width { in_unit("width", &units.length) } else { in_unit("area", &square) },
-        in_unit("mean p", &units.pressure()),
-    ];
-    let row = |value: &String, one: &ObstacleContact| {
-        let extent = one.estimate.map(|of| of.width.unwrap_or(of.area));
-        let extent_off =
-            one.estimate.and_then(|of| if has_width { of.width_uncertainty } else { Some(of.area_uncertainty) });
-        let peak_off = one.estimate.and_then(|of| of.pressure_uncertainty);
-        let copies = match one.copies {
-            1 => String::new(),
-            2 => ", twice".to_string(),
-            copies => format!(", {copies} times"),
-        };
-        vec![
-            value.clone(),
-            format!("{}{copies}", one.of),
-            shown(Some(one.force)),
-            shown(one.travel),
-            within(Some(one.pressure_max), peak_off),
-            within(extent, extent_off),
-            shown(one.pressure_mean),
-        ]
+    type One<'a> = (&'a String, &'a ObstacleContact);
+    let obstacle = |(_, one): &One| match one.copies {
+        1 => one.of.clone(),
+        2 => format!("{}, twice", one.of),
+        copies => format!("{}, {copies} times", one.of),
     };
-    let of_all = contacts.iter().flat_map(|(value, contact)| contact.obstacles.iter().map(move |one| row(value, one)));
+    let peak = |(_, one): &One| {
+        within(Some(one.pressure_max), one.estimate.and_then(|estimate| estimate.pressure_uncertainty))
+    };
+    let extent = |(_, one): &One| {
+        let off = one.estimate.and_then(|of| if has_width { of.width_uncertainty } else { Some(of.area_uncertainty) });
+        within(one.estimate.map(|of| of.width.unwrap_or(of.area)), off)
+    };
+    let of_extent = if has_width { in_unit("width", &units.length) } else { in_unit("area", &square(units)) };
+    let [force, travel] = [in_unit("force", &units.force), in_unit("travel", &units.length)];
+    let [of_peak, of_mean] = ["peak p", "mean p"].map(|name| in_unit(name, &units.pressure()));
+    let all_columns: [Column<One>; 7] = [
+        (name, &|(value, _)| value.to_string()),
+        ("obstacle", &obstacle),
+        (&force, &|(_, one)| shown(Some(one.force))),
+        (&travel, &|(_, one)| shown(one.travel)),
+        (&of_peak, &peak),
+        (&of_extent, &extent),
+        (&of_mean, &|(_, one)| shown(one.pressure_mean)),
+    ];
     let is_kept = |column: usize| (column != 0 || !name.is_empty()) && (column != 3 || is_pressed);
-    let kept =
-        |row: Vec<String>| row.into_iter().enumerate().filter(|(i, _)| is_kept(*i)).map(|(_, cell)| cell).collect();
-    columns(&std::iter::once(header.to_vec()).chain(of_all).map(kept).collect::<Vec<_>>())
+    let kept: Vec<Column<One>> = (0..7).filter(|&column| is_kept(column)).map(|column| all_columns[column]).collect();
+    let ones = contacts.iter().flat_map(|(value, contact)| contact.obstacles.iter().map(move |one| (value, one)));
+    columns(&table(&ones.collect::<Vec<_>>(), &kept))
 }
 
 /// Components below this share of the largest one, and uncertainties below this share of their value, are rounding in a text.
@@ -413,10 +405,7 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
     let several = sweep.points.first().is_some_and(|point| point.summary.contact.is_of_several());
     let extent = match has_width {
         true => in_unit("estimated width", &units.length),
-        false => in_unit(
-            "estimated area",
-            &if units.length.is_empty() { String::new() } else { format!("{}²", units.length) },
-        ),
+        false => in_unit("estimated area", &square(units)),
     };
     let swept = match (is_of_forces, several) {
         (true, false) => in_unit("travel", &units.length),
@@ -428,41 +417,29 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
         (_, Some(travel)) if is_of_forces => format!("{travel:.6e}"),
         _ => format!("{:.6}", point.gap),
     };
-    let of_contact = [in_unit("-sum(lambda)", &units.force), in_unit("peak pressure", &units.pressure()), extent];
-    let contact_of = |contact: &ContactSummary| {
-        [
-            format!("{:.9e}", contact.force),
-            format!("{:.6e}", contact.pressure_max.unwrap_or(0.0)),
-            match (contact.width, contact.area, &contact.estimate) {
-                (Some(_), _, estimate) => {
-                    format!("{:.6}", estimate.and_then(|estimate| estimate.width).unwrap_or(0.0))
-                }
-                (None, Some(area), estimate) => {
-                    format!("{:.6e}", estimate.map_or(area, |estimate| estimate.area))
-                }
-                _ => "-".to_string(),
-            },
-        ]
+    let [force, peak] = [in_unit("-sum(lambda)", &units.force), in_unit("peak pressure", &units.pressure())];
+    let extent_of = |point: &SweepPoint| match &point.summary.contact {
+        ContactSummary { width: Some(_), estimate, .. } => {
+            format!("{:.6}", estimate.and_then(|estimate| estimate.width).unwrap_or(0.0))
+        }
+        ContactSummary { area: Some(area), estimate, .. } => {
+            format!("{:.6e}", estimate.map_or(*area, |estimate| estimate.area))
+        }
+        _ => "-".to_string(),
     };
-    let line = |head: [String; 3], of_contact: [String; 3], tail: [String; 2]| {
-        let between = of_contact.into_iter().filter(|_| !several);
-        head.into_iter().chain(between).chain(tail).collect::<Vec<_>>()
-    };
-    let header = line(
-        [swept.clone(), "iterations".into(), "contact".into()],
-        of_contact,
-        ["energy error <=".into(), "status".into()],
-    );
-    let row = |point: &SweepPoint| {
-        let Summary { solution, contact, .. } = &point.summary;
-        line(
-            [value(point), solution.iterations.to_string(), contact.count.to_string()],
-            contact_of(contact),
-            [conditions(&solution.certificate)[5].2.clone(), point.summary.status.words().to_owned()],
-        )
-    };
-    let table: Vec<Vec<String>> = std::iter::once(header).chain(sweep.points.iter().map(row)).collect();
-    let mut text = format!("{}\n\n{}", printable(title), columns(&table));
+    let all_columns: [Column<SweepPoint>; 8] = [
+        (&swept, &value),
+        ("iterations", &|point| point.summary.solution.iterations.to_string()),
+        ("contact", &|point| point.summary.contact.count.to_string()),
+        (&force, &|point| format!("{:.9e}", point.summary.contact.force)),
+        (&peak, &|point| format!("{:.6e}", point.summary.contact.pressure_max.unwrap_or(0.0))),
+        (&extent, &extent_of),
+        ("energy error <=", &|point| conditions(&point.summary.solution.certificate)[5].2.clone()),
+        ("status", &|point| point.summary.status.words().to_owned()),
+    ];
+    let kept = (0..8).filter(|column| !several || !(3..6).contains(column)).map(|column| all_columns[column]);
+    let points = columns(&table(&sweep.points, &kept.collect::<Vec<_>>()));
+    let mut text = format!("{}\n\n{points}", printable(title));
     if several {
         let contacts: Vec<_> = sweep.points.iter().map(|point| (value(point), &point.summary.contact)).collect();
         text += &format!("\n{}", obstacle_table(&swept, &contacts, units));
@@ -484,6 +461,11 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
 fn sweep_notes(first: &Summary) -> Option<String> {
     let part = "Contact (closed rows), iterations and energy error are of the meshed part, all other columns of the whole body.";
     first.parts_of_whole.map(|_| part.to_string())
+}
+
+/// The unit of area; empty without a unit of length.
+fn square(units: &Units) -> String {
+    if units.length.is_empty() { String::new() } else { format!("{}²", units.length) }
 }
 
 /// The name of a quantity with its unit, if there is one.
