@@ -159,7 +159,8 @@ impl<'a> MapAccess<'a> for Fields<'a> {
     }
 
     fn next_value_seed<T: DeserializeSeed<'a>>(&mut self, seed: T) -> Result<T::Value, Fault> {
-        value_of(self.last.expect("a key comes before its value"), seed)
+        let without_key = || Fault::from(What::Other("a value stands without a key".into()));
+        value_of(self.last.ok_or_else(without_key)?, seed)
     }
 }
 
