@@ -29,7 +29,7 @@ pub fn take_out(vector: &mut [f64], direction: &[f64]) -> f64 {
     share
 }
 
-/// Checks that a vector has the right length, with what it counts, and allowed values.
+/// Checks that a vector has an entry for each of those that it belongs to, and that its values are allowed.
 ///
 /// # Errors
 /// [`Error::Length`], [`Error::NotFinite`].

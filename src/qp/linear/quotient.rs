@@ -15,7 +15,7 @@ pub(super) struct Quotient {
     columns: Vec<usize>,
     /// The start of the neighbours of each group.
     pub starts: Vec<u32>,
-    /// The neighbours of all groups, on both sides, in no order.
+    /// The neighbours of all groups, on both sides, in any order.
     pub all_neighbours: Vec<u32>,
 }
 
