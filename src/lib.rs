@@ -93,15 +93,17 @@ pub mod internals {
     pub use crate::fem::norms::error_norms_by;
     pub use crate::fem::surface::{ClosedSurface, Closest};
     #[cfg(feature = "pictures")]
-    pub use crate::output::arrows::{Arrow, ArrowKind};
-    #[cfg(feature = "pictures")]
-    pub use crate::output::body::{ContactPicture, FieldPanel, ObstacleLine, common_limits, common_window};
-    #[cfg(feature = "pictures")]
     pub use crate::output::file::write_atomically;
     #[cfg(feature = "pictures")]
-    pub use crate::output::medium::Medium;
+    pub use crate::output::picture::arrows::{Arrow, ArrowKind};
     #[cfg(feature = "pictures")]
-    pub use crate::output::ticks::{Ticks, brief, decimal, power_of_ten};
+    pub use crate::output::picture::body::{ContactPicture, FieldPanel, ObstacleLine, common_window};
+    #[cfg(feature = "pictures")]
+    pub use crate::output::plots::medium::Medium;
+    #[cfg(feature = "pictures")]
+    pub use crate::output::plots::ticks::{Ticks, brief, decimal, power_of_ten};
+    #[cfg(feature = "pictures")]
+    pub use crate::output::view::limits::common_limits;
     pub use crate::qp::cost::{Estimate, bytes};
     pub use crate::qp::linear::{AugmentedMatrix, Blocks, Cholesky, dot, multigrid};
     pub use crate::qp::matrix_market::format_vector;

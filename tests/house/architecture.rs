@@ -68,6 +68,32 @@ fn a_module_names_only_modules_of_lower_floors() {
     assert!(arrows.len() > 60, "{} arrows between rooms", arrows.len());
 }
 
+/// The rooms of a floor with many files, in the order in which data flow through them.
+const WINGS: [(&str, &[&str]); 1] =
+    [("output", &["text", "json", "draw", "file", "plots", "view", "picture", "reports", "page", "folder"])];
+
+#[test]
+fn a_room_of_a_wing_names_only_rooms_before_it() {
+    let house = House::read();
+    for (wing, rooms) in WINGS {
+        let place = |module: &[String]| match module {
+            [first, inner, ..] if first == wing => rooms.iter().position(|room| room == inner),
+            _ => None,
+        };
+        for (module, source) in house.files.iter().filter(|(module, _)| module.len() > 1 && module[0] == wing) {
+            let own = place(module).unwrap_or_else(|| panic!("{} is in no room", source.path.display()));
+            for other in house.taken_from(module).iter().filter(|other| other[0] == wing) {
+                let is_before = place(other).is_some_and(|other| other <= own);
+                assert!(is_before, "{} names `{}`", source.path.display(), other.join("::"));
+            }
+        }
+        let architecture = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("ARCHITECTURE.md")).unwrap();
+        let row = architecture.lines().find(|line| line.contains(&format!("| `{wing}` |"))).unwrap();
+        let said: Vec<&str> = row.split('`').skip(3).step_by(2).filter(|name| rooms.contains(name)).collect();
+        assert_eq!(said, rooms, "ARCHITECTURE.md");
+    }
+}
+
 #[test]
 fn no_two_files_import_each_other() {
     let house = House::read();

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::packed::{Packed, Packer};
-use crate::output::singular::singular;
+use crate::output::view::limits::singular;
 use crate::scene::Model;
 
 /// Half of the height of the strip that stands for a bar, over its length.

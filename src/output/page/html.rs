@@ -8,9 +8,10 @@ use base64::engine::general_purpose::STANDARD;
 use super::model::Page;
 use super::packed::Packer;
 use crate::error::Error;
+use crate::output::draw::drawing::Drawing;
+use crate::output::file::write_atomically;
 use crate::output::json::compact_json;
 use crate::output::text::{escape, is_unseen};
-use crate::output::{Drawing, write_atomically};
 
 const SHELL: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");

@@ -12,8 +12,8 @@ use super::rows::{Contact, Rows};
 use super::search::Search;
 use super::state::State;
 use super::sweep::SweepShown;
-use crate::output::certificate::CertificateWords;
-use crate::output::colour::{Colour, PALETTE, field_colour};
+use crate::output::draw::colour::{Colour, PALETTE, field_colour};
+use crate::output::reports::certificate::CertificateWords;
 use crate::scene::{Model, Units};
 
 /// Colours of a field, from its lowest value to its highest.

@@ -5,8 +5,8 @@ use serde::Serialize;
 use super::body::Shape;
 use super::packed::{Packed, Packer};
 use crate::fem::geometry::length;
-use crate::output::plane_scene::OUTLINE_SEGMENTS;
-use crate::output::space_scene::eye;
+use crate::output::picture::plane_scene::OUTLINE_SEGMENTS;
+use crate::output::picture::space_scene::eye;
 use crate::scene::{HeldNode, Hold, Model, straight_cells};
 
 /// Half of the height of a wall before a bar, over its length.

@@ -7,7 +7,7 @@ use super::packed::{Packed, Packer};
 use super::rows::closed;
 use super::state::{State, kept};
 use crate::error::Error;
-use crate::output::iterations::iterations;
+use crate::output::view::iterations::iterations;
 use crate::scene::Answer;
 use crate::solution::Iteration;
 

@@ -6,7 +6,7 @@ use super::body::Shape;
 use super::packed::{Packed, Packer};
 use crate::error::Error;
 use crate::fem::recovery::Stress;
-use crate::output::magnified::carried;
+use crate::output::view::magnified::carried;
 use crate::scene::Answer;
 
 /// Displacement and stress at the vertices. Both are linear in the answer, so that a page may mix two states.

@@ -19,8 +19,10 @@ fn texts(group: &Group, found: &mut Vec<(String, Rect)>) {
 /// The SVG of a drawing, read with the fonts of the drawing.
 pub fn tree_of(drawing: &Drawing) -> Tree {
     let mut options = Options::default();
-    options.fontdb_mut().load_font_data(include_bytes!("../../../src/output/font/signorini-sans.ttf").to_vec());
-    options.fontdb_mut().load_font_data(include_bytes!("../../../src/output/font/signorini-sans-bold.ttf").to_vec());
+    options.fontdb_mut().load_font_data(include_bytes!("../../../src/output/draw/font/signorini-sans.ttf").to_vec());
+    options
+        .fontdb_mut()
+        .load_font_data(include_bytes!("../../../src/output/draw/font/signorini-sans-bold.ttf").to_vec());
     Tree::from_str(&drawing.svg(), &options).expect("well-formed SVG")
 }
 

@@ -1,0 +1,227 @@
+//! The output of `--out` in a folder: answers, fields and pictures of a scene.
+
+use std::path::Path;
+
+use super::fields::fields;
+use super::tables;
+use crate::error::Error;
+use crate::output::file::{write_atomically, write_files, write_picture, write_streamed};
+use crate::output::picture::plane_scene::{PlaneScene, draw_series};
+use crate::output::picture::space_scene::{SpaceScene, draw_space_series};
+use crate::output::plots::medium::Medium;
+use crate::output::plots::plot::{Plot, Series, line_plots_for};
+use crate::output::plots::pressure::pressure_plots;
+use crate::output::plots::ticks::Quantity;
+use crate::output::reports::report::plural;
+use crate::output::view::iterations::iterations;
+use crate::output::view::words::headline;
+use crate::qp::matrix_market::solution_files;
+use crate::scene::{Answer, Model};
+use crate::solution::{ContactSet, Iteration, Solution};
+use crate::study::{ObstacleContact, Summary, Sweep, SweepCorner, SweepPoint};
+
+/// The pictures that a command draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pictures {
+    /// None.
+    None,
+    /// The picture of the answer: one for each command.
+    Answer,
+    /// The pictures of iterations and gaps as well.
+    All,
+}
+
+impl Pictures {
+    /// The default pictures of a comparison or a sweep of a model: all pictures in the plane, and one in space, because there each step
+    /// takes its own solve.
+    pub(crate) fn usual_of_series(model: &Model) -> Self {
+        if model.mesh().dimension() == 3 { Pictures::Answer } else { Pictures::All }
+    }
+}
+
+/// The pictures that a command draws, and their medium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    pub pictures: Pictures,
+    pub medium: Medium,
+}
+
+/// Writes `u.mtx` and `lambda.mtx`; for a scene also the meaning of their entries (`dofs.csv`, `rows.csv`) and the state of each
+/// contact row (`contact.csv`).
+///
+/// # Errors
+/// [`Error::File`].
+pub fn write_answer(folder: &Path, solution: &Solution, answer: Option<&Answer>) -> Result<(), Error> {
+    write_files(folder, &solution_files(solution))?;
+    let Some(answer) = answer else { return Ok(()) };
+    write_streamed(folder, &tables::of_model(answer.model()))?;
+    write_files(folder, &[("contact.csv", tables::contact(answer))])
+}
+
+/// Writes the fields of an answer (`solution.vtu`) and its picture (`contact`); with all pictures also one for each
+/// iteration (`iteration-1`, ...) or each penalty (`rung-1`, ...), at most twelve. A bar has no picture.
+///
+/// # Errors
+/// [`Error::File`], and those of the recovery of stresses.
+pub fn write_solve(folder: &Path, answer: &Answer, history: &[Iteration], wanted: Wanted) -> Result<(), Error> {
+    write_atomically(&folder.join("solution.vtu"), fields(answer, None)?.as_bytes())?;
+    let (model, Wanted { pictures, medium }) = (answer.model(), wanted);
+    if pictures == Pictures::None {
+        return Ok(());
+    }
+    let steps = if pictures == Pictures::All { iterations(model, history)? } else { Vec::new() };
+    let mut shown = vec![("contact".to_string(), answer, title(answer, ""))];
+    shown.extend(steps.iter().map(|step| (step.name.clone(), &step.answer, title(&step.answer, &step.what))));
+    draw_answers(folder, shown, 1, medium)
+}
+
+/// Draws answers of one mesh, each with its name and title, with the colours and the scale of the first `leading` answers.
+fn draw_answers(
+    folder: &Path,
+    shown: Vec<(String, &Answer, String)>,
+    leading: usize,
+    medium: Medium,
+) -> Result<(), Error> {
+    match shown.first().map(|(_, answer, _)| answer.model().mesh().dimension()) {
+        Some(2) => {
+            let scenes = shown.into_iter().map(|(name, answer, title)| Ok((name, PlaneScene::new(answer, title)?)));
+            draw_series(folder, &scenes.collect::<Result<Vec<_>, Error>>()?, leading, medium)
+        }
+        Some(3) => {
+            let scenes = shown.into_iter().map(|(name, answer, title)| Ok((name, SpaceScene::new(answer, title)?)));
+            draw_space_series(folder, &scenes.collect::<Result<Vec<_>, Error>>()?, leading, medium)
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Draws the answer of the QP as [`write_solve`] does, with the iterations of the active-set loop, and the pressure of
+/// the three methods over the boundary (`pressure`).
+///
+/// # Errors
+/// As [`write_solve`].
+pub fn write_compare(
+    folder: &Path,
+    answers: &[Answer; 3],
+    summaries: &[Summary; 3],
+    wanted: Wanted,
+) -> Result<(), Error> {
+    let [_, active_set, _] = summaries;
+    write_solve(folder, &answers[0], &active_set.solution.history, wanted)?;
+    let model = answers[0].model();
+    if model.mesh().dimension() != 2 || wanted.pictures == Pictures::None {
+        return Ok(());
+    }
+    let plots = pressure_plots(answers, summaries);
+    if !plots.is_empty() {
+        let title = format!("{}, contact pressure of three methods", headline(model));
+        write_picture(folder, "pressure", &line_plots_for(wanted.medium, &title, &plots))?;
+    }
+    Ok(())
+}
+
+/// Writes one picture for each gap (`gap-01`, ...), with common colours and scale, and force, contact width (outside
+/// plane strain and plane stress, area) and peak pressure over the gap (`force-width`); of each obstacle, if there are several.
+///
+/// # Errors
+/// As [`write_solve`].
+pub fn write_sweep(folder: &Path, sweep: &Sweep, wanted: Wanted) -> Result<(), Error> {
+    let Wanted { pictures, medium } = wanted;
+    let points = &sweep.points;
+    if pictures == Pictures::None {
+        return Ok(());
+    }
+    let drawn = if pictures == Pictures::All { &points[..] } else { &[] };
+    let name = |(index, point): (usize, &SweepPoint)| {
+        format!("{}-{:02}", if point.force.is_some() { "force" } else { "gap" }, index + 1)
+    };
+    let shown: Vec<(String, &Answer, String)> =
+        drawn.iter().enumerate().map(|of| (name(of), &of.1.answer, title(&of.1.answer, ""))).collect();
+    draw_answers(folder, shown, drawn.len(), medium)?;
+    let Some(first) = points.first() else { return Ok(()) };
+    let units = first.answer.model().units();
+    let (swept, swept_in) = match first.force {
+        Some(_) => ("force F", &units.force),
+        None => ("gap g", &units.length),
+    };
+    let over_gap = |name: &str, unit: &str, series: Vec<Series>| {
+        let mut plot = Plot::new(Quantity::new(swept, swept_in), Quantity::new(name, unit), series);
+        plot.nested = true;
+        plot.y_from_zero = true;
+        plot
+    };
+    // Beside the exact path the gaps are marks without a line.
+    let of_all = |name: &str, unit: &str, at_point: Value<SweepPoint>, at_corner: Value<SweepCorner>| {
+        let join = if sweep.corners.is_empty() { None } else { Some([f64::NAN; 2]) };
+        let at = |point: &SweepPoint| [point.force.unwrap_or(point.gap), at_point(point)];
+        let at_points = points.iter().flat_map(|point| [Some(at(point)), join]).flatten().collect();
+        let exact = sweep.corners.iter().map(|corner| [corner.gap, at_corner(corner)]).collect::<Vec<_>>();
+        let marks = if first.force.is_some() { "forces of the sweep" } else { "gaps of the sweep" };
+        let mut series = vec![Series::new(marks, at_points)];
+        if !exact.is_empty() {
+            series.insert(0, Series::new("exact path", exact));
+        }
+        over_gap(name, unit, series)
+    };
+    let of_each = |name: &str, unit: &str, of: Value<ObstacleContact>| {
+        let series = first.summary.contact.obstacles.iter().enumerate().map(|(index, one)| {
+            let at =
+                |point: &SweepPoint| [point.force.unwrap_or(point.gap), of(&point.summary.contact.obstacles[index])];
+            Series::new(&one.of, points.iter().map(at).collect())
+        });
+        over_gap(name, unit, series.collect())
+    };
+    let (contact, several) =
+        (|point: &SweepPoint| point.summary.contact.clone(), first.summary.contact.is_of_several());
+    let square = format!("{}²", units.length);
+    let extent = match (first.summary.contact.width.is_some(), several) {
+        (true, true) => of_each("estimated width", &units.length, &|one| {
+            one.estimate.and_then(|estimate| estimate.width).unwrap_or(0.0)
+        }),
+        (false, true) => of_each("estimated area", &square, &|one| one.estimate.map_or(0.0, |estimate| estimate.area)),
+        (true, false) => {
+            let width = |point: &SweepPoint| contact(point).width.unwrap_or(0.0);
+            of_all("width of the cells of closed nodes", &units.length, &width, &|corner| corner.width.unwrap_or(0.0))
+        }
+        (false, false) => {
+            let area = |point: &SweepPoint| contact(point).area.unwrap_or(0.0);
+            of_all("area of the cells of closed nodes", &square, &area, &|corner| corner.area)
+        }
+    };
+    let travel = || of_all("travel d", &units.length, &|point| point.travel().unwrap_or(0.0), &|_| 0.0);
+    let force = match several {
+        true => of_each("force", &units.force, &|one| one.force),
+        false => of_all("sum of multipliers", &units.force, &|point| contact(point).force, &|corner| corner.force),
+    };
+    let peak = match several {
+        true => of_each("peak pressure", &units.pressure(), &|one| one.pressure_max),
+        false => {
+            of_all("peak pressure", &units.pressure(), &|p| contact(p).pressure_max.unwrap_or(0.0), &|c| c.pressure_max)
+        }
+    };
+    let of_forces: Vec<Plot> = match first.force {
+        Some(_) if several => vec![travel(), force],
+        Some(_) => vec![travel()],
+        None => vec![force],
+    };
+    let plots: Vec<Plot> = of_forces.into_iter().chain([extent, peak]).collect();
+    write_picture(folder, "force-width", &line_plots_for(medium, first.answer.model().title(), &plots)).map(drop)
+}
+
+/// A plotted value of an item.
+type Value<'a, T> = &'a dyn Fn(&T) -> f64;
+
+/// The title: the scene, its state, the content of the picture unless it is the answer, and the number of closed nodes.
+fn title(answer: &Answer, what: &str) -> String {
+    let model = answer.model();
+    let parts = [headline(model), what.to_string(), closed_nodes(model, answer.contact_set())];
+    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+}
+
+/// The number of closed nodes in the legend: a node between two obstacles counts once.
+fn closed_nodes(model: &Model, set: &ContactSet) -> String {
+    let mut nodes: Vec<usize> = set.iter().map(|row| model.rows()[row].node).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    plural(nodes.len(), "closed node") + model.of_part()
+}

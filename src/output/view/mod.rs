@@ -1,0 +1,8 @@
+//! What is shown of a model and of its answer, as plain data: each medium (page, picture, `.vtu`) renders it.
+
+// Only the output in the folders shows them.
+#[cfg_attr(not(feature = "cli"), allow(dead_code))]
+pub(crate) mod iterations;
+pub(crate) mod limits;
+pub(crate) mod magnified;
+pub(crate) mod words;
