@@ -68,7 +68,7 @@ impl Stress {
 
 impl Stress {
     /// The components `[xx, yy, zz, xy, yz, zx]`.
-    fn components(&self) -> Symmetric {
+    pub(crate) fn components(&self) -> Symmetric {
         [self.sigma_xx, self.sigma_yy, self.sigma_zz, self.sigma_xy, self.sigma_yz, self.sigma_zx]
     }
 

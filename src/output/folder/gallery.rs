@@ -10,10 +10,11 @@ use crate::output::picture::plane_scene::{PlaneScene, draw_series};
 use crate::output::picture::space_scene::{SpaceScene, draw_space_series};
 use crate::output::plots::medium::Medium;
 use crate::output::plots::plot::{Plot, Series, line_plots_for};
-use crate::output::plots::pressure::pressure_plots;
 use crate::output::plots::ticks::Quantity;
 use crate::output::reports::report::plural;
+use crate::output::view::field::Source;
 use crate::output::view::iterations::iterations;
+use crate::output::view::pressure::pressure_plots;
 use crate::output::view::words::headline;
 use crate::qp::matrix_market::solution_files;
 use crate::scene::{Answer, Model};
@@ -64,7 +65,7 @@ pub fn write_answer(folder: &Path, solution: &Solution, answer: Option<&Answer>)
 /// # Errors
 /// [`Error::File`], and those of the recovery of stresses.
 pub fn write_solve(folder: &Path, answer: &Answer, history: &[Iteration], wanted: Wanted) -> Result<(), Error> {
-    write_atomically(&folder.join("solution.vtu"), fields(answer, None)?.as_bytes())?;
+    write_atomically(&folder.join("solution.vtu"), fields(&Source { answer, velocity: None })?.as_bytes())?;
     let (model, Wanted { pictures, medium }) = (answer.model(), wanted);
     if pictures == Pictures::None {
         return Ok(());

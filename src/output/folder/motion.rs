@@ -28,6 +28,7 @@ use crate::output::picture::plane_scene::{PlaneScene, lines};
 use crate::output::plots::medium::Medium;
 use crate::output::plots::plot::{Plot, Series, line_plots_for};
 use crate::output::plots::ticks::{Quantity, amount};
+use crate::output::view::field::Source;
 use crate::scene::{Answer, Model, Resultant, WatchedPoint};
 use crate::solution::ContactSet;
 use crate::study::MotionSummary;
@@ -202,7 +203,7 @@ impl MotionFolder {
         self.watch.as_mut().map_or(Ok(()), |(_, table)| table.write())?;
         let (number, closed) = (self.times.len(), state.contact_set.iter().collect::<Vec<usize>>());
         let answer = Answer::new(model.clone(), &state.displacement, &state.multiplier, &state.contact_set)?;
-        let vtu = fields(&answer, Some(&model.dofs().expand_motion(&state.velocity)?))?;
+        let vtu = fields(&Source { answer: &answer, velocity: Some(&model.dofs().expand_motion(&state.velocity)?) })?;
         write_atomically(&self.folder.join(vtu_name(number)), vtu.as_bytes())?;
         let frame = Frame {
             time,

@@ -14,6 +14,7 @@ use super::state::State;
 use super::sweep::SweepShown;
 use crate::output::draw::colour::{Colour, PALETTE, field_colour};
 use crate::output::reports::certificate::CertificateWords;
+use crate::output::view::field::{self, FIELDS, Field};
 use crate::scene::{Model, Units};
 
 /// Colours of a field, from its lowest value to its highest.
@@ -25,6 +26,8 @@ pub(super) struct Page<'a> {
     pub about: &'a About,
     pub units: PageUnits,
     pub colours: Colours,
+    /// The fields that colour a body.
+    pub fields: Vec<FieldShown>,
     /// The object of `report.json`, without seconds except for a trade-off; null for a sweep, which has its points in `sweep`.
     #[serde(skip_serializing_if = "Value::is_null")]
     pub report: Value,
@@ -63,12 +66,28 @@ pub(super) struct PageUnits {
     pressure: String,
 }
 
+/// A field that colours a body; displacement and pressure are not among them.
+#[derive(Debug, Serialize)]
+pub(super) struct FieldShown {
+    name: &'static str,
+    words: &'static str,
+    symbol: &'static str,
+    unit: String,
+}
+
 #[derive(Debug, Serialize)]
 pub(super) struct Colours {
     /// Of a field, evenly from its lowest value to its highest.
     field: Vec<String>,
     /// Of lines in plots.
     lines: Vec<String>,
+}
+
+impl FieldShown {
+    fn of(field: &Field, units: &Units) -> Option<Self> {
+        let field::Colours { words, symbol, .. } = field.colours?;
+        Some(FieldShown { name: field.name, words, symbol, unit: (field.unit)(units) })
+    }
 }
 
 impl<'a> Page<'a> {
@@ -83,6 +102,7 @@ impl<'a> Page<'a> {
                 field: (0..FIELD_COLOURS).map(|index| hex(field_colour(share(index)))).collect(),
                 lines: PALETTE.into_iter().map(hex).collect(),
             },
+            fields: FIELDS.iter().filter_map(|field| FieldShown::of(field, units)).collect(),
             report: Value::Null,
             certificate: None,
             proven: None,

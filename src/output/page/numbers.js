@@ -53,14 +53,19 @@ function ticks(low, high, most) {
   return values;
 }
 
-/** The fields for colouring a body; each takes the values of a vertex from a state. */
-const QUANTITIES = {
-  "sigma-2": { name: "σ₂, second principal stress", unit: "pressure", value: (s, at, n) => secondPrincipal(s, at, n) },
-  "von-mises": { name: "von Mises stress", unit: "pressure", value: (s, at, n) => vonMises(s, at, n) },
-  pressure: { name: "contact pressure p", unit: "pressure" },
-  displacement: { name: "size of the displacement |u|", unit: "length" },
-  none: { name: "none", unit: "length" },
-};
+/** The quantities for colouring a body. */
+function quantitiesOf({ fields, units }) {
+  const named = ({ name, words, symbol, unit }) => [name, { name: symbol ? `${symbol}, ${words}` : words, unit }];
+  return {
+    ...Object.fromEntries(fields.map(named)),
+    pressure: { name: "contact pressure p", unit: units.pressure },
+    displacement: { name: "size of the displacement |u|", unit: units.length },
+    none: { name: "none", unit: "" },
+  };
+}
+
+/** Fields of a vertex that are computed from the stress, which is exact between two answers. */
+const FROM_STRESS = { sigma_2: secondPrincipal, von_mises: vonMises };
 
 /** Components xx, yy, zz, xy and, in space, yz and zx begin at `at`. */
 function vonMises(s, at, n) {

@@ -9,7 +9,7 @@ const MANY_MARKS = 300;
 /** If the lines of a mesh have more ends than this, they would hide the colours: the mesh is left out until the reader asks for it. */
 const MOST_LINES = 200000;
 
-/** Displacement (three a vertex) and stress between two states. */
+/** Displacement (three a vertex), stress and fields between two states. */
 function mixed(data, shape, [lower, upper, share]) {
   const { dimension, count } = shape,
     moved = new Float32Array(3 * count);
@@ -19,12 +19,14 @@ function mixed(data, shape, [lower, upper, share]) {
     for (let k = 0; k < dimension; k++)
       moved[3 * i + k] = a[dimension * i + k] * (1 - share) + b[dimension * i + k] * share;
   }
-  if (share === 0 || lower === upper) return { moved, stress: lower.stress };
-  return { moved, stress: lower.stress.map((value, i) => value * (1 - share) + upper.stress[i] * share) };
+  const between = (a, b) => (share === 0 ? a : a.map((value, i) => value * (1 - share) + b[i] * share));
+  const values = Object.entries(lower.values).map(([name, own]) => [name, between(own, upper.values[name])]);
+  return { moved, stress: between(lower.stress, upper.stress), values: Object.fromEntries(values) };
 }
 
 /** The values by which a body is coloured, one a vertex. */
-function valuesOf(quantity, shape, { moved, stress }, frame, data) {
+function valuesOf(quantity, shape, { moved, stress, values: fields }, frame, data) {
+  if (fields[quantity]) return fields[quantity];
   const values = new Float32Array(shape.count);
   if (quantity === "pressure") {
     frame.rows.forEach((row, i) => {
@@ -35,7 +37,7 @@ function valuesOf(quantity, shape, { moved, stress }, frame, data) {
     for (let i = 0; i < shape.count; i++) values[i] = Math.hypot(moved[3 * i], moved[3 * i + 1], moved[3 * i + 2]);
   } else if (quantity !== "none") {
     const components = stress.length / shape.count,
-      { value } = QUANTITIES[quantity];
+      value = FROM_STRESS[quantity];
     for (let i = 0; i < shape.count; i++) values[i] = value(stress, components * i, components);
   }
   return values;
@@ -56,7 +58,8 @@ class Panel {
   /** `frames` are some of those that will be shown: colours and magnification are the same for all. */
   constructor(host, data, shape, { label, frames, resultants }) {
     Object.assign(this, { host, data, shape, frames, resultants, ranges: {}, showsForces: false });
-    this.quantity = shape.flat ? "sigma-2" : "von-mises";
+    this.quantities = quantitiesOf(data);
+    this.quantity = shape.flat ? "sigma_2" : "von_mises";
     this.box = element("div", host, null, "view");
     this.view = new View(this.box, shape, {
       table: data.colours.field.map(channels),
@@ -111,14 +114,14 @@ class Panel {
         this.frames.map(frame => {
           const values = valuesOf(of, this.shape, mixed(this.data, this.shape, frame.states), frame, this.data);
           // The stress under a point load has no limit.
-          const skips = of === "sigma-2" || of === "von-mises";
+          const skips = this.data.fields.some(({ name }) => name === of);
           return rangeOf(skips ? values.filter((_, vertex) => !this.shape.singular[vertex]) : values);
         });
       const all = ranges(quantity),
         low = Math.min(...all.map(range => range[0])),
         high = Math.max(...all.map(range => range[1]));
       // A stress that is rounding beside the whole stress has one colour.
-      const least = quantity === "sigma-2" ? 1e-9 * Math.max(...ranges("von-mises").map(range => range[1])) : 0;
+      const least = quantity === "sigma_2" ? 1e-9 * Math.max(...ranges("von_mises").map(range => range[1])) : 0;
       this.ranges[quantity] = high - low < least ? [low - least, high + least] : [low, high];
     }
     return this.ranges[quantity];
@@ -145,7 +148,7 @@ class Panel {
 
   /** The colours, their limits, which a reader may change, and what lies outside. */
   showBar([least, most], limits) {
-    const { name, unit } = QUANTITIES[this.quantity],
+    const { name, unit } = this.quantities[this.quantity],
       slack = 0.02 * (limits[1] - limits[0]),
       again = () => this.show(this.frame);
     this.bar.hidden = this.quantity === "none";
@@ -154,7 +157,7 @@ class Panel {
       least < limits[0] - slack ? `; below the scale: down to ${shown(least, 4)}` : "",
       most > limits[1] + slack ? `; above the scale: up to ${shown(most, 4)}` : "",
     ];
-    element("div", this.bar, `${name}${this.data.units[unit] ? ` [${this.data.units[unit]}]` : ""}${outside.join("")}`);
+    element("div", this.bar, `${name}${unit && ` [${unit}]`}${outside.join("")}`);
     element("div", this.bar, null, "ramp").style.background =
       `linear-gradient(to right, ${this.data.colours.field.join(", ")})`;
     const ends = element("div", this.bar, null, "ends");
@@ -235,10 +238,9 @@ class Panel {
       `node ${shape.nodes[vertex]} at ${vectorShown(place, units.length, 4)}`,
       `u = ${vectorShown(moved, units.length, 4)}`,
     ];
-    for (const quantity of ["sigma-2", "von-mises"]) {
-      lines.push(
-        `${QUANTITIES[quantity].name.split(",")[0]} ${inUnit(QUANTITIES[quantity].value(field.stress, components * vertex, components), units.pressure, 4)}`,
-      );
+    for (const { name, words, symbol, unit } of data.fields) {
+      const value = field.values[name]?.[vertex] ?? FROM_STRESS[name](field.stress, components * vertex, components);
+      lines.push(`${symbol || words} ${inUnit(value, unit, 4)}`);
     }
     for (let row = 0; row < (data.rows?.count ?? 0); row++) {
       if (shape.nodes[data.rows.vertices[row]] !== shape.nodes[vertex]) continue;
@@ -304,7 +306,7 @@ class Panel {
       again = () => this.frame && this.show(this.frame);
     const colour = element("label", controls, "colours "),
       select = element("select", colour);
-    for (const [name, about] of Object.entries(QUANTITIES)) {
+    for (const [name, about] of Object.entries(this.quantities)) {
       if (name !== "pressure" || this.data.rows?.count)
         Object.assign(element("option", select, about.name), { value: name });
     }

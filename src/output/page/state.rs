@@ -1,15 +1,17 @@
 //! A displaced body: the data that change from one answer to the next.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::body::Shape;
 use super::packed::{Packed, Packer};
 use crate::error::Error;
-use crate::fem::recovery::Stress;
+use crate::output::view::field::{Between, FIELDS, Field, Source};
 use crate::output::view::magnified::carried;
 use crate::scene::Answer;
 
-/// Displacement and stress at the vertices. Both are linear in the answer, so that a page may mix two states.
+/// Displacement, stress and fields at the vertices. Displacement and stress are linear in the answer, so that a page may mix two states.
 #[derive(Debug, Serialize)]
 pub(super) struct State {
     /// Position on the path: gap, force or time.
@@ -17,6 +19,8 @@ pub(super) struct State {
     displacement: Packed,
     /// The components xx, yy, zz, xy, and in space yz and zx.
     stress: Packed,
+    /// The other fields that colour a body, by name, one value a vertex.
+    values: BTreeMap<&'static str, Packed>,
     /// The shift of each obstacle along its approach direction, in length.
     shifts: Vec<f64>,
     /// The mean displacement of the contact with each obstacle, with which it is shifted beside a magnified displacement, in length.
@@ -30,11 +34,18 @@ impl State {
         let model = answer.model();
         let dimension = model.mesh().dimension();
         let components = components(dimension);
-        let stress: Vec<f64> = answer.stress()?.nodes.iter().flat_map(|stress| tensor(stress, components)).collect();
+        let stress: Vec<f64> =
+            answer.stress()?.nodes.iter().flat_map(|of| of.components().into_iter().take(components)).collect();
+        let mut values = BTreeMap::new();
+        for field in mixed() {
+            let own = (field.values)(&Source { answer, velocity: None })?.at_nodes;
+            values.insert(field.name, packer.quantised(&shape.at_vertices(&own, 1), 1));
+        }
         Ok(State {
             at,
             displacement: packer.quantised(&shape.at_vertices(answer.displacement(), dimension), dimension),
             stress: packer.quantised(&shape.at_vertices(&stress, components), components),
+            values,
             shifts: (0..model.obstacles().len()).map(|obstacle| answer.shift(obstacle)).collect(),
             carried: (0..model.obstacles().len()).map(|obstacle| carried(answer, obstacle)).collect(),
         })
@@ -42,18 +53,18 @@ impl State {
 
     /// Bytes of a state before they are deflated.
     pub fn bytes(shape: &Shape, dimension: usize) -> usize {
-        2 * shape.nodes.len() * (dimension + components(dimension))
+        2 * shape.nodes.len() * (dimension + components(dimension) + mixed().count())
     }
+}
+
+/// The fields of which a page mixes the values.
+fn mixed() -> impl Iterator<Item = &'static Field> {
+    FIELDS.iter().filter(|field| field.colours.is_some_and(|colours| colours.between == Between::Mixed))
 }
 
 /// Components of the stress in a model of `dimension` coordinates.
 fn components(dimension: usize) -> usize {
     if dimension == 3 { 6 } else { 4 }
-}
-
-fn tensor(stress: &Stress, components: usize) -> impl Iterator<Item = f64> + use<> {
-    let Stress { sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx, .. } = *stress;
-    [sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx].into_iter().take(components)
 }
 
 /// Indices of the kept states among `count`, at most `most`: the first, the last, and others evenly between.

@@ -12,7 +12,7 @@ use crate::output::plots::colour_bar::{ColourRange, Outside};
 use crate::output::plots::legend::{self, Entry};
 use crate::output::plots::medium::Medium;
 use crate::output::plots::ticks::{Quantity, Scale, brief};
-use crate::output::view::limits::common_limits;
+use crate::output::view::limits::{ROUNDING, common_limits};
 use crate::output::view::magnified::obstacle_name;
 
 pub use super::obstacle::ObstacleLine;
@@ -27,8 +27,6 @@ const SMALLEST: [f64; 2] = [180.0, 130.0];
 const COLUMN: f64 = 440.0;
 /// Values outside the colours by less than this share of their range, which is less than a band, are not noted.
 const UNNOTED: f64 = 0.02;
-/// Values that differ by less than this share of the largest differ by rounding: a picture would show noise as data.
-pub(crate) const ROUNDING: f64 = 1e-9;
 
 /// A nodal field, to be painted on the body.
 #[derive(Clone, Debug)]

@@ -4,17 +4,16 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::arrows::{Arrow, ArrowKind};
-use super::body::{ContactPicture, FieldPanel, ROUNDING, common_window};
+use super::body::{ContactPicture, FieldPanel, common_window};
 use super::obstacle::ObstacleLine;
 use crate::error::Error;
 use crate::fem::mesh::Mesh;
-use crate::fem::recovery::Stress;
 #[cfg(feature = "cli")]
 use crate::output::draw::drawing::Drawing;
 use crate::output::file::write_picture;
 use crate::output::plots::medium::Medium;
-use crate::output::plots::ticks::Quantity;
-use crate::output::view::limits::{common_limits, limits_without, singular};
+use crate::output::view::field::{Painted, SIGMA_2, VON_MISES};
+use crate::output::view::limits::common_limits;
 use crate::output::view::magnified::{drawn_shift, magnification};
 use crate::scene::{Answer, Model};
 
@@ -29,24 +28,14 @@ pub(crate) struct PlaneScene {
     pub nodes: Vec<[f64; 2]>,
     elements: Vec<Vec<usize>>,
     displacement: Vec<f64>,
-    /// Second principal stress and von Mises stress; none before the model is solved.
-    fields: Vec<Field>,
-    /// The largest stress.
-    largest: f64,
+    /// None before the model is solved.
+    fields: Vec<Painted>,
     /// Magnification of the displacement that suits this answer.
     magnification: f64,
     obstacles: Vec<Outline>,
     candidates: Vec<usize>,
     closed: Vec<bool>,
     arrows: Vec<Arrow>,
-}
-
-/// A field at the nodes.
-struct Field {
-    quantity: Quantity,
-    values: Vec<f64>,
-    /// Its range without singular nodes.
-    limits: [f64; 2],
 }
 
 /// The surface of a rigid obstacle.
@@ -88,7 +77,6 @@ impl PlaneScene {
             displacement: vec![0.0; 2 * nodes.len()],
             nodes,
             fields: Vec::new(),
-            largest: 0.0,
             magnification: 1.0,
             obstacles: rigid.map(outline).collect(),
             closed: vec![false; candidates.len()],
@@ -98,25 +86,12 @@ impl PlaneScene {
     }
 
     pub(crate) fn new(answer: &Answer, title: String) -> Result<Self, Error> {
-        let (model, stress) = (answer.model(), &answer.stress()?.nodes);
-        let largest = stress.iter().fold(0.0, |largest: f64, of| largest.max(of.sigma_1.abs()).max(of.sigma_2.abs()));
-        // Values this small beside the largest stress are rounding.
-        let without_rounding = |value: f64| if value.abs() <= ROUNDING * largest { 0.0 } else { value };
-        let singular = singular(model);
-        let field = |name: &str, of: fn(&Stress) -> f64| {
-            let values: Vec<f64> = stress.iter().map(|stress| without_rounding(of(stress))).collect();
-            let (quantity, limits) =
-                (Quantity::new(name, model.units().pressure()), limits_without(&singular, &values));
-            Field { quantity, values, limits }
-        };
-        let fields = vec![
-            field("second principal stress σ₂", |stress| stress.sigma_2),
-            field("von Mises stress", |stress| stress.von_mises),
-        ];
+        let model = answer.model();
+        let fields = vec![Painted::of(answer, &SIGMA_2)?, Painted::of(answer, &VON_MISES)?];
         let (displacement, magnification, arrows) =
             (answer.displacement().to_vec(), magnification(answer), arrows(answer)?);
         let unsolved = PlaneScene::unsolved(model, |index| answer.shift(index));
-        let mut scene = PlaneScene { title, displacement, fields, largest, magnification, arrows, ..unsolved };
+        let mut scene = PlaneScene { title, displacement, fields, magnification, arrows, ..unsolved };
         let mut is_closed = vec![false; model.mesh().nodes().len()];
         answer.contact_set().iter().for_each(|row| is_closed[model.rows()[row].node] = true);
         scene.closed = scene.candidates.iter().map(|&node| is_closed[node]).collect();
@@ -177,7 +152,7 @@ impl PlaneScene {
 
     /// The fields, each with its own range as the ends of its colours.
     pub(crate) fn fields(&self) -> Vec<FieldPanel<'_>> {
-        let panels = self.fields.iter().map(|Field { quantity, values, limits }| FieldPanel {
+        let panels = self.fields.iter().map(|Painted { quantity, values, limits, .. }| FieldPanel {
             values,
             quantity: quantity.clone(),
             limits: *limits,
@@ -274,7 +249,7 @@ pub(crate) fn draw_series(
         [0, 1].map(|field| match common_limits(leading_scenes().map(|scene| &scene.fields[field].limits[..])) {
             // If this field is zero, the other fields give the scale of a small stress.
             [low, high] if low == 0.0 && high == 0.0 => {
-                let largest = leading_scenes().map(|scene| scene.largest).fold(0.0, f64::max);
+                let largest = leading_scenes().map(|scene| scene.fields[field].largest).fold(0.0, f64::max);
                 [-largest, largest]
             }
             limits => limits,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::body::{FieldPanel, ROUNDING, common_window};
+use super::body::{FieldPanel, common_window};
 use super::plan::Plan;
 use super::space::{Colouring, Face, Sheet, SpacePicture};
 use crate::error::Error;
@@ -15,8 +15,9 @@ use crate::output::draw::colour::Colour;
 use crate::output::draw::drawing::Drawing;
 use crate::output::file::write_picture;
 use crate::output::plots::medium::Medium;
-use crate::output::plots::ticks::{Quantity, brief};
-use crate::output::view::limits::{common_limits, limits_without, singular};
+use crate::output::plots::ticks::brief;
+use crate::output::view::field::{Painted, VON_MISES};
+use crate::output::view::limits::common_limits;
 use crate::output::view::magnified::{drawn_shift, magnification, obstacle_name};
 use crate::scene::{Answer, Model, straight_cells};
 
@@ -33,20 +34,13 @@ const TILT: f64 = 0.35;
 pub(crate) struct SpaceScene<'a> {
     title: String,
     answer: &'a Answer,
-    /// At the nodes.
-    von_mises: Vec<f64>,
-    /// The range of the von Mises stress without singular nodes.
-    limits: [f64; 2],
+    /// The field that is drawn.
+    field: Painted,
 }
 
 impl<'a> SpaceScene<'a> {
     pub(crate) fn new(answer: &'a Answer, title: String) -> Result<Self, Error> {
-        let stress = &answer.stress()?.nodes;
-        let largest = stress.iter().map(|of| of.von_mises).fold(0.0, f64::max);
-        let without_rounding = |value: f64| if value <= ROUNDING * largest { 0.0 } else { value };
-        let von_mises: Vec<f64> = stress.iter().map(|of| without_rounding(of.von_mises)).collect();
-        let limits = limits_without(&singular(answer.model()), &von_mises);
-        Ok(SpaceScene { title, answer, von_mises, limits })
+        Ok(SpaceScene { title, answer, field: Painted::of(answer, &VON_MISES)? })
     }
 
     /// The obstacle that the body presses most.
@@ -73,14 +67,17 @@ impl<'a> SpaceScene<'a> {
             true => "displaced body, to scale".to_string(),
             false => format!("displaced body, displacement × {times}"),
         };
-        let quantity = Quantity::new("von Mises stress", model.units().pressure());
         let picture = SpacePicture {
             title: &self.title,
             heading: &heading,
             length_unit: &model.units().length,
             nodes: &nodes,
             faces: &faces(model),
-            colouring: Colouring::Field(FieldPanel { values: &self.von_mises, quantity, limits: shared.von_mises }),
+            colouring: Colouring::Field(FieldPanel {
+                values: &self.field.values,
+                quantity: self.field.quantity.clone(),
+                limits: shared.limits,
+            }),
             sheets: &sheets,
             obstacle_name: obstacle_name(magnification),
             eye: eye(model, shared.obstacle),
@@ -95,8 +92,8 @@ impl<'a> SpaceScene<'a> {
 #[derive(Clone, Copy)]
 struct Shared {
     magnification: f64,
-    /// Ends of the colours of the von Mises stress.
-    von_mises: [f64; 2],
+    /// Ends of the colours.
+    limits: [f64; 2],
     /// The obstacle in plan view.
     obstacle: Option<usize>,
 }
@@ -113,10 +110,10 @@ pub(crate) fn draw_space_series(
     medium: Medium,
 ) -> Result<(), Error> {
     let leading_scenes = || series.iter().take(leading).map(|(_, scene)| scene);
-    let [lowest, largest] = common_limits(leading_scenes().map(|scene| &scene.limits[..]));
+    let [lowest, largest] = common_limits(leading_scenes().map(|scene| &scene.field.limits[..]));
     let shared = Shared {
         magnification: leading_scenes().map(|scene| magnification(scene.answer)).fold(f64::INFINITY, f64::min),
-        von_mises: [lowest.min(0.0), largest],
+        limits: [lowest.min(0.0), largest],
         obstacle: leading_scenes().next_back().and_then(SpaceScene::obstacle),
     };
     let mut plans: Vec<Option<Plan>> =

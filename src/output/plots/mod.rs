@@ -6,7 +6,5 @@ pub(crate) mod colour_bar;
 pub(crate) mod legend;
 pub(crate) mod medium;
 pub(crate) mod plot;
-#[cfg_attr(not(feature = "cli"), allow(dead_code))]
-pub(crate) mod pressure;
 pub(crate) mod style;
 pub(crate) mod ticks;

@@ -1,8 +1,10 @@
 //! What is shown of a model and of its answer, as plain data: each medium (page, picture, `.vtu`) renders it.
 
-// Only the output in the folders shows them.
+pub(crate) mod field;
 #[cfg_attr(not(feature = "cli"), allow(dead_code))]
 pub(crate) mod iterations;
 pub(crate) mod limits;
 pub(crate) mod magnified;
+#[cfg_attr(not(feature = "cli"), allow(dead_code))]
+pub(crate) mod pressure;
 pub(crate) mod words;

@@ -165,6 +165,15 @@ impl Units {
         if is_metric { "s" } else { "" }
     }
 
+    /// The unit of a velocity.
+    #[cfg(feature = "pictures")]
+    pub(crate) fn velocity(&self) -> String {
+        match self.time() {
+            "" => String::new(),
+            time => format!("{}/{time}", self.length),
+        }
+    }
+
     /// Pascals in a unit of force over a unit of length squared, if the length is in millimetres: a scene that names no units has metres,
     /// which may stand for any consistent system.
     pub(super) fn pascals(&self) -> Option<f64> {

@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
-use super::plot::{Plot, Series};
-use super::ticks::Quantity;
 use crate::fem::formulation::Formulation;
 use crate::fem::mesh::Boundary;
+use crate::output::plots::plot::{Plot, Series};
+use crate::output::plots::ticks::Quantity;
 use crate::scene::{Answer, ContactRow, Model, straight_cells};
 use crate::study::Summary;
 
