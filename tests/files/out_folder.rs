@@ -76,6 +76,7 @@ fn checked(folder: &Path) -> BTreeSet<String> {
                     "sigma_1",
                     "sigma_2",
                     "von_mises",
+                    "energy_density",
                     "stress",
                     "gap",
                     "remaining_gap",
@@ -151,6 +152,44 @@ fn solve_writes_answer_fields_pictures_and_report() {
     let along_y: f64 = numbers.map(|line| line.split_whitespace().nth(1).unwrap().parse::<f64>().unwrap()).sum();
     let resultant = report["resultants"][0]["force"][1].as_f64().unwrap();
     assert!(along_y < 0.0 && (along_y - resultant).abs() < 1e-12 * along_y.abs(), "{along_y} and {resultant}");
+}
+
+/// GOAL: the strain energy density of the `.vtu` file. CONDITIONS: a block of two layers in uniaxial strain under a pressure p.
+/// REFERENCE: w = p^2/(2 M) in each layer, M = E (1 - nu)/((1 + nu)(1 - 2 nu)), and their mean where they meet.
+#[test]
+fn the_strain_energy_density_is_that_of_the_material_of_each_element() {
+    let desk = Desk::new();
+    let scene = json!({
+        "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [2]}, "y": {"points": [0, 2], "divisions": [2]}}},
+        "material": {"young": 1000, "poisson": 0.3},
+        "materials": [{"box": {"min": [0, 1], "max": [1, 2]}, "material": {"young": 400, "poisson": 0.2}}],
+        "supports": [{"on": {"boundary": "bottom"}, "y": 0}, {"on": {"boundary": "left"}, "x": 0},
+                     {"on": {"boundary": "right"}, "x": 0}],
+        "loads": [{"pressure": {"boundary": "top", "value": 3}}],
+        "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"plane": {"point": [0, 3], "normal": [0, 1]}}}]
+    });
+    desk.write("layers.json", scene.to_string());
+    desk.run(&["solve", "layers.json", "--out", "o"]).ends_with(0);
+    let vtu = fs::read_to_string(desk.path("o/solution.vtu")).unwrap();
+    let document = Document::parse(&vtu).unwrap();
+    let values: Vec<Vec<f64>> = document
+        .descendants()
+        .filter(|node| node.attribute("Name") == Some("energy_density"))
+        .map(|node| node.text().unwrap().split_whitespace().map(|value| value.parse().unwrap()).collect())
+        .collect();
+    let density =
+        |young: f64, poisson: f64| 9.0 / 2.0 * (1.0 + poisson) * (1.0 - 2.0 * poisson) / (young * (1.0 - poisson));
+    let [below, above] = [density(1000.0, 0.3), density(400.0, 0.2)];
+    let expected = [vec![below, 0.5 * (below + above), above].repeat(3), [below, below, above, above].to_vec()];
+    let close = |found: &[f64], expected: &[f64]| {
+        let mut all = [found.to_vec(), expected.to_vec()];
+        all.iter_mut().for_each(|values| values.sort_by(f64::total_cmp));
+        assert_eq!(found.len(), expected.len());
+        // Rounding of a small solve.
+        all[0].iter().zip(&all[1]).for_each(|(found, expected)| assert!((found / expected - 1.0).abs() < 1e-10));
+    };
+    values.iter().zip(&expected).for_each(|(found, expected)| close(found, expected));
+    assert_eq!(values.len(), 2);
 }
 
 /// The columns of a table by name, as numbers; empty cells are NaN.

@@ -96,7 +96,7 @@ pub struct StressField {
 
 impl StressField {
     /// The stress of a node in a phase with an element at that node.
-    fn within(&self, node: usize, phase: u32) -> &Stress {
+    pub(crate) fn within(&self, node: usize, phase: u32) -> &Stress {
         match self.sides.is_empty() {
             true => &self.nodes[node],
             false => self.sides.get(&(node, phase)).unwrap_or(&self.nodes[node]),

@@ -30,6 +30,7 @@ pub(crate) struct Colours {
     pub words: &'static str,
     /// Its symbol; may be empty.
     pub symbol: &'static str,
+    #[cfg_attr(not(feature = "cli"), allow(dead_code))]
     pub between: Between,
 }
 
@@ -94,7 +95,7 @@ pub(crate) const VON_MISES: Field =
     );
 
 /// All fields, in the order of a `.vtu` file.
-pub(crate) const FIELDS: [Field; 16] = [
+pub(crate) const FIELDS: [Field; 17] = [
     Field::new("u", 3, length, |of| nodal(of.in_space(of.answer.displacement()))),
     Field::new("velocity", 3, Units::velocity, |of| nodal(of.velocity.map(|v| of.in_space(v)).unwrap_or_default())),
     Field::new("reaction", 3, force, |of| match of.velocity {
@@ -105,6 +106,11 @@ pub(crate) const FIELDS: [Field; 16] = [
     SIGMA_2,
     Field::new("sigma_3", 1, Units::pressure, |of| of.stress(|stress| [stress.sigma_3])),
     VON_MISES,
+    Field::new("energy_density", 1, Units::pressure, |of| of.energy_density()).coloured(
+        "strain energy density",
+        "w",
+        Between::Mixed,
+    ),
     Field::new("stress", 6, Units::pressure, |of| of.stress(Stress::components)),
     Field::new("gap", 1, length, |of| nodal(of.at_candidates().gap)),
     Field::new("remaining_gap", 1, length, |of| nodal(of.at_candidates().remaining)),
@@ -143,6 +149,23 @@ impl Source<'_> {
         let stress = self.answer.stress()?;
         let [at_nodes, in_elements] = [&stress.nodes, &stress.elements].map(|all| all.iter().flat_map(of).collect());
         Ok(Values { at_nodes, in_elements })
+    }
+
+    /// The elastic energy over the volume, of the stress at the centroid of each element and of that at each node; where materials meet,
+    /// the mean over the elements around the node, each with its own law and stress.
+    fn energy_density(&self) -> Result<Values, Error> {
+        let (stress, body) = (self.answer.stress()?, self.answer.model().body());
+        let mut sums = vec![(0.0, 0.0); stress.nodes.len()];
+        let mut in_elements = Vec::with_capacity(stress.elements.len());
+        for (element, own) in body.elements().zip(&stress.elements) {
+            let density = |stress: &Stress| 0.5 * element.phase.law().complementary_energy(&stress.components());
+            in_elements.push(density(own));
+            for &node in element.nodes {
+                sums[node].0 += density(stress.within(node, element.phase_number));
+                sums[node].1 += 1.0;
+            }
+        }
+        Ok(Values { at_nodes: sums.into_iter().map(|(sum, count)| sum / count).collect(), in_elements })
     }
 
     fn bodies(&self) -> Result<Values, Error> {
