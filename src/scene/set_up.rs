@@ -1,12 +1,14 @@
-//! Supports, springs and rigid faces around the body, node by node, for pictures.
+//! Supports, springs, rigid faces and loads of the body, node by node, for pictures.
 
 use super::model::Model;
 
 /// The kind of a hold of a node.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Hold {
-    /// A support, the axis of revolution or a plane of symmetry; it prescribes the displacement along the direction.
-    Support,
+    /// Supports, the axis of revolution and planes of symmetry that prescribe the whole displacement.
+    Fixed,
+    /// The same if they prescribe the displacement along some directions.
+    Guided,
     /// A spring to the ground.
     Spring,
     /// A rigid face; the node moves with it.
@@ -33,7 +35,8 @@ impl Model {
         let mut hold =
             |node: usize, hold: Hold, directions: Vec<[f64; 3]>| nodes.push(HeldNode { node, hold, directions });
         for (node, directions) in parts.held.directions() {
-            hold(node, Hold::Support, directions);
+            let is_fixed = directions.len() >= self.mesh().dimension();
+            hold(node, if is_fixed { Hold::Fixed } else { Hold::Guided }, directions);
         }
         for springs in &parts.springs {
             for (node, direction) in springs.held() {
@@ -44,5 +47,11 @@ impl Model {
             face.nodes().iter().for_each(|&node| hold(node, Hold::RigidFace, Vec::new()));
         }
         nodes
+    }
+
+    /// The loaded nodes, each with its force: a component for each coordinate.
+    pub(crate) fn loaded_nodes(&self) -> impl Iterator<Item = (usize, &[f64])> {
+        let nodal = self.nodal_load().chunks_exact(self.mesh().dimension()).enumerate();
+        nodal.filter(|(_, force)| force.iter().any(|&part| part != 0.0))
     }
 }

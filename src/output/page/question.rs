@@ -4,13 +4,8 @@ use serde::Serialize;
 
 use super::body::Shape;
 use super::packed::{Packed, Packer};
-use crate::fem::geometry::length;
-use crate::output::picture::plane_scene::OUTLINE_SEGMENTS;
-use crate::output::picture::space_scene::eye;
+use crate::output::view::obstacle::{eye, outline, ways_to_obstacle};
 use crate::scene::{HeldNode, Hold, Model, straight_cells};
-
-/// Half of the height of a wall before a bar, over its length.
-const WALL: f64 = 0.12;
 
 #[derive(Debug, Serialize)]
 pub(super) struct Question {
@@ -124,8 +119,8 @@ impl Holds {
         for HeldNode { node, hold, directions } in model.held_nodes() {
             let Some(vertex) = shape.vertex_of[node] else { continue };
             match hold {
-                Hold::Support if directions.len() >= dimension => holds.fixed.push(vertex),
-                Hold::Support => holds.guided.add(vertex, &directions),
+                Hold::Fixed => holds.fixed.push(vertex),
+                Hold::Guided => holds.guided.add(vertex, &directions),
                 Hold::Spring => holds.springs.add(vertex, &directions),
                 Hold::RigidFace => holds.rigid.push(vertex),
             }
@@ -152,9 +147,8 @@ impl Along {
 
 fn loads(model: &Model, shape: &Shape, packer: &mut Packer) -> Loads {
     let dimension = model.mesh().dimension();
-    let nodal = model.nodal_load().chunks_exact(dimension).enumerate();
     let (mut vertices, mut forces, mut inside) = (Vec::new(), Vec::new(), 0);
-    for (node, force) in nodal.filter(|(_, force)| force.iter().any(|&part| part != 0.0)) {
+    for (node, force) in model.loaded_nodes() {
         match shape.vertex_of.get(node).copied().flatten() {
             Some(vertex) => {
                 vertices.push(vertex);
@@ -169,9 +163,7 @@ fn loads(model: &Model, shape: &Shape, packer: &mut Packer) -> Loads {
 fn obstacle(model: &Model, index: usize, packer: &mut Packer) -> ObstacleShown {
     let obstacle = &model.obstacles()[index];
     let shift = obstacle.shift(model.gap());
-    let line =
-        if model.mesh().dimension() == 1 { wall(model, index) } else { obstacle.outline(shift, OUTLINE_SEGMENTS) };
-    let points: Vec<f64> = line.into_iter().flatten().collect();
+    let points = outline(model, index, shift).concat();
     ObstacleShown {
         boundary: obstacle.boundary().to_string(),
         approach: obstacle.approach(),
@@ -183,17 +175,6 @@ fn obstacle(model: &Model, index: usize, packer: &mut Packer) -> ObstacleShown {
     }
 }
 
-/// The wall that a bar meets: a line across the bar at the point at which the row of its end meets the obstacle. Empty for another
-/// body.
-fn wall(model: &Model, index: usize) -> Vec<[f64; 2]> {
-    let rigid = model.obstacles()[index].rigid();
-    let row = model.rows().iter().find(|row| row.obstacle == index).filter(|_| rigid.is_some());
-    row.map_or_else(Vec::new, |row| {
-        let (x, half) = (model.mesh().nodes()[row.node][0] + row.gap * row.normal[0], WALL * model.mesh().size());
-        vec![[x, -half], [x, half]]
-    })
-}
-
 /// The part of an obstacle in space that faces the candidates: each facet is moved to the points at which the rows of its nodes meet
 /// the obstacle.
 fn patch(model: &Model, index: usize, packer: &mut Packer) -> Option<Patch> {
@@ -203,10 +184,9 @@ fn patch(model: &Model, index: usize, packer: &mut Packer) -> Option<Patch> {
     let boundary = model.mesh().boundary(model.obstacles()[index].boundary())?;
     let mut place_of = vec![None; model.mesh().nodes().len()];
     let mut places = Vec::new();
-    for row in model.rows().iter().filter(|row| row.obstacle == index && length(row.normal) > 0.0) {
-        place_of[row.node] = Some(places.len() / 3);
-        let at = model.mesh().nodes()[row.node];
-        places.extend([0, 1, 2].map(|axis| at[axis] + row.gap * row.normal[axis]));
+    for (node, way) in ways_to_obstacle(model, index, 0.0) {
+        place_of[node] = Some(places.len() / 3);
+        places.extend([0, 1, 2].map(|axis| model.mesh().nodes()[node][axis] + way[axis]));
     }
     let mut cells = Vec::new();
     for cell in boundary.facets().flat_map(|facet| straight_cells(boundary.kind, facet)) {

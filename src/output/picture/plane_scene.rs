@@ -15,10 +15,8 @@ use crate::output::plots::medium::Medium;
 use crate::output::view::field::{Painted, SIGMA_2, VON_MISES};
 use crate::output::view::limits::common_limits;
 use crate::output::view::magnified::{drawn_shift, magnification};
+use crate::output::view::obstacle::outline;
 use crate::scene::{Answer, Model};
-
-/// Pieces of the line of an obstacle.
-pub(crate) const OUTLINE_SEGMENTS: usize = 400;
 
 /// The content of one picture.
 pub(crate) struct PlaneScene {
@@ -64,9 +62,9 @@ impl PlaneScene {
         candidates.dedup();
         let nodes: Vec<[f64; 2]> = model.mesh().nodes().iter().map(|&[x, y, _]| [x, y]).collect();
         let rigid = (0..model.obstacles().len()).filter(|&index| model.obstacles()[index].rigid().is_some());
-        let outline = |index: usize| {
+        let placed = |index: usize| {
             let [x, y, _] = model.obstacles()[index].approach();
-            let line = model.obstacles()[index].outline(shift(index), OUTLINE_SEGMENTS);
+            let line = outline(model, index, shift(index));
             Outline { obstacle: index, line, inside: [x, y], carried: [0.0; 2] }
         };
         PlaneScene {
@@ -78,7 +76,7 @@ impl PlaneScene {
             nodes,
             fields: Vec::new(),
             magnification: 1.0,
-            obstacles: rigid.map(outline).collect(),
+            obstacles: rigid.map(placed).collect(),
             closed: vec![false; candidates.len()],
             candidates,
             arrows: Vec::new(),

@@ -57,7 +57,7 @@ pub(crate) fn set_up_picture(model: &Model) -> Result<Drawing, Error> {
     let (frame, title) = framed(obstacle::window(scene.nodes.iter().copied(), &lines), &scene, &title);
     let body = Outwards::of(model);
     let arrows = arrows(model, &body, &frame);
-    let symbols = symbols(model.held_nodes(), &body, &frame);
+    let symbols = symbols(model, &body, &frame);
     let entries = entries(model, &symbols, !arrows.is_empty(), (&lines, &frame));
 
     let width = frame.corner[0] + frame.size[0] + MARGIN + frame.x.overhang();
@@ -132,12 +132,11 @@ fn framed(window: [[f64; 2]; 2], scene: &PlaneScene, title: &str) -> (Frame, Vec
 /// A pulling force begins at its point of application; a pressing force ends there.
 fn arrows(model: &Model, body: &Outwards, frame: &Frame) -> Vec<[[f64; 2]; 2]> {
     let mut squares = std::collections::BTreeMap::<[i64; 2], Gathered>::new();
-    for ((node, out), load) in body.nodes.iter().zip(&body.out).zip(model.nodal_load().chunks_exact(2)) {
-        let size = load[0].hypot(load[1]);
-        let place = frame.place(*node);
+    for (node, load) in model.loaded_nodes() {
+        let (size, place) = (load[0].hypot(load[1]), frame.place(body.nodes[node]));
         if size > 0.0 && place.iter().all(|part| part.is_finite()) {
             let square = place.map(|part| (part / APART).floor() as i64);
-            squares.entry(square).or_default().add(place, [load[0], load[1]], *out);
+            squares.entry(square).or_default().add(place, [load[0], load[1]], body.out[node]);
         }
     }
     let gathered = merged(squares.into_values());
@@ -223,53 +222,36 @@ fn draw_arrow(drawing: &mut Drawing, from: [f64; 2], to: [f64; 2]) {
     drawing.polygon(&corners, &Paint::fill(LOAD));
 }
 
-/// The kinds of symbols of held nodes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    /// Held in both directions.
-    Fixed,
-    /// Held along one direction.
-    Roller,
-    Spring,
-    RigidFace,
-}
-
 /// The symbol of a held node, in pixels.
 #[derive(Clone, Copy, Debug)]
 struct Symbol {
-    kind: Kind,
+    hold: Hold,
     place: [f64; 2],
     /// Unit vector from the node to its support.
     towards: [f64; 2],
 }
 
 /// One symbol for each held node, unless another symbol is too close.
-fn symbols(held: Vec<HeldNode>, body: &Outwards, frame: &Frame) -> Vec<Symbol> {
+fn symbols(model: &Model, body: &Outwards, frame: &Frame) -> Vec<Symbol> {
     let mut symbols: Vec<Symbol> = Vec::new();
-    for HeldNode { node, hold, directions } in held {
+    for HeldNode { node, hold, directions } in model.held_nodes() {
         let direction = directions.first().copied().unwrap_or_default();
-        let kind = match hold {
-            Hold::Support if directions.len() > 1 => Kind::Fixed,
-            Hold::Support => Kind::Roller,
-            Hold::Spring => Kind::Spring,
-            Hold::RigidFace => Kind::RigidFace,
-        };
         let place = frame.place(body.nodes[node]);
         let is_near =
-            |other: &Symbol| other.kind == kind && (other.place[0] - place[0]).hypot(other.place[1] - place[1]) < APART;
+            |other: &Symbol| other.hold == hold && (other.place[0] - place[0]).hypot(other.place[1] - place[1]) < APART;
         if place.iter().any(|part| !part.is_finite()) || symbols.iter().any(is_near) {
             continue;
         }
-        symbols.push(Symbol { kind, place, towards: towards(body.out[node], direction, kind) });
+        symbols.push(Symbol { hold, place, towards: towards(body.out[node], direction, hold) });
     }
     symbols
 }
 
 /// Direction from a node to its support, in pixels: along the held direction, or, if both are held, out of the body.
-fn towards(out: [f64; 2], direction: [f64; 3], kind: Kind) -> [f64; 2] {
-    let along = match kind {
-        Kind::Roller | Kind::Spring => [direction[0], direction[1]],
-        Kind::Fixed | Kind::RigidFace => out,
+fn towards(out: [f64; 2], direction: [f64; 3], hold: Hold) -> [f64; 2] {
+    let along = match hold {
+        Hold::Guided | Hold::Spring => [direction[0], direction[1]],
+        Hold::Fixed | Hold::RigidFace => out,
     };
     let length = along[0].hypot(along[1]);
     if length == 0.0 {
@@ -287,13 +269,13 @@ impl Symbol {
         let at = |out: f64, aside: f64| [x + out * along - aside * down, y + out * down + aside * along];
         let half = 0.5 * SYMBOL;
         let triangle = [at(0.0, 0.0), at(SYMBOL, half), at(SYMBOL, -half)];
-        match self.kind {
-            Kind::Fixed => drawing.polygon(&triangle, &Paint::fill(SUPPORT).with_stroke(WHITE, 0.6)),
-            Kind::Roller => {
+        match self.hold {
+            Hold::Fixed => drawing.polygon(&triangle, &Paint::fill(SUPPORT).with_stroke(WHITE, 0.6)),
+            Hold::Guided => {
                 drawing.polygon(&triangle, &Paint::fill(WHITE).with_stroke(SUPPORT, 1.4));
                 drawing.line(at(SYMBOL + 3.0, half), at(SYMBOL + 3.0, -half), &Paint::stroke(SUPPORT, 1.4));
             }
-            Kind::Spring => {
+            Hold::Spring => {
                 let turns: Vec<[f64; 2]> = (0..=6)
                     .map(|turn| {
                         let aside = if turn % 6 == 0 { 0.0 } else { half * if turn % 2 == 0 { 1.0 } else { -1.0 } };
@@ -302,7 +284,7 @@ impl Symbol {
                     .collect();
                 drawing.polyline(&turns, &Paint::stroke(SPRING, 1.4));
             }
-            Kind::RigidFace => {
+            Hold::RigidFace => {
                 drawing.rect([x - 0.4 * SYMBOL, y - 0.4 * SYMBOL], [0.8 * SYMBOL; 2], &Paint::fill(FACE))
             }
         }
@@ -317,15 +299,15 @@ fn entries<'a>(
     (lines, frame): (&[ObstacleLine], &Frame),
 ) -> Vec<Entry<'a>> {
     let mut entries: Vec<Entry> = Vec::new();
-    for (kind, name) in [
-        (Kind::Fixed, "held in both directions"),
-        (Kind::Roller, "held along one direction"),
-        (Kind::Spring, "spring"),
-        (Kind::RigidFace, "rigid face"),
+    for (hold, name) in [
+        (Hold::Fixed, "held in both directions"),
+        (Hold::Guided, "held along one direction"),
+        (Hold::Spring, "spring"),
+        (Hold::RigidFace, "rigid face"),
     ] {
-        if symbols.iter().any(|symbol| symbol.kind == kind) {
+        if symbols.iter().any(|symbol| symbol.hold == hold) {
             let key = Box::new(move |drawing: &mut Drawing, [x, y]: [f64; 2]| {
-                Symbol { kind, place: [x, y - 0.5 * SYMBOL], towards: [0.0, 1.0] }.draw(drawing);
+                Symbol { hold, place: [x, y - 0.5 * SYMBOL], towards: [0.0, 1.0] }.draw(drawing);
             });
             entries.push(Entry { name: name.to_owned(), key, key_width: 1.4 * SYMBOL });
         }

@@ -8,8 +8,7 @@ use super::space::{Colouring, Face, Sheet, SpacePicture};
 use crate::error::Error;
 use crate::fem::body::Region;
 use crate::fem::element::FacetKind;
-use crate::fem::geometry::{dot, length, minus};
-use crate::fem::mesh::extent;
+use crate::fem::geometry::length;
 #[cfg(feature = "cli")]
 use crate::output::draw::colour::Colour;
 use crate::output::draw::drawing::Drawing;
@@ -19,16 +18,13 @@ use crate::output::plots::ticks::brief;
 use crate::output::view::field::{Painted, VON_MISES};
 use crate::output::view::limits::common_limits;
 use crate::output::view::magnified::{drawn_shift, magnification, obstacle_name};
-use crate::scene::{Answer, Model, straight_cells};
+use crate::output::view::obstacle::{eye, ways_to_obstacle};
+use crate::scene::{Answer, Model, PlacedObstacle, straight_cells};
 
 /// An obstacle is drawn if it is at most this share of the size of the body away.
 const NEAR: f64 = 0.25;
 /// The plan view extends beyond the contact by this share of its size.
 const BEYOND: f64 = 0.35;
-/// The direction to the eye: from the front, above and a little from the right; contact faces turn it to their side.
-const EYE: [f64; 3] = [0.5, -0.8, 0.55];
-/// Slope of the line of sight against the contact of two bodies.
-const TILT: f64 = 0.35;
 
 /// The content of the picture of an answer in space.
 pub(crate) struct SpaceScene<'a> {
@@ -54,14 +50,9 @@ impl<'a> SpaceScene<'a> {
         let moved = model.mesh().nodes().iter().zip(self.answer.displacement().chunks_exact(3));
         let nodes: Vec<[f64; 3]> =
             moved.map(|(at, u)| [0, 1, 2].map(|axis| at[axis] + magnification * u[axis])).collect();
-        let near = NEAR * model.mesh().size();
-        let sheets: Vec<Sheet> = (0..model.obstacles().len())
-            .filter(|&index| model.obstacles()[index].rigid().is_some())
-            .map(|index| {
-                let shift = drawn_shift(self.answer, index, magnification);
-                sheet(model, index, &ways_to_obstacle(self.answer, index), (shift, near))
-            })
-            .collect();
+        let answer = self.answer;
+        let sheets =
+            sheets(model, |index| (answer.travel(index).unwrap_or(0.0), drawn_shift(answer, index, magnification)));
         let times = brief(magnification);
         let heading = match magnification == 1.0 {
             true => "displaced body, to scale".to_string(),
@@ -137,43 +128,15 @@ fn faces(model: &Model) -> Vec<Face> {
     model.body().regions().iter().flat_map(of_region).collect()
 }
 
-/// Direction from the body to the eye: on the side of the obstacle in view. Another body would hide the contact from there: the eye is
-/// then beside the contact, a little on the side of the smaller of the two bodies.
-pub(crate) fn eye(model: &Model, obstacle: Option<usize>) -> [f64; 3] {
-    let Some(placed) = obstacle.and_then(|obstacle| model.obstacles().get(obstacle)) else { return EYE };
-    let approach = placed.approach();
-    if placed.rigid().is_some() {
-        let side = |axis: usize| if approach[axis].abs() > 0.3 { approach[axis] } else { EYE[axis] };
-        return [0, 1, 2].map(|axis| EYE[axis].abs().copysign(side(axis)));
-    }
-    let along = dot(EYE, approach);
-    let aside = [0, 1, 2].map(|axis| EYE[axis] - along * approach[axis]);
-    let tilt = if stands_on(model, obstacle) { -TILT } else { TILT };
-    [0, 1, 2].map(|axis| aside[axis] / length(aside) + tilt * approach[axis])
-}
-
-/// Returns `true` if the body of the candidates of a pair is the smaller one.
-fn stands_on(model: &Model, obstacle: Option<usize>) -> bool {
-    let size = |node: usize| {
-        let region = model.body().regions().iter().find(|region| region.nodes().contains(&node));
-        let (low, high) = extent(region.map_or(&[][..], |region| &model.mesh().nodes()[region.nodes()]));
-        length(minus(high, low))
-    };
-    let row = model.rows().iter().find(|row| Some(row.obstacle) == obstacle);
-    let sizes = row.map(|row| row.ends().map(|(node, _)| size(node)).collect::<Vec<f64>>());
-    sizes.is_some_and(|sizes| sizes.len() > 1 && sizes[0] < sizes[1])
-}
-
 /// The picture of a body in space before it is solved: the supported, loaded and candidate faces, and the obstacles at their gap.
 #[cfg(feature = "cli")]
 pub(crate) fn space_set_up(model: &Model, title: &str) -> Drawing {
     let nodes = model.mesh().nodes();
     let faces = faces(model);
-    let mut held = vec![false; nodes.len()];
-    model.held_nodes().iter().for_each(|node| held[node.node] = true);
-    let mut candidate = vec![false; nodes.len()];
+    let [mut held, mut candidate, mut loaded] = [(); 3].map(|()| vec![false; nodes.len()]);
+    model.held_nodes().iter().for_each(|at| held[at.node] = true);
     model.rows().iter().for_each(|row| candidate[row.node] = true);
-    let loaded: Vec<bool> = model.nodal_load().chunks_exact(3).map(|load| load.iter().any(|&f| f != 0.0)).collect();
+    model.loaded_nodes().for_each(|(node, _)| loaded[node] = true);
     // A volume force loads every node; loaded faces are marked only if some nodes have no load.
     let is_on_faces = loaded.iter().any(|&is_loaded| !is_loaded);
     let all = |flags: &[bool], face: &Face| face.outline.iter().all(|&node| flags[node]);
@@ -187,14 +150,7 @@ pub(crate) fn space_set_up(model: &Model, title: &str) -> Drawing {
     let colours: Vec<Colour> = kinds.iter().map(|&kind| KINDS[kind].1).collect();
     let names: Vec<(&str, Colour)> =
         (0..KINDS.len()).filter(|kind| kinds.contains(kind)).map(|kind| KINDS[kind]).collect();
-    let sheets: Vec<Sheet> = (0..model.obstacles().len())
-        .filter(|&index| model.obstacles()[index].rigid().is_some())
-        .map(|index| {
-            let rows = model.rows().iter().filter(|row| row.obstacle == index);
-            let ways: Vec<_> = rows.map(|row| (row.node, row.normal.map(|part| row.gap * part))).collect();
-            sheet(model, index, &ways, ([0.0; 3], NEAR * model.mesh().size()))
-        })
-        .collect();
+    let sheets = sheets(model, |_| (0.0, [0.0; 3]));
     let picture = SpacePicture {
         title,
         heading: "body before it is solved",
@@ -240,37 +196,24 @@ fn outline(kind: FacetKind, facet: &[usize]) -> Vec<usize> {
     sides.flat_map(|(place, ends)| [facet[ends[0]], facet[reference.corners + place]]).collect()
 }
 
-/// The nodes of the rows of an obstacle, each with the vector from its undeformed position to the present position of the obstacle.
-fn ways_to_obstacle(answer: &Answer, obstacle: usize) -> Vec<(usize, [f64; 3])> {
-    let model = answer.model();
-    let approach = model.obstacles()[obstacle].approach();
-    let travel = answer.travel(obstacle).unwrap_or(0.0);
-    let rows = model.rows().iter().filter(|row| row.obstacle == obstacle);
-    rows.map(|row| {
-        let leans: f64 = row.normal.iter().zip(approach).map(|(n, a)| n * a).sum();
-        let gap = row.gap - travel * leans;
-        (row.node, row.normal.map(|part| gap * part))
-    })
-    .collect()
-}
-
-/// The obstacle over the facets with a row at every node, as far as it is near: each node is moved by its vector to the obstacle, then
-/// all are shifted alike.
-fn sheet(model: &Model, obstacle: usize, ways_of: &[(usize, [f64; 3])], (shift, near): ([f64; 3], f64)) -> Sheet {
-    let placed = &model.obstacles()[obstacle];
-    let mut ways: Vec<Option<[f64; 3]>> = vec![None; model.mesh().nodes().len()];
-    for &(node, way) in ways_of {
-        let far = way.iter().map(|part| part * part).sum::<f64>().sqrt() > near;
-        ways[node] = (!far).then_some(way);
-    }
-    let at = |node: usize| {
-        let (place, way) = (model.mesh().nodes()[node], ways[node]?);
-        Some([0, 1, 2].map(|axis| place[axis] + way[axis] + shift[axis]))
+/// The rigid obstacles over their facets with a row at every node, as far as they are near. `moved` gives the travel of an obstacle
+/// against its approach direction, and the shift with which it is drawn.
+fn sheets(model: &Model, moved: impl Fn(usize) -> (f64, [f64; 3])) -> Vec<Sheet> {
+    let (nodes, near) = (model.mesh().nodes(), NEAR * model.mesh().size());
+    let sheet = |(index, placed): (usize, &PlacedObstacle)| {
+        let (travel, shift) = moved(index);
+        let mut places = vec![None; nodes.len()];
+        for (node, way) in ways_to_obstacle(model, index, travel) {
+            let place = [0, 1, 2].map(|axis| nodes[node][axis] + way[axis] + shift[axis]);
+            places[node] = (length(way) <= near).then_some(place);
+        }
+        let boundary = model.mesh().boundary(placed.boundary());
+        let facets =
+            boundary.into_iter().flat_map(|boundary| boundary.facets().map(|facet| outline(boundary.kind, facet)));
+        let polygon = |facet: Vec<usize>| facet.into_iter().map(|node| places[node]).collect::<Option<Vec<_>>>();
+        Sheet { polygons: facets.filter_map(polygon).collect(), approach: placed.approach() }
     };
-    let boundary = model.mesh().boundary(placed.boundary());
-    let facets = boundary.into_iter().flat_map(|boundary| boundary.facets().map(|facet| outline(boundary.kind, facet)));
-    let polygons = facets.filter_map(|facet| facet.into_iter().map(at).collect::<Option<Vec<_>>>()).collect();
-    Sheet { polygons, approach: placed.approach() }
+    model.obstacles().iter().enumerate().filter(|(_, placed)| placed.rigid().is_some()).map(sheet).collect()
 }
 
 /// The contact with an obstacle, seen along its approach direction.

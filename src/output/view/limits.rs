@@ -12,8 +12,8 @@ pub(crate) const ROUNDING: f64 = 1e-9;
 pub(crate) fn singular(model: &Model) -> Vec<bool> {
     let (mesh, dimension) = (model.mesh(), model.mesh().dimension());
     let count = mesh.nodes().len();
-    let loaded = model.nodal_load().chunks_exact(dimension).map(|load| load.iter().any(|&part| part != 0.0)).collect();
-    let mut held = vec![false; count];
+    let [mut loaded, mut held] = [(); 2].map(|()| vec![false; count]);
+    model.loaded_nodes().for_each(|(node, _)| loaded[node] = true);
     let single = model.held_nodes().into_iter().filter(|node| !matches!(node.hold, Hold::RigidFace));
     single.for_each(|node| held[node.node] = true);
     let mut marked = vec![false; count];

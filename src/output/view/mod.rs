@@ -5,6 +5,7 @@ pub(crate) mod field;
 pub(crate) mod iterations;
 pub(crate) mod limits;
 pub(crate) mod magnified;
+pub(crate) mod obstacle;
 #[cfg_attr(not(feature = "cli"), allow(dead_code))]
 pub(crate) mod pressure;
 pub(crate) mod words;
