@@ -12,10 +12,7 @@ class Painter {
   }
 
   set(name, part) {
-    this.parts[name] = {
-      ...this.parts[name],
-      ...Object.fromEntries(Object.entries(part).filter(([, value]) => value !== undefined)),
-    };
+    this.parts[name] = { ...this.parts[name], hidden: false, ...part };
   }
 
   draw(camera, look) {
