@@ -23,60 +23,42 @@ function withArrays(value, block) {
   return Object.fromEntries(Object.entries(value).map(([key, entry]) => [key, withArrays(entry, block)]));
 }
 
-/** An array as it was packed: component after component, in byte planes. */
-function unpacked({ form, at, count, stride, ranges }, block) {
-  const items = count / stride;
-  switch (form) {
-    case "bytes":
-      return block.subarray(at, at + count);
-    case "quantised":
-      return quantised(block, at, items, ranges);
-    case "whole":
-      return whole(block, at, items, stride);
-    default:
-      return exact(block, at, items, stride);
-  }
-}
-
 const NO_VALUE = 65535,
   MOST = 65534;
 
-function quantised(block, at, items, ranges) {
-  const stride = ranges.length,
-    values = new Float32Array(items * stride);
-  ranges.forEach(([low, high], component) => {
-    const step = (high - low) / MOST,
-      first = at + 2 * component * items;
-    for (let i = 0, number = 0; i < items; i++) {
-      number = (number + block[first + i] + (block[first + items + i] << 8)) & 0xffff;
-      values[i * stride + component] = number === NO_VALUE ? NaN : low + number * step;
-    }
-  });
-  return values;
+/** The forms of numbers: their list, the bytes of each, and its value; whole ones are packed as differences. */
+const FORMS = {
+  quantised: { List: Float32Array, width: 2, read: (bytes, before) => (before + bytes.getUint16(0, true)) & 0xffff },
+  whole: { List: Uint32Array, width: 4, read: (bytes, before) => (before + bytes.getUint32(0, true)) >>> 0 },
+  exact: { List: Float64Array, width: 8, read: bytes => bytes.getFloat64(0, true) },
+};
+
+/** An array as it was packed. */
+function unpacked(packed, block) {
+  const { form, at, count } = packed;
+  return form === "bytes" ? block.subarray(at, at + count) : numbersOf(packed, block);
 }
 
-function whole(block, at, items, stride) {
-  const values = new Uint32Array(items * stride);
+/** Numbers that stand component after component, in byte planes. */
+function numbersOf({ form, at, count, stride, ranges }, block) {
+  const { List, width, read } = FORMS[form],
+    values = new List(count),
+    items = count / stride,
+    bytes = new DataView(new ArrayBuffer(width));
   for (let component = 0; component < stride; component++) {
-    const first = at + 4 * component * items;
+    const first = at + width * component * items,
+      valueOf = ranges ? inRange(ranges[component]) : number => number;
     for (let i = 0, number = 0; i < items; i++) {
-      for (let plane = 0; plane < 4; plane++)
-        number = (number + (block[first + plane * items + i] << (8 * plane))) >>> 0;
-      values[i * stride + component] = number;
+      for (let plane = 0; plane < width; plane++) bytes.setUint8(plane, block[first + plane * items + i]);
+      number = read(bytes, number);
+      values[i * stride + component] = valueOf(number);
     }
   }
   return values;
 }
 
-function exact(block, at, items, stride) {
-  const values = new Float64Array(items * stride),
-    one = new DataView(new ArrayBuffer(8));
-  for (let component = 0; component < stride; component++) {
-    const first = at + 8 * component * items;
-    for (let i = 0; i < items; i++) {
-      for (let plane = 0; plane < 8; plane++) one.setUint8(plane, block[first + plane * items + i]);
-      values[i * stride + component] = one.getFloat64(0, true);
-    }
-  }
-  return values;
+/** The value of a quantised number between the lowest and the highest of its component. */
+function inRange([low, high]) {
+  const step = (high - low) / MOST;
+  return number => (number === NO_VALUE ? NaN : low + number * step);
 }
