@@ -8,75 +8,64 @@ function evenly(list, most) {
   return Array.from({ length: most }, (_, i) => list[Math.floor((i * (list.length - 1)) / (most - 1))]);
 }
 
-/** The closed rows of an answer: a flag for each row. */
-function flags(rows, count) {
-  const closed = new Uint8Array(count);
-  rows.forEach(row => {
-    closed[row] = 1;
-  });
-  return closed;
+/** The value at a share of the way from one to another. */
+function between(from, to, share) {
+  return from * (1 - share) + to * share;
+}
+
+/** The share of the way from one to another at which a value lies. */
+function shareOf(value, from, to) {
+  return from === to ? 0 : clamped((value - from) / (to - from), 0, 1);
 }
 
 /** The two states around a position, and the share of the upper one. */
 function around(states, at) {
-  const sign = states.at(-1).at >= states[0].at ? 1 : -1;
-  let upper = states.findIndex(state => sign * (state.at - at) >= 0);
-  if (upper < 0) upper = states.length - 1;
-  const lower = Math.max(0, upper - 1),
-    wide = states[upper].at - states[lower].at;
-  return [states[lower], states[upper], wide === 0 ? 0 : Math.min(Math.max((at - states[lower].at) / wide, 0), 1)];
+  const sign = states.at(-1).at >= states[0].at ? 1 : -1,
+    found = states.findIndex(state => sign * (state.at - at) >= 0);
+  const upper = found < 0 ? states.length - 1 : found,
+    ends = [states[Math.max(0, upper - 1)], states[upper]];
+  return [...ends, shareOf(at, ends[0].at, ends[1].at)];
+}
+
+/** One state as it is, without another. */
+function alone(state) {
+  return [state, state, 0];
 }
 
 /** The one answer of a solve. */
-function answerFrame(data) {
-  const { contact, states } = data,
-    rows = Array.from(contact.closed.keys());
-  return {
-    states: [states[0], states[0], 0],
-    closed: contact.closed,
-    proven: contact.proven,
-    remaining: contact.remaining,
-    rows,
-    pressure: contact.pressure,
-  };
+function answerFrame({ contact, states }) {
+  return { ...contact, states: alone(states[0]), rows: Array.from(contact.closed.keys()) };
 }
 
-/** The part of a list of closed rows that belongs to one answer. */
-function closedAt({ starts, rows, values }, index) {
-  return {
-    rows: Array.from(rows.subarray(starts[index], starts[index + 1])),
-    values: values.map(all => all.subarray(starts[index], starts[index + 1])),
-  };
+/** The part of a list of closed rows that belongs to one answer, with a flag for each row of the scene. */
+function closedAt(data, { starts, rows, values }, index) {
+  const own = all => all.subarray(starts[index], starts[index + 1]),
+    closed = new Uint8Array(data.rows.count);
+  for (const row of own(rows)) closed[row] = 1;
+  return { closed, rows: Array.from(own(rows)), pressure: own(values[0]), values: values.map(own) };
 }
 
 /** The exact answer at a gap: it is linear between two corners. */
 function exactFrame(data, gap) {
   const { corners, closed } = data.sweep,
-    pieces = corners.length / 2,
     sign = corners.at(-1).gap >= corners[0].gap ? 1 : -1;
   let piece = 0;
-  while (piece + 1 < pieces && sign * (gap - corners[2 * piece + 1].gap) > 0) piece++;
+  while (2 * piece + 2 < corners.length && sign * (gap - corners[2 * piece + 1].gap) > 0) piece++;
   const [from, to] = [corners[2 * piece], corners[2 * piece + 1]],
-    wide = to.gap - from.gap;
-  const share = wide === 0 ? 0 : Math.min(Math.max((gap - from.gap) / wide, 0), 1);
-  const between = (a, b) => (share === 0 ? a : share === 1 ? b : a * (1 - share) + b * share);
-  const {
-      rows,
-      values: [first, last],
-    } = closedAt(closed, piece),
-    pressure = Array.from(first, (value, i) => between(value, last[i]));
+    share = shareOf(gap, from.gap, to.gap);
+  const { values, ...contact } = closedAt(data, closed, piece),
+    pressure = Array.from(values[0], (value, i) => between(value, values[1][i], share));
   return {
+    ...contact,
     states: around(data.states, gap),
-    closed: flags(rows, data.rows.count),
-    rows,
     pressure,
     at: gap,
     facts: {
-      force: between(from.force, to.force),
+      force: between(from.force, to.force, share),
       width: from.width,
       area: from.area,
       pressure_max: pressure.reduce((most, value) => Math.max(most, value), 0),
-      count: rows.length,
+      count: pressure.length,
     },
   };
 }
@@ -84,33 +73,21 @@ function exactFrame(data, gap) {
 /** The answer at a gap or force that was solved. */
 function pointFrame(data, index) {
   const { points, closed } = data.sweep,
-    point = points[index],
-    {
-      rows,
-      values: [pressure],
-    } = closedAt(closed, index);
+    { force, gap, contact, travel } = points[index];
   return {
+    ...closedAt(data, closed, index),
     states: around(data.states, index),
-    closed: flags(rows, data.rows.count),
-    rows,
-    pressure,
-    at: point.force ?? point.gap,
-    facts: point.contact,
-    travel: point.travel,
+    at: force ?? gap,
+    facts: contact,
+    travel,
   };
 }
 
 function motionFrame(data, index) {
-  const {
-      rows,
-      values: [pressure],
-    } = closedAt(data.motion.closed, index),
-    state = data.states[index];
+  const state = data.states[index];
   return {
-    states: [state, state, 0],
-    closed: flags(rows, data.rows.count),
-    rows,
-    pressure,
+    ...closedAt(data, data.motion.closed, index),
+    states: alone(state),
     time: data.motion.times[state.at],
   };
 }

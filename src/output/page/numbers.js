@@ -35,10 +35,10 @@ function channels(hex) {
 
 /** The colour of a share of the range, as [r, g, b] from 0 to 1. */
 function colourAt(table, share) {
-  const place = Math.min(Math.max(Number.isFinite(share) ? share : 0, 0), 1) * (table.length - 1);
-  const below = Math.min(Math.floor(place), table.length - 2),
+  const place = clamped(Number.isFinite(share) ? share : 0, 0, 1) * (table.length - 1),
+    below = Math.min(Math.floor(place), table.length - 2),
     part = place - below;
-  return table[below].map((low, channel) => low + part * (table[below + 1][channel] - low));
+  return table[below].map((low, channel) => between(low, table[below + 1][channel], part));
 }
 
 /** Round values that lie between two others. */

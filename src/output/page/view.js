@@ -1,5 +1,10 @@
 // A body in its frame: drawing, turning, moving, and the values at a point.
 
+/** A value, kept between two limits. */
+function clamped(value, low, high) {
+  return Math.max(low, Math.min(value, high));
+}
+
 /** The shape that all views of a page share, from the packed body. */
 function shapeOf(body) {
   const flat = body.dimension < 3,
