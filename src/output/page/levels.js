@@ -14,16 +14,16 @@ function levelsSection(page, data, still) {
     interval = ends => (ends ? ends.map(end => shown(end, 8)).join(" to ") : "-");
   list(own, [
     ["total error", `${words} ${percent(report.total_error.bound)} of the displacement, in the energy norm`],
-    ["no guarantee", report.reason ?? null],
+    ["no guarantee", report.reason],
     ["goal", percent(goal.total_error)],
-    ["answer on the last mesh", report.last_mesh ? `${words} ${percent(report.last_mesh.total_error.bound)}` : null],
-    ["mean stress", isGuaranteed ? `guaranteed at most ${percent(report.mean_stress_error.bound)}` : null],
-    ["contact force", isGuaranteed ? `${inUnit(report.contact_force, units.force, 7)} of the displacement with this bound` : null],
+    ["answer on the last mesh", ifGiven(report.last_mesh, mesh => `${words} ${percent(mesh.total_error.bound)}`)],
+    ["mean stress", isGuaranteed && `guaranteed at most ${percent(report.mean_stress_error.bound)}`],
     [
-      "exact contact force",
-      report.force_interval ? `guaranteed in ${interval(report.force_interval)} ${units.force}` : null,
+      "contact force",
+      isGuaranteed && `${inUnit(report.contact_force, units.force, 7)} of the displacement with this bound`,
     ],
-    ["check", isGuaranteed ? `balance, signs, distances and energies agree to ${shown(report.defect, 2)}` : null],
+    ["exact contact force", ifGiven(report.force_interval, ends => `guaranteed in ${interval(ends)} ${units.force}`)],
+    ["check", isGuaranteed && `balance, signs, distances and energies agree to ${shown(report.defect, 2)}`],
   ]);
   const line = (name, value, index) => ({
     name,
@@ -54,30 +54,21 @@ function levelsSection(page, data, still) {
     height: 360,
   });
   keyOf(own, [...series, asked]);
-  if (isGuaranteed)
-    table(
-      own,
-      ["triangles#", "unknowns#", "of the stress#", "total error ≤#", "mean stress ≤#", `exact force [${units.force}]`],
-      levels.map(level => [
-        String(level.triangles),
-        String(level.dofs),
-        String(level.stress_dofs),
-        percent(level.bound),
-        percent(level.mean_stress_bound),
-        interval(level.force_interval),
-      ]),
-    );
-  else
-    table(
-      own,
-      [`elements${part}#`, `unknowns${part}#`, "total error, estimated#", `force [${units.force}]#`],
-      levels.map(level => [
-        String(level.elements),
-        String(level.dofs),
-        percent(level.total_error),
-        shown(level.contact_force, 7),
-      ]),
-    );
+  const guaranteed = [
+    ["triangles#", level => level.triangles],
+    ["unknowns#", level => level.dofs],
+    ["of the stress#", level => level.stress_dofs],
+    ["total error ≤#", level => percent(level.bound)],
+    ["mean stress ≤#", level => percent(level.mean_stress_bound)],
+    [`exact force [${units.force}]`, level => interval(level.force_interval)],
+  ];
+  const estimated = [
+    [`elements${part}#`, level => level.elements],
+    [`unknowns${part}#`, level => level.dofs],
+    ["total error, estimated#", level => percent(level.total_error)],
+    [`force [${units.force}]#`, level => shown(level.contact_force, 7)],
+  ];
+  table(own, isGuaranteed ? guaranteed : estimated, levels);
   if (still.firstChild) {
     still.firstChild.alt = "The meshes, from the first to the last";
     own.append(still);

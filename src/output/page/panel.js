@@ -365,13 +365,6 @@ class Panel {
   }
 }
 
-/** A button that does something. */
-function pressed(host, text, act) {
-  const button = Object.assign(element("button", host, text), { type: "button" });
-  button.addEventListener("click", act);
-  return button;
-}
-
 /** The mean distance of neighbouring contact rows, from the extent of them all. */
 function spacingOf(rows, { places, dimension }) {
   if (!rows?.count) return undefined;

@@ -15,28 +15,55 @@ function section(host, title, id) {
   return made;
 }
 
-/** A table; a column whose heading ends with # holds numbers. */
-function table(host, headings, rows) {
-  const wide = element("div", host, null, "wide"),
-    made = element("table", wide),
-    head = element("tr", element("thead", made));
-  const isNumber = headings.map(heading => heading.endsWith("#"));
-  headings.forEach((heading, i) => element("th", head, heading.replace(/#$/, ""), isNumber[i] ? "number" : ""));
-  const body = element("tbody", made);
-  for (const row of rows) {
-    const line = element("tr", body);
-    row.forEach((cell, i) => element("td", line, cell, isNumber[i] ? "number" : ""));
-  }
+/** A soft remark. */
+function remark(host, text) {
+  element("p", host, text, "soft");
+}
+
+/** A field of a form; `label` is for readers who do not see it. */
+function input(host, type, settings, label = null) {
+  const made = Object.assign(element("input", host), { type, ...settings });
+  if (label) made.setAttribute("aria-label", label);
   return made;
 }
 
+/** A button that does something. */
+function pressed(host, text, act) {
+  const button = Object.assign(element("button", host, text), { type: "button" });
+  button.addEventListener("click", act);
+}
+
+/** A legend: each entry has a text, and the shapes of its mark as [name, attributes] in a square of 20. */
+function legendOf(host, entries) {
+  const legend = element("div", host, null, "legend");
+  for (const [text, ...shapes] of entries) {
+    const entry = element("span", legend),
+      mark = svg("svg", { viewBox: "0 0 20 20" }, entry);
+    for (const [name, attributes] of shapes) svg(name, attributes, mark);
+    entry.append(text);
+  }
+}
+
+/** A table of items: a column is [heading, cell of an item]; one whose heading ends with # holds numbers. */
+function table(host, columns, items) {
+  const made = element("table", element("div", host, null, "wide")),
+    head = element("tr", element("thead", made)),
+    body = element("tbody", made);
+  const kinds = columns.map(([heading]) => (heading.endsWith("#") ? "number" : ""));
+  columns.forEach(([heading], i) => element("th", head, heading.replace(/#$/, ""), kinds[i]));
+  for (const item of items) {
+    const line = element("tr", body);
+    columns.forEach(([, cell], i) => element("td", line, cell(item), kinds[i]));
+  }
+}
+
+/** Names with their contents; an entry without content is left out. */
 function list(host, entries) {
   const made = element("dl", host);
-  for (const [name, content] of entries.filter(entry => entry[1] !== null && entry[1] !== undefined)) {
+  for (const [name, content] of entries.filter(entry => (entry[1] ?? false) !== false)) {
     element("dt", made, name);
     element("dd", made, content);
   }
-  return made;
 }
 
 const STATUS = {
@@ -64,23 +91,35 @@ function within(value, off, unit) {
   return off > 1e-11 * value ? `${inUnit(value, unit)} ± ${shown(off, 2)}` : inUnit(value, unit);
 }
 
+/** The width of a contact, or its area in space, with the uncertainty. */
+function extentWords({ width, width_uncertainty, area, area_uncertainty }, units) {
+  return (width ?? null) !== null
+    ? `width ${within(width, width_uncertainty, units.length)}`
+    : `area ${within(area, area_uncertainty, `${units.length}²`)}`;
+}
+
+/** The words of a value, if there is one. */
+function ifGiven(value, words) {
+  return (value ?? null) !== null && words(value);
+}
+
 /** The numbers of one answer. */
 function contactList(host, summary, data) {
   const { contact, model } = summary,
+    { estimate } = contact,
     { units } = data,
     basis = summary.force_basis ? ` ${summary.force_basis}` : "";
-  const estimate = contact.estimate,
-    part = ofPart(data),
+  const part = ofPart(data),
+    aside = part && `,${part}`,
     copies = obstacleCount(contact),
     several = copies > 1 ? copies : 0;
   list(host, [
-    ["method", `${summary.method}, ${counted(summary.iterations, "iteration")}${part && `,${part}`}`],
+    ["method", `${summary.method}, ${counted(summary.iterations, "iteration")}${aside}`],
     ["why", summary.reason],
     [
       "symmetry",
-      summary.parts_of_whole
-        ? "method, certificate and pictures are of the meshed part; in the scene the force on an obstacle is of the whole body, loads, springs and rigid faces are of the meshed part"
-        : null,
+      Boolean(summary.parts_of_whole) &&
+        "method, certificate and pictures are of the meshed part; in the scene the force on an obstacle is of the whole body, loads, springs and rigid faces are of the meshed part",
     ],
     [
       "model",
@@ -92,37 +131,19 @@ function contactList(host, summary, data) {
     ],
     [
       "peak pressure",
-      several || contact.pressure_max === undefined
-        ? null
-        : estimate
-          ? within(contact.pressure_max, estimate.pressure_uncertainty, units.pressure)
-          : inUnit(contact.pressure_max, units.pressure),
+      !several && ifGiven(contact.pressure_max, most => within(most, estimate?.pressure_uncertainty, units.pressure)),
     ],
-    [
-      "estimated extent",
-      several || !estimate
-        ? null
-        : estimate.width !== undefined
-          ? `width ${within(estimate.width, estimate.width_uncertainty, units.length)}`
-          : `area ${within(estimate.area, estimate.area_uncertainty, `${units.length}²`)}`,
-    ],
-    ["contact set", data.proven && `${data.proven}${part && `,${part}`}`],
-    [
-      "balance of forces",
-      contact.force_balance === undefined ? null : `to ${shown(contact.force_balance, 2)}, relative${part && `,${part}`}`,
-    ],
+    ["estimated extent", !several && ifGiven(estimate, known => extentWords(known, units))],
+    ["contact set", data.proven && `${data.proven}${aside}`],
+    ["balance of forces", ifGiven(contact.force_balance, off => `to ${shown(off, 2)}, relative${aside}`)],
     [
       "error of the mesh",
-      summary.discretisation_error === undefined || summary.discretisation_error === null
-        ? null
-        : `about ${shown(100 * summary.discretisation_error, 2)} % of the energy norm, estimated from the stresses`,
+      ifGiven(
+        summary.discretisation_error,
+        share => `about ${shown(100 * share, 2)} % of the energy norm, estimated from the stresses`,
+      ),
     ],
-    [
-      "strain energy",
-      summary.strain_energy === undefined
-        ? null
-        : inUnit(summary.strain_energy, `${units.force} ${units.length}`.trim()),
-    ],
+    ["strain energy", ifGiven(summary.strain_energy, energy => inUnit(energy, workUnit(units)))],
   ]);
   if (!several) return;
   obstacleTable(
@@ -130,7 +151,11 @@ function contactList(host, summary, data) {
     contact.obstacles.map(one => [null, one]),
     units,
   );
-  if (basis) element("p", host, `Forces${basis}.`, "soft");
+  if (basis) remark(host, `Forces${basis}.`);
+}
+
+function workUnit({ force, length }) {
+  return `${force} ${length}`.trim();
 }
 
 /** The words behind numbers of the meshed part, if planes of symmetry make it a part. */
@@ -151,23 +176,18 @@ function imagesOf({ copies }) {
 /** The contact of each obstacle and pair of bodies: lines of `[value, obstacle]`; the values have a column if it has a name. */
 function obstacleTable(host, lines, units, name = null) {
   const inPlane = lines.some(([, one]) => one.estimate?.width !== undefined),
-    pressed = lines.some(([, one]) => one.travel !== undefined);
+    isPressed = lines.some(([, one]) => one.travel !== undefined);
   const columns = [
-    ...(name ? [[name, (_, value) => value]] : []),
     ["obstacle", one => `${one.of}${one.on ? ` on ${one.on}` : ""}${imagesOf(one)}`],
     [`force [${units.force}]#`, one => shown(one.force)],
-    ...(pressed ? [[`travel [${units.length}]#`, one => shown(one.travel)]] : []),
+    ...(isPressed ? [[`travel [${units.length}]#`, one => shown(one.travel)]] : []),
     [`peak pressure [${units.pressure}]#`, one => within(one.pressure_max, one.estimate?.pressure_uncertainty, "")],
     inPlane
       ? [`estimated width [${units.length}]#`, one => within(one.estimate?.width, one.estimate?.width_uncertainty, "")]
       : [`estimated area [${units.length}²]#`, one => within(one.estimate?.area, one.estimate?.area_uncertainty, "")],
     [`mean pressure [${units.pressure}]#`, one => shown(one.pressure_mean)],
-  ];
-  table(
-    host,
-    columns.map(column => column[0]),
-    lines.map(([value, one]) => columns.map(column => column[1](one, value))),
-  );
+  ].map(([heading, cell]) => [heading, ([, one]) => cell(one)]);
+  table(host, name ? [[name, ([value]) => value], ...columns] : columns, lines);
 }
 
 function certificateSection(page, data) {
@@ -182,13 +202,12 @@ function certificateSection(page, data) {
       "is NOT $1. The conditions, recomputed from the problem, each relative to its own scale:",
     ),
   );
-  if (certificate.conditions.length) table(own, ["condition", "formula", "value#"], certificate.conditions);
-  for (const note of certificate.notes) element("p", own, `${note[0].toUpperCase()}${note.slice(1)}.`, "soft");
-  element(
-    "p",
+  const columns = ["condition", "formula", "value#"].map((heading, i) => [heading, condition => condition[i]]);
+  if (certificate.conditions.length) table(own, columns, certificate.conditions);
+  for (const note of certificate.notes) remark(own, `${note[0].toUpperCase()}${note.slice(1)}.`);
+  remark(
     own,
     "The energy error bounds the distance of the displacement from the exact solution of the discrete problem. It says nothing of the mesh.",
-    "soft",
   );
 }
 
@@ -196,57 +215,37 @@ function resultantSection(page, summary, { units }) {
   if (!summary?.resultants?.length) return;
   const own = section(page, "Resultants", "resultants"),
     largest = Math.max(...summary.resultants.flatMap(resultant => resultant.force.map(Math.abs))),
-    moment = `${units.force} ${units.length}`.trim();
+    moved = ({ travel, motion }) =>
+      ifGiven(travel, way => `travel ${inUnit(way, units.length)}`) || vectorShown(motion?.displacement, units.length);
   table(
     own,
     [
-      "of",
-      "nodes#",
-      `force [${units.force}]`,
-      `moment about the origin [${moment}]`,
-      `centre [${units.length}]`,
-      "moved",
+      ["of", ({ of, on, rule }) => `${of}${on ? ` on ${on}` : ""}${rule ? `, rule ${rule}` : ""}`],
+      ["nodes#", resultant => resultant.nodes],
+      [`force [${units.force}]`, resultant => vectorShown(resultant.force, "", 5, largest)],
+      [`moment about the origin [${workUnit(units)}]`, ({ moment }) => (moment.length ? vectorShown(moment, "") : "-")],
+      [`centre [${units.length}]`, ({ centre }) => vectorShown(centre, "")],
+      ["moved", moved],
     ],
-    summary.resultants.map(resultant => [
-      `${resultant.of}${resultant.on ? ` on ${resultant.on}` : ""}${resultant.rule ? `, rule ${resultant.rule}` : ""}`,
-      String(resultant.nodes),
-      vectorShown(resultant.force, "", 5, largest),
-      resultant.moment.length ? vectorShown(resultant.moment, "") : "-",
-      resultant.centre ? vectorShown(resultant.centre, "") : "-",
-      resultant.travel !== undefined
-        ? `travel ${inUnit(resultant.travel, units.length)}`
-        : resultant.motion
-          ? vectorShown(resultant.motion.displacement, units.length)
-          : "-",
-    ]),
+    summary.resultants,
   );
-  element("p", own, `Forces on the body${summary.force_basis ? `, ${summary.force_basis}` : ""}.`, "soft");
+  remark(own, `Forces on the body${summary.force_basis ? `, ${summary.force_basis}` : ""}.`);
 }
 
 function segmentSection(page, summary, data) {
   if (!summary?.segments?.length) return;
-  const own = section(page, `Contact segments${ofPart(data)}`, "segments"),
-    { units } = data;
+  const { units } = data;
   table(
-    own,
+    section(page, `Contact segments${ofPart(data)}`, "segments"),
     [
-      "obstacle",
-      "closed nodes#",
-      `force [${units.force}]`,
-      `peak pressure [${units.pressure}]#`,
-      "extent",
-      `ends [${units.length}]`,
+      ["obstacle", segment => `obstacles[${segment.obstacle}]`],
+      ["closed nodes#", segment => segment.nodes.length],
+      [`force [${units.force}]`, segment => vectorShown(segment.force, "")],
+      [`peak pressure [${units.pressure}]#`, segment => shown(segment.pressure_max)],
+      ["extent", segment => extentWords(segment, units)],
+      [`ends [${units.length}]`, ({ ends }) => ends?.map(end => vectorShown(end, "")).join(" to ") ?? "-"],
     ],
-    summary.segments.map(segment => [
-      `obstacles[${segment.obstacle}]`,
-      String(segment.nodes.length),
-      vectorShown(segment.force, ""),
-      shown(segment.pressure_max),
-      segment.width !== undefined && segment.width !== null
-        ? `width ${within(segment.width, segment.width_uncertainty, units.length)}`
-        : `area ${within(segment.area, segment.area_uncertainty, `${units.length}²`)}`,
-      segment.ends ? segment.ends.map(end => vectorShown(end, "")).join(" to ") : "-",
-    ]),
+    summary.segments,
   );
 }
 
@@ -259,23 +258,15 @@ function comparisonSection(page, data) {
   table(
     own,
     [
-      "method",
-      "status",
-      `iterations${part}#`,
-      `closed${part}#`,
-      `force [${units.force}]#`,
-      `peak pressure [${units.pressure}]#`,
-      `energy error${part} ≤#`,
+      ["method", ({ method }) => method],
+      ["status", ({ status }) => STATUS[status]],
+      [`iterations${part}#`, ({ iterations }) => shown(iterations)],
+      [`closed${part}#`, ({ contact }) => contact.count],
+      [`force [${units.force}]#`, ({ contact }) => shown(contact.force, 10)],
+      [`peak pressure [${units.pressure}]#`, ({ contact }) => shown(contact.pressure_max)],
+      [`energy error${part} ≤#`, ({ certificate }) => shown(certificate.energy_error_bound, 2)],
     ],
-    methods.map(method => [
-      method.method,
-      STATUS[method.status],
-      shown(method.iterations),
-      String(method.contact.count),
-      shown(method.contact.force, 10),
-      shown(method.contact.pressure_max),
-      shown(method.certificate.energy_error_bound, 2),
-    ]),
+    methods,
   );
   element(
     "p",
@@ -298,5 +289,5 @@ function aboutSection(page, data, notes) {
     ["threads", String(about.threads)],
     ["machine", about.machine],
   ]);
-  for (const note of notes) element("p", own, note, "soft");
+  for (const note of notes) remark(own, note);
 }

@@ -5,10 +5,10 @@ function tradeoffSection(page, data, still) {
     own = section(page, "Work and precision", "tradeoff"),
     ofMotion = report.points.some(point => "scheme" in point);
   own.append(still);
-  if (report.of_meshed_part)
-    element("p", own, "All numbers but the error of the mesh are of the meshed part.", "soft");
+  if (report.of_meshed_part) remark(own, "All numbers but the error of the mesh are of the meshed part.");
   if (still.children.length) element("h3", own, "Every measured point, with its values under the pointer");
-  const error = point => Math.max(ofMotion ? point.displacement_error : point.energy_error, 1e-16);
+  const error = point => Math.max(ofMotion ? point.displacement_error : point.energy_error, 1e-16),
+    placed = point => [point.seconds, error(point), wordsOf(point)];
   const panels = ofMotion
     ? [[`${counted(report.dofs, "dof")}`, report.points]]
     : report.meshes.map((mesh, index) => [
@@ -26,15 +26,10 @@ function tradeoffSection(page, data, still) {
       marks: true,
       focus: true,
       hollow: name.includes("mixed"),
-      points: points
-        .filter(point => nameOf(point) === name)
-        .map(point => [point.seconds, error(point), wordsOf(point)]),
+      points: points.filter(point => nameOf(point) === name).map(placed),
     }));
-    const front = points
-      .filter(point => point.best)
-      .sort((a, b) => a.seconds - b.seconds)
-      .map(point => [point.seconds, error(point), wordsOf(point)]);
-    const best = { name: "Pareto front", colour: "var(--soft)", dash: "6 5", points: front };
+    const front = points.filter(point => point.best).sort((a, b) => a.seconds - b.seconds),
+      best = { name: "Pareto front", colour: "var(--soft)", dash: "6 5", points: front.map(placed) };
     plotted(own, {
       label: `Error over time, ${title}`,
       x: { name: "time [s]", log: true },
@@ -47,13 +42,13 @@ function tradeoffSection(page, data, still) {
     element("summary", more, `${counted(points.length, "measured point")} as a table`);
     table(
       more,
-      ["method", "seconds#", "error#", "best"],
-      points.map(point => [
-        nameOf(point),
-        shown(point.seconds, 4),
-        shown(error(point), 3),
-        point.best ? "on the front" : "",
-      ]),
+      [
+        ["method", nameOf],
+        ["seconds#", point => shown(point.seconds, 4)],
+        ["error#", point => shown(error(point), 3)],
+        ["best", point => (point.best ? "on the front" : "")],
+      ],
+      points,
     );
   }
 }
