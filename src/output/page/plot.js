@@ -10,17 +10,26 @@ function svg(name, attributes = {}, parent = null, text = null) {
   return element;
 }
 
+/** A box with the values at a place; it is hidden until `tell` shows it. */
+function tipIn(host) {
+  return Object.assign(element("div", host, null, "tip"), { hidden: true });
+}
+
+/** Shows a text in a tip; `corner` gives the upper left corner for its width and height. */
+function tell(tip, text, corner) {
+  Object.assign(tip, { hidden: false, textContent: text });
+  const [left, top] = corner(tip.offsetWidth, tip.offsetHeight);
+  Object.assign(tip.style, { left: `${left}px`, top: `${top}px` });
+}
+
 /**
  * A plot in `host`: `x` and `y` are { name, log }, a series is { name, colour, points: [[x, y, text]], line, marks, dash }.
- * Returns an object whose `mark(x)` draws a line at x.
+ * Returns an object whose `mark(x)` draws a line at x, and whose `show(series)` shows other series.
  */
 function plotted(host, { label, x, y, series, height = 300 }) {
-  const box = host.appendChild(document.createElement("div"));
-  box.className = "plot";
-  const tip = box.appendChild(document.createElement("div"));
-  tip.className = "tip";
-  tip.hidden = true;
-  const state = { at: null, series };
+  const box = element("div", host, null, "plot"),
+    tip = tipIn(box),
+    state = { at: null, series };
   const draw = () => {
     const width = box.clientWidth || 600;
     box.querySelector("svg")?.remove();
@@ -40,142 +49,86 @@ function plotted(host, { label, x, y, series, height = 300 }) {
 }
 
 function drawnPlot(box, tip, { width, height, label, x, y, state }) {
-  const drawing = svg("svg", { viewBox: `0 0 ${width} ${height}`, height, role: "img", "aria-label": label }, box);
-  const inner = { left: 64, right: width - 14, top: 14, bottom: height - 46 };
-  const finite = state.series.flatMap(({ points }) => points).filter(([a, b]) => usable(a, x) && usable(b, y));
-  const across = axis(
-    finite.map(point => point[0]),
-    x,
-    inner.left,
-    inner.right,
-    Math.max(3, width / 110),
-  );
-  const up = axis(
-    finite.map(point => point[1]),
-    y,
-    inner.bottom,
-    inner.top,
-    6,
-  );
+  const drawing = svg("svg", { viewBox: `0 0 ${width} ${height}`, height, role: "img", "aria-label": label }, box),
+    [left, right, top, bottom] = [64, width - 14, 14, height - 46];
+  const finite = state.series.flatMap(({ points }) => points).filter(([a, b]) => usable(a, x) && usable(b, y)),
+    across = axis(finite, 0, x, left, right, Math.max(3, width / 110)),
+    up = axis(finite, 1, y, bottom, top, 6);
+  const rule = (x1, x2, y1, y2, look) => svg("line", { x1, x2, y1, y2, ...look }, drawing),
+    words = (text, anchor, place) => svg("text", { ...place, "text-anchor": anchor }, drawing, text);
   for (const tick of across.ticks) {
-    svg(
-      "line",
-      { x1: across.at(tick), x2: across.at(tick), y1: inner.top, y2: inner.bottom, stroke: "var(--grid)" },
-      drawing,
-    );
-    svg("text", { x: across.at(tick), y: inner.bottom + 16, "text-anchor": "middle" }, drawing, across.text(tick));
+    rule(across.at(tick), across.at(tick), top, bottom, { stroke: "var(--grid)" });
+    words(across.text(tick), "middle", { x: across.at(tick), y: bottom + 16 });
   }
   for (const tick of up.ticks) {
-    svg("line", { x1: inner.left, x2: inner.right, y1: up.at(tick), y2: up.at(tick), stroke: "var(--grid)" }, drawing);
-    svg("text", { x: inner.left - 6, y: up.at(tick) + 4, "text-anchor": "end" }, drawing, up.text(tick));
+    rule(left, right, up.at(tick), up.at(tick), { stroke: "var(--grid)" });
+    words(up.text(tick), "end", { x: left - 6, y: up.at(tick) + 4 });
   }
-  svg("text", { x: (inner.left + inner.right) / 2, y: height - 10, "text-anchor": "middle" }, drawing, x.name);
-  svg(
-    "text",
-    { transform: `translate(13 ${(inner.top + inner.bottom) / 2}) rotate(-90)`, "text-anchor": "middle" },
-    drawing,
-    y.name,
-  );
-  const places = [];
-  for (const one of state.series) drawSeries(drawing, one, { x, y, across, up, places, width, tip });
-  const line = svg(
-    "line",
-    { y1: inner.top, y2: inner.bottom, stroke: "var(--closed)", "stroke-width": 1.5, visibility: "hidden" },
-    drawing,
-  );
+  words(x.name, "middle", { x: (left + right) / 2, y: height - 10 });
+  words(y.name, "middle", { transform: `translate(13 ${(top + bottom) / 2}) rotate(-90)` });
+  const hide = () => {
+    tip.hidden = true;
+  };
+  const show = ({ x, y, text }) =>
+    tell(tip, text, (wide, high) => [clamped(x + 10, 0, width - wide - 4), Math.max(0, y - high - 8)]);
+  const places = state.series.flatMap(one => drawSeries(drawing, one, { x, y, across, up, show, hide }));
+  const line = rule(left, left, top, bottom, { stroke: "var(--closed)", "stroke-width": 1.5 });
   state.move = () => {
     const seen = state.at !== null && usable(state.at, x);
     if (seen) ["x1", "x2"].forEach(name => line.setAttribute(name, across.at(state.at)));
     line.setAttribute("visibility", seen ? "visible" : "hidden");
   };
   state.move();
-  drawing.addEventListener("pointermove", event => {
+  drawing.addEventListener("pointermove", ({ clientX, clientY }) => {
     const frame = drawing.getBoundingClientRect(),
-      px = event.clientX - frame.left,
-      py = event.clientY - frame.top;
-    const near = places.reduce(
-      (best, place) => {
-        const away = Math.hypot(place.x - px, place.y - py);
-        return away < best.away ? { ...place, away } : best;
-      },
-      { away: 24 },
-    );
-    tellAt(tip, near, width);
+      away = place => Math.hypot(frame.left + place.x - clientX, frame.top + place.y - clientY);
+    const [near] = places.filter(place => away(place) < 24).sort((a, b) => away(a) - away(b));
+    if (near) show(near);
+    else hide();
   });
-  drawing.addEventListener("pointerleave", () => {
-    tip.hidden = true;
-  });
+  drawing.addEventListener("pointerleave", hide);
 }
 
-function drawSeries(drawing, one, { x, y, across, up, places, width, tip }) {
+/** Draws a series, and returns the places of its points. */
+function drawSeries(drawing, one, { x, y, across, up, show, hide }) {
   const points = one.points.map(([a, b, text]) =>
     usable(a, x) && usable(b, y)
       ? { x: across.at(a), y: up.at(b), text: text ?? `${one.name}\n${shown(a)}, ${shown(b)}` }
       : null,
   );
-  if (one.line !== false) {
-    let path = "",
-      pen = "M";
-    for (const point of points) {
-      if (point) path += `${pen}${point.x.toFixed(1)} ${point.y.toFixed(1)}`;
-      pen = point ? "L" : "M";
-    }
-    svg(
-      "path",
-      { d: path, fill: "none", stroke: one.colour, "stroke-width": 2, "stroke-dasharray": one.dash ?? "none" },
-      drawing,
-    );
+  const steps = points.map((to, i) => to && `${points[i - 1] ? "L" : "M"}${to.x.toFixed(1)} ${to.y.toFixed(1)}`);
+  if (one.line !== false) svg("path", { d: steps.join(""), fill: "none", ...strokeOf(one, 2) }, drawing);
+  const places = points.filter(Boolean);
+  for (const point of one.marks ? places : []) {
+    const keys = one.focus ? { tabindex: 0, role: "img", "aria-label": point.text } : {},
+      circle = svg("circle", { cx: point.x, cy: point.y, r: one.size ?? 4, ...dotOf(one, 1.5), ...keys }, drawing);
+    circle.addEventListener("focus", () => show(point));
+    circle.addEventListener("blur", hide);
   }
-  for (const point of points.filter(Boolean)) {
-    places.push(point);
-    if (!one.marks) continue;
-    const circle = svg(
-      "circle",
-      {
-        cx: point.x,
-        cy: point.y,
-        r: one.size ?? 4,
-        fill: one.hollow ? "var(--paper)" : one.colour,
-        stroke: one.colour,
-        "stroke-width": 1.5,
-      },
-      drawing,
-    );
-    if (one.focus) {
-      circle.setAttribute("tabindex", "0");
-      circle.setAttribute("role", "img");
-      circle.setAttribute("aria-label", point.text);
-      circle.addEventListener("focus", () => tellAt(tip, { ...point, away: 0 }, width));
-      circle.addEventListener("blur", () => {
-        tip.hidden = true;
-      });
-    }
-  }
+  return places;
 }
 
-function tellAt(tip, near, width) {
-  tip.hidden = near.text === undefined;
-  if (tip.hidden) return;
-  tip.textContent = near.text;
-  tip.style.left = `${Math.max(0, Math.min(near.x + 10, width - tip.offsetWidth - 4))}px`;
-  tip.style.top = `${Math.max(0, near.y - tip.offsetHeight - 8)}px`;
+/** The look of the line of a series, and of its points. */
+function strokeOf({ colour, dash }, width) {
+  return { stroke: colour, "stroke-width": width, "stroke-dasharray": dash ?? "none" };
+}
+
+function dotOf({ colour, hollow }, width) {
+  return { fill: hollow ? "var(--paper)" : colour, stroke: colour, "stroke-width": width };
 }
 
 function usable(value, { log }) {
   return Number.isFinite(value) && (!log || value > 0);
 }
 
-/** Positions of values on the screen, and the values with labels. */
-function axis(values, { log }, from, to, most) {
-  const of = log ? Math.log10 : value => value;
-  let low = values.length ? Math.min(...values.map(of)) : 0,
-    high = values.length ? Math.max(...values.map(of)) : 1;
+/** Positions of one component of points on the screen, and the values with labels. */
+function axis(points, component, { log }, from, to, most) {
+  const of = log ? Math.log10 : value => value,
+    [least, greatest] = rangeOf(points.map(point => of(point[component])));
   // Values that differ by rounding alone count as one value.
-  if (!(high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high))))
-    [low, high] = log
-      ? [low - 0.5, high + 0.5]
-      : [low - 0.5 * (Math.abs(low) || 1), high + 0.5 * (Math.abs(high) || 1)];
-  else [low, high] = [low - 0.03 * (high - low), high + 0.03 * (high - low)];
+  const differs = greatest - least > 1e-9 * Math.max(Math.abs(least), Math.abs(greatest)),
+    room = end => (differs ? 0.03 * (greatest - least) : log ? 0.5 : 0.5 * (Math.abs(end) || 1)),
+    [low, high] = [least - room(least), greatest + room(greatest)];
   const at = value => from + ((of(value) - low) / (high - low)) * (to - from);
   if (!log) return { at, ticks: ticks(low, high, most), text: value => shown(value, 4) };
   const every = Math.max(1, Math.ceil((high - low) / most)),
@@ -188,23 +141,10 @@ function axis(values, { log }, from, to, most) {
 
 /** The names of the series under a plot. */
 function keyOf(host, series) {
-  const key = host.appendChild(document.createElement("div"));
-  key.className = "legend";
-  for (const { name, colour, line, marks, dash, hollow } of series) {
-    const entry = key.appendChild(document.createElement("span")),
-      mark = svg("svg", { viewBox: "0 0 20 20" }, entry);
-    if (line !== false)
-      svg(
-        "line",
-        { x1: 1, x2: 19, y1: 10, y2: 10, stroke: colour, "stroke-width": 2.5, "stroke-dasharray": dash ?? "none" },
-        mark,
-      );
-    if (marks)
-      svg(
-        "circle",
-        { cx: 10, cy: 10, r: 5, fill: hollow ? "var(--paper)" : colour, stroke: colour, "stroke-width": 2 },
-        mark,
-      );
-    entry.append(name);
-  }
+  const entries = series.map(one => [
+    one.name,
+    ...(one.line === false ? [] : [["line", { x1: 1, x2: 19, y1: 10, y2: 10, ...strokeOf(one, 2.5) }]]),
+    ...(one.marks ? [["circle", { cx: 10, cy: 10, r: 5, ...dotOf(one, 2) }]] : []),
+  ]);
+  legendOf(host, entries);
 }
