@@ -13,15 +13,13 @@ const MOST_LINES = 200000;
 function mixed(data, shape, [lower, upper, share]) {
   const { dimension, count } = shape,
     moved = new Float32Array(3 * count);
-  const a = lower.displacement,
-    b = upper.displacement;
+  const [a, b] = [lower.displacement, upper.displacement];
   for (let i = 0; i < count; i++) {
-    for (let k = 0; k < dimension; k++)
-      moved[3 * i + k] = a[dimension * i + k] * (1 - share) + b[dimension * i + k] * share;
+    for (let k = 0; k < dimension; k++) moved[3 * i + k] = between(a[dimension * i + k], b[dimension * i + k], share);
   }
-  const between = (a, b) => (share === 0 ? a : a.map((value, i) => value * (1 - share) + b[i] * share));
-  const values = Object.entries(lower.values).map(([name, own]) => [name, between(own, upper.values[name])]);
-  return { moved, stress: between(lower.stress, upper.stress), values: Object.fromEntries(values) };
+  const mix = (a, b) => (share === 0 ? a : a.map((value, i) => between(value, b[i], share)));
+  const values = Object.entries(lower.values).map(([name, own]) => [name, mix(own, upper.values[name])]);
+  return { moved, stress: mix(lower.stress, upper.stress), values: Object.fromEntries(values) };
 }
 
 /** The values by which a body is coloured, one a vertex. */
@@ -57,55 +55,37 @@ function rangeOf(values) {
 class Panel {
   /** `frames` are some of those that will be shown: colours and magnification are the same for all. */
   constructor(host, data, shape, { label, frames, resultants }) {
-    Object.assign(this, { host, data, shape, frames, resultants, ranges: {}, showsForces: false });
+    Object.assign(this, { host, data, shape, resultants, ranges: {}, showsForces: false });
+    this.frames = evenly(frames, MOST_FRAMES);
     this.quantities = quantitiesOf(data);
     this.quantity = shape.flat ? "sigma_2" : "von_mises";
     this.box = element("div", host, null, "view");
-    this.view = new View(this.box, shape, {
-      table: data.colours.field.map(channels),
+    this.view = bodyView(this.box, data, shape, {
       label,
       paint: (view, brush) => this.paint(view, brush),
       asked: vertex => this.described(vertex),
     });
     this.view.coloured = true;
-    this.view.mesh = shape.lines.length < MOST_LINES;
     this.marksOpen = (data.rows?.count ?? 0) <= MOST_OPEN_MARKS;
     this.view.spacing = spacingOf(data.rows, shape);
-    addPatches(this.view, data);
     this.bar = element("div", host, null, "bar");
     this.addLegend();
-    this.addControls();
-    this.fit();
+    this.addControls(this.fit());
   }
 
-  /** The window holds body and moved body, and the near part of the obstacles. */
+  /** The window holds body and moved body, and the near part of the obstacles. Returns the largest scale of the displacement. */
   fit() {
-    const { low, high, size, flat } = this.shape,
-      all = [...low, ...high].length && [[...low], [...high]];
-    let largest = 0;
-    for (const frame of this.frames) {
-      const { moved } = mixed(this.data, this.shape, frame.states),
-        at = new Float32Array(3 * this.shape.count);
-      for (let i = 0; i < at.length; i++) {
-        at[i] = this.shape.places[i] + moved[i];
-        largest = Math.max(largest, Math.abs(moved[i]));
-      }
-      const box = boxOf(at);
-      for (let k = 0; k < 3; k++) {
-        all[0][k] = Math.min(all[0][k], box.low[k]);
-        all[1][k] = Math.max(all[1][k], box.high[k]);
-      }
-    }
-    if (flat)
-      for (const { approach } of this.data.question.obstacles) {
-        for (let k = 0; k < 2; k++) all[approach[k] < 0 ? 0 : 1][k] += 0.1 * size * approach[k];
-      }
-    this.view.window = all;
-    const most = largest > 0 ? Number(((0.25 * size) / largest).toPrecision(2)) : 1;
-    this.most = Math.max(2, most);
-    this.scale.max = this.most;
-    this.scale.step = "any";
-    this.scale.value = 1;
+    const { shape, data } = this;
+    const boxes = this.frames.map(({ states }) => {
+      const { moved } = mixed(data, shape, states),
+        ends = rangeOf(moved).map(Math.abs);
+      return { ...boxOf(shape.places.map((place, i) => place + moved[i])), largest: Math.max(...ends) };
+    });
+    const outermost = (end, most) => [0, 1, 2].map(k => most(...[shape, ...boxes].map(box => box[end][k]))),
+      whole = { low: outermost("low", Math.min), high: outermost("high", Math.max) },
+      largest = Math.max(...boxes.map(box => box.largest));
+    this.view.window = windowOf(shape, data.question.obstacles, whole);
+    return Math.max(2, largest > 0 ? Number(((0.25 * shape.size) / largest).toPrecision(2)) : 1);
   }
 
   range(quantity) {
@@ -129,21 +109,14 @@ class Panel {
 
   show(frame) {
     this.frame = frame;
-    const field = mixed(this.data, this.shape, frame.states);
-    this.field = field;
-    const [low, high] = this.range(this.quantity);
-    Object.assign(this.view, {
-      coloured: this.quantity !== "none",
-      range: [low, high],
-      magnification: Number(this.scale.value),
-    });
-    const values = valuesOf(this.quantity, this.shape, field, frame, this.data);
-    this.view.state(field.moved, values);
-    this.view.patches.forEach(patch => {
-      patch.shift = this.shiftOf(patch.obstacle);
-    });
+    this.field = mixed(this.data, this.shape, frame.states);
+    const range = this.range(this.quantity),
+      values = valuesOf(this.quantity, this.shape, this.field, frame, this.data);
+    Object.assign(this.view, { coloured: this.quantity !== "none", range, magnification: Number(this.scale.value) });
+    this.view.state(this.field.moved, values);
+    this.view.patches.forEach(patch => Object.assign(patch, { shift: this.shiftOf(patch.obstacle) }));
     this.mark(frame);
-    this.showBar(rangeOf(values), [low, high]);
+    this.showBar(rangeOf(values), range);
   }
 
   /** The colours, their limits, which a reader may change, and what lies outside. */
@@ -162,9 +135,7 @@ class Panel {
       `linear-gradient(to right, ${this.data.colours.field.join(", ")})`;
     const ends = element("div", this.bar, null, "ends");
     ["lowest", "highest"].forEach((end, k) => {
-      const field = element("input", ends);
-      Object.assign(field, { type: "number", step: "any", value: shown(limits[k], 4) });
-      field.setAttribute("aria-label", `${end} value of the colours`);
+      const field = input(ends, "number", { step: "any", value: shown(limits[k], 4) }, `${end} value of the colours`);
       field.addEventListener("change", () => {
         const next = limits.with(k, field.valueAsNumber);
         if (next[0] < next[1]) this.ranges[this.quantity] = next;
@@ -182,27 +153,23 @@ class Panel {
   shiftOf(obstacle) {
     const [lower, upper, share] = this.frame.states,
       { shift, approach } = this.data.question.obstacles[obstacle];
-    const mix = (a, b) => a * (1 - share) + b * share,
-      by = mix(lower.shifts[obstacle], upper.shifts[obstacle]) - shift,
-      more = this.view.magnification - 1;
-    return approach.map((part, k) => part * by + more * mix(lower.carried[obstacle][k], upper.carried[obstacle][k]));
+    const by = between(lower.shifts[obstacle], upper.shifts[obstacle], share) - shift,
+      carried = lower.carried[obstacle].map((part, k) => between(part, upper.carried[obstacle][k], share));
+    return approach.map((part, k) => part * by + (this.view.magnification - 1) * carried[k]);
   }
 
   mark({ closed, proven }) {
-    const { rows } = this.data,
-      vertices = [],
-      kinds = [];
+    const { rows } = this.data;
+    const all = Array.from({ length: rows?.count ?? 0 }, (_, row) => ({
+      vertex: rows.vertices[row],
+      kind: (closed[row] ? 1 : 0) + (proven?.[row] === 0 ? 2 : 0),
+    }));
+    const seen = all.filter(({ vertex, kind }) => (kind > 0 || this.marksOpen) && !this.view.hides(vertex));
     // A node may have an open row of another obstacle: the mark of the closed one is drawn over it.
-    const all = Array.from({ length: rows?.count ?? 0 }, (_, row) => row);
-    for (const row of [...all.filter(row => !closed[row]), ...all.filter(row => closed[row])]) {
-      const kind = (closed[row] ? 1 : 0) + (proven && proven[row] === 0 ? 2 : 0);
-      if ((kind === 0 && !this.marksOpen) || this.view.hides(rows.vertices[row])) continue;
-      vertices.push(rows.vertices[row]);
-      kinds.push(kind);
-    }
-    this.marks = [vertices, kinds];
-    this.view.markSize = vertices.length > MANY_MARKS ? 5 : 9;
-    if (!this.shape.flat) this.view.setMarks(vertices, kinds);
+    seen.sort((a, b) => (a.kind % 2) - (b.kind % 2));
+    this.marks = [seen.map(({ vertex }) => vertex), seen.map(({ kind }) => kind)];
+    this.view.markSize = seen.length > MANY_MARKS ? 5 : 9;
+    if (!this.shape.flat) this.view.setMarks(...this.marks);
   }
 
   paint(view, brush) {
@@ -231,13 +198,8 @@ class Panel {
     const { shape, data, field, frame } = this,
       { units } = data,
       components = field.stress.length / shape.count,
-      dimension = shape.dimension;
-    const place = [0, 1, 2].slice(0, dimension).map(k => shape.places[3 * vertex + k]),
-      moved = [0, 1, 2].slice(0, dimension).map(k => field.moved[3 * vertex + k]);
-    const lines = [
-      `node ${shape.nodes[vertex]} at ${vectorShown(place, units.length, 4)}`,
-      `u = ${vectorShown(moved, units.length, 4)}`,
-    ];
+      vector = values => vectorShown([...values.subarray(3 * vertex, 3 * vertex + shape.dimension)], units.length, 4);
+    const lines = [`node ${shape.nodes[vertex]} at ${vector(shape.places)}`, `u = ${vector(field.moved)}`];
     for (const { name, words, symbol, unit } of data.fields) {
       const value = field.values[name]?.[vertex] ?? FROM_STRESS[name](field.stress, components * vertex, components);
       lines.push(`${symbol || words} ${inUnit(value, unit, 4)}`);
@@ -259,13 +221,12 @@ class Panel {
     const { low, high, eye } = this.shape,
       line = element("label", host, "section ", "slider"),
       select = element("select", line),
-      range = Object.assign(element("input", line), { type: "range", min: 0, max: 1, step: "any", value: 0.5 });
+      range = input(line, "range", { min: 0, max: 1, step: "any", value: 0.5 }, "position of the section"),
+      output = element("output", line);
     ["none", "x", "y", "z"].forEach(name => element("option", select, name));
-    range.setAttribute("aria-label", "position of the section");
-    const output = element("output", line);
     const change = () => {
       const axis = select.selectedIndex - 1,
-        at = axis < 0 ? 0 : low[axis] + range.valueAsNumber * (high[axis] - low[axis]);
+        at = between(low[axis], high[axis], range.valueAsNumber);
       this.view.cut = axis < 0 ? null : { axis, at, side: Math.sign(eye[axis]) };
       output.textContent = axis < 0 ? "" : inUnit(at, this.data.units.length, 4);
       again();
@@ -274,34 +235,19 @@ class Panel {
   }
 
   addLegend() {
-    const legend = element("div", this.host, null, "legend");
-    const entry = (text, draw) => {
-      const span = element("span", legend),
-        mark = svg("svg", { viewBox: "0 0 20 20" }, span);
-      draw(mark);
-      span.append(text);
-    };
-    if (this.data.rows?.count) {
-      entry("closed row", mark => svg("circle", { cx: 10, cy: 10, r: 7, fill: "var(--closed)" }, mark));
-      entry("open row", mark =>
-        svg("circle", { cx: 10, cy: 10, r: 6, fill: "var(--paper)", stroke: "var(--open)", "stroke-width": 2 }, mark),
-      );
-      if (this.data.contact?.proven?.includes(0)) {
-        entry("closed, undecided by the proof", mark =>
-          svg("path", { d: "M10 2 18 10 10 18 2 10Z", fill: "var(--undecided)" }, mark),
-        );
-        entry("open, undecided by the proof", mark =>
-          svg(
-            "path",
-            { d: "M10 3 17 10 10 17 3 10Z", fill: "var(--paper)", stroke: "var(--undecided)", "stroke-width": 2 },
-            mark,
-          ),
-        );
-      }
-    }
+    const { rows, contact } = this.data,
+      rim = name => ({ fill: "var(--paper)", stroke: `var(--${name})`, "stroke-width": 2 });
+    const entries = [
+      ["closed row", ["circle", { cx: 10, cy: 10, r: 7, fill: "var(--closed)" }]],
+      ["open row", ["circle", { cx: 10, cy: 10, r: 6, ...rim("open") }]],
+      ["closed, undecided by the proof", ["path", { d: "M10 2 18 10 10 18 2 10Z", fill: "var(--undecided)" }]],
+      ["open, undecided by the proof", ["path", { d: "M10 3 17 10 10 17 3 10Z", ...rim("undecided") }]],
+    ];
+    const count = contact?.proven?.includes(0) ? 4 : 2;
+    legendOf(this.host, rows?.count ? entries.slice(0, count) : []);
   }
 
-  addControls() {
+  addControls(most) {
     const controls = element("div", this.host, null, "controls"),
       again = () => this.frame && this.show(this.frame);
     const colour = element("label", controls, "colours "),
@@ -315,10 +261,8 @@ class Panel {
       this.quantity = select.value;
       again();
     });
-    this.select = select;
     const slider = element("label", controls, "displacement × ", "slider");
-    this.scale = Object.assign(element("input", slider), { type: "range", min: 0, max: 2, value: 1 });
-    this.scale.setAttribute("aria-label", "scale of the displacement");
+    this.scale = input(slider, "range", { min: 0, max: most, step: "any", value: 1 }, "scale of the displacement");
     const output = element("output", slider, "1");
     const moved = () => {
       output.textContent = shown(Number(this.scale.value), 3);
@@ -330,39 +274,39 @@ class Panel {
       moved();
     });
     const check = (text, value, change) => {
-      const box = Object.assign(element("input", element("label", controls, `${text} `)), {
-        type: "checkbox",
-        checked: value,
-      });
+      const box = input(element("label", controls, `${text} `), "checkbox", { checked: value });
       box.addEventListener("change", () => {
         change(box.checked);
         again();
       });
     };
-    check("mesh", this.view.mesh, on => {
-      this.view.mesh = on;
-    });
-    check("undeformed body", false, on => {
-      this.view.rest = on;
-    });
-    if (this.shape.regions.length > 1)
-      this.shape.regions.forEach((name, region) =>
-        check(name || "first body", true, on => this.view.showRegion(region, on)),
-      );
-    if (!this.shape.flat) this.addSection(controls, again);
-    if (this.data.question.obstacles.some(obstacle => !obstacle.is_body))
-      check("obstacle", true, on => {
-        this.view.obstacles = on;
-      });
-    if (this.data.rows?.count)
-      check("open rows", this.marksOpen, on => {
-        this.marksOpen = on;
-      });
-    if (this.resultants?.length)
-      check("resultants", false, on => {
-        this.showsForces = on;
-      });
+    const toggle = (text, of, key) => check(text, of[key], on => Object.assign(of, { [key]: on }));
+    const { view, data, shape } = this;
+    toggle("mesh", view, "mesh");
+    toggle("undeformed body", view, "rest");
+    if (shape.regions.length > 1)
+      shape.regions.forEach((name, region) => check(name || "first body", true, on => view.showRegion(region, on)));
+    if (!shape.flat) this.addSection(controls, again);
+    if (data.question.obstacles.some(obstacle => !obstacle.is_body)) toggle("obstacle", view, "obstacles");
+    if (data.rows?.count) toggle("open rows", this, "marksOpen");
+    if (this.resultants?.length) toggle("resultants", this, "showsForces");
   }
+}
+
+/** A view of the body of a page in a box, with the obstacles in space. */
+function bodyView(box, data, shape, settings) {
+  const view = new View(box, shape, { table: data.colours.field.map(channels), ...settings });
+  view.mesh = shape.lines.length < MOST_LINES;
+  addPatches(view, data);
+  return view;
+}
+
+/** The corners of a window on a box of a body; in the plane it holds the near part of the obstacles. */
+function windowOf({ flat, size }, obstacles, { low, high }) {
+  const corners = [[...low], [...high]];
+  for (const { approach } of flat ? obstacles : [])
+    for (let k = 0; k < 2; k++) corners[approach[k] < 0 ? 0 : 1][k] += 0.1 * size * approach[k];
+  return corners;
 }
 
 /** The mean distance of neighbouring contact rows, from the extent of them all. */
