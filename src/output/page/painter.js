@@ -5,105 +5,88 @@ const MOST_PAINTED = 60000;
 
 class Painter {
   constructor(canvas, table) {
-    this.canvas = canvas;
-    this.brush = canvas.getContext("2d");
-    this.table = table;
-    this.parts = {};
+    Object.assign(this, { canvas, table, brush: canvas.getContext("2d"), parts: {} });
   }
 
   set(name, part) {
     this.parts[name] = { ...this.parts[name], hidden: false, ...part };
   }
 
-  draw(camera, look) {
+  draw(look) {
     const { brush, canvas } = this;
+    this.look = look;
     brush.clearRect(0, 0, canvas.width, canvas.height);
-    this.faces("body", camera, look.magnification, [0, 0, 0], look, share => this.colour(share, look));
-    this.faces("cap", camera, look.magnification, [0, 0, 0], { ...look, plane: null }, share => this.colour(share, look));
-    if (look.mesh && !look.lit) this.lines("mesh", camera, look.magnification, look);
-    if (look.rest) this.lines("rest", camera, 0, look);
-    for (const { name, colour, shift } of look.patches)
-      this.faces(name, camera, 0, shift, { ...look, plane: null }, () => css(colour, colour[3]));
-    this.points(camera, look);
+    this.faces("body", value => this.colour(value), look.plane);
+    this.faces("cap", value => this.colour(value));
+    if (look.mesh && !look.lit) this.lines("mesh");
+    if (look.rest) this.lines("rest");
+    for (const { name, colour, shift } of look.patches) this.faces(name, () => css(colour, colour[3]), UNCUT, shift);
+    this.marks();
   }
 
-  colour(share, { coloured, range, body }) {
-    return css(coloured ? colourAt(this.table, (share - range[0]) / (range[1] - range[0])) : body);
+  colour(value, { coloured, range, body } = this.look) {
+    return css(coloured ? colourAt(this.table, (value - range[0]) / (range[1] - range[0])) : body);
   }
 
-  placed(part, camera, magnification, shift) {
-    const { places, moved } = part,
-      count = places.length / 3,
-      at = new Float32Array(3 * count);
-    for (let i = 0; i < count; i++) {
-      const p = [0, 1, 2].map(
-        k => places[3 * i + k] + (moved && magnification ? magnification * moved[3 * i + k] : 0) + shift[k],
-      );
-      for (let k = 0; k < 3; k++)
-        at[3 * i + k] = camera[k] * p[0] + camera[4 + k] * p[1] + camera[8 + k] * p[2] + camera[12 + k];
-      at[3 * i] = ((at[3 * i] + 1) / 2) * this.canvas.width;
-      at[3 * i + 1] = ((1 - at[3 * i + 1]) / 2) * this.canvas.height;
-    }
-    return at;
+  /** The places of the vertices of a part in the picture, and their depths. */
+  placed({ places, moved }, shift = [0, 0, 0]) {
+    const { camera, magnification } = this.look,
+      { width, height } = this.canvas,
+      rows = [0, 1, 2].map(row => [0, 4, 8, 12].map(column => camera[column + row]));
+    return Array.from({ length: places.length / 3 }, (_, i) => {
+      const point = shift.map((by, k) => places[3 * i + k] + (moved ? magnification * moved[3 * i + k] : 0) + by),
+        [x, y, depth] = rows.map(row => dot(point, row) + row[3]);
+      return [((x + 1) / 2) * width, ((1 - y) / 2) * height, depth];
+    });
   }
 
-  faces(name, camera, magnification, shift, look, colour) {
+  faces(name, colour, plane = UNCUT, shift = [0, 0, 0]) {
     const part = this.parts[name];
-    if (!part || !part.order || part.hidden) return;
-    const at = this.placed(part, camera, magnification, shift),
-      { order, values } = part,
+    if (!part?.order || part.hidden) return;
+    const at = this.placed(part, shift),
+      { order, values, places } = part,
       count = order.length / 3;
-    const depth = new Float32Array(count),
-      turns = Array.from({ length: count }, (_, i) => i);
-    for (let i = 0; i < count; i++)
-      depth[i] = at[3 * order[3 * i] + 2] + at[3 * order[3 * i + 1] + 2] + at[3 * order[3 * i + 2] + 2];
-    if (look.lit) turns.sort((a, b) => depth[b] - depth[a]);
-    const every = Math.max(1, Math.ceil(count / MOST_PAINTED)),
-      { brush } = this;
-    for (let turn = 0; turn < count; turn += every) {
-      const corners = [0, 1, 2].map(k => order[3 * turns[turn] + k]);
-      if (look.plane && corners.some(c => beyond(part.places, c, look.plane))) continue;
-      const share = values ? corners.reduce((sum, c) => sum + values[c] / 3, 0) : 0;
-      brush.fillStyle = brush.strokeStyle = colour(share);
-      brush.beginPath();
-      corners.forEach((c, k) => (k ? brush.lineTo(at[3 * c], at[3 * c + 1]) : brush.moveTo(at[3 * c], at[3 * c + 1])));
+    const depth = i => at[order[3 * i]][2] + at[order[3 * i + 1]][2] + at[order[3 * i + 2]][2],
+      depths = Array.from({ length: count }, (_, i) => depth(i)),
+      turns = [...depths.keys()];
+    if (this.look.lit) turns.sort((a, b) => depths[b] - depths[a]);
+    const { brush } = this;
+    for (const turn of some(count, MOST_PAINTED)) {
+      const corners = Array.from(order.subarray(3 * turns[turn], 3 * turns[turn] + 3)),
+        triangle = corners.map(corner => at[corner]);
+      if (corners.some(corner => beyond(places, corner, plane))) continue;
+      const value = values ? corners.reduce((sum, corner) => sum + values[corner] / 3, 0) : 0;
+      paintArea(brush, triangle, colour(value));
+      if (name !== "body") continue;
+      brush.strokeStyle = brush.fillStyle;
+      brush.lineWidth = 1;
       brush.closePath();
-      brush.fill();
-      if (name === "body") brush.stroke();
+      brush.stroke();
     }
   }
 
-  lines(name, camera, magnification, look) {
-    const part = this.parts[name];
-    if (!part || !part.order) return;
-    const at = this.placed(part, camera, magnification, [0, 0, 0]),
+  lines(name) {
+    const { order, ...part } = this.parts[name],
+      at = this.placed(part),
       { brush } = this;
-    brush.strokeStyle = css(look.meshColour, 0.35);
+    brush.strokeStyle = css(this.look.meshColour, 0.35);
+    brush.lineWidth = 1;
     brush.beginPath();
-    for (let i = 0; i < part.order.length; i += 2) {
-      brush.moveTo(at[3 * part.order[i]], at[3 * part.order[i] + 1]);
-      brush.lineTo(at[3 * part.order[i + 1]], at[3 * part.order[i + 1] + 1]);
+    for (let i = 0; i < order.length; i += 2) {
+      const [[x, y], [toX, toY]] = [at[order[i]], at[order[i + 1]]];
+      brush.moveTo(x, y);
+      brush.lineTo(toX, toY);
     }
     brush.stroke();
   }
 
-  points(camera, look) {
-    const part = this.parts.marks;
-    if (!part || part.hidden || !part.places) return;
-    const at = this.placed(part, camera, look.magnification, [0, 0, 0]),
-      { brush } = this,
-      size = look.markSize;
-    part.values.forEach((kind, i) => {
-      if (beyond(part.places, i, look.plane)) return;
-      const { closed, open, undecided, paper, held, rigid } = look.marks,
-        solid = kind === 4 ? held : kind === 5 ? rigid : null,
-        radius = (kind === 1 || kind === 3 ? 0.5 : 0.4) * size;
-      brush.fillStyle = css(solid ?? (kind === 1 ? closed : kind === 3 ? undecided : paper));
-      brush.strokeStyle = css(solid ?? (kind >= 2 ? undecided : kind === 1 ? paper : open));
-      brush.beginPath();
-      brush.arc(at[3 * i], at[3 * i + 1], radius, 0, 7);
-      brush.fill();
-      brush.stroke();
+  marks() {
+    const part = this.parts.marks,
+      { plane, size, ink } = this.look;
+    if (!part || part.hidden) return;
+    this.placed(part).forEach((place, i) => {
+      const kind = part.values[i];
+      if (!beyond(part.places, i, plane)) paintMark(this.brush, place, kind, radiusOf(kind, size), ink, true);
     });
   }
 }

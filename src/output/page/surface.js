@@ -1,20 +1,22 @@
 // Draws triangles, lines and points with WebGL2.
 
-const FACES = `#version 300 es
+/** All parts, whose values are shares of a range of colours or, for marks, their kinds. */
+const VERTICES = `#version 300 es
 precision highp float;
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 moved;
 layout(location = 2) in float value;
 uniform mat4 camera;
-uniform float magnification, nearer;
+uniform float magnification, nearer, size;
 uniform vec3 shift, stretch;
+uniform vec4 plane;
 out float share, cut;
 out vec3 at;
-uniform vec4 plane;
 void main() {
   cut = dot(plane.xyz, place) - plane.w;
   vec4 clip = camera * vec4(place + magnification * moved + shift, 1.0);
   gl_Position = vec4(clip.xy, clip.z - nearer, 1.0);
+  gl_PointSize = value == 1.0 || value == 3.0 ? size : 0.8 * size;
   share = value;
   at = clip.xyz * stretch;
 }`;
@@ -43,38 +45,27 @@ void main() {
   drawn = vec4(base * colour.a, colour.a);
 }`;
 
-const MARKS = `#version 300 es
-precision highp float;
-layout(location = 0) in vec3 place;
-layout(location = 1) in vec3 moved;
-layout(location = 2) in float value;
-uniform mat4 camera;
-uniform float magnification, size, nearer;
-uniform vec4 plane;
-flat out int kind;
-flat out float cut;
-void main() {
-  cut = dot(plane.xyz, place) - plane.w;
-  vec4 clip = camera * vec4(place + magnification * moved, 1.0);
-  gl_Position = vec4(clip.xy, clip.z - nearer, 1.0);
-  kind = int(value + 0.5);
-  gl_PointSize = (kind == 1 || kind == 3) ? size : 0.8 * size;
-}`;
+/** Kinds of marks: 0 open, 1 closed, 2 open and undecided, 3 closed and undecided, 4 a support, 5 a rigid face. */
+const [CLOSED, UNDECIDED, CLOSED_UNDECIDED, HELD, RIGID] = [1, 2, 3, 4, 5];
 
-// 0 open, 1 closed, 2 open and undecided, 3 closed and undecided, 4 a support, 5 a rigid face.
+/** The colours of the kinds of marks. */
+const INSIDES = ["paper", "closed", "paper", "undecided", "held", "rigid"],
+  RIMS = ["open", "paper", "undecided", "undecided", "held", "rigid"];
+
+/** A plane that cuts nothing away. */
+const UNCUT = [0, 0, 0, 1e30];
+
 const MARKED = `#version 300 es
 precision highp float;
-flat in int kind;
-flat in float cut;
-uniform vec3 closed, open, undecided, paper, held, rigid;
+in float share, cut;
+uniform vec3 insides[6], rims[6];
 out vec4 drawn;
 void main() {
+  int kind = int(share + 0.5);
   vec2 off = 2.0 * gl_PointCoord - 1.0;
   float away = kind >= 4 ? 0.0 : kind >= 2 ? abs(off.x) + abs(off.y) : length(off);
   if (away > 1.0 || cut > 0.0) discard;
-  vec3 ring = kind == 4 ? held : kind == 5 ? rigid : kind >= 2 ? undecided : (kind == 1 ? paper : open);
-  vec3 inside = kind == 4 ? held : kind == 5 ? rigid : kind == 1 ? closed : (kind == 3 ? undecided : paper);
-  drawn = vec4(away > (kind == 1 ? 0.82 : 0.62) ? ring : inside, 1.0);
+  drawn = vec4(away > (kind == 1 ? 0.82 : 0.62) ? rims[kind] : insides[kind], 1.0);
 }`;
 
 class Surface {
@@ -82,22 +73,18 @@ class Surface {
   constructor(canvas, table) {
     const gl = canvas.getContext("webgl2", { antialias: true, alpha: true, preserveDrawingBuffer: true });
     if (!gl) throw new Error("no WebGL2");
-    this.gl = gl;
-    this.table = table.flat();
-    this.faces = program(gl, FACES, COLOURED);
-    this.marks = program(gl, MARKS, MARKED);
-    this.parts = {};
+    const [faces, marks] = [program(gl, VERTICES, COLOURED), program(gl, VERTICES, MARKED)];
+    Object.assign(this, { gl, table, faces, marks, parts: {} });
   }
 
   /** A part of the picture: vertices with their displacements and values, and the order in which they are drawn. */
   set(name, { places, moved, values, order, hidden }) {
     const { gl } = this,
-      part = this.parts[name] || (this.parts[name] = { buffers: [] });
+      part = (this.parts[name] ??= {
+        array: gl.createVertexArray(),
+        buffers: [0, 1, 2, 3].map(() => gl.createBuffer()),
+      });
     part.hidden = Boolean(hidden);
-    if (!part.array) {
-      part.array = gl.createVertexArray();
-      part.buffers = [0, 1, 2, 3].map(() => gl.createBuffer());
-    }
     gl.bindVertexArray(part.array);
     const put = (index, data, components) => {
       if (!data) return;
@@ -118,8 +105,8 @@ class Surface {
     gl.bindVertexArray(null);
   }
 
-  /** Draws all parts. `look` has the colours, `camera` the matrix. */
-  draw(camera, look) {
+  /** Draws all parts. `look` has the colours and, as `camera`, the matrix. */
+  draw(look) {
     const { gl } = this,
       { canvas } = gl;
     gl.viewport(0, 0, canvas.width, canvas.height);
@@ -129,43 +116,24 @@ class Surface {
     gl.depthFunc(gl.LEQUAL);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    const { camera, stretch, plane, magnification, range, coloured, lit, size } = look,
+      shift = [0, 0, 0],
+      body = { colour: [...look.body, 1], coloured, lit, nearer: 0, shift },
+      lines = { colour: look.meshColour, coloured: 0, lit: 0, nearer: 2e-5, shift };
     gl.useProgram(this.faces.program);
-    this.uniform("faces", {
-      camera,
-      stretch: look.stretch,
-      table: this.table,
-      range: look.range,
-      magnification: look.magnification,
-      plane: look.plane,
-    });
-    const body = {
-      colour: [...look.body, 1],
-      coloured: look.coloured,
-      lit: look.lit,
-      nearer: 0,
-      shift: [0, 0, 0],
-    };
+    this.uniform("faces", { table: this.table, camera, stretch, plane, magnification, range });
     this.drawPart("body", gl.TRIANGLES, body);
-    const lines = { colour: look.meshColour, coloured: 0, lit: 0, nearer: 2e-5, shift: [0, 0, 0] };
     if (look.mesh) this.drawPart("mesh", gl.LINES, lines);
-    const whole = [0, 0, 0, 1e30];
-    this.drawPart("cap", gl.TRIANGLES, { ...body, plane: whole });
-    if (look.rest) this.drawPart("rest", gl.LINES, { ...lines, plane: whole, nearer: 1e-3 });
+    this.uniform("faces", { plane: UNCUT });
+    this.drawPart("cap", gl.TRIANGLES, body);
+    if (look.rest) this.drawPart("rest", gl.LINES, { ...lines, nearer: 1e-3 });
     gl.useProgram(this.marks.program);
-    this.uniform("marks", {
-      camera,
-      magnification: look.magnification,
-      size: look.markSize,
-      nearer: 0.004,
-      plane: look.plane,
-      ...look.marks,
-    });
-    this.drawPart("marks", gl.POINTS, {}, "marks");
+    const marks = { camera, magnification, size, plane, nearer: 0.004, insides: look.insides, rims: look.rims };
+    this.drawPart("marks", gl.POINTS, marks, "marks");
     gl.useProgram(this.faces.program);
     gl.depthMask(false);
-    for (const { name, colour, shift } of look.patches) {
+    for (const { name, colour, shift } of look.patches)
       this.drawPart(name, gl.TRIANGLES, { colour, coloured: 0, lit: 1, nearer: -1e-5, shift });
-    }
     gl.depthMask(true);
   }
 
@@ -187,11 +155,8 @@ class Surface {
       const place = places[name];
       if (!place) continue;
       if (name === "camera") gl.uniformMatrix4fv(place, false, value);
-      else if (name === "table") gl.uniform3fv(place, value);
-      else if (!Array.isArray(value)) gl.uniform1f(place, Number(value));
-      else if (value.length === 2) gl.uniform2fv(place, value);
-      else if (value.length === 3) gl.uniform3fv(place, value);
-      else gl.uniform4fv(place, value);
+      else if (Array.isArray(value[0])) gl.uniform3fv(place, value.flat());
+      else gl[`uniform${value.length ?? 1}fv`](place, [value].flat());
     }
   }
 }

@@ -5,6 +5,10 @@ function clamped(value, low, high) {
   return Math.max(low, Math.min(value, high));
 }
 
+function dot(one, other) {
+  return one.reduce((sum, part, k) => sum + part * other[k], 0);
+}
+
 /** The shape that all views of a page share, from the packed body. */
 function shapeOf(body) {
   const flat = body.dimension < 3,
@@ -12,60 +16,35 @@ function shapeOf(body) {
     count = body.nodes.length;
   const places = new Float32Array(3 * count);
   for (let i = 0; i < count; i++) for (let k = 0; k < width; k++) places[3 * i + k] = body.places[width * i + k];
-  const { faces, edges } = cutCells(body, count);
-  const { regions, surface, solids, singular } = body;
-  return {
-    flat,
-    dimension: body.dimension,
-    count,
-    places,
-    nodes: body.nodes,
-    faces,
-    regions,
-    surface,
-    solids,
-    singular,
-    regionOf: body.region_of,
-    ...linesOf(edges, count),
-    ...boxOf(places),
-  };
+  const { dimension, nodes, regions, surface, solids, singular, region_of: regionOf } = body,
+    { faces, edges } = cutCells(body, count);
+  const own = { dimension, nodes, regions, surface, solids, singular, regionOf };
+  return { flat, count, places, faces, ...own, ...linesOf(edges, count), ...boxOf(places) };
 }
 
 /** Triangles, and the key of every edge of every cell. */
 function cutCells({ cells, corners, mids }, count) {
   const each = corners + mids.length,
     number = cells.length / each;
-  const perCell = mids.length ? 2 * corners - 2 : corners - 2,
-    edgesPerCell = mids.length ? 2 * corners : corners;
-  const faces = new Uint32Array(3 * perCell * number),
-    edges = new Float64Array(edgesPerCell * number);
-  let [face, edge] = [0, 0];
-  const triangle = (a, b, c) => {
-    faces[face++] = a;
-    faces[face++] = b;
-    faces[face++] = c;
-  };
-  const side = (a, b) => {
-    edges[edge++] = a < b ? a * count + b : b * count + a;
-  };
-  const middle = Array.from({ length: corners }, (_, corner) => {
-    const next = (corner + 1) % corners;
-    return mids.findIndex(([a, b]) => (a === corner && b === next) || (a === next && b === corner));
-  });
-  for (let first = 0; first < cells.length; first += each) {
-    const corner = k => cells[first + (k % corners)],
-      mid = k => cells[first + corners + middle[k % corners]];
-    for (let k = 0; k < corners; k++) {
-      if (mids.length) {
-        triangle(mid(k + corners - 1), corner(k), mid(k));
-        side(corner(k), mid(k));
-        side(mid(k), corner(k + 1));
-        if (k > 1) triangle(mid(0), mid(k - 1), mid(k));
-      } else {
-        side(corner(k), corner(k + 1));
-        if (k > 1) triangle(corner(0), corner(k - 1), corner(k));
-      }
-    }
+  // The vertices around a cell, and those of its triangles: around each corner between two middles, and inside.
+  const isBetween = (pair, a, b) => pair.includes(a) && pair.includes(b),
+    middle = k => corners + mids.findIndex(pair => isBetween(pair, k, (k + 1) % corners));
+  const all = Array.from({ length: corners }, (_, k) => k),
+    ring = mids.length ? all.flatMap(k => [k, middle(k)]) : all,
+    inside = mids.length ? all.map(middle) : all;
+  const outer = mids.length ? all.flatMap(k => [middle((k + corners - 1) % corners), k, middle(k)]) : [],
+    triangles = [...outer, ...inside.slice(2).flatMap((vertex, k) => [inside[0], inside[k + 1], vertex])];
+  const faces = new Uint32Array(triangles.length * number),
+    edges = new Float64Array(ring.length * number);
+  for (let cell = 0; cell < number; cell++) {
+    const vertex = k => cells[each * cell + k];
+    triangles.forEach((k, i) => {
+      faces[triangles.length * cell + i] = vertex(k);
+    });
+    ring.forEach((k, i) => {
+      const [a, b] = [vertex(k), vertex(ring[(i + 1) % ring.length])];
+      edges[ring.length * cell + i] = Math.min(a, b) * count + Math.max(a, b);
+    });
   }
   return { faces, edges };
 }
@@ -113,46 +92,32 @@ class View {
       range: [0, 1],
       mesh: true,
       markSize: 9,
-      drawn: 0,
       patches: [],
       obstacles: true,
       hidden: new Set(),
       cut: null,
       rest: false,
     });
-    const canvas = () => host.appendChild(document.createElement("canvas"));
-    this.under = canvas();
+    this.under = element("canvas", host);
     try {
       if (location.hash === "#painter") throw new Error("asked for");
       this.surface = new Surface(this.under, table);
     } catch {
       this.under.remove();
-      this.under = canvas();
+      this.under = element("canvas", host);
       this.surface = new Painter(this.under, table);
     }
-    this.over = canvas();
-    this.over.className = "top";
+    this.over = element("canvas", host, null, "top");
     this.over.tabIndex = 0;
     this.over.setAttribute("role", "img");
     this.over.setAttribute("aria-label", label);
-    this.tip = host.appendChild(document.createElement("div"));
-    this.tip.className = "tip";
-    this.tip.hidden = true;
+    this.tip = tipIn(host);
     this.moved = new Float32Array(3 * shape.count);
-    this.surface.set("body", {
-      places: shape.places,
-      moved: this.moved,
-      values: new Float32Array(shape.count),
-      order: shape.faces,
-    });
-    this.surface.set("mesh", {
-      places: shape.places,
-      moved: this.moved,
-      values: new Float32Array(shape.count),
-      order: shape.lines,
-    });
+    const { places, faces, lines, outline } = shape;
+    this.surface.set("body", { places, moved: this.moved, order: faces });
+    this.surface.set("mesh", { places, moved: this.moved, order: lines });
     // The undeformed body: in space a surface has no outline, and all its lines are drawn.
-    this.surface.set("rest", { places: shape.places, order: shape.outline.length ? shape.outline : shape.lines });
+    this.surface.set("rest", { places, order: outline.length ? outline : lines });
     this.window = [shape.low, shape.high];
     this.home();
     this.listen();
@@ -184,20 +149,13 @@ class View {
 
   /** Fills the section of `cut`: { axis, at, side }, of which the part with side (x - at) <= 0 is shown. */
   section() {
-    if (this.cut) this.surface.set("cap", capOf(this));
-    else this.surface.set("cap", { hidden: true });
+    this.surface.set("cap", this.cut ? capOf(this) : { hidden: true });
   }
 
   /** Contact nodes: vertices and the kind of each mark. */
   setMarks(vertices, kinds) {
-    const places = new Float32Array(3 * vertices.length),
-      moved = new Float32Array(3 * vertices.length);
-    vertices.forEach((vertex, i) => {
-      for (let k = 0; k < 3; k++) {
-        places[3 * i + k] = this.shape.places[3 * vertex + k];
-        moved[3 * i + k] = this.moved[3 * vertex + k];
-      }
-    });
+    const own = list => Float32Array.from(vertices.flatMap(i => [...list.subarray(3 * i, 3 * i + 3)])),
+      [places, moved] = [own(this.shape.places), own(this.moved)];
     this.surface.set("marks", { places, moved, values: Float32Array.from(kinds), hidden: vertices.length === 0 });
     this.redraw();
   }
@@ -221,22 +179,16 @@ class View {
     const width = this.host.clientWidth || 1,
       height = this.host.clientHeight || 1,
       [low, high] = this.window;
-    const middle = low.map((value, k) => (value + high[k]) / 2);
-    const half = [0, 1].map(axis => {
-      const along = this.axes[axis];
-      return (
-        low.reduce((sum, value, k) => sum + (Math.abs(along[k]) * (high[k] - value)) / 2, 0) || this.shape.size / 20
-      );
-    });
-    const room = 0.9;
-    const scale = this.zoom * Math.min((room * width) / (2 * half[0]), (room * height) / (2 * half[1]));
-    return { width, height, middle, scale };
+    const middle = low.map((value, k) => (value + high[k]) / 2),
+      extent = low.map((value, k) => high[k] - value);
+    const [wide, tall] = this.axes.map(axis => dot(axis.map(Math.abs), extent) || this.shape.size / 10);
+    return { width, height, middle, scale: 0.9 * this.zoom * Math.min(width / wide, height / tall) };
   }
 
   /** A point of the body in pixels of CSS from the upper left corner, and its depth. */
   place(point, at = this.measure()) {
-    const away = point.map((value, k) => value - at.middle[k]);
-    const [right, up, near] = this.axes.map(axis => axis.reduce((sum, part, k) => sum + part * away[k], 0));
+    const away = point.map((value, k) => value - at.middle[k]),
+      [right, up, near] = this.axes.map(axis => dot(axis, away));
     return [at.width / 2 + at.scale * (right + this.pan[0]), at.height / 2 - at.scale * (up + this.pan[1]), near];
   }
 
@@ -244,23 +196,22 @@ class View {
     return [0, 1, 2].map(k => this.shape.places[3 * vertex + k] + this.magnification * this.moved[3 * vertex + k]);
   }
 
+  /** A vector of a list that has as many components as the body. */
+  vector(list, i) {
+    const { dimension } = this.shape;
+    return list.subarray(dimension * i, dimension * i + dimension);
+  }
+
   camera() {
     const at = this.measure(),
-      [x, y, z] = this.axes,
-      depth = -0.2 / (this.shape.size || 1);
-    const sx = (2 * at.scale) / at.width,
-      sy = (2 * at.scale) / at.height;
-    const rows = [x.map(part => sx * part), y.map(part => sy * part), z.map(part => depth * part)];
-    const offset = rows.map(row => -row.reduce((sum, part, k) => sum + part * at.middle[k], 0));
-    offset[0] += sx * this.pan[0];
-    offset[1] += sy * this.pan[1];
-    const matrix = new Float32Array(16);
-    for (let k = 0; k < 3; k++) for (let row = 0; row < 3; row++) matrix[4 * k + row] = rows[row][k];
-    offset.forEach((value, row) => {
-      matrix[12 + row] = value;
-    });
-    matrix[15] = 1;
-    return { camera: matrix, stretch: [1 / sx, 1 / sy, 1 / depth] };
+      scales = [(2 * at.scale) / at.width, (2 * at.scale) / at.height, -0.2 / (this.shape.size || 1)];
+    const rows = this.axes.map((axis, row) => axis.map(part => scales[row] * part)),
+      offset = rows.map((row, k) => scales[k] * (this.pan[k] ?? 0) - dot(row, at.middle));
+    const columns = [0, 1, 2].map(k => [...rows.map(row => row[k]), 0]);
+    return {
+      camera: Float32Array.from([...columns.flat(), ...offset, 1]),
+      stretch: scales.map(scale => 1 / scale),
+    };
   }
 
   redraw() {
@@ -282,32 +233,28 @@ class View {
     const style = getComputedStyle(document.documentElement);
     this.ink = name => style.getPropertyValue(`--${name}`).trim();
     const of = name => channels(this.ink(name));
-    const { camera, stretch } = this.camera(),
-      plane = [0, 0, 0, 1e30];
+    const plane = [...UNCUT],
+      isFlat = this.shape.flat;
     if (this.cut) [plane[this.cut.axis], plane[3]] = [this.cut.side, this.cut.side * this.cut.at];
     // Marks as large as their distances would hide the colours of a surface; in the plane they are on its edge.
-    const [share, least] = this.shape.flat ? [0.8, 5] : [0.35, 2.5];
+    const [share, least] = isFlat ? [0.8, 5] : [0.35, 2.5];
     this.mark = Math.min(Math.max(share * (this.spacing ?? Infinity) * this.measure().scale, least), this.markSize);
-    this.surface.draw(camera, {
-      stretch,
+    const { rest, magnification, range, mesh, ink } = this;
+    this.surface.draw({
+      ...this.camera(),
       plane,
-      rest: this.rest,
-      magnification: this.magnification,
+      rest,
+      magnification,
+      range,
+      mesh,
+      ink,
       coloured: this.coloured ? 1 : 0,
-      range: this.range,
-      lit: this.shape.flat ? 0 : 1,
+      lit: isFlat ? 0 : 1,
       body: of("body"),
-      mesh: this.mesh,
-      meshColour: [...of("mesh"), this.shape.flat ? 0.28 : 0.2],
-      markSize: this.mark * dense,
-      marks: {
-        closed: of("closed"),
-        open: of("open"),
-        undecided: of("undecided"),
-        paper: of("paper"),
-        held: of("held"),
-        rigid: of("rigid"),
-      },
+      meshColour: [...of("mesh"), isFlat ? 0.28 : 0.2],
+      size: this.mark * dense,
+      insides: INSIDES.map(of),
+      rims: RIMS.map(of),
       patches: this.obstacles ? this.patches.map(patch => ({ ...patch, colour: [...of("solid"), 0.4] })) : [],
     });
     const brush = this.over.getContext("2d");
@@ -320,12 +267,12 @@ class View {
     brush.font = "12px system-ui, sans-serif";
     brush.lineJoin = brush.lineCap = "round";
     this.paint(this, brush);
-    this.drawn += 1;
   }
 
   listen() {
-    const { over } = this,
-      down = new Map();
+    const { over, tip } = this,
+      down = new Map(),
+      hide = () => Object.assign(tip, { hidden: true });
     let apart = 0;
     over.addEventListener("pointerdown", event => {
       over.setPointerCapture(event.pointerId);
@@ -345,7 +292,7 @@ class View {
         this.slide(dx / 2, dy / 2);
       } else if (this.shape.flat || event.shiftKey || event.buttons === 2) this.slide(dx, dy);
       else this.turn(dx, dy);
-      this.tip.hidden = true;
+      hide();
     });
     const up = event => {
       down.delete(event.pointerId);
@@ -356,9 +303,7 @@ class View {
       this.ask(event.offsetX, event.offsetY);
     });
     over.addEventListener("pointercancel", up);
-    over.addEventListener("pointerleave", () => {
-      this.tip.hidden = true;
-    });
+    over.addEventListener("pointerleave", hide);
     over.addEventListener("contextmenu", event => event.preventDefault());
     // The wheel scrolls the page unless the view has the focus.
     over.addEventListener(
@@ -401,7 +346,7 @@ class View {
 
   closer(factor, x, y) {
     const before = this.measure(),
-      next = Math.min(Math.max(this.zoom * factor, 0.2), 500);
+      next = clamped(this.zoom * factor, 0.2, 500);
     const share = (1 - this.zoom / next) / before.scale;
     if (x !== undefined)
       this.pan = [this.pan[0] - share * (x - before.width / 2), this.pan[1] + share * (y - before.height / 2)];
@@ -424,12 +369,11 @@ class View {
     }
     this.tip.hidden = best < 0;
     if (best < 0) return;
-    this.tip.textContent = this.asked(best);
     const [px, py] = this.place(this.vertex(best), at);
-    const width = this.tip.offsetWidth,
-      height = this.tip.offsetHeight;
-    this.tip.style.left = `${Math.max(4, Math.min(px + 12, at.width - width - 4))}px`;
-    this.tip.style.top = `${py + 14 + height > at.height ? Math.max(4, py - height - 10) : py + 14}px`;
+    tell(this.tip, this.asked(best), (width, height) => [
+      clamped(px + 12, 4, at.width - width - 4),
+      py + 14 + height > at.height ? Math.max(4, py - height - 10) : py + 14,
+    ]);
   }
 }
 
@@ -438,20 +382,20 @@ function capOf({ shape, moved, values, cut: { axis, at }, hidden }) {
   const { places, solids, regionOf } = shape,
     cap = { places: [], moved: [], values: [], order: [] },
     height = vertex => places[3 * vertex + axis] - at;
-  const between = (a, b) => {
-    const share = height(a) / (height(a) - height(b)),
-      mix = (of, i, j) => of[i] * (1 - share) + of[j] * share;
+  const cut = (a, b) => {
+    const share = height(a) / (height(a) - height(b));
     for (let k = 0; k < 3; k++) {
-      cap.places.push(mix(places, 3 * a + k, 3 * b + k));
-      cap.moved.push(mix(moved, 3 * a + k, 3 * b + k));
+      cap.places.push(between(places[3 * a + k], places[3 * b + k], share));
+      cap.moved.push(between(moved[3 * a + k], moved[3 * b + k], share));
     }
-    return cap.values.push(mix(values, a, b)) - 1;
+    return cap.values.push(between(values[a], values[b], share)) - 1;
   };
   for (let i = 0; i < solids.length; i += 4) {
     const corners = solids.subarray(i, i + 4),
-      above = corners.filter(vertex => height(vertex) > 0);
+      above = corners.filter(vertex => height(vertex) > 0),
+      below = corners.filter(vertex => height(vertex) <= 0);
     if (above.length % 4 === 0 || hidden.has(regionOf[corners[0]])) continue;
-    const [a, b, c, d] = ring(above, corners.filter(vertex => height(vertex) <= 0)).map(ends => between(...ends));
+    const [a, b, c, d] = ring(above, below).map(ends => cut(...ends));
     cap.order.push(a, b, c);
     if (d !== undefined) cap.order.push(a, c, d);
   }
