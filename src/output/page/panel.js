@@ -10,7 +10,7 @@ const MANY_MARKS = 300;
 const MOST_LINES = 200000;
 
 /** Displacement (three a vertex), stress and fields between two states. */
-function mixed(data, shape, [lower, upper, share]) {
+function mixed(shape, [lower, upper, share]) {
   const { dimension, count } = shape,
     moved = new Float32Array(3 * count);
   const [a, b] = [lower.displacement, upper.displacement];
@@ -77,7 +77,7 @@ class Panel {
   fit() {
     const { shape, data } = this;
     const boxes = this.frames.map(({ states }) => {
-      const { moved } = mixed(data, shape, states),
+      const { moved } = mixed(shape, states),
         ends = rangeOf(moved).map(Math.abs);
       return { ...boxOf(shape.places.map((place, i) => place + moved[i])), largest: Math.max(...ends) };
     });
@@ -92,7 +92,7 @@ class Panel {
     if (!this.ranges[quantity]) {
       const ranges = of =>
         this.frames.map(frame => {
-          const values = valuesOf(of, this.shape, mixed(this.data, this.shape, frame.states), frame, this.data);
+          const values = valuesOf(of, this.shape, mixed(this.shape, frame.states), frame, this.data);
           // The stress under a point load has no limit.
           const skips = this.data.fields.some(({ name }) => name === of);
           return rangeOf(skips ? values.filter((_, vertex) => !this.shape.singular[vertex]) : values);
@@ -109,7 +109,7 @@ class Panel {
 
   show(frame) {
     this.frame = frame;
-    this.field = mixed(this.data, this.shape, frame.states);
+    this.field = mixed(this.shape, frame.states);
     const range = this.range(this.quantity),
       values = valuesOf(this.quantity, this.shape, this.field, frame, this.data);
     Object.assign(this.view, { coloured: this.quantity !== "none", range, magnification: Number(this.scale.value) });
