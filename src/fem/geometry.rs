@@ -1,5 +1,8 @@
 //! Vectors in space, `[x, y, z]`, with z = 0 in the plane; symmetric tensors; edges, and the cells around points.
 
+/// The unit vectors along x, y and z.
+pub(crate) const COORDINATES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
 /// The scalar product.
 #[inline]
 pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

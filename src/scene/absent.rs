@@ -2,8 +2,8 @@
 
 /// A thing that is not modelled.
 struct Absent {
-    /// Its names in lower case, without spaces, hyphens and underscores.
-    names: &'static [&'static str],
+    /// Its names in lower case, without spaces, hyphens and underscores, one space apart.
+    names: &'static str,
     /// What is done instead, and what to take.
     instead: &'static str,
 }
@@ -11,66 +11,38 @@ struct Absent {
 /// `docs/absent.md` has a row for each.
 const ABSENT: [Absent; 7] = [
     Absent {
-        names: &["mu"],
+        names: "mu",
         instead: "friction is not modelled, every contact is frictionless, and elastic constants are `young` and `poisson`: leave the key \
                   out, or take CalculiX or code_aster for Coulomb friction",
     },
     Absent {
-        names: &["friction", "coulomb", "frictioncoefficient", "coefficientoffriction", "stickslip"],
+        names: "friction coulomb frictioncoefficient coefficientoffriction stickslip",
         instead: "friction is not modelled, every contact is frictionless: leave the key out, or take CalculiX or code_aster for Coulomb \
                   friction",
     },
     Absent {
-        names: &[
-            "contactstiffness",
-            "penaltystiffness",
-            "penalty",
-            "normalstiffness",
-            "overclosure",
-            "pressureoverclosure",
-        ],
+        names: "contactstiffness penaltystiffness penalty normalstiffness overclosure pressureoverclosure",
         instead: "a contact stiffness is not needed, because the conditions of contact hold without one: leave the key out; `compare` \
                   shows the overlap that a penalty would leave",
     },
     Absent {
-        names: &["largesliding", "finitesliding", "sliding", "smallsliding"],
+        names: "largesliding finitesliding sliding smallsliding",
         instead: "large sliding is not modelled, each node keeps its row: leave the key out if the body slides by less than a facet, or \
                   take CalculiX or code_aster",
     },
     Absent {
-        names: &[
-            "nlgeom",
-            "largedisplacement",
-            "largedisplacements",
-            "largedeformation",
-            "largedeformations",
-            "largerotation",
-            "largerotations",
-            "largestrain",
-            "largestrains",
-            "finitestrain",
-            "geometricnonlinearity",
-        ],
+        names: "nlgeom largedisplacement largedisplacements largedeformation largedeformations largerotation \
+                largerotations largestrain largestrains finitestrain geometricnonlinearity",
         instead: "large displacements are not modelled, strains are linear in the displacement: leave the key out if strains and \
                   rotations stay below some percent, or take CalculiX or code_aster",
     },
     Absent {
-        names: &[
-            "plastic",
-            "plasticity",
-            "yield",
-            "yieldstress",
-            "yieldstrength",
-            "hardening",
-            "hyperelastic",
-            "mooneyrivlin",
-            "neohookean",
-        ],
+        names: "plastic plasticity yield yieldstress yieldstrength hardening hyperelastic mooneyrivlin neohookean",
         instead: "plasticity and hyperelasticity are not modelled, every material is linear elastic: compare the stress of the answer \
                   with the yield stress, or take CalculiX or code_aster",
     },
     Absent {
-        names: &["adhesion", "cohesion", "cohesive", "glue", "tie", "tied", "bonded"],
+        names: "adhesion cohesion cohesive glue tie tied bonded",
         instead: "adhesion is not modelled, a contact only presses: join tied bodies in one mesh with `materials`, or take code_aster for \
                   cohesive zones",
     },
@@ -79,7 +51,7 @@ const ABSENT: [Absent; 7] = [
 /// The sentence about a thing that is not modelled, if it has this name in other programs.
 pub(crate) fn absent(name: &str) -> Option<&'static str> {
     let plain: String = name.chars().filter(|c| !" -_".contains(*c)).flat_map(char::to_lowercase).collect();
-    ABSENT.iter().find(|absent| absent.names.contains(&plain.as_str())).map(|absent| absent.instead)
+    ABSENT.iter().find(|absent| absent.names.split(' ').any(|name| name == plain)).map(|absent| absent.instead)
 }
 
 /// The sentence about a text that is an input deck of Abaqus or CalculiX, or a mesh of Gmsh, instead of a scene.

@@ -1,13 +1,13 @@
 //! Supports of a scene, at the nodes.
 
 use super::entry::{boundary, finite, node_at, point, vector, wrong};
-use super::held::{COORDINATES, Component, Held, Holder, unit_normal};
+use super::held::{Component, Held, Holder, unit_normal};
 use super::profile::Profile;
 use super::schema::{Place, Scene, SupportSpec};
 use crate::error::Error;
 use crate::fem::assembly::node_normals;
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::dot;
+use crate::fem::geometry::{COORDINATES, dot};
 
 /// Radii below this times the body's size lie on the axis of revolution.
 const ON_THE_AXIS: f64 = 1e-12;

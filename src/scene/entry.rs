@@ -1,7 +1,7 @@
 //! Entries of a scene: their checks, and their form in messages.
 
 use crate::error::{Error, nearly};
-use crate::fem::geometry::distance;
+use crate::fem::geometry::{distance, unit};
 use crate::fem::mesh::{Boundary, Mesh};
 
 /// Tolerance, in units of the body's size, for a point on a node and for a table that reaches a candidate: above the rounding of written
@@ -22,6 +22,15 @@ pub(crate) fn refused(code: &'static str, path: impl Into<String>, message: Stri
 
 pub(super) fn finite(path: impl Into<String>, value: f64) -> Result<(), Error> {
     if value.is_finite() { Ok(()) } else { Err(wrong(path, format!("{value} is not finite"))) }
+}
+
+pub(super) fn positive(path: &str, value: f64) -> Result<f64, Error> {
+    finite(path, value)?;
+    if value > 0.0 {
+        Ok(value)
+    } else {
+        Err(wrong(path, format!("{} is not allowed: it must be positive", number(value))))
+    }
 }
 
 pub(super) fn finite_pair(path: &str, pair: [f64; 2]) -> Result<(), Error> {
@@ -82,6 +91,15 @@ pub(super) fn vector(path: &str, entries: &[f64], dimension: usize) -> Result<[f
         *place = entry;
     }
     Ok(vector)
+}
+
+/// The same, of unit length.
+pub(super) fn direction(path: &str, entries: &[f64], dimension: usize) -> Result<[f64; 3], Error> {
+    let direction = unit(vector(path, entries, dimension)?);
+    if direction == [0.0; 3] {
+        return Err(wrong(path, "the vector is zero and has no direction; it needs a length"));
+    }
+    Ok(direction)
 }
 
 /// A setting that a lower module refused, with its place in the scene.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::entry::{number, point, wrong};
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, Frame, perpendicular};
-use crate::fem::geometry::dot;
+use crate::fem::geometry::{COORDINATES, dot};
 use crate::fem::mesh::Mesh;
 
 /// A normal depends on the earlier ones if the sine of its angle to their span is below this: the rounding of written components.
@@ -16,8 +16,6 @@ const AGREEING: f64 = 1e-9;
 
 /// A component of a unit normal below this is rounding.
 const NO_COMPONENT: f64 = 1e-14;
-
-pub(super) const COORDINATES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// The source of a prescribed component.
 #[derive(Clone, Copy, Debug, PartialEq)]

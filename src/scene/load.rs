@@ -1,6 +1,6 @@
 //! Loads of a scene, at the nodes.
 
-use super::entry::{COORDINATE_ROUNDING, boundary, finite, node_at, vector, wrong};
+use super::entry::{COORDINATE_ROUNDING, boundary, direction, finite, node_at, vector, wrong};
 use super::profile::Profile;
 use super::schema::load::{CentrifugalSpec, ForceSpec, LoadSpec, MomentSpec, PressureSpec, TractionSpec};
 use super::schema::profile::ProfileSpec;
@@ -11,7 +11,6 @@ use crate::fem::assembly::{
     tributary_areas,
 };
 use crate::fem::body::{ElasticBody, Region};
-use crate::fem::geometry::unit;
 use crate::fem::mesh::Boundary;
 
 impl Scene {
@@ -175,7 +174,7 @@ impl PlacedLoad<'_> {
         finite(self.at("omega"), spec.omega)?;
         let given = spec.axis.as_ref().filter(|_| self.model == ModelSpec::Space);
         let axis = match (self.model, given) {
-            (ModelSpec::Space, Some(axis)) => unit(self.vector("axis", axis)?),
+            (ModelSpec::Space, Some(axis)) => direction(&self.at("axis"), axis, self.body.dimension())?,
             (ModelSpec::Space, None) => return Err(wrong(&*self.path, "in space it needs an `axis`; give it")),
             (model, _) if spec.axis.is_some() => {
                 let message = format!("the model `{}` has one axis of rotation; leave it out", model.name());
@@ -184,9 +183,6 @@ impl PlacedLoad<'_> {
             (ModelSpec::Axisymmetric, _) => [0.0, 1.0, 0.0],
             _ => [0.0, 0.0, 1.0],
         };
-        if axis == [0.0; 3] {
-            return Err(wrong(self.at("axis"), "the vector is zero and has no direction; it needs a length"));
-        }
         let point = match &spec.point {
             Some(_) if self.model == ModelSpec::Axisymmetric => {
                 return Err(wrong(self.at("point"), "the axis of an axisymmetric model is x = 0; leave the point out"));

@@ -4,6 +4,7 @@ use super::Model;
 use super::loads_in_time::NodalLoads;
 use crate::error::Error;
 use crate::fem::assembly::{mass_columns, stiffness_columns};
+use crate::fem::geometry::COORDINATES;
 use crate::motion::Balance;
 use crate::qp::linear::SparseMatrix;
 
@@ -43,6 +44,7 @@ impl MovingSupports {
         let is_held = |node: usize| (dimension * node..dimension * (node + 1)).any(|dof| dofs.number(dof).is_none());
         let count = if model.parts().supports > 0 { model.mesh().nodes().len() } else { 0 };
         let nodes: Vec<usize> = (0..count).filter(|&node| is_held(node)).collect();
+        let along_axis = |axis: usize, length: f64| COORDINATES[axis].map(|part| length * part);
         let mut holding = vec![0.0; dimension * nodes.len()];
         let (mut elastic, mut inertia): (Effects, Effects) = (Vec::new(), Vec::new());
         for (row, force, value) in stiffness_columns(body, &nodes)?.triplets() {
@@ -105,11 +107,4 @@ impl MovingSupports {
             [0, 1, 2].map(|axis| part(axis).unwrap_or(0.0))
         }
     }
-}
-
-/// The vector of the given length along an axis.
-fn along_axis(axis: usize, length: f64) -> [f64; 3] {
-    let mut vector = [0.0; 3];
-    vector[axis] = length;
-    vector
 }

@@ -1,12 +1,12 @@
 //! Parts of boundaries: facets chosen by their position and their normal.
 
-use super::entry::{PLACE_TOLERANCE, boundary, finite, number, point, vector, wrong};
+use super::entry::{PLACE_TOLERANCE, boundary, direction, number, point, positive, vector, wrong};
 use super::schema::part::PartBoxSpec;
 use super::schema::{PartSpec, Scene};
 use crate::error::Error;
 use crate::fem::assembly::facet_centres;
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::{cross, distance, dot, length, unit};
+use crate::fem::geometry::{cross, distance, dot, length};
 use crate::fem::mesh::Boundary;
 
 /// Deviations of normals beyond the given angle by less than this, in degrees, are rounding of coordinates.
@@ -115,19 +115,10 @@ impl Region {
         }
         if let Some(sphere) = &spec.sphere {
             let centre = vector(&format!("{path}.sphere.centre"), &sphere.centre, dimension)?;
-            finite(format!("{path}.sphere.radius"), sphere.radius)?;
-            if sphere.radius <= 0.0 {
-                let message = format!("{} is not allowed: it must be positive", number(sphere.radius));
-                return Err(wrong(format!("{path}.sphere.radius"), message));
-            }
-            region.sphere = Some((centre, sphere.radius));
+            region.sphere = Some((centre, positive(&format!("{path}.sphere.radius"), sphere.radius)?));
         }
         if let Some(normal) = &spec.normal {
-            let field = format!("{path}.normal.direction");
-            let direction = unit(vector(&field, &normal.direction, dimension)?);
-            if direction == [0.0; 3] {
-                return Err(wrong(field, "the vector is zero and has no direction; it needs a length"));
-            }
+            let direction = direction(&format!("{path}.normal.direction"), &normal.direction, dimension)?;
             if !(0.0..=180.0).contains(&normal.within) {
                 let message = format!("{} is not allowed: it must be from 0 to 180 degrees", number(normal.within));
                 return Err(wrong(format!("{path}.normal.within"), message));

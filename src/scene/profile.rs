@@ -1,10 +1,10 @@
 //! Factors over space: the change of loads and prescribed displacements along a direction.
 
-use super::entry::{table, vector, wrong};
+use super::entry::{direction, table};
 use super::schema::profile::ProfileSpec;
 use crate::error::Error;
 use crate::fem::assembly::Kinks;
-use crate::fem::geometry::{dot, unit};
+use crate::fem::geometry::dot;
 use crate::motion::between;
 
 /// A factor that depends on the place, checked.
@@ -23,11 +23,7 @@ impl Profile {
     /// # Errors
     /// [`Error::Scene`] for an invalid direction, and for a table that does not increase.
     pub fn of(spec: &ProfileSpec, path: &str, dimension: usize) -> Result<Self, Error> {
-        let field = format!("{path}.along");
-        let along = unit(vector(&field, &spec.along, dimension)?);
-        if along == [0.0; 3] {
-            return Err(wrong(field, "the vector is zero and has no direction; it needs a length"));
-        }
+        let along = direction(&format!("{path}.along"), &spec.along, dimension)?;
         table(path, ("places", &spec.places), &spec.factors)?;
         let points = spec.places.iter().copied().zip(spec.factors.iter().copied()).collect();
         Ok(Profile { along, places: spec.places.clone(), points })

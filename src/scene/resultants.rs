@@ -63,24 +63,23 @@ pub struct FaceMotion {
 /// The sum of forces at points.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sum {
-    at: Vec<[f64; 3]>,
-    forces: Vec<[f64; 3]>,
+    /// Each force with its point.
+    forces: Vec<([f64; 3], [f64; 3])>,
 }
 
 impl Sum {
     pub fn add(&mut self, at: [f64; 3], force: [f64; 3]) {
         if force != [0.0; 3] {
-            self.at.push(at);
-            self.forces.push(force);
+            self.forces.push((at, force));
         }
     }
 
     pub fn force(&self) -> [f64; 3] {
-        [0, 1, 2].map(|axis| self.forces.iter().fold(0.0, |sum, force| sum + force[axis]))
+        [0, 1, 2].map(|axis| self.forces.iter().fold(0.0, |sum, (_, force)| sum + force[axis]))
     }
 
     fn moment(&self) -> [f64; 3] {
-        let moments = || self.at.iter().zip(&self.forces).map(|(&at, &force)| cross(at, force));
+        let moments = || self.forces.iter().map(|&(at, force)| cross(at, force));
         [0, 1, 2].map(|axis| moments().fold(0.0, |sum, moment| sum + moment[axis]))
     }
 
@@ -88,14 +87,14 @@ impl Sum {
     /// an axisymmetric model they have no moments.
     pub fn centre(&self, formulation: &Formulation) -> Option<[f64; 3]> {
         let (force, moment) = (self.force(), self.moment());
-        let magnitudes = self.forces.iter().fold(0.0, |sum, &force| sum + length(force));
+        let magnitudes = self.forces.iter().fold(0.0, |sum, &(_, force)| sum + length(force));
         let square = dot(force, force);
         if square.sqrt() <= CANCELS * magnitudes {
             return None;
         }
         // Relative to the first point, so that a body far from the origin loses no digits.
-        let first = self.at.first().copied()?;
-        let weighted = self.at.iter().zip(&self.forces).fold([0.0; 3], |sum, (&at, &of)| {
+        let &(first, _) = self.forces.first()?;
+        let weighted = self.forces.iter().fold([0.0; 3], |sum, &(at, of)| {
             let (away, weight) = (minus(at, first), dot(of, force) / square);
             [0, 1, 2].map(|axis| sum[axis] + weight * away[axis])
         });
@@ -210,15 +209,20 @@ impl Model {
         self.parts().symmetry.images(at, force, across).into_iter().for_each(|(at, force)| sum.add(at, force));
     }
 
+    /// The sum of nodal forces (length `dim * n_nodes`) on the whole body.
+    fn sum_of(&self, forces: &[f64]) -> Sum {
+        let mut sum = Sum::default();
+        for (node, &at) in self.mesh().nodes().iter().enumerate() {
+            self.add_images(&mut sum, at, self.force_at(forces, node), |_| true);
+        }
+        sum
+    }
+
     /// The resultants of the springs on the body, in the order of the scene, at a nodal displacement.
     pub(super) fn spring_resultants(&self, displacement: &[f64]) -> Vec<Resultant> {
-        let nodes = self.mesh().nodes();
         let of_springs = |(index, springs): (usize, &Springs)| {
             let forces = springs.forces(displacement, self.body().dimension());
-            let mut sum = Sum::default();
-            (0..nodes.len())
-                .for_each(|node| self.add_images(&mut sum, nodes[node], self.force_at(&forces, node), |_| true));
-            sum.resultant(self, format!("springs[{index}]"))
+            self.sum_of(&forces).resultant(self, format!("springs[{index}]"))
         };
         self.parts().springs.iter().enumerate().map(of_springs).collect()
     }
@@ -230,7 +234,7 @@ impl Model {
     pub(super) fn force_of_faces(&self, forces: &[f64], keeps: impl Fn(usize) -> bool) -> Result<Vec<f64>, Error> {
         let faces = self.parts().rigid_faces.iter().enumerate().filter(|(index, _)| keeps(*index));
         let mut on_face = vec![false; self.mesh().nodes().len()];
-        faces.flat_map(|(_, face)| face.nodes()).for_each(|&node| on_face[node] = true);
+        faces.flat_map(|(_, face)| &face.nodes).for_each(|&node| on_face[node] = true);
         let dimension = self.body().dimension();
         self.dofs().part(forces, |dof| on_face[dof / dimension])
     }
@@ -240,13 +244,9 @@ impl Model {
     /// # Errors
     /// As [`Model::force_of_faces`].
     pub(super) fn face_resultants(&self, forces: &[f64], unknowns: &[f64]) -> Result<Vec<Resultant>, Error> {
-        let nodes = self.mesh().nodes();
         let mut all = Vec::with_capacity(self.parts().rigid_faces.len());
         for (index, face) in self.parts().rigid_faces.iter().enumerate() {
-            let own = self.force_of_faces(forces, |other| other == index)?;
-            let mut sum = Sum::default();
-            (0..nodes.len())
-                .for_each(|node| self.add_images(&mut sum, nodes[node], self.force_at(&own, node), |_| true));
+            let sum = self.sum_of(&self.force_of_faces(forces, |other| other == index)?);
             let found = self.parts().unknowns.motions(unknowns, index);
             let amount = |(motion, unknown): (&Motion, Option<f64>)| {
                 let by_unknown = unknown.map(|unknown| unknown * face.unit(motion));
@@ -257,7 +257,7 @@ impl Model {
                 moved.iter().filter(|entry| kinds.contains(&entry.0)).map(|entry| entry.1).collect::<Vec<f64>>()
             };
             let motion = FaceMotion { displacement: of(0..3), rotation: of(3..6) };
-            let on = self.name_of_body(face.nodes().first().copied());
+            let on = self.name_of_body(face.nodes.first().copied());
             all.push(Resultant { on, motion: Some(motion), ..sum.resultant(self, format!("rigid-faces[{index}]")) });
         }
         Ok(all)
@@ -265,10 +265,7 @@ impl Model {
 
     /// The resultant of the loads, if there are any.
     pub(super) fn load_resultant(&self) -> Option<Resultant> {
-        let nodes = self.mesh().nodes();
-        let mut loads = Sum::default();
-        let force = |node: usize| self.force_at(self.nodal_load(), node);
-        (0..nodes.len()).for_each(|node| self.add_images(&mut loads, nodes[node], force(node), |_| true));
+        let loads = self.sum_of(self.nodal_load());
         (!loads.forces.is_empty()).then(|| loads.resultant(self, "loads".into()))
     }
 

@@ -8,7 +8,7 @@ use super::schema::{RigidFaceSpec, Scene};
 use crate::error::Error;
 use crate::fem::assembly::tributary_areas;
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::{cross, distance, dot, minus};
+use crate::fem::geometry::{COORDINATES, cross, distance, dot, minus};
 
 /// A part of a motion below this, relative to the size of the face, is rounding.
 const NO_MOTION: f64 = 1e-12;
@@ -19,7 +19,8 @@ const NAMES: [&str; 6] = ["x", "y", "z", "rotation.x", "rotation.y", "rotation.z
 /// A boundary that moves as a rigid plate.
 #[derive(Clone, Debug)]
 pub(super) struct RigidFace {
-    nodes: Vec<usize>,
+    /// The nodes that move with the face.
+    pub nodes: Vec<usize>,
     pub centre: [f64; 3],
     /// The largest distance of a node from the centre: a rotation is measured by the displacement at that distance.
     reach: f64,
@@ -96,11 +97,6 @@ impl RigidFace {
         Ok(RigidFace { nodes, centre, reach: if reach > 0.0 { reach } else { 1.0 }, motions })
     }
 
-    /// The nodes that move with the face.
-    pub fn nodes(&self) -> &[usize] {
-        &self.nodes
-    }
-
     /// The unit of a motion: one in length, or the rotation with a displacement of one at the farthest node.
     pub fn unit(&self, motion: &Motion) -> f64 {
         if motion.kind < 3 { 1.0 } else { 1.0 / self.reach }
@@ -108,8 +104,7 @@ impl RigidFace {
 
     /// The displacement of a place by a motion of one, in length or in radians.
     pub fn displacement(&self, motion: &Motion, at: [f64; 3]) -> [f64; 3] {
-        let mut axis = [0.0; 3];
-        axis[motion.kind % 3] = 1.0;
+        let axis = COORDINATES[motion.kind % 3];
         if motion.kind < 3 { axis } else { cross(axis, minus(at, self.centre)) }
     }
 

@@ -44,7 +44,7 @@ impl Model {
             }
         }
         for face in &parts.rigid_faces {
-            face.nodes().iter().for_each(|&node| hold(node, Hold::RigidFace, Vec::new()));
+            face.nodes.iter().for_each(|&node| hold(node, Hold::RigidFace, Vec::new()));
         }
         nodes
     }

@@ -66,27 +66,20 @@ impl Scene {
 fn coincident_nodes(body: &ElasticBody) -> Option<Warning> {
     let nodes = body.mesh().nodes();
     let cell = COORDINATE_ROUNDING * body.mesh().size();
-    let mut found: Option<Warning> = None;
+    let mut pairs = Vec::new();
     for region in body.regions() {
         let mut at: BTreeMap<[i64; 3], usize> = BTreeMap::new();
         for node in region.nodes() {
             let key = nodes[node].map(|coordinate| (coordinate / cell).round() as i64);
-            let Some(&first) = at.get(&key) else {
-                at.insert(key, node);
-                continue;
-            };
-            found = Some(match found {
-                Some(Warning::CoincidentNodes { first, second, at, count }) => {
-                    Warning::CoincidentNodes { first, second, at, count: count + 1 }
-                }
-                _ => {
-                    let at = nodes[node][..body.dimension()].to_vec();
-                    Warning::CoincidentNodes { first, second: node, at, count: 1 }
-                }
-            });
+            let first = *at.entry(key).or_insert(node);
+            if first != node {
+                pairs.push((first, node));
+            }
         }
     }
-    found
+    let &(first, second) = pairs.first()?;
+    let at = nodes[second][..body.dimension()].to_vec();
+    Some(Warning::CoincidentNodes { first, second, at, count: pairs.len() })
 }
 
 /// Obstacles with candidates that are mostly held by supports, and obstacles with the same rows as others.

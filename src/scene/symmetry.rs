@@ -1,11 +1,11 @@
 //! Planes of symmetry of a scene: their positions, their effect on nodes, and the whole body of which the model is a part.
 
 use super::entry::{COORDINATE_ROUNDING, number, wrong};
-use super::held::{COORDINATES, Component, Held, Holder};
+use super::held::{Component, Held, Holder};
 use super::schema::{ModelSpec, Scene, SymmetryPlane};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::unit;
+use crate::fem::geometry::{COORDINATES, unit};
 
 /// The planes of symmetry of a model.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -213,13 +213,10 @@ impl Unknowns {
     ) -> impl Iterator<Item = Meaning> + 'a {
         let of_node = move |dof: usize| {
             let (node, axis) = (dof / dimension, dof % dimension);
-            let mut along = [0.0; 3];
-            along[axis] = 1.0;
-            let direction = dofs.frame(node).map_or(along, |frame| frame.axes()[axis]);
             let quantity = if dofs.basis().ends(node).is_some() { "coefficient" } else { "displacement" };
-            Meaning::Node { node, direction, quantity }
+            Meaning::Node { node, direction: dofs.axes(node)[axis], quantity }
         };
-        let tied: HashSet<usize> = faces.iter().flat_map(RigidFace::nodes).copied().collect();
+        let tied: HashSet<usize> = faces.iter().flat_map(|face| face.nodes.iter().copied()).collect();
         let own = dofs.free().iter().filter(move |&dof| !tied.contains(&(dof / dimension)));
         let of_faces = faces.iter().enumerate().flat_map(|(index, face)| {
             let free = face.motions.iter().filter(|motion| motion.prescribed.is_none());
@@ -245,7 +242,7 @@ impl Ties {
     fn of(nodes: &[[f64; 3]], dofs: &DofMap, dimension: usize, faces: &[RigidFace]) -> Result<Self, Error> {
         let mut face_of = vec![None; nodes.len()];
         for (index, face) in faces.iter().enumerate() {
-            face.nodes().iter().for_each(|&node| face_of[node] = Some(index));
+            face.nodes.iter().for_each(|&node| face_of[node] = Some(index));
         }
         let own = dofs.free().iter().filter(|&&dof| face_of[dof / dimension].is_none()).count();
         let (mut unknowns, mut load) = (Vec::with_capacity(faces.len()), vec![0.0; own]);

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use super::{Frame, PositiveBasis};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
+use crate::fem::geometry::COORDINATES;
 use crate::fem::mesh::Mesh;
 
 /// Takes the place of the number at a supported dof.
@@ -174,6 +175,11 @@ impl DofMap {
     #[inline]
     pub fn frame(&self, node: usize) -> Option<&Frame> {
         self.frames.get(&node)
+    }
+
+    /// The directions of the dofs of `node`: the axes of its frame, or else of the coordinates.
+    pub(crate) fn axes(&self, node: usize) -> &[[f64; 3]; 3] {
+        self.frame(node).map_or(&COORDINATES, Frame::axes)
     }
 
     /// The displacement of `node` along `vector`, which has one entry per coordinate and no unit, in terms of the free

@@ -1,7 +1,7 @@
 //! The frame of a node at an inclined support: orthonormal axes, the supported ones first.
 
 use crate::error::Error;
-use crate::fem::geometry::{dot, unit};
+use crate::fem::geometry::{COORDINATES, dot, unit};
 
 /// Given axes of unit length at right angles are accepted to within this.
 const ORTHONORMAL: f64 = 1e-12;
@@ -40,11 +40,7 @@ impl Frame {
         for space in [dimension, 3] {
             while axes.len() < space {
                 // Take the coordinate axis with the largest component perpendicular to the axes so far.
-                let rests = (0..space).map(|axis| {
-                    let mut unit = [0.0; 3];
-                    unit[axis] = 1.0;
-                    perpendicular(unit, &axes)
-                });
+                let rests = COORDINATES[..space].iter().map(|&axis| perpendicular(axis, &axes));
                 let Some(rest) = rests.max_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b))) else { break };
                 axes.push(unit(perpendicular(unit(rest), &axes)));
             }

@@ -5,6 +5,7 @@ use super::redistribution::{ElementMass, Redistribution};
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::element::Tabulated;
+use crate::fem::geometry::dot;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
 /// The form of a mass matrix: it decides on the waves in the mesh, and on the inertia of nodes in contact.
@@ -111,17 +112,11 @@ pub(crate) fn free_mass(body: &ElasticBody, dofs: &DofMap, nodal: &SparseMatrix)
     let dimension = body.dimension();
     let mut entries = Vec::with_capacity(dimension * nodal.entries());
     for (row, column, value) in nodal.triplets() {
-        let frames = (dofs.frame(row), dofs.frame(column));
-        for i in 0..dimension {
+        let [of_row, of_column] = [row, column].map(|node| dofs.axes(node));
+        for (i, own) in of_row.iter().enumerate().take(dimension) {
             let Some(first) = dofs.number(dimension * row + i) else { continue };
-            for j in 0..dimension {
-                let cosine = match frames {
-                    _ if row == column => f64::from(i == j),
-                    (None, None) => f64::from(i == j),
-                    (Some(turned), None) => turned.axes()[i][j],
-                    (None, Some(turned)) => turned.axes()[j][i],
-                    (Some(one), Some(other)) => (0..3).map(|axis| one.axes()[i][axis] * other.axes()[j][axis]).sum(),
-                };
+            for (j, other) in of_column.iter().enumerate().take(dimension) {
+                let cosine = if row == column { f64::from(i == j) } else { dot(*own, *other) };
                 if let Some(second) = dofs.number(dimension * column + j).filter(|_| cosine != 0.0) {
                     entries.push((first, second, value * cosine));
                 }

@@ -19,11 +19,7 @@ pub fn rigid_body_modes(body: &ElasticBody, dofs: &DofMap) -> Vec<Vec<f64>> {
     let mut motions = vec![Vec::with_capacity(dofs.free().len()); dimension + rotations.len()];
     for &dof in dofs.free() {
         let (node, axis) = (dof / dimension, dof % dimension);
-        let mut direction = [0.0; 3];
-        match dofs.frame(node) {
-            Some(frame) => direction = frame.axes()[axis],
-            None => direction[axis] = 1.0,
-        }
+        let direction = dofs.axes(node)[axis];
         let place = dofs.basis().place(mesh.nodes(), node);
         let from_middle = [0, 1, 2].map(|i| (2.0 * place[i] - least[i] - most[i]) / size);
         for (translation, motion) in motions[..dimension].iter_mut().enumerate() {

@@ -5,6 +5,7 @@ use super::element_blocks::Block;
 use super::surface::for_each_point;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
+use crate::fem::geometry::COORDINATES;
 use crate::fem::mesh::Boundary;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
@@ -71,11 +72,7 @@ impl Springs {
         dimension: usize,
     ) -> Result<SymmetricMatrix, Error> {
         let mut entries: Vec<(usize, usize, f64)> = stiffness.lower().triplets().collect();
-        let along = |node: usize, axis: usize| {
-            let mut direction = [0.0; 3];
-            direction[axis] = 1.0;
-            dofs.displacement_along(node, &direction[..dimension]).free
-        };
+        let along = |node: usize, axis: usize| dofs.displacement_along(node, &COORDINATES[axis][..dimension]).free;
         for (a, b, block) in &self.pairs {
             for (i, of_row) in block.iter().enumerate().take(dimension) {
                 for (j, &stiffness) in of_row.iter().enumerate().take(dimension).filter(|entry| *entry.1 != 0.0) {

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::law::{Matrices, Matrix};
 use crate::error::Error;
 use crate::fem::formulation::{Formulation, positive};
-use crate::fem::geometry::{Symmetric, cross, dot, length, turned, unit};
+use crate::fem::geometry::{COORDINATES, Symmetric, cross, dot, length, turned, unit};
 
 /// Axes that deviate by less than this, as a sine, deviate by rounding.
 const SAME_DIRECTION: f64 = 1e-9;
@@ -55,7 +55,7 @@ impl Orthotropic {
         if determinant.is_nan() || determinant <= 0.0 {
             return Err(Error::Setting { name: "orthotropic.poisson", value: determinant, allowed: DEFINITE });
         }
-        Ok(Orthotropic { young, poisson, shear, axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] })
+        Ok(Orthotropic { young, poisson, shear, axes: COORDINATES })
     }
 
     /// The same with its first axis along a vector, and its second one in the plane of both and at right angles to it.

@@ -75,10 +75,6 @@ impl Graph {
 }
 
 impl RigidSurface for Graph {
-    fn approach(&self) -> [f64; 3] {
-        self.axes[2]
-    }
-
     fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
         let [t1, t2, towards] = self.local(node, shift);
         let along_approach = |height: Option<f64>| height.map(|height| ([0.0, 0.0, 1.0], height - towards));

@@ -45,10 +45,6 @@ impl Surface for Parabola {
         Some(along * (along / self.radius) / 2.0)
     }
 
-    fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])> {
-        Some((self.heights(from, to)?, [0.0; 2]))
-    }
-
     /// The foot s of the closest point to (p, q) solves `s^3/(2R^2) + s(1 - q/R) - p = 0`, with the sign of p.
     fn closest(&self, [along, towards]: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {
         let stiffness = 1.0 - towards / self.radius;

@@ -73,17 +73,8 @@ impl PlacedObstacle {
             let message = "another body is pressed by its own loads; give it one instead";
             return Err(wrong(format!("{path}.force"), message));
         }
-        Ok(PlacedObstacle {
-            boundary: spec.boundary.clone(),
-            candidates,
-            outward,
-            approach,
-            dimension,
-            geometry,
-            rule: Some(spec.rule),
-            gap,
-            force,
-        })
+        let (boundary, rule) = (spec.boundary.clone(), Some(spec.rule));
+        Ok(PlacedObstacle { boundary, candidates, outward, approach, dimension, geometry, rule, gap, force })
     }
 
     /// A user-defined obstacle, at `path`.
@@ -95,23 +86,11 @@ impl PlacedObstacle {
     ) -> Result<Self, Error> {
         let (candidates, outward) = candidates(body, boundary, &format!("{path}.boundary"))?;
         let (approach, dimension) = (obstacle.approach(), body.dimension());
-        match check_direction(approach, dimension) {
-            Err(reason) => Err(wrong(format!("{path}.approach"), format!("the approach direction {reason}"))),
-            Ok(()) => {
-                let geometry = Geometry::Rigid(obstacle);
-                Ok(PlacedObstacle {
-                    boundary: boundary.into(),
-                    candidates,
-                    outward,
-                    approach,
-                    dimension,
-                    geometry,
-                    rule: None,
-                    gap: 0.0,
-                    force: None,
-                })
-            }
-        }
+        check_direction(approach, dimension)
+            .map_err(|reason| wrong(format!("{path}.approach"), format!("the approach direction {reason}")))?;
+        let (boundary, geometry) = (boundary.into(), Geometry::Rigid(obstacle));
+        let (rule, gap, force) = (None, 0.0, None);
+        Ok(PlacedObstacle { boundary, candidates, outward, approach, dimension, geometry, rule, gap, force })
     }
 
     /// Name of the boundary that contains its candidates.

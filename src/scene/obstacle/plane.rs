@@ -75,10 +75,6 @@ impl Surface for Line {
         Some(0.0 - self.normal[0] / self.normal[1] * along)
     }
 
-    fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])> {
-        Some((self.heights(from, to)?, [0.0; 2]))
-    }
-
     fn closest(&self, [along, towards]: Local, _: f64) -> Result<Option<Foot>, &'static str> {
         let distance = -(self.normal[0] * along + self.normal[1] * towards);
         Ok(Some(Foot { normal: self.normal, distance }))
@@ -94,10 +90,6 @@ struct HalfSpace {
 }
 
 impl RigidSurface for HalfSpace {
-    fn approach(&self) -> [f64; 3] {
-        self.approach
-    }
-
     fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
         let to_plane = dot(self.normal, minus(self.point, node));
         let lean = dot(self.normal, self.approach);

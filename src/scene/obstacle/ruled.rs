@@ -7,9 +7,6 @@ use crate::scene::schema::approach::Rule;
 
 /// A rigid surface that can make the row of a node by either rule.
 pub(super) trait RigidSurface: Debug + Send + Sync {
-    /// The approach direction, a unit vector [x, y, z].
-    fn approach(&self) -> [f64; 3];
-
     /// The row by one of the rules, with the surface moved by `shift`.
     fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String>;
 
@@ -29,11 +26,13 @@ pub(super) trait RigidSurface: Debug + Send + Sync {
 pub(super) struct Ruled<S> {
     pub surface: S,
     pub rule: Rule,
+    /// The approach direction, a unit vector [x, y, z].
+    pub approach: [f64; 3],
 }
 
 impl<S: RigidSurface> Obstacle for Ruled<S> {
     fn approach(&self) -> [f64; 3] {
-        self.surface.approach()
+        self.approach
     }
 
     fn row(&self, point: [f64; 3]) -> Result<Option<ObstacleRow>, String> {

@@ -10,7 +10,7 @@ use super::ruled::{RigidSurface, Ruled};
 use super::surface::Local;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
-use crate::scene::entry::{COORDINATE_ROUNDING, finite, number, vector, wrong};
+use crate::scene::entry::{COORDINATE_ROUNDING, positive, vector, wrong};
 use crate::scene::files::Files;
 use crate::scene::schema::approach::{Approach, Rule};
 
@@ -56,7 +56,7 @@ pub(in crate::scene) enum Geometry {
 impl Geometry {
     /// A rigid surface; the rule of the site makes its rows.
     pub(super) fn rigid(site: &Site, surface: impl RigidSurface + 'static) -> Self {
-        Geometry::Rigid(Arc::new(Ruled { surface, rule: site.rule }))
+        Geometry::Rigid(Arc::new(Ruled { surface, rule: site.rule, approach: site.direction() }))
     }
 }
 
@@ -150,13 +150,7 @@ impl Site<'_> {
 
     /// A field that is positive.
     pub fn positive(&self, name: &str, value: f64) -> Result<f64, Error> {
-        let path = self.field(name);
-        finite(path.as_str(), value)?;
-        if value > 0.0 {
-            Ok(value)
-        } else {
-            Err(wrong(path, format!("{} is not allowed: it must be positive", number(value))))
-        }
+        positive(&self.field(name), value)
     }
 
     /// The apex of a round shape, given directly or by its centre, which lies `radius` further along the approach direction.

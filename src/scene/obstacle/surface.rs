@@ -20,8 +20,10 @@ pub(in crate::scene) trait Surface: Debug + Send + Sync {
     fn height(&self, along: f64) -> Option<f64>;
 
     /// The values of a quadratic function at both ends of a stretch within reach and in its middle, and the largest distances
-    /// `[below, above]` of the surface from it.
-    fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])>;
+    /// `[below, above]` of the surface from it, which are zero for a surface that is quadratic itself.
+    fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])> {
+        Some((self.heights(from, to)?, [0.0; 2]))
+    }
 
     /// The foot closest to `node`, or `None` if no part of the surface faces it; lengths below `tolerance` are rounding.
     ///

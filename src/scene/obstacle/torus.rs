@@ -141,10 +141,6 @@ impl Torus {
 }
 
 impl RigidSurface for Torus {
-    fn approach(&self) -> [f64; 3] {
-        self.approach
-    }
-
     fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
         let from_centre = [0, 1, 2].map(|axis| node[axis] - self.centre[axis] - shift * self.approach[axis]);
         let row = |(normal, gap): ([f64; 3], f64)| ObstacleRow { normal, gap };

@@ -107,10 +107,6 @@ impl Triangulated {
 }
 
 impl RigidSurface for Triangulated {
-    fn approach(&self) -> [f64; 3] {
-        self.direction
-    }
-
     fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
         let node = minus(node, self.direction.map(|part| shift * part));
         if rule == Rule::Approach {

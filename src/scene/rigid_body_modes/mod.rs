@@ -9,6 +9,7 @@ use super::rigid_face::{Motion, RigidFace};
 use super::rows::ContactRow;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
+use crate::fem::geometry::COORDINATES;
 use crate::qp::linear::dot;
 use unit::{AXES, NAMED, Sense, UnitMotions};
 
@@ -53,10 +54,10 @@ impl RigidBodyModes {
         self.bodies.iter().enumerate().flat_map(|entry| of_body(entry).collect::<Vec<_>>()).collect()
     }
 
-    /// The component along `direction` of each unit motion at a node; zero for those of other bodies.
-    fn along(&self, nodes: &[[f64; 3]], node: usize, direction: [f64; 3]) -> Vec<f64> {
+    /// The component along `direction` of each unit motion at a place that moves with a node; zero for those of other bodies.
+    fn along(&self, node: usize, at: [f64; 3], direction: [f64; 3]) -> Vec<f64> {
         let of_body = |motions: &UnitMotions| match motions.nodes.contains(&node) {
-            true => motions.along(nodes[node], direction),
+            true => motions.along(at, direction),
             false => [0.0; 6],
         };
         self.bodies.iter().flat_map(of_body).collect()
@@ -64,16 +65,15 @@ impl RigidBodyModes {
 
     /// The component of each unit motion at a nodal dof: along an axis of the node's frame if it has one.
     fn at_dof(&self, parts: &Parts, dof: usize) -> Vec<f64> {
-        let (nodes, node, axis) = (parts.body.mesh().nodes(), dof / self.dimension, dof % self.dimension);
-        let direction = parts.dofs.frame(node).map_or_else(|| unit::along_axis(axis), |frame| frame.axes()[axis]);
-        self.along(nodes, node, direction)
+        let (node, axis) = (dof / self.dimension, dof % self.dimension);
+        self.along(node, parts.body.mesh().nodes()[node], parts.dofs.axes(node)[axis])
     }
 
     /// The component of each unit motion along a contact row, positive towards closing.
     fn in_row(&self, nodes: &[[f64; 3]], row: &ContactRow) -> Vec<f64> {
         let mut components = vec![0.0; 6 * self.bodies.len()];
         for (node, sign) in row.ends() {
-            let of_node = self.along(nodes, node, row.normal);
+            let of_node = self.along(node, nodes[node], row.normal);
             components.iter_mut().zip(of_node).for_each(|(component, part)| *component += sign * part);
         }
         if let Some(place) = self.obstacles.iter().position(|&obstacle| obstacle == row.obstacle) {
@@ -96,24 +96,17 @@ impl RigidBodyModes {
 
     /// The component of each unit motion along each motion that a rigid face prescribes.
     fn prescribed(&self, face: &RigidFace) -> Vec<Vec<f64>> {
-        let Some(&node) = face.nodes().first() else { return Vec::new() };
-        let at = |at: [f64; 3], direction: [f64; 3]| -> Vec<f64> {
-            let of_body = |motions: &UnitMotions| match motions.nodes.contains(&node) {
-                true => motions.along(at, direction),
-                false => [0.0; 6],
-            };
-            self.bodies.iter().flat_map(of_body).collect()
-        };
+        let Some(&node) = face.nodes.first() else { return Vec::new() };
         let of_motion = |motion: &Motion| {
             let (one, two) = ((motion.kind + 1) % 3, (motion.kind + 2) % 3);
             if motion.kind < 3 {
-                return at(face.centre, unit::along_axis(motion.kind));
+                return self.along(node, face.centre, COORDINATES[motion.kind]);
             }
             // A rotation is the difference along the second next axis between the motions of the centre and of a place one step along the
             // next axis.
             let mut beside = face.centre;
             beside[one] += 1.0 / face.unit(motion);
-            let [near, far] = [face.centre, beside].map(|place| at(place, unit::along_axis(two)));
+            let [near, far] = [face.centre, beside].map(|place| self.along(node, place, COORDINATES[two]));
             far.iter().zip(near).map(|(far, near)| far - near).collect()
         };
         face.motions.iter().filter(|motion| motion.prescribed.is_some()).map(of_motion).collect()
@@ -149,7 +142,7 @@ impl RigidBodyModes {
         let of_supports = supported.map(|dof| self.at_dof(parts, dof));
         let of_rows = rows.iter().map(|row| self.in_row(nodes, row));
         let held = parts.springs.iter().flat_map(|springs| springs.held());
-        let of_springs = held.map(|(node, direction)| self.along(nodes, node, direction));
+        let of_springs = held.map(|(node, direction)| self.along(node, nodes[node], direction));
         let of_faces = parts.rigid_faces.iter().flat_map(|face| self.prescribed(face));
         let mut resisted: Vec<Vec<f64>> = of_supports.chain(of_rows).chain(of_springs).chain(of_faces).collect();
         let (modes, amplitudes) = (self.modes(), 6 * self.bodies.len());

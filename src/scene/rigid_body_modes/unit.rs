@@ -5,6 +5,7 @@ use std::ops::Range;
 use nalgebra::DMatrix;
 
 use crate::fem::body::{ElasticBody, Region};
+use crate::fem::geometry::COORDINATES;
 use crate::fem::mesh::extent;
 use crate::qp::linear::dot;
 use crate::scene::entry::{point, six_digits};
@@ -73,9 +74,7 @@ impl UnitMotions {
     fn at(&self, mode: usize, point: [f64; 3]) -> [f64; 3] {
         let [x, y, z] = [0, 1, 2].map(|axis| (point[axis] - self.centre[axis]) / self.size);
         match mode {
-            0 => [1.0, 0.0, 0.0],
-            1 => [0.0, 1.0, 0.0],
-            2 => [0.0, 0.0, 1.0],
+            0..=2 => COORDINATES[mode],
             3 => [0.0, -z, y],
             4 => [z, 0.0, -x],
             _ => [-y, x, 0.0],
@@ -93,9 +92,8 @@ impl UnitMotions {
 
     /// The amplitudes closest to a motion of `nodes` (`dim` entries each) by least squares, and the length of the rest.
     pub fn fit(&self, nodes: &[[f64; 3]], motion: &[f64]) -> Option<(Amplitudes, f64)> {
-        let unit = |axis: usize| [0, 1, 2].map(|other| if other == axis { 1.0 } else { 0.0 });
-        let components: Vec<Amplitudes> =
-            (0..motion.len()).map(|dof| self.along(nodes[dof / self.dimension], unit(dof % self.dimension))).collect();
+        let of_dof = |dof: usize| self.along(nodes[dof / self.dimension], COORDINATES[dof % self.dimension]);
+        let components: Vec<Amplitudes> = (0..motion.len()).map(of_dof).collect();
         let design = DMatrix::from_fn(motion.len(), self.modes.len(), |dof, mode| components[dof][self.modes[mode]]);
         let target = DMatrix::from_column_slice(motion.len(), 1, motion);
         let fitted = design.clone().svd(true, true).solve(&target, f64::EPSILON).ok()?;
@@ -131,11 +129,6 @@ impl UnitMotions {
         let along = if pitch { ", with a translation along it" } else { "" };
         format!("rotation about {axis} through {}{along}", point(&tidy[..self.dimension]))
     }
-}
-
-/// The unit vector along an axis.
-pub(super) fn along_axis(axis: usize) -> [f64; 3] {
-    [0, 1, 2].map(|other| if other == axis { 1.0 } else { 0.0 })
 }
 
 /// The axis of a vector along one axis, up to rounding.
