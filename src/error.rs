@@ -299,6 +299,16 @@ impl Error {
         }
     }
 
+    /// Refuses a vector, named in words, that has not as many entries as there are `of`.
+    pub(crate) fn check_length(
+        name: &'static str,
+        found: usize,
+        expected: usize,
+        of: &'static str,
+    ) -> Result<(), Error> {
+        if found == expected { Ok(()) } else { Err(Error::Length { name, found, expected, of }) }
+    }
+
     /// The name of the kind of error, the same in every version: for programs that distinguish errors.
     pub fn code(&self) -> &'static str {
         self.class().0

@@ -79,17 +79,12 @@ impl Integrator {
         let violation = problem.statics().violation(problem.displacement());
         let rows = problem.statics().rows();
         let state = State {
-            steps: 0,
             displacement: problem.displacement().to_vec(),
             velocity: problem.velocity().to_vec(),
             acceleration: vec![0.0; problem.statics().dofs()],
-            work: 0.0,
-            penalties: 0,
             multiplier: vec![0.0; rows],
             contact_set: ContactSet::from_fn(rows, |row| violation[row] >= -GAP_ROUNDING * reach),
-            middle: Vec::new(),
-            elastic: Vec::new(),
-            momentum: Vec::new(),
+            ..State::default()
         };
         let state = prepared.start(&problem, step, state.with_forces(&problem))?;
         if watch.is_over() {
@@ -143,8 +138,8 @@ impl Integrator {
             ("multiplier", state.multiplier.len(), rows, "contact rows"),
             ("contact set", state.contact_set.rows(), rows, "contact rows"),
         ];
-        if let Some(&(name, found, expected, of)) = lengths.iter().find(|entry| entry.1 != entry.2) {
-            return Err(Error::Length { name, found, expected, of });
+        for (name, found, expected, of) in lengths {
+            Error::check_length(name, found, expected, of)?;
         }
         (self.state, self.before) = (state.with_forces(&self.problem), None);
         Ok(())

@@ -86,10 +86,7 @@ impl DynamicProblem {
     /// [`Error::Length`] and [`Error::NotFinite`] for vectors of another length or not finite.
     pub fn starting_from(mut self, displacement: Vec<f64>, velocity: Vec<f64>) -> Result<Self, Error> {
         for (name, values) in [("initial displacement", &displacement), ("initial velocity", &velocity)] {
-            let (found, expected) = (values.len(), self.statics.dofs());
-            if found != expected {
-                return Err(Error::Length { name, found, expected, of: "dofs" });
-            }
+            Error::check_length(name, values.len(), self.statics.dofs(), "dofs")?;
             if let Some((index, &value)) = values.iter().enumerate().find(|entry| !entry.1.is_finite()) {
                 return Err(Error::NotFinite { name, at: format!("entry {index}"), value, allowed: "finite" });
             }

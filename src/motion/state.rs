@@ -8,7 +8,7 @@ use crate::solution::ContactSet;
 /// The state of a body after some steps: all data that the next step depends on.
 ///
 /// The forces that follow from it, K u and M v, are computed by the integrator that goes on from it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Steps so far.
     pub steps: usize,

@@ -139,14 +139,11 @@ pub(super) fn next(
         steps: before.steps + 1,
         acceleration: before.acceleration.clone(),
         work: before.work,
-        penalties: 0,
         displacement,
         velocity,
         multiplier,
         contact_set,
-        middle: Vec::new(),
-        elastic: Vec::new(),
-        momentum: Vec::new(),
+        ..State::default()
     }
     .with_forces(problem)
 }

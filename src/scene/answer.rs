@@ -78,10 +78,7 @@ impl Answer {
         multiplier: &[f64],
         contact_set: &ContactSet,
     ) -> Result<Self, Error> {
-        let (found, expected) = (contact_set.rows(), model.rows().len());
-        if found != expected {
-            return Err(Error::Length { name: "contact set", found, expected, of: "contact rows" });
-        }
+        Error::check_length("contact set", contact_set.rows(), model.rows().len(), "contact rows")?;
         Ok(Answer {
             displacement: model.nodal_displacement(displacement)?,
             unknowns: displacement.to_vec(),

@@ -4,7 +4,7 @@ use super::entry::{COORDINATE_ROUNDING, located, number, point, refused, vector,
 use super::loads_in_time::NodalLoads;
 use super::moving_supports::MovingSupports;
 use super::resultants::without_rounding;
-use super::schema::{AnalysisSpec, DynamicSpec, FieldSpec, MassSpec, PenetrationSpec, Scene};
+use super::schema::{AnalysisSpec, DynamicSpec, FieldSpec, PenetrationSpec, Scene};
 use super::{Model, Resultant, Warning, WatchedPoint};
 use crate::error::{Error, nearly};
 use crate::fem::assembly::{MassForm, free_load, free_mass, internal_force, nodal_mass};
@@ -91,7 +91,7 @@ impl Scene {
             let message = format!("{} is not allowed: it must be from 1 to {MOST_FRAMES}", spec.frames);
             return Err(wrong(format!("{PATH}.frames"), message));
         }
-        let form = spec.mass.map_or(scheme.mass_form(), MassSpec::form);
+        let form = spec.mass.unwrap_or(scheme.mass_form());
         if !scheme.allows(form) {
             let message = match scheme.is_explicit() {
                 true => "central differences need a lumped mass",
@@ -103,7 +103,7 @@ impl Scene {
             let message = format!(
                 "`{}` leaves mass on the contact nodes, and with the scheme `{}` the energy then grows at impacts: \
                  only `redistributed` is allowed, or take the scheme `contact-stabilised`",
-                spec.mass.map_or("", MassSpec::word),
+                form.word(),
                 scheme.name()
             );
             return Err(refused("unstable", format!("{PATH}.mass"), message));
@@ -204,9 +204,7 @@ impl Dynamics {
     pub fn resultants(&self, model: &Model, integrator: &Integrator) -> Result<Vec<Resultant>, Error> {
         let multiplier = &integrator.state().multiplier;
         let [found, expected] = [integrator.problem(), &self.problem].map(|problem| problem.statics().dofs());
-        if found != expected {
-            return Err(Error::Length { name: "displacement", found, expected, of: "free dofs" });
-        }
+        Error::check_length("displacement", found, expected, "free dofs")?;
         let mut all = model.contact_resultants(multiplier)?;
         if let Some(balance) = integrator.balance(self.supports.around()) {
             all.extend(model.support_resultants(self.supports.reactions(model, balance, multiplier)));
@@ -264,15 +262,8 @@ impl DynamicSpec {
     fn steps(&self, body: &ElasticBody, problem: &DynamicProblem, scheme: Scheme) -> Result<(f64, usize), Error> {
         let stable = if scheme.is_explicit() { Some(stable_step(problem)?) } else { None };
         let share = if problem.statics().rows() > 0 { MOST_IN_CONTACT } else { 1.0 };
-        let counted = |step: f64, count: f64| {
-            if count > MOST_STEPS {
-                let message = format!("{count:.2e} steps of {} are too many; take a longer step", number(step));
-                return Err(wrong(format!("{PATH}.step"), message));
-            }
-            Ok((step, (count as usize).max(1)))
-        };
-        match (self.step, self.courant) {
-            (Some(_), Some(_)) => Err(wrong(format!("{PATH}.courant"), "give `step` or `courant`, not both")),
+        let step = match (self.step, self.courant) {
+            (Some(_), Some(_)) => return Err(wrong(format!("{PATH}.courant"), "give `step` or `courant`, not both")),
             (Some(step), None) => {
                 if !(step.is_finite() && step > 0.0) {
                     return Err(not_positive("step", step));
@@ -289,7 +280,7 @@ impl DynamicSpec {
                     let message = format!("{} is longer than the duration {}", number(step), number(self.duration));
                     return Err(wrong(format!("{PATH}.step"), message));
                 }
-                counted(step, (self.duration / step * (1.0 - STEP_ROUNDING)).ceil())
+                step
             }
             (None, courant) => {
                 let courant = courant.unwrap_or(COURANT[usize::from(scheme.is_explicit())]);
@@ -303,10 +294,15 @@ impl DynamicSpec {
                 }
                 let unit = stable.unwrap_or_else(|| wave_time(body));
                 // Independent of the duration: a run can then be continued to a longer one.
-                let step = (courant * unit).min(self.duration);
-                counted(step, (self.duration / step * (1.0 - STEP_ROUNDING)).ceil())
+                (courant * unit).min(self.duration)
             }
+        };
+        let count = (self.duration / step * (1.0 - STEP_ROUNDING)).ceil();
+        if count > MOST_STEPS {
+            let message = format!("{count:.2e} steps of {} are too many; take a longer step", number(step));
+            return Err(wrong(format!("{PATH}.step"), message));
         }
+        Ok((step, (count as usize).max(1)))
     }
 
     /// The initial displacement and velocity of all nodes.
@@ -358,25 +354,6 @@ impl FieldSpec {
             }
         }
         Ok(move |at: [f64; 3]| [0, 1, 2].map(|axis| value[axis] + dot(&gradient[axis], &at)))
-    }
-}
-
-impl MassSpec {
-    /// Its word in a scene.
-    fn word(self) -> &'static str {
-        match self {
-            MassSpec::Consistent => "consistent",
-            MassSpec::Lumped => "lumped",
-            MassSpec::Redistributed => "redistributed",
-        }
-    }
-
-    fn form(self) -> MassForm {
-        match self {
-            MassSpec::Consistent => MassForm::Consistent,
-            MassSpec::Lumped => MassForm::Lumped,
-            MassSpec::Redistributed => MassForm::Redistributed,
-        }
     }
 }
 

@@ -368,10 +368,6 @@ impl Model {
     }
 
     pub(super) fn check_multiplier(&self, multiplier: &[f64]) -> Result<(), Error> {
-        let (found, expected) = (multiplier.len(), self.rows.len());
-        if found != expected {
-            return Err(Error::Length { name: "multiplier", found, expected, of: "contact rows" });
-        }
-        Ok(())
+        Error::check_length("multiplier", multiplier.len(), self.rows.len(), "contact rows")
     }
 }

@@ -133,10 +133,7 @@ impl Unknowns {
     /// # Errors
     /// As [`Unknowns::displacement`].
     pub fn motion<'a>(&self, values: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
-        if values.len() != self.count() {
-            let (found, expected) = (values.len(), self.count());
-            return Err(Error::Length { name: "displacement", found, expected, of: "unknowns" });
-        }
+        Error::check_length("displacement", values.len(), self.count(), "unknowns")?;
         let of_body = &values[..self.of_body()];
         Ok(self.ties.as_ref().map_or(Cow::Borrowed(of_body), |ties| Cow::Owned(ties.rows.mul_transposed(of_body))))
     }

@@ -250,10 +250,7 @@ impl DofMap {
     }
 
     fn expand_with(&self, free: &[f64], supported: impl Fn(usize) -> f64) -> Result<Vec<f64>, Error> {
-        if free.len() != self.free.len() {
-            let (found, expected) = (free.len(), self.free.len());
-            return Err(Error::Length { name: "displacement", found, expected, of: "free dofs" });
-        }
+        Error::check_length("displacement", free.len(), self.free.len(), "free dofs")?;
         let value = |(dof, &number): (usize, &usize)| if number == SUPPORTED { supported(dof) } else { free[number] };
         let mut nodal: Vec<f64> = self.number.iter().enumerate().map(value).collect();
         self.turn_back(&mut nodal);
@@ -294,10 +291,7 @@ impl DofMap {
 
     /// Nodal forces as forces on coefficients; the entries of nodes with frames run along the axes of the frame.
     fn turned_in<'a>(&self, nodal: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
-        if nodal.len() != self.nodal_count() {
-            let (found, expected) = (nodal.len(), self.nodal_count());
-            return Err(Error::Length { name: "nodal vector", found, expected, of: "nodal dofs" });
-        }
+        Error::check_length("nodal vector", nodal.len(), self.nodal_count(), "nodal dofs")?;
         let mut local = Cow::Borrowed(nodal);
         if !self.basis.is_nodal() {
             self.basis.gather(local.to_mut(), self.dimension);

@@ -311,11 +311,7 @@ impl ElasticBody {
     /// # Errors
     /// [`Error::Length`] if it has not.
     pub(crate) fn check_nodal(&self, name: &'static str, found: usize) -> Result<(), Error> {
-        let expected = self.nodal_dofs();
-        if found != expected {
-            return Err(Error::Length { name, found, expected, of: "nodal dofs" });
-        }
-        Ok(())
+        Error::check_length(name, found, self.nodal_dofs(), "nodal dofs")
     }
 }
 

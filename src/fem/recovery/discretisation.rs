@@ -42,10 +42,7 @@ impl EstimatedError {
     /// As [`discretisation_error`].
     pub fn of(body: &ElasticBody, displacement: &[f64], field: &StressField) -> Result<Self, Error> {
         body.check_nodal("nodal displacement", displacement.len())?;
-        let (found, expected) = (field.nodes.len(), body.mesh().nodes().len());
-        if found != expected {
-            return Err(Error::Length { name: "nodal stress", found, expected, of: "nodes" });
-        }
+        Error::check_length("nodal stress", field.nodes.len(), body.mesh().nodes().len(), "nodes")?;
         // The rule for bodies of revolution also integrates the squares of linear differences.
         let table = Tabulated::new(body.mesh().kind().reference(), Rule::Revolved);
         let standard = body.tabulated();

@@ -16,13 +16,9 @@ pub struct BarSpec {
     /// The axis along x.
     pub x: Axis,
     /// Cross-section, positive.
-    #[serde(default = "unit_area")]
+    #[serde(default = "crate::scene::schema::cells::one")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub area: f64,
-}
-
-fn unit_area() -> f64 {
-    1.0
 }
 
 pub(super) const ABOUT: About = About { name: "bar", dimension: Some(1) };

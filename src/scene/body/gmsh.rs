@@ -21,7 +21,7 @@ pub struct GmshSpec {
     /// The file, inside the folder of the scene unless reading outside is allowed; a relative name starts in that folder.
     pub file: String,
     /// Factor of the coordinates of the file, positive.
-    #[serde(default = "unchanged")]
+    #[serde(default = "crate::scene::schema::cells::one")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub scale: f64,
     /// The physical group of the body; may be left out if at most one group has elements of the highest dimension, or if `materials` name
@@ -31,10 +31,6 @@ pub struct GmshSpec {
     /// The integration of the stiffness.
     #[serde(default)]
     pub integration: Integration,
-}
-
-fn unchanged() -> f64 {
-    1.0
 }
 
 pub(super) const ABOUT: About = About { name: "gmsh", dimension: None };

@@ -29,7 +29,7 @@ pub struct SurfaceSpec {
     /// folder.
     pub file: String,
     /// Factor of the coordinates of the file, positive.
-    #[serde(default = "unchanged")]
+    #[serde(default = "crate::scene::schema::cells::one")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub scale: f64,
     /// The position of the origin of the file.
@@ -38,10 +38,6 @@ pub struct SurfaceSpec {
     /// The side of the body: `outside` of a solid, or `inside` a hole, with the obstacle all around.
     #[serde(default, skip_serializing_if = "Side::is_outside")]
     pub side: Side,
-}
-
-fn unchanged() -> f64 {
-    1.0
 }
 
 fn is_origin(at: &[f64; 3]) -> bool {

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::fem::MassForm;
 use crate::motion::SchemeSpec;
 
 /// The analysis; a scene without one is static.
@@ -35,7 +36,7 @@ pub struct DynamicSpec {
     pub scheme: SchemeSpec,
     /// The form of the mass. If left out: `redistributed` for `midpoint`, `lumped` for `central-difference`, `consistent` for the others.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub mass: Option<MassSpec>,
+    pub mass: Option<MassForm>,
     /// Damping of `hht`: from -1/3 to 0, -0.1 if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("minimum" = -1.0 / 3.0, "maximum" = 0)))]
@@ -88,19 +89,6 @@ pub enum WatchSpec {
 
 fn frames() -> usize {
     60
-}
-
-/// The forms of the mass to choose from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-pub enum MassSpec {
-    /// From the shape functions.
-    Consistent,
-    /// Diagonal.
-    Lumped,
-    /// From the shape functions, without mass at contact nodes; total mass and centre of mass are preserved.
-    Redistributed,
 }
 
 /// Rayleigh damping C = `mass` M + `stiffness` K.

@@ -97,9 +97,9 @@ pub struct TemperatureSpec {
 ///
 /// Allowed components: xx in a bar; xx, yy, xy in plane stress; also zz in plane strain; also zz, the hoop stress, in an axisymmetric
 /// body; all six in space.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, default)]
 pub struct InitialStressSpec {
     /// A physical group of the mesh file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -108,22 +108,16 @@ pub struct InitialStressSpec {
     #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
     pub cuboid: Option<PartBoxSpec>,
     /// Normal stress along x.
-    #[serde(default)]
     pub xx: f64,
     /// Normal stress along y.
-    #[serde(default)]
     pub yy: f64,
     /// Normal stress along z; in an axisymmetric model the hoop stress.
-    #[serde(default)]
     pub zz: f64,
     /// Shear stress between x and y.
-    #[serde(default)]
     pub xy: f64,
     /// Shear stress between y and z.
-    #[serde(default)]
     pub yz: f64,
     /// Shear stress between z and x.
-    #[serde(default)]
     pub zx: f64,
 }
 

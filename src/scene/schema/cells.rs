@@ -4,6 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::fem::mesh::{ElementKind, Mesh};
 
+/// The factor that changes nothing, if a scene leaves it out.
+pub(in crate::scene) fn one() -> f64 {
+    1.0
+}
+
 /// The elements of the plane to choose from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]

@@ -17,9 +17,7 @@ mod rigid_face;
 pub(super) mod spring;
 mod symmetry;
 
-pub use analysis::{
-    AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec, WatchSpec,
-};
+pub use analysis::{AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, PenetrationSpec, WatchSpec};
 pub use approach::Rule;
 pub use body::{FurtherBodySpec, InitialStressSpec, MaterialPartSpec, MaterialSpec, OrthotropicSpec, TemperatureSpec};
 pub use condition::{Place, SupportSpec};
@@ -64,7 +62,7 @@ pub struct Scene {
     #[serde(default)]
     pub model: ModelSpec,
     /// Depth across the plane, positive; only in plane strain and plane stress.
-    #[serde(default = "one")]
+    #[serde(default = "cells::one")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub thickness: f64,
     /// The shape and the mesh of the elastic body.
@@ -128,10 +126,6 @@ fn format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<u32>, D::
             "format {other} of scenes is not known; this program reads format {FORMAT}"
         ))),
     }
-}
-
-fn one() -> f64 {
-    1.0
 }
 
 /// Names of the units of length and force, for tables and pictures. They convert no number of a scene, which may have
