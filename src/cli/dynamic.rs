@@ -35,10 +35,11 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     let factor = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
+    let run = Run::new(&model, &dynamics, integrator);
     let mut run = match &options.common.out {
-        None => Run::without_folder(&model, &dynamics, integrator),
-        Some(path) if options.resume => Run::resumed(&model, &dynamics, integrator, path, compact_json(scene)?)?,
-        Some(path) => Run::in_folder(&model, &dynamics, integrator, path, compact_json(scene)?)?,
+        None => run,
+        Some(path) if options.resume => run.resumed(path, compact_json(scene)?)?,
+        Some(path) => run.in_folder(path, compact_json(scene)?)?,
     };
     run.advance(watch)?;
     let Run { summary, folder, .. } = run;
@@ -77,38 +78,26 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn without_folder(model: &'a Arc<Model>, dynamics: &'a Dynamics, integrator: Integrator) -> Self {
+    fn new(model: &'a Arc<Model>, dynamics: &'a Dynamics, integrator: Integrator) -> Self {
         let (seen, obstacles) = (integrator.observe(), model.obstacles().len());
         let summary = MotionSummary::starting(&seen, obstacles, dynamics.window, dynamics.step);
         Run { model, dynamics, integrator, summary, folder: None }
     }
 
     /// A new run, which writes its frames into a folder.
-    fn in_folder(
-        model: &'a Arc<Model>,
-        dynamics: &'a Dynamics,
-        integrator: Integrator,
-        path: &Path,
-        scene: String,
-    ) -> Result<Self, Error> {
-        let run = Run::without_folder(model, dynamics, integrator);
+    fn in_folder(self, path: &Path, scene: String) -> Result<Self, Error> {
+        let Run { model, dynamics, integrator, summary, .. } = &self;
         let mut folder = MotionFolder::new(path, scene, model, &dynamics.watched)?;
-        let resultants = dynamics.resultants(model, &run.integrator)?;
-        folder.observe(model, &run.integrator.observe(), run.integrator.state(), &resultants)?;
-        folder.frame(model, 0.0, run.integrator.state(), &run.summary)?;
-        Ok(Run { folder: Some(folder), ..run })
+        let resultants = dynamics.resultants(model, integrator)?;
+        folder.observe(model, &integrator.observe(), integrator.state(), &resultants)?;
+        folder.frame(model, 0.0, integrator.state(), summary)?;
+        Ok(Run { folder: Some(folder), ..self })
     }
 
     /// The run in a folder, to be resumed.
-    fn resumed(
-        model: &'a Arc<Model>,
-        dynamics: &'a Dynamics,
-        mut integrator: Integrator,
-        path: &Path,
-        scene: String,
-    ) -> Result<Self, Error> {
-        let (folder, state, summary) = MotionFolder::resume(path, scene, model, &dynamics.watched)?;
-        if state.steps > dynamics.steps {
+    fn resumed(mut self, path: &Path, scene: String) -> Result<Self, Error> {
+        let (folder, state, summary) = MotionFolder::resume(path, scene, self.model, &self.dynamics.watched)?;
+        if state.steps > self.dynamics.steps {
             let message = format!(
                 "the motion in the folder of --out has already reached step {}, beyond this duration; give a longer \
                  one",
@@ -116,13 +105,13 @@ impl<'a> Run<'a> {
             );
             return unfit("analysis.dynamic.duration", message);
         }
-        integrator.resume(state)?;
-        if integrator.time() != summary.time {
+        self.integrator.resume(state)?;
+        if self.integrator.time() != summary.time {
             let message = "the motion in the folder of --out has another step, because its duration was shorter than \
                            one step; start it anew";
             return unfit("analysis.dynamic.step", message);
         }
-        Ok(Run { model, dynamics, integrator, summary, folder: Some(folder) })
+        Ok(Run { summary, folder: Some(folder), ..self })
     }
 
     /// All remaining steps, until the watch stops them.

@@ -16,6 +16,7 @@ use super::stress::{Place, Stresses};
 use super::system::{Row, Unknowns};
 use super::triangulation::{Point, Triangulation, outward, twice_area};
 use crate::error::Error;
+use crate::fem::geometry::minus;
 use crate::fem::material::Lame;
 use crate::qp::problem::ContactProblem;
 use crate::qp::{Prepared, Settings, solve};
@@ -305,9 +306,4 @@ impl<'a> Bracket<'a> {
         }
         jumps
     }
-}
-
-/// The difference of two tensors.
-pub fn minus(a: Tensor, b: Tensor) -> Tensor {
-    [0, 1, 2].map(|entry| a[entry] - b[entry])
 }

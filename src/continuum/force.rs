@@ -14,11 +14,12 @@
 
 use std::collections::BTreeSet;
 
-use super::bound::{Bracket, Side, minus};
+use super::bound::{Bracket, Side};
 use super::johnson_mercier::{PartStress, at, mean_over_parts};
 use super::problem::work;
 use super::system::{Block, Unknowns};
 use crate::error::Error;
+use crate::fem::geometry::minus;
 use crate::fem::material::Lame;
 use crate::qp::linear::Cholesky;
 use crate::qp::problem::ContactProblem;

@@ -1,10 +1,11 @@
 //! Judges any other displacement by the ball that contains the exact stress.
 
-use super::bound::{Bracket, minus};
+use super::bound::Bracket;
 use super::johnson_mercier::{at, part};
 use super::problem::{Tensor, work};
 use super::triangulation::Point;
 use crate::fem::element::{FacetKind, Tabulated};
+use crate::fem::geometry::minus;
 
 /// The distance of a displacement w from others, in the energy norm.
 #[derive(Clone, Copy, Debug, PartialEq)]

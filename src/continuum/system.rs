@@ -28,7 +28,8 @@ pub struct Unknowns {
     pub held: Vec<Option<f64>>,
     /// The number of each free unknown.
     numbers: Vec<Option<usize>>,
-    free: usize,
+    /// How many are free.
+    pub free: usize,
 }
 
 impl Unknowns {
@@ -44,11 +45,6 @@ impl Unknowns {
         };
         let numbers = held.iter().map(number).collect();
         Unknowns { held, numbers, free }
-    }
-
-    /// Number of free unknowns.
-    pub fn free(&self) -> usize {
-        self.free
     }
 
     /// Returns `true` if the unknown is free.

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use crate::fem::geometry::key;
+use crate::fem::mesh::lattice::Lattice;
 
 /// Coordinates or components `[x, y]`.
 pub type Point = [f64; 2];
@@ -64,15 +65,10 @@ impl Triangulation {
         origins: Vec<usize>,
         outline: &HashMap<[usize; 2], usize>,
     ) -> Self {
-        let mut numbers: HashMap<[usize; 2], usize> = HashMap::with_capacity(2 * triangles.len());
-        let mut edges = Vec::with_capacity(2 * triangles.len());
-        let mut side = |a: usize, b: usize| {
-            *numbers.entry(key(a, b)).or_insert_with(|| {
-                edges.push(key(a, b));
-                edges.len() - 1
-            })
-        };
+        let mut numbered = Lattice::new();
+        let mut side = |a: usize, b: usize| numbered.node(key(a, b));
         let sides = triangles.iter().map(|&[a, b, c]| [side(b, c), side(c, a), side(a, b)]).collect();
+        let edges = numbered.keys().to_vec();
         let conditions = edges.iter().map(|edge| outline.get(edge).copied()).collect();
         Triangulation { nodes, triangles, edges, sides, origins, conditions, parents: Vec::new() }
     }

@@ -107,9 +107,7 @@ impl Held {
         }
         DofMap::with_frames(prescribed, dimension, frames)
     }
-}
 
-impl Held {
     /// The held nodes with the directions along which they are held, each once.
     #[cfg(feature = "pictures")]
     pub fn directions(&self) -> impl Iterator<Item = (usize, Vec<[f64; 3]>)> {

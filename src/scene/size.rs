@@ -13,7 +13,7 @@ const DENSE_SHARE: f64 = 0.4;
 
 /// The size of a scene, estimated from its divisions: within a factor of 2 of the memory that `solve` takes with a
 /// factor.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Size {
     /// Number of nodes of the mesh, estimated as the others are.
     pub nodes: f64,
@@ -41,22 +41,12 @@ impl Size {
 impl Scene {
     /// Estimates the size of the scene without building it; of a named file only the length is read.
     pub fn size(&self) -> Size {
-        let mut size = Size {
-            nodes: 0.0,
-            dofs: 0.0,
-            stiffness_entries: 0.0,
-            factor_entries: 0.0,
-            bytes: bytes::START,
-            multigrid_bytes: bytes::START,
-            model_bytes: bytes::START,
-        };
         let bodies = std::iter::once(&self.body).chain(self.further_bodies.iter().map(|further| &further.body));
         let radius = self.obstacles.iter().map(|obstacle| obstacle.shape.shape().radius());
         let reach = 2.0 * radius.fold(0.0, f64::max);
         let surfaces: f64 = self.obstacles.iter().map(|obstacle| obstacle.shape.shape().bytes(self.files())).sum();
-        size.bytes += surfaces;
-        size.multigrid_bytes += surfaces;
-        size.model_bytes += surfaces;
+        let bytes = bytes::START + surfaces;
+        let mut size = Size { bytes, multigrid_bytes: bytes, model_bytes: bytes, ..Size::default() };
         for body in bodies {
             let block = body.shape().block(Some(self.files()));
             let (dimension, counts) = (block.cells.len() as f64, block.counts);

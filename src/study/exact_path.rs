@@ -17,7 +17,7 @@ const SAME_PLACE: f64 = 1e-13;
 /// The exact changes of a scene from one gap to another: between two corners everything is linear in the gap.
 #[derive(Clone, Debug)]
 pub(crate) struct ExactPath {
-    path: Path,
+    pub path: Path,
     /// The scene at the first gap.
     model: Model,
     first: f64,
@@ -29,10 +29,6 @@ impl ExactPath {
     pub fn new(path: Path, model: Model, last: f64) -> Self {
         let first = model.gap();
         ExactPath { path, model, first, last }
-    }
-
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     /// The scene-wide gap at a share of the path.

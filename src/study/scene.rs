@@ -296,7 +296,7 @@ fn events(path: &ExactPath, model: &Model) -> Vec<SweepEvent> {
         let node = model.rows()[event.row].node;
         SweepEvent { gap: path.gap(event.at), row: event.row, node, touches: event.touches }
     };
-    path.path().events().iter().map(event).collect()
+    path.path.events().iter().map(event).collect()
 }
 
 /// Force, width and pressure at both ends of every stretch of an exact path.

@@ -424,24 +424,34 @@ fn mark_best(points: &mut [TradeoffPoint]) {
     }
 }
 
+/// The first point of those allowed that has the smallest of both measures, the first measure before the second.
+fn least(
+    points: &[TradeoffPoint],
+    measures: impl Fn(&TradeoffPoint) -> [f64; 2],
+    is_allowed: impl Fn(&TradeoffPoint) -> bool,
+) -> Option<usize> {
+    let allowed = points.iter().enumerate().filter(|(_, point)| is_allowed(point));
+    let least = allowed.min_by(|(_, a), (_, b)| {
+        let ([a, first], [b, second]) = (measures(a), measures(b));
+        a.total_cmp(&b).then(first.total_cmp(&second))
+    });
+    least.map(|(index, _)| index)
+}
+
+/// The fastest way to an accuracy on the first mesh, and the most accurate one in a tenth of the usual time.
 fn advice(points: &[TradeoffPoint]) -> Vec<Advice> {
-    let own = || points.iter().enumerate().filter(|(_, point)| point.mesh == 0);
-    let cheapest = |accuracy: f64| {
-        let good = own().filter(|(_, point)| point.energy_error <= accuracy);
-        good.min_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds)).map(|(index, _)| index)
+    let own = points.partition_point(|point| point.mesh == 0);
+    let own = &points[..own];
+    let of_accuracy = |&accuracy: &f64| {
+        let point = least(own, |point| [point.seconds, 0.0], |point| point.energy_error <= accuracy);
+        Advice { accuracy: Some(accuracy), point, ..Advice::default() }
     };
-    let mut advice: Vec<Advice> = WANTED
-        .iter()
-        .map(|&accuracy| Advice { accuracy: Some(accuracy), point: cheapest(accuracy), ..Advice::default() })
-        .collect();
-    let usual = own().rfind(|(_, point)| point.method == POLISHED && point.knob == Some(USUAL_TOLERANCE));
-    if let Some((_, usual)) = usual {
+    let mut advice: Vec<Advice> = WANTED.iter().map(of_accuracy).collect();
+    let usual = own.iter().rfind(|point| point.method == POLISHED && point.knob == Some(USUAL_TOLERANCE));
+    if let Some(usual) = usual {
         let seconds = HURRY * usual.seconds;
-        let quick = own().filter(|(_, point)| point.seconds <= seconds);
-        let point = quick.min_by(|(_, a), (_, b)| {
-            a.error_above_rounding().total_cmp(&b.error_above_rounding()).then(a.seconds.total_cmp(&b.seconds))
-        });
-        let point = point.map(|(index, _)| index);
+        let errors = |point: &TradeoffPoint| [point.error_above_rounding(), point.seconds];
+        let point = least(own, errors, |point| point.seconds <= seconds);
         advice.push(Advice { seconds: Some(seconds), point, ..Advice::default() });
     }
     advice
@@ -449,19 +459,10 @@ fn advice(points: &[TradeoffPoint]) -> Vec<Advice> {
 
 /// The mesh and method that reach a total error first, and those with the smallest total error within a time.
 fn advice_of_meshes(points: &[TradeoffPoint]) -> Vec<Advice> {
-    let by = |measure: fn(&TradeoffPoint) -> [f64; 2], is_allowed: &dyn Fn(&TradeoffPoint) -> bool| {
-        let allowed = points.iter().enumerate().filter(|(_, point)| is_allowed(point));
-        let least = allowed.min_by(|(_, a), (_, b)| {
-            let ([a, first], [b, second]) = (measure(a), measure(b));
-            a.total_cmp(&b).then(first.total_cmp(&second))
-        });
-        least.map(|(index, _)| index)
-    };
+    let seconds = |point: &TradeoffPoint| [point.seconds, point.total_error.unwrap_or(f64::INFINITY)];
     let of_errors = TOTAL_ERRORS.iter().map(|&total| Advice {
         total_error: Some(total),
-        point: by(|point| [point.seconds, point.total_error.unwrap_or(f64::INFINITY)], &|point| {
-            point.total_error.is_some_and(|of_point| of_point <= total)
-        }),
+        point: least(points, seconds, |point| point.total_error.is_some_and(|of_point| of_point <= total)),
         chooses_mesh: true,
         ..Advice::default()
     });
@@ -470,7 +471,9 @@ fn advice_of_meshes(points: &[TradeoffPoint]) -> Vec<Advice> {
         |point: &TradeoffPoint| [(100.0 * point.total_error.map_or(f64::INFINITY, f64::ln)).round(), point.seconds];
     let of_budgets = BUDGETS.iter().map(|&seconds| Advice {
         seconds: Some(seconds),
-        point: by(rounded, &|point| point.seconds <= seconds && point.total_error.is_some_and(f64::is_finite)),
+        point: least(points, rounded, |point| {
+            point.seconds <= seconds && point.total_error.is_some_and(f64::is_finite)
+        }),
         chooses_mesh: true,
         ..Advice::default()
     });

@@ -2,14 +2,14 @@
 //! N = s_1 s_2 s_3 (xi_a xi + eta_a eta + zeta_a zeta - 2)/8 at corners, (1 - xi^2) s_2 s_3/4 and so on at the mid-sides.
 
 use super::quadrature::CUBE_3X3X3;
-use super::reference::{FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape, with_middles};
 
 /// The corners between which each mid-side node lies.
 const EDGES: [[usize; 2]; 12] =
     [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
 
-/// The corners, which are those of the trilinear hexahedron too, then the mid-sides.
-pub(super) const NODES: [[f64; 3]; 20] = [
+/// The corners, which are those of the trilinear hexahedron too.
+pub(super) const CORNERS: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
     [1.0, 1.0, -1.0],
@@ -18,19 +18,10 @@ pub(super) const NODES: [[f64; 3]; 20] = [
     [1.0, -1.0, 1.0],
     [1.0, 1.0, 1.0],
     [-1.0, 1.0, 1.0],
-    [0.0, -1.0, -1.0],
-    [1.0, 0.0, -1.0],
-    [0.0, 1.0, -1.0],
-    [-1.0, 0.0, -1.0],
-    [0.0, -1.0, 1.0],
-    [1.0, 0.0, 1.0],
-    [0.0, 1.0, 1.0],
-    [-1.0, 0.0, 1.0],
-    [-1.0, -1.0, 0.0],
-    [1.0, -1.0, 0.0],
-    [1.0, 1.0, 0.0],
-    [-1.0, 1.0, 0.0],
 ];
+
+/// The corners, then the mid-sides.
+const NODES: [[f64; 3]; 20] = with_middles(CORNERS, EDGES);
 
 /// The serendipity hexahedron.
 pub(super) static HEX20: ReferenceElement = ReferenceElement {

@@ -3,22 +3,16 @@
 //! (1 + xi_a xi)(1 - eta^2)/2 at the mid-sides.
 
 use super::quadrature::SQUARE_3X3;
-use super::reference::{FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape, padded};
+use super::reference::{FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape, padded, with_middles};
 
 /// The corners between which each mid-side node lies.
 const SIDES: [[usize; 2]; 4] = [[0, 1], [1, 2], [2, 3], [3, 0]];
 
-/// The corners, which are those of the bilinear quadrilateral too, then the mid-sides.
-pub(super) const NODES: [[f64; 3]; 8] = [
-    [-1.0, -1.0, 0.0],
-    [1.0, -1.0, 0.0],
-    [1.0, 1.0, 0.0],
-    [-1.0, 1.0, 0.0],
-    [0.0, -1.0, 0.0],
-    [1.0, 0.0, 0.0],
-    [0.0, 1.0, 0.0],
-    [-1.0, 0.0, 0.0],
-];
+/// The corners, which are those of the bilinear quadrilateral too.
+pub(super) const CORNERS: [[f64; 3]; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
+
+/// The corners, then the mid-sides.
+const NODES: [[f64; 3]; 8] = with_middles(CORNERS, SIDES);
 
 /// The serendipity quadrilateral.
 pub(super) static Q8: ReferenceElement = ReferenceElement {

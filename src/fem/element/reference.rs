@@ -13,6 +13,22 @@ pub(super) fn padded<T: Copy + Default, const N: usize>(values: [T; N]) -> PerNo
     all
 }
 
+/// The corners of a quadratic element, then the middles of its edges.
+pub(super) const fn with_middles<const C: usize, const E: usize, const N: usize>(
+    corners: [[f64; 3]; C],
+    edges: [[usize; 2]; E],
+) -> [[f64; 3]; N] {
+    let mut nodes = [[0.0; 3]; N];
+    let mut entry = 0;
+    while entry < 3 * N {
+        let (node, axis) = (entry / 3, entry % 3);
+        let [a, b] = if node < C { [node; 2] } else { edges[node - C] };
+        nodes[node][axis] = (corners[a][axis] + corners[b][axis]) / 2.0;
+        entry += 1;
+    }
+    nodes
+}
+
 /// The shape of a reference cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {

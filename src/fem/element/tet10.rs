@@ -2,24 +2,14 @@
 //! L = (1 - xi - eta - zeta, xi, eta, zeta).
 
 use super::quadrature::TETRAHEDRON_8;
-use super::reference::{FacetKind, LatticeCounts, ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, ReferenceElement, Shape, with_middles};
 use super::simplex::{quadratic, quadratic_slopes};
+use super::tet4::CORNERS;
 
 /// The corners between which each mid-side node lies.
 const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
 
-const NODES: [[f64; 3]; 10] = [
-    [0.0, 0.0, 0.0],
-    [1.0, 0.0, 0.0],
-    [0.0, 1.0, 0.0],
-    [0.0, 0.0, 1.0],
-    [0.5, 0.0, 0.0],
-    [0.5, 0.5, 0.0],
-    [0.0, 0.5, 0.0],
-    [0.0, 0.0, 0.5],
-    [0.5, 0.0, 0.5],
-    [0.0, 0.5, 0.5],
-];
+const NODES: [[f64; 3]; 10] = with_middles(CORNERS, EDGES);
 
 /// The quadratic tetrahedron; its rule integrates a constant stress over curved edges exactly.
 pub(super) static TET10: ReferenceElement = ReferenceElement {

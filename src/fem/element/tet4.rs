@@ -4,12 +4,15 @@ use super::quadrature::TETRAHEDRON_1;
 use super::reference::{FacetKind, LatticeCounts, ReferenceElement, Shape};
 use super::simplex::{linear, linear_slopes};
 
+/// The corners, which are those of the quadratic tetrahedron too.
+pub(super) const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
 /// The linear tetrahedron.
 pub(super) static TET4: ReferenceElement = ReferenceElement {
     name: "Tet4",
     form: Shape::Simplex,
     dimension: 3,
-    nodes: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    nodes: &CORNERS,
     corners: 4,
     mid_sides: &[],
     faces: &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[0, 3, 2]],

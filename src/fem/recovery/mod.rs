@@ -64,9 +64,7 @@ impl Stress {
         let von_mises = normal.hypot(shear);
         Stress { sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx, sigma_1, sigma_2, sigma_3, von_mises }
     }
-}
 
-impl Stress {
     /// The components `[xx, yy, zz, xy, yz, zx]`.
     pub(crate) fn components(&self) -> Symmetric {
         [self.sigma_xx, self.sigma_yy, self.sigma_zz, self.sigma_xy, self.sigma_yz, self.sigma_zx]

@@ -98,3 +98,12 @@ impl Facets {
         }
     }
 }
+
+/// The next three words of a line, as numbers.
+pub(super) fn three_numbers<'a>(words: &mut impl Iterator<Item = &'a str>) -> Option<[f64; 3]> {
+    let mut numbers = [0.0; 3];
+    for number in &mut numbers {
+        *number = words.next()?.parse().ok()?;
+    }
+    Some(numbers)
+}

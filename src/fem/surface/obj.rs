@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::facets::{Facets, Unit};
+use super::facets::{Facets, Unit, three_numbers};
 use crate::error::Error;
 
 /// Reads the bytes of a file.
@@ -15,11 +15,8 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Facets, Error> {
         let mut words = line.split_ascii_whitespace();
         match words.next() {
             Some("v") => {
-                let mut at = [0.0; 3];
-                for coordinate in &mut at {
-                    let parsed = words.next().and_then(|word| word.parse().ok());
-                    *coordinate = parsed.ok_or_else(|| facets.fault(place, "a vertex needs three numbers"))?;
-                }
+                let at = three_numbers(&mut words);
+                let at = at.ok_or_else(|| facets.fault(place, "a vertex needs three numbers"))?;
                 numbers.push(facets.vertex(at, place)?);
             }
             Some("f") => {

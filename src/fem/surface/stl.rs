@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::facets::{Facets, Unit};
+use super::facets::{Facets, Unit, three_numbers};
 use crate::error::Error;
 
 /// Bytes before the first triangle: a title and the number of triangles.
@@ -70,7 +70,8 @@ fn ascii(file: &Path, bytes: &[u8]) -> Result<Facets, Error> {
         match (word.to_ascii_lowercase().as_str(), &mut open) {
             ("facet", None) => open = Some((last, Vec::with_capacity(3))),
             ("vertex", Some((_, corners))) if corners.len() < 3 => {
-                let at = vertex(&mut words).ok_or_else(|| facets.fault(last, "a vertex needs three numbers"))?;
+                let at = three_numbers(&mut words).filter(|_| words.next().is_none());
+                let at = at.ok_or_else(|| facets.fault(last, "a vertex needs three numbers"))?;
                 corners.push(facets.vertex(at, last)?);
             }
             ("vertex", Some(_)) => return Err(facets.fault(last, "a fourth vertex; a facet has three")),
@@ -99,13 +100,4 @@ fn ascii(file: &Path, bytes: &[u8]) -> Result<Facets, Error> {
         Some((begin, _)) => Err(facets.fault(last, format!("the file ends in the facet that begins in line {begin}"))),
         None => Ok(facets),
     }
-}
-
-/// Three numbers, with nothing after them.
-fn vertex<'a>(words: &mut impl Iterator<Item = &'a str>) -> Option<[f64; 3]> {
-    let mut at = [0.0; 3];
-    for coordinate in &mut at {
-        *coordinate = words.next()?.parse().ok()?;
-    }
-    words.next().is_none().then_some(at)
 }

@@ -36,12 +36,6 @@ pub struct DiscSpec {
 
 pub(super) const ABOUT: About = About { name: "disc", dimension: Some(2) };
 
-impl DiscSpec {
-    fn sides(&self) -> Sides {
-        if self.symmetric { Sides::Beyond } else { Sides::Both }
-    }
-}
-
 impl BodyShape for DiscSpec {
     fn integration(&self) -> Integration {
         self.integration
@@ -54,11 +48,11 @@ impl BodyShape for DiscSpec {
 
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
         site.check_estimate(&self.block(None))?;
-        disc(self.centre, self.radius, &self.zone, self.sides(), self.element.kind())
+        disc(self.centre, self.radius, &self.zone, Sides::of(self.symmetric), self.element.kind())
     }
 
     fn block(&self, _: Option<Files>) -> Block {
-        let mut halves = half_disc_block(&self.zone, self.radius, self.sides(), self.element.kind());
+        let mut halves = half_disc_block(&self.zone, self.radius, Sides::of(self.symmetric), self.element.kind());
         halves.cells[0] *= 2.0;
         halves
     }

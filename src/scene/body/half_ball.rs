@@ -6,7 +6,7 @@ use super::shape::{About, Block, BodyShape, RoundCells, Sides, Site};
 use crate::error::Error;
 use crate::fem::Integration;
 use crate::fem::mesh::lattice::Lattice;
-use crate::fem::mesh::round::{Grading, mirrored};
+use crate::fem::mesh::round::Grading;
 use crate::fem::mesh::{ElementKind, MAX_NODES, Mesh, Zone, fail};
 use crate::scene::entry::wrong;
 use crate::scene::files::Files;
@@ -63,8 +63,7 @@ impl BodyShape for HalfBallSpec {
 
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
         site.check_estimate(&self.block(None))?;
-        let sides = [SymmetrySpec::X, SymmetrySpec::Y]
-            .map(|axis| if self.symmetric.contains(&axis) { Sides::Beyond } else { Sides::Both });
+        let sides = [SymmetrySpec::X, SymmetrySpec::Y].map(|axis| Sides::of(self.symmetric.contains(&axis)));
         let kind = self.element.kind();
         if !kind.is_product() {
             let message = format!("a half ball cannot have a mesh of {}; take `hex8` or `hex20`", kind.name());
@@ -105,10 +104,7 @@ impl BodyShape for HalfBallSpec {
 /// zone out of its range.
 pub fn half_ball(centre: [f64; 3], radius: f64, zone: &Zone, sides: [Sides; 2]) -> Result<Mesh, Error> {
     let graded = Grading::new(radius, zone)?;
-    let across = sides.map(|sides| match sides {
-        Sides::Both => mirrored(&graded.aside),
-        Sides::Beyond => graded.aside.clone(),
-    });
+    let across = sides.map(|sides| sides.lines(&graded.aside));
     let count = [across[0].len() - 1, across[1].len() - 1, graded.down.len() - 1];
     let shells = graded.shells.len() - 1;
     let [i, j, k] = count;

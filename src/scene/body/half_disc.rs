@@ -6,7 +6,7 @@ use super::shape::{About, Block, BodyShape, RoundCells, Sides, Site};
 use crate::error::Error;
 use crate::fem::Integration;
 use crate::fem::mesh::lattice::{Lattice, half_steps};
-use crate::fem::mesh::round::{Grading, mirrored};
+use crate::fem::mesh::round::Grading;
 use crate::fem::mesh::{ElementKind, MAX_NODES, Mesh, Zone, fail};
 use crate::scene::files::Files;
 use crate::scene::schema::cells::{ElementSpec, HalfSpec};
@@ -40,12 +40,6 @@ pub struct HalfDiscSpec {
 
 pub(super) const ABOUT: About = About { name: "half-disc", dimension: Some(2) };
 
-impl HalfDiscSpec {
-    fn sides(&self) -> Sides {
-        if self.symmetric { Sides::Beyond } else { Sides::Both }
-    }
-}
-
 impl BodyShape for HalfDiscSpec {
     fn integration(&self) -> Integration {
         self.integration
@@ -58,12 +52,12 @@ impl BodyShape for HalfDiscSpec {
 
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
         site.check_estimate(&self.block(None))?;
-        let lower = half_disc(self.centre, self.radius, &self.zone, self.sides(), self.element.kind())?;
+        let lower = half_disc(self.centre, self.radius, &self.zone, Sides::of(self.symmetric), self.element.kind())?;
         Ok(self.half.of(lower, 1, self.centre[1]))
     }
 
     fn block(&self, _: Option<Files>) -> Block {
-        half_disc_block(&self.zone, self.radius, self.sides(), self.element.kind())
+        half_disc_block(&self.zone, self.radius, Sides::of(self.symmetric), self.element.kind())
     }
 
     fn refine(&mut self, times: usize) -> Result<(), Error> {
@@ -97,10 +91,7 @@ pub fn half_disc(centre: [f64; 2], radius: f64, zone: &Zone, sides: Sides, kind:
         return fail(format!("a half disc cannot have a mesh of {}", kind.name()));
     }
     let graded = Grading::new(radius, zone)?;
-    let across = match sides {
-        Sides::Both => mirrored(&graded.aside),
-        Sides::Beyond => graded.aside.clone(),
-    };
+    let across = sides.lines(&graded.aside);
     let (columns, rows, shells) = (across.len() - 1, graded.down.len() - 1, graded.shells.len() - 1);
     let cells = columns.saturating_mul(rows).saturating_add((columns + 2 * rows).saturating_mul(shells));
     if cells > MAX_NODES / 4 {

@@ -3,6 +3,7 @@
 use crate::error::Error;
 use crate::fem::Integration;
 use crate::fem::element::LatticeCounts;
+use crate::fem::mesh::round::mirrored;
 use crate::fem::mesh::{Axis, ElementKind, MAX_NODES, Mesh, Zone};
 use crate::scene::entry::wrong;
 use crate::scene::files::Files;
@@ -95,6 +96,21 @@ pub enum Sides {
     Both,
     /// The part beyond the centre, which ends at a plane of symmetry.
     Beyond,
+}
+
+impl Sides {
+    /// The part of a body that `is_symmetric`.
+    pub(super) fn of(is_symmetric: bool) -> Self {
+        if is_symmetric { Sides::Beyond } else { Sides::Both }
+    }
+
+    /// The lines across the body from those of one side, which begin at 0.
+    pub(super) fn lines(self, aside: &[f64]) -> Vec<f64> {
+        match self {
+            Sides::Both => mirrored(aside),
+            Sides::Beyond => aside.to_vec(),
+        }
+    }
 }
 
 /// A block of cells that represents the mesh of a body.

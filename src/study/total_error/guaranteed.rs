@@ -309,8 +309,8 @@ impl Search<'_> {
         let force_interval = if is_last { bracket.force_interval()? } else { None };
         Ok(TotalErrorLevel {
             triangles: bracket.mesh.triangles.len(),
-            dofs: bracket.primal.unknowns.free(),
-            stress_dofs: bracket.dual.unknowns.free(),
+            dofs: bracket.primal.unknowns.free,
+            stress_dofs: bracket.dual.unknowns.free,
             bound: bracket.bound(),
             mean_stress_bound: bracket.bound_of_mean(),
             contact_force: bracket.force(),
@@ -383,7 +383,7 @@ pub fn examined(scene: &Scene, levels: usize) -> Result<Vec<Examined>, Error> {
             force: bracket.force(),
             force_interval: bracket.force_interval()?,
             own: [judged.bound, judged.from_displacement, judged.norm],
-            dofs: bracket.primal.unknowns.free(),
+            dofs: bracket.primal.unknowns.free,
         });
         if level < levels {
             mesh = mesh.refined(&marked(&bracket.shares, MARKED), |_, middle| middle);
