@@ -3,6 +3,13 @@
 /// The unit vectors along x, y and z.
 pub(crate) const COORDINATES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
+/// The vector of this length, or against the axis if it is negative, along an axis.
+pub(crate) fn along_axis(axis: usize, length: f64) -> [f64; 3] {
+    let mut vector = [0.0; 3];
+    vector[axis] = length;
+    vector
+}
+
 /// The scalar product.
 #[inline]
 pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

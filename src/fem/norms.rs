@@ -155,7 +155,7 @@ struct Squares<'a, F> {
 impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
     /// The sums over the points of a table of one element with the given displacements of its nodes.
     fn over(&self, element: &BodyElement, local: &PerNode<[f64; 3]>, table: &Tabulated) -> Sums {
-        let (cell, law) = (&element.cell, element.phase.law());
+        let (cell, law) = (&element.cell, &element.phase.law);
         let scale = cell.unit().powi(self.body.dimension() as i32);
         let mut sums = Sums::default();
         for at in &table.points {

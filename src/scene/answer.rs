@@ -119,12 +119,8 @@ impl Answer {
 
     /// The remaining gap at the node of each row, one entry per contact row, in length, `>= 0` up to rounding.
     pub fn remaining_gaps(&self) -> Vec<f64> {
-        let dimension = self.model.body().dimension();
         let moved = |row: &ContactRow| -> f64 {
-            let of_node = |(node, sign): (usize, f64)| {
-                let own = &self.displacement[dimension * node..dimension * (node + 1)];
-                sign * own.iter().zip(row.normal).map(|(u, n)| u * n).sum::<f64>()
-            };
+            let of_node = |(node, sign)| sign * dot(self.model.at_node(&self.displacement, node), row.normal);
             row.ends().map(of_node).sum()
         };
         let travelled = |row: &ContactRow| {
@@ -175,7 +171,7 @@ impl Answer {
             let mut all = self.model.contact_resultants(&self.multiplier)?;
             all.iter_mut().zip(&self.travel).for_each(|(resultant, travel)| resultant.travel = *travel);
             let reactions = &self.forces()?.reactions;
-            all.extend(self.model.support_resultants(|node| self.model.force_at(reactions, node)));
+            all.extend(self.model.support_resultants(|node| self.model.at_node(reactions, node)));
             all.extend(self.model.spring_resultants(&self.displacement));
             all.extend(self.model.face_resultants(&self.forces()?.rigid_faces, &self.unknowns)?);
             all.extend(self.model.load_resultant());

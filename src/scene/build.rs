@@ -81,7 +81,7 @@ impl Scene {
         let moves = self.analysis.is_some();
         let nodes = body.mesh().nodes();
         let unknowns = Unknowns::of(nodes, &dofs, body.dimension(), &rigid_faces, &obstacles)?;
-        if let Some(index) = unknowns.pressed().first().filter(|_| moves) {
+        if let Some(index) = unknowns.pressed.first().filter(|_| moves) {
             let message = "an obstacle without mass has no motion of its own; let it stand still, or load the body";
             return Err(wrong(format!("{}.force", path(*index)), message));
         }

@@ -74,7 +74,7 @@ impl Scene {
             let message = "several materials in one body have no guaranteed bound: only a single one has";
             return Err(wrong("materials", message));
         };
-        let &Stiffness::Isotropic(lame) = phase.law().stiffness() else {
+        let Stiffness::Isotropic(lame) = phase.law.stiffness else {
             let message = "an orthotropic material has no guaranteed bound: only an isotropic one has";
             return Err(wrong("material.orthotropic", message));
         };

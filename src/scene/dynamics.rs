@@ -206,7 +206,7 @@ impl Dynamics {
         let [found, expected] = [integrator.problem(), &self.problem].map(|problem| problem.statics().dofs());
         Error::check_length("displacement", found, expected, "free dofs")?;
         let mut all = model.contact_resultants(multiplier)?;
-        if let Some(balance) = integrator.balance(self.supports.around()) {
+        if let Some(balance) = integrator.balance(&self.supports.around) {
             all.extend(model.support_resultants(self.supports.reactions(model, balance, multiplier)));
         }
         without_rounding(&mut all);
@@ -384,7 +384,7 @@ fn wave_time(body: &ElasticBody) -> f64 {
 
 /// The speed of pressure waves in a phase with a density, in length over time.
 fn wave_speed(phase: &Phase) -> f64 {
-    (phase.law().wave_modulus() / phase.material().density().unwrap_or(f64::NAN)).sqrt()
+    (phase.law.wave_modulus() / phase.material().density().unwrap_or(f64::NAN)).sqrt()
 }
 
 /// The time in which a pressure wave crosses the body behind the row with the smallest gap, along its normal; for several obstacles the

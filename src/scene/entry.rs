@@ -33,11 +33,6 @@ pub(super) fn positive(path: &str, value: f64) -> Result<f64, Error> {
     }
 }
 
-pub(super) fn finite_pair(path: &str, pair: [f64; 2]) -> Result<(), Error> {
-    finite(format!("{path}[0]"), pair[0])?;
-    finite(format!("{path}[1]"), pair[1])
-}
-
 /// Checks a table at a JSON path: as many factors as `places`, at least one; the places have this name, and increase.
 pub(super) fn table(path: &str, (name, places): (&str, &[f64]), factors: &[f64]) -> Result<(), Error> {
     if places.len() != factors.len() || places.is_empty() {

@@ -119,7 +119,7 @@ impl Model {
     /// The force on each obstacle that a force presses.
     #[cfg(feature = "pictures")]
     pub(crate) fn pressing_forces(&self) -> Vec<f64> {
-        self.parts.unknowns.pressed().iter().filter_map(|&obstacle| self.pressing_force_on(obstacle)).collect()
+        self.parts.unknowns.pressed.iter().filter_map(|&obstacle| self.pressing_force_on(obstacle)).collect()
     }
 
     /// The same scene with another force on the one obstacle that a force presses.
@@ -128,8 +128,8 @@ impl Model {
     /// [`Error::Scene`] if a force presses no obstacle or several, or for a force that is negative or not finite.
     pub(crate) fn pressed_by(&self, force: f64) -> Result<Self, Error> {
         let parts = &self.parts;
-        let &[obstacle] = parts.unknowns.pressed() else {
-            let message = match parts.unknowns.pressed().len() {
+        let &[obstacle] = parts.unknowns.pressed.as_slice() else {
+            let message = match parts.unknowns.pressed.len() {
                 0 => "no obstacle is pressed by a force; a sweep over forces needs the key `force` in one obstacle, such as \
                       \"force\": 100"
                     .to_string(),
@@ -162,7 +162,7 @@ impl Model {
         let stiffness = parts.unknowns.on_springs(problem.stiffness())?;
         let mut solution = solve(&ContactProblem::new(stiffness, load, problem.contact().clone(), gap)?, settings)?;
         let left = problem.violation(&solution.displacement);
-        for &obstacle in parts.unknowns.pressed() {
+        for &obstacle in &parts.unknowns.pressed {
             let Some(travel) = parts.unknowns.travel(obstacle) else { continue };
             let rows = problem.contact().column(travel);
             // Adding zero removes the sign of a zero.
@@ -278,7 +278,7 @@ impl Model {
 
     /// Returns `true` if the supports alone hold all bodies; otherwise contact holds some rigid-body mode.
     pub(crate) fn is_supported(&self) -> bool {
-        RigidBodyModes::of_parts(&self.parts).are_supported(&self.parts)
+        RigidBodyModes::of_parts(&self.parts).free(&self.parts, &[]).is_empty()
     }
 
     /// The contact problem in the free dofs.

@@ -4,7 +4,7 @@ use super::Model;
 use super::loads_in_time::NodalLoads;
 use crate::error::Error;
 use crate::fem::assembly::{mass_columns, stiffness_columns};
-use crate::fem::geometry::COORDINATES;
+use crate::fem::geometry::along_axis;
 use crate::motion::Balance;
 use crate::qp::linear::SparseMatrix;
 
@@ -15,8 +15,8 @@ use crate::qp::linear::SparseMatrix;
 pub(super) struct MovingSupports {
     /// The nodes, increasing; empty if the scene has no support.
     nodes: Vec<usize>,
-    /// The free dofs that share an element with them, increasing.
-    around: Vec<usize>,
+    /// The free dofs that share an element with them, increasing: those whose motion [`reactions`](Self::reactions) needs.
+    pub around: Vec<usize>,
     /// Force on the nodes per displacement of these dofs, transposed: `around.len() x (dim * nodes.len())`.
     stiffness: SparseMatrix,
     /// Force on the nodes per acceleration of these dofs, transposed.
@@ -44,7 +44,6 @@ impl MovingSupports {
         let is_held = |node: usize| (dimension * node..dimension * (node + 1)).any(|dof| dofs.number(dof).is_none());
         let count = if model.parts().supports > 0 { model.mesh().nodes().len() } else { 0 };
         let nodes: Vec<usize> = (0..count).filter(|&node| is_held(node)).collect();
-        let along_axis = |axis: usize, length: f64| COORDINATES[axis].map(|part| length * part);
         let mut holding = vec![0.0; dimension * nodes.len()];
         let (mut elastic, mut inertia): (Effects, Effects) = (Vec::new(), Vec::new());
         for (row, force, value) in stiffness_columns(body, &nodes)?.triplets() {
@@ -71,18 +70,13 @@ impl MovingSupports {
         Ok(MovingSupports { nodes, around, stiffness, mass, damping, holding, loads })
     }
 
-    /// The free dofs whose motion [`reactions`](Self::reactions) needs.
-    pub fn around(&self) -> &[usize] {
-        &self.around
-    }
-
     /// The forces of supports on their nodes, by number of the node, in force; zero at other nodes:
     ///
     /// ```text
     /// R = M a + C v + K u - f - B' lambda,   C = c_m M + c_k K
     /// ```
     ///
-    /// with u, v, a (one entry for each dof of [`around`](Self::around)) and f of the balance that the scheme solved, and its contact
+    /// with u, v, a (one entry for each dof of `around`) and f of the balance that the scheme solved, and its contact
     /// forces, one multiplier per contact row. Along free dofs R is the residual of the solve.
     pub fn reactions(&self, model: &Model, balance: Balance, multiplier: &[f64]) -> impl Fn(usize) -> [f64; 3] {
         let dimension = model.body().dimension();

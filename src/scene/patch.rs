@@ -12,6 +12,7 @@ use super::rows::ContactRow;
 use crate::fem::assembly::facet_sizes;
 use crate::fem::element::FacetKind;
 use crate::fem::geometry::{cross, distance, dot, length, minus};
+use crate::qp::linear::Forest;
 
 /// Least cosine of the angle between the direction from an inner node to the last closed one and the direction to the open one.
 const AHEAD: f64 = 0.5;
@@ -199,33 +200,16 @@ impl<'a> Patch<'a> {
 
     /// The closed nodes in connected pieces: nodes of one cell belong together.
     pub fn pieces(&self) -> Vec<Vec<usize>> {
-        let mut root: BTreeMap<usize, usize> = self.closed.iter().map(|&node| (node, node)).collect();
-        fn find(root: &mut BTreeMap<usize, usize>, node: usize) -> usize {
-            let mut at = node;
-            while root[&at] != at {
-                let above = root[&root[&at]];
-                root.insert(at, above);
-                at = above;
-            }
-            at
-        }
+        let numbered = self.closed.iter().enumerate().map(|(number, &node)| (node, number));
+        let number_of: BTreeMap<usize, usize> = numbered.collect();
+        let mut forest = Forest::new(self.closed.len());
         for cell in &self.cells {
-            let inside: Vec<usize> = cell.nodes.iter().copied().filter(|&node| self.is_closed(node)).collect();
-            for pair in inside.windows(2) {
-                let (a, b) = (find(&mut root, pair[0]), find(&mut root, pair[1]));
-                root.insert(a, b);
-            }
+            let inside: Vec<usize> = cell.nodes.iter().filter_map(|node| number_of.get(node).copied()).collect();
+            inside.windows(2).for_each(|pair| forest.join(pair[0], pair[1]));
         }
-        let mut pieces: Vec<Vec<usize>> = Vec::new();
-        let mut place_of: BTreeMap<usize, usize> = BTreeMap::new();
-        for &node in &self.closed {
-            let top = find(&mut root, node);
-            let place = *place_of.entry(top).or_insert_with(|| {
-                pieces.push(Vec::new());
-                pieces.len() - 1
-            });
-            pieces[place].push(node);
-        }
+        let (piece_of, count) = forest.into_trees();
+        let mut pieces = vec![Vec::new(); count];
+        self.closed.iter().zip(piece_of).for_each(|(&node, piece)| pieces[piece].push(node));
         pieces
     }
 

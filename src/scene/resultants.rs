@@ -213,7 +213,7 @@ impl Model {
     fn sum_of(&self, forces: &[f64]) -> Sum {
         let mut sum = Sum::default();
         for (node, &at) in self.mesh().nodes().iter().enumerate() {
-            self.add_images(&mut sum, at, self.force_at(forces, node), |_| true);
+            self.add_images(&mut sum, at, self.at_node(forces, node), |_| true);
         }
         sum
     }
@@ -269,8 +269,8 @@ impl Model {
         (!loads.forces.is_empty()).then(|| loads.resultant(self, "loads".into()))
     }
 
-    /// The force at a node among nodal forces (length `dim * n_nodes`).
-    pub(super) fn force_at(&self, forces: &[f64], node: usize) -> [f64; 3] {
+    /// The force or the displacement of a node among those of all nodes (length `dim * n_nodes`).
+    pub(crate) fn at_node(&self, forces: &[f64], node: usize) -> [f64; 3] {
         let dimension = self.body().dimension();
         let of_node = &forces[dimension * node..dimension * (node + 1)];
         [0, 1, 2].map(|axis| of_node.get(axis).copied().unwrap_or(0.0))

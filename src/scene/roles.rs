@@ -6,7 +6,7 @@ use super::schema::PartSpec;
 use super::schema::part::PartNormalSpec;
 use crate::fem::assembly::{node_normals, tributary_areas};
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::{dot, length};
+use crate::fem::geometry::{along_axis, dot, length};
 use crate::fem::mesh::{Boundary, Mesh, extent};
 
 /// Words in the name of a boundary that is held, and of a boundary that is pressed.
@@ -47,8 +47,7 @@ pub(super) enum Chosen {
 impl Chosen {
     /// The part of a scene that has the facets which face a direction.
     pub fn spec((axis, sense): Way, of: Option<String>, dimension: usize) -> PartSpec {
-        let mut direction = vec![0.0; dimension];
-        direction[axis] = sense;
+        let direction = along_axis(axis, sense)[..dimension].to_vec();
         let normal = Some(PartNormalSpec { direction, within: WITHIN });
         PartSpec { name: String::new(), of, cuboid: None, sphere: None, normal }
     }
@@ -117,8 +116,9 @@ impl Pressed {
         let nodes = body.mesh().nodes();
         let places: Vec<[f64; 3]> = facets.nodes().into_iter().map(|node| nodes[node]).collect();
         let height = |node: usize| way.1 * nodes[node][way.0];
+        let facing = along_axis(way.0, way.1);
         let leans: Vec<(usize, f64)> =
-            node_normals(body, facets).into_iter().map(|(node, normal)| (node, dot(normal, direction(way)))).collect();
+            node_normals(body, facets).into_iter().map(|(node, normal)| (node, dot(normal, facing))).collect();
         let top = leans.iter().map(|&(node, _)| height(node)).reduce(f64::max)?;
         let is_first = |node: usize| height(node) > top - AS_HIGH * body.mesh().size();
         let allows = |&(node, lean): &(usize, f64)| lean > if is_first(node) { FIRST } else { -SIDEWAYS };
@@ -147,12 +147,6 @@ fn holds_all(mesh: &Mesh, pieces: &[usize], boundary: &Boundary) -> bool {
 
 fn has(words: &[&str], name: &str) -> bool {
     words.iter().any(|word| name.to_lowercase().contains(word))
-}
-
-fn direction((axis, sense): Way) -> [f64; 3] {
-    let mut direction = [0.0; 3];
-    direction[axis] = sense;
-    direction
 }
 
 /// Returns `true` if every facet of a boundary lies on the surface of the mesh.

@@ -141,7 +141,7 @@ impl Answer {
             let row = patch.row(node)?;
             let facing = dot(row.normal, row.outward);
             let traction = dot(row.normal, stress.on(row.outward)) / if facing > 0.0 { facing } else { 1.0 };
-            let load = dot(row.normal, model.force_at(model.nodal_load(), node)) / row.projected_area();
+            let load = dot(row.normal, model.at_node(model.nodal_load(), node)) / row.projected_area();
             // The end of a quadratic edge on an axis of revolution has no area.
             Some((node, if load.is_finite() { load - traction } else { -traction }))
         };

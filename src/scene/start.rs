@@ -11,6 +11,7 @@ use crate::error::Error;
 use crate::fem::assembly::tributary_areas;
 use crate::fem::body::ElasticBody;
 use crate::fem::formulation::Formulation;
+use crate::fem::geometry::along_axis;
 use crate::fem::material::Material;
 use crate::fem::mesh::gmsh::GmshFile;
 use crate::fem::mesh::{Mesh, extent};
@@ -157,8 +158,6 @@ fn rest(text: &mut String, mesh: &Mesh, roles: &Roles, young: f64) {
     let area: f64 = across.map(|other| high[other] - low[other]).product();
     // One significant digit is enough.
     let force: f64 = format!("{:.0e}", STRAIN * young * area).parse().unwrap_or(1.0);
-    let mut normal = [0.0; 3];
-    normal[axis] = sense;
     let approach = format!("{}{}", if sense > 0.0 { "+" } else { "-" }, ["x", "y", "z"][axis]);
     let _ = write!(
         text,
@@ -170,6 +169,6 @@ fn rest(text: &mut String, mesh: &Mesh, roles: &Roles, young: f64) {
         quoted(&pressed),
         number(force),
         vector(&point[..dimension]),
-        vector(&normal[..dimension])
+        vector(&along_axis(axis, sense)[..dimension])
     );
 }

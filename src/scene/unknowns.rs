@@ -27,7 +27,7 @@ pub(super) struct Unknowns {
     free: usize,
     ties: Option<Ties>,
     /// The pressed obstacles, in the order of their unknowns, which come last.
-    pressed: Vec<usize>,
+    pub pressed: Vec<usize>,
 }
 
 /// The meaning of an unknown.
@@ -98,11 +98,6 @@ impl Unknowns {
     /// Number of unknowns.
     pub fn count(&self) -> usize {
         self.of_body() + self.pressed.len()
-    }
-
-    /// The obstacles that a force presses.
-    pub fn pressed(&self) -> &[usize] {
-        &self.pressed
     }
 
     /// The unknown that is the travel of an obstacle; `None` for an obstacle at rest.

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
-use crate::fem::geometry::dot;
+use crate::fem::geometry::{along_axis, dot};
 use crate::qp::problem::ContactProblem;
 use crate::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, refused, straight_cells};
 use crate::solution::{Certificate, Solution};
@@ -181,10 +181,7 @@ fn across_approach(answer: &Answer) -> Option<AnswerWarning> {
 fn between_nodes(answer: &Answer) -> Option<AnswerWarning> {
     let model = answer.model();
     let (nodes, dimension) = (model.mesh().nodes(), model.mesh().dimension());
-    let moved = |node: usize| {
-        let of_node = &answer.displacement()[dimension * node..dimension * (node + 1)];
-        [0, 1, 2].map(|axis| of_node.get(axis).copied().unwrap_or(0.0))
-    };
+    let moved = |node: usize| model.at_node(answer.displacement(), node);
     let closed = answer.contact_set().iter().map(|row| &model.rows()[row]);
     let depth = closed.map(|row| dot(row.normal, moved(row.node)).abs()).fold(0.0, f64::max);
     let mut worst: Option<(f64, usize, [f64; 3])> = None;
@@ -257,11 +254,7 @@ fn leaning_normals(answer: &Answer) -> Option<AnswerWarning> {
     let beside = BESIDE * model.mesh().size();
     let mut shifts = vec![[0.0; 3]];
     for axis in 0..model.mesh().dimension() {
-        shifts.extend([beside, -beside].map(|step| {
-            let mut shift = [0.0; 3];
-            shift[axis] = step;
-            shift
-        }));
+        shifts.extend([beside, -beside].map(|step| along_axis(axis, step)));
     }
     let mut worst: Option<(f64, usize, usize)> = None;
     for (index, obstacle) in model.obstacles().iter().enumerate().filter(|entry| entry.1.rule() == Some(Rule::Approach))

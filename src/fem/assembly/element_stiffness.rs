@@ -9,7 +9,7 @@ use crate::fem::material::{Lame, Stiffness};
 
 /// The stiffness of an element of `body`; `table` is the body's [`tabulated`](ElasticBody::tabulated) element.
 pub fn element_stiffness(body: &ElasticBody, element: &BodyElement, table: &Tabulated) -> ElementStiffness {
-    let blocks = match element.phase.law().stiffness() {
+    let blocks = match &element.phase.law.stiffness {
         &Stiffness::Isotropic(lame) => isotropic_stiffness(body, lame, table, &element.cell),
         Stiffness::General(matrices) => general_stiffness(body, &matrices.stiffness, table, &element.cell),
     };

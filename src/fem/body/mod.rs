@@ -119,7 +119,7 @@ impl ElasticBody {
 
     /// Mean dilatation is defined for the isotropic law only.
     fn check_integration(&self) -> Result<(), Error> {
-        let is_general = |phase: &Phase| matches!(phase.law().stiffness(), Stiffness::General(_));
+        let is_general = |phase: &Phase| matches!(phase.law.stiffness, Stiffness::General(_));
         match self.integration == Integration::MeanDilatation && self.phases.iter().any(is_general) {
             true => fail("mean dilatation is for isotropic materials only".into()),
             false => Ok(()),
@@ -338,7 +338,7 @@ impl BodyElement<'_> {
     /// The stress of a strain at a tabulated point: C (eps - alpha T) + sigma_0. A mean `dilatation` replaces the trace of the strain.
     #[inline]
     pub fn stress(&self, at: &TabulatedPoint, strain: &Symmetric, dilatation: Option<f64>) -> Symmetric {
-        let stress = self.phase.law().stress(strain, dilatation.unwrap_or_else(|| trace(strain)));
+        let stress = self.phase.law.stress(strain, dilatation.unwrap_or_else(|| trace(strain)));
         match self.own_stress(at) {
             None => stress,
             Some(own) => [0, 1, 2, 3, 4, 5].map(|component| stress[component] + own[component]),
@@ -348,6 +348,6 @@ impl BodyElement<'_> {
     /// The stress at a tabulated point without any strain, if there is one.
     #[inline]
     pub fn own_stress(&self, at: &TabulatedPoint) -> Option<Symmetric> {
-        self.phase.own().map(|own| own.at(self.cell.place(&at.shape)))
+        self.phase.own.as_ref().map(|own| own.at(self.cell.place(&at.shape)))
     }
 }

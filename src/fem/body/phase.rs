@@ -9,8 +9,10 @@ use crate::fem::material::{Law, Material};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Phase {
     material: Material,
-    law: Law,
-    own: Option<OwnStress>,
+    /// The law of the material.
+    pub law: Law,
+    /// The stress without strain, if there is one.
+    pub own: Option<OwnStress>,
 }
 
 /// The temperature above the stress-free one, linear in space.
@@ -93,17 +95,5 @@ impl Phase {
     /// The material.
     pub fn material(&self) -> &Material {
         &self.material
-    }
-
-    /// Its law.
-    #[inline]
-    pub fn law(&self) -> &Law {
-        &self.law
-    }
-
-    /// The stress without strain, if there is one.
-    #[inline]
-    pub fn own(&self) -> Option<&OwnStress> {
-        self.own.as_ref()
     }
 }

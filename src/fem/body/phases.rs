@@ -44,7 +44,7 @@ impl ElasticBody {
 
     /// Returns `true` if there is stress without strain.
     pub(crate) fn has_own_stress(&self) -> bool {
-        self.phases.iter().any(|phase| phase.own().is_some())
+        self.phases.iter().any(|phase| phase.own.is_some())
     }
 
     /// The same with another phase in some elements, made from their present phase.

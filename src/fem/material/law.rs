@@ -36,19 +36,14 @@ pub struct Matrices {
 /// The law of a material in a formulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Law {
-    stiffness: Stiffness,
+    /// The stiffness.
+    pub stiffness: Stiffness,
     formulation: Formulation,
 }
 
 impl Law {
     pub(super) fn new(stiffness: Stiffness, formulation: Formulation) -> Self {
         Law { stiffness, formulation }
-    }
-
-    /// The stiffness.
-    #[inline]
-    pub fn stiffness(&self) -> &Stiffness {
-        &self.stiffness
     }
 
     /// The stress of a strain. In an isotropic material `dilatation` replaces the trace; it may be a mean over the element.

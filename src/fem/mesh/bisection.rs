@@ -117,9 +117,9 @@ impl Tetrahedra {
                 }
             }
         }
-        let is_flat = cell.is_flat();
+        let flat_at = cell.flat_at();
         // The face between the halves.
-        let between = match cell.flat_at() {
+        let between = match flat_at {
             Some(shared) if cell.is_second => key(shared, middle),
             _ => key(c, d),
         };
@@ -132,7 +132,7 @@ impl Tetrahedra {
             Marked {
                 nodes: [p, q, s, middle],
                 opposite: [face(q, s), face(p, s)],
-                is_second: is_flat && !cell.is_second,
+                is_second: flat_at.is_some() && !cell.is_second,
                 parent: cell.parent,
             }
         })
@@ -162,10 +162,6 @@ impl Marked {
     fn flat_at(&self) -> Option<usize> {
         let [a, b, c, d] = self.nodes;
         [c, d].into_iter().find(|&shared| self.opposite == [key(b, shared), key(a, shared)])
-    }
-
-    fn is_flat(&self) -> bool {
-        self.flat_at().is_some()
     }
 }
 

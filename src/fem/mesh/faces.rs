@@ -22,16 +22,6 @@ fn key(nodes: impl Iterator<Item = usize>) -> Key {
     key
 }
 
-/// The first element of a piece, with shorter ways to it.
-#[cfg(feature = "cli")]
-fn root_of(root: &mut [usize], mut element: usize) -> usize {
-    while root[element] != element {
-        root[element] = root[root[element]];
-        element = root[element];
-    }
-    element
-}
-
 impl Mesh {
     /// The element and its local face for each facet of a boundary: the first one if the boundary lies between two elements, `None` if
     /// the facet is not a face of any element.
@@ -81,20 +71,18 @@ impl Mesh {
         Boundary::new("surface", kind, chained(kind, outer.flatten().collect()))
     }
 
-    /// The piece of each element, by the index of its first element: elements of one piece are joined by common faces.
+    /// The number of the piece of each element: elements of one piece are joined by common faces.
     #[cfg(feature = "cli")]
     pub(crate) fn pieces(&self) -> Vec<usize> {
         let faces = self.kind().reference().faces;
         let mut first_at: HashMap<Key, usize> = HashMap::new();
-        let mut root: Vec<usize> = (0..self.element_count()).collect();
+        let mut forest = crate::qp::linear::Forest::new(self.element_count());
         for (element, nodes) in self.elements().enumerate() {
             for face in faces {
-                let first = *first_at.entry(key(face.iter().map(|&local| nodes[local]))).or_insert(element);
-                let [one, other] = [first, element].map(|element| root_of(&mut root, element));
-                root[one.max(other)] = one.min(other);
+                forest.join(*first_at.entry(key(face.iter().map(|&local| nodes[local]))).or_insert(element), element);
             }
         }
-        (0..root.len()).map(|element| root_of(&mut root, element)).collect()
+        forest.into_trees().0
     }
 
     pub(super) fn check_facets(&self) -> Result<(), Error> {

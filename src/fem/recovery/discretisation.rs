@@ -50,7 +50,7 @@ impl EstimatedError {
         let mut of_elements = Vec::with_capacity(body.mesh().element_count());
         let (mut whole, mut unstrained) = (0.0, 0.0);
         for element in body.elements() {
-            let (nodes, cell, law) = (element.nodes, &element.cell, element.phase.law());
+            let (nodes, cell, law) = (element.nodes, &element.cell, &element.phase.law);
             let strained = body.strained(&standard, displacement, &element);
             let mut recovered: PerNode<Symmetric> = [[0.0; 6]; MAX_NODES];
             for (stress, &node) in recovered.iter_mut().zip(nodes) {

@@ -17,7 +17,7 @@ pub struct ClosedSurface {
     corners: Vec<[u32; 3]>,
     /// The triangles around each vertex.
     around: Around,
-    tree: Tree,
+    pub(super) tree: Tree,
 }
 
 impl ClosedSurface {
@@ -47,10 +47,6 @@ impl ClosedSurface {
             facets.corners.iter_mut().for_each(|corners| corners.swap(1, 2));
         }
         Ok(ClosedSurface { vertices: facets.vertices, corners: facets.corners, around, tree })
-    }
-
-    pub(super) fn tree(&self) -> &Tree {
-        &self.tree
     }
 
     pub(super) fn triangle(&self, number: u32) -> Triangle {

@@ -77,7 +77,7 @@ impl ClosedSurface {
     /// Insides of triangles come first, then sides, then corners.
     fn feet(&self, point: [f64; 3], tolerance: f64) -> Vec<Foot> {
         let (mut nearest, mut feet) = (f64::INFINITY, Vec::<Foot>::new());
-        self.tree().near(point, |triangle| {
+        self.tree.near(point, |triangle| {
             let (at, part) = self.triangle(triangle).closest(point);
             let distance = distance(at, point);
             if distance <= nearest + tolerance {

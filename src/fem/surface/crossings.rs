@@ -20,7 +20,7 @@ impl ClosedSurface {
         let (first, second) = ((axis + 1) % 3, (axis + 2) % 3);
         let across = |at: [f64; 3]| Coord { x: at[first], y: at[second] };
         let mut crossings = Vec::new();
-        self.tree().along(axis, point, |triangle| {
+        self.tree.along(axis, point, |triangle| {
             let corners = self.triangle(triangle).0;
             let sides = [0, 1, 2].map(|corner| {
                 side(across(corners[(corner + 1) % 3]), across(corners[(corner + 2) % 3]), across(point))

@@ -10,6 +10,7 @@ use super::ruled::{RigidSurface, Ruled};
 use super::surface::Local;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
+use crate::fem::geometry::along_axis;
 use crate::scene::entry::{COORDINATE_ROUNDING, positive, vector, wrong};
 use crate::scene::files::Files;
 use crate::scene::schema::approach::{Approach, Rule};
@@ -111,9 +112,7 @@ impl Site<'_> {
     /// The approach direction, a unit vector [x, y, z].
     pub fn direction(&self) -> [f64; 3] {
         let (axis, sense) = self.approach.axis();
-        let mut direction = [0.0; 3];
-        direction[axis] = sense;
-        direction
+        along_axis(axis, sense)
     }
 
     /// A point or a direction of the plane in the axes of the obstacle: along its surface, and towards it.

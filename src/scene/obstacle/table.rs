@@ -9,7 +9,7 @@ use super::polyline::Polyline;
 use super::shape::{About, Geometry, ObstacleShape, Site};
 use super::surface::{Local, Surface};
 use crate::error::Error;
-use crate::scene::entry::{PLACE_TOLERANCE, finite_pair, number, point, wrong};
+use crate::scene::entry::{PLACE_TOLERANCE, finite, number, point, wrong};
 
 /// A polyline through points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,7 +30,9 @@ impl TableSpec {
         let axis = site.name_along();
         let mut knots: Vec<Local> = Vec::with_capacity(self.points.len());
         for (index, &at) in self.points.iter().enumerate() {
-            finite_pair(&format!("{path}[{index}]"), at)?;
+            for (axis, coordinate) in at.into_iter().enumerate() {
+                finite(format!("{path}[{index}][{axis}]"), coordinate)?;
+            }
             let knot = site.local([at[0], at[1], 0.0]);
             if let Some(last) = knots.last().filter(|last| knot[0] <= last[0]) {
                 let (this, before) = (number(knot[0]), number(last[0]));

@@ -42,9 +42,9 @@ impl RigidBodyModes {
     pub fn of_parts(parts: &Parts) -> Self {
         let mut modes = Self::of(&parts.body);
         let size = parts.body.mesh().size();
-        modes.obstacles = parts.unknowns.pressed().to_vec();
+        modes.obstacles = parts.unknowns.pressed.clone();
         let of_obstacle = |&index: &usize| UnitMotions::of_obstacle(index, parts.obstacles[index].approach(), size);
-        modes.bodies.extend(parts.unknowns.pressed().iter().map(of_obstacle));
+        modes.bodies.extend(parts.unknowns.pressed.iter().map(of_obstacle));
         modes
     }
 
@@ -130,13 +130,8 @@ impl RigidBodyModes {
         Err(Error::UnderHeld { mode: format!("{}: {advice}", names.join(", ")), direction })
     }
 
-    /// Returns `true` if the supports without contact hold all bodies.
-    pub fn are_supported(&self, parts: &Parts) -> bool {
-        self.free(parts, &[]).is_empty()
-    }
-
     /// A basis of the motions that nothing resists: unit motions first.
-    fn free(&self, parts: &Parts, rows: &[ContactRow]) -> Vec<Vec<f64>> {
+    pub fn free(&self, parts: &Parts, rows: &[ContactRow]) -> Vec<Vec<f64>> {
         let nodes = parts.body.mesh().nodes();
         let supported = (0..parts.dofs.nodal_count()).filter(|&dof| parts.dofs.number(dof).is_none());
         let of_supports = supported.map(|dof| self.at_dof(parts, dof));

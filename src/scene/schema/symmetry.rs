@@ -18,11 +18,7 @@ pub enum SymmetryPlane {
 impl SymmetryPlane {
     /// The axis normal to the plane, 0 to 2.
     pub fn axis(self) -> usize {
-        match self {
-            SymmetryPlane::X => 0,
-            SymmetryPlane::Y => 1,
-            SymmetryPlane::Z => 2,
-        }
+        self as usize
     }
 
     /// Its name in a scene.

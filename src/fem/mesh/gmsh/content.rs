@@ -65,7 +65,7 @@ impl Content {
     /// Replaces the tags of nodes by their indices, and checks that the groups have elements.
     pub fn finish(self, source: Source) -> Result<GmshFile, Error> {
         let Content { nodes, node_tags, node_lines, places, blocks, groups } = self;
-        let (file, last_line, form) = (source.file().into(), source.place(), source.into_form());
+        let (file, last_line, form) = (source.file.into(), source.place(), source.form);
         let mut content = GmshFile { file, form, nodes, node_tags, node_lines, blocks, groups, last_line };
         let mut missing = None;
         for block in &mut content.blocks {

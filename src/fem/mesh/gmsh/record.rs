@@ -38,7 +38,7 @@ impl<'a> Source<'a> {
 
     /// The next record of a section; `what` names the expected content.
     pub fn record<D: Display>(&mut self, what: impl Fn() -> D) -> Result<Record<'_, 'a>, Error> {
-        let Form::Binary { order, version, .. } = *self.form() else { return self.line(what) };
+        let Form::Binary { order, version, .. } = self.form else { return self.line(what) };
         self.begin();
         if self.is_at_end() {
             return Err(self.fault(format!("the file ends where {} should stand", what())));

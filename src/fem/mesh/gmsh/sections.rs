@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::content::Content;
 use super::file::GmshFile;
-use super::form::{ByteOrder, Version};
+use super::form::{ByteOrder, Form, Version};
 use super::source::{Source, shortened};
 use super::{groups, version2, version4};
 use crate::error::Error;
@@ -89,7 +89,7 @@ fn format(source: &mut Source) -> Result<Version, Error> {
             }
             line.end()?;
             let order = byte_order(source)?;
-            source.turn_binary(order, version, begin);
+            source.form = Form::Binary { order, version, sections: vec![(0, begin)] };
         }
         other => return Err(line.fault(format!("the file type is {other}; it must be 0 for ASCII or 1 for binary"))),
     }

@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use super::form::{ByteOrder, Form, Version};
+use super::form::Form;
 use crate::error::Error;
 
 /// A file that is read from its first byte to its last: as text, until it says that it is binary.
 pub(super) struct Source<'a> {
-    file: &'a Path,
-    form: Form,
+    pub file: &'a Path,
+    /// In binary form it also states positions after the file has been read.
+    pub form: Form,
     /// The bytes that have not been read.
     rest: &'a [u8],
     /// Number of bytes that have been read, and of line ends among them.
@@ -28,24 +29,6 @@ impl<'a> Source<'a> {
             source.pass(MARK.len());
         }
         source
-    }
-
-    pub fn file(&self) -> &'a Path {
-        self.file
-    }
-
-    pub fn form(&self) -> &Form {
-        &self.form
-    }
-
-    /// The form, which states positions after the file has been read.
-    pub fn into_form(self) -> Form {
-        self.form
-    }
-
-    /// Continues in binary form, in a section that begins in line `line`.
-    pub fn turn_binary(&mut self, order: ByteOrder, version: Version, line: usize) {
-        self.form = Form::Binary { order, version, sections: vec![(0, line)] };
     }
 
     /// The position of the last item read; in an empty file the first line.

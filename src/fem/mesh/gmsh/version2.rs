@@ -29,7 +29,7 @@ pub(super) fn elements(source: &mut Source, content: &mut Content) -> Result<(),
     line.end()?;
     let mut alike = Alike::default();
     for index in 1..=count {
-        if alike.left == 0 && matches!(source.form(), Form::Binary { .. }) {
+        if alike.left == 0 && matches!(source.form, Form::Binary { .. }) {
             alike = Alike::read(
                 &mut source.record(|| format!("the type of element {index} of {count}"))?,
                 count + 1 - index,
