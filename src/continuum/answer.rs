@@ -5,8 +5,7 @@ use super::johnson_mercier::at;
 use super::problem::Tensor;
 use super::triangulation::{CENTRE, Point};
 use crate::error::Error;
-use crate::fem::ElementKind;
-use crate::fem::mesh::{Boundary, Mesh};
+use crate::fem::{Boundary, ElementKind, Mesh};
 
 /// The answer on a mesh of triangles of six nodes: the corners, then the middles of the edges.
 #[derive(Clone, Debug)]

@@ -12,8 +12,7 @@ use super::parts::Parts;
 use super::schema::Scene;
 use super::unknowns::Unknowns;
 use crate::error::Error;
-use crate::fem::assembly::DofMap;
-use crate::fem::body::ElasticBody;
+use crate::fem::{DofMap, ElasticBody};
 
 impl Scene {
     /// Discretises the scene and sets up its contact problem.

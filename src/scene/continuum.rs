@@ -12,11 +12,9 @@ use crate::continuum::{
     Circle, Condition, Distance, Enclosure, Facing, PlaneAnswer, PlaneProblem, Point, Triangulation,
 };
 use crate::error::Error;
-use crate::fem::body::ElasticBody;
-use crate::fem::formulation::Formulation;
 use crate::fem::material::Stiffness;
-use crate::fem::mesh::Mesh;
 use crate::fem::mesh::triangle_pieces::TrianglePieces;
+use crate::fem::{ElasticBody, Formulation, Mesh};
 
 /// The component of a unit vector normal to a coordinate axis below which it is rounding of the written components.
 const ALONG_AXIS: f64 = 1e-14;

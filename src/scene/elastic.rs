@@ -7,9 +7,7 @@ use super::materials::BodyMaterials;
 use super::schema::{ModelSpec, Scene, Units};
 use super::unstrained::Unstrained;
 use crate::error::Error;
-use crate::fem::body::{ElasticBody, Integration, Region};
-use crate::fem::formulation::Formulation;
-use crate::fem::mesh::Mesh;
+use crate::fem::{ElasticBody, Formulation, Integration, Mesh, Region};
 
 /// Poisson's ratios above which elements lock: linear elements noticeably above the first; measured, quadratic elements above the second.
 const LOCKING_POISSON: [f64; 2] = [0.49, 0.499];

@@ -10,8 +10,7 @@ use crate::fem::assembly::{
     add_body_force, add_centrifugal, add_gravity, add_moment, add_pressure, add_traction, add_traction_with_kinks,
     tributary_areas,
 };
-use crate::fem::body::{ElasticBody, Region};
-use crate::fem::mesh::Boundary;
+use crate::fem::{Boundary, ElasticBody, Region};
 
 impl Scene {
     pub(super) fn load(&self, body: &ElasticBody) -> Result<Vec<f64>, Error> {

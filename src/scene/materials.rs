@@ -4,9 +4,7 @@ use super::entry::{located, number, point, vector, wrong};
 use super::schema::{MaterialPartSpec, MaterialSpec, ModelSpec, OrthotropicSpec};
 use super::selection::{Selection, centroids};
 use crate::error::Error;
-use crate::fem::body::ElasticBody;
-use crate::fem::formulation::Formulation;
-use crate::fem::material::Material;
+use crate::fem::{ElasticBody, Formulation, Material};
 
 /// The materials of a body as a scene describes them.
 pub(super) struct BodyMaterials<'a> {

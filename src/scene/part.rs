@@ -5,9 +5,8 @@ use super::schema::part::PartBoxSpec;
 use super::schema::{PartSpec, Scene};
 use crate::error::Error;
 use crate::fem::assembly::facet_centres;
-use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{cross, distance, dot, length};
-use crate::fem::mesh::Boundary;
+use crate::fem::{Boundary, ElasticBody};
 
 /// Deviations of normals beyond the given angle by less than this, in degrees, are rounding of coordinates.
 const SAME_ANGLE: f64 = 1e-6;

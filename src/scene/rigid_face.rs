@@ -6,9 +6,8 @@ use super::entry::{boundary, finite, point, vector, wrong};
 use super::held::Held;
 use super::schema::{RigidFaceSpec, Scene};
 use crate::error::Error;
-use crate::fem::assembly::tributary_areas;
-use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{COORDINATES, cross, distance, dot, minus};
+use crate::fem::{ElasticBody, tributary_areas};
 
 /// A part of a motion below this, relative to the size of the face, is rounding.
 const NO_MOTION: f64 = 1e-12;

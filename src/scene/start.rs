@@ -8,13 +8,9 @@ use super::entry::number;
 use super::roles::{Chosen, Roles, roles};
 use super::schema::{PartSpec, Scene};
 use crate::error::Error;
-use crate::fem::assembly::tributary_areas;
-use crate::fem::body::ElasticBody;
-use crate::fem::formulation::Formulation;
 use crate::fem::geometry::along_axis;
-use crate::fem::material::Material;
-use crate::fem::mesh::gmsh::GmshFile;
 use crate::fem::mesh::{Mesh, extent};
+use crate::fem::{ElasticBody, Formulation, GmshFile, Material, tributary_areas};
 
 /// A body larger than this is assumed to be given in millimetres: few parts are larger in metres.
 const LARGEST_IN_METRES: f64 = 5.0;

@@ -8,9 +8,8 @@ use super::parts::Parts;
 use super::rows::ContactRow;
 use super::schema::{Place, Scene, SymmetryPlane};
 use crate::error::Error;
-use crate::fem::assembly::DofMap;
-use crate::fem::body::ElasticBody;
 use crate::fem::geometry::dot;
+use crate::fem::{DofMap, ElasticBody};
 
 /// A load on the free dofs below this share of the whole load is rounding.
 const NOTHING: f64 = 1e-9;

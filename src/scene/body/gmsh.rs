@@ -4,9 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, Site};
 use crate::error::Error;
-use crate::fem::Integration;
-use crate::fem::mesh::gmsh::GmshFile;
-use crate::fem::mesh::{ElementKind, Mesh};
+use crate::fem::{ElementKind, GmshFile, Integration, Mesh};
 use crate::scene::entry::{refused, wrong};
 use crate::scene::files::Files;
 

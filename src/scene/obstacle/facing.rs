@@ -6,9 +6,8 @@ use super::pairs::Pair;
 use super::shape::{About, Geometry, ObstacleShape, Site};
 use crate::error::Error;
 use crate::fem::assembly::node_normals;
-use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
-use crate::fem::mesh::{Boundary, FacetKind};
+use crate::fem::{Boundary, ElasticBody, FacetKind};
 use crate::scene::entry::{PLACE_TOLERANCE, boundary, point, refused, wrong};
 use crate::scene::schema::approach::Rule;
 
