@@ -124,18 +124,14 @@ impl Bracket<'_> {
     fn penetration(&self) -> f64 {
         let (mut deepest, values) = (0.0_f64, &self.primal.values);
         let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-        for (_, _, edge, condition) in self.mesh.outline() {
-            let [from, to] = self.mesh.edges[edge].map(|node| self.mesh.nodes[node]);
-            for &obstacle in &self.problem.conditions[condition].obstacles {
-                let facing = &self.problem.obstacles[obstacle];
-                let [first, middle, last] =
-                    self.displacements.on_edge(edge, facing.axis).map(|function| values[function]);
-                for s in SAMPLES {
-                    let place = [0, 1].map(|axis| from[axis] + s * (to[axis] - from[axis]));
-                    let moved = (1.0 - s).powi(2) * first + 2.0 * s * (1.0 - s) * middle + s * s * last;
-                    if let Some(gap) = facing.surface.gap(place, place) {
-                        deepest = deepest.max(facing.sense * moved - gap.values[0]);
-                    }
+        for (edge, [from, to], obstacle) in self.problem.facing(self.mesh) {
+            let facing = &self.problem.obstacles[obstacle];
+            let [first, middle, last] = self.displacements.on_edge(edge, facing.axis).map(|function| values[function]);
+            for s in SAMPLES {
+                let place = [0, 1].map(|axis| from[axis] + s * (to[axis] - from[axis]));
+                let moved = (1.0 - s).powi(2) * first + 2.0 * s * (1.0 - s) * middle + s * s * last;
+                if let Some(gap) = facing.surface.gap(place, place) {
+                    deepest = deepest.max(facing.sense * moved - gap.values[0]);
                 }
             }
         }

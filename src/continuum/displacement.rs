@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::problem::{Condition, PlaneProblem, Tensor, work};
+use super::problem::{PlaneProblem, Tensor, work};
 use super::system::{Block, LOCAL, Row, Unknowns};
 use super::triangulation::{MIDDLES, Point, Triangulation, distance, outward, slopes, twice_area};
 use crate::error::Error;
@@ -55,16 +55,12 @@ impl<'a> Displacements<'a> {
     /// [`Error::Infeasible`] if a prescribed displacement leads into an obstacle.
     pub fn rows(&self, unknowns: &Unknowns) -> Result<Vec<Row>, Error> {
         let mut gaps: BTreeMap<(usize, usize), f64> = BTreeMap::new();
-        for (_, _, edge, condition) in self.mesh.outline() {
-            let Condition { obstacles, .. } = &self.problem.conditions[condition];
-            let [from, to] = self.mesh.edges[edge].map(|node| self.mesh.nodes[node]);
-            for &number in obstacles {
-                let facing = &self.problem.obstacles[number];
-                let Some(gap) = facing.surface.gap(from, to) else { continue };
-                for (function, bound) in self.on_edge(edge, facing.axis).into_iter().zip(gap.lower()) {
-                    let least = gaps.entry((number, function)).or_insert(f64::INFINITY);
-                    *least = least.min(bound);
-                }
+        for (edge, [from, to], number) in self.problem.facing(self.mesh) {
+            let facing = &self.problem.obstacles[number];
+            let Some(gap) = facing.surface.gap(from, to) else { continue };
+            for (function, bound) in self.on_edge(edge, facing.axis).into_iter().zip(gap.lower()) {
+                let least = gaps.entry((number, function)).or_insert(f64::INFINITY);
+                *least = least.min(bound);
             }
         }
         let mut rows = Vec::with_capacity(gaps.len());

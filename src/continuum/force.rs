@@ -152,15 +152,12 @@ impl Bracket<'_> {
             of_rows.push(over(open, row.gap - row.sense * values[row.unknown]));
         }
         // Places that a support holds do not move in the test, and may be touched.
-        for (_, _, edge, condition) in self.mesh.outline() {
-            let [from, to] = self.mesh.edges[edge].map(|node| self.mesh.nodes[node]);
-            for &number in &self.problem.conditions[condition].obstacles {
-                let facing = &self.problem.obstacles[number];
-                let Some(gap) = facing.surface.gap(from, to) else { continue };
-                for (function, bound) in self.displacements.on_edge(edge, facing.axis).into_iter().zip(gap.lower()) {
-                    if let Some(held) = primal.unknowns.held[function] {
-                        of_rows.push(over(1.0, bound - facing.sense * held));
-                    }
+        for (edge, [from, to], number) in self.problem.facing(self.mesh) {
+            let facing = &self.problem.obstacles[number];
+            let Some(gap) = facing.surface.gap(from, to) else { continue };
+            for (function, bound) in self.displacements.on_edge(edge, facing.axis).into_iter().zip(gap.lower()) {
+                if let Some(held) = primal.unknowns.held[function] {
+                    of_rows.push(over(1.0, bound - facing.sense * held));
                 }
             }
         }

@@ -108,6 +108,14 @@ impl Enclosure {
 pub type Tensor = [f64; 3];
 
 impl PlaneProblem {
+    /// The edges of the outline that may touch obstacles, each with its ends and the number of one obstacle.
+    pub fn facing<'a>(&'a self, mesh: &'a Triangulation) -> impl Iterator<Item = (usize, [Point; 2], usize)> + 'a {
+        mesh.outline().flat_map(move |(_, _, edge, condition)| {
+            let ends = mesh.edges[edge].map(|node| mesh.nodes[node]);
+            self.conditions[condition].obstacles.iter().map(move |&obstacle| (edge, ends, obstacle))
+        })
+    }
+
     /// Returns `true` if the polygon follows a circle more closely with each mesh.
     pub fn has_circles(&self) -> bool {
         self.conditions.iter().any(|condition| condition.circle.is_some())

@@ -68,17 +68,14 @@ impl<'a> Stresses<'a> {
     /// distance.
     pub fn rows(&self, unknowns: &Unknowns) -> (Vec<Row>, Vec<Place>) {
         let (mut rows, mut places) = (Vec::new(), Vec::new());
-        for (_, _, edge, condition) in self.mesh.outline() {
-            let [from, to] = self.mesh.edges[edge].map(|node| self.mesh.nodes[node]);
-            for &obstacle in &self.problem.conditions[condition].obstacles {
-                let facing = &self.problem.obstacles[obstacle];
-                let Some(gap) = facing.surface.gap(from, to).filter(|gap| gap.above.is_finite()) else { continue };
-                for (end, gap) in gap.upper_means().into_iter().enumerate() {
-                    let unknown = unknown(edge, end, facing.axis);
-                    if unknowns.is_free(unknown) {
-                        rows.push(Row { unknown, sense: facing.sense, gap });
-                        places.push(Place { edge, end, obstacle });
-                    }
+        for (edge, [from, to], obstacle) in self.problem.facing(self.mesh) {
+            let facing = &self.problem.obstacles[obstacle];
+            let Some(gap) = facing.surface.gap(from, to).filter(|gap| gap.above.is_finite()) else { continue };
+            for (end, gap) in gap.upper_means().into_iter().enumerate() {
+                let unknown = unknown(edge, end, facing.axis);
+                if unknowns.is_free(unknown) {
+                    rows.push(Row { unknown, sense: facing.sense, gap });
+                    places.push(Place { edge, end, obstacle });
                 }
             }
         }

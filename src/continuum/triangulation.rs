@@ -68,7 +68,7 @@ impl Triangulation {
         let mut numbered = Lattice::new();
         let mut side = |a: usize, b: usize| numbered.node(key(a, b));
         let sides = triangles.iter().map(|&[a, b, c]| [side(b, c), side(c, a), side(a, b)]).collect();
-        let edges = numbered.keys().to_vec();
+        let edges = numbered.keys;
         let conditions = edges.iter().map(|edge| outline.get(edge).copied()).collect();
         Triangulation { nodes, triangles, edges, sides, origins, conditions, parents: Vec::new() }
     }

@@ -65,17 +65,18 @@ impl Integrator {
         let beside = bytes::of_motion(statics.dofs() as f64, statics.stiffness().entries() as f64);
         settings.memory = settings.memory.map(|most| (most - beside).max(1.0));
         let watch = settings.watch.clone();
-        let prepared = (scheme.prepare())(&problem, step, scheme.value(), &settings).map_err(|error| match error {
-            Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed } => {
-                let [bytes, allowed] = [bytes, allowed].map(|taken| taken + beside);
-                Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed }
-            }
-            Error::NoRoom { factor, multigrid, allowed, ended } => {
-                let [factor, multigrid, allowed] = [factor, multigrid, allowed].map(|taken| taken + beside);
-                Error::NoRoom { factor, multigrid, allowed, ended }
-            }
-            error => error,
-        })?;
+        let prepared =
+            (scheme.about().prepare)(&problem, step, scheme.value(), &settings).map_err(|error| match error {
+                Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed } => {
+                    let [bytes, allowed] = [bytes, allowed].map(|taken| taken + beside);
+                    Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed }
+                }
+                Error::NoRoom { factor, multigrid, allowed, ended } => {
+                    let [factor, multigrid, allowed] = [factor, multigrid, allowed].map(|taken| taken + beside);
+                    Error::NoRoom { factor, multigrid, allowed, ended }
+                }
+                error => error,
+            })?;
         let violation = problem.statics().violation(problem.displacement());
         let rows = problem.statics().rows();
         let state = State {
@@ -90,7 +91,7 @@ impl Integrator {
         if watch.is_over() {
             return Err(Error::Interrupted);
         }
-        let load_times = scheme.load_times();
+        let load_times = scheme.about().load_times;
         Ok(Integrator { problem, step, scheme: prepared, load_times, state, before: None, watch, longest: 0.0 })
     }
 

@@ -9,8 +9,6 @@ use super::rows::ContactRow;
 use crate::error::Error;
 use crate::fem::assembly::internal_force;
 use crate::fem::geometry::dot;
-#[cfg(feature = "cli")]
-use crate::fem::recovery::discretisation::EstimatedError;
 use crate::fem::recovery::{self, StressField};
 use crate::solution::{ContactSet, Solution};
 
@@ -197,8 +195,8 @@ impl Answer {
     /// # Errors
     /// As [`Model::stress`].
     #[cfg(feature = "cli")]
-    pub(crate) fn estimated_error(&self) -> Result<EstimatedError, Error> {
-        EstimatedError::of(self.model.body(), &self.displacement, self.stress()?)
+    pub(crate) fn estimated_error(&self) -> Result<recovery::discretisation::EstimatedError, Error> {
+        recovery::discretisation::EstimatedError::of(self.model.body(), &self.displacement, self.stress()?)
     }
 }
 
@@ -248,7 +246,7 @@ impl Model {
     fn stress_of_nodal(&self, displacement: &[f64]) -> Result<StressField, Error> {
         let nodes = self.mesh().nodes();
         let of_part = recovery::stress(self.body(), displacement)?;
-        Ok(of_part.of_whole(self.body(), |node| self.parts().symmetry.axes_at(&nodes[node])))
+        Ok(of_part.of_whole(self.body(), |node| self.parts.symmetry.axes_at(&nodes[node])))
     }
 
     /// The forces of a nodal displacement.
@@ -257,17 +255,15 @@ impl Model {
         let mut forces = internal_force(self.body(), displacement)?;
         let acting = self.nodal_load().iter().zip(&contact);
         forces.iter_mut().zip(acting).for_each(|(force, (load, contact))| *force = *force - load - contact);
-        let springs = self.parts().spring_forces(displacement);
+        let springs = self.parts.spring_forces(displacement);
         forces.iter_mut().zip(&springs).for_each(|(force, spring)| *force -= spring);
         let mut reactions = self.dofs().supported_part(&forces)?;
         let rigid_faces = self.force_of_faces(&forces, |_| true)?;
         let motions = RigidBodyModes::of(self.body());
         let mut all = vec![self.nodal_load(), &contact, &springs, &rigid_faces];
-        let own = match self.body().has_own_stress() {
-            true => internal_force(self.body(), &vec![0.0; displacement.len()])?,
-            false => Vec::new(),
-        };
-        if !own.is_empty() {
+        let own;
+        if self.body().has_own_stress() {
+            own = internal_force(self.body(), &vec![0.0; displacement.len()])?;
             // These forces balance each other: they are the scale of their rounding in a free body.
             all.push(&own);
             // Each body has its own scale.

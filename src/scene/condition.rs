@@ -73,10 +73,8 @@ impl Scene {
         for (axis, (field, value)) in [("x", support.x), ("y", support.y), ("z", support.z)].into_iter().enumerate() {
             let Some(value) = value else { continue };
             if axis >= dimension {
-                return Err(wrong(
-                    format!("{path}.{field}"),
-                    format!("the model `{}` has no {field}", self.model.name()),
-                ));
+                let message = format!("the model `{}` has no {field}", self.model.name());
+                return Err(wrong(format!("{path}.{field}"), message));
             }
             finite(format!("{path}.{field}"), value)?;
             components.push(Component { direction: COORDINATES[axis], value, by: by(field) });

@@ -57,10 +57,8 @@ impl Scene {
             }
         }
         let [_] = body.regions() else {
-            return Err(wrong(
-                "further-bodies",
-                "several bodies have no guaranteed bound: only one body with rigid obstacles has one",
-            ));
+            let message = "several bodies have no guaranteed bound: only one body with rigid obstacles has one";
+            return Err(wrong("further-bodies", message));
         };
         if body.has_own_stress() {
             let path = if self.temperature.is_empty() { "initial-stress" } else { "temperature" };

@@ -4,6 +4,7 @@ use super::entry::{COORDINATE_ROUNDING, located, number, point, refused, vector,
 use super::loads_in_time::NodalLoads;
 use super::moving_supports::MovingSupports;
 use super::resultants::without_rounding;
+use super::schema::analysis::PATH;
 use super::schema::{AnalysisSpec, DynamicSpec, FieldSpec, PenetrationSpec, Scene};
 use super::{Model, Resultant, Warning, WatchedPoint};
 use crate::error::{Error, nearly};
@@ -13,9 +14,6 @@ use crate::motion::{DynamicProblem, Integrator, MOST_IN_CONTACT, Scheme, SchemeS
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix, dot};
 use crate::qp::problem::ContactProblem;
 use crate::qp::{Method, Settings, solve};
-
-/// The JSON path of the fields in a scene.
-const PATH: &str = "analysis.dynamic";
 
 /// Steps and durations that differ by less than this, relative, are equal up to rounding.
 const STEP_ROUNDING: f64 = 1e-12;
@@ -72,7 +70,7 @@ impl Scene {
     /// [`Error::Scene`] for a value that describes no motion, an initial penetration, a step beyond the stable one.
     pub fn dynamics(&self, model: &Model) -> Result<Option<Dynamics>, Error> {
         let Some(spec) = self.dynamic() else { return Ok(None) };
-        if !model.dofs().basis().is_nodal() {
+        if !model.dofs().basis.is_nodal() {
             let kind = model.mesh().kind();
             let message = format!(
                 "contact of {} elements is for equilibria only; take {} for a motion",
@@ -111,7 +109,7 @@ impl Scene {
         let path = |index: usize| format!("{PATH}.watch[{index}]");
         let watched = spec.watch.iter().enumerate().map(|(index, spec)| WatchedPoint::new(model, spec, &path(index)));
         let watched = watched.collect::<Result<_, Error>>()?;
-        let loads = self.loads_in_time(model.body(), spec, PATH)?;
+        let loads = self.loads_in_time(model.body(), spec)?;
         let nodal_mass = nodal_mass_of(model, form)?;
         let mass = free_mass(model.body(), model.dofs(), &nodal_mass)?;
         let problem = Self::starting(model, spec, Self::moving(model, spec, mass, &loads)?)?;

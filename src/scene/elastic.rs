@@ -63,12 +63,10 @@ impl Scene {
     }
 
     fn described(&self) -> impl Iterator<Item = DescribedBody<'_>> {
-        let of_body = |material, parts, place: &str| BodyMaterials {
-            material,
-            parts,
-            place: place.into(),
-            model: self.model,
-            moves: self.analysis.is_some(),
+        let (model, moves) = (self.model, self.analysis.is_some());
+        let of_body = move |material, parts, place: &str| {
+            let place = place.into();
+            BodyMaterials { material, parts, place, model, moves }
         };
         let materials = of_body(self.material.as_ref(), &self.materials, "");
         let unstrained = Unstrained { temperature: &self.temperature, stress: &self.initial_stress };
@@ -99,12 +97,8 @@ impl DescribedBody<'_> {
 
     /// The mesh of the shape.
     fn mesh(&self) -> Result<Mesh, Error> {
-        let site = Site {
-            path: self.path(""),
-            model: self.scene.model,
-            files: self.scene.files(),
-            names_groups: self.names_groups(),
-        };
+        let (path, names_groups) = (self.path(""), self.names_groups());
+        let site = Site { path, model: self.scene.model, files: self.scene.files(), names_groups };
         self.spec.shape().mesh(&site).map_err(|error| self.at_body(error))
     }
 

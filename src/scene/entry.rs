@@ -75,10 +75,8 @@ pub(super) fn vector(path: &str, entries: &[f64], dimension: usize) -> Result<[f
             [("a bar", "[x]"), ("a plane or axisymmetric model", "[x, y]"), ("a model in space", "[x, y, z]")]
                 [dimension - 1];
         let found = entries.len();
-        return Err(wrong(
-            path,
-            format!("the array has {found} {entry}, but must have {dimension} in {room}: {names}"),
-        ));
+        let message = format!("the array has {found} {entry}, but must have {dimension} in {room}: {names}");
+        return Err(wrong(path, message));
     }
     let mut vector = [0.0; 3];
     for (index, (place, &entry)) in vector.iter_mut().zip(entries).enumerate() {

@@ -53,7 +53,7 @@ impl Model {
 
     /// The name of a rigid-body motion, and the advice against it.
     fn named(&self, direction: &[f64]) -> Option<(String, String)> {
-        let parts = self.parts();
+        let parts = &self.parts;
         let motion = parts.dofs.expand_motion(&parts.unknowns.motion(direction).ok()?).ok()?;
         let modes = RigidBodyModes::of(&parts.body);
         let amplitudes = modes.closest(parts.body.mesh().nodes(), &motion)?;
@@ -85,7 +85,7 @@ impl Model {
         let dimension = self.mesh().dimension();
         let node_at = self.node_in_words(node);
         let names: Vec<String> = rows.iter().map(obstacle).collect();
-        let supported = (0..dimension).all(|axis| self.parts().dofs.number(dimension * node + axis).is_none());
+        let supported = (0..dimension).all(|axis| self.parts.dofs.number(dimension * node + axis).is_none());
         match names.as_slice() {
             [one] if supported => format!("{node_at} is supported inside {one}"),
             [one] => format!("{node_at} cannot leave {one}"),

@@ -1,6 +1,7 @@
 //! Loads of a scene that change with time.
 
 use super::entry::{located, table as check_table, wrong};
+use super::schema::analysis::PATH;
 use super::schema::{DynamicSpec, FactorSpec, LoadInTimeSpec, Scene};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
@@ -43,12 +44,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`Error::Scene`] for a load that does not exist or has two factors, and for an invalid factor.
-    pub(super) fn loads_in_time(
-        &self,
-        body: &ElasticBody,
-        spec: &DynamicSpec,
-        path: &str,
-    ) -> Result<NodalLoads, Error> {
+    pub(super) fn loads_in_time(&self, body: &ElasticBody, spec: &DynamicSpec) -> Result<NodalLoads, Error> {
         let changes = |load: usize| spec.loads_in_time.iter().any(|changing| changing.load == load);
         let mut constant = vec![0.0; body.nodal_dofs()];
         for index in (0..self.loads.len()).filter(|&index| !changes(index)) {
@@ -56,7 +52,7 @@ impl Scene {
         }
         let mut changing = Vec::with_capacity(spec.loads_in_time.len());
         for (entry, of_load) in spec.loads_in_time.iter().enumerate() {
-            let path = format!("{path}.loads-in-time[{entry}]");
+            let path = format!("{PATH}.loads-in-time[{entry}]");
             let factor = of_load.function(&path, self.loads.len())?;
             if spec.loads_in_time[..entry].iter().any(|other| other.load == of_load.load) {
                 return Err(wrong(path, format!("loads[{}] has two factors; give it one", of_load.load)));

@@ -101,10 +101,8 @@ impl BodyMaterials<'_> {
             (None, None, Some(orthotropic)) => self.orthotropic(orthotropic, path)?,
             (None, None, None) => return Err(wrong(path, "needs `young` and `poisson`, or `orthotropic`; give them")),
             (_, _, Some(_)) => {
-                return Err(wrong(
-                    path,
-                    "has `orthotropic` beside `young` or `poisson`; give either the one or the others",
-                ));
+                let message = "has `orthotropic` beside `young` or `poisson`; give either the one or the others";
+                return Err(wrong(path, message));
             }
             (young, ..) => {
                 let [missing, given] = if young.is_none() { ["young", "poisson"] } else { ["poisson", "young"] };

@@ -8,8 +8,6 @@ use super::parts::Parts;
 use super::rigid_body_modes::RigidBodyModes;
 use super::rows::{self, ContactRow};
 use super::suspect::suspect_rows;
-#[cfg(feature = "pictures")]
-use super::unknowns::Meaning;
 use super::{Units, Warning};
 use crate::error::Error;
 use crate::fem::geometry::distance;
@@ -40,7 +38,7 @@ const NO_AREA: f64 = 1e-12;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Model {
-    parts: Arc<Parts>,
+    pub(super) parts: Arc<Parts>,
     gap: f64,
     rows: Vec<ContactRow>,
     warnings: Vec<Warning>,
@@ -172,7 +170,7 @@ impl Model {
 
     /// The meaning of each unknown of the problem, in order.
     #[cfg(feature = "pictures")]
-    pub(crate) fn meanings(&self) -> impl Iterator<Item = Meaning> + '_ {
+    pub(crate) fn meanings(&self) -> impl Iterator<Item = super::Meaning> + '_ {
         let parts = &self.parts;
         parts.unknowns.meanings(&parts.dofs, parts.body.dimension(), &parts.rigid_faces)
     }
@@ -215,10 +213,6 @@ impl Model {
         self.parts.symmetry.images_around(&nodes[node], &nodes[other])
     }
 
-    pub(super) fn parts(&self) -> &Parts {
-        &self.parts
-    }
-
     /// The title of the scene, as reports and pictures print it.
     pub fn title(&self) -> &str {
         &self.parts.title
@@ -257,10 +251,7 @@ impl Model {
     /// The surface of obstacle `obstacle` at this model's gap as a polyline [x, y], in length, as
     /// [`PlacedObstacle::outline`]; empty if there is no such obstacle.
     pub fn obstacle_outline(&self, obstacle: usize, segments: usize) -> Vec<[f64; 2]> {
-        self.parts
-            .obstacles
-            .get(obstacle)
-            .map_or_else(Vec::new, |obstacle| obstacle.outline(obstacle.shift(self.gap), segments))
+        self.obstacles().get(obstacle).map_or_else(Vec::new, |one| one.outline(one.shift(self.gap), segments))
     }
 
     /// The contact rows, in the order of the rows of [`problem`](Self::problem): obstacle by obstacle, each in the
@@ -350,7 +341,7 @@ impl Model {
                 entries.iter_mut().zip(row.normal).for_each(|(entry, component)| *entry += sign * lambda * component);
             }
         }
-        self.parts.dofs.basis().scatter(&mut forces, dimension);
+        self.parts.dofs.basis.scatter(&mut forces, dimension);
         Ok(forces)
     }
 
@@ -362,7 +353,7 @@ impl Model {
 
     /// The point of application of the force of a row for moments: the node, or, in the middle of a curved edge, its coefficient.
     pub(super) fn place(&self, node: usize) -> [f64; 3] {
-        self.parts.dofs.basis().place(self.mesh().nodes(), node)
+        self.parts.dofs.basis.place(self.mesh().nodes(), node)
     }
 
     pub(super) fn check_multiplier(&self, multiplier: &[f64]) -> Result<(), Error> {

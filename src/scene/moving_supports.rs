@@ -42,7 +42,7 @@ impl MovingSupports {
         let (body, dofs) = (model.body(), model.dofs());
         let dimension = body.dimension();
         let is_held = |node: usize| (dimension * node..dimension * (node + 1)).any(|dof| dofs.number(dof).is_none());
-        let count = if model.parts().supports > 0 { model.mesh().nodes().len() } else { 0 };
+        let count = if model.parts.supports > 0 { model.mesh().nodes().len() } else { 0 };
         let nodes: Vec<usize> = (0..count).filter(|&node| is_held(node)).collect();
         let mut holding = vec![0.0; dimension * nodes.len()];
         let (mut elastic, mut inertia): (Effects, Effects) = (Vec::new(), Vec::new());

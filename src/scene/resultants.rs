@@ -174,16 +174,16 @@ impl Model {
 
     /// The names of the supports in reports: `supports[i]`.
     pub(crate) fn support_names(&self) -> impl Iterator<Item = String> {
-        (0..self.parts().supports).map(|index| format!("supports[{index}]"))
+        (0..self.parts.supports).map(|index| format!("supports[{index}]"))
     }
 
     /// The resultants of the support reactions, support by support, from the force on each held node; its part along free dofs is left
     /// out.
     pub(super) fn support_resultants(&self, reaction: impl Fn(usize) -> [f64; 3]) -> Vec<Resultant> {
         let nodes = self.mesh().nodes();
-        let mut supports = vec![Sum::default(); self.parts().supports];
+        let mut supports = vec![Sum::default(); self.parts.supports];
         let mut held: Vec<Option<usize>> = vec![None; supports.len()];
-        for (node, shares) in self.parts().held.shares(reaction) {
+        for (node, shares) in self.parts.held.shares(reaction) {
             // A support may hold a node in several directions.
             let mut of_node = BTreeMap::<usize, [f64; 3]>::new();
             for (by, force) in shares {
@@ -206,7 +206,7 @@ impl Model {
 
     /// Adds a force on the modelled part with its mirror images in those planes of symmetry for whose axis `across` is `true`.
     fn add_images(&self, sum: &mut Sum, at: [f64; 3], force: [f64; 3], across: impl Fn(usize) -> bool) {
-        self.parts().symmetry.images(at, force, across).into_iter().for_each(|(at, force)| sum.add(at, force));
+        self.parts.symmetry.images(at, force, across).into_iter().for_each(|(at, force)| sum.add(at, force));
     }
 
     /// The sum of nodal forces (length `dim * n_nodes`) on the whole body.
@@ -224,7 +224,7 @@ impl Model {
             let forces = springs.forces(displacement, self.body().dimension());
             self.sum_of(&forces).resultant(self, format!("springs[{index}]"))
         };
-        self.parts().springs.iter().enumerate().map(of_springs).collect()
+        self.parts.springs.iter().enumerate().map(of_springs).collect()
     }
 
     /// The forces on the nodes of those rigid faces for which `keeps` returns `true`, among all forces that hold the body.
@@ -232,7 +232,7 @@ impl Model {
     /// # Errors
     /// [`Error::Length`] if the forces are not those of all nodes.
     pub(super) fn force_of_faces(&self, forces: &[f64], keeps: impl Fn(usize) -> bool) -> Result<Vec<f64>, Error> {
-        let faces = self.parts().rigid_faces.iter().enumerate().filter(|(index, _)| keeps(*index));
+        let faces = self.parts.rigid_faces.iter().enumerate().filter(|(index, _)| keeps(*index));
         let mut on_face = vec![false; self.mesh().nodes().len()];
         faces.flat_map(|(_, face)| &face.nodes).for_each(|&node| on_face[node] = true);
         let dimension = self.body().dimension();
@@ -244,10 +244,10 @@ impl Model {
     /// # Errors
     /// As [`Model::force_of_faces`].
     pub(super) fn face_resultants(&self, forces: &[f64], unknowns: &[f64]) -> Result<Vec<Resultant>, Error> {
-        let mut all = Vec::with_capacity(self.parts().rigid_faces.len());
-        for (index, face) in self.parts().rigid_faces.iter().enumerate() {
+        let mut all = Vec::with_capacity(self.parts.rigid_faces.len());
+        for (index, face) in self.parts.rigid_faces.iter().enumerate() {
             let sum = self.sum_of(&self.force_of_faces(forces, |other| other == index)?);
-            let found = self.parts().unknowns.motions(unknowns, index);
+            let found = self.parts.unknowns.motions(unknowns, index);
             let amount = |(motion, unknown): (&Motion, Option<f64>)| {
                 let by_unknown = unknown.map(|unknown| unknown * face.unit(motion));
                 (motion.kind, by_unknown.or(motion.prescribed).unwrap_or(0.0))
@@ -303,7 +303,7 @@ impl Model {
             Formulation::Bar { .. } | Formulation::Space => None,
         };
         let part = match self.parts_of_whole() {
-            1.0 => self.parts().is_part.then(|| MESHED_PART.to_string()),
+            1.0 => self.parts.is_part.then(|| MESHED_PART.to_string()),
             parts => Some(format!("of the whole body, {parts} times the meshed part")),
         };
         across.into_iter().chain(part).collect::<Vec<_>>().join(", ")

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::Warning;
 use super::entry::{COORDINATE_ROUNDING, finite, point, refused, wrong};
+use super::obstacle::ObstacleRow;
 use super::parts::Parts;
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
@@ -77,7 +78,7 @@ pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
         if found.is_empty() {
             warnings.push(Warning::NoContactRow { obstacle: index });
         }
-        let by_node: BTreeMap<usize, ContactRow> = match dofs.basis().is_nodal() {
+        let by_node: BTreeMap<usize, ContactRow> = match dofs.basis.is_nodal() {
             true => BTreeMap::new(),
             false => found.iter().map(|row| (row.node, *row)).collect(),
         };
@@ -119,25 +120,19 @@ fn of_obstacle(parts: &Parts, index: usize, scene_gap: f64) -> Result<Vec<Contac
             let message = format!("node {node} at {} {reason}", point(&at[..dimension]));
             wrong(format!("obstacles[{index}]"), message)
         })?;
-        let Some(found) = found else { continue };
-        rows.push(ContactRow {
-            node,
-            partner: obstacle.partner(candidate),
-            obstacle: index,
-            normal: found.normal,
-            gap: found.gap,
-            tributary_area,
-            outward: parts.symmetry.of_whole(&at, obstacle.outward(candidate)),
-        });
+        let Some(ObstacleRow { normal, gap }) = found else { continue };
+        let (partner, outward) = (obstacle.partner(candidate), obstacle.outward(candidate));
+        let outward = parts.symmetry.of_whole(&at, outward);
+        rows.push(ContactRow { node, partner, obstacle: index, normal, gap, tributary_area, outward });
     }
     Ok(rows)
 }
 
 /// Checks that the node opposite to a mid-side node is a mid-side node too, between the nodes opposite to the ends of its edge.
 fn check_pair(dofs: &DofMap, by_node: &BTreeMap<usize, ContactRow>, row: &ContactRow) -> Result<(), Error> {
-    let Some(partner) = row.partner.filter(|_| !dofs.basis().is_nodal()) else { return Ok(()) };
+    let Some(partner) = row.partner.filter(|_| !dofs.basis.is_nodal()) else { return Ok(()) };
     let across = |end: usize| by_node.get(&end).and_then(|row| row.partner);
-    let fits = match (dofs.basis().ends(row.node), dofs.basis().ends(partner)) {
+    let fits = match (dofs.basis.ends(row.node), dofs.basis.ends(partner)) {
         (None, None) => true,
         (Some(own), Some([a, b])) => [[Some(a), Some(b)], [Some(b), Some(a)]].contains(&own.map(across)),
         _ => false,

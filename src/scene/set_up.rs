@@ -30,7 +30,7 @@ pub(crate) struct HeldNode {
 impl Model {
     /// The held nodes: supports first, then springs, then rigid faces.
     pub(crate) fn held_nodes(&self) -> Vec<HeldNode> {
-        let parts = self.parts();
+        let parts = &self.parts;
         let mut nodes = Vec::new();
         let mut hold =
             |node: usize, hold: Hold, directions: Vec<[f64; 3]>| nodes.push(HeldNode { node, hold, directions });

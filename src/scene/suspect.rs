@@ -6,7 +6,7 @@ use super::Warning;
 use super::entry::COORDINATE_ROUNDING;
 use super::parts::Parts;
 use super::rows::ContactRow;
-use super::schema::{Place, Scene, SymmetryPlane};
+use super::schema::{Place, Scene, SupportSpec, SymmetryPlane};
 use crate::error::Error;
 use crate::fem::geometry::dot;
 use crate::fem::{DofMap, ElasticBody};
@@ -46,11 +46,8 @@ impl Scene {
     fn free_symmetries(&self, body: &ElasticBody) -> Vec<Warning> {
         let is_held = |name: &str| {
             let of_plane = |plane: &SymmetryPlane| name.strip_prefix(SYMMETRY) == Some(plane.name());
-            self.symmetry.iter().any(of_plane)
-                || self
-                    .supports
-                    .iter()
-                    .any(|support| matches!(&support.on, Place::Boundary(boundary) if boundary == name))
+            let of_support = |support: &SupportSpec| matches!(&support.on, Place::Boundary(on) if on == name);
+            self.symmetry.iter().any(of_plane) || self.supports.iter().any(of_support)
         };
         let names = body.mesh().boundaries().iter().map(|boundary| boundary.name.as_str());
         let is_cut = |name: &&str| name.rsplit('.').next().is_some_and(|own| own.starts_with(SYMMETRY));

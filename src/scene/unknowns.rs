@@ -9,8 +9,6 @@
 //! F.
 
 use std::borrow::Cow;
-#[cfg(feature = "pictures")]
-use std::collections::HashSet;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -205,10 +203,10 @@ impl Unknowns {
     ) -> impl Iterator<Item = Meaning> + 'a {
         let of_node = move |dof: usize| {
             let (node, axis) = (dof / dimension, dof % dimension);
-            let quantity = if dofs.basis().ends(node).is_some() { "coefficient" } else { "displacement" };
+            let quantity = if dofs.basis.ends(node).is_some() { "coefficient" } else { "displacement" };
             Meaning::Node { node, direction: dofs.axes(node)[axis], quantity }
         };
-        let tied: HashSet<usize> = faces.iter().flat_map(|face| face.nodes.iter().copied()).collect();
+        let tied: std::collections::HashSet<usize> = faces.iter().flat_map(|face| face.nodes.iter().copied()).collect();
         let own = dofs.free().iter().filter(move |&dof| !tied.contains(&(dof / dimension)));
         let of_faces = faces.iter().enumerate().flat_map(|(index, face)| {
             let free = face.motions.iter().filter(|motion| motion.prescribed.is_none());
@@ -255,7 +253,7 @@ impl Ties {
                 next += 1;
                 continue;
             };
-            let (face, at) = (&faces[index], dofs.basis().place(nodes, node));
+            let (face, at) = (&faces[index], dofs.basis.place(nodes, node));
             offset[number] = face.prescribed(at)[axis];
             for (motion, unknown) in face.motions.iter().zip(&unknowns[index]) {
                 let Some(unknown) = unknown else { continue };

@@ -1,8 +1,5 @@
 //! The answers of a sweep between its gaps: the exact path and its scene.
 
-#[cfg(feature = "cli")]
-use std::sync::Arc;
-
 use crate::error::Error;
 use crate::qp::Path;
 #[cfg(feature = "cli")]
@@ -79,7 +76,7 @@ impl ExactPath {
     /// As [`Prepared::boundary`](crate::Prepared::boundary) and [`Model::with_gap`].
     #[cfg(feature = "cli")]
     pub fn answer(&self, share: f64) -> Result<Answer, Error> {
-        let model = Arc::new(self.model.with_gap(self.gap(share))?);
+        let model = std::sync::Arc::new(self.model.with_gap(self.gap(share))?);
         let (displacement, multiplier) = (self.path.displacement(share)?, self.path.multiplier(share));
         Answer::new(model, &displacement, &multiplier, &self.path.contact_set(share))
     }

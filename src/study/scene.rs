@@ -8,14 +8,10 @@ use serde::Serialize;
 use super::exact_path::ExactPath;
 use super::kept_answers::{KeptAnswers, points};
 use super::summary::{LargestDisplacement, OF_MESHED_PART};
-#[cfg(feature = "cli")]
-use super::warnings::untouched;
 use super::warnings::{check_approach, initial_overlap, of_scene, point_support};
 use super::{ModelSize, Summary, obstacles::contact_on_obstacles};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
-#[cfg(feature = "cli")]
-use crate::qp::problem::ContactProblem;
 use crate::qp::{Event, Prepared, Settings, Start, solve};
 use crate::scene::{Answer, ContactExtent, Model};
 use crate::solution::{ContactSet, Goal, Solution};
@@ -88,12 +84,12 @@ fn largest_displacement(answer: &Answer) -> Option<LargestDisplacement> {
 /// The numbers of `solution` to a problem without a scene.
 #[cfg(feature = "cli")]
 pub fn problem_summary(
-    problem: &ContactProblem,
+    problem: &crate::ContactProblem,
     solution: Solution,
     goal: impl Into<Goal>,
     assemble_seconds: f64,
 ) -> Summary {
-    let warning = untouched(problem, &solution);
+    let warning = super::warnings::untouched(problem, &solution);
     let mut summary = Summary::new(solution, ModelSize::of(problem), goal, assemble_seconds);
     summary.warnings.extend(warning);
     summary

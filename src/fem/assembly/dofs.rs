@@ -32,7 +32,8 @@ pub struct DofMap {
     /// Dofs of a node; used only for frames.
     dimension: usize,
     frames: BTreeMap<usize, Frame>,
-    basis: PositiveBasis,
+    /// The coefficients at mid-side nodes.
+    pub(crate) basis: PositiveBasis,
 }
 
 /// The displacement of a node, or its coefficient, along a vector: the sum of `coefficient * free dof` and of the part of the supported
@@ -135,11 +136,6 @@ impl DofMap {
             self.basis.gather_areas(&mut areas);
         }
         of_nodes.iter().map(|&(node, area)| (node, areas.get(&node).copied().unwrap_or(area))).collect()
-    }
-
-    /// The coefficients at mid-side nodes.
-    pub(crate) fn basis(&self) -> &PositiveBasis {
-        &self.basis
     }
 
     /// All dofs of `mesh` free, except those of the nodes of `boundaries`: they move by `displacement(point)`. Point

@@ -20,7 +20,7 @@ pub fn rigid_body_modes(body: &ElasticBody, dofs: &DofMap) -> Vec<Vec<f64>> {
     for &dof in dofs.free() {
         let (node, axis) = (dof / dimension, dof % dimension);
         let direction = dofs.axes(node)[axis];
-        let place = dofs.basis().place(mesh.nodes(), node);
+        let place = dofs.basis.place(mesh.nodes(), node);
         let from_middle = [0, 1, 2].map(|i| (2.0 * place[i] - least[i] - most[i]) / size);
         for (translation, motion) in motions[..dimension].iter_mut().enumerate() {
             motion.push(direction[translation]);

@@ -46,7 +46,7 @@ pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, E
     for placed in body.elements() {
         let nodes = placed.nodes;
         let mut element = element_stiffness(body, &placed, &table);
-        dofs.basis().change(nodes, &mut element);
+        dofs.basis.change(nodes, &mut element);
         let mut free = [FreeAxes::default(); MAX_NODES];
         for (of_node, &node) in free.iter_mut().zip(nodes) {
             *of_node = FreeAxes::of(node, dimension, dofs);

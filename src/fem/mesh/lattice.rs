@@ -10,7 +10,8 @@ use super::ElementKind;
 /// The nodes made so far.
 pub(crate) struct Lattice<K> {
     numbers: HashMap<K, usize>,
-    keys: Vec<K>,
+    /// The keys in the order of the nodes.
+    pub keys: Vec<K>,
 }
 
 impl<K: Copy + Eq + Hash> Lattice<K> {
@@ -24,11 +25,6 @@ impl<K: Copy + Eq + Hash> Lattice<K> {
             self.keys.push(key);
             self.keys.len() - 1
         })
-    }
-
-    /// The keys in the order of the nodes.
-    pub fn keys(&self) -> &[K] {
-        &self.keys
     }
 
     /// Adds the elements of a plane cell. `key` gives the key at half steps 0, 1, 2 in the two directions of the

@@ -51,8 +51,3 @@ impl Grading {
         core.map(|value| value * stretch * self.radius)
     }
 }
-
-/// The lines from 0 on, with their mirror images.
-pub(crate) fn mirrored(lines: &[f64]) -> Vec<f64> {
-    lines.iter().skip(1).rev().map(|line| -line).chain(lines.iter().copied()).collect()
-}

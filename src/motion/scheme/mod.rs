@@ -15,7 +15,7 @@ pub use stable_step::stable_step;
 
 use serde::{Deserialize, Serialize};
 
-use super::step::{About, Parameter, Prepare};
+use super::step::{About, Parameter};
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
 
@@ -191,23 +191,23 @@ impl Scheme {
 
     /// Returns `true` if the scheme can gain energy at an impact.
     pub fn gains_energy(self) -> bool {
-        self.spec().about().gains_energy
+        self.about().gains_energy
     }
 
     /// Returns `true` if closed rows are springs, so that no answer of a step is certified.
     pub fn penetrates(self) -> bool {
-        self.spec().about().penetrates
+        self.about().penetrates
     }
 
     /// The form of the mass that a motion takes if its scene names none.
     pub fn mass_form(self) -> MassForm {
-        self.spec().about().masses[0]
+        self.about().masses[0]
     }
 
     /// Returns `true` if the scheme can use a mass of this form. Only the midpoint rule allows dofs without mass; the explicit scheme
     /// needs a diagonal mass.
     pub fn allows(self, form: MassForm) -> bool {
-        self.spec().about().masses.contains(&form)
+        self.about().masses.contains(&form)
     }
 
     /// Returns `true` if the step is limited.
@@ -217,14 +217,10 @@ impl Scheme {
 
     /// Returns `true` if, with a mass of this form, the energy grows whenever bodies touch.
     pub fn is_unstable_in_contact(self, form: MassForm) -> bool {
-        self.spec().about().unstable_in_contact.contains(&form)
+        self.about().unstable_in_contact.contains(&form)
     }
 
     /// The times in a step at which the scheme evaluates the loads, from 0 to 1.
-    pub(super) fn load_times(self) -> &'static [f64] {
-        self.spec().about().load_times
-    }
-
     /// Checks the range of the parameter.
     ///
     /// # Errors
@@ -240,7 +236,7 @@ impl Scheme {
     }
 
     /// The function that prepares the steps.
-    pub(super) fn prepare(self) -> Prepare {
-        self.spec().about().prepare
+    pub(super) fn about(self) -> &'static About {
+        self.spec().about()
     }
 }

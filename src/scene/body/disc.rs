@@ -100,16 +100,13 @@ pub fn disc(centre: [f64; 2], radius: f64, zone: &Zone, sides: Sides, kind: Elem
     let mut connectivity: Vec<usize> = lower.elements().flatten().copied().collect();
     upper.elements().for_each(|element| connectivity.extend(mirrored(element)));
     let mut boundaries = Vec::new();
-    for (of_half, names) in [("arc", &["lower", "upper"][..]), ("symmetry-x", &["symmetry-x"][..])] {
-        let Some(half) = lower.boundary(of_half) else { continue };
-        let image = mirrored(&half.connectivity);
-        match names {
-            [one, other] => {
-                boundaries.push(Boundary::new(*one, half.kind, half.connectivity.clone()));
-                boundaries.push(Boundary::new(*other, half.kind, image));
-            }
-            _ => boundaries.push(Boundary::new(of_half, half.kind, [half.connectivity.clone(), image].concat())),
-        }
+    if let Some(arc) = lower.boundary("arc") {
+        boundaries.push(Boundary::new("lower", arc.kind, arc.connectivity.clone()));
+        boundaries.push(Boundary::new("upper", arc.kind, mirrored(&arc.connectivity)));
+    }
+    if let Some(side) = lower.boundary("symmetry-x") {
+        let both = [side.connectivity.clone(), mirrored(&side.connectivity)].concat();
+        boundaries.push(Boundary::new("symmetry-x", side.kind, both));
     }
     Mesh::new(nodes, kind, connectivity, boundaries)
 }

@@ -140,9 +140,9 @@ pub fn half_ball(centre: [f64; 3], radius: f64, zone: &Zone, sides: [Sides; 2]) 
         let at = graded.place(direction, graded.shells[shell]);
         [0, 1, 2].map(|axis| centre[axis] + at[axis])
     };
-    let nodes = lattice.keys().iter().map(place).collect();
+    let nodes = lattice.keys.iter().map(place).collect();
     let mesh = Mesh::new(nodes, ElementKind::Hex8, connectivity, Vec::new())?;
-    let keys = lattice.keys();
+    let keys = &lattice.keys;
     let (cut, round) = (|node: usize| keys[node][3] == 0, |node: usize| keys[node][0] == shells);
     let symmetry = [1, 2].map(|axis| move |node: usize| keys[node][axis] == 0);
     let mut boundaries: Vec<(&str, &dyn Fn(usize) -> bool)> = vec![("cut", &cut), ("round", &round)];

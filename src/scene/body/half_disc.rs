@@ -126,8 +126,8 @@ pub fn half_disc(centre: [f64; 2], radius: f64, zone: &Zone, sides: Sides, kind:
         let at = graded.place(direction, outward[shell]);
         [centre[0] + at[0], centre[1] + at[1], 0.0]
     };
-    let mesh = Mesh::new(lattice.keys().iter().map(place).collect(), kind, connectivity, Vec::new())?;
-    let keys = lattice.keys();
+    let mesh = Mesh::new(lattice.keys.iter().map(place).collect(), kind, connectivity, Vec::new())?;
+    let keys = &lattice.keys;
     let (cut, arc) = (|node: usize| keys[node][2] == 0, |node: usize| keys[node][0] == 2 * shells);
     let symmetry = |node: usize| keys[node][1] == 0;
     let boundaries: [(&str, &dyn Fn(usize) -> bool); 3] = [("cut", &cut), ("arc", &arc), ("symmetry-x", &symmetry)];

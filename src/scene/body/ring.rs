@@ -103,8 +103,8 @@ pub fn ring(centre: [f64; 2], radii: &[f64], angles: &[f64], kind: ElementKind) 
         let (sine, cosine) = sine_cosine(angles[angle]);
         [centre[0] + radii[layer] * cosine, centre[1] + radii[layer] * sine, 0.0]
     };
-    let mesh = Mesh::new(lattice.keys().iter().map(place).collect(), kind, connectivity, Vec::new())?;
-    let keys = lattice.keys();
+    let mesh = Mesh::new(lattice.keys.iter().map(place).collect(), kind, connectivity, Vec::new())?;
+    let keys = &lattice.keys;
     let (inner, outer) = (|node: usize| keys[node][0] == 0, |node: usize| keys[node][0] == 2 * layers);
     let (start, end) = (|node: usize| keys[node][1] == 0, |node: usize| keys[node][1] == 2 * sectors);
     let sides: [(&str, &dyn Fn(usize) -> bool); 4] =

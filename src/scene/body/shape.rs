@@ -3,7 +3,6 @@
 use crate::error::Error;
 use crate::fem::Integration;
 use crate::fem::element::LatticeCounts;
-use crate::fem::mesh::round::mirrored;
 use crate::fem::mesh::{Axis, ElementKind, MAX_NODES, Mesh, Zone};
 use crate::scene::entry::wrong;
 use crate::scene::files::Files;
@@ -104,10 +103,10 @@ impl Sides {
         if is_symmetric { Sides::Beyond } else { Sides::Both }
     }
 
-    /// The lines across the body from those of one side, which begin at 0.
+    /// The lines across the body: those of one side, from 0 on, and their mirror images if there are two sides.
     pub(super) fn lines(self, aside: &[f64]) -> Vec<f64> {
         match self {
-            Sides::Both => mirrored(aside),
+            Sides::Both => aside.iter().skip(1).rev().map(|line| -line).chain(aside.iter().copied()).collect(),
             Sides::Beyond => aside.to_vec(),
         }
     }

@@ -52,12 +52,9 @@ impl ObstacleShape for SurfaceSpec {
         let file = site.files.named(&self.file, site.field("file"))?;
         let surface =
             ClosedSurface::read(&file, self.scale, origin).map_err(|error| located(error, &site.field("")))?;
-        let (approach, rounding) = (site.approach, site.rounding());
-        let direction = site.direction();
-        Ok(Geometry::rigid(
-            site,
-            Triangulated { surface: Arc::new(surface), side: self.side, approach, direction, rounding },
-        ))
+        let (surface, approach) = (Arc::new(surface), site.approach);
+        let (direction, rounding) = (site.direction(), site.rounding());
+        Ok(Geometry::rigid(site, Triangulated { surface, side: self.side, approach, direction, rounding }))
     }
 
     fn bytes(&self, files: Files) -> f64 {

@@ -31,11 +31,8 @@ pub(super) struct RigidBodyModes {
 
 impl RigidBodyModes {
     pub fn of(body: &ElasticBody) -> Self {
-        RigidBodyModes {
-            bodies: body.regions().iter().map(|region| UnitMotions::of(body, region)).collect(),
-            dimension: body.dimension(),
-            obstacles: Vec::new(),
-        }
+        let bodies = body.regions().iter().map(|region| UnitMotions::of(body, region)).collect();
+        RigidBodyModes { bodies, dimension: body.dimension(), obstacles: Vec::new() }
     }
 
     /// The same with the pressed obstacles: each moves along its approach direction.

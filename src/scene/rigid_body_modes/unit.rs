@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::DMatrix;
 
 use crate::fem::body::{ElasticBody, Region};
-use crate::fem::geometry::COORDINATES;
+use crate::fem::geometry::{COORDINATES, cross};
 use crate::fem::mesh::extent;
 use crate::qp::linear::dot;
 use crate::scene::entry::{point, six_digits};
@@ -115,12 +115,7 @@ impl UnitMotions {
         }
         let axis = along_one_axis(turn).map_or_else(|| direction(&turn), |axis| AXES[axis].into());
         // The pole: there translation and rotation cancel, except the part along the axis.
-        let [u, v, w] = [
-            (turn[1] * shift[2] - turn[2] * shift[1]) / (angle * angle),
-            (turn[2] * shift[0] - turn[0] * shift[2]) / (angle * angle),
-            (turn[0] * shift[1] - turn[1] * shift[0]) / (angle * angle),
-        ];
-        let pole = [u, v, w].map(|part| part * self.size);
+        let pole = cross(turn, shift).map(|part| part / (angle * angle) * self.size);
         let tidy = [0, 1, 2].map(|axis| {
             let at = self.centre[axis] + pole[axis];
             if at.abs() <= NAMED * self.size { 0.0 } else { six_digits(at) }

@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 use crate::fem::MassForm;
 use crate::motion::SchemeSpec;
 
+/// The JSON path of the fields in a scene.
+pub(in crate::scene) const PATH: &str = "analysis.dynamic";
+
 /// The analysis; a scene without one is static.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]

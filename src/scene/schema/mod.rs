@@ -3,7 +3,7 @@
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
-mod analysis;
+pub(super) mod analysis;
 pub(super) mod approach;
 mod body;
 pub(super) mod cells;

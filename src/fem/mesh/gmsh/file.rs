@@ -56,9 +56,9 @@ pub struct PhysicalGroup {
 
 impl GmshFile {
     pub(super) fn elements_of<'a>(&'a self, block: &'a Block) -> impl Iterator<Item = Element<'a>> + 'a {
-        let nodes = block.nodes.chunks_exact(block.cell.nodes);
-        block.tags.iter().zip(&block.lines).zip(nodes).map(|((&tag, &line), nodes)| Element {
-            cell: block.cell,
+        let (cell, nodes) = (block.cell, block.nodes.chunks_exact(block.cell.nodes));
+        block.tags.iter().zip(&block.lines).zip(nodes).map(move |((&tag, &line), nodes)| Element {
+            cell,
             tag,
             line,
             nodes,
