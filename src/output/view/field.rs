@@ -158,7 +158,7 @@ impl Source<'_> {
         let mut sums = vec![(0.0, 0.0); stress.nodes.len()];
         let mut in_elements = Vec::with_capacity(stress.elements.len());
         for (element, own) in body.elements().zip(&stress.elements) {
-            let density = |stress: &Stress| 0.5 * element.phase.law().complementary_energy(&stress.components());
+            let density = |stress: &Stress| 0.5 * element.phase.law.complementary_energy(&stress.components());
             in_elements.push(density(own));
             for &node in element.nodes {
                 sums[node].0 += density(stress.within(node, element.phase_number));
