@@ -110,8 +110,8 @@ pub mod internals {
     pub use crate::qp::method::dual_active_set::DualActiveSet;
     pub use crate::qp::method::{Definiteness, Ending, Outcome, ScaledProblem, Solver};
     pub use crate::qp::panics::guarded;
-    pub use crate::scene::body::BodySpec;
-    pub use crate::scene::schema::AnalysisSpec;
+    pub use crate::scene::input::body::BodySpec;
+    pub use crate::scene::input::schema::AnalysisSpec;
     pub use crate::study::scene::even_gaps;
     #[cfg(feature = "cli")]
     pub use crate::study::total_error::{Examined, examined};

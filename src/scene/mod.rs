@@ -14,80 +14,32 @@
 //! # Ok::<(), signorini::Error>(())
 //! ```
 
-mod absent;
-mod answer;
-pub(crate) mod body;
-mod build;
-mod condition;
-#[cfg(feature = "cli")]
-mod continuum;
-#[cfg(feature = "cli")]
-pub(crate) mod depths;
-mod dynamics;
-mod elastic;
-mod entry;
-mod explain;
-mod files;
-mod held;
-mod json;
-#[cfg(feature = "cli")]
-mod json_schema;
-mod load;
-mod loads_in_time;
-mod locate;
-mod materials;
-mod model;
-mod moving_supports;
-mod obstacle;
-mod parse;
-mod part;
-mod parts;
-mod patch;
-mod profile;
-mod refine;
-mod resultants;
-mod rigid_body_modes;
-mod rigid_face;
-#[cfg(feature = "cli")]
-mod roles;
-mod rows;
-pub(crate) mod schema;
-mod segments;
-mod selection;
-#[cfg(feature = "pictures")]
-mod set_up;
-mod size;
-mod springs;
-#[cfg(feature = "cli")]
-mod start;
-mod suspect;
-mod symmetry;
-mod unknowns;
-mod unstrained;
-mod warning;
-mod watched;
+pub(crate) mod answers;
+pub(crate) mod input;
+pub(crate) mod models;
+mod motions;
 
+pub use answers::answer::{Answer, Forces};
+pub(crate) use answers::patch::straight_cells;
+pub use answers::segments::{ContactExtent, Segment};
 #[cfg(feature = "cli")]
-pub(crate) use absent::absent;
-pub use answer::{Answer, Forces};
-pub use body::{Sides, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
-pub use dynamics::Dynamics;
-pub(crate) use entry::refused;
-pub use model::Model;
-pub use obstacle::{Obstacle, ObstacleRow, PlacedObstacle};
-pub(crate) use patch::straight_cells;
-pub use resultants::Resultant;
-pub use rows::ContactRow;
-pub use schema::{Rule, Scene, Units};
-pub use segments::{ContactExtent, Segment};
+pub(crate) use input::absent::absent;
+pub use input::body::{Sides, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
+pub(crate) use input::entry::refused;
+pub use input::obstacle::{Obstacle, ObstacleRow, PlacedObstacle};
+pub use input::schema::{Rule, Scene, Units};
+pub use input::size::Size;
+pub use input::warning::Warning;
+pub use models::model::Model;
+pub use models::resultants::Resultant;
+pub use models::rows::ContactRow;
 #[cfg(feature = "cli")]
-pub(crate) use set_up::HeldNode;
+pub(crate) use models::set_up::HeldNode;
 #[cfg(feature = "pictures")]
-pub(crate) use set_up::Hold;
-pub use size::Size;
+pub(crate) use models::set_up::Hold;
 #[cfg(feature = "cli")]
-pub(crate) use start::start_scene;
+pub(crate) use models::start::start_scene;
 #[cfg(feature = "pictures")]
-pub(crate) use unknowns::Meaning;
-pub use warning::Warning;
-pub use watched::WatchedPoint;
+pub(crate) use models::unknowns::Meaning;
+pub use motions::dynamics::Dynamics;
+pub use motions::watched::WatchedPoint;

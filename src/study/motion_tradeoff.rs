@@ -8,7 +8,7 @@ use super::front::on_front;
 use crate::error::Error;
 use crate::motion::{Integrator, SchemeSpec};
 use crate::qp::Settings;
-use crate::scene::schema::AnalysisSpec;
+use crate::scene::input::schema::AnalysisSpec;
 use crate::scene::{Dynamics, Model, Scene};
 
 /// Times at which displacements are compared.

@@ -69,8 +69,10 @@ fn a_module_names_only_modules_of_lower_floors() {
 }
 
 /// The rooms of a floor with many files, in the order in which data flow through them.
-const WINGS: [(&str, &[&str]); 1] =
-    [("output", &["text", "json", "draw", "file", "plots", "view", "picture", "reports", "page", "folder"])];
+const WINGS: [(&str, &[&str]); 2] = [
+    ("scene", &["input", "models", "motions", "answers"]),
+    ("output", &["text", "json", "draw", "file", "plots", "view", "picture", "reports", "page", "folder"]),
+];
 
 #[test]
 fn a_room_of_a_wing_names_only_rooms_before_it() {

@@ -51,16 +51,16 @@ fn assert_named_in(names_of_kind: &[String], expected: &[&str]) {
 
 #[test]
 fn an_element_is_named_in_three_files() {
-    let (all, scene) = ("fem/element/mod.rs", "scene/schema/cells.rs");
+    let (all, scene) = ("fem/element/mod.rs", "scene/input/schema/cells.rs");
     // Bodies that consist of one kind of element also name it, and the estimate for a mesh file assumes triangles.
     for (element, file, others) in [
-        ("Line2", "fem/element/line2.rs", &["scene/body/bar.rs"][..]),
-        ("T3", "fem/element/t3.rs", &[scene, "scene/body/gmsh.rs"]),
+        ("Line2", "fem/element/line2.rs", &["scene/input/body/bar.rs"][..]),
+        ("T3", "fem/element/t3.rs", &[scene, "scene/input/body/gmsh.rs"]),
         ("T6", "fem/element/t6.rs", &[scene]),
         ("Q4", "fem/element/q4.rs", &[scene]),
         ("Q8", "fem/element/q8.rs", &[scene]),
         ("Tet4", "fem/element/tet4.rs", &[scene]),
-        ("Hex8", "fem/element/hex8.rs", &[scene, "scene/body/half_ball.rs"]),
+        ("Hex8", "fem/element/hex8.rs", &[scene, "scene/input/body/half_ball.rs"]),
     ] {
         let of_kinds = ["ElementKind", "ElementSpec", "SolidElementSpec"].map(|kinds| format!("{kinds}::{element}"));
         assert_named_in(&of_kinds, &[&[all], others].concat());
@@ -81,8 +81,8 @@ fn a_body_shape_is_named_in_two_files() {
         ("Ring", "RingSpec", "ring"),
         ("Gmsh", "GmshSpec", "gmsh"),
     ] {
-        let file = format!("scene/body/{file}.rs");
-        assert_named_in(&[spec.into(), format!("BodySpec::{shape}")], &["scene/body/mod.rs", &file]);
+        let file = format!("scene/input/body/{file}.rs");
+        assert_named_in(&[spec.into(), format!("BodySpec::{shape}")], &["scene/input/body/mod.rs", &file]);
     }
 }
 
@@ -102,8 +102,8 @@ fn an_obstacle_shape_is_named_in_two_files() {
         ("Surface", "SurfaceSpec", "triangulated"),
         ("Body", "FacingSpec", "facing"),
     ] {
-        let file = format!("scene/obstacle/{file}.rs");
-        assert_named_in(&[spec.into(), format!("ShapeSpec::{shape}")], &["scene/obstacle/mod.rs", &file]);
+        let file = format!("scene/input/obstacle/{file}.rs");
+        assert_named_in(&[spec.into(), format!("ShapeSpec::{shape}")], &["scene/input/obstacle/mod.rs", &file]);
     }
 }
 

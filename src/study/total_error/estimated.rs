@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::mesh::bisection::Tetrahedra;
 use crate::qp::{Settings, solve};
-use crate::scene::depths::Depths;
+use crate::scene::answers::depths::Depths;
 use crate::scene::{Answer, Model, Scene};
 use crate::solution::Solution;
 use crate::study::Status;

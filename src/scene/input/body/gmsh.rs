@@ -1,0 +1,73 @@
+//! A body from a mesh file of Gmsh.
+
+use serde::{Deserialize, Serialize};
+
+use super::shape::{About, Block, BodyShape, Site};
+use crate::error::Error;
+use crate::fem::{ElementKind, GmshFile, Integration, Mesh};
+use crate::scene::input::entry::{refused, wrong};
+use crate::scene::input::files::Files;
+
+/// Approximate bytes of a mesh file for one node and its elements: files of Gmsh of either version, ASCII or binary, have 87 to 237.
+const OF_MESH_FILE: f64 = 150.0;
+
+/// A mesh written by Gmsh: a `.msh` file of version 4.1 or 2.2, ASCII or binary. A bar has the cross-section 1.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct GmshSpec {
+    /// The file, inside the folder of the scene unless reading outside is allowed; a relative name starts in that folder.
+    pub file: String,
+    /// Factor of the coordinates of the file, positive.
+    #[serde(default = "crate::scene::input::schema::cells::one")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    pub scale: f64,
+    /// The physical group of the body; may be left out if at most one group has elements of the highest dimension, or if `materials` name
+    /// the groups.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub group: Option<String>,
+    /// The integration of the stiffness.
+    #[serde(default)]
+    pub integration: Integration,
+}
+
+pub(super) const ABOUT: About = About { name: "gmsh", dimension: None };
+
+impl BodyShape for GmshSpec {
+    fn integration(&self) -> Integration {
+        self.integration
+    }
+
+    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+        let file = GmshFile::read(site.files.named(&self.file, format!("{}.file", site.path))?)?;
+        let bodies = file.bodies();
+        if self.group.is_none() && bodies.len() > 1 && !site.names_groups {
+            let names = bodies.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+            let message = format!(
+                "the mesh has {} groups of elements, {names}; without `group` they would be one body of one \
+                 material; choose one by `group`, or give `materials`",
+                bodies.len()
+            );
+            return Err(refused("several-groups", format!("{}.group", site.path), message));
+        }
+        let mesh = file.mesh(self.group.as_deref(), self.scale)?;
+        let (found, model) = (mesh.dimension(), site.model.name());
+        if found != site.model.dimension() {
+            let body = ["a bar", "plane", "in space"][found - 1];
+            let message = format!("the mesh is {body}, which does not fit the model `{model}`");
+            return Err(wrong(format!("{}.file", site.path), message));
+        }
+        Ok(mesh)
+    }
+
+    fn block(&self, files: Option<Files>) -> Block {
+        let bytes = files.map_or(0.0, |files| files.length(&self.file));
+        // A plane mesh has fewer elements per node; the estimate of its size hardly depends on that.
+        let side = (bytes / OF_MESH_FILE).sqrt();
+        Block { cells: vec![side; 2], lengths: Vec::new(), counts: ElementKind::T3.reference().counts }
+    }
+
+    fn refine(&mut self, _: usize) -> Result<(), Error> {
+        Err(wrong("body.gmsh", "a mesh from a file cannot be refined here; mesh the body again with smaller cells"))
+    }
+}

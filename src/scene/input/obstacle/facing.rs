@@ -1,0 +1,244 @@
+//! The surface of another body, node to node: n . (u - u_partner) <= gap.
+
+use serde::{Deserialize, Serialize};
+
+use super::pairs::Pair;
+use super::shape::{About, Geometry, ObstacleShape, Site};
+use crate::error::Error;
+use crate::fem::assembly::node_normals;
+use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
+use crate::fem::{Boundary, ElasticBody, FacetKind};
+use crate::scene::input::entry::{PLACE_TOLERANCE, boundary, point, refused, wrong};
+use crate::scene::input::schema::approach::Rule;
+
+/// Allowed lateral offset of a partner, in units of its distance: at the end of a curved boundary only the facets on one side give the
+/// normal, which is wrong by half the angle of a facet.
+const ASLANT: f64 = 0.2;
+
+/// Lengths below this share of the shortest edge of the facets at a node are rounding of coordinates: seven digits, as in single precision,
+/// leave 5e-7 of the size of the bodies, which is below this share of a facet if at most 2000 facets lie side by side. A place nearer to an
+/// edge of a facet than this share of the edge counts as on the edge.
+const SAME_PLACE: f64 = 1e-3;
+
+/// The surface of another elastic body: every candidate lies opposite one of its nodes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct FacingSpec {
+    /// The boundary of the other body, as `name.boundary`.
+    pub boundary: String,
+}
+
+/// What the nodes of two boundaries must do, and the page that shows how.
+const PAIR_UP: &str = "the nodes of the two boundaries must pair up, as docs/assemblies.md shows";
+
+pub(super) const ABOUT: About = About { name: "body", dimensions: &[1, 2, 3] };
+
+impl ObstacleShape for FacingSpec {
+    /// Finds the node of the other body opposite to each candidate.
+    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+        let mesh = site.body.mesh();
+        let own = boundary(mesh, site.boundary, &format!("{}.boundary", site.obstacle))?;
+        let other = boundary(mesh, &self.boundary, &site.field("boundary"))?;
+        if region(site.body, own) == region(site.body, other) {
+            let message = format!("`{}` and `{}` belong to one body; take a boundary of another", own.name, other.name);
+            return Err(wrong(site.field("boundary"), message));
+        }
+        let (normals, partners) = (node_normals(site.body, own), node_normals(site.body, other));
+        let edges = shortest_edges(own, mesh.nodes());
+        let search = Search { site, own, other, partners, edges };
+        let candidates = site.candidates.iter().zip(&normals);
+        let pairs: Result<Vec<Pair>, Error> = candidates
+            .map(|(&(node, _), &(_, outward))| {
+                let way = search.nearest(node, outward)?;
+                search.check(node, &way)?;
+                Ok(way.pair)
+            })
+            .collect();
+        let pairs = pairs?;
+        search.check_others(&pairs)?;
+        Ok(Geometry::Pairs(pairs))
+    }
+
+    fn other_boundary(&self) -> Option<&str> {
+        Some(&self.boundary)
+    }
+}
+
+fn unpaired(site: &Site, message: String) -> Error {
+    refused("unpaired-nodes", site.field("boundary"), message)
+}
+
+/// The body to which a boundary belongs.
+fn region(body: &ElasticBody, of: &Boundary) -> Option<usize> {
+    let first = of.connectivity.first().copied().unwrap_or(0);
+    body.regions().iter().position(|region| region.nodes().contains(&first))
+}
+
+/// The search for partners on another boundary.
+struct Search<'a> {
+    site: &'a Site<'a>,
+    own: &'a Boundary,
+    other: &'a Boundary,
+    /// Nodes of the other boundary with their outward normals.
+    partners: Vec<(usize, [f64; 3])>,
+    /// The shortest edge of the facets at each node of the own boundary, in length; infinite at other nodes.
+    edges: Vec<f64>,
+}
+
+/// The vector from a candidate to a node of the other boundary.
+struct Way {
+    /// Offset perpendicular to the direction of the row, in length.
+    aside: f64,
+    pair: Pair,
+}
+
+/// The shortest edge of the facets at each node of the mesh; infinite at nodes outside the boundary, and if facets are points.
+fn shortest_edges(boundary: &Boundary, nodes: &[[f64; 3]]) -> Vec<f64> {
+    let mut shortest = vec![f64::INFINITY; nodes.len()];
+    for facet in boundary.facets() {
+        for (place, &node) in facet.iter().enumerate() {
+            for &other in &facet[..place] {
+                let edge = distance(nodes[node], nodes[other]);
+                [node, other].iter().for_each(|&end| shortest[end] = shortest[end].min(edge));
+            }
+        }
+    }
+    shortest
+}
+
+impl Search<'_> {
+    /// Lengths below this at a node of the own boundary are rounding of coordinates.
+    fn tolerance(&self, node: usize) -> f64 {
+        let edge = self.edges[node];
+        if edge.is_finite() { SAME_PLACE * edge } else { PLACE_TOLERANCE * self.site.body.mesh().size() }
+    }
+
+    fn nearest(&self, node: usize, outward: [f64; 3]) -> Result<Way, Error> {
+        let (nodes, rule) = (self.site.body.mesh().nodes(), self.site.rule);
+        let ways = self.partners.iter().map(|&(partner, facing)| {
+            let way = minus(nodes[partner], nodes[node]);
+            let mean = unit(minus(outward, facing));
+            let normal = if rule == Rule::Approach { self.site.direction() } else { mean };
+            let distance = dot(way, normal);
+            let aside = length(minus(way, normal.map(|component| distance * component)));
+            Way { aside, pair: Pair { partner, normal, mean, distance } }
+        });
+        let nearest = match rule {
+            // The nearest of the nodes straight across; without such a node, the node with the smallest offset.
+            Rule::Approach => ways.min_by(|a, b| {
+                let straight = |way: &Way| way.aside.max(self.tolerance(node));
+                let far = |way: &Way| way.pair.distance.abs();
+                straight(a).total_cmp(&straight(b)).then(far(a).total_cmp(&far(b)))
+            }),
+            Rule::ClosestPoint => {
+                let far = |way: &Way| way.aside.hypot(way.pair.distance);
+                ways.min_by(|a, b| far(a).total_cmp(&far(b)))
+            }
+        };
+        nearest.ok_or_else(|| wrong(self.site.field("boundary"), format!("`{}` has no nodes", self.other.name)))
+    }
+
+    /// Checks that a pair lies straight across, and that the row leads into the other body.
+    fn check(&self, node: usize, way: &Way) -> Result<(), Error> {
+        let (site, own, other) = (self.site, &self.own.name, &self.other.name);
+        let mesh = site.body.mesh();
+        let place = point(&mesh.nodes()[node][..mesh.dimension()]);
+        let slant = if site.rule == Rule::Approach { 0.0 } else { ASLANT * way.pair.distance.abs() };
+        if way.aside > self.tolerance(node).max(slant) {
+            let message = format!(
+                "node {node} of `{own}` at {place} has no node of `{other}` across it: the nearest is {:.3e} aside; {PAIR_UP}",
+                way.aside
+            );
+            return Err(unpaired(site, message));
+        }
+        if dot(way.pair.mean, way.pair.normal) <= 0.0 {
+            let message = format!(
+                "`{}` does not lead from `{own}` into `{other}` at node {node} at {place}; take the opposite direction",
+                site.approach.name()
+            );
+            return Err(wrong(format!("{}.approach", site.obstacle), message));
+        }
+        Ok(())
+    }
+
+    /// Checks that no node of the other boundary faces the inside of a facet: it would have no row, and would penetrate.
+    fn check_others(&self, pairs: &[Pair]) -> Result<(), Error> {
+        let mesh = self.site.body.mesh();
+        let nodes = mesh.nodes();
+        let mut pair_of = vec![None; nodes.len()];
+        let mut is_paired = vec![false; nodes.len()];
+        for (&(node, _), pair) in self.site.candidates.iter().zip(pairs) {
+            pair_of[node] = Some(*pair);
+            is_paired[pair.partner] = true;
+        }
+        for &(partner, facing) in self.partners.iter().filter(|entry| !is_paired[entry.0]) {
+            for facet in self.own.facets() {
+                let across = Across::of(self.own.kind, facet, nodes, &pair_of, nodes[partner]);
+                let Some(across) = across.filter(|across| dot(across.normal, facing) < 0.0) else { continue };
+                let (own, other) = (&self.own.name, &self.other.name);
+                let place = point(&nodes[partner][..mesh.dimension()]);
+                let message = format!(
+                    "node {partner} of `{other}` at {place} has no node of `{own}` across it: it faces the inside of a facet at a \
+                     distance of {:.3e}, and would go through; {PAIR_UP}",
+                    across.distance
+                );
+                return Err(unpaired(self.site, message));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A place opposite to the inside of a facet.
+struct Across {
+    /// Unit vector from the facet to the other body.
+    normal: [f64; 3],
+    /// Distance along the normal, in length.
+    distance: f64,
+}
+
+impl Across {
+    /// The place `at` if it is opposite to the inside of `facet`, at most as far as the distance of its pairs plus the length of the
+    /// facet.
+    fn of(
+        kind: FacetKind,
+        facet: &[usize],
+        nodes: &[[f64; 3]],
+        pair_of: &[Option<Pair>],
+        at: [f64; 3],
+    ) -> Option<Self> {
+        let corners = match kind {
+            FacetKind::Point1 => return None,
+            FacetKind::Line2 | FacetKind::Line3 => &facet[..2],
+            FacetKind::T3 | FacetKind::Q4 | FacetKind::T6 | FacetKind::Q8 => &facet[..kind.reference().corners],
+        };
+        let pairs: Option<Vec<Pair>> = corners.iter().map(|&corner| pair_of[corner]).collect();
+        let pairs = pairs?;
+        let normal = unit(pairs.iter().fold([0.0; 3], |sum, pair| minus(sum, pair.normal.map(|component| -component))));
+        let first = nodes[corners[0]];
+        let way = dot(minus(at, first), normal);
+        let long = corners.iter().fold(0.0, |long: f64, &corner| long.max(distance(nodes[corner], first)));
+        let far = pairs.iter().fold(0.0, |far: f64, pair| far.max(pair.distance.abs()));
+        if way.abs() > far + long {
+            return None;
+        }
+        let is_inside = match *corners {
+            [a, b] => {
+                let along = minus(nodes[b], nodes[a]);
+                let share = dot(minus(at, nodes[a]), along) / dot(along, along);
+                share > SAME_PLACE && share < 1.0 - SAME_PLACE
+            }
+            _ => {
+                let turns = (0..corners.len()).map(|corner| {
+                    let (a, b) = (nodes[corners[corner]], nodes[corners[(corner + 1) % corners.len()]]);
+                    let edge = minus(b, a);
+                    dot(cross(edge, minus(at, a)), normal) / dot(edge, edge)
+                });
+                let turns: Vec<f64> = turns.collect();
+                turns.iter().all(|&turn| turn > SAME_PLACE) || turns.iter().all(|&turn| turn < -SAME_PLACE)
+            }
+        };
+        is_inside.then_some(Across { normal, distance: way })
+    }
+}

@@ -1,0 +1,244 @@
+//! Heights on a grid, bilinear in every cell: h = a + b t1 + c t2 + d t1 t2.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::graph::{Form, Graph, Grid, across};
+use super::patch::{Foot, Patch};
+use super::shape::{About, Geometry, ObstacleShape, Site};
+use crate::error::Error;
+use crate::fem::geometry::dot;
+use crate::scene::input::entry::{PLACE_TOLERANCE, finite, number, point, wrong};
+
+/// Feet closer together than this, relative to the body's size, are one point: neighbouring cells share their edges, and the accuracy of
+/// a search is the square root of rounding.
+const SAME_FOOT: f64 = 1e-6;
+
+/// Unit normals closer than this belong to one smooth piece.
+const SAME_NORMAL: f64 = 1e-12;
+
+/// Heights on a grid over the two coordinates perpendicular to the approach direction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct HeightMapSpec {
+    /// Grid lines of the first coordinate perpendicular to the approach direction (x, or y if that direction is along x): at least two,
+    /// increasing, from the first candidate to the last or beyond.
+    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
+    pub x: Vec<f64>,
+    /// Grid lines of the second coordinate perpendicular to it (z, or y if the approach direction is along z), likewise.
+    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
+    pub y: Vec<f64>,
+    /// `heights[i][j]`: the surface's coordinate along the axis of the approach direction over `x[i]`, `y[j]`.
+    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
+    pub heights: Vec<Vec<f64>>,
+}
+
+pub(super) const ABOUT: About = About { name: "height-map", dimensions: &[3] };
+
+impl ObstacleShape for HeightMapSpec {
+    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+        let map = HeightMap::new(self, site)?;
+        check_reach(&map, site)?;
+        Ok(Geometry::rigid(site, Graph::new(site, [0.0; 3], Form::Grid(Arc::new(map)))))
+    }
+}
+
+/// A grid of heights towards the obstacle.
+#[derive(Debug)]
+struct HeightMap {
+    lines: [Vec<f64>; 2],
+    /// Row by row, one row per line of the first coordinate.
+    heights: Vec<f64>,
+    names: [&'static str; 2],
+    /// The body's size.
+    size: f64,
+}
+
+/// The end of a height map before a place.
+struct Reach {
+    field: &'static str,
+    name: &'static str,
+    range: (f64, f64),
+    needed: f64,
+}
+
+impl HeightMap {
+    /// Checks the grid.
+    fn new(spec: &HeightMapSpec, site: &Site) -> Result<Self, Error> {
+        let (_, sense) = site.approach.axis();
+        for (field, lines) in [("x", &spec.x), ("y", &spec.y)] {
+            check_lines(lines, &site.field(field))?;
+        }
+        let (rows, columns) = (spec.x.len(), spec.y.len());
+        let count = |found: usize, expected: usize, what: &str, lines: &str| {
+            format!("the array has {found} {what}, but there are {expected} grid lines in `{lines}`")
+        };
+        if spec.heights.len() != rows {
+            return Err(wrong(site.field("heights"), count(spec.heights.len(), rows, "rows", "x")));
+        }
+        let mut heights = Vec::with_capacity(rows * columns);
+        for (i, row) in spec.heights.iter().enumerate() {
+            if row.len() != columns {
+                return Err(wrong(format!("{}.heights[{i}]", site.path), count(row.len(), columns, "entries", "y")));
+            }
+            for (j, &height) in row.iter().enumerate() {
+                finite(format!("{}.heights[{i}][{j}]", site.path), height)?;
+                heights.push(sense * height);
+            }
+        }
+        let names = across(site.approach).map(|axis| ["x", "y", "z"][axis]);
+        Ok(HeightMap { lines: [spec.x.clone(), spec.y.clone()], heights, names, size: site.body.mesh().size() })
+    }
+
+    /// The coordinate in which the map does not reach a place, if there is one.
+    fn beyond(&self, at: [f64; 2]) -> Option<Reach> {
+        let rim = PLACE_TOLERANCE * self.size;
+        (0..2).find_map(|axis| {
+            let range = self.range(axis);
+            let inside = (range.0 - rim..=range.1 + rim).contains(&at[axis]);
+            let (field, name, needed) = (["x", "y"][axis], self.names[axis], at[axis]);
+            (!inside).then_some(Reach { field, name, range, needed })
+        })
+    }
+
+    /// The normal at a foot: of the surface if it is smooth there or the node lies on it, else the direction to the foot.
+    fn normal(&self, node: [f64; 3], foot: &Foot, sense: f64, tolerance: f64) -> [f64; 3] {
+        let near = [0, 1].map(|axis| {
+            let cell = |at: f64| self.cell_at(axis, at);
+            cell(foot.at[axis] - tolerance)..=cell(foot.at[axis] + tolerance)
+        });
+        let around: Vec<[f64; 3]> = near[0]
+            .clone()
+            .flat_map(|i| near[1].clone().map(move |j| (i, j)))
+            .map(|(i, j)| self.patch(i, j).normal([foot.at[0], foot.at[1]]))
+            .collect();
+        let sum = around.iter().fold([0.0; 3], |sum, normal| [0, 1, 2].map(|axis| sum[axis] + normal[axis]));
+        let length = dot(sum, sum).sqrt();
+        let mean = sum.map(|part| part / length);
+        let smooth = around.iter().all(|normal| (0..3).all(|axis| (normal[axis] - mean[axis]).abs() <= SAME_NORMAL));
+        let on_rim = (0..2).any(|axis| {
+            let (first, last) = self.range(axis);
+            foot.at[axis] <= first || foot.at[axis] >= last
+        });
+        if foot.distance <= tolerance || (smooth && !on_rim) {
+            return mean;
+        }
+        let way = [0, 1, 2].map(|axis| sense * (foot.at[axis] - node[axis]) / foot.distance);
+        // On a smooth rim the foot may still be a normal foot: the normal of the surface then has more correct digits.
+        let same = (0..3).all(|axis| (way[axis] - mean[axis]).abs() <= SAME_NORMAL.sqrt());
+        if smooth && same { mean } else { way }
+    }
+
+    fn range(&self, axis: usize) -> (f64, f64) {
+        let lines = &self.lines[axis];
+        (lines[0], lines[lines.len() - 1])
+    }
+
+    /// The cell over a coordinate; beyond the rim the outermost cell.
+    fn cell_at(&self, axis: usize, at: f64) -> usize {
+        let lines = &self.lines[axis];
+        lines.partition_point(|&line| line <= at).saturating_sub(1).min(lines.len() - 2)
+    }
+
+    fn patch(&self, i: usize, j: usize) -> Patch {
+        let columns = self.lines[1].len();
+        let height = |i: usize, j: usize| self.heights[i * columns + j];
+        Patch {
+            low: [self.lines[0][i], self.lines[1][j]],
+            size: [self.lines[0][i + 1] - self.lines[0][i], self.lines[1][j + 1] - self.lines[1][j]],
+            corners: [height(i, j), height(i + 1, j), height(i, j + 1), height(i + 1, j + 1)],
+        }
+    }
+}
+
+impl Grid for HeightMap {
+    fn height(&self, at: [f64; 2]) -> Option<f64> {
+        self.beyond(at).is_none().then(|| {
+            let [i, j] = [0, 1].map(|axis| self.cell_at(axis, at[axis]));
+            self.patch(i, j).height(at)
+        })
+    }
+
+    /// Cells farther away than the best so far are left out. The surface ends at its rim. A node equally close to
+    /// several points, to within `tolerance`, takes their mean normal.
+    fn closest(&self, node: [f64; 3], tolerance: f64) -> Option<([f64; 3], f64)> {
+        let height = self.height([node[0], node[1]])?;
+        let sense = if node[2] > height { -1.0 } else { 1.0 };
+        let [home_i, home_j] = [0, 1].map(|axis| self.cell_at(axis, node[axis]));
+        let best = |feet: &[Foot]| feet.iter().fold(f64::INFINITY, |best: f64, foot| best.min(foot.distance));
+        let mut feet = self.patch(home_i, home_j).feet(node);
+        let reach = best(&feet) + tolerance;
+        let [near_i, near_j] = [0, 1].map(|axis| {
+            let first = self.cell_at(axis, node[axis] - reach);
+            first..=self.cell_at(axis, node[axis] + reach)
+        });
+        for i in near_i {
+            for j in near_j.clone().filter(|&j| (i, j) != (home_i, home_j)) {
+                let patch = self.patch(i, j);
+                if patch.box_distance(node) <= best(&feet) + tolerance {
+                    feet.extend(patch.feet(node));
+                }
+            }
+        }
+        let nearest = best(&feet);
+        feet.retain(|foot| foot.distance <= nearest + tolerance);
+        // A foot inside a cell is more accurate than the foot on an edge next to it.
+        feet.sort_by_key(|foot| foot.on_edge);
+        let mut apart: Vec<Foot> = Vec::new();
+        for foot in feet {
+            let beside = |other: &Foot| {
+                let way = [0, 1, 2].map(|axis| other.at[axis] - foot.at[axis]);
+                dot(way, way).sqrt() <= SAME_FOOT * self.size
+            };
+            if !apart.iter().any(beside) {
+                apart.push(foot);
+            }
+        }
+        let normals: Vec<[f64; 3]> = apart.iter().map(|foot| self.normal(node, foot, sense, tolerance)).collect();
+        let sum = normals.iter().fold([0.0; 3], |sum, normal| [0, 1, 2].map(|axis| sum[axis] + normal[axis]));
+        let length = dot(sum, sum).sqrt();
+        let normal = sum.map(|part| part / length);
+        // Along its own normal the foot is at its distance; along a mean normal the plane through the foot is farther away.
+        let (foot, own) = (apart.first()?, *normals.first()?);
+        let to_foot = [0, 1, 2].map(|axis| foot.at[axis] - node[axis]);
+        Some((normal, dot(own, to_foot) / dot(own, normal)))
+    }
+}
+
+/// Checks that every candidate lies over the grid: a height map is undefined beyond its rim.
+fn check_reach(map: &HeightMap, site: &Site) -> Result<(), Error> {
+    let across = across(site.approach);
+    for &(node, _) in site.candidates {
+        let at = site.body.mesh().nodes()[node];
+        let Some(Reach { field, name, range: (first, last), needed }) = map.beyond(across.map(|axis| at[axis])) else {
+            continue;
+        };
+        let (first, last, needed) = (number(first), number(last), number(needed));
+        let message = format!(
+            "the height map reaches from {name} = {first} to {last}, but candidate node {node} at {} needs it at \
+                 {name} = {needed}",
+            point(&at)
+        );
+        return Err(wrong(site.field(field), message));
+    }
+    Ok(())
+}
+
+fn check_lines(lines: &[f64], path: &str) -> Result<(), Error> {
+    if lines.len() < 2 {
+        let found = lines.len();
+        return Err(wrong(path, format!("a height map needs at least two grid lines, but there are {found}")));
+    }
+    for (index, &line) in lines.iter().enumerate() {
+        finite(format!("{path}[{index}]"), line)?;
+        if let Some(&before) = index.checked_sub(1).and_then(|index| lines.get(index)).filter(|&&before| line <= before)
+        {
+            let (this, before) = (number(line), number(before));
+            let message = format!("{this} does not lie beyond {before}, the one before; the grid lines must increase");
+            return Err(wrong(format!("{path}[{index}]"), message));
+        }
+    }
+    Ok(())
+}

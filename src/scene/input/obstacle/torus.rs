@@ -1,0 +1,155 @@
+//! A torus: the points at the distance `minor` from a ring of radius `major`.
+
+use serde::{Deserialize, Serialize};
+
+use super::circle::BESIDE;
+use super::row::ObstacleRow;
+use super::ruled::RigidSurface;
+use super::shape::{About, Geometry, ObstacleShape, Site};
+use crate::error::Error;
+use crate::fem::geometry::{dot, minus, unit};
+use crate::scene::input::entry::{number, point, wrong};
+use crate::scene::input::schema::approach::Rule;
+
+/// Deviation of an axis that is rounding of its written components.
+const ALIGNED: f64 = 1e-9;
+
+/// A torus, a ring of circular section.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct TorusSpec {
+    /// The centre.
+    pub centre: [f64; 3],
+    /// Direction of the axis, along the approach direction (the ring lies flat in front of the body) or perpendicular to it (the ring
+    /// stands upright), of any length except zero.
+    pub axis: [f64; 3],
+    /// Radius of the ring in the middle of the tube.
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    pub major: f64,
+    /// Radius of the tube, positive and less than `major`.
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    pub minor: f64,
+}
+
+pub(super) const ABOUT: About = About { name: "torus", dimensions: &[3] };
+
+impl ObstacleShape for TorusSpec {
+    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+        let centre = site.point("centre", &self.centre)?;
+        let (axis, approach) = (unit(site.axis("axis", &self.axis)?), site.direction());
+        let lean = dot(axis, approach);
+        let (major, minor) = (site.positive("major", self.major)?, site.positive("minor", self.minor)?);
+        if minor >= major {
+            let message = format!(
+                "{} is not allowed: it must be less than `major`, {}, or else the tube meets itself in the middle of the ring",
+                number(minor),
+                number(major)
+            );
+            return Err(wrong(site.field("minor"), message));
+        }
+        let (axis, stands) = if lean.abs() <= ALIGNED {
+            (unit(minus(axis, approach.map(|part| lean * part))), Stands::Upright)
+        } else if 1.0 - lean.abs() <= ALIGNED {
+            (approach, Stands::Flat)
+        } else {
+            let (axis, approach) = (point(&self.axis), point(&approach));
+            let message = format!("{axis} must be parallel or perpendicular to the approach direction {approach}");
+            return Err(wrong(site.field("axis"), message));
+        };
+        let rounding = site.rounding();
+        Ok(Geometry::rigid(site, Torus { centre, axis, approach, stands, major, minor, rounding }))
+    }
+
+    fn radius(&self) -> f64 {
+        self.major + self.minor
+    }
+}
+
+/// The position of a ring in front of the body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stands {
+    /// Its axis along the approach direction.
+    Flat,
+    /// Its axis perpendicular to the approach direction.
+    Upright,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Torus {
+    centre: [f64; 3],
+    axis: [f64; 3],
+    approach: [f64; 3],
+    stands: Stands,
+    major: f64,
+    minor: f64,
+    rounding: f64,
+}
+
+impl Torus {
+    /// Distance along the approach direction from the centre to the outside that faces the body, over a place.
+    fn height(&self, from_centre: [f64; 3]) -> Option<f64> {
+        let over = dot(from_centre, self.approach);
+        let across = minus(from_centre, self.approach.map(|part| over * part));
+        // The height of a circle over a place, or `None` beyond it.
+        let half = |radius: f64, at: f64| (at.abs() <= radius).then(|| ((radius - at) * (radius + at)).sqrt());
+        match self.stands {
+            Stands::Flat => half(self.minor, dot(across, across).sqrt() - self.major),
+            Stands::Upright => {
+                let along = dot(across, self.axis);
+                let aside = minus(across, self.axis.map(|part| along * part));
+                // The section perpendicular to the axis is a ring; its outer circle faces the body.
+                half(self.minor, along).and_then(|tube| half(self.major + tube, dot(aside, aside).sqrt()))
+            }
+        }
+        .map(|height| -height)
+    }
+
+    /// Unit normal into the torus at the closest point that faces the body, and the distance along it; `None` if no closest point faces
+    /// the body.
+    fn closest(&self, from_centre: [f64; 3]) -> Result<Option<([f64; 3], f64)>, String> {
+        let along = dot(from_centre, self.axis);
+        let aside = minus(from_centre, self.axis.map(|part| along * part));
+        let radius = dot(aside, aside).sqrt();
+        let to_ring = (radius - self.major).hypot(along);
+        if to_ring <= self.rounding {
+            return Err("lies in the middle of the tube of the torus".into());
+        }
+        let distance = to_ring - self.minor;
+        if radius <= self.rounding && self.stands == Stands::Flat {
+            // On the axis the ring is equally close all around: go straight on to the point where the planes through the closest points
+            // meet.
+            return Ok((along < -self.rounding).then(|| (self.approach, distance * to_ring / -along)));
+        }
+        // On the axis of an upright ring the closest point lies straight ahead.
+        let outwards = if radius <= self.rounding { self.approach } else { aside.map(|part| part / radius) };
+        let part = |axis: usize| (radius - self.major) / to_ring * outwards[axis] + along / to_ring * self.axis[axis];
+        let normal = [0, 1, 2].map(|axis| -part(axis));
+        let facing = dot(normal, self.approach);
+        match (facing > 0.0, distance >= 0.0) {
+            (true, _) => Ok(Some((normal, distance))),
+            (false, true) => Ok(None),
+            // A node level with the ring has a closest point; rounding must not remove it.
+            (false, false) if -facing * to_ring <= self.rounding => Ok(Some((normal, distance))),
+            // At the side of the tube, as of a circle.
+            (false, false) if (1.0 - facing * facing).sqrt() * to_ring > BESIDE * self.minor => {
+                Ok(Some((normal, distance)))
+            }
+            (false, false) => Err("lies deeper in the torus than the middle of its tube".into()),
+        }
+    }
+}
+
+impl RigidSurface for Torus {
+    fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
+        let from_centre = [0, 1, 2].map(|axis| node[axis] - self.centre[axis] - shift * self.approach[axis]);
+        let row = |(normal, gap): ([f64; 3], f64)| ObstacleRow { normal, gap };
+        match rule {
+            Rule::Approach => {
+                let over = dot(from_centre, self.approach);
+                Ok(self.height(from_centre).map(|height| row((self.approach, height - over))))
+            }
+            Rule::ClosestPoint => Ok(self.closest(from_centre)?.map(row)),
+        }
+    }
+}

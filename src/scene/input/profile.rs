@@ -1,0 +1,41 @@
+//! Factors over space: the change of loads and prescribed displacements along a direction.
+
+use super::entry::{direction, table};
+use super::schema::profile::ProfileSpec;
+use crate::error::Error;
+use crate::fem::assembly::Kinks;
+use crate::fem::geometry::dot;
+use crate::motion::between;
+
+/// A factor that depends on the place, checked.
+#[derive(Debug)]
+pub(crate) struct Profile {
+    /// A unit vector.
+    along: [f64; 3],
+    places: Vec<f64>,
+    /// The same places, each with its factor.
+    points: Vec<(f64, f64)>,
+}
+
+impl Profile {
+    /// The factor at a JSON path, in a model of `dimension` coordinates.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for an invalid direction, and for a table that does not increase.
+    pub fn of(spec: &ProfileSpec, path: &str, dimension: usize) -> Result<Self, Error> {
+        let along = direction(&format!("{path}.along"), &spec.along, dimension)?;
+        table(path, ("places", &spec.places), &spec.factors)?;
+        let points = spec.places.iter().copied().zip(spec.factors.iter().copied()).collect();
+        Ok(Profile { along, places: spec.places.clone(), points })
+    }
+
+    /// The factor at a point.
+    pub fn at(&self, point: [f64; 3]) -> f64 {
+        between(&self.points, dot(self.along, point))
+    }
+
+    /// The places of its kinks.
+    pub fn kinks(&self) -> Kinks<'_> {
+        Kinks { along: self.along, at: &self.places }
+    }
+}

@@ -1,0 +1,146 @@
+//! Materials and further bodies as they are written in a scene.
+
+use serde::{Deserialize, Serialize};
+
+use super::part::PartBoxSpec;
+use crate::scene::input::body::BodySpec;
+
+/// A linear elastic material: isotropic with `young` and `poisson`, or `orthotropic`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct MaterialSpec {
+    /// Young's modulus, positive, in force per area.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    pub young: Option<f64>,
+    /// Poisson's ratio: above -1, at most 0.5 in a bar and in plane stress, below 0.5 elsewhere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = -1, "maximum" = 0.5)))]
+    pub poisson: Option<f64>,
+    /// Elasticity with three planes of symmetry, instead of `young` and `poisson`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub orthotropic: Option<OrthotropicSpec>,
+    /// Thermal expansion in all directions, in strain per degree; needed for a `temperature`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub expansion: Option<f64>,
+    /// Density, positive, in mass per volume; needed for a dynamic analysis, gravity and centrifugal forces.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    pub density: Option<f64>,
+}
+
+/// Orthotropic elasticity, along the axes 1, 2, 3 of the material. These are x, y, z unless they are rotated; in an axisymmetric model
+/// the radius, y and the hoop direction. A bar lies along axis 1.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct OrthotropicSpec {
+    /// Young's moduli `[E1, E2, E3]`, positive, in force per area.
+    #[cfg_attr(feature = "cli", schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0})))]
+    pub young: [f64; 3],
+    /// Poisson's ratios `[nu12, nu23, nu13]`: tension along i contracts the material along j by nu_ij times its extension, and nu_ij/E_i =
+    /// nu_ji/E_j. The stiffness must be positive definite.
+    pub poisson: [f64; 3],
+    /// Shear moduli `[G12, G23, G13]`, positive, in force per area.
+    #[cfg_attr(feature = "cli", schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0})))]
+    pub shear: [f64; 3],
+    /// Thermal expansion along axes 1, 2, 3, in strain per degree.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub expansion: Option<[f64; 3]>,
+    /// The angle from x to axis 1, counterclockwise, in degrees; only in plane and axisymmetric models.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angle: Option<f64>,
+    /// In space a vector along axis 1, and a second one: axis 2 lies in the plane of both vectors, at right angles to axis 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub axes: Option<[Vec<f64>; 2]>,
+}
+
+/// The material of a part of a body: of the elements of a group, of the elements with the centroid in a box, or of the elements in both.
+///
+/// If several parts contain an element, the last one counts. The elements are chosen again on every mesh.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct MaterialPartSpec {
+    /// A physical group of the mesh file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub group: Option<String>,
+    /// A box along the coordinate axes.
+    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
+    pub cuboid: Option<PartBoxSpec>,
+    /// The material.
+    pub material: MaterialSpec,
+}
+
+/// The temperature of a body above the stress-free one, or of its part in a group, in a box, or in both: `value` plus the gradient times
+/// the position. If several entries contain an element, the last one counts; elements in no entry are stress-free.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct TemperatureSpec {
+    /// A physical group of the mesh file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub group: Option<String>,
+    /// A box along the coordinate axes.
+    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
+    pub cuboid: Option<PartBoxSpec>,
+    /// The temperature difference at the origin, in degrees.
+    pub value: f64,
+    /// Its gradient, in degrees per length; zero if left out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gradient: Vec<f64>,
+}
+
+/// A stress that acts without strain, in a body or in its part in a group, in a box, or in both, in force per area; tension is positive.
+/// If several entries contain an element, the last one counts.
+///
+/// Allowed components: xx in a bar; xx, yy, xy in plane stress; also zz in plane strain; also zz, the hoop stress, in an axisymmetric
+/// body; all six in space.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, default)]
+pub struct InitialStressSpec {
+    /// A physical group of the mesh file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub group: Option<String>,
+    /// A box along the coordinate axes.
+    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
+    pub cuboid: Option<PartBoxSpec>,
+    /// Normal stress along x.
+    pub xx: f64,
+    /// Normal stress along y.
+    pub yy: f64,
+    /// Normal stress along z; in an axisymmetric model the hoop stress.
+    pub zz: f64,
+    /// Shear stress between x and y.
+    pub xy: f64,
+    /// Shear stress between y and z.
+    pub yz: f64,
+    /// Shear stress between z and x.
+    pub zx: f64,
+}
+
+/// An elastic body besides the first, with the same model, thickness and element.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct FurtherBodySpec {
+    /// Its name; its boundaries are called `name.boundary`.
+    #[cfg_attr(feature = "cli", schemars(extend("minLength" = 1)))]
+    pub name: String,
+    /// The body.
+    pub body: BodySpec,
+    /// The material of all elements outside `materials`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub material: Option<MaterialSpec>,
+    /// The materials of its parts.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub materials: Vec<MaterialPartSpec>,
+    /// Its temperatures above the stress-free one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub temperature: Vec<TemperatureSpec>,
+    /// Stresses that act without strain.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub initial_stress: Vec<InitialStressSpec>,
+}

@@ -1,0 +1,31 @@
+//! Obstacles as they are written in a scene.
+
+use serde::{Deserialize, Serialize};
+
+use super::approach::{Approach, Rule};
+use crate::scene::input::obstacle::ShapeSpec;
+
+/// A frictionless obstacle and the boundary that may touch it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct ObstacleSpec {
+    /// The boundary that contains the candidate nodes.
+    pub boundary: String,
+    /// The direction from the body to the obstacle.
+    pub approach: Approach,
+    /// The rule for the contact row of a node.
+    #[serde(default)]
+    pub rule: Rule,
+    /// Shift of this obstacle along its approach direction, in addition to that of the whole scene; a negative shift moves it towards the
+    /// body.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gap: Option<f64>,
+    /// The force, positive, that presses the obstacle against its approach direction; the obstacle moves only along this direction. In
+    /// force; for a body of revolution that of the full circle. The travel of the obstacle is computed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    pub force: Option<f64>,
+    /// The surface of the obstacle.
+    pub shape: ShapeSpec,
+}

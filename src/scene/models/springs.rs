@@ -1,0 +1,68 @@
+//! Springs and foundations of a scene, on its nodes.
+
+use crate::error::Error;
+use crate::fem::assembly::{Springs, tributary_areas};
+use crate::fem::body::ElasticBody;
+use crate::scene::input::entry::{boundary, finite, node_at, number, wrong};
+use crate::scene::input::schema::spring::StiffnessOf;
+use crate::scene::input::schema::{Place, Scene, SpringSpec};
+
+impl Scene {
+    /// The springs, in the order of the scene.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for springs without a direction, a positive stiffness or a place.
+    pub(crate) fn springs(&self, body: &ElasticBody) -> Result<Vec<Springs>, Error> {
+        if !self.springs.is_empty() && self.analysis.is_some() {
+            return Err(wrong("springs", "springs are for equilibria only; a motion has only supports"));
+        }
+        let placed = |(index, spec): (usize, &SpringSpec)| spec.placed(&format!("springs[{index}]"), body);
+        self.springs.iter().enumerate().map(placed).collect()
+    }
+}
+
+impl SpringSpec {
+    fn placed(&self, path: &str, body: &ElasticBody) -> Result<Springs, Error> {
+        let dimension = body.dimension();
+        let mut along = [0.0; 3];
+        let named = [("x", self.x), ("y", self.y), ("z", self.z), ("normal", self.normal)];
+        for (axis, (field, stiffness)) in named.into_iter().enumerate() {
+            let Some(stiffness) = stiffness else { continue };
+            let path = format!("{path}.{field}");
+            if axis >= dimension && axis < 3 {
+                return Err(wrong(path, format!("the model has no {field}")));
+            }
+            finite(path.as_str(), stiffness)?;
+            if stiffness <= 0.0 {
+                return Err(wrong(path, format!("{} is not allowed: a stiffness must be positive", number(stiffness))));
+            }
+            if let Some(along) = along.get_mut(axis) {
+                *along = stiffness;
+            }
+        }
+        if named.iter().all(|(_, stiffness)| stiffness.is_none()) {
+            let names = ["x", "x, y or normal", "x, y, z or normal"][dimension - 1];
+            return Err(wrong(path, format!("holds nothing; give a stiffness along {names}")));
+        }
+        match &self.on {
+            Place::Point(_) if self.normal.is_some() => {
+                Err(wrong(format!("{path}.normal"), "a node alone has no normal; give x, y or z"))
+            }
+            Place::Point(_) if self.stiffness == StiffnessOf::PerArea => {
+                Err(wrong(format!("{path}.stiffness"), "a node has no area; `total` is the stiffness of the spring"))
+            }
+            Place::Point(at) => Ok(Springs::at_node(node_at(body.mesh(), at, &format!("{path}.on.point"))?, along)),
+            Place::Boundary(name) => {
+                let boundary = boundary(body.mesh(), name, &format!("{path}.on.boundary"))?;
+                let share = match self.stiffness {
+                    StiffnessOf::PerArea => 1.0,
+                    StiffnessOf::Total => {
+                        1.0 / tributary_areas(body, boundary).iter().map(|(_, area)| area).sum::<f64>()
+                    }
+                };
+                let normal = share * self.normal.unwrap_or(0.0);
+                Ok(Springs::under(body, boundary, along.map(|stiffness| share * stiffness), normal))
+            }
+        }
+    }
+}

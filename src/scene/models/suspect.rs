@@ -1,0 +1,146 @@
+//! Legal but rarely intended parts of a scene: supports, loads, obstacles and meshes without the expected effect.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::parts::Parts;
+use super::rows::ContactRow;
+use crate::error::Error;
+use crate::fem::geometry::dot;
+use crate::fem::{DofMap, ElasticBody};
+use crate::scene::Warning;
+use crate::scene::input::entry::COORDINATE_ROUNDING;
+use crate::scene::input::schema::{Place, Scene, SupportSpec, SymmetryPlane};
+
+/// A load on the free dofs below this share of the whole load is rounding.
+const NOTHING: f64 = 1e-9;
+
+/// Two rows of a node are the same if the sine of their angle is below this: the rounding of written normals.
+const PARALLEL: f64 = 1e-9;
+
+/// Prefix of the name of a cut at a plane of symmetry, in the meshes of the program.
+const SYMMETRY: &str = "symmetry-";
+
+impl Scene {
+    /// The suspect supports, loads and properties of the mesh.
+    ///
+    /// # Errors
+    /// As [`Scene::build`].
+    pub(crate) fn suspect(&self, body: &ElasticBody, dofs: &DofMap) -> Result<Vec<Warning>, Error> {
+        let mut warnings = self.free_symmetries(body);
+        warnings.extend(coincident_nodes(body));
+        for index in 0..self.loads.len() {
+            let mut load = vec![0.0; body.nodal_dofs()];
+            self.add_load(body, index, &mut load)?;
+            let size = |values: &[f64]| values.iter().map(|value| value.abs()).sum::<f64>();
+            let (whole, free) = (size(&load), size(&dofs.restrict(&load)?));
+            if whole > 0.0 && free <= NOTHING * whole {
+                warnings.push(Warning::LoadOnSupport { load: index });
+            } else if self.loads[index].is_at_point() && body.dimension() > 1 {
+                warnings.push(Warning::PointLoad { load: index });
+            }
+        }
+        Ok(warnings)
+    }
+
+    /// Cuts at planes of symmetry that no support holds.
+    fn free_symmetries(&self, body: &ElasticBody) -> Vec<Warning> {
+        let is_held = |name: &str| {
+            let of_plane = |plane: &SymmetryPlane| name.strip_prefix(SYMMETRY) == Some(plane.name());
+            let of_support = |support: &SupportSpec| matches!(&support.on, Place::Boundary(on) if on == name);
+            self.symmetry.iter().any(of_plane) || self.supports.iter().any(of_support)
+        };
+        let names = body.mesh().boundaries().iter().map(|boundary| boundary.name.as_str());
+        let is_cut = |name: &&str| name.rsplit('.').next().is_some_and(|own| own.starts_with(SYMMETRY));
+        // In an axisymmetric section the axis itself holds the cut.
+        let on_axis = |name: &&str| body.formulation().is_axisymmetric() && name.ends_with("symmetry-x");
+        let free = names.filter(is_cut).filter(|name| !is_held(name) && !on_axis(name));
+        free.map(|name| Warning::FreeSymmetry { boundary: name.to_string() }).collect()
+    }
+}
+
+/// Nodes of one body at the same place: the mesh is connected only in the drawing.
+fn coincident_nodes(body: &ElasticBody) -> Option<Warning> {
+    let nodes = body.mesh().nodes();
+    let cell = COORDINATE_ROUNDING * body.mesh().size();
+    let mut pairs = Vec::new();
+    for region in body.regions() {
+        let mut at: BTreeMap<[i64; 3], usize> = BTreeMap::new();
+        for node in region.nodes() {
+            let key = nodes[node].map(|coordinate| (coordinate / cell).round() as i64);
+            let first = *at.entry(key).or_insert(node);
+            if first != node {
+                pairs.push((first, node));
+            }
+        }
+    }
+    let &(first, second) = pairs.first()?;
+    let at = nodes[second][..body.dimension()].to_vec();
+    Some(Warning::CoincidentNodes { first, second, at, count: pairs.len() })
+}
+
+/// Obstacles with candidates that are mostly held by supports, and obstacles with the same rows as others.
+pub(crate) fn suspect_rows(parts: &Parts, rows: &[ContactRow]) -> Vec<Warning> {
+    let dimension = parts.body.dimension();
+    let mut warnings = Vec::new();
+    let is_held = |node: usize| (0..dimension).all(|axis| parts.dofs.number(dimension * node + axis).is_none());
+    for (index, obstacle) in parts.obstacles.iter().enumerate() {
+        let all = obstacle.candidates();
+        let held = all.iter().filter(|candidate| is_held(candidate.0)).count();
+        if dimension > 1 && 2 * held > all.len() {
+            warnings.push(Warning::HeldCandidates { obstacle: index, held, of: all.len() });
+        }
+    }
+    warnings.extend(doubled_obstacles(parts, rows));
+    warnings
+}
+
+/// For each obstacle the later ones with the same rows at most of their nodes.
+fn doubled_obstacles(parts: &Parts, rows: &[ContactRow]) -> Vec<Warning> {
+    let rounding = COORDINATE_ROUNDING * parts.body.mesh().size();
+    // Along the rows of a node, sorted by their gaps, a row is compared with those before it up to the rounding of a gap.
+    let mut sorted: Vec<&ContactRow> = rows.iter().collect();
+    sorted.sort_by(|a, b| a.node.cmp(&b.node).then(a.gap.total_cmp(&b.gap)));
+    let mut different: Vec<&ContactRow> = Vec::new();
+    let mut kinds_of: Vec<Vec<usize>> = vec![Vec::new(); parts.obstacles.len()];
+    for row in sorted {
+        let is_near = |other: &&&ContactRow| other.node == row.node && row.gap - other.gap <= rounding;
+        let is_same =
+            |other: &ContactRow| other.partner == row.partner && dot(other.normal, row.normal) > 1.0 - PARALLEL;
+        let same = different.iter().rev().take_while(is_near).position(|other| is_same(other));
+        let kind = match same {
+            Some(back) => different.len() - 1 - back,
+            None => {
+                different.push(row);
+                different.len() - 1
+            }
+        };
+        kinds_of[row.obstacle].push(kind);
+    }
+    // Obstacles of equal rows are compared with the others once, so that very many copies of one obstacle cost little.
+    let mut later_of: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    let mut first_with: HashMap<&[usize], usize> = HashMap::new();
+    let mut firsts: Vec<Vec<usize>> = vec![Vec::new(); different.len()];
+    for (obstacle, kinds) in kinds_of.iter().enumerate().filter(|entry| !entry.1.is_empty()) {
+        let first = *first_with.entry(kinds).or_insert(obstacle);
+        match first == obstacle {
+            true => kinds.iter().for_each(|&kind| firsts[kind].push(obstacle)),
+            false => later_of.entry(first).or_default().push(obstacle),
+        }
+    }
+    let mut same: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    for obstacles in &firsts {
+        for (place, &second) in obstacles.iter().enumerate() {
+            for &first in obstacles[..place].iter().filter(|&&first| first != second) {
+                *same.entry((first, second)).or_default() += 1;
+            }
+        }
+    }
+    for ((first, second), _) in same.into_iter().filter(|&((_, second), rows)| 2 * rows > kinds_of[second].len()) {
+        later_of.entry(first).or_default().push(second);
+    }
+    let warning = |(first, mut later): (usize, Vec<usize>)| {
+        later.sort_unstable();
+        Warning::DoubledObstacle { first, second: later[0], last: later[later.len() - 1], count: later.len() }
+    };
+    later_of.into_iter().map(warning).collect()
+}

@@ -1,0 +1,181 @@
+//! Planes of symmetry of a scene: their positions, their effect on nodes, and the whole body of which the model is a part.
+
+use super::held::{Component, Held, Holder};
+use crate::error::Error;
+use crate::fem::body::ElasticBody;
+use crate::fem::geometry::{COORDINATES, unit};
+use crate::scene::input::entry::{COORDINATE_ROUNDING, number, wrong};
+use crate::scene::input::schema::{ModelSpec, Scene, SymmetryPlane};
+
+/// The planes of symmetry of a model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Symmetry {
+    /// The axis normal to each plane, and the coordinate of the plane along it.
+    planes: Vec<(usize, f64)>,
+    /// Lengths below this are rounding of coordinates.
+    rounding: f64,
+}
+
+impl Scene {
+    /// The planes of symmetry; they lie at flat ends of the body.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a plane that is named twice or does not exist in the model, if the body has no flat end normal to its axis,
+    /// or if both ends are flat and neither lies at zero.
+    pub(crate) fn planes_of_symmetry(&self, body: &ElasticBody) -> Result<Symmetry, Error> {
+        let rounding = COORDINATE_ROUNDING * body.mesh().size();
+        let mut symmetry = Symmetry { planes: Vec::new(), rounding };
+        if !self.symmetry.is_empty() && self.analysis.is_some() {
+            return Err(wrong("symmetry", "planes of symmetry are for equilibria only; a motion has only supports"));
+        }
+        for (index, plane) in self.symmetry.iter().enumerate() {
+            let (path, name, axis) = (format!("symmetry[{index}]"), plane.name(), plane.axis());
+            if axis >= self.model.dimension() {
+                return Err(wrong(path, format!("the model `{}` has no {name}", self.model.name())));
+            }
+            if self.model == ModelSpec::Axisymmetric && *plane == SymmetryPlane::X {
+                return Err(wrong(path, "x is the radius: an axisymmetric body needs no plane across it; leave x out"));
+            }
+            if self.symmetry[..index].contains(plane) {
+                return Err(wrong(path, format!("`{name}` is named twice")));
+            }
+            symmetry.planes.push((axis, flat_end(body, axis, rounding).map_err(|message| wrong(path, message))?));
+        }
+        Ok(symmetry)
+    }
+}
+
+/// The coordinate of the flat end of the body along an axis: the plane of symmetry.
+fn flat_end(body: &ElasticBody, axis: usize, rounding: f64) -> Result<f64, String> {
+    let (mesh, name) = (body.mesh(), ["x", "y", "z"][axis]);
+    let surface = mesh.surface(0..mesh.element_count());
+    let (low, high) = mesh.extent();
+    let lies = |at: f64| {
+        surface.facets().any(|facet| facet.iter().all(|&node| (mesh.nodes()[node][axis] - at).abs() <= rounding))
+    };
+    let ends: Vec<f64> = [low[axis], high[axis]].into_iter().filter(|&end| lies(end)).collect();
+    match ends[..] {
+        [end] => Ok(end),
+        [] => Err(format!(
+            "the body does not end flat at {name} = {} or {name} = {}, so that it cannot be a part of a symmetric \
+             body",
+            number(low[axis]),
+            number(high[axis])
+        )),
+        _ => match ends.iter().find(|end| end.abs() <= rounding) {
+            Some(&end) => Ok(end),
+            None => Err(format!(
+                "the body ends flat at both {name} = {} and {name} = {}; move it, so that the plane of symmetry lies at 0",
+                number(ends[0]),
+                number(ends[1])
+            )),
+        },
+    }
+}
+
+impl Symmetry {
+    /// Prescribes the displacement of the nodes on the planes.
+    pub fn hold(&self, body: &ElasticBody, held: &mut Held) {
+        for &(axis, at) in &self.planes {
+            let lies = |node: &usize| self.lies_on((axis, at), &body.mesh().nodes()[*node]);
+            for node in (0..body.mesh().nodes().len()).filter(lies) {
+                held.prescribe(node, Component { direction: COORDINATES[axis], value: 0.0, by: Holder::Symmetry });
+            }
+        }
+    }
+
+    /// Number of parts that make up the whole.
+    pub fn parts(&self) -> f64 {
+        2.0_f64.powi(self.planes.len() as i32)
+    }
+
+    /// Number of parts that one obstacle with the approach direction `approach` presses: a plane normal to it gives a second obstacle on
+    /// the other side.
+    pub fn parts_of_obstacle(&self, approach: [f64; 3]) -> f64 {
+        2.0_f64.powi(self.planes.iter().filter(|plane| approach[plane.0] == 0.0).count() as i32)
+    }
+
+    /// Number of places at which a contact of nodes at `places` stands in the whole. A contact that reaches a plane goes on in its mirror
+    /// image and is one with it; a plane that it does not reach gives a second contact. Planes for whose axis `across` is `false` do not
+    /// count.
+    pub fn contacts(&self, places: &[[f64; 3]], across: impl Fn(usize) -> bool) -> usize {
+        let reached = |plane: &(usize, f64)| places.iter().any(|at| self.lies_on(*plane, at));
+        self.planes.iter().filter(|plane| across(plane.0) && !reached(plane)).fold(1, |contacts, _| 2 * contacts)
+    }
+
+    /// A unit vector of the body's surface at a node of the part, as the whole has it: at a plane it lies in the plane.
+    pub fn of_whole(&self, at: &[f64; 3], normal: [f64; 3]) -> [f64; 3] {
+        let mut along = normal;
+        self.planes.iter().filter(|plane| self.lies_on(**plane, at)).for_each(|plane| along[plane.0] = 0.0);
+        if along == normal { normal } else { unit(along) }
+    }
+
+    /// The images of the place `other` around the place `at` in the whole: one on each side of a plane on which only `at` lies.
+    pub fn images_around(&self, at: &[f64; 3], other: &[f64; 3]) -> Vec<[f64; 3]> {
+        let mut all = vec![*other];
+        for &(axis, plane) in self.planes.iter().filter(|plane| self.lies_on(**plane, at)) {
+            let beyond: Vec<[f64; 3]> = all
+                .iter()
+                .filter(|place| !self.lies_on((axis, plane), place))
+                .map(|place| {
+                    let mut image = *place;
+                    image[axis] = 2.0 * plane - image[axis];
+                    image
+                })
+                .collect();
+            all.extend(beyond);
+        }
+        all
+    }
+
+    /// Returns `true` for each axis across which a place lies on a plane.
+    pub fn axes_at(&self, at: &[f64; 3]) -> [bool; 3] {
+        [0, 1, 2].map(|axis| self.planes.iter().any(|plane| plane.0 == axis && self.lies_on(*plane, at)))
+    }
+
+    /// Returns `true` if two places lie on one plane.
+    pub fn share_plane(&self, at: &[f64; 3], other: &[f64; 3]) -> bool {
+        self.planes.iter().any(|&plane| self.lies_on(plane, at) && self.lies_on(plane, other))
+    }
+
+    fn lies_on(&self, (axis, plane): (usize, f64), at: &[f64; 3]) -> bool {
+        (at[axis] - plane).abs() <= self.rounding
+    }
+
+    /// A force at a place with its mirror images, in the planes for whose axis `across` is `true`. A place on a plane is its own image: the
+    /// whole has one node there, with both forces.
+    pub fn images(&self, at: [f64; 3], force: [f64; 3], across: impl Fn(usize) -> bool) -> Vec<([f64; 3], [f64; 3])> {
+        let mut all = vec![(at, force)];
+        for &(axis, plane) in self.planes.iter().filter(|plane| across(plane.0)) {
+            if self.lies_on((axis, plane), &at) {
+                for (_, force) in &mut all {
+                    *force = force.map(|part| 2.0 * part);
+                    force[axis] = 0.0;
+                }
+                continue;
+            }
+            let mirrored = |&(mut at, mut force): &([f64; 3], [f64; 3])| {
+                at[axis] = 2.0 * plane - at[axis];
+                force[axis] = -force[axis];
+                (at, force)
+            };
+            let images: Vec<_> = all.iter().map(mirrored).collect();
+            all.extend(images);
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Symmetry;
+
+    #[test]
+    fn images_around_an_edge_lie_beyond_planes_away_from_the_origin() {
+        let symmetry = Symmetry { planes: vec![(0, 4.0), (1, -2.0)], rounding: 1e-12 };
+        let images = symmetry.images_around(&[4.0, -2.0, 7.0], &[5.0, -1.5, 8.0]);
+        assert_eq!(images, [[5.0, -1.5, 8.0], [3.0, -1.5, 8.0], [5.0, -2.5, 8.0], [3.0, -2.5, 8.0]]);
+        // A place on a plane is its own image, and a plane on which the middle does not lie makes none.
+        assert_eq!(symmetry.images_around(&[4.0, 0.0, 7.0], &[4.0, -1.5, 8.0]), [[4.0, -1.5, 8.0]]);
+    }
+}
