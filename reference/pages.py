@@ -5,6 +5,7 @@ sliders must change the view; its numbers must be those of the report; and its b
 """
 
 import base64
+import csv
 import hashlib
 import json
 import os
@@ -413,6 +414,33 @@ class Answers(Pages):
         self.assertNotEqual(self.drawn("#answer .view"), before)
         browser.ask("document.querySelector('#answer .bar button').click()")
         self.assertEqual(browser.ask("signorini.answer.view.range"), ends)
+
+    def test_the_answer_along_a_line_is_plotted_as_it_stands_in_its_table(self) -> None:
+        page, _ = self.page("solve", EXAMPLES / "indentation.json", "--along", "0,0.5:1,0.5", "--along", "0.5,-1:0.5,2", "--along", "7,7:8,8")
+        browser = self.opened(page)
+        with (page.parent / "along.csv").open(newline="") as file:
+            rows = list(csv.DictReader(file))
+        for line, columns in [(0, ["von_mises", "pressure"]), (1, ["von_mises", "u_y"])]:
+            for column in columns:
+                browser.ask(
+                    f"(() => {{ const s = document.querySelectorAll('#along select')[{line}];"
+                    f" s.value = [...s.options].find(o => o.text === '{column}').value; s.dispatchEvent(new Event('change')); }})()"
+                )
+                browser.frame()
+                unit = "m" if column == "u_y" else "Pa"
+                self.assertIn(f"{column} [{unit}]", self.text(f"#along div.plotted:nth-of-type({line + 1})"))
+                values = [float(row[f"{column} [{unit}]"]) for row in rows if row["line"] == str(line)]
+                path = browser.ask(f"document.querySelectorAll('#along svg path')[{line}].getAttribute('d')")
+                heights = [float(point.split()[1]) for point in re.findall(r"[ML]([^ML]+)", path)]
+                self.assertEqual(len(heights), len(values))
+                # Up in the plot is a larger value: the drawn heights are a linear function of the values.
+                spread = max(values) - min(values)
+                scale = (min(heights) - max(heights)) / spread
+                for height, value in zip(heights, values):
+                    self.assertAlmostEqual(height, max(heights) + scale * (value - min(values)), delta=0.2)
+        # Off the contact there is no pressure to choose.
+        self.assertNotIn("pressure", browser.ask("document.querySelectorAll('#along select')[1].innerText"))
+        self.assertIn("meets no body", self.text("#along"))
 
     def test_a_section_shows_the_stress_inside_with_and_without_webgl(self) -> None:
         page, _ = self.page("solve", EXAMPLES / "ball.json")

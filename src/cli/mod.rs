@@ -1,6 +1,7 @@
 //! The command line: arguments in, text or JSON out, and one exit code for each kind of ending.
 
 mod about;
+mod along;
 mod compare;
 mod draw;
 mod dynamic;
@@ -8,6 +9,7 @@ mod export;
 mod failure;
 mod input;
 mod interrupt;
+mod line;
 mod memory;
 mod new;
 mod options;

@@ -7,6 +7,7 @@ use clap::builder::PossibleValue;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
+use super::line::{Line, parse_line};
 use super::memory::parse_size;
 use crate::memory;
 use crate::output::gallery::{Pictures, Wanted};
@@ -243,6 +244,11 @@ pub(super) struct Solve {
     /// Refine further until the contact force is guaranteed to this relative error
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_total_error, requires = "total_error")]
     pub force_error: Option<f64>,
+    /// Write the answer along a line into along.csv and onto the page: displacement, stress, and the pressure on a contact. In space
+    /// X1,Y1,Z1:X2,Y2,Z2; may be given several times
+    #[arg(long, value_name = "X1,Y1:X2,Y2", allow_hyphen_values = true, value_parser = parse_line, requires = "out",
+          conflicts_with_all = ["total_error", "resume", "plan"])]
+    pub along: Vec<Line>,
     /// Continue the motion in the folder of --out; the scene may have a longer duration than before
     #[arg(long, requires = "out")]
     pub resume: bool,

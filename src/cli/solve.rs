@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::about::about;
+use super::along;
 use super::dynamic;
 use super::input::{Input, Source};
 use super::interrupt::Kept;
@@ -13,7 +14,7 @@ use super::total_error;
 use crate::error::Error;
 use crate::output::gallery::{self, Pictures};
 use crate::output::page::{About, write_answer_page, write_problem_page};
-use crate::output::{solve_text, why_text};
+use crate::output::{solve_text, tables, why_text, write_files};
 use crate::qp::{Method, Settings, Start, plan_in_words, read_vector, solve_from};
 use crate::scene::Scene;
 use crate::solution::{Goal, Solution};
@@ -58,6 +59,7 @@ pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome
         }
         Source::Directory(input) => *input,
     };
+    along::check(&options.along, &input)?;
     warn(&input.warnings());
     let mut settings = settings(options.method, &options.common, &watch.keeping(report_seconds));
     settings.prove = !options.no_proof;
@@ -100,6 +102,10 @@ fn motion(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outcome, Erro
     if options.plan {
         let message = "a motion makes a plan for each of its steps; leave --plan out, or `analysis` out of the scene";
         return unfit("--plan", message);
+    }
+    if !options.along.is_empty() {
+        let message = "a motion has an answer at every step, and --along shows one; leave --along or `analysis` out";
+        return unfit("--along", message);
     }
     if options.explain {
         warn("warning: --explain has no effect on a motion: it explains a single solve\n");
@@ -179,8 +185,12 @@ fn reported(
         return Ok(outcome);
     };
     let wanted = common.wanted(Pictures::Answer);
+    let along = along::along(&options.along, &answer)?;
+    if !along.is_empty() {
+        write_files(&folder, &[("along.csv", tables::along(&along))])?;
+    }
     Ok(outcome.with_pictures(move || {
-        write_answer_page(&folder, &about, &answer, &summary)?;
+        write_answer_page(&folder, &about, (&answer, &along), &summary)?;
         gallery::write_solve(&folder, &answer, &summary.solution.history, wanted)
     }))
 }

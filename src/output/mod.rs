@@ -53,3 +53,5 @@ pub use reports::tradeoff_plot::tradeoff_plot;
 pub(crate) use reports::tradeoff_plot::{total_error_plot, tradeoff_plot_for};
 #[cfg(feature = "cli")]
 pub(crate) use text::printable;
+#[cfg(feature = "cli")]
+pub(crate) use view::along::Along;

@@ -7,6 +7,7 @@ mod output_fixture;
 #[path = "../support/program.rs"]
 mod program;
 
+mod along;
 mod bad_input;
 mod corpus;
 mod drawn_answers;

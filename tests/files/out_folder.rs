@@ -154,12 +154,9 @@ fn solve_writes_answer_fields_pictures_and_report() {
     assert!(along_y < 0.0 && (along_y - resultant).abs() < 1e-12 * along_y.abs(), "{along_y} and {resultant}");
 }
 
-/// GOAL: the strain energy density of the `.vtu` file. CONDITIONS: a block of two layers in uniaxial strain under a pressure p.
-/// REFERENCE: w = p^2/(2 M) in each layer, M = E (1 - nu)/((1 + nu)(1 - 2 nu)), and their mean where they meet.
-#[test]
-fn the_strain_energy_density_is_that_of_the_material_of_each_element() {
-    let desk = Desk::new();
-    let scene = json!({
+/// A block of two layers in uniaxial strain under a pressure of 3.
+pub fn layers() -> Value {
+    json!({
         "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [2]}, "y": {"points": [0, 2], "divisions": [2]}}},
         "material": {"young": 1000, "poisson": 0.3},
         "materials": [{"box": {"min": [0, 1], "max": [1, 2]}, "material": {"young": 400, "poisson": 0.2}}],
@@ -167,8 +164,15 @@ fn the_strain_energy_density_is_that_of_the_material_of_each_element() {
                      {"on": {"boundary": "right"}, "x": 0}],
         "loads": [{"pressure": {"boundary": "top", "value": 3}}],
         "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"plane": {"point": [0, 3], "normal": [0, 1]}}}]
-    });
-    desk.write("layers.json", scene.to_string());
+    })
+}
+
+/// GOAL: the strain energy density of the `.vtu` file. CONDITIONS: a block of two layers in uniaxial strain under a pressure p.
+/// REFERENCE: w = p^2/(2 M) in each layer, M = E (1 - nu)/((1 + nu)(1 - 2 nu)), and their mean where they meet.
+#[test]
+fn the_strain_energy_density_is_that_of_the_material_of_each_element() {
+    let desk = Desk::new();
+    desk.write("layers.json", layers().to_string());
     desk.run(&["solve", "layers.json", "--out", "o"]).ends_with(0);
     let vtu = fs::read_to_string(desk.path("o/solution.vtu")).unwrap();
     let document = Document::parse(&vtu).unwrap();
@@ -180,7 +184,7 @@ fn the_strain_energy_density_is_that_of_the_material_of_each_element() {
     let density =
         |young: f64, poisson: f64| 9.0 / 2.0 * (1.0 + poisson) * (1.0 - 2.0 * poisson) / (young * (1.0 - poisson));
     let [below, above] = [density(1000.0, 0.3), density(400.0, 0.2)];
-    let expected = [vec![below, 0.5 * (below + above), above].repeat(3), [below, below, above, above].to_vec()];
+    let expected = [[below, 0.5 * (below + above), above].repeat(3), [below, below, above, above].to_vec()];
     let close = |found: &[f64], expected: &[f64]| {
         let mut all = [found.to_vec(), expected.to_vec()];
         all.iter_mut().for_each(|values| values.sort_by(f64::total_cmp));

@@ -1,6 +1,6 @@
 //! One cell in place: x = sum N_a x_a, the Jacobian J = dx/dxi, gradients dN/dx, area vectors.
 
-use super::{MAX_NODES, PerNode, ReferenceElement, Shape, Tabulated};
+use super::{MAX_NODES, PerNode, ReferenceElement, Tabulated};
 use crate::fem::geometry::{cross, dot};
 
 /// The Jacobian of an element that is inverted or has no volume.
@@ -104,12 +104,7 @@ impl Cell {
         let place = self.place(&weights);
         // The point is not on the line or in the plane of the cell: no reference coordinates lead to it.
         let is_met = (0..3).all(|axis| (point[axis] - place[axis]).abs() <= tolerance * self.unit);
-        let own = &at[..reference.dimension];
-        let is_inside = match reference.form {
-            Shape::Product => own.iter().all(|xi| xi.abs() <= 1.0 + tolerance),
-            Shape::Simplex => own.iter().all(|&xi| xi >= -tolerance) && own.iter().sum::<f64>() <= 1.0 + tolerance,
-        };
-        (is_met && is_inside).then_some(weights)
+        (is_met && reference.contains(at, tolerance)).then_some(weights)
     }
 
     /// The reference coordinates of a point in or near the cell, by Newton's method.
@@ -153,9 +148,9 @@ impl Cell {
         if worst.value > NO_VOLUME { Ok(()) } else { Err(worst) }
     }
 
-    /// J_ij = dx_j/dxi_i, in the unit of the cell.
+    /// J_ij = dx_j/dxi_i, in the unit of the cell: the tangents along the reference coordinates.
     #[inline]
-    fn jacobian(&self, derivative: &PerNode<[f64; 3]>) -> [[f64; 3]; 3] {
+    pub fn jacobian(&self, derivative: &PerNode<[f64; 3]>) -> [[f64; 3]; 3] {
         let mut jacobian = [[0.0; 3]; 3];
         for (slope, x) in derivative.iter().zip(&self.coordinates).take(self.reference.nodes.len()) {
             for i in 0..3 {

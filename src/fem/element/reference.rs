@@ -111,6 +111,15 @@ impl ReferenceElement {
         [0, 1, 2].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>() / self.corners as f64)
     }
 
+    /// Returns `true` if a reference point is in the cell, or outside by at most `tolerance`.
+    pub fn contains(&self, at: [f64; 3], tolerance: f64) -> bool {
+        let own = &at[..self.dimension];
+        match self.form {
+            Shape::Product => own.iter().all(|xi| xi.abs() <= 1.0 + tolerance),
+            Shape::Simplex => own.iter().all(|&xi| xi >= -tolerance) && own.iter().sum::<f64>() <= 1.0 + tolerance,
+        }
+    }
+
     /// The local nodes in the order of a mirrored element: that of the cell with xi and eta exchanged, or, on a line, with xi reversed.
     pub fn mirrored(&self) -> Vec<usize> {
         let mirror = |[xi, eta, zeta]: [f64; 3]| match self.dimension {

@@ -15,6 +15,13 @@ pub struct TabulatedPoint {
     pub derivative: PerNode<[f64; 3]>,
 }
 
+impl TabulatedPoint {
+    /// The shape functions of `reference` at the reference point `at`.
+    pub fn new(reference: &ReferenceElement, at: [f64; 3], weight: f64) -> Self {
+        TabulatedPoint { weight, shape: (reference.shape)(at), derivative: (reference.derivative)(at) }
+    }
+}
+
 /// The quadrature of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
@@ -60,11 +67,7 @@ impl Tabulated {
 
     /// Tabulates `reference` at the points of a quadrature rule for it.
     pub fn with_rule(reference: &'static ReferenceElement, rule: Vec<QuadraturePoint>) -> Self {
-        let at = |at: [f64; 3], weight| TabulatedPoint {
-            weight,
-            shape: (reference.shape)(at),
-            derivative: (reference.derivative)(at),
-        };
+        let at = |at: [f64; 3], weight| TabulatedPoint::new(reference, at, weight);
         Tabulated {
             reference,
             points: rule.iter().map(|point| at(point.at, point.weight)).collect(),

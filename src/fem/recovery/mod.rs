@@ -1,5 +1,7 @@
 //! Stress recovery: at the centroids, and extrapolated to the nodes and averaged there; the discretisation error from it.
 
+#[cfg(feature = "cli")]
+pub(crate) mod along;
 pub(crate) mod discretisation;
 
 pub use discretisation::discretisation_error;

@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use crate::file::Streamed;
+#[cfg(feature = "cli")]
+use crate::output::view::along::Along;
 use crate::scene::{Answer, Meaning, Model};
 
 /// `dofs.csv` and `rows.csv`: the meaning of the entries of `u.mtx` and `lambda.mtx`, in their order, from 0.
@@ -56,6 +58,32 @@ pub(crate) fn contact(answer: &Answer) -> String {
         let (place, left) = (vector(Some(at)), remaining[index]);
         let _ =
             writeln!(text, "{index},{},{},{place},{closed},{force:e},{pressure:e},{left:e}", row.obstacle, row.node);
+    }
+    text
+}
+
+/// `along.csv`: an answer along lines, piece by piece. A line without numbers stands where a line is outside the body.
+#[cfg(feature = "cli")]
+pub(crate) fn along(lines: &[Along]) -> String {
+    let columns = lines.first().map_or(&[][..], |line| &line.columns);
+    let mut text = String::from("line,body,element");
+    for column in columns {
+        let _ = write!(text, ",{}", column.in_brackets());
+    }
+    text.push('\n');
+    for (number, line) in lines.iter().enumerate() {
+        for (index, piece) in line.pieces.iter().enumerate() {
+            if index > 0 && piece.is_apart {
+                let _ = writeln!(text, "{number},,{}", ",".repeat(columns.len()));
+            }
+            for point in &piece.points {
+                let _ = write!(text, "{number},{},{}", piece.body, piece.element);
+                for &value in point {
+                    let _ = if value.is_nan() { write!(text, ",") } else { write!(text, ",{:e}", 0.0 + value) };
+                }
+                text.push('\n');
+            }
+        }
     }
     text
 }

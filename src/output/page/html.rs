@@ -17,7 +17,7 @@ const SHELL: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 
 /// In the order of loading.
-const SCRIPTS: [&str; 15] = [
+const SCRIPTS: [&str; 16] = [
     include_str!("unpack.js"),
     include_str!("numbers.js"),
     include_str!("surface.js"),
@@ -32,6 +32,7 @@ const SCRIPTS: [&str; 15] = [
     include_str!("series.js"),
     include_str!("tradeoff.js"),
     include_str!("levels.js"),
+    include_str!("along.js"),
     include_str!("page.js"),
 ];
 

@@ -4,6 +4,7 @@
 //! scripts of this folder draw these data. The numbers are those of the JSON report, which the page contains unchanged.
 
 mod about;
+mod along;
 mod body;
 mod html;
 mod model;

@@ -4,6 +4,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::about::About;
+use super::along::AlongShown;
 use super::body::{Body, Shape};
 use super::motion::MotionShown;
 use super::packed::{Packed, Packer};
@@ -52,6 +53,8 @@ pub(super) struct Page<'a> {
     /// The pressure of each method at every row.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub pressures: Vec<Packed>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub along: Vec<AlongShown>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sweep: Option<SweepShown<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -113,6 +116,7 @@ impl<'a> Page<'a> {
             contact: None,
             search: None,
             pressures: Vec::new(),
+            along: Vec::new(),
             sweep: None,
             motion: None,
         }

@@ -41,6 +41,7 @@ async function assemble() {
     resultantSection(page, summary, data);
     segmentSection(page, summary, data);
     searchSection(page, data, shape);
+    alongSection(page, data);
   } else if (data.report?.points) tradeoffSection(page, data, still);
   else {
     contactList(section(page, "The answer", "answer"), summary, data);

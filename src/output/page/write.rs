@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::about::About;
+use super::along::AlongShown;
 use super::body::Shape;
 use super::html::write_page;
 use super::model::Page;
@@ -20,18 +21,25 @@ use crate::output::draw::drawing::Drawing;
 use crate::output::picture::plane_scene::PlaneScene;
 use crate::output::reports::certificate::CertificateWords;
 use crate::output::reports::report::proven_text;
+use crate::output::view::along::Along;
 use crate::scene::{Answer, Model, Units};
 use crate::solution::Iteration;
 use crate::study::{Agreement, Summary, Sweep};
 
-/// The page of one answer to a scene.
+/// The page of one answer to a scene, with the answer along lines.
 ///
 /// # Errors
 /// [`Error::File`], and those of the recovery of stresses.
-pub(crate) fn write_answer_page(folder: &Path, about: &About, answer: &Answer, summary: &Summary) -> Result<(), Error> {
+pub(crate) fn write_answer_page(
+    folder: &Path,
+    about: &About,
+    (answer, along): (&Answer, &[Along]),
+    summary: &Summary,
+) -> Result<(), Error> {
     let (mut packer, shape) = (Packer::default(), Shape::with_inside(answer.model()));
     let page = of_answer(about, answer, summary, &summary.solution.history, (&shape, &mut packer))?;
-    let page = Page { report: timeless(value(summary)?), ..page };
+    let along = along.iter().map(|along| AlongShown::of(along, answer.model(), &mut packer)).collect();
+    let page = Page { report: timeless(value(summary)?), along, ..page };
     write_page(folder, &page, packer, still(answer)?.as_ref())
 }
 

@@ -15,6 +15,12 @@ impl Quantity {
         Quantity { name: name.into(), unit: unit.into() }
     }
 
+    /// The name with the unit in brackets, as the heading of a column.
+    #[cfg(feature = "cli")]
+    pub(crate) fn in_brackets(&self) -> String {
+        if self.unit.is_empty() { self.name.clone() } else { format!("{} [{}]", self.name, self.unit) }
+    }
+
     /// The label of an axis with ticks in multiples of ten to the `exponent`: `contact pressure p (MPa)` for pascals and 6; with the
     /// power of ten if the unit takes no prefix.
     pub fn label(&self, exponent: i32) -> String {

@@ -1,5 +1,7 @@
 //! What is shown of a model and of its answer, as plain data: each medium (page, picture, `.vtu`) renders it.
 
+#[cfg(feature = "cli")]
+pub(crate) mod along;
 pub(crate) mod field;
 #[cfg_attr(not(feature = "cli"), allow(dead_code))]
 pub(crate) mod iterations;

@@ -1,0 +1,118 @@
+//! An answer along a straight line: place, displacement, stress and pressure, with units.
+
+use crate::error::Error;
+use crate::fem::body::Region;
+use crate::fem::geometry::distance;
+use crate::fem::recovery::along::{PathPoint, along};
+use crate::output::plots::ticks::Quantity;
+use crate::scene::{Answer, Model};
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+/// The components of the stress: the first of a bar, the first four in the plane.
+const STRESSES: [&str; 6] = ["sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "sigma_yz", "sigma_zx"];
+/// The share of a line by which two pieces of it may be apart by rounding.
+const TOUCHING: f64 = 1e-7;
+
+/// An answer along a line.
+#[derive(Clone, Debug)]
+pub(crate) struct Along {
+    pub ends: [[f64; 3]; 2],
+    /// What the numbers of a point are.
+    pub columns: Vec<Quantity>,
+    /// The parts of the line in the elements, body by body in its order; empty if it meets no body.
+    pub pieces: Vec<Piece>,
+}
+
+/// A line within an element. Neighbours have the same place and their own stresses where they meet.
+#[derive(Clone, Debug)]
+pub(crate) struct Piece {
+    /// The number of the body, from 0.
+    pub body: usize,
+    /// The number of the element, from 0.
+    pub element: usize,
+    /// `true` if the line was not in this body just before.
+    pub is_apart: bool,
+    /// A number for each column at each point; NaN for the pressure where the line does not lie on a contact.
+    pub points: Vec<Vec<f64>>,
+}
+
+/// A point of the line with the answer there.
+struct At<'a> {
+    point: &'a PathPoint,
+    /// From the first end, in length.
+    distance: f64,
+    displacement: [f64; 3],
+    pressure: f64,
+}
+
+type Column = (Quantity, Box<dyn Fn(&At) -> f64>);
+
+impl Along {
+    /// # Errors
+    /// Those of the recovery of stresses.
+    pub fn of(answer: &Answer, ends: [[f64; 3]; 2]) -> Result<Self, Error> {
+        let (model, columns) = (answer.model(), columns(answer.model()));
+        let (dimension, whole) = (model.mesh().dimension(), distance(ends[0], ends[1]));
+        // The pressure at each candidate: a node between two obstacles has the sum.
+        let mut pressures = vec![None; model.mesh().nodes().len()];
+        for (row, pressure) in model.rows().iter().zip(answer.pressure()) {
+            row.ends().for_each(|(node, _)| *pressures[node].get_or_insert(0.0) += pressure);
+        }
+        let mut pieces: Vec<Piece> = Vec::new();
+        let mut reached = f64::NEG_INFINITY;
+        for piece in along(model.body(), answer.displacement(), ends)? {
+            let nodes = model.mesh().element(piece.element);
+            let is_contact = piece.face.as_ref().is_some_and(|face| face.iter().all(|&node| pressures[node].is_some()));
+            let row = |point: &PathPoint| -> Vec<f64> {
+                let mean = |value: &dyn Fn(usize) -> f64| {
+                    nodes.iter().zip(&point.weights).map(|(&node, weight)| weight * value(node)).sum::<f64>()
+                };
+                let moved = |axis: usize| mean(&|node| answer.displacement()[dimension * node + axis]);
+                let at = At {
+                    point,
+                    distance: point.share * whole,
+                    displacement: [0, 1, 2].map(|axis| if axis < dimension { moved(axis) } else { 0.0 }),
+                    pressure: if is_contact { mean(&|node| pressures[node].unwrap_or(0.0)) } else { f64::NAN },
+                };
+                columns.iter().map(|(_, value)| value(&at)).collect()
+            };
+            let is_behind = |region: &&Region| region.elements().end <= piece.element;
+            let body = model.body().regions().iter().take_while(is_behind).count();
+            let is_apart = pieces.last().is_none_or(|last| last.body != body) || piece.start() > reached + TOUCHING;
+            pieces.push(Piece {
+                body,
+                element: piece.element,
+                is_apart,
+                points: piece.points.iter().map(row).collect(),
+            });
+            reached = piece.end();
+        }
+        Ok(Along { ends, columns: columns.into_iter().map(|(quantity, _)| quantity).collect(), pieces })
+    }
+}
+
+/// What is known at each point of a line, in the order of the table.
+fn columns(model: &Model) -> Vec<Column> {
+    let (units, dimension) = (model.units(), model.mesh().dimension());
+    let mut columns: Vec<Column> = Vec::new();
+    let mut add = |name: &str, unit: &str, value: Box<dyn Fn(&At) -> f64>| {
+        columns.push((Quantity::new(name, unit), value));
+    };
+    add("s", &units.length, Box::new(|at| at.distance));
+    for (axis, name) in AXES.iter().enumerate().take(dimension) {
+        add(name, &units.length, Box::new(move |at| at.point.place[axis]));
+    }
+    for (axis, name) in AXES.iter().enumerate().take(dimension) {
+        add(&format!("u_{name}"), &units.length, Box::new(move |at| at.displacement[axis]));
+    }
+    let stress = units.pressure();
+    for (component, name) in STRESSES.iter().enumerate().take([1, 4, 6][dimension - 1]) {
+        add(name, &stress, Box::new(move |at| at.point.stress.components()[component]));
+    }
+    add("sigma_1", &stress, Box::new(|at| at.point.stress.sigma_1));
+    add("sigma_2", &stress, Box::new(|at| at.point.stress.sigma_2));
+    add("sigma_3", &stress, Box::new(|at| at.point.stress.sigma_3));
+    add("von_mises", &stress, Box::new(|at| at.point.stress.von_mises));
+    add("pressure", &stress, Box::new(|at| at.pressure));
+    columns
+}
