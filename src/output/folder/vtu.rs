@@ -78,8 +78,10 @@ impl Unstructured<'_> {
                 return Err(Error::Setting { name: "node index in a .vtu file", value: node as f64, allowed });
             }
             end += element.len();
-            let named: Vec<String> = element.iter().map(usize::to_string).collect();
-            let _ = writeln!(connectivity, "{}", named.join(" "));
+            for (place, node) in element.iter().enumerate() {
+                let _ = write!(connectivity, "{}{node}", if place == 0 { "" } else { " " });
+            }
+            connectivity.push('\n');
             let _ = writeln!(offsets, "{end}");
             let _ = writeln!(types, "{kind}");
         }
@@ -112,8 +114,9 @@ fn write_data(text: &mut String, tag: &str, arrays: &[Array], expected: usize, o
                 tuples(text, name, components, values)?;
             }
             Array::Flags(name, values) => {
-                let lines: Vec<String> = values.iter().map(|&flag| u8::from(flag).to_string()).collect();
-                write_array(text, "UInt8", name, 1, &lines);
+                begin_array(text, "UInt8", name, 1);
+                values.iter().for_each(|&flag| text.push_str(if flag { "1\n" } else { "0\n" }));
+                text.push_str("</DataArray>\n");
             }
         }
     }
@@ -121,33 +124,26 @@ fn write_data(text: &mut String, tag: &str, arrays: &[Array], expected: usize, o
     Ok(())
 }
 
-/// Entries of `components` numbers each.
+/// Entries of `components` numbers each; every number is the shortest text that reads back as the same.
 fn tuples(text: &mut String, name: &str, components: usize, values: &[f64]) -> Result<(), Error> {
-    let line = |(k, tuple): (usize, &[f64])| {
-        let parts = tuple.iter().map(|&value| finite(name, k, value)).collect::<Result<Vec<_>, _>>()?;
-        Ok(parts.join(" "))
-    };
-    let lines = values.chunks_exact(components).enumerate().map(line).collect::<Result<Vec<_>, Error>>()?;
-    write_array(text, "Float64", name, components, &lines);
-    Ok(())
-}
-
-fn write_array(text: &mut String, kind: &str, name: &str, components: usize, lines: &[String]) {
-    let name = escape(name);
-    let components = if components > 1 { format!(" NumberOfComponents=\"{components}\"") } else { String::new() };
-    let _ = writeln!(text, "<DataArray type=\"{kind}\" Name=\"{name}\"{components} format=\"ascii\">");
-    for line in lines {
-        text.push_str(line);
+    begin_array(text, "Float64", name, components);
+    for (entry, tuple) in values.chunks_exact(components).enumerate() {
+        for (component, value) in tuple.iter().enumerate() {
+            if !value.is_finite() {
+                let at = format!("entry {entry} of `{name}`");
+                return Err(Error::NotFinite { name: "an array of a .vtu file", at, value: *value, allowed: "finite" });
+            }
+            let separator = if component == 0 { "" } else { " " };
+            let _ = write!(text, "{separator}{value:e}");
+        }
         text.push('\n');
     }
     text.push_str("</DataArray>\n");
+    Ok(())
 }
 
-/// The shortest text that reads back as `value`.
-fn finite(name: &str, entry: usize, value: f64) -> Result<String, Error> {
-    if value.is_finite() {
-        return Ok(format!("{value:e}"));
-    }
-    let at = format!("entry {entry} of `{name}`");
-    Err(Error::NotFinite { name: "an array of a .vtu file", at, value, allowed: "finite" })
+fn begin_array(text: &mut String, kind: &str, name: &str, components: usize) {
+    let name = escape(name);
+    let components = if components > 1 { format!(" NumberOfComponents=\"{components}\"") } else { String::new() };
+    let _ = writeln!(text, "<DataArray type=\"{kind}\" Name=\"{name}\"{components} format=\"ascii\">");
 }
