@@ -9,9 +9,9 @@ use crate::output::file::{write_atomically, write_files, write_picture, write_st
 use crate::output::picture::plane_scene::{PlaneScene, draw_series};
 use crate::output::picture::space_scene::{SpaceScene, draw_space_series};
 use crate::output::plots::medium::Medium;
-use crate::output::plots::plot::{Plot, Series, line_plots_for};
-use crate::output::plots::ticks::Quantity;
+use crate::output::plots::plot::line_plots_for;
 use crate::output::reports::report::plural;
+use crate::output::view::curves::sweep_plots;
 use crate::output::view::field::Source;
 use crate::output::view::iterations::iterations;
 use crate::output::view::pressure::pressure_plots;
@@ -19,7 +19,7 @@ use crate::output::view::words::headline;
 use crate::qp::matrix_market::solution_files;
 use crate::scene::{Answer, Model};
 use crate::solution::{ContactSet, Iteration, Solution};
-use crate::study::{ObstacleContact, Summary, Sweep, SweepCorner, SweepPoint};
+use crate::study::{Summary, Sweep, SweepPoint};
 
 /// The pictures that a command draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,77 +140,9 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep, wanted: Wanted) -> Result<(), E
         drawn.iter().enumerate().map(|of| (name(of), &of.1.answer, title(&of.1.answer, ""))).collect();
     draw_answers(folder, shown, drawn.len(), medium)?;
     let Some(first) = points.first() else { return Ok(()) };
-    let units = first.answer.model().units();
-    let (swept, swept_in) = match first.force {
-        Some(_) => ("force F", &units.force),
-        None => ("gap g", &units.length),
-    };
-    let over_gap = |name: &str, unit: &str, series: Vec<Series>| {
-        let mut plot = Plot::new(Quantity::new(swept, swept_in), Quantity::new(name, unit), series);
-        plot.nested = true;
-        plot.y_from_zero = true;
-        plot
-    };
-    // Beside the exact path the gaps are marks without a line.
-    let of_all = |name: &str, unit: &str, at_point: Value<SweepPoint>, at_corner: Value<SweepCorner>| {
-        let join = if sweep.corners.is_empty() { None } else { Some([f64::NAN; 2]) };
-        let at = |point: &SweepPoint| [point.force.unwrap_or(point.gap), at_point(point)];
-        let at_points = points.iter().flat_map(|point| [Some(at(point)), join]).flatten().collect();
-        let exact = sweep.corners.iter().map(|corner| [corner.gap, at_corner(corner)]).collect::<Vec<_>>();
-        let marks = if first.force.is_some() { "forces of the sweep" } else { "gaps of the sweep" };
-        let mut series = vec![Series::new(marks, at_points)];
-        if !exact.is_empty() {
-            series.insert(0, Series::new("exact path", exact));
-        }
-        over_gap(name, unit, series)
-    };
-    let of_each = |name: &str, unit: &str, of: Value<ObstacleContact>| {
-        let series = first.summary.contact.obstacles.iter().enumerate().map(|(index, one)| {
-            let at =
-                |point: &SweepPoint| [point.force.unwrap_or(point.gap), of(&point.summary.contact.obstacles[index])];
-            Series::new(&one.of, points.iter().map(at).collect())
-        });
-        over_gap(name, unit, series.collect())
-    };
-    let (contact, several) =
-        (|point: &SweepPoint| point.summary.contact.clone(), first.summary.contact.is_of_several());
-    let square = format!("{}²", units.length);
-    let extent = match (first.summary.contact.width.is_some(), several) {
-        (true, true) => of_each("estimated width", &units.length, &|one| {
-            one.estimate.and_then(|estimate| estimate.width).unwrap_or(0.0)
-        }),
-        (false, true) => of_each("estimated area", &square, &|one| one.estimate.map_or(0.0, |estimate| estimate.area)),
-        (true, false) => {
-            let width = |point: &SweepPoint| contact(point).width.unwrap_or(0.0);
-            of_all("width of the cells of closed nodes", &units.length, &width, &|corner| corner.width.unwrap_or(0.0))
-        }
-        (false, false) => {
-            let area = |point: &SweepPoint| contact(point).area.unwrap_or(0.0);
-            of_all("area of the cells of closed nodes", &square, &area, &|corner| corner.area)
-        }
-    };
-    let travel = || of_all("travel d", &units.length, &|point| point.travel().unwrap_or(0.0), &|_| 0.0);
-    let force = match several {
-        true => of_each("force", &units.force, &|one| one.force),
-        false => of_all("sum of multipliers", &units.force, &|point| contact(point).force, &|corner| corner.force),
-    };
-    let peak = match several {
-        true => of_each("peak pressure", &units.pressure(), &|one| one.pressure_max),
-        false => {
-            of_all("peak pressure", &units.pressure(), &|p| contact(p).pressure_max.unwrap_or(0.0), &|c| c.pressure_max)
-        }
-    };
-    let of_forces: Vec<Plot> = match first.force {
-        Some(_) if several => vec![travel(), force],
-        Some(_) => vec![travel()],
-        None => vec![force],
-    };
-    let plots: Vec<Plot> = of_forces.into_iter().chain([extent, peak]).collect();
+    let plots = sweep_plots(sweep);
     write_picture(folder, "force-width", &line_plots_for(medium, first.answer.model().title(), &plots)).map(drop)
 }
-
-/// A plotted value of an item.
-type Value<'a, T> = &'a dyn Fn(&T) -> f64;
 
 /// The title: the scene, its state, the content of the picture unless it is the answer, and the number of closed nodes.
 fn title(answer: &Answer, what: &str) -> String {

@@ -26,8 +26,9 @@ use crate::output::page::{About, MotionFrames, write_motion_page};
 use crate::output::picture::body::{ContactPicture, FieldPanel, common_window};
 use crate::output::picture::plane_scene::{PlaneScene, lines};
 use crate::output::plots::medium::Medium;
-use crate::output::plots::plot::{Plot, Series, line_plots_for};
-use crate::output::plots::ticks::{Quantity, amount};
+use crate::output::plots::plot::line_plots_for;
+use crate::output::plots::ticks::amount;
+use crate::output::view::curves::history_plots;
 use crate::output::view::field::Source;
 use crate::scene::{Answer, Model, Resultant, WatchedPoint};
 use crate::solution::ContactSet;
@@ -262,17 +263,7 @@ impl MotionFolder {
     /// The same for a screen or for paper; the animation is the same for both.
     pub(crate) fn draw_for(&self, model: &Arc<Model>, medium: Medium) -> Result<(), Error> {
         let history = self.read_history()?;
-        let line =
-            |name: &str, column: usize| Series::new(name, history.iter().map(|row| [row[0], row[column]]).collect());
-        let units = model.units();
-        let work = format!("{} {}", units.force, units.length);
-        let force = if model.obstacles().len() > 1 { "contact force F of all obstacles" } else { "contact force F" };
-        let energies = vec![line("kinetic", 4), line("strain", 5), line("potential", 6), line("total", 7)];
-        let time = || Quantity::new("time t", units.time());
-        let plots = [
-            Plot::new(time(), Quantity::new(force, &units.force), vec![line("force", 1)]),
-            Plot::new(time(), Quantity::new("energy", work.trim()), energies),
-        ];
+        let plots = history_plots(model, &history);
         write_picture(&self.folder, "history", &line_plots_for(medium, model.title(), &plots))?;
         if model.mesh().dimension() != 2 {
             return Ok(());

@@ -10,6 +10,7 @@ mod html;
 mod model;
 mod motion;
 mod packed;
+mod plots;
 mod question;
 mod rows;
 mod search;

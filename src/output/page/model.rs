@@ -8,6 +8,7 @@ use super::along::AlongShown;
 use super::body::{Body, Shape};
 use super::motion::MotionShown;
 use super::packed::{Packed, Packer};
+use super::plots::PlotShown;
 use super::question::Question;
 use super::rows::{Contact, Rows};
 use super::search::Search;
@@ -55,6 +56,9 @@ pub(super) struct Page<'a> {
     pub pressures: Vec<Packed>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub along: Vec<AlongShown>,
+    /// The curves of a sweep or of a motion.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub plots: Vec<PlotShown>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sweep: Option<SweepShown<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -117,6 +121,7 @@ impl<'a> Page<'a> {
             search: None,
             pressures: Vec::new(),
             along: Vec::new(),
+            plots: Vec::new(),
             sweep: None,
             motion: None,
         }

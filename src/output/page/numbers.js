@@ -13,6 +13,11 @@ function shown(value, digits = 6) {
     .replace("e+", "e");
 }
 
+/** A quantity with its unit. */
+function titled({ name, unit }) {
+  return `${name}${unit && ` [${unit}]`}`;
+}
+
 function inUnit(value, unit, digits) {
   return `${shown(value, digits)} ${unit}`.trim();
 }

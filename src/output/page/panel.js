@@ -121,8 +121,7 @@ class Panel {
 
   /** The colours, their limits, which a reader may change, and what lies outside. */
   showBar([least, most], limits) {
-    const { name, unit } = this.quantities[this.quantity],
-      slack = 0.02 * (limits[1] - limits[0]),
+    const slack = 0.02 * (limits[1] - limits[0]),
       again = () => this.show(this.frame);
     this.bar.hidden = this.quantity === "none";
     this.bar.replaceChildren();
@@ -130,7 +129,7 @@ class Panel {
       least < limits[0] - slack ? `; below the scale: down to ${shown(least, 4)}` : "",
       most > limits[1] + slack ? `; above the scale: up to ${shown(most, 4)}` : "",
     ];
-    element("div", this.bar, `${name}${unit && ` [${unit}]`}${outside.join("")}`);
+    element("div", this.bar, `${titled(this.quantities[this.quantity])}${outside.join("")}`);
     element("div", this.bar, null, "ramp").style.background =
       `linear-gradient(to right, ${this.data.colours.field.join(", ")})`;
     const ends = element("div", this.bar, null, "ends");

@@ -148,3 +148,33 @@ function keyOf(host, series) {
   ]);
   legendOf(host, entries);
 }
+
+/** If a series has more points than this, its marks would hide its line. */
+const MOST_MARKS = 60;
+
+/** The series of a plot of the data, as `plotted` takes them. Beside points that no line joins, only these have marks. */
+function seriesOf(series, colours) {
+  const known = point => point?.every(Number.isFinite);
+  const all = series.map(({ name, points: flat }, index) => {
+    const points = Array.from({ length: flat.length / 2 }, (_, i) => [flat[2 * i], flat[2 * i + 1]]),
+      line = points.some((point, i) => known(point) && known(points[i - 1]));
+    return { name, points, line, colour: colours.lines[index % colours.lines.length] };
+  });
+  const joined = all.every(({ line }) => line);
+  return all.map(one => ({ ...one, marks: !one.line || (joined && one.points.length <= MOST_MARKS) }));
+}
+
+/** Draws a plot of the data, with a key if it has several series and needs one; returns the plot. */
+function dataPlot(host, { x, y, series }, colours, { label = `${y.name} over ${x.name}`, key = true } = {}) {
+  const all = seriesOf(series, colours),
+    plot = plotted(host, { label, x: { name: titled(x) }, y: { name: titled(y) }, series: all, height: 250 });
+  if (key && all.length > 1) keyOf(host, all);
+  return plot;
+}
+
+/** Draws all plots of the data, neighbours with the same names over one key; returns a function that marks a position in each. */
+function dataPlots(host, { plots, colours }) {
+  const names = plot => plot?.series.map(({ name }) => name).join();
+  const made = plots.map((plot, i) => dataPlot(host, plot, colours, { key: names(plots[i + 1]) !== names(plot) }));
+  return at => made.forEach(plot => plot.mark(at));
+}

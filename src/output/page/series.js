@@ -74,7 +74,7 @@ function sweepSection(page, data, shape, notes) {
     control = slidingPanel(own, data, shape, settings, value => go(exact ? between(...ends, value) : value));
   control.range.setAttribute("aria-label", exact ? "gap, exact at every position" : sweep.swept);
   const profile = profileSection(page, data, shape),
-    marks = sweepPlots(page, data);
+    marks = dataPlots(section(page, ofForces ? "Over the force" : "Over the gap", "curves"), data);
   const unit = ofForces ? units.force : units.length,
     field = exact && input(control.line, "number", { step: "any" }, "gap as a number");
   let now = null;
@@ -124,51 +124,6 @@ function sweepSection(page, data, shape, notes) {
     );
   go(ends[0]);
   sweepTable(page, data);
-}
-
-/** Force, extent and peak pressure over the gap or force; returns a function that marks a position. */
-function sweepPlots(page, data) {
-  const { sweep, units, colours } = data,
-    { points, corners } = sweep,
-    ofForces = sweep.swept === "force";
-  const own = section(page, ofForces ? "Over the force" : "Over the gap", "curves"),
-    x = { name: ofForces ? `force [${units.force}]` : `gap [${units.length}]` };
-  const hasWidth = points[0].contact.width !== undefined,
-    several = obstacleCount(points[0].contact) > 1,
-    at = point => point.force ?? point.gap;
-  const ofEach = of =>
-    points[0].contact.obstacles.map((one, index) => ({
-      name: one.of,
-      colour: colours.lines[index % colours.lines.length],
-      marks: true,
-      points: points.map(point => [at(point), of(point.contact.obstacles[index]) ?? 0]),
-    }));
-  const exact = { name: "exact path", colour: colours.lines[0] },
-    solved = { name: `${sweep.swept}s that were solved`, colour: colours.lines[1], marks: true, line: !corners.length };
-  // The fields of a point that its contact does not have are its own.
-  const ofAll = key => [
-    ...(corners.length ? [{ ...exact, points: corners.map(corner => [corner.gap, corner[key]]) }] : []),
-    { ...solved, points: points.map(point => [at(point), point.contact[key] ?? point[key]]) },
-  ];
-  const travel = ofForces ? [[`travel [${units.length}]`, ofAll("travel")]] : [],
-    [extent, unit] = hasWidth ? ["width", units.length] : ["area", `${units.length}²`];
-  const curves = several
-    ? [
-        ...travel,
-        [`force [${units.force}]`, ofEach(one => one.force)],
-        [`estimated ${extent} [${unit}]`, ofEach(one => one.estimate?.[extent])],
-        [`peak pressure [${units.pressure}]`, ofEach(one => one.pressure_max)],
-      ]
-    : [
-        ...(ofForces ? travel : [[`contact force [${units.force}]`, ofAll("force")]]),
-        [`${extent} of the cells of closed nodes [${unit}]`, ofAll(extent)],
-        [`peak pressure [${units.pressure}]`, ofAll("pressure_max")],
-      ];
-  const made = curves.map(([name, series]) =>
-    plotted(own, { label: `${name} over the ${sweep.swept}`, x, y: { name }, height: 230, series }),
-  );
-  keyOf(own, several ? curves.at(-1)[1] : corners.length ? [exact, solved] : [solved]);
-  return at => made.forEach(plot => plot.mark(at));
 }
 
 function sweepTable(page, data) {
@@ -224,7 +179,7 @@ function sweepTable(page, data) {
 }
 
 function motionSection(page, data, shape, notes) {
-  const { motion, units, report, colours, states } = data,
+  const { motion, units, report, states } = data,
     own = section(page, "The motion", "answer");
   const frames = states.map((_, index) => motionFrame(data, index));
   const { contact } = report,
@@ -265,23 +220,8 @@ function motionSection(page, data, shape, notes) {
   const { output, facts, panel } = slidingPanel(own, data, shape, settings, value => go(value));
   const columns = 8,
     count = motion.history.length / columns,
-    column = k =>
-      Array.from({ length: count }, (_, i) => [motion.history[columns * i], motion.history[columns * i + k]]);
-  const energies = ["kinetic", "strain", "potential", "total"].map((name, k) => ({
-    name,
-    colour: colours.lines[k],
-    points: column(4 + k),
-  }));
-  const curves = section(page, "Force and energies", "curves"),
-    overTime = (label, name, series, height) =>
-      plotted(curves, { label: `${label} over time`, x: { name: "time" }, y: { name }, series, height });
-  const force = { name: "contact force", colour: colours.lines[0], points: column(1) },
     ofAll = several ? " of all obstacles" : "",
-    plots = [
-      overTime("Contact force", `contact force${ofAll} [${units.force}]`, [force], 230),
-      overTime("Energies", `energy [${workUnit(units)}]`, energies, 260),
-    ];
-  keyOf(curves, energies);
+    marks = dataPlots(section(page, "Force and energies", "curves"), data);
   const go = index => {
     const frame = frames[index];
     let line = 0;
@@ -290,7 +230,7 @@ function motionSection(page, data, shape, notes) {
     output.textContent = `t = ${shown(frame.time, 6)}`;
     facts.textContent = `${counted(frame.rows.length, "closed row")}, force ${inUnit(at(1), units.force)}${ofAll}; energies: kinetic ${shown(at(4))}, strain ${shown(at(5))}, potential ${shown(at(6))}, total ${shown(at(7), 9)} ${workUnit(units)}`;
     panel.show(frame);
-    plots.forEach(plot => plot.mark(frame.time));
+    marks(frame.time);
   };
   if (states.length < motion.times.length)
     notes.push(`Of ${motion.times.length} frames ${states.length} are kept in this page.`);

@@ -12,6 +12,7 @@ use super::html::write_page;
 use super::model::Page;
 use super::motion::{MotionFrames, MotionShown};
 use super::packed::Packer;
+use super::plots::PlotShown;
 use super::rows::Contact;
 use super::search::Search;
 use super::state::State;
@@ -22,6 +23,7 @@ use crate::output::picture::plane_scene::PlaneScene;
 use crate::output::reports::certificate::CertificateWords;
 use crate::output::reports::report::proven_text;
 use crate::output::view::along::Along;
+use crate::output::view::curves::{history_plots, sweep_plots};
 use crate::scene::{Answer, Model, Units};
 use crate::solution::Iteration;
 use crate::study::{Agreement, Summary, Sweep};
@@ -80,7 +82,8 @@ pub(crate) fn write_sweep_page(folder: &Path, about: &About, sweep: &Sweep) -> R
     let (mut packer, shape) = (Packer::default(), Shape::of(first.answer.model()));
     let page = Page::of_model(about, first.answer.model(), &shape, &mut packer);
     let (shown, states) = SweepShown::of(sweep, &shape, &mut packer)?;
-    write_page(folder, &Page { sweep: Some(shown), states, ..page }, packer, still(&first.answer)?.as_ref())
+    let plots = sweep_plots(sweep).iter().map(|plot| PlotShown::of(plot, &mut packer)).collect();
+    write_page(folder, &Page { sweep: Some(shown), states, plots, ..page }, packer, still(&first.answer)?.as_ref())
 }
 
 /// The page of a motion; `report` is the object of `report.json`.
@@ -97,7 +100,8 @@ pub(crate) fn write_motion_page(
     let (mut packer, shape) = (Packer::default(), Shape::of(model));
     let page = Page::of_model(about, model, &shape, &mut packer);
     let (motion, states) = MotionShown::of(frames, &shape, model.mesh().dimension(), &mut packer)?;
-    write_page(folder, &Page { report: timeless(report), motion: Some(motion), states, ..page }, packer, None)
+    let plots = history_plots(model, frames.history).iter().map(|plot| PlotShown::of(plot, &mut packer)).collect();
+    write_page(folder, &Page { report: timeless(report), motion: Some(motion), states, plots, ..page }, packer, None)
 }
 
 /// The page of a trade-off with its pictures.

@@ -1,7 +1,7 @@
 //! Ranges of axes, their ticks at round numbers, and readable numbers.
 
 /// The quantity of an axis or a colour bar: the words and the unit of its label.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Quantity {
     /// Its name, with the symbol: `contact pressure p`.
     pub name: String,

@@ -4,6 +4,7 @@ use crate::error::Error;
 use crate::fem::body::Region;
 use crate::fem::geometry::distance;
 use crate::fem::recovery::along::{PathPoint, along};
+use crate::output::plots::plot::{Plot, Series};
 use crate::output::plots::ticks::Quantity;
 use crate::scene::{Answer, Model};
 
@@ -88,6 +89,30 @@ impl Along {
             reached = piece.end();
         }
         Ok(Along { ends, columns: columns.into_iter().map(|(quantity, _)| quantity).collect(), pieces })
+    }
+}
+
+impl Along {
+    /// A plot of each quantity but the place over the length of the line, with a line for each body; without those that are known nowhere.
+    pub fn plots(&self, model: &Model) -> Vec<Plot> {
+        let regions = model.body().regions();
+        let mut plots = Vec::new();
+        for (column, quantity) in self.columns.iter().enumerate().skip(1 + model.mesh().dimension()) {
+            let of_body = |(body, region): (usize, &Region)| {
+                let mut points: Vec<[f64; 2]> = Vec::new();
+                for piece in self.pieces.iter().filter(|piece| piece.body == body) {
+                    points.extend(piece.is_apart.then_some([f64::NAN; 2]));
+                    points.extend(piece.points.iter().map(|point| [point[0], point[column]]));
+                }
+                let name = if region.name().is_empty() { "first body" } else { region.name() };
+                points.iter().any(|point| point[1].is_finite()).then(|| Series::new(name, points))
+            };
+            let series: Vec<Series> = regions.iter().enumerate().filter_map(of_body).collect();
+            if !series.is_empty() {
+                plots.push(Plot::new(self.columns[0].clone(), quantity.clone(), series));
+            }
+        }
+        plots
     }
 }
 

@@ -2,6 +2,9 @@
 
 #[cfg(feature = "cli")]
 pub(crate) mod along;
+// Only the output in the folders shows its sweeps.
+#[cfg_attr(not(feature = "cli"), allow(dead_code))]
+pub(crate) mod curves;
 pub(crate) mod field;
 #[cfg_attr(not(feature = "cli"), allow(dead_code))]
 pub(crate) mod iterations;
