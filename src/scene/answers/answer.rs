@@ -38,9 +38,6 @@ pub struct Answer {
 ///
 /// Each array has length `dim * n_nodes`, order `[f_x0, f_y0, f_x1, ...]`, in force, along the positive axes on the
 /// body.
-///
-/// Each array has length `dim * n_nodes`, order `[f_x0, f_y0, f_x1, ...]`, in force, along the positive axes on the
-/// body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Forces {
     /// Contact forces on the body, length `dim * n_nodes`, in force, as [`Model::contact_forces`].
