@@ -1,5 +1,6 @@
 //! M = integral of rho N_a N_b, in the free dofs: consistent, lumped, or redistributed so that contact nodes have no mass.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::DofMap;
@@ -11,29 +12,26 @@ use crate::fem::geometry::dot;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
 /// The form of a mass matrix: it decides on the waves in the mesh, and on the inertia of nodes in contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema), schemars(rename = "MassSpec"))]
-#[cfg_attr(feature = "cli", schemars(description = "The forms of the mass to choose from."))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "MassSpec")]
+#[schemars(description = "The forms of the mass to choose from.")]
 #[serde(rename_all = "kebab-case")]
 pub enum MassForm {
     /// Consistent: from the shape functions.
     #[default]
-    #[cfg_attr(feature = "cli", schemars(description = "From the shape functions."))]
+    #[schemars(description = "From the shape functions.")]
     Consistent,
     /// Diagonal: the sum of each row. On quadratic elements this sum is zero or negative at corners; they take the diagonal of the
     /// consistent mass, scaled to the mass of the element.
-    #[cfg_attr(feature = "cli", schemars(description = "Diagonal."))]
+    #[schemars(description = "Diagonal.")]
     Lumped,
     /// Consistent, except for the contact nodes: they have no mass, and their neighbours take it over. Total mass and centre of mass of
     /// each body are preserved.
     ///
     /// A contact node without inertia does not bounce: it follows the body and the obstacle, so that the contact pressure is that of the
     /// body and not a sequence of impacts.
-    #[cfg_attr(
-        feature = "cli",
-        schemars(description = "From the shape functions, without mass at contact nodes; total \
-        mass and centre of mass are preserved.")
-    )]
+    #[schemars(description = "From the shape functions, without mass at contact nodes; total \
+        mass and centre of mass are preserved.")]
     Redistributed,
 }
 

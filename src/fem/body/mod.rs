@@ -9,6 +9,7 @@ pub use phase::{Phase, Temperature};
 pub(crate) use point::LocalPoint;
 pub use region::Region;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
@@ -22,8 +23,8 @@ use crate::fem::mesh::{Boundary, Mesh, fail};
 const ON_THE_AXIS: f64 = 1e-12;
 
 /// The integration of the stiffness of an element: in full, or with a dilatation that cannot lock.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema), schemars(rename = "IntegrationSpec"))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "IntegrationSpec")]
 #[serde(rename_all = "kebab-case")]
 pub enum Integration {
     /// The full strain at all quadrature points.

@@ -1,24 +1,25 @@
 //! One axis of a structured mesh: breakpoints, divisions, gradings.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::MAX_NODES;
 
 /// One axis of a structured mesh: intervals between breakpoints, each cut into cells of equal or graded size.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema), schemars(rename = "AxisSpec"))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "AxisSpec")]
 #[serde(deny_unknown_fields)]
 pub struct Axis {
     /// Breakpoints, at least two, strictly increasing, in length.
-    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
+    #[schemars(extend("minItems" = 2))]
     pub points: Vec<f64>,
     /// Number of cells of each interval between breakpoints, one entry fewer than `points`, at least 1 each.
-    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 1, "items" = {"type": "integer", "format": "uint", "minimum": 1})))]
+    #[schemars(extend("minItems" = 1, "items" = {"type": "integer", "format": "uint", "minimum": 1}))]
     pub divisions: Vec<usize>,
     /// Last cell size over first cell size of each interval, one entry fewer than `points`, dimensionless and positive;
     /// all 1 if left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[cfg_attr(feature = "cli", schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0})))]
+    #[schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0}))]
     pub ratios: Vec<f64>,
 }
 

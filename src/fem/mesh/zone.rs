@@ -1,5 +1,6 @@
 //! Grading towards a contact zone: fine cells of one size there, growing cells beyond.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::MAX_NODES;
@@ -7,20 +8,20 @@ use crate::error::Error;
 use crate::fem::formulation::positive;
 
 /// The finely meshed zone around the lowest (highest) point of a round body.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema), schemars(rename = "ZoneSpec"))]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "ZoneSpec")]
 #[serde(deny_unknown_fields)]
 pub struct Zone {
     /// Distance over which the cells have one size, from the lowest point to each side and into the body: positive, at most the
     /// radius. Twice the expected contact half-width is a good choice.
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub width: f64,
     /// Cells on this width, at least 1.
-    #[cfg_attr(feature = "cli", schemars(extend("minimum" = 1)))]
+    #[schemars(extend("minimum" = 1))]
     pub divisions: usize,
     /// Size of each further cell over that of its neighbour towards the zone, from 1 to 10.
     #[serde(default = "growth")]
-    #[cfg_attr(feature = "cli", schemars(extend("minimum" = 1, "maximum" = 10)))]
+    #[schemars(extend("minimum" = 1, "maximum" = 10))]
     pub growth: f64,
 }
 

@@ -13,6 +13,7 @@ mod trapezoidal;
 pub(crate) use stable_step::MOST_IN_CONTACT;
 pub use stable_step::stable_step;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::step::{About, Parameter};
@@ -20,8 +21,7 @@ use crate::error::Error;
 use crate::fem::assembly::MassForm;
 
 /// The schemes to choose from, without the values of their parameters: the names that a scene uses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SchemeSpec {
     /// Midpoint rule; contact nodes have no mass: preserves energy, and the pressure does not chatter.

@@ -1,5 +1,6 @@
 //! The structured bar along x.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, Site};
@@ -9,15 +10,14 @@ use crate::fem::{Axis, Integration};
 use crate::scene::input::files::Files;
 
 /// A bar along x.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BarSpec {
     /// The axis along x.
     pub x: Axis,
     /// Cross-section, positive.
     #[serde(default = "crate::scene::input::schema::cells::one")]
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub area: f64,
 }
 

@@ -1,5 +1,6 @@
 //! The structured box: the product of three graded axes.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, Site};
@@ -30,8 +31,7 @@ const SIDES: [(&str, usize, bool, [usize; 4]); 6] = [
 ];
 
 /// A box: the product of three divided axes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoxSpec {
     /// The axis along x.

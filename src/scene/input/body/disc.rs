@@ -1,5 +1,6 @@
 //! The disc: a half disc and its mirror image, joined along the cut.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::half_disc::{half_disc, half_disc_block};
@@ -11,15 +12,14 @@ use crate::scene::input::files::Files;
 use crate::scene::input::schema::cells::ElementSpec;
 
 /// A disc, graded towards its lowest and its highest point.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DiscSpec {
     /// The centre [x, y].
     #[serde(default)]
     pub centre: [f64; 2],
     /// Radius, positive.
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
     /// The finely meshed zone around the lowest and the highest point.
     pub zone: Zone,

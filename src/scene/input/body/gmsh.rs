@@ -1,5 +1,6 @@
 //! A body from a mesh file of Gmsh.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, Site};
@@ -12,15 +13,14 @@ use crate::scene::input::files::Files;
 const OF_MESH_FILE: f64 = 150.0;
 
 /// A mesh written by Gmsh: a `.msh` file of version 4.1 or 2.2, ASCII or binary. A bar has the cross-section 1.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GmshSpec {
     /// The file, inside the folder of the scene unless reading outside is allowed; a relative name starts in that folder.
     pub file: String,
     /// Factor of the coordinates of the file, positive.
     #[serde(default = "crate::scene::input::schema::cells::one")]
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub scale: f64,
     /// The physical group of the body; may be left out if at most one group has elements of the highest dimension, or if `materials` name
     /// the groups.

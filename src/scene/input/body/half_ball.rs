@@ -1,5 +1,6 @@
 //! The lower half of a ball, or its mirror image: a core of bricks, and shells of bricks around it out to the sphere.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, RoundCells, Sides, Site};
@@ -16,8 +17,7 @@ use crate::scene::input::schema::cells::{HalfSpec, SolidElementSpec};
 const AROUND: [[usize; 2]; 4] = [[0, 0], [1, 0], [1, 1], [0, 1]];
 
 /// Half of a ball, the lower half by default, of `hex8` or `hex20`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HalfBallSpec {
     /// The centre [x, y, z].
@@ -27,7 +27,7 @@ pub struct HalfBallSpec {
     #[serde(default, skip_serializing_if = "HalfSpec::is_lower")]
     pub half: HalfSpec,
     /// Radius, positive.
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
     /// The finely meshed zone around the lowest (highest) point.
     pub zone: Zone,
@@ -44,8 +44,7 @@ pub struct HalfBallSpec {
 }
 
 /// The axis normal to a plane of symmetry.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SymmetrySpec {
     /// Along x.

@@ -1,5 +1,6 @@
 //! The lower half of a disc, or its mirror image: a core of straight lines, and shells around it out to the arc.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, RoundCells, Sides, Site};
@@ -12,8 +13,7 @@ use crate::scene::input::files::Files;
 use crate::scene::input::schema::cells::{ElementSpec, HalfSpec};
 
 /// Half of a disc, the lower half by default.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HalfDiscSpec {
     /// The centre [x, y].
@@ -23,7 +23,7 @@ pub struct HalfDiscSpec {
     #[serde(default, skip_serializing_if = "HalfSpec::is_lower")]
     pub half: HalfSpec,
     /// Radius, positive.
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
     /// The finely meshed zone around the lowest (highest) point.
     pub zone: Zone,

@@ -21,13 +21,13 @@ pub use ring::{RingSpec, ring};
 pub use shape::Sides;
 pub(crate) use shape::{BodyShape, Site};
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use shape::About;
 
 /// The elastic body.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum BodySpec {
     /// A rectangle with a structured mesh; its boundaries are `left`, `right`, `bottom`, `top`. In an axisymmetric model it is the

@@ -1,5 +1,6 @@
 //! The structured rectangle: the product of two graded axes.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, Site};
@@ -14,8 +15,7 @@ use crate::scene::input::schema::cells::ElementSpec;
 const NO_NODE: usize = usize::MAX;
 
 /// A rectangle: the product of two divided axes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RectangleSpec {
     /// The axis along x.

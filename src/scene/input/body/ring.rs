@@ -1,5 +1,6 @@
 //! The structured ring, or a sector of a ring: the product of a radial axis and an angle.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, Site};
@@ -11,8 +12,7 @@ use crate::scene::input::files::Files;
 use crate::scene::input::schema::cells::ElementSpec;
 
 /// A ring or a sector of a ring: the product of a radial axis and an angle.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RingSpec {
     /// The centre [x, y].

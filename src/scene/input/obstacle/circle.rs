@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::graph::{Form, Graph};
@@ -13,8 +14,7 @@ use crate::error::Error;
 pub(super) const BESIDE: f64 = 0.5;
 
 /// A circle, given by its centre or by its apex.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CircleSpec {
     /// The centre.
@@ -24,7 +24,7 @@ pub struct CircleSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 2]>,
     /// Radius, positive. Nodes beyond its reach have no contact row.
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
     /// The side of the body: `outside`, or `inside`, as a pin in a hole, with the obstacle all around.
     #[serde(default, skip_serializing_if = "Side::is_outside")]

@@ -1,5 +1,6 @@
 //! A cylinder without ends, seen from outside or inside: a circle extruded along the axis.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::circle::round;
@@ -13,8 +14,7 @@ use crate::scene::input::entry::{point, wrong};
 const PERPENDICULAR: f64 = 1e-9;
 
 /// A cylinder without ends, given by a point of its axis or of its apex line.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CylinderSpec {
     /// Any point of the axis.
@@ -27,7 +27,7 @@ pub struct CylinderSpec {
     /// Direction of the axis, perpendicular to the approach direction, of any length except zero.
     pub axis: [f64; 3],
     /// Radius, positive. Nodes beyond its reach have no contact row.
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
     /// The side of the body: `outside`, or `inside`, as a pin in a hole, with the obstacle all around.
     #[serde(default, skip_serializing_if = "Side::is_outside")]

@@ -1,5 +1,6 @@
 //! The surface of another body, node to node: n . (u - u_partner) <= gap.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::pairs::Pair;
@@ -21,8 +22,7 @@ const ASLANT: f64 = 0.2;
 const SAME_PLACE: f64 = 1e-3;
 
 /// The surface of another elastic body: every candidate lies opposite one of its nodes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FacingSpec {
     /// The boundary of the other body, as `name.boundary`.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::graph::{Form, Graph, Grid, across};
@@ -19,19 +20,18 @@ const SAME_FOOT: f64 = 1e-6;
 const SAME_NORMAL: f64 = 1e-12;
 
 /// Heights on a grid over the two coordinates perpendicular to the approach direction.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HeightMapSpec {
     /// Grid lines of the first coordinate perpendicular to the approach direction (x, or y if that direction is along x): at least two,
     /// increasing, from the first candidate to the last or beyond.
-    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
+    #[schemars(extend("minItems" = 2))]
     pub x: Vec<f64>,
     /// Grid lines of the second coordinate perpendicular to it (z, or y if the approach direction is along z), likewise.
-    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
+    #[schemars(extend("minItems" = 2))]
     pub y: Vec<f64>,
     /// `heights[i][j]`: the surface's coordinate along the axis of the approach direction over `x[i]`, `y[j]`.
-    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
+    #[schemars(extend("minItems" = 2))]
     pub heights: Vec<Vec<f64>>,
 }
 

@@ -37,13 +37,13 @@ pub use torus::TorusSpec;
 pub use triangulated::SurfaceSpec;
 pub use wedge::WedgeSpec;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use shape::{About, ObstacleShape};
 
 /// The surface of an obstacle, over the coordinates perpendicular to the approach direction.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ShapeSpec {
     /// A plane.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::graph::{Form, Graph};
@@ -13,14 +14,13 @@ use crate::error::Error;
 const NEWTON_STEPS: usize = 200;
 
 /// A parabola.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ParabolaSpec {
     /// The point nearest to the body.
     pub apex: [f64; 2],
     /// Radius of curvature at the apex, positive.
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
 }
 

@@ -1,5 +1,6 @@
 //! A sphere, seen from outside or inside: a circle rotated about the approach direction.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::circle::round;
@@ -8,8 +9,7 @@ use super::shape::{About, Geometry, ObstacleShape, Side, Site};
 use crate::error::Error;
 
 /// A sphere, given by its centre or by its apex.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SphereSpec {
     /// The centre.
@@ -19,7 +19,7 @@ pub struct SphereSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 3]>,
     /// Radius, positive. Nodes beyond its reach have no contact row.
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
     /// The side of the body: `outside`, or `inside`, as a ball in a cup, with the obstacle all around.
     #[serde(default, skip_serializing_if = "Side::is_outside")]

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::graph::{Form, Graph};
@@ -12,13 +13,12 @@ use crate::error::Error;
 use crate::scene::input::entry::{PLACE_TOLERANCE, finite, number, point, wrong};
 
 /// A polyline through points.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TableSpec {
     /// At least two points [x, y], increasing in the coordinate perpendicular to the approach direction, from the first candidate to the
     /// last or beyond.
-    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
+    #[schemars(extend("minItems" = 2))]
     pub points: Vec<[f64; 2]>,
 }
 

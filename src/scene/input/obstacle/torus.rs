@@ -1,5 +1,6 @@
 //! A torus: the points at the distance `minor` from a ring of radius `major`.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::circle::BESIDE;
@@ -15,8 +16,7 @@ use crate::scene::input::schema::approach::Rule;
 const ALIGNED: f64 = 1e-9;
 
 /// A torus, a ring of circular section.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TorusSpec {
     /// The centre.
@@ -25,10 +25,10 @@ pub struct TorusSpec {
     /// stands upright), of any length except zero.
     pub axis: [f64; 3],
     /// Radius of the ring in the middle of the tube.
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub major: f64,
     /// Radius of the tube, positive and less than `major`.
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub minor: f64,
 }
 

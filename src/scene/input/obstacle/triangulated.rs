@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::row::ObstacleRow;
@@ -21,8 +22,7 @@ const OF_FILE: f64 = 3.0;
 ///
 /// Every edge must join two triangles. The order of its corners gives the outside of a triangle: counterclockwise seen from outside; if
 /// all run clockwise, all are reversed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SurfaceSpec {
     /// The file, `.stl` or `.obj`, inside the folder of the scene unless reading outside is allowed; a relative name starts in that
@@ -30,7 +30,7 @@ pub struct SurfaceSpec {
     pub file: String,
     /// Factor of the coordinates of the file, positive.
     #[serde(default = "crate::scene::input::schema::cells::one")]
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub scale: f64,
     /// The position of the origin of the file.
     #[serde(default, skip_serializing_if = "is_origin")]

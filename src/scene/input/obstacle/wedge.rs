@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::graph::{Form, Graph};
@@ -10,14 +11,13 @@ use super::shape::{About, Geometry, ObstacleShape, Site};
 use crate::error::Error;
 
 /// A wedge.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WedgeSpec {
     /// The point nearest to the body.
     pub apex: [f64; 2],
     /// Slope of both flanks away from the body, positive.
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub slope: f64,
 }
 

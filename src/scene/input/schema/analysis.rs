@@ -1,5 +1,6 @@
 //! The analysis of a scene: its equilibrium, or, if requested, its motion.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::fem::MassForm;
@@ -9,8 +10,7 @@ use crate::motion::SchemeSpec;
 pub(crate) const PATH: &str = "analysis.dynamic";
 
 /// The analysis; a scene without one is static.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum AnalysisSpec {
     /// The motion from given displacements and velocities.
@@ -18,21 +18,20 @@ pub enum AnalysisSpec {
 }
 
 /// The motion of the bodies: the scene integrated in time. Every material needs a density.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct DynamicSpec {
     /// Duration, positive, in time.
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub duration: f64,
     /// Time step, positive. If it is left out, `courant` determines it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub step: Option<f64>,
     /// Time step over the time in which a pressure wave crosses the shortest distance between two nodes of an element, 0.5 if left out.
     /// With `central-difference`: the step over the largest stable step, at most 1, and 0.9 if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub courant: Option<f64>,
     /// The scheme.
     #[serde(default)]
@@ -42,21 +41,21 @@ pub struct DynamicSpec {
     pub mass: Option<MassForm>,
     /// Damping of `hht`: from -1/3 to 0, -0.1 if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "cli", schemars(extend("minimum" = -1.0 / 3.0, "maximum" = 0)))]
+    #[schemars(extend("minimum" = -1.0 / 3.0, "maximum" = 0))]
     pub alpha: Option<f64>,
     /// Stiffness of `penalty` in multiples of the local stiffness of a step, positive; 10 if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub penalty: Option<f64>,
     /// Penetration at which the loop of `penalty-loop` ends, as the norm over all closed rows, relative to the largest displacement of
     /// the body; positive and at most 0.1, 1e-6 if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0, "maximum" = 0.1)))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 0.1))]
     pub threshold: Option<f64>,
     /// Velocity of a node after its impact over that before, in `central-difference`, from 0 to 1; 0 if left out. Above 0 the energy of a
     /// mesh can grow; smaller steps reduce the growth.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "cli", schemars(extend("minimum" = 0, "maximum" = 1)))]
+    #[schemars(extend("minimum" = 0, "maximum" = 1))]
     pub restitution: Option<f64>,
     /// Rayleigh damping.
     #[serde(default)]
@@ -72,7 +71,7 @@ pub struct DynamicSpec {
     pub loads_in_time: Vec<LoadInTimeSpec>,
     /// States of the body that are written and shown, evenly over the duration, besides the first; at most 10000.
     #[serde(default = "frames")]
-    #[cfg_attr(feature = "cli", schemars(extend("minimum" = 1, "maximum" = 10000)))]
+    #[schemars(extend("minimum" = 1, "maximum" = 10000))]
     pub frames: usize,
     /// Points with output at every step: time, displacement, velocity and contact force, in `watch.csv` of `--out`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -80,8 +79,7 @@ pub struct DynamicSpec {
 }
 
 /// A point with output at every step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum WatchSpec {
     /// A node of the mesh, from 0.
@@ -95,21 +93,19 @@ fn frames() -> usize {
 }
 
 /// Rayleigh damping C = `mass` M + `stiffness` K.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DampingSpec {
     /// Share of the mass, zero or positive, in one over time.
-    #[cfg_attr(feature = "cli", schemars(extend("minimum" = 0)))]
+    #[schemars(extend("minimum" = 0))]
     pub mass: f64,
     /// Share of the stiffness, zero or positive, in time.
-    #[cfg_attr(feature = "cli", schemars(extend("minimum" = 0)))]
+    #[schemars(extend("minimum" = 0))]
     pub stiffness: f64,
 }
 
 /// Initial displacement and velocity of one body or of all.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InitialSpec {
     /// Name of a further body; all bodies if left out.
@@ -124,8 +120,7 @@ pub struct InitialSpec {
 }
 
 /// A linear field: `value + gradient . x`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FieldSpec {
     /// Value at the origin, one entry for each coordinate.
@@ -136,8 +131,7 @@ pub struct FieldSpec {
 }
 
 /// The treatment of nodes that start inside an obstacle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum PenetrationSpec {
     /// An error with the node and the depth.
@@ -148,8 +142,7 @@ pub enum PenetrationSpec {
 }
 
 /// The change of one load with time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LoadInTimeSpec {
     /// Number of the entry of `loads`, from 0.
@@ -159,8 +152,7 @@ pub struct LoadInTimeSpec {
 }
 
 /// A factor over time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FactorSpec {
     /// Straight lines between points; constant before the first and after the last.
@@ -174,25 +166,23 @@ pub enum FactorSpec {
 }
 
 /// Points of a factor over time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FactorTableSpec {
     /// Times, at least one, increasing.
-    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 1)))]
+    #[schemars(extend("minItems" = 1))]
     pub times: Vec<f64>,
     /// The factor at each time.
-    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 1)))]
+    #[schemars(extend("minItems" = 1))]
     pub factors: Vec<f64>,
 }
 
 /// A sine over time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SineSpec {
     /// Frequency, positive, in one over time.
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub frequency: f64,
     /// Phase at t = 0, in radians.
     #[serde(default)]
@@ -200,8 +190,7 @@ pub struct SineSpec {
 }
 
 /// An interval of time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct IntervalSpec {
     /// Start of the interval.

@@ -1,10 +1,10 @@
 //! The side from which an obstacle comes, and the rule for its rows.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A direction along an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Approach {
     /// Along x.
     #[serde(rename = "+x")]
@@ -53,8 +53,7 @@ impl Approach {
 }
 
 /// The rule for the contact row of a candidate node: its direction, and the point of the obstacle that it meets.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rule {
     /// Along the approach direction: `u . approach <= distance along it`; one entry per row.

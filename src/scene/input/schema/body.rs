@@ -1,22 +1,22 @@
 //! Materials and further bodies as they are written in a scene.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::part::PartBoxSpec;
 use crate::scene::input::body::BodySpec;
 
 /// A linear elastic material: isotropic with `young` and `poisson`, or `orthotropic`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialSpec {
     /// Young's modulus, positive, in force per area.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub young: Option<f64>,
     /// Poisson's ratio: above -1, at most 0.5 in a bar and in plane stress, below 0.5 elsewhere.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = -1, "maximum" = 0.5)))]
+    #[schemars(extend("exclusiveMinimum" = -1, "maximum" = 0.5))]
     pub poisson: Option<f64>,
     /// Elasticity with three planes of symmetry, instead of `young` and `poisson`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -26,24 +26,23 @@ pub struct MaterialSpec {
     pub expansion: Option<f64>,
     /// Density, positive, in mass per volume; needed for a dynamic analysis, gravity and centrifugal forces.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub density: Option<f64>,
 }
 
 /// Orthotropic elasticity, along the axes 1, 2, 3 of the material. These are x, y, z unless they are rotated; in an axisymmetric model
 /// the radius, y and the hoop direction. A bar lies along axis 1.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OrthotropicSpec {
     /// Young's moduli `[E1, E2, E3]`, positive, in force per area.
-    #[cfg_attr(feature = "cli", schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0})))]
+    #[schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0}))]
     pub young: [f64; 3],
     /// Poisson's ratios `[nu12, nu23, nu13]`: tension along i contracts the material along j by nu_ij times its extension, and nu_ij/E_i =
     /// nu_ji/E_j. The stiffness must be positive definite.
     pub poisson: [f64; 3],
     /// Shear moduli `[G12, G23, G13]`, positive, in force per area.
-    #[cfg_attr(feature = "cli", schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0})))]
+    #[schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0}))]
     pub shear: [f64; 3],
     /// Thermal expansion along axes 1, 2, 3, in strain per degree.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -59,8 +58,7 @@ pub struct OrthotropicSpec {
 /// The material of a part of a body: of the elements of a group, of the elements with the centroid in a box, or of the elements in both.
 ///
 /// If several parts contain an element, the last one counts. The elements are chosen again on every mesh.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialPartSpec {
     /// A physical group of the mesh file.
@@ -75,8 +73,7 @@ pub struct MaterialPartSpec {
 
 /// The temperature of a body above the stress-free one, or of its part in a group, in a box, or in both: `value` plus the gradient times
 /// the position. If several entries contain an element, the last one counts; elements in no entry are stress-free.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TemperatureSpec {
     /// A physical group of the mesh file.
@@ -97,8 +94,7 @@ pub struct TemperatureSpec {
 ///
 /// Allowed components: xx in a bar; xx, yy, xy in plane stress; also zz in plane strain; also zz, the hoop stress, in an axisymmetric
 /// body; all six in space.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct InitialStressSpec {
     /// A physical group of the mesh file.
@@ -122,12 +118,11 @@ pub struct InitialStressSpec {
 }
 
 /// An elastic body besides the first, with the same model, thickness and element.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct FurtherBodySpec {
     /// Its name; its boundaries are called `name.boundary`.
-    #[cfg_attr(feature = "cli", schemars(extend("minLength" = 1)))]
+    #[schemars(extend("minLength" = 1))]
     pub name: String,
     /// The body.
     pub body: BodySpec,

@@ -1,5 +1,6 @@
 //! Cells of a mesh: their element, and the half of a body that they fill.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::fem::mesh::{ElementKind, Mesh};
@@ -10,8 +11,7 @@ pub(crate) fn one() -> f64 {
 }
 
 /// The elements of the plane to choose from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ElementSpec {
     /// Linear triangle.
@@ -26,8 +26,7 @@ pub enum ElementSpec {
 }
 
 /// The elements of space to choose from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SolidElementSpec {
     /// Linear tetrahedron.
@@ -42,8 +41,7 @@ pub enum SolidElementSpec {
 }
 
 /// The half of a disc or a ball.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum HalfSpec {
     /// Below the centre.

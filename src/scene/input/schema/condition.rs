@@ -1,12 +1,12 @@
 //! Supports as they are written in a scene.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::profile::ProfileSpec;
 
 /// The place on the body.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Place {
     /// All nodes of a named boundary.
@@ -19,8 +19,7 @@ pub enum Place {
 ///
 /// A `normal` makes it a roller on an inclined plane: the component of the displacement along it is prescribed, the components along the
 /// plane are free. In an axisymmetric model the plane is a cone.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SupportSpec {
     /// The place.

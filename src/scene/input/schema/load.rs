@@ -1,12 +1,12 @@
 //! Loads as they are written in a scene.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::profile::ProfileSpec;
 
 /// An external load. Body forces, gravity and centrifugal forces act on all bodies.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum LoadSpec {
     /// A traction on a boundary.
@@ -33,8 +33,7 @@ impl LoadSpec {
 }
 
 /// A traction on a boundary.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TractionSpec {
     /// The boundary.
@@ -47,8 +46,7 @@ pub struct TractionSpec {
 }
 
 /// A pressure on a boundary.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PressureSpec {
     /// The boundary.
@@ -61,8 +59,7 @@ pub struct PressureSpec {
 }
 
 /// A force at a node, or spread over a boundary as a constant traction.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ForceSpec {
     /// The point; a node must lie there.
@@ -78,16 +75,15 @@ pub struct ForceSpec {
 /// A moment on a boundary: a traction proportional to the distance from the centre of the boundary, at right angles to the vector from
 /// there and to an axis; on a flat end it is the traction of pure bending. Its force is zero, so that its moment is the same about every
 /// point.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MomentSpec {
     /// The boundary; required.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "cli", schemars(required))]
+    #[schemars(required)]
     pub boundary: Option<String>,
     /// Refused: a node of a solid has no rotation, and cannot carry a moment.
-    #[cfg_attr(feature = "cli", schemars(skip))]
+    #[schemars(skip)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<Vec<f64>>,
     /// The moment, in force times length: `[m]` about z in the plane, on the whole thickness, counterclockwise; three components in
@@ -98,8 +94,7 @@ pub struct MomentSpec {
 /// The centrifugal force of a rotation: density times the square of omega times the vector from the axis.
 ///
 /// In a plane model the axis is normal to the plane; in an axisymmetric model it is the axis of revolution.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CentrifugalSpec {
     /// The angular velocity, in radians per time.

@@ -1,5 +1,6 @@
 //! The scene as it is written: typed, with defaults, unknown fields refused.
 
+use schemars::JsonSchema;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -40,8 +41,7 @@ const FORMAT: u32 = 1;
 ///
 /// Any consistent system of units. Points and vectors have as many entries as the model has coordinates: `[x]` in a
 /// bar, `[x, y]` in the plane and about an axis, `[x, y, z]` in space.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Scene {
     /// Path of the JSON Schema of scenes, for editors: a file that `signorini schema` printed. The program does not read it.
@@ -50,7 +50,7 @@ pub struct Scene {
     /// Version of the format of scenes: 1, the only one so far. Later formats will have other numbers, and be refused by programs that do
     /// not read them.
     #[serde(default, deserialize_with = "format", skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "cli", schemars(extend("const" = 1)))]
+    #[schemars(extend("const" = 1))]
     pub format: Option<u32>,
     /// Title: what the scene shows.
     #[serde(default)]
@@ -63,7 +63,7 @@ pub struct Scene {
     pub model: ModelSpec,
     /// Depth across the plane, positive; only in plane strain and plane stress.
     #[serde(default = "cells::one")]
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub thickness: f64,
     /// The shape and the mesh of the elastic body.
     pub body: BodySpec,
@@ -130,8 +130,7 @@ fn format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<u32>, D::
 
 /// Names of the units of length and force, for tables and pictures. They convert no number of a scene, which may have
 /// any consistent system.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Units {
     /// Name of the unit of all coordinates and displacements, as `m`.

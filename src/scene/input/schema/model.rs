@@ -1,10 +1,10 @@
 //! The space of a model.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The space of a model, and the assumption for the directions that it leaves out.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ModelSpec {
     /// A bar along x; no stress across it.

@@ -1,13 +1,13 @@
 //! Obstacles as they are written in a scene.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::approach::{Approach, Rule};
 use crate::scene::input::obstacle::ShapeSpec;
 
 /// A frictionless obstacle and the boundary that may touch it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObstacleSpec {
     /// The boundary that contains the candidate nodes.
@@ -24,7 +24,7 @@ pub struct ObstacleSpec {
     /// The force, positive, that presses the obstacle against its approach direction; the obstacle moves only along this direction. In
     /// force; for a body of revolution that of the full circle. The travel of the obstacle is computed.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub force: Option<f64>,
     /// The surface of the obstacle.
     pub shape: ShapeSpec,

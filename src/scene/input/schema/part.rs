@@ -1,17 +1,17 @@
 //! Parts of boundaries as they are written in a scene.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A part of a boundary: all its facets with the centroid in the box and in the sphere, and with the outward normal around the direction.
 /// A condition that is left out is always met.
 ///
 /// The facets are chosen again on every mesh: a part that ends within a facet changes with the mesh.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PartSpec {
     /// Its name: a boundary for supports, loads, obstacles and later parts.
-    #[cfg_attr(feature = "cli", schemars(extend("minLength" = 1)))]
+    #[schemars(extend("minLength" = 1))]
     pub name: String,
     /// The boundary, or a further body to choose its whole surface; the whole surface of the first body if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -28,8 +28,7 @@ pub struct PartSpec {
 }
 
 /// A box along the coordinate axes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PartBoxSpec {
     /// Its smallest coordinates.
@@ -39,25 +38,23 @@ pub struct PartBoxSpec {
 }
 
 /// A sphere.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PartSphereSpec {
     /// Its centre.
     pub centre: Vec<f64>,
     /// Its radius, positive.
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
 }
 
 /// Directions around a given one.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PartNormalSpec {
     /// The direction in their middle, of any length except zero.
     pub direction: Vec<f64>,
     /// The largest angle to this direction, in degrees, from 0 to 180.
-    #[cfg_attr(feature = "cli", schemars(extend("minimum" = 0, "maximum" = 180)))]
+    #[schemars(extend("minimum" = 0, "maximum" = 180))]
     pub within: f64,
 }

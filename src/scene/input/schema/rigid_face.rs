@@ -1,11 +1,11 @@
 //! Boundaries that move as rigid plates, as they are written in a scene.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A boundary that moves as a rigid plate: a displacement of its centre and a rotation about it. Components that are not prescribed
 /// follow from the force and the moment.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RigidFaceSpec {
     /// The boundary.
@@ -34,8 +34,7 @@ pub struct RigidFaceSpec {
 }
 
 /// Prescribed rotations, in radians, small; a rotation that is left out is free.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RotationSpec {
     /// About x, in space.

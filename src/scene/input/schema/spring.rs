@@ -1,5 +1,6 @@
 //! Springs and foundations as they are written in a scene.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::condition::Place;
@@ -8,27 +9,26 @@ use super::condition::Place;
 /// foundation.
 ///
 /// A direction that is left out has no spring.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct SpringSpec {
     /// The place.
     pub on: Place,
     /// Stiffness along x, positive.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub x: Option<f64>,
     /// Stiffness along y, positive.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub y: Option<f64>,
     /// Stiffness along z, positive.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub z: Option<f64>,
     /// Stiffness along the normal of the boundary at every place, positive.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub normal: Option<f64>,
     /// The reference of the stiffnesses.
     #[serde(default)]
@@ -36,8 +36,7 @@ pub struct SpringSpec {
 }
 
 /// The reference of a stiffness on a boundary.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum StiffnessOf {
     /// The whole spring, in force per length; on a boundary it is distributed evenly over its area.
