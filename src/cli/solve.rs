@@ -14,7 +14,7 @@ use super::total_error;
 use crate::error::Error;
 use crate::output::gallery::{self, Pictures};
 use crate::output::page::{About, write_answer_page, write_problem_page};
-use crate::output::{solve_text, tables, why_text, write_files};
+use crate::output::{remove_files, solve_text, tables, why_text, write_files};
 use crate::qp::{Method, Settings, Start, plan_in_words, read_vector, solve_from};
 use crate::scene::Scene;
 use crate::solution::{Goal, Solution};
@@ -173,6 +173,7 @@ fn reported(
     let report = Report::new(&summary, text)?;
     let status = summary.status;
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
+    remove_files(&folder, &["along.csv"])?;
     gallery::write_answer(&folder, &summary.solution, answer.as_ref())?;
     report.write(&folder)?;
     let outcome = report.outcome(common.format, status);

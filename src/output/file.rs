@@ -93,3 +93,19 @@ pub fn write_files(folder: &Path, files: &[(&str, impl AsRef<str>)]) -> Result<(
 pub fn write_streamed(folder: &Path, files: &[Streamed]) -> Result<(), Error> {
     files.iter().try_for_each(|file| streamed_atomically(&folder.join(file.name), |out| file.write(out)))
 }
+
+/// Removes files that an earlier run left in a folder, and that would not belong to this one.
+///
+/// # Errors
+/// [`Error::File`] if a file stays.
+pub(crate) fn remove_files(folder: &Path, names: &[&str]) -> Result<(), Error> {
+    for name in names {
+        match std::fs::remove_file(folder.join(name)) {
+            Err(source) if source.kind() != std::io::ErrorKind::NotFound && folder.exists() => {
+                return Err(Error::File { action: "remove", path: folder.join(name), source });
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}

@@ -18,7 +18,7 @@ pub(crate) mod view;
 
 pub use draw::drawing::Drawing;
 #[cfg(feature = "cli")]
-pub(crate) use file::{make_folder, write_atomically, write_streamed};
+pub(crate) use file::{make_folder, remove_files, write_atomically, write_streamed};
 pub use file::{write_files, write_picture};
 #[cfg(feature = "cli")]
 pub(crate) use folder::estimated_error::{estimated_error_text, estimated_meshes_picture, write_estimated_error};

@@ -45,58 +45,109 @@ fn axis(ends: [f64; 2], cells: usize) -> Value {
     json!({"points": ends, "divisions": [cells]})
 }
 
-/// GOAL: all elements, in the plane, about an axis and in space. CONDITIONS: a block that stretches by a constant strain, skew lines that
-/// begin inside and outside. REFERENCE: the linear displacement, and the length of the line in the block.
+/// GOAL: all elements, in the plane, about an axis and in space. CONDITIONS: a block that stretches by a constant strain along its first
+/// axis, or along the axis of revolution; skew lines that begin inside and outside, and the axis. REFERENCE: the linear displacement, the
+/// stress along the load alone, and the length of the line in the block.
 #[test]
 fn a_block_under_tension_has_its_linear_displacement_along_every_line() {
     let (young, poisson, load) = (1000.0, 0.25, 8.0);
     let held = |boundary: &str, axis: &str| json!({"on": {"boundary": boundary}, axis: 0});
-    for element in ["t3", "t6", "q4", "q8", "tet4", "tet10", "hex8", "hex20"] {
-        let is_space = element.starts_with("tet") || element.starts_with("hex");
-        let sides = json!({"x": axis([0.0, 2.0], 3), "y": axis([0.0, 1.0], 2), "element": element});
-        let mut body = json!({ "rectangle": sides });
-        let mut supports = vec![held("left", "x"), held("bottom", "y")];
-        let mut plane =
-            json!({"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [9, 0], "normal": [1, 0]}}});
-        if is_space {
-            body = json!({ "box": body["rectangle"] });
-            body["box"]["y"] = axis([0.0, 1.0], 2);
-            body["box"]["z"] = axis([0.0, 1.5], 2);
-            supports = vec![held("left", "x"), held("front", "y"), held("bottom", "z")];
-            plane["shape"]["plane"] = json!({"point": [9, 0, 0], "normal": [1, 0, 0]});
-        }
+    let plane = ["t3", "t6", "q4", "q8"];
+    let kinds = plane.iter().map(|element| ("plane-stress", *element));
+    let kinds = kinds.chain(plane.iter().map(|element| ("axisymmetric", *element)));
+    for (model, element) in kinds.chain(["tet4", "tet10", "hex8", "hex20"].map(|element| ("space", element))) {
+        let mut body = json!({"rectangle": {"x": axis([0.0, 2.0], 3), "y": axis([0.0, 1.0], 2), "element": element}});
+        // The axis along which the block is pulled, the boundary on which it is, the supports, and a plane far away.
+        let (pulled, boundary, supports) = match model {
+            "plane-stress" => (0, "right", vec![held("left", "x"), held("bottom", "y")]),
+            "axisymmetric" => (1, "top", vec![held("bottom", "y")]),
+            _ => {
+                body = json!({ "box": body["rectangle"] });
+                body["box"]["z"] = axis([0.0, 1.5], 2);
+                (0, "right", vec![held("left", "x"), held("front", "y"), held("bottom", "z")])
+            }
+        };
+        let dimension = if model == "space" { 3 } else { 2 };
+        let along_pull =
+            |value: f64| (0..dimension).map(|axis| if axis == pulled { value } else { 0.0 }).collect::<Vec<f64>>();
         let mut scene = json!({
-            "model": if is_space { "space" } else { "plane-stress" }, "body": body,
-            "material": {"young": young, "poisson": poisson}, "supports": supports, "obstacles": [plane],
-            "loads": [{"traction": {"boundary": "right", "value": if is_space { vec![load, 0.0, 0.0] } else { vec![load, 0.0] }}}]
+            "model": model, "body": body, "material": {"young": young, "poisson": poisson}, "supports": supports,
+            "obstacles": [{"boundary": boundary, "approach": if pulled == 0 { "+x" } else { "+y" },
+                           "shape": {"plane": {"point": along_pull(9.0), "normal": along_pull(1.0)}}}],
+            "loads": [{"traction": {"boundary": boundary, "value": along_pull(load)}}]
         });
-        if !is_space {
+        if model == "plane-stress" {
             scene["thickness"] = json!(1);
         }
-        // The line enters at x = 0 or begins inside, and leaves at the top; [from, to, its length in the block].
-        let lines = match is_space {
-            false => {
-                [("-0.5,0.1:2.5,0.7", 2.0 / 3.0 * 3.0_f64.hypot(0.6)), ("0.3,0.2:0.9,1.8", 0.5 * 0.6_f64.hypot(1.6))]
-            }
-            true => [
-                ("-0.5,0.1,0.2:2.5,0.7,1.1", 2.0 / 3.0 * 3.0_f64.hypot(0.6).hypot(0.9)),
-                ("0.3,0.2,0.1:0.9,1.8,1.3", 0.5 * 0.6_f64.hypot(1.6).hypot(1.2)),
-            ],
-        };
-        for (line, length) in lines {
+        // A line, both its ends, and its length in the block: it enters at x = 0, or begins inside and leaves at the top.
+        let mut lines = vec![
+            ("-0.5,0.1,0.2:2.5,0.7,1.1", [[-0.5, 0.1, 0.2], [2.5, 0.7, 1.1]], 2.0 / 3.0),
+            ("0.3,0.2,0.1:0.9,1.8,1.3", [[0.3, 0.2, 0.1], [0.9, 1.8, 1.3]], 0.5),
+            ("0,0,0:0,1,0", [[0.0; 3], [0.0, 1.0, 0.0]], 1.0),
+        ];
+        if dimension == 2 {
+            lines = [("-0.5,0.1:2.5,0.7", 0), ("0.3,0.2:0.9,1.8", 1), ("0,0:0,1", 2)]
+                .map(|(text, line)| (text, lines[line].1.map(|[x, y, _]| [x, y, 0.0]), lines[line].2))
+                .to_vec();
+        }
+        for (line, [from, to], share) in lines {
+            let run = format!("{model} {element} {line}");
+            let way = [0, 1, 2].map(|axis| to[axis] - from[axis]);
+            let whole = way.iter().map(|part| part * part).sum::<f64>().sqrt();
             let table = along(&scene, &[line]);
-            let [[start, end]] = parts(&table, 0.0)[..] else { panic!("{element} {line}: {:?}", parts(&table, 0.0)) };
-            assert!((end - start - length).abs() < ROUNDING, "{element} {line}: {start} to {end}, not {length} long");
+            let [[start, end]] = parts(&table, 0.0)[..] else { panic!("{run}: {:?}", parts(&table, 0.0)) };
+            assert!((end - start - share * whole).abs() < ROUNDING, "{run}: {start} to {end}");
             let strain = load / young;
-            for (row, &x) in table["x"].iter().enumerate() {
-                let at = |name: &str| table[name][row];
-                assert!((at("u_x") - strain * x).abs() < ROUNDING * strain, "{element} {line}");
-                assert!((at("u_y") + poisson * strain * at("y")).abs() < ROUNDING * strain, "{element} {line}");
-                for (name, expected) in [("sigma_xx", load), ("sigma_yy", 0.0), ("von_mises", load)] {
-                    assert!((at(name) - expected).abs() < ROUNDING * load, "{element} {line}: {name} {}", at(name));
+            let close = |row: usize, name: &str, expected: f64, scale: f64| {
+                let found = table[name][row];
+                assert!(
+                    (found - expected).abs() < ROUNDING * scale,
+                    "{run}, row {row}: {name} {found}, not {expected}"
+                );
+            };
+            for (row, &s) in table["s"].iter().enumerate() {
+                for (at, name) in ["x", "y", "z"].into_iter().enumerate().take(dimension) {
+                    let place = from[at] + s / whole * way[at];
+                    close(row, name, place, 1.0);
+                    close(
+                        row,
+                        &format!("u_{name}"),
+                        if at == pulled { strain } else { -poisson * strain } * place,
+                        strain,
+                    );
                 }
+                for (at, name) in ["sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy"].into_iter().enumerate() {
+                    close(row, name, if at == pulled { load } else { 0.0 }, load);
+                }
+                close(row, "von_mises", load, load);
+                close(row, "sigma_1", load, load);
             }
         }
+    }
+}
+
+/// GOAL: fine meshes far from the origin, and long lines. CONDITIONS: skew lines through thousands of cells of a block at x = 100, and
+/// through the hole of a ring from far away. REFERENCE: the length of the line in the block; the two parts beside the hole.
+#[test]
+fn no_cell_of_a_fine_mesh_is_lost() {
+    let scene = json!({
+        "body": {"rectangle": {"x": axis([100.0, 101.0], 200), "y": axis([0.0, 0.1], 20), "element": "t3"}},
+        "material": {"young": 1000, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+        "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"plane": {"point": [0, 0.1], "normal": [0, 1]}}}],
+        "gap": -0.001
+    });
+    // The second line leaves at y = 0; the third has the rounding of the distance from its first end.
+    let leaves = (0.0923 / 0.1423_f64).min(0.5);
+    for (line, length, rounding) in [
+        ("100,0.013:101,0.0777", 1.0_f64.hypot(0.0647), ROUNDING),
+        ("99,0.0923:103,-0.05", (leaves - 0.25) * 4.0_f64.hypot(0.1423), ROUNDING),
+        ("-1e6,0.05:1e6,0.05", 1.0, 1e-9 * 1e3),
+        ("100.5,0.01:100.5,1e200", 0.09, ROUNDING),
+    ] {
+        let table = along(&scene, &[line]);
+        let [[start, end]] = parts(&table, 0.0)[..] else { panic!("{line}: {:?}", parts(&table, 0.0)) };
+        assert!((end - start - length).abs() < rounding, "{line}: {start} to {end}, not {length} long");
     }
 }
 
@@ -177,6 +228,38 @@ fn both_bodies_have_their_pressure_along_their_contact() {
     assert_eq!((parts(&apart, 1.0), parts(&apart, 0.0)), (vec![[0.0, 1.0]], vec![[1.25, 2.25]]));
 }
 
+/// GOAL: the pressure on the contact of one obstacle, on edges of cells, and nowhere else. CONDITIONS: a block pressed into a corner of
+/// two planes, and a layer of one cell between two planes. REFERENCE: the pressure of each plane is uniform.
+#[test]
+fn the_pressure_is_that_of_the_obstacle_on_which_the_line_lies() {
+    let cube = |x: f64, planes: Value| {
+        json!({
+            "model": "space",
+            "body": {"box": {"x": axis([0.0, x], 2), "y": axis([0.0, 1.0], 2), "z": axis([0.0, 1.0], 2), "element": "hex8"}},
+            "material": {"young": 1000, "poisson": 0}, "obstacles": planes, "gap": 0
+        })
+    };
+    let plane = |boundary: &str, approach: &str, point: [f64; 3], normal: [f64; 3]| json!({"boundary": boundary, "approach": approach, "shape": {"plane": {"point": point, "normal": normal}}});
+    // Planes at the right and the top overlap the cube by 0.01 at Young's modulus 1000: 10 on each.
+    let mut scene = cube(
+        1.0,
+        json!([
+            plane("right", "+x", [0.99, 0.0, 0.0], [1.0, 0.0, 0.0]),
+            plane("top", "+z", [0.0, 0.0, 0.99], [0.0, 0.0, 1.0])
+        ]),
+    );
+    scene["supports"] = json!([{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "bottom"}, "z": 0},
+                               {"on": {"boundary": "front"}, "y": 0}]);
+    let lines = ["1,0,0.5:1,1,0.5", "1,0.5,0:1,0.5,1", "0,0.3,1:1,0.3,1", "0.5,0.5,0:0.5,0.5,1"];
+    let table = along(&scene, &lines);
+    for (row, &pressure) in table["pressure"].iter().enumerate() {
+        match table["line"][row] {
+            3.0 => assert!(pressure.is_nan(), "row {row}: {pressure}"),
+            line => assert!((pressure - 10.0).abs() < 1e-6, "line {line}, row {row}: {pressure}"),
+        }
+    }
+}
+
 /// GOAL: a line that cannot be drawn is refused in one sentence, one that meets no body is written with a warning.
 #[test]
 fn lines_that_do_not_fit_are_refused() {
@@ -200,4 +283,7 @@ fn lines_that_do_not_fit_are_refused() {
     let outside = run("7,7:8,8").ends_with(0);
     assert!(outside.stderr.contains("--along 7,7:8,8 meets no body; the mesh reaches from"), "{}", outside.stderr);
     assert_eq!(fs::read_to_string(desk.path("o/along.csv")).unwrap().lines().count(), 1);
+    // The table of an earlier run would not belong to the next answer.
+    desk.run(&["solve", "block.json", "--out", "o"]).ends_with(0);
+    assert!(!desk.path("o/along.csv").exists());
 }

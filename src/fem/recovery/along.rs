@@ -3,15 +3,17 @@
 use super::{Stress, finished};
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
-use crate::fem::element::{Cell, ElementKind, FacetKind, PerNode, ReferenceElement, TabulatedPoint};
+use crate::fem::element::{Cell, ElementKind, PerNode, ReferenceElement, TabulatedPoint};
 use crate::fem::geometry::{cross, dot, length, minus};
 
 /// Points of a piece in an element whose stress is not constant.
 const POINTS: usize = 5;
-/// Reference coordinates that differ by less are equal.
+/// Reference coordinates, and places in the size of an element, that differ by less are equal.
 const SAME: f64 = 1e-9;
 /// The box of the nodes of an element grows by this share of its size: curved sides may leave it.
 const BULGE: f64 = 0.25;
+/// On the axis of revolution u_r/r is 0/0: the stress is taken so far from there towards the centroid, in reference coordinates.
+const OFF_AXIS: f64 = 1e-6;
 /// Newton's method ends when the reference coordinates move by less than this.
 const CONVERGED: f64 = 1e-13;
 /// Steps of Newton's method to the point at which the line meets a face.
@@ -24,15 +26,13 @@ pub(crate) struct Piece {
     pub element: usize,
     /// Points from its beginning to its end, both included.
     pub points: Vec<PathPoint>,
-    /// The nodes of the face in which the whole piece lies; `None` inside the element.
-    pub face: Option<Vec<usize>>,
 }
 
 /// A point of a line in an element.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PathPoint {
-    /// Its position on the line: 0 at the first end, 1 at the other.
-    pub share: f64,
+    /// Its distance from the first end of the line, in length.
+    pub distance: f64,
     /// [x, y, z], in length.
     pub place: [f64; 3],
     /// The shape functions of the element there: weights of its nodes.
@@ -42,33 +42,36 @@ pub(crate) struct PathPoint {
 }
 
 impl Piece {
-    /// The middle of its positions.
-    fn middle(&self) -> f64 {
-        0.5 * (self.start() + self.end())
-    }
-
-    /// Its first position on the line.
+    /// Its first distance from the first end of the line.
     pub fn start(&self) -> f64 {
-        self.points[0].share
+        self.points[0].distance
     }
 
-    /// Its last position on the line.
+    /// Its last distance from the first end of the line.
     pub fn end(&self) -> f64 {
-        self.points[self.points.len() - 1].share
+        self.points[self.points.len() - 1].distance
+    }
+
+    /// The local nodes on which the piece depends: those of the smallest side of the element that contains it.
+    pub fn side(&self) -> impl Iterator<Item = usize> + '_ {
+        let depends = |node: &usize| self.points.iter().any(|point| point.weights[*node].abs() > SAME);
+        (0..self.points[0].weights.len()).filter(depends)
     }
 }
 
 /// The pieces of a line in the elements of a body under the nodal displacement `displacement` (`dim` a node): region by region, in the
-/// order of the line. Along a common side of several elements of one region, the piece of the first of these elements alone.
+/// order of the line. Along a common side of several elements of one region, the piece of one of them alone.
 ///
 /// # Errors
 /// [`Error::Length`] if the displacement does not have `dim` entries per node.
 pub(crate) fn along(body: &ElasticBody, displacement: &[f64], ends: [[f64; 3]; 2]) -> Result<Vec<Piece>, Error> {
     body.check_nodal("nodal displacement", displacement.len())?;
-    let line = Line::new(ends);
-    let table = body.tabulated();
-    let kind = body.mesh().kind();
-    let is_constant = kind.nodes() == kind.dimension() + 1 && !body.formulation().is_axisymmetric();
+    let Some(line) = Line::within(ends, body.mesh().extent(), body.mesh().size()) else { return Ok(Vec::new()) };
+    let (table, reference) = (body.tabulated(), body.mesh().kind().reference());
+    let is_about_axis = body.formulation().is_axisymmetric();
+    // The stress of such an element is constant.
+    let is_constant = reference.nodes.len() == reference.dimension + 1 && !is_about_axis && !body.has_own_stress();
+    let points = if is_constant { 2 } else { POINTS };
     let mut elements = body.elements().enumerate();
     let mut all = Vec::new();
     for region in body.regions() {
@@ -78,25 +81,25 @@ pub(crate) fn along(body: &ElasticBody, displacement: &[f64], ends: [[f64; 3]; 2
                 continue;
             }
             let strained = body.strained(&table, displacement, &element);
-            for [start, end] in line.inside(kind, body, &element) {
-                let points = if is_constant { 2 } else { POINTS };
-                let at = |point: usize| {
-                    let share = start + (end - start) * point as f64 / (points - 1) as f64;
-                    let at = element.cell.reference_coordinates(line.at(share));
-                    let point = TabulatedPoint::new(kind.reference(), at, 0.0);
-                    let stress = finished(body, strained.at(&point).1);
-                    PathPoint { share, place: line.at(share), weights: point.shape, stress }
-                };
-                let points: Vec<PathPoint> = (0..points).map(at).collect();
-                let face =
-                    face_of(kind.reference(), &points).map(|face| face.iter().map(|&at| element.nodes[at]).collect());
-                pieces.push(Piece { element: index, points, face });
+            let at = |from_start: f64| {
+                let place = line.at(from_start);
+                let at = element.cell.reference_coordinates(place);
+                let on_axis = is_about_axis && place[0].abs() <= SAME * element.cell.unit();
+                let share = if on_axis { OFF_AXIS } else { 0.0 };
+                let inside = [0, 1, 2].map(|axis| at[axis] + share * (reference.centroid()[axis] - at[axis]));
+                let stress = finished(body, strained.at(&TabulatedPoint::new(reference, inside, 0.0)).1);
+                PathPoint { distance: line.offset + from_start, place, weights: (reference.shape)(at), stress }
+            };
+            for [start, end] in line.inside(body.mesh().kind(), body, &element) {
+                let share = |point: usize| point as f64 / (points - 1) as f64;
+                let points = (0..points).map(|point| at(start + (end - start) * share(point))).collect();
+                pieces.push(Piece { element: index, points });
             }
         }
         pieces.sort_by(|a, b| a.start().total_cmp(&b.start()).then(a.element.cmp(&b.element)));
         let mut covered = f64::NEG_INFINITY;
         pieces.retain(|piece| {
-            let is_new = piece.middle() > covered;
+            let is_new = 0.5 * (piece.start() + piece.end()) > covered;
             covered = covered.max(piece.end());
             is_new
         });
@@ -105,74 +108,90 @@ pub(crate) fn along(body: &ElasticBody, displacement: &[f64], ends: [[f64; 3]; 2
     Ok(all)
 }
 
-/// The local nodes of the face on which all points lie: the shape functions of the other nodes vanish there.
-fn face_of(reference: &'static ReferenceElement, points: &[PathPoint]) -> Option<&'static [usize]> {
-    let is_on = |face: &&&[usize]| {
-        let others = (0..reference.nodes.len()).filter(|node| !face.contains(node));
-        others.into_iter().all(|node| points.iter().all(|point| point.weights[node].abs() <= SAME))
-    };
-    reference.faces.iter().find(is_on).copied()
-}
-
-/// A straight line between two points.
+/// The part of a straight line near a mesh.
 struct Line {
+    /// Its first point.
     from: [f64; 3],
+    /// The distance of that point from the first end of the whole line.
+    offset: f64,
+    length: f64,
+    /// The unit vector along it.
     way: [f64; 3],
-    /// Two unit vectors across it.
+    /// Two unit vectors across it; in the plane the first lies in the plane.
     across: [[f64; 3]; 2],
 }
 
 impl Line {
-    fn new([from, to]: [[f64; 3]; 2]) -> Self {
-        let way = minus(to, from);
+    /// The part of the line between two different points in a box with room of `size` around it; `None` outside.
+    fn within(ends: [[f64; 3]; 2], (low, high): ([f64; 3], [f64; 3]), size: f64) -> Option<Self> {
+        let whole = minus(ends[1], ends[0]);
+        // No square of a component overflows or vanishes.
+        let largest = whole.iter().fold(0.0, |largest: f64, part| largest.max(part.abs()));
+        let scaled = whole.map(|part| part / largest);
         let unit = |v: [f64; 3]| v.map(|part| part / length(v));
-        // In the plane the first vector lies in the plane, too.
+        let way = unit(scaled);
         let first = if way[0] == 0.0 && way[1] == 0.0 { [1.0, 0.0, 0.0] } else { unit([-way[1], way[0], 0.0]) };
-        Line { from, way, across: [first, unit(cross(way, first))] }
+        let line = Line {
+            from: ends[0],
+            offset: 0.0,
+            length: largest * length(scaled),
+            way,
+            across: [first, unit(cross(way, first))],
+        };
+        let [start, end] = line.in_box([0, 1, 2].map(|axis| [low[axis] - size, high[axis] + size]))?;
+        Some(Line { from: line.at(start), offset: start, length: end - start, ..line })
     }
 
-    fn at(&self, share: f64) -> [f64; 3] {
-        [0, 1, 2].map(|axis| self.from[axis] + share * self.way[axis])
+    fn at(&self, distance: f64) -> [f64; 3] {
+        [0, 1, 2].map(|axis| self.from[axis] + distance * self.way[axis])
     }
 
-    fn share(&self, place: [f64; 3]) -> f64 {
-        dot(minus(place, self.from), self.way) / dot(self.way, self.way)
+    fn distance(&self, place: [f64; 3]) -> f64 {
+        dot(minus(place, self.from), self.way)
+    }
+
+    /// The part of the line in a box.
+    fn in_box(&self, sides: [[f64; 2]; 3]) -> Option<[f64; 2]> {
+        let (mut enter, mut leave) = (0.0_f64, self.length);
+        for (axis, [low, high]) in sides.into_iter().enumerate() {
+            let [a, b] = [low, high].map(|side| (side - self.from[axis]) / self.way[axis]);
+            match self.way[axis] == 0.0 {
+                true if self.from[axis] < low || self.from[axis] > high => return None,
+                true => {}
+                false => (enter, leave) = (enter.max(a.min(b)), leave.min(a.max(b))),
+            }
+        }
+        (enter <= leave).then_some([enter, leave])
     }
 
     /// Returns `true` if the line passes through the box around nodes, which is a little larger than they need.
     fn is_near(&self, nodes: impl Iterator<Item = [f64; 3]> + Clone) -> bool {
         let ends = [0, 1, 2].map(|axis| {
-            let start = (f64::INFINITY, f64::NEG_INFINITY);
-            nodes.clone().fold(start, |(low, high), node| (low.min(node[axis]), high.max(node[axis])))
+            let start = [f64::INFINITY, f64::NEG_INFINITY];
+            nodes.clone().fold(start, |[low, high], node| [low.min(node[axis]), high.max(node[axis])])
         });
-        let room = BULGE * ends.iter().map(|(low, high)| high - low).fold(0.0, f64::max);
-        let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-        for (axis, (low, high)) in ends.into_iter().enumerate() {
-            let [a, b] = [low - room, high + room].map(|side| (side - self.from[axis]) / self.way[axis]);
-            match self.way[axis] == 0.0 {
-                true if self.from[axis] < low - room || self.from[axis] > high + room => return false,
-                true => {}
-                false => (enter, leave) = (enter.max(a.min(b)), leave.min(a.max(b))),
-            }
-        }
-        enter <= leave
+        let room = BULGE * ends.iter().map(|[low, high]| high - low).fold(0.0, f64::max);
+        self.in_box(ends.map(|[low, high]| [low - room, high + room])).is_some()
     }
 
     /// The parts of the line in an element.
     fn inside(&self, kind: ElementKind, body: &ElasticBody, element: &BodyElement) -> Vec<[f64; 2]> {
-        let faces = kind.reference().faces.iter();
-        let mut met: Vec<f64> = faces
-            .flat_map(|face| {
-                let nodes: Vec<usize> = face.iter().map(|&at| element.nodes[at]).collect();
-                self.meets(kind.facet(), &body.coordinates(&nodes))
-            })
-            .map(|share| share.clamp(0.0, 1.0))
-            .chain([0.0, 1.0])
-            .collect();
+        let smallest = SAME * element.cell.unit().min(self.length);
+        // Places relative to a point of the line beside the element are as exact as its own coordinates.
+        let near = self.distance(body.mesh().nodes()[element.nodes[0]]);
+        let mut met: Vec<f64> = vec![0.0, self.length];
+        for face in kind.reference().faces {
+            let nodes: Vec<usize> = face.iter().map(|&at| element.nodes[at]).collect();
+            let places = body.coordinates(&nodes).map(|place| minus(place, self.at(near)));
+            let (reference, cell) = (kind.facet().reference(), Cell::new(kind.facet().reference(), &places));
+            let starts = reference.nodes.iter().copied().chain([reference.centroid()]);
+            let found = starts.filter_map(|start| self.meets(reference, &cell, start));
+            met.extend(found.map(|from_near| (near + from_near).clamp(0.0, self.length)));
+        }
         met.sort_by(f64::total_cmp);
+        met.dedup_by(|next, last| *next - *last <= smallest);
         let is_inside = |&[start, end]: &[f64; 2]| {
-            let is_long = (end - start) * length(self.way) > SAME * element.cell.unit();
-            is_long && element.cell.weights_at(self.at(0.5 * (start + end)), SAME).is_some()
+            end - start > smallest && element.cell.weights_at(self.at(0.5 * (start + end)), SAME).is_some()
         };
         let mut parts: Vec<[f64; 2]> = Vec::new();
         for part in met.windows(2).map(|ends| [ends[0], ends[1]]).filter(is_inside) {
@@ -184,25 +203,18 @@ impl Line {
         parts
     }
 
-    /// The positions at which the line meets a face, by Newton's method from each of its nodes and from its middle.
-    fn meets(&self, kind: FacetKind, nodes: &PerNode<[f64; 3]>) -> Vec<f64> {
-        let (reference, cell) = (kind.reference(), Cell::new(kind.reference(), nodes));
-        let starts = reference.nodes.iter().copied().chain([reference.centroid()]);
-        starts.filter_map(|start| self.meets_near(reference, &cell, start)).collect()
-    }
-
-    /// The position at which the line meets a face, in reference coordinates near `at`; `None` outside the face, and if the line lies in
-    /// it.
-    fn meets_near(&self, reference: &ReferenceElement, cell: &Cell, mut at: [f64; 3]) -> Option<f64> {
+    /// The distance along the line from the origin of the coordinates of a face, which lies on the line, to the point at which the line
+    /// meets the face, by Newton's method in reference coordinates from `at`. `None` outside the face, and if the line lies in it.
+    fn meets(&self, reference: &ReferenceElement, cell: &Cell, mut at: [f64; 3]) -> Option<f64> {
         for _ in 0..STEPS {
             let place = cell.place(&(reference.shape)(at));
             let tangents = cell.jacobian(&(reference.derivative)(at));
-            let away = minus(place, self.from);
             let change = match reference.dimension {
                 0 => [0.0; 2],
-                1 => [-dot(self.across[0], away) / (cell.unit() * dot(self.across[0], tangents[0])), 0.0],
+                1 => [-dot(self.across[0], place) / (cell.unit() * dot(self.across[0], tangents[0])), 0.0],
                 _ => {
-                    let [first, second] = self.across.map(|v| [dot(v, tangents[0]), dot(v, tangents[1]), dot(v, away)]);
+                    let [first, second] =
+                        self.across.map(|v| [dot(v, tangents[0]), dot(v, tangents[1]), dot(v, place)]);
                     let determinant = cell.unit() * (first[0] * second[1] - first[1] * second[0]);
                     [
                         (first[1] * second[2] - first[2] * second[1]) / determinant,
@@ -216,7 +228,7 @@ impl Line {
             (at[0], at[1]) = (at[0] + change[0], at[1] + change[1]);
             if change.iter().all(|step| step.abs() <= CONVERGED) {
                 let place = cell.place(&(reference.shape)(at));
-                return reference.contains(at, SAME).then(|| self.share(place));
+                return reference.contains(at, SAME).then(|| dot(place, self.way));
             }
         }
         None

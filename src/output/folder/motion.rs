@@ -19,7 +19,7 @@ use crate::error::Error;
 use crate::file::{MOST_OF_TABLE, read_text_capped};
 use crate::motion::{Observation, State};
 use crate::output::draw::animation::animate;
-use crate::output::file::{write_atomically, write_picture};
+use crate::output::file::{remove_files, write_atomically, write_picture};
 use crate::output::json::compact_json;
 #[cfg(feature = "cli")]
 use crate::output::page::{About, MotionFrames, write_motion_page};
@@ -93,14 +93,7 @@ impl MotionFolder {
     /// [`Error::File`].
     pub fn new(folder: &Path, scene: String, model: &Model, watched: &[WatchedPoint]) -> Result<Self, Error> {
         // A checkpoint of an earlier run would belong to another history, and so would its table of points.
-        for name in [CHECKPOINT, WATCH] {
-            match std::fs::remove_file(folder.join(name)) {
-                Err(source) if source.kind() != std::io::ErrorKind::NotFound && folder.exists() => {
-                    return Err(Error::File { action: "remove", path: folder.join(name), source });
-                }
-                _ => {}
-            }
-        }
+        remove_files(folder, &[CHECKPOINT, WATCH])?;
         MotionFolder::with_tables(folder, scene, model, watched, |path, heading, _| MotionTable::new(path, heading))
     }
 

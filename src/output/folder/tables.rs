@@ -62,7 +62,8 @@ pub(crate) fn contact(answer: &Answer) -> String {
     text
 }
 
-/// `along.csv`: an answer along lines, piece by piece. A line without numbers stands where a line is outside the body.
+/// `along.csv`: an answer along lines, piece by piece. A row with the number of the line alone stands before
+/// the next body, and where the line leaves a body and enters it again.
 #[cfg(feature = "cli")]
 pub(crate) fn along(lines: &[Along]) -> String {
     let columns = lines.first().map_or(&[][..], |line| &line.columns);

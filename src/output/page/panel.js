@@ -18,7 +18,8 @@ function mixed(shape, [lower, upper, share]) {
     for (let k = 0; k < dimension; k++) moved[3 * i + k] = between(a[dimension * i + k], b[dimension * i + k], share);
   }
   const mix = (a, b) => (share === 0 ? a : a.map((value, i) => between(value, b[i], share)));
-  const values = Object.entries(lower.values).map(([name, own]) => [name, mix(own, upper.values[name])]);
+  const squares = (name, own) => mix(own, upper.roots[name]).map(root => root * root);
+  const values = Object.entries(lower.roots).map(([name, own]) => [name, squares(name, own)]);
   return { moved, stress: mix(lower.stress, upper.stress), values: Object.fromEntries(values) };
 }
 

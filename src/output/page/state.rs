@@ -19,8 +19,8 @@ pub(super) struct State {
     displacement: Packed,
     /// The components xx, yy, zz, xy, and in space yz and zx.
     stress: Packed,
-    /// The other fields that colour a body, by name, one value a vertex.
-    values: BTreeMap<&'static str, Packed>,
+    /// The roots of the other fields that colour a body, by name, one a vertex: 16 bits then hold small values too.
+    roots: BTreeMap<&'static str, Packed>,
     /// The shift of each obstacle along its approach direction, in length.
     shifts: Vec<f64>,
     /// The mean displacement of the contact with each obstacle, with which it is shifted beside a magnified displacement, in length.
@@ -36,16 +36,17 @@ impl State {
         let components = components(dimension);
         let stress: Vec<f64> =
             answer.stress()?.nodes.iter().flat_map(|of| of.components().into_iter().take(components)).collect();
-        let mut values = BTreeMap::new();
-        for field in mixed() {
+        let mut roots = BTreeMap::new();
+        for field in of_roots() {
             let own = (field.values)(&Source { answer, velocity: None })?.at_nodes;
-            values.insert(field.name, packer.quantised(&shape.at_vertices(&own, 1), 1));
+            let own: Vec<f64> = shape.at_vertices(&own, 1).into_iter().map(f64::sqrt).collect();
+            roots.insert(field.name, packer.quantised(&own, 1));
         }
         Ok(State {
             at,
             displacement: packer.quantised(&shape.at_vertices(answer.displacement(), dimension), dimension),
             stress: packer.quantised(&shape.at_vertices(&stress, components), components),
-            values,
+            roots,
             shifts: (0..model.obstacles().len()).map(|obstacle| answer.shift(obstacle)).collect(),
             carried: (0..model.obstacles().len()).map(|obstacle| carried(answer, obstacle)).collect(),
         })
@@ -53,13 +54,13 @@ impl State {
 
     /// Bytes of a state before they are deflated.
     pub fn bytes(shape: &Shape, dimension: usize) -> usize {
-        2 * shape.nodes.len() * (dimension + components(dimension) + mixed().count())
+        2 * shape.nodes.len() * (dimension + components(dimension) + of_roots().count())
     }
 }
 
-/// The fields of which a page mixes the values.
-fn mixed() -> impl Iterator<Item = &'static Field> {
-    FIELDS.iter().filter(|field| field.colours.is_some_and(|colours| colours.between == Between::Mixed))
+/// The fields of which a page mixes the roots.
+fn of_roots() -> impl Iterator<Item = &'static Field> {
+    FIELDS.iter().filter(|field| field.colours.is_some_and(|colours| colours.between == Between::OfRoots))
 }
 
 /// Components of the stress in a model of `dimension` coordinates.

@@ -1,8 +1,10 @@
 //! An answer along a straight line: place, displacement, stress and pressure, with units.
 
+use std::collections::BTreeMap;
+
 use crate::error::Error;
 use crate::fem::body::Region;
-use crate::fem::geometry::distance;
+use crate::fem::mesh::Boundary;
 use crate::fem::recovery::along::{PathPoint, along};
 use crate::output::plots::plot::{Plot, Series};
 use crate::output::plots::ticks::Quantity;
@@ -11,8 +13,8 @@ use crate::scene::{Answer, Model};
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// The components of the stress: the first of a bar, the first four in the plane.
 const STRESSES: [&str; 6] = ["sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "sigma_yz", "sigma_zx"];
-/// The share of a line by which two pieces of it may be apart by rounding.
-const TOUCHING: f64 = 1e-7;
+/// The share of the size of the mesh by which two pieces of a line may be apart by rounding.
+const TOUCHING: f64 = 1e-9;
 
 /// An answer along a line.
 #[derive(Clone, Debug)]
@@ -40,8 +42,6 @@ pub(crate) struct Piece {
 /// A point of the line with the answer there.
 struct At<'a> {
     point: &'a PathPoint,
-    /// From the first end, in length.
-    distance: f64,
     displacement: [f64; 3],
     pressure: f64,
 }
@@ -52,18 +52,13 @@ impl Along {
     /// # Errors
     /// Those of the recovery of stresses.
     pub fn of(answer: &Answer, ends: [[f64; 3]; 2]) -> Result<Self, Error> {
-        let (model, columns) = (answer.model(), columns(answer.model()));
-        let (dimension, whole) = (model.mesh().dimension(), distance(ends[0], ends[1]));
-        // The pressure at each candidate: a node between two obstacles has the sum.
-        let mut pressures = vec![None; model.mesh().nodes().len()];
-        for (row, pressure) in model.rows().iter().zip(answer.pressure()) {
-            row.ends().for_each(|(node, _)| *pressures[node].get_or_insert(0.0) += pressure);
-        }
+        let (model, columns, contacts) = (answer.model(), columns(answer.model()), Contacts::of(answer));
+        let (dimension, touching) = (model.mesh().dimension(), TOUCHING * model.mesh().size());
         let mut pieces: Vec<Piece> = Vec::new();
         let mut reached = f64::NEG_INFINITY;
         for piece in along(model.body(), answer.displacement(), ends)? {
             let nodes = model.mesh().element(piece.element);
-            let is_contact = piece.face.as_ref().is_some_and(|face| face.iter().all(|&node| pressures[node].is_some()));
+            let pressures = contacts.on(&piece.side().map(|local| nodes[local]).collect::<Vec<usize>>());
             let row = |point: &PathPoint| -> Vec<f64> {
                 let mean = |value: &dyn Fn(usize) -> f64| {
                     nodes.iter().zip(&point.weights).map(|(&node, weight)| weight * value(node)).sum::<f64>()
@@ -71,15 +66,14 @@ impl Along {
                 let moved = |axis: usize| mean(&|node| answer.displacement()[dimension * node + axis]);
                 let at = At {
                     point,
-                    distance: point.share * whole,
                     displacement: [0, 1, 2].map(|axis| if axis < dimension { moved(axis) } else { 0.0 }),
-                    pressure: if is_contact { mean(&|node| pressures[node].unwrap_or(0.0)) } else { f64::NAN },
+                    pressure: pressures.map_or(f64::NAN, |of| mean(&|node| of.get(&node).copied().unwrap_or(0.0))),
                 };
                 columns.iter().map(|(_, value)| value(&at)).collect()
             };
             let is_behind = |region: &&Region| region.elements().end <= piece.element;
             let body = model.body().regions().iter().take_while(is_behind).count();
-            let is_apart = pieces.last().is_none_or(|last| last.body != body) || piece.start() > reached + TOUCHING;
+            let is_apart = pieces.last().is_none_or(|last| last.body != body) || piece.start() > reached + touching;
             pieces.push(Piece {
                 body,
                 element: piece.element,
@@ -89,6 +83,40 @@ impl Along {
             reached = piece.end();
         }
         Ok(Along { ends, columns: columns.into_iter().map(|(quantity, _)| quantity).collect(), pieces })
+    }
+}
+
+/// The facets that may touch an obstacle, with the pressures at their nodes.
+struct Contacts<'a> {
+    /// By obstacle and node.
+    pressures: Vec<BTreeMap<usize, f64>>,
+    /// The facets around each node, each with its obstacle, in the order of the obstacles.
+    facets: BTreeMap<usize, Vec<(usize, &'a [usize])>>,
+}
+
+impl<'a> Contacts<'a> {
+    fn of(answer: &'a Answer) -> Self {
+        let model = answer.model();
+        let mut pressures = vec![BTreeMap::new(); model.obstacles().len()];
+        for (row, pressure) in model.rows().iter().zip(answer.pressure()) {
+            row.ends().for_each(|(node, _)| *pressures[row.obstacle].entry(node).or_insert(0.0) += pressure);
+        }
+        let mut facets: BTreeMap<usize, Vec<(usize, &[usize])>> = BTreeMap::new();
+        for (obstacle, own) in pressures.iter().enumerate() {
+            for facet in model.mesh().boundaries().iter().flat_map(Boundary::facets) {
+                if facet.iter().all(|node| own.contains_key(node)) {
+                    facet.iter().for_each(|&node| facets.entry(node).or_default().push((obstacle, facet)));
+                }
+            }
+        }
+        Contacts { pressures, facets }
+    }
+
+    /// The pressures by node of the first obstacle that a facet with these nodes may touch.
+    fn on(&self, nodes: &[usize]) -> Option<&BTreeMap<usize, f64>> {
+        let around = self.facets.get(nodes.first()?)?;
+        let (obstacle, _) = around.iter().find(|(_, facet)| nodes.iter().all(|node| facet.contains(node)))?;
+        Some(&self.pressures[*obstacle])
     }
 }
 
@@ -123,7 +151,7 @@ fn columns(model: &Model) -> Vec<Column> {
     let mut add = |name: &str, unit: &str, value: Box<dyn Fn(&At) -> f64>| {
         columns.push((Quantity::new(name, unit), value));
     };
-    add("s", &units.length, Box::new(|at| at.distance));
+    add("s", &units.length, Box::new(|at| at.point.distance));
     for (axis, name) in AXES.iter().enumerate().take(dimension) {
         add(name, &units.length, Box::new(move |at| at.point.place[axis]));
     }

@@ -39,8 +39,9 @@ pub(crate) struct Colours {
 pub(crate) enum Between {
     /// The page computes it from the stress, which is linear in the answer.
     FromStress,
-    /// The mixture of the two values.
-    Mixed,
+    /// The square of the mixture of the roots: of an energy, which is a square of the stress, so that it is exact as long as the stress
+    /// keeps its form, and else too large.
+    OfRoots,
 }
 
 /// The source of all fields.
@@ -71,6 +72,8 @@ pub(crate) struct Painted {
 }
 
 impl Painted {
+    /// `field` is a stress.
+    ///
     /// # Errors
     /// Those of the recovery of stresses.
     pub fn of(answer: &Answer, field: &Field) -> Result<Self, Error> {
@@ -109,7 +112,7 @@ pub(crate) const FIELDS: [Field; 17] = [
     Field::new("energy_density", 1, Units::pressure, |of| of.energy_density()).coloured(
         "strain energy density",
         "w",
-        Between::Mixed,
+        Between::OfRoots,
     ),
     Field::new("stress", 6, Units::pressure, |of| of.stress(Stress::components)),
     Field::new("gap", 1, length, |of| nodal(of.at_candidates().gap)),
@@ -151,8 +154,8 @@ impl Source<'_> {
         Ok(Values { at_nodes, in_elements })
     }
 
-    /// The elastic energy over the volume, of the stress at the centroid of each element and of that at each node; where materials meet,
-    /// the mean over the elements around the node, each with its own law and stress.
+    /// The strain energy over the volume, of the components with a strain in the model, from the stress at the centroid of each element and
+    /// at each node; where materials meet, the mean over the elements around the node, each with its own law and stress.
     fn energy_density(&self) -> Result<Values, Error> {
         let (stress, body) = (self.answer.stress()?, self.answer.model().body());
         let mut sums = vec![(0.0, 0.0); stress.nodes.len()];
