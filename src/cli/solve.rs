@@ -173,8 +173,9 @@ fn reported(
     let report = Report::new(&summary, text)?;
     let status = summary.status;
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
-    remove_files(&folder, &["along.csv"])?;
     gallery::write_answer(&folder, &summary.solution, answer.as_ref())?;
+    // The lines of an earlier run would not belong to this answer.
+    remove_files(&folder, &["along.csv"])?;
     report.write(&folder)?;
     let outcome = report.outcome(common.format, status);
     if watch.is_over() && !watch.is_stopped() {
