@@ -16,8 +16,8 @@ use crate::error::Error;
 use crate::output::gallery::{self, Pictures};
 use crate::output::page::write_total_error_page;
 use crate::output::{
-    Drawing, estimated_error_text, estimated_meshes_picture, meshes_picture, total_error_text, why_text,
-    write_estimated_error, write_total_error,
+    Drawing, Plot, estimated_error_text, estimated_meshes_picture, estimated_plot, guaranteed_plot, meshes_picture,
+    total_error_text, why_text, write_estimated_error, write_total_error,
 };
 use crate::scene::{Answer, Model, Scene};
 use crate::solution::{Goal, Solution};
@@ -46,6 +46,8 @@ struct Shown<'a> {
     answer: Option<(Answer, Summary)>,
     /// Writes the files of the error itself into a folder.
     files: &'a dyn Fn(&Path) -> Result<(), Error>,
+    /// The errors of all meshes, as a curve.
+    plot: Plot,
     meshes: Option<Drawing>,
 }
 
@@ -77,8 +79,9 @@ pub(super) fn run(
             };
             let text = total_error_text(&title, &found, answer.as_ref().map(|(_, summary)| summary), &units);
             let files = |folder: &Path| write_total_error(folder, &title, &found, &units, wanted);
-            let meshes = Some(meshes_picture(&title, &found, &units));
-            shown(options, &title, (&model, &*found, found.status), Shown { text, answer, files: &files, meshes })
+            let (plot, meshes) = (guaranteed_plot(&found), Some(meshes_picture(&title, &found, &units)));
+            let shown_as = Shown { text, answer, files: &files, plot, meshes };
+            shown(options, &title, (&model, &*found, found.status), shown_as)
         }
         Found::Estimated(found) => {
             let goal = Goal { accuracy: Some(found.algebra()), ..settings.goal() };
@@ -86,9 +89,9 @@ pub(super) fn run(
             let answer = summed(found.answer.clone(), found.solution.clone(), goal, estimated, seconds)?;
             let text = estimated_error_text(&title, &found, &answer.1, &units);
             let files = |folder: &Path| write_estimated_error(folder, &title, &found, wanted);
-            let meshes = estimated_meshes_picture(&title, &found);
-            let answer = Some(answer);
-            shown(options, &title, (&model, &*found, found.status), Shown { text, answer, files: &files, meshes })
+            let (plot, meshes) = (estimated_plot(&found), estimated_meshes_picture(&title, &found));
+            let shown_as = Shown { text, answer: Some(answer), files: &files, plot, meshes };
+            shown(options, &title, (&model, &*found, found.status), shown_as)
         }
     }
 }
@@ -110,7 +113,7 @@ fn shown<T: Serialize>(
     options: &Solve,
     title: &str,
     (first, found, status): (&Arc<Model>, &T, Status),
-    Shown { mut text, answer, files, meshes }: Shown,
+    Shown { mut text, answer, files, plot, meshes }: Shown,
 ) -> Result<Outcome, Error> {
     let common = &options.common;
     let summary = answer.as_ref().map(|(_, summary)| summary);
@@ -129,7 +132,7 @@ fn shown<T: Serialize>(
     let (wanted, value, first) = (common.wanted(Pictures::Answer), report.value()?, first.clone());
     let about = about(title, "solve", &options.input, common.out.as_ref(), common.threads);
     Ok(report.outcome(common.format, status).with_pictures(move || {
-        write_total_error_page(&folder, &about, (&first, answer.as_ref()), value, meshes.as_ref())?;
+        write_total_error_page(&folder, &about, (&first, answer.as_ref()), value, (&plot, meshes.as_ref()))?;
         match &answer {
             Some((answer, summary)) => gallery::write_solve(&folder, answer, &summary.solution.history, wanted),
             None => Ok(()),

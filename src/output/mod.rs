@@ -55,3 +55,5 @@ pub(crate) use reports::tradeoff_plot::{total_error_plot, tradeoff_plot_for};
 pub(crate) use text::printable;
 #[cfg(feature = "cli")]
 pub(crate) use view::along::Along;
+#[cfg(feature = "cli")]
+pub(crate) use view::curves::{estimated_plot, guaranteed_plot};

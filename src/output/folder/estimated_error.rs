@@ -4,15 +4,15 @@ use std::path::Path;
 
 use super::gallery::{Pictures, Wanted};
 use super::msh::msh;
-use super::total_error::{error_plot, needed, of_last_mesh, percent, search_text, verdict};
+use super::total_error::{needed, of_last_mesh, percent, search_text, verdict};
 use crate::error::Error;
 use crate::output::draw::drawing::Drawing;
 use crate::output::file::{write_files, write_picture};
 use crate::output::picture::mesh_series::{MeshPanel, mesh_series};
-use crate::output::plots::medium::Medium;
-use crate::output::plots::plot::Series;
+use crate::output::plots::plot::line_plots_for;
 use crate::output::reports::report::{comma_separated, entry, of_part, plural, table, wrapped};
 use crate::output::text::printable;
+use crate::output::view::curves::estimated_plot;
 use crate::scene::Units;
 use crate::study::Summary;
 use crate::study::total_error::{Ended, Estimated, EstimatedLevel};
@@ -84,7 +84,7 @@ pub(crate) fn write_estimated_error(
     if wanted.pictures == Pictures::None {
         return Ok(());
     }
-    write_picture(folder, "total-error", &plot(wanted.medium, title, found))?;
+    write_picture(folder, "total-error", &line_plots_for(wanted.medium, title, &[estimated_plot(found)]))?;
     match estimated_meshes_picture(title, found) {
         Some(meshes) => write_picture(folder, "meshes", &meshes).map(drop),
         None => Ok(()),
@@ -118,13 +118,4 @@ fn csv(found: &Estimated) -> String {
             ("seconds", &|level| level.seconds.to_string()),
         ],
     ))
-}
-
-/// The errors over the unknowns.
-fn plot(medium: Medium, title: &str, found: &Estimated) -> Drawing {
-    let line = |name: &str, value: &dyn Fn(&EstimatedLevel) -> f64| {
-        Series::new(name, found.levels.iter().map(|level| [level.dofs as f64, value(level)]).collect())
-    };
-    let series = vec![line("estimated", &|level| level.total_error), line("goal", &|_| found.goal.total_error)];
-    error_plot(medium, title, ["unknowns", "total error, relative"], series)
 }

@@ -11,13 +11,12 @@ use crate::fem::Mesh;
 use crate::output::draw::drawing::Drawing;
 use crate::output::file::{write_files, write_picture};
 use crate::output::picture::mesh_series::{MeshPanel, mesh_series};
-use crate::output::plots::medium::Medium;
-use crate::output::plots::plot::{Plot, Series, line_plots_for};
-use crate::output::plots::ticks::{Quantity, Scale};
+use crate::output::plots::plot::line_plots_for;
 use crate::output::reports::report::{
     columns, comma_separated, entries, entry, plural, quantity, solve_text, table, warnings_text, wrapped,
 };
 use crate::output::text::printable;
+use crate::output::view::curves::guaranteed_plot;
 use crate::scene::Units;
 use crate::study::Summary;
 use crate::study::total_error::{Domain, Ended, TotalError, TotalErrorLevel, half_width};
@@ -164,7 +163,7 @@ pub(crate) fn write_total_error(
     if wanted.pictures == Pictures::None {
         return Ok(());
     }
-    write_picture(folder, "total-error", &plot(wanted.medium, title, found))?;
+    write_picture(folder, "total-error", &line_plots_for(wanted.medium, title, &[guaranteed_plot(found)]))?;
     write_picture(folder, "meshes", &meshes_picture(title, found, units)).map(drop)
 }
 
@@ -218,26 +217,4 @@ fn fields(mesh: &Mesh, answer: &PlaneAnswer) -> Result<String, Error> {
         ],
     };
     data.to_vtu()
-}
-
-/// The bounds over the unknowns.
-fn plot(medium: Medium, title: &str, found: &TotalError) -> Drawing {
-    let line = |name: &str, value: &dyn Fn(&TotalErrorLevel) -> Option<f64>| {
-        let point = |level: &TotalErrorLevel| Some([level.dofs as f64, value(level)?]);
-        Series::new(name, found.levels.iter().filter_map(point).collect())
-    };
-    let series = vec![
-        line("displacement", &|level| Some(level.bound)),
-        line("mean stress", &|level| Some(level.mean_stress_bound)),
-        line("contact force", &half_width),
-        line("goal", &|_| Some(found.goal.total_error)),
-    ];
-    let series = series.into_iter().filter(|series| !series.points.is_empty()).collect();
-    error_plot(medium, title, ["unknowns of the displacement", "guaranteed relative error"], series)
-}
-
-/// Errors over unknowns, with the names of both axes.
-pub(crate) fn error_plot(medium: Medium, title: &str, axes: [&str; 2], series: Vec<Series>) -> Drawing {
-    let [x, y] = axes.map(|name| Quantity::new(name, ""));
-    line_plots_for(medium, title, &[Plot { scales: [Scale::Logarithmic; 2], ..Plot::new(x, y, series) }])
 }

@@ -9,7 +9,6 @@ function levelsSection(page, data, still) {
     isGuaranteed = report.total_error.guaranteed,
     words = isGuaranteed ? "guaranteed at most" : "estimated",
     cells = level => (isGuaranteed ? counted(level.triangles, "triangle") : counted(level.elements, "element")),
-    error = level => level.bound ?? level.total_error,
     percent = share => `${shown(100 * share, 3)} %`,
     interval = ends => (ends ? ends.map(end => shown(end, 8)).join(" to ") : "-");
   list(own, [
@@ -25,35 +24,12 @@ function levelsSection(page, data, still) {
     ["exact contact force", ifGiven(report.force_interval, ends => `guaranteed in ${interval(ends)} ${units.force}`)],
     ["check", isGuaranteed && `balance, signs, distances and energies agree to ${shown(report.defect, 2)}`],
   ]);
-  const line = (name, value, index) => ({
-    name,
-    colour: colours.lines[index],
-    marks: true,
-    focus: true,
-    points: levels.map(level => [
-      level.dofs,
-      value(level),
-      `${cells(level)}, ${counted(level.dofs, "unknown")}${part}\n${name} ${percent(value(level))}`,
-    ]),
-  });
-  const series = [line("displacement", error, 0)];
-  if (isGuaranteed) series.push(line("mean stress", level => level.mean_stress_bound, 1));
-  const { dofs: first } = levels[0],
-    { dofs: last } = levels.at(-1);
-  const asked = {
-    name: "goal",
-    colour: "var(--soft)",
-    dash: "6 5",
-    points: [first, last].map(dofs => [dofs, goal.total_error, ""]),
+  const told = (name, [dofs, value]) => {
+    const level = levels.find(level => level.dofs === dofs);
+    return `${cells(level)}, ${counted(dofs, "unknown")}${part}\n${name} ${percent(value)}`;
   };
-  plotted(own, {
-    label: `${isGuaranteed ? "Guaranteed" : "Estimated"} error over the unknowns${part}`,
-    x: { name: `unknowns of the displacement${part}`, log: true },
-    y: { name: `${isGuaranteed ? "guaranteed" : "estimated"} error, relative`, log: true },
-    series: [asked, ...series],
-    height: 360,
-  });
-  keyOf(own, [...series, asked]);
+  const [{ x, ...plot }] = data.plots;
+  dataPlot(own, { x: { ...x, name: `${x.name}${part}` }, ...plot }, colours, { words: told, height: 360 });
   const guaranteed = [
     ["triangles#", level => level.triangles],
     ["unknowns#", level => level.dofs],

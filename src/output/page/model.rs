@@ -56,7 +56,7 @@ pub(super) struct Page<'a> {
     pub pressures: Vec<Packed>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub along: Vec<AlongShown>,
-    /// The curves of a sweep or of a motion.
+    /// The curves of a sweep, of a motion or of a search for an error.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub plots: Vec<PlotShown>,
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -152,22 +152,29 @@ function keyOf(host, series) {
 /** If a series has more points than this, its marks would hide its line. */
 const MOST_MARKS = 60;
 
-/** The series of a plot of the data, as `plotted` takes them. Beside points that no line joins, only these have marks. */
-function seriesOf(series, colours) {
+/**
+ * The series of a plot of the data, as `plotted` takes them. Beside points that no line joins, only these have marks. `words` gives the
+ * text of a point, for its name and values; a point with a text takes the focus. The series called `goal` is a dashed line.
+ */
+function seriesOf(series, colours, words) {
   const known = point => point?.every(Number.isFinite);
   const all = series.map(({ name, points: flat }, index) => {
     const points = Array.from({ length: flat.length / 2 }, (_, i) => [flat[2 * i], flat[2 * i + 1]]),
-      line = points.some((point, i) => known(point) && known(points[i - 1]));
-    return { name, points, line, colour: colours.lines[index % colours.lines.length] };
+      line = points.length === 1 || points.some((point, i) => known(point) && known(points[i - 1]));
+    if (name === "goal") return { name, points, line, colour: "var(--soft)", dash: "6 5" };
+    const told = words ? points.map(point => [...point, words(name, point)]) : points;
+    return { name, points: told, line, colour: colours.lines[index % colours.lines.length], focus: Boolean(words) };
   });
-  const joined = all.every(({ line }) => line);
-  return all.map(one => ({ ...one, marks: !one.line || (joined && one.points.length <= MOST_MARKS) }));
+  const joined = all.every(({ line }) => line),
+    marked = one => one.name !== "goal" && (!one.line || (joined && one.points.length <= MOST_MARKS));
+  return all.map(one => ({ ...one, marks: marked(one) }));
 }
 
 /** Draws a plot of the data, with a key if it has several series and needs one; returns the plot. */
-function dataPlot(host, { x, y, series }, colours, { label = `${y.name} over ${x.name}`, key = true } = {}) {
-  const all = seriesOf(series, colours),
-    plot = plotted(host, { label, x: { name: titled(x) }, y: { name: titled(y) }, series: all, height: 250 });
+function dataPlot(host, { x, y, log, series }, colours, { label, key = true, words, height = 250 } = {}) {
+  const all = seriesOf(series, colours, words),
+    axes = [x, y].map((quantity, k) => ({ name: titled(quantity), log: log[k] })),
+    plot = plotted(host, { label: label ?? `${y.name} over ${x.name}`, x: axes[0], y: axes[1], series: all, height });
   if (key && all.length > 1) keyOf(host, all);
   return plot;
 }

@@ -4,12 +4,14 @@ use serde::Serialize;
 
 use super::packed::{Packed, Packer};
 use crate::output::plots::plot::Plot;
-use crate::output::plots::ticks::Quantity;
+use crate::output::plots::ticks::{Quantity, Scale};
 
 #[derive(Debug, Serialize)]
 pub(super) struct PlotShown {
     x: Quantity,
     y: Quantity,
+    /// Which of both axes are logarithmic.
+    log: [bool; 2],
     series: Vec<SeriesShown>,
 }
 
@@ -26,6 +28,11 @@ impl PlotShown {
             name: series.name.clone(),
             points: packer.exact(series.points.as_flattened(), 2),
         });
-        PlotShown { x: plot.x.clone(), y: plot.y.clone(), series: series.collect() }
+        PlotShown {
+            x: plot.x.clone(),
+            y: plot.y.clone(),
+            log: plot.scales.map(|scale| scale == Scale::Logarithmic),
+            series: series.collect(),
+        }
     }
 }

@@ -20,6 +20,7 @@ use super::sweep::SweepShown;
 use crate::error::Error;
 use crate::output::draw::drawing::Drawing;
 use crate::output::picture::plane_scene::PlaneScene;
+use crate::output::plots::plot::Plot;
 use crate::output::reports::certificate::CertificateWords;
 use crate::output::reports::report::proven_text;
 use crate::output::view::along::Along;
@@ -119,7 +120,7 @@ pub(crate) fn write_tradeoff_page<'a>(
 }
 
 /// The page of an error against the continuum: the question, the answer on the last mesh if there is one, and the decrease of the error
-/// from mesh to mesh, with `still` as its picture.
+/// from mesh to mesh as a plot, with the picture of the meshes.
 ///
 /// # Errors
 /// As [`write_answer_page`].
@@ -128,7 +129,7 @@ pub(crate) fn write_total_error_page(
     about: &About,
     (first, answer): (&Model, Option<&(Answer, Summary)>),
     report: Value,
-    still: Option<&Drawing>,
+    (plot, meshes): (&Plot, Option<&Drawing>),
 ) -> Result<(), Error> {
     let mut packer = Packer::default();
     let page = match answer {
@@ -138,7 +139,8 @@ pub(crate) fn write_total_error_page(
         }
         None => Page::of_model(about, first, &Shape::of(first), &mut packer),
     };
-    write_page(folder, &Page { report: timeless(report), ..page }, packer, still)
+    let plots = vec![PlotShown::of(plot, &mut packer)];
+    write_page(folder, &Page { report: timeless(report), plots, ..page }, packer, meshes)
 }
 
 /// The common content of all pages of one answer.

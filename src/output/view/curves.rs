@@ -1,8 +1,12 @@
-//! The curves of a sweep and of a motion, as plots.
+//! The curves of a sweep, of a motion and of a search for an error, as plots.
 
 use crate::output::plots::plot::{Plot, Series};
 use crate::output::plots::ticks::Quantity;
+#[cfg(feature = "cli")]
+use crate::output::plots::ticks::Scale;
 use crate::scene::Model;
+#[cfg(feature = "cli")]
+use crate::study::total_error::{Estimated, EstimatedLevel, TotalError, TotalErrorLevel, half_width};
 use crate::study::{ObstacleContact, Sweep, SweepCorner, SweepPoint};
 
 /// A plotted value of an item.
@@ -93,4 +97,37 @@ pub(crate) fn history_plots(model: &Model, history: &[[f64; 8]]) -> Vec<Plot> {
         Plot::new(time(), Quantity::new(force, &units.force), vec![line("force", 1)]),
         Plot::new(time(), Quantity::new("energy", work.trim()), energies),
     ]
+}
+
+/// The guaranteed errors over the unknowns of the meshes, and the goal.
+#[cfg(feature = "cli")]
+pub(crate) fn guaranteed_plot(found: &TotalError) -> Plot {
+    let line = |name: &str, value: &dyn Fn(&TotalErrorLevel) -> Option<f64>| {
+        let point = |level: &TotalErrorLevel| Some([level.dofs as f64, value(level)?]);
+        Series::new(name, found.levels.iter().filter_map(point).collect())
+    };
+    let series = vec![
+        line("displacement", &|level| Some(level.bound)),
+        line("mean stress", &|level| Some(level.mean_stress_bound)),
+        line("contact force", &half_width),
+        line("goal", &|_| Some(found.goal.total_error)),
+    ];
+    let series = series.into_iter().filter(|series| !series.points.is_empty()).collect();
+    error_plot(["unknowns of the displacement", "guaranteed relative error"], series)
+}
+
+/// The estimated errors over the unknowns of the meshes, and the goal.
+#[cfg(feature = "cli")]
+pub(crate) fn estimated_plot(found: &Estimated) -> Plot {
+    let line = |name: &str, value: &dyn Fn(&EstimatedLevel) -> f64| {
+        Series::new(name, found.levels.iter().map(|level| [level.dofs as f64, value(level)]).collect())
+    };
+    let series = vec![line("estimated", &|level| level.total_error), line("goal", &|_| found.goal.total_error)];
+    error_plot(["unknowns", "total error, relative"], series)
+}
+
+#[cfg(feature = "cli")]
+fn error_plot(axes: [&str; 2], series: Vec<Series>) -> Plot {
+    let [x, y] = axes.map(|name| Quantity::new(name, ""));
+    Plot { scales: [Scale::Logarithmic; 2], ..Plot::new(x, y, series) }
 }
