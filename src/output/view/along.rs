@@ -20,9 +20,9 @@ const TOUCHING: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub(crate) struct Along {
     pub ends: [[f64; 3]; 2],
-    /// What the numbers of a point are.
+    /// The quantity of each number of a point.
     pub columns: Vec<Quantity>,
-    /// The parts of the line in the elements, body by body in its order; empty if it meets no body.
+    /// The parts of the line in the elements, in its order within each body; empty if it meets no body.
     pub pieces: Vec<Piece>,
 }
 

@@ -39,8 +39,8 @@ pub(crate) struct Colours {
 pub(crate) enum Between {
     /// The page computes it from the stress, which is linear in the answer.
     FromStress,
-    /// The square of the mixture of the roots: of an energy, which is a square of the stress, so that it is exact as long as the stress
-    /// keeps its form, and else too large.
+    /// The square of the mixture of the roots. An energy is a square of the stress: the value is exact where all components grow by one
+    /// factor, and too large elsewhere.
     OfRoots,
 }
 
