@@ -88,15 +88,15 @@ trap ended EXIT
 example() { printf -- '-- %s\n' "$*"; "$built/examples/$1" "${@:2}"; }
 program() { printf -- '-- signorini %s\n' "$*"; "$built/signorini" "$@"; }
 
-step "format";                      cargo fmt --check
-step "lints, as errors";            cargo clippy --quiet --all-targets --all-features -- -D warnings
-step "documentation, as errors";    RUSTDOCFLAGS="-D warnings" cargo doc --quiet --no-deps --all-features
+step "format";                      cargo fmt --all --check
+step "lints, as errors";            cargo clippy --quiet --workspace --all-targets --all-features -- -D warnings
+step "documentation, as errors";    RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps --all-features
 step "features, each without the others"
 for features in "" pictures faer nalgebra; do
     cargo clippy --quiet --no-default-features --features "$features" -- -D warnings
 done
-step "build";                       cargo test --quiet --no-run --all-features
-step "tests";                       cargo test --quiet --all-features
+step "build";                       cargo test --quiet --workspace --no-run --all-features
+step "tests";                       cargo test --quiet --workspace --all-features
 step "examples and short forms of tools"
 for lesson in two_springs one_scene find_the_contact_set many_gaps judge_an_answer bouncing_mass; do example $lesson; done
 example verification --short

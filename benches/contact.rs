@@ -3,7 +3,7 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use signorini::internals::Cholesky;
+use signorini::qp::Cholesky;
 use signorini::{Method, Model, Prepared, Settings, solve};
 
 #[path = "../tools/contact_cost/case.rs"]

@@ -1,6 +1,6 @@
 """Recomputes every optimality condition from the problem as it was read, and bounds the error in the energy norm.
 
-`signorini verify` prints the same numbers; src/qp/certificate defines them. For a feasible v and multipliers mu <= 0 that
+`signorini verify` prints the same numbers; crates/qp/src/certificate defines them. For a feasible v and multipliers mu <= 0 that
 vanish on rows which v does not touch,
 
     |u - u*|_K <= |u - v|_K + |f + B' mu - K v|_{K^-1}

@@ -9,7 +9,7 @@ unknowns at a bound that would leave it. An iteration is one of
                     raises the energy, the point of least energy on the way or the step to the first bound, whichever has
                     less energy. Then a projected gradient step of fixed length.
 
-Each of them lowers the energy. src/qp/method/mprgp is the same method; this one works on PETSc vectors.
+Each of them lowers the energy. crates/qp/src/method/mprgp is the same method; this one works on PETSc vectors.
 
 Source: Z. Dostal, Optimal Quadratic Programming Algorithms, Springer (2009), algorithm 5.8 and section 5.10.
 """

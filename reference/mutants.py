@@ -28,7 +28,7 @@ ROOT = Path(__file__).resolve().parent.parent
 OWN = ROOT / "target" / "mutants"
 REASONS = ROOT / "tests" / "mutants.toml"
 
-FILES = ("src/qp/certificate/**", "src/qp/existence/**")
+FILES = ("crates/qp/src/certificate/**", "crates/qp/src/existence/**")
 """The mutated files: conditions, bound, proof, infeasible rows, claims."""
 
 SEED = 20
@@ -66,13 +66,13 @@ class Stage:
 
 
 STAGES = (
-    Stage("own", ("--lib",), ("qp::certificate::", "qp::existence::")),
+    Stage("own", ("--package", "signorini-qp", "--lib"), ("certificate::", "existence::")),
     Stage(
         "quick",
         ("--test", "numerics"),
         ("certificate::", "claims::", "hostile::", "exact_arithmetic::", "findings::"),
     ),
-    Stage("unit", ("--lib",), ("qp::",)),
+    Stage("unit", ("--package", "signorini-qp", "--lib"), ()),
     Stage(
         "numerics",
         ("--test", "numerics"),
@@ -125,7 +125,7 @@ class Mutant:
 def listed(root: Path) -> list[Mutant]:
     """Returns all mutants of `FILES`, in the order of cargo-mutants."""
     chosen = [part for file in FILES for part in ("--file", file)]
-    command = ["cargo", "mutants", "--no-config", "--list", "--json", *chosen]
+    command = ["cargo", "mutants", "--workspace", "--no-config", "--list", "--json", *chosen]
     done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
     if done.returncode:
         raise SystemExit(f"cargo mutants: {done.stderr.strip()}\nIt comes with: cargo install cargo-mutants --locked")

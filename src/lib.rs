@@ -62,57 +62,15 @@
 
 #[cfg(feature = "cli")]
 pub mod cli;
-#[cfg(feature = "cli")]
-mod continuum;
-mod error;
-pub mod fem;
-mod file;
-mod memory;
-pub mod motion;
-#[cfg(feature = "pictures")]
-pub mod output;
-pub mod qp;
-pub mod scene;
-mod solution;
-pub mod study;
-mod watch;
 
-pub use error::{Error, Failure};
+pub use signorini_mechanics::{Error, fem, motion, scene, study};
+#[cfg(feature = "pictures")]
+pub use signorini_output as output;
+pub use signorini_qp as qp;
+
 pub use qp::{
-    BoundarySolution, Condense, ContactProblem, InteriorPoint, Method, Path, Penalty, Precision, Prepared, Settings,
-    SparseMatrix, Start, SymmetricMatrix, solve, solve_qp,
+    Attempt, BoundarySolution, Certificate, Condense, ContactProblem, ContactSet, Failure, Goal, InteriorPoint,
+    Iteration, Method, Path, Penalty, Precision, Prepared, ProvenSet, Seconds, Settings, Solution, SparseMatrix, Start,
+    SymmetricMatrix, Watch, solve, solve_qp,
 };
 pub use scene::{Model, Scene};
-pub use solution::{Attempt, Certificate, ContactSet, Goal, Iteration, ProvenSet, Seconds, Solution};
-pub use watch::Watch;
-
-/// Internals for the tests and tools of this crate; they may change at any time.
-#[doc(hidden)]
-pub mod internals {
-    pub use crate::fem::element::{Cell, MAX_NODES, QuadraturePoint, Rule, Tabulated};
-    pub use crate::fem::norms::error_norms_by;
-    pub use crate::fem::surface::{ClosedSurface, Closest};
-    #[cfg(feature = "pictures")]
-    pub use crate::output::file::write_atomically;
-    #[cfg(feature = "pictures")]
-    pub use crate::output::picture::arrows::{Arrow, ArrowKind};
-    #[cfg(feature = "pictures")]
-    pub use crate::output::picture::body::{ContactPicture, FieldPanel, ObstacleLine, common_window};
-    #[cfg(feature = "pictures")]
-    pub use crate::output::plots::medium::Medium;
-    #[cfg(feature = "pictures")]
-    pub use crate::output::plots::ticks::{Ticks, brief, decimal, power_of_ten};
-    #[cfg(feature = "pictures")]
-    pub use crate::output::view::limits::common_limits;
-    pub use crate::qp::cost::{Estimate, bytes};
-    pub use crate::qp::linear::{AugmentedMatrix, Blocks, Cholesky, dot, multigrid};
-    pub use crate::qp::matrix_market::format_vector;
-    pub use crate::qp::method::dual_active_set::DualActiveSet;
-    pub use crate::qp::method::{Definiteness, Ending, Outcome, ScaledProblem, Solver};
-    pub use crate::qp::panics::guarded;
-    pub use crate::scene::input::body::BodySpec;
-    pub use crate::scene::input::schema::AnalysisSpec;
-    pub use crate::study::scene::even_gaps;
-    #[cfg(feature = "cli")]
-    pub use crate::study::total_error::{Examined, examined};
-}

@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 export CARGO_INCREMENTAL=1 CARGO_PROFILE_RELEASE_INCREMENTAL=true
 cargo llvm-cov clean --workspace
 # If the program may not write, its counters cannot be written either.
-cargo llvm-cov --release --no-report --lib --bins --tests -- --skip a_failed_write
+cargo llvm-cov --workspace --exclude signorini-python --release --no-report --lib --bins --tests -- --skip a_failed_write
 report() { cargo llvm-cov report --release --failure-mode all --ignore-filename-regex '/(tests|examples)/' "$@"; }
 report --text --output-path target/coverage.txt
 report | awk 'NR > 2 && NF > 9 { printf "%8s of %5d lines missed  %7s  %s\n", $9, $8, $10, $1 }' | sort -k6,6n

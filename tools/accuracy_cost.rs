@@ -3,13 +3,14 @@
 //! `cargo run --release --example accuracy_cost -- --out DIR` prints the table and writes it, with pictures and values,
 //! into a folder.
 
+use signorini::{Error, Scene, Watch, qp};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use serde_json::json;
-use signorini::output::{tradeoff_csv, tradeoff_plot, tradeoff_text, write_files, write_picture};
-use signorini::study::{Tradeoff, TradeoffGrid, TradeoffPoint, tradeoff};
-use signorini::{Error, Scene, Watch};
+use signorini::output::{InWords, Measured, Medium, write_files, write_picture};
+use signorini::scene::Units;
+use signorini::study::{Tradeoff, TradeoffGrid, TradeoffPoint};
 
 /// Required relative errors in energy. The last one stands for an answer that is exact up to rounding.
 const ACCURACIES: [(&str, f64); 4] = [("1e-2", 1e-2), ("1e-4", 1e-4), ("1e-8", 1e-8), ("exact", 1e-11)];
@@ -46,7 +47,7 @@ fn run() -> Result<(), Error> {
         [option, folder] if option == "--out" => Some(PathBuf::from(folder)),
         _ => {
             let reason = "it takes nothing, or --out DIR".to_string();
-            return Err(Error::Numerical { step: "reading the arguments", reason });
+            return Err(Error::Qp(qp::Error::Numerical { step: "reading the arguments", reason }));
         }
     };
     let indentation = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/indentation.json");
@@ -57,16 +58,18 @@ fn run() -> Result<(), Error> {
     let mut table = String::new();
     for (name, title, scene, runs) in scenes {
         let grid = TradeoffGrid { refinements: 0, runs, ..TradeoffGrid::default() };
-        let measured = tradeoff(&scene, &grid, &Watch::default())?;
+        let measured = Tradeoff::of_scene(&scene, &grid, &Watch::default())?;
         table += &rows(title, &measured);
         if let Some(folder) = &folder {
             let files = [
-                (format!("{name}.txt"), tradeoff_text(title, &measured)),
-                (format!("{name}.csv"), tradeoff_csv(&measured)),
+                (format!("{name}.txt"), measured.text(title, &Units::unnamed())),
+                (format!("{name}.csv"), measured.csv()),
             ];
             let files: Vec<(&str, String)> = files.iter().map(|(name, text)| (name.as_str(), text.clone())).collect();
             write_files(folder, &files)?;
-            write_picture(folder, name, &tradeoff_plot(title, &measured))?;
+            for (_, plot) in measured.plots(Medium::Screen, title).iter().take(1) {
+                write_picture(folder, name, plot)?;
+            }
         }
     }
     print!("{table}");

@@ -8,11 +8,7 @@ use std::process::{Command, ExitCode};
 use std::time::Instant;
 
 use signorini::Error;
-use signorini::fem::ElasticBody;
-use signorini::fem::Formulation;
-use signorini::fem::Material;
-use signorini::fem::{DofMap, stiffness};
-use signorini::fem::{ElementKind, Mesh};
+use signorini::fem::{DofMap, ElasticBody, ElementKind, Formulation, Material, Mesh, stiffness};
 use signorini::scene::{cuboid, rectangle};
 
 /// Name of each case, and the seconds that its assembly must not exceed.

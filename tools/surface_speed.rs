@@ -6,7 +6,7 @@
 use std::fs;
 use std::time::Instant;
 
-use signorini::internals::ClosedSurface;
+use signorini::fem::ClosedSurface;
 
 /// Number of cells around the torus and around its tube; each cell has two triangles.
 const CELLS: [usize; 2] = [1000, 500];

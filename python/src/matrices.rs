@@ -1,10 +1,12 @@
 //! Converts matrices of scipy, numpy and dolfinx into matrices of the library, and back.
 
 use pyo3::prelude::*;
-use signorini::{Error, SparseMatrix, SymmetricMatrix};
+use signorini::qp::Error;
+use signorini::{SparseMatrix, SymmetricMatrix};
 
 use crate::arrays::{Indices, kind_of, room, slice, with_reals, with_table};
-use crate::errors::{bad_input, bad_type, plain_exception};
+use crate::errors::{bad_input, bad_type};
+use crate::exceptions::{plain_exception};
 
 /// The forms in which a matrix can be given.
 enum Source<'py> {

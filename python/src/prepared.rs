@@ -4,12 +4,15 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use pyo3::types::PyList;
-use signorini::{ContactProblem, Error, Settings, Watch};
+use signorini::qp::Error;
+use signorini::{ContactProblem, Settings, Watch};
 
 use crate::arrays::{of_reals, reals};
-use crate::errors::{bad_input, plain_exception};
+use crate::errors::{bad_input};
+use crate::exceptions::{plain_exception};
 use crate::solution::{Solution, rows_of};
-use crate::solving::{answered, signalled, start_of};
+use crate::answered::{answered, start_of};
+use crate::exceptions::signalled;
 use crate::work::{End, Place, run};
 
 /// A problem that is factorised once and then solved for many gaps, loads and starts.

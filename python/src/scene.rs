@@ -6,15 +6,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use signorini::scene::Answer;
-use signorini::study::scene_summary;
+use signorini::study::Summary;
 use signorini::{Error, Goal, Model, Settings, Watch};
 
 use crate::arrays::{kind_of, of_indices, of_reals, of_table};
-use crate::errors::{bad_type, exception, plain_exception};
+use crate::errors::{bad_type};
+use crate::exceptions::{exception, plain_exception};
 use crate::options::Options;
 use crate::problem::Problem;
 use crate::solution::{Solution, as_object};
-use crate::solving::{answered, signalled, solve_from, start_of};
+use crate::answered::{answered, solve_from, start_of};
+use crate::exceptions::signalled;
 use crate::work::{End, Place, run};
 
 /// A contact scene: bodies, supports, loads and obstacles.
@@ -201,8 +203,8 @@ impl Scene {
     }
 
     /// Solves the scene by interior point, active set and penalty, and compares the solutions.
-    fn compare(slf: &Bound<'_, Self>) -> PyResult<crate::study::Comparison> {
-        crate::study::compared_scene(slf)
+    fn compare<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("signorini._signorini")?.call_method1("compare", (slf,))
     }
 
     fn __repr__(&self) -> String {
@@ -324,7 +326,7 @@ impl SceneSolution {
         let (py, own) = (slf.py(), slf.get());
         let solution = (*slf.as_super().get().inner).clone();
         let summary =
-            scene_summary(&own.answer, solution, own.goal, 0.0).map_err(|error| plain_exception(py, error))?;
+            Summary::of_answer(&own.answer, solution, own.goal, 0.0).map_err(|error| plain_exception(py, error))?;
         as_object(py, &summary)
     }
 
@@ -345,7 +347,7 @@ impl SceneSolution {
 }
 
 /// Makes the exception for an error of a scene, with the Python object of the best solution.
-pub fn scene_exception(py: Python<'_>, scene: &Py<Scene>, model: &Arc<Model>, goal: Goal, error: Error) -> PyErr {
+pub fn scene_exception(py: Python<'_>, scene: &Py<Scene>, model: &Arc<Model>, goal: Goal, error: impl Into<Error>) -> PyErr {
     exception(py, model.explain(error), |solution| {
         SceneSolution::object(py, scene.clone_ref(py), model.clone(), solution, goal)
     })

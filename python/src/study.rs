@@ -6,12 +6,13 @@ use signorini::Watch;
 use signorini::study::{self, TradeoffGrid};
 
 use crate::arrays::reals;
-use crate::errors::{bad_input, bad_type, plain_exception};
+use crate::errors::{bad_input, bad_type};
+use crate::exceptions::{plain_exception};
 use crate::options::Options;
 use crate::problem::Problem;
 use crate::scene::{Scene, SceneSolution, scene_exception};
 use crate::solution::{Solution, as_object};
-use crate::solving::signalled;
+use crate::exceptions::signalled;
 use crate::work::{End, Place, run};
 
 /// One problem solved by interior point, active set and penalty.
@@ -74,7 +75,7 @@ fn problem_of<'a, 'py>(problem: &'a Bound<'py, PyAny>) -> PyResult<&'a Bound<'py
 }
 
 /// Solves a scene by interior point, active set and penalty, and compares the solutions.
-pub fn compared_scene(scene: &Bound<'_, Scene>) -> PyResult<Comparison> {
+fn compared_scene(scene: &Bound<'_, Scene>) -> PyResult<Comparison> {
     let py = scene.py();
     let model = scene.get().model(py)?;
     let settings = Options { proof: Some(false), ..Options::default() }.settings(Some(model.problem()))?;
@@ -109,7 +110,7 @@ pub fn measured<'py>(
         Ok(scene) => {
             scene.get().check_rest(py)?;
             let scene = scene.get().inner.clone();
-            run(py, Place::Apart, move |watch: &Watch| study::tradeoff(&scene, &grid, watch))?
+            run(py, Place::Apart, move |watch: &Watch| study::Tradeoff::of_scene(&scene, &grid, watch))?
         }
         Err(_) => {
             let problem = problem_of(problem)?.get().inner.clone();

@@ -4,8 +4,8 @@ use std::fmt::Write;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use crate::file::open_regular;
-use crate::output::page::About;
+use crate::output::About;
+use crate::qp::file::open_regular;
 
 /// The files of a problem directory in either form, in the order of hashing.
 const PROBLEM_FILES: [&[&str]; 2] =

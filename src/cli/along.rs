@@ -3,7 +3,7 @@
 use super::input::{Content, Input};
 use super::line::Line;
 use super::outcome::{unfit, warn};
-use crate::error::Error;
+use crate::Error;
 use crate::output::Along;
 use crate::scene::Answer;
 

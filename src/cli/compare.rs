@@ -1,5 +1,6 @@
 //! `signorini compare`: three methods, one problem.
 
+use crate::output::{InWords, Pictures};
 use serde_json::json;
 
 use super::about::about;
@@ -7,14 +8,10 @@ use super::input::Input;
 use super::options::Compare;
 use super::outcome::{OfPart, Outcome, Report, warn};
 use super::settings::settings;
-use crate::error::Error;
-use crate::output::compare_text;
-use crate::output::gallery::{self, Pictures};
-use crate::output::page::write_comparison_page;
-use crate::qp::Method;
+use crate::Error;
+use crate::qp::{Method, Watch};
 use crate::scene::Answer;
 use crate::study::{Comparison, Summary, compare};
-use crate::watch::Watch;
 
 pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
@@ -32,19 +29,19 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     });
     let ((qp, of_qp), (active_set, of_active_set), (penalty, of_penalty)) = (qp?, active_set?, penalty?);
     let summaries = [of_qp, of_active_set, of_penalty];
-    let text = compare_text(&input.title, &summaries, &agreement, &input.units);
+    let text = (&summaries, &agreement).text(&input.title, &input.units);
     let is_part = summaries[0].parts_of_whole.is_some();
     let methods = json!({ "methods": summaries, "agreement": agreement });
     let report = Report::new(&OfPart::new(methods, is_part, &["agreement"]), text)?;
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, agreement.status())) };
-    gallery::write_answer(&folder, &summaries[0].solution, qp.as_ref())?;
+    common.wanted(Pictures::Answer).write_answer(&folder, &summaries[0].solution, qp.as_ref())?;
     report.write(&folder)?;
     let outcome = report.outcome(common.format, agreement.status());
     let (Some(qp), Some(active_set), Some(penalty)) = (qp, active_set, penalty) else { return Ok(outcome) };
     let answers = [qp, active_set, penalty];
     let wanted = common.wanted(Pictures::usual_of_series(answers[0].model()));
     Ok(outcome.with_pictures(move || {
-        write_comparison_page(&folder, &about, &answers, &summaries, &agreement)?;
-        gallery::write_compare(&folder, &answers, &summaries, wanted)
+        about.write_comparison(&folder, &answers, &summaries, &agreement)?;
+        wanted.write_compare(&folder, &answers, &summaries)
     }))
 }

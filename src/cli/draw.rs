@@ -3,7 +3,7 @@
 use super::input::{build, read_scene, warnings};
 use super::options::{Draw, Picture};
 use super::outcome::{Outcome, warn};
-use crate::error::Error;
+use crate::Error;
 use crate::output::{set_up_picture, write_atomically};
 
 pub(super) fn run(options: &Draw) -> Result<Outcome, Error> {

@@ -9,13 +9,13 @@ use super::input::{scene_title, warnings};
 use super::options::Solve;
 use super::outcome::{Outcome, Report, unfit, warn};
 use super::settings::settings;
-use crate::error::Error;
+use crate::Error;
 use crate::motion::Integrator;
-use crate::output::gallery::{Pictures, Wanted};
-use crate::output::{MotionFolder, MotionReport, compact_json};
+use crate::output::{MotionFolder, MotionReport, Pictures, Wanted};
+use crate::qp;
+use crate::qp::Watch;
 use crate::scene::{Dynamics, Model, Scene};
 use crate::study::{MotionSummary, RunSeconds};
-use crate::watch::Watch;
 
 pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outcome, Error> {
     let clock = Instant::now();
@@ -38,8 +38,8 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     let run = Run::new(&model, &dynamics, integrator);
     let mut run = match &options.common.out {
         None => run,
-        Some(path) if options.resume => run.resumed(path, compact_json(scene)?)?,
-        Some(path) => run.in_folder(path, compact_json(scene)?)?,
+        Some(path) if options.resume => run.resumed(path, scene)?,
+        Some(path) => run.in_folder(path, scene)?,
     };
     run.advance(watch)?;
     let Run { summary, folder, .. } = run;
@@ -85,7 +85,7 @@ impl<'a> Run<'a> {
     }
 
     /// A new run, which writes its frames into a folder.
-    fn in_folder(self, path: &Path, scene: String) -> Result<Self, Error> {
+    fn in_folder(self, path: &Path, scene: &Scene) -> Result<Self, Error> {
         let Run { model, dynamics, integrator, summary, .. } = &self;
         let mut folder = MotionFolder::new(path, scene, model, &dynamics.watched)?;
         let resultants = dynamics.resultants(model, integrator)?;
@@ -95,7 +95,7 @@ impl<'a> Run<'a> {
     }
 
     /// The run in a folder, to be resumed.
-    fn resumed(mut self, path: &Path, scene: String) -> Result<Self, Error> {
+    fn resumed(mut self, path: &Path, scene: &Scene) -> Result<Self, Error> {
         let (folder, state, summary) = MotionFolder::resume(path, scene, self.model, &self.dynamics.watched)?;
         if state.steps > self.dynamics.steps {
             let message = format!(
@@ -122,7 +122,7 @@ impl<'a> Run<'a> {
         while self.integrator.state().steps < last {
             watch.part("step", self.integrator.state().steps + 1, last);
             match self.integrator.advance() {
-                Err(Error::Interrupted) => break,
+                Err(Error::Qp(qp::Error::Interrupted)) => break,
                 advanced => advanced.map_err(|error| self.model.explain(error))?,
             };
             let seen = self.integrator.observe();

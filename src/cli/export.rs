@@ -3,10 +3,10 @@
 use super::input::{build, rests, scene_of, warnings};
 use super::options::{Export, Form};
 use super::outcome::{Outcome, unfit, warn};
-use crate::error::Error;
-use crate::file::Streamed;
-use crate::output::{make_folder, tables, write_streamed};
-use crate::qp::{matrix_market, petsc};
+use crate::Error;
+use crate::output::{tables_of_model, write_streamed};
+use crate::qp::PetscLayout;
+use crate::qp::file::Streamed;
 use crate::scene::{Meaning, Model};
 
 /// Bytes of a megabyte.
@@ -20,15 +20,14 @@ pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
     warn(&warnings(&model));
     let layout;
     let files = match options.format {
-        Form::MatrixMarket => matrix_market::streamed_files(model.problem()),
+        Form::MatrixMarket => model.problem().files(),
         Form::Petsc => {
             layout = layout_of(&model)?;
-            petsc::streamed_files(model.problem(), &layout)
+            model.problem().petsc_files(&layout)
         }
     };
-    let files: Vec<Streamed> = files.into_iter().chain(tables::of_model(&model)).collect();
+    let files: Vec<Streamed> = files.into_iter().chain(tables_of_model(&model)).collect();
     let (folder, problem) = (&options.directory, model.problem());
-    make_folder(folder)?;
     let bytes: u64 = files.iter().map(Streamed::bytes).sum();
     warn(&format!("writing {bytes} bytes ({:.1} MB) into {}\n", bytes as f64 / MEGABYTE, folder.display()));
     write_streamed(folder, &files)?;
@@ -44,11 +43,11 @@ pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
 }
 
 /// The places of the dofs of a model in PETSc's files.
-fn layout_of(model: &Model) -> Result<petsc::Layout, Error> {
+fn layout_of(model: &Model) -> Result<PetscLayout, Error> {
     if model.meanings().any(|meaning| !matches!(meaning, Meaning::Node { .. })) {
         let message = "the form petsc has only the unknowns of nodes, but rigid faces and obstacles that a force \
                        presses have further unknowns; take --format matrix-market";
         return unfit("--format", message);
     }
-    Ok(petsc::Layout::of(model.body().dimension(), model.dofs().free(), model.mesh().nodes()))
+    Ok(PetscLayout::of(model.body().dimension(), model.dofs().free(), model.mesh().nodes()))
 }

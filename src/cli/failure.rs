@@ -4,8 +4,8 @@ use serde_json::json;
 
 use super::options::Format;
 use super::outcome::{Ending, Outcome};
-use crate::error::{Error, Failure};
 use crate::output::printable;
+use crate::{Error, Failure};
 
 /// If a message has more characters than this, its middle is left out: it may quote megabytes of a file.
 const LONGEST_SENTENCE: usize = 800;

@@ -6,13 +6,10 @@ use std::time::Instant;
 
 use super::options::Limits;
 use super::outcome::unfit;
-use crate::error::Error;
-use crate::qp::problem::ContactProblem;
-use crate::qp::read_problem;
+use crate::Error;
+use crate::qp::{ContactProblem, Goal, Solution, read_problem};
 use crate::scene::{Answer, Model, Scene, Units};
-use crate::solution::{Goal, Solution};
-use crate::study::scene::problem_summary;
-use crate::study::{Summary, scene_summary};
+use crate::study::Summary;
 
 /// The file name that means standard input.
 const STANDARD_INPUT: &str = "-";
@@ -97,16 +94,16 @@ impl Input {
         goal: impl Into<Goal>,
     ) -> Result<Summary, Error> {
         match answer {
-            Some(answer) => scene_summary(answer, solution, goal, self.assemble_seconds),
-            None => Ok(problem_summary(self.problem(), solution, goal, self.assemble_seconds)),
+            Some(answer) => Summary::of_answer(answer, solution, goal, self.assemble_seconds),
+            None => Ok(Summary::of_problem(self.problem(), solution, goal, self.assemble_seconds)),
         }
     }
 
     /// An error in the words of the scene.
-    pub fn explain(&self, error: Error) -> Error {
+    pub fn explain(&self, error: impl Into<Error>) -> Error {
         match &self.content {
             Content::Scene(model) => model.explain(error),
-            Content::Directory(_) => error,
+            Content::Directory(_) => error.into(),
         }
     }
 

@@ -1,11 +1,11 @@
 //! An interrupt, or a request to terminate: the first asks the work to end with what it has, the second ends the program.
 
 use std::io::{self, Write};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use super::outcome::warn;
-use crate::watch::{Watch, locked};
+use crate::qp::Watch;
 
 /// The exit code of a command that was interrupted.
 pub(super) const INTERRUPTED: u8 = 130;
@@ -25,14 +25,19 @@ const STACK: usize = 64 << 10;
 pub(super) struct Kept(Arc<Mutex<Option<String>>>);
 
 impl Kept {
+    /// The report, even after a panic of another thread: it is written whole.
+    fn locked(&self) -> MutexGuard<'_, Option<String>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Keeps a report instead of the one before.
     pub fn keep(&self, report: String) {
-        *locked(&self.0) = Some(report);
+        *self.locked() = Some(report);
     }
 
     /// Calls `last` with the kept report, and forgets it. Any other caller waits until `last` returns.
     pub fn take_to<T>(&self, last: impl FnOnce(Option<String>) -> T) -> T {
-        let mut kept = locked(&self.0);
+        let mut kept = self.locked();
         last(kept.take())
     }
 }

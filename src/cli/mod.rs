@@ -30,8 +30,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
+use crate::qp::Watch;
 use crate::scene::Scene;
-use crate::watch::Watch;
 use failure::{failed, sentence};
 use interrupt::{INTERRUPTED, Kept};
 use options::{Arguments, Command};

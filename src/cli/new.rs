@@ -2,9 +2,9 @@
 
 use super::options::New;
 use super::outcome::Outcome;
-use crate::error::Error;
+use crate::Error;
 use crate::output::write_atomically;
-use crate::scene::start_scene;
+use crate::scene::Scene;
 
 pub(super) fn run(options: &New) -> Result<Outcome, Error> {
     // A scene beside its mesh names the file alone.
@@ -13,7 +13,7 @@ pub(super) fn run(options: &New) -> Result<Outcome, Error> {
         Some(name) => name.to_string_lossy().into_owned(),
         None => options.mesh.to_string_lossy().into_owned(),
     };
-    let text = start_scene(&options.mesh, &named)?;
+    let text = Scene::start(&options.mesh, &named)?;
     match &options.out {
         Some(file) => {
             write_atomically(file, text.as_bytes())?;

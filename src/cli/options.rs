@@ -3,16 +3,14 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::builder::PossibleValue;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
 use super::line::{Line, parse_line};
 use super::memory::parse_size;
-use crate::memory;
-use crate::output::gallery::{Pictures, Wanted};
-use crate::output::medium::Medium;
-use crate::qp::{Method, Precision};
+use crate::output::{Medium, Pictures, Wanted};
+use crate::qp::{Method, Precision, memory};
 
 /// Frictionless contact of elastic bodies with obstacles: a convex QP, cross-checked and certified.
 #[derive(Debug, Parser)]
@@ -137,64 +135,71 @@ pub(super) enum Format {
     Json,
 }
 
-impl ValueEnum for Method {
-    fn value_variants<'a>() -> &'a [Self] {
-        const ALL: [Method; 5] = [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
-        &ALL
-    }
+/// A choice of the library by its name on the command line.
+trait Choice: Copy + Send + Sync + 'static {
+    /// All choices, in the order of the help.
+    const ALL: &[Self];
 
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(self.name()).help(match self {
-            Method::Auto => "The program chooses",
+    /// Its name, and what it stands for.
+    fn in_words(self) -> (&'static str, &'static str);
+}
+
+/// Takes one of the names of a choice.
+fn choice<T: Choice>() -> impl TypedValueParser<Value = T> {
+    let names = T::ALL.iter().map(|one| PossibleValue::new(one.in_words().0).help(one.in_words().1));
+    PossibleValuesParser::new(names).try_map(|name| {
+        let named = T::ALL.iter().find(|one| one.in_words().0 == name);
+        named.copied().ok_or_else(|| format!("there is no `{name}`"))
+    })
+}
+
+impl Choice for Method {
+    const ALL: &[Self] = &[Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
+
+    fn in_words(self) -> (&'static str, &'static str) {
+        let help = match self {
             Method::Qp(_) => "Convex QP by an interior-point method, its contact set settled by active-set steps",
             Method::ActiveSet => "Active-set loop with Lagrange multipliers",
             Method::Penalty(_) => "Penalty loop",
             Method::Mprgp => "Projected conjugate gradients with multigrid, for bodies too large to factorise",
-        }))
+            _ => "The program chooses",
+        };
+        (self.name(), help)
     }
 }
 
-impl ValueEnum for Precision {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Precision::Auto, Precision::Double, Precision::Mixed]
-    }
+impl Choice for Precision {
+    const ALL: &[Self] = &[Precision::Auto, Precision::Double, Precision::Mixed];
 
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        let (name, help) = match self {
-            Precision::Auto => ("auto", "Double, unless single precision reaches the requested --accuracy sooner"),
+    fn in_words(self) -> (&'static str, &'static str) {
+        match self {
             Precision::Double => ("double", "Double precision"),
             Precision::Mixed => ("mixed", "Single precision, half the memory, refined in double precision"),
-        };
-        Some(PossibleValue::new(name).help(help))
+            _ => ("auto", "Double, unless single precision reaches the requested --accuracy sooner"),
+        }
     }
 }
 
-impl ValueEnum for Pictures {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Pictures::None, Pictures::Answer, Pictures::All]
-    }
+impl Choice for Pictures {
+    const ALL: &[Self] = &[Pictures::None, Pictures::Answer, Pictures::All];
 
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        let (name, help) = match self {
+    fn in_words(self) -> (&'static str, &'static str) {
+        match self {
             Pictures::None => ("none", "No picture"),
             Pictures::Answer => ("answer", "The final answer of the command"),
             Pictures::All => ("all", "Each iteration, penalty, gap and force as well"),
-        };
-        Some(PossibleValue::new(name).help(help))
+        }
     }
 }
 
-impl ValueEnum for Medium {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Medium::Screen, Medium::Paper]
-    }
+impl Choice for Medium {
+    const ALL: &[Self] = &[Medium::Screen, Medium::Paper];
 
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        let (name, help) = match self {
+    fn in_words(self) -> (&'static str, &'static str) {
+        match self {
             Medium::Screen => ("screen", "SVG and PNG, with a title"),
             Medium::Paper => ("paper", "PDF and SVG, 85 or 170 mm wide, with letters on the panels and no title"),
-        };
-        Some(PossibleValue::new(name).help(help))
+        }
     }
 }
 
@@ -210,7 +215,7 @@ pub(super) struct Solve {
     /// Scene (a JSON file, - for standard input) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, or the same as .petsc)
     pub input: PathBuf,
     /// Method that finds the contact set
-    #[arg(long, value_enum, default_value_t = Method::Auto)]
+    #[arg(long, value_parser = choice::<Method>(), default_value = "auto")]
     pub method: Method,
     /// Allowed relative error in the energy norm, certified; or `exact`: the linear solve with the final contact set
     #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = parse_accuracy)]
@@ -228,7 +233,7 @@ pub(super) struct Solve {
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["total_error", "resume"])]
     pub start: Option<PathBuf>,
     /// Precision of the sparse factor
-    #[arg(long, value_enum, default_value_t = Precision::Auto)]
+    #[arg(long, value_parser = choice::<Precision>(), default_value = "auto")]
     pub precision: Precision,
     /// Do not prove which rows are open and closed
     #[arg(long)]
@@ -289,7 +294,7 @@ pub(super) struct Sweep {
     #[arg(long, value_name = "COUNT", value_parser = parse_points)]
     pub points: Option<usize>,
     /// Method that finds the contact sets
-    #[arg(long, value_enum, default_value_t = Method::Auto)]
+    #[arg(long, value_parser = choice::<Method>(), default_value = "auto")]
     pub method: Method,
     #[command(flatten)]
     pub common: Common,
@@ -409,7 +414,7 @@ impl Limits {
 
 /// The memory in bytes: `allowed`, or else what is available, within the address space.
 pub(super) fn most_memory(allowed: Option<f64>) -> f64 {
-    allowed.unwrap_or_else(memory::available).min(memory::address_space_left())
+    memory::allowed(allowed)
 }
 
 /// The options of every solving command.
@@ -430,10 +435,10 @@ pub(super) struct Common {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Pictures in that folder [default: answer; of compare and sweep: all]
-    #[arg(long, value_enum, value_name = "WHICH")]
+    #[arg(long, value_parser = choice::<Pictures>(), value_name = "WHICH")]
     pub pictures: Option<Pictures>,
     /// Use of the pictures: on a screen, or printed on paper
-    #[arg(long, value_enum, default_value_t = Medium::Screen)]
+    #[arg(long, value_parser = choice::<Medium>(), default_value = "screen")]
     pub style: Medium,
     /// Form of the report
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -462,10 +467,10 @@ pub(super) struct Tradeoff {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Pictures in that folder; answer and all are the same here
-    #[arg(long, value_enum, value_name = "WHICH", default_value_t = Pictures::Answer)]
+    #[arg(long, value_parser = choice::<Pictures>(), value_name = "WHICH", default_value = "answer")]
     pub pictures: Pictures,
     /// Use of the pictures: on a screen, or printed on paper
-    #[arg(long, value_enum, default_value_t = Medium::Screen)]
+    #[arg(long, value_parser = choice::<Medium>(), default_value = "screen")]
     pub style: Medium,
     /// Form of the report
     #[arg(long, value_enum, default_value_t = Format::Text)]

@@ -3,11 +3,12 @@
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
+use crate::qp;
 use serde::Serialize;
 
 use super::options::Format;
-use crate::error::Error;
-use crate::output::{report_json, write_files};
+use crate::Error;
+use crate::output::write_files;
 use crate::study::Status;
 
 /// The exit code of a command; a usage error is 2, from the argument parser.
@@ -72,13 +73,18 @@ impl<T: Serialize> OfPart<T> {
 impl Report {
     /// The report `value` with its text.
     pub fn new(value: &impl Serialize, text: String) -> Result<Self, Error> {
-        Ok(Report { text, json: report_json(value)? })
+        let failed =
+            |error: serde_json::Error| qp::Error::Numerical { step: "writing JSON", reason: error.to_string() };
+        // Through a value: indented, fields in alphabetical order, `null` for a number that is not finite.
+        let value = serde_json::to_value(value).map_err(failed)?;
+        Ok(Report { text, json: format!("{value:#}\n") })
     }
 
     /// The object of `report.json`.
     pub fn value(&self) -> Result<serde_json::Value, Error> {
-        let failed = |error: serde_json::Error| Error::Numerical { step: "reading JSON", reason: error.to_string() };
-        serde_json::from_str(&self.json).map_err(failed)
+        let failed =
+            |error: serde_json::Error| qp::Error::Numerical { step: "reading JSON", reason: error.to_string() };
+        Ok(serde_json::from_str(&self.json).map_err(failed)?)
     }
 
     /// Writes `report.json` into the folder.

@@ -7,7 +7,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use super::outcome::{ERASED, warn};
-use crate::watch::{Activity, Part, Watch};
+use crate::qp::{Activity, Part, Watch};
 
 /// The interval between two drawings of the line.
 const PERIOD: Duration = Duration::from_millis(200);

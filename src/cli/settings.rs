@@ -1,8 +1,7 @@
 //! The settings of a solve from the options that every command shares.
 
 use super::options::Common;
-use crate::qp::{Condense, Method, Settings};
-use crate::watch::Watch;
+use crate::qp::{Condense, Method, Settings, Watch};
 
 /// The settings from `common` for one method; `watch` can end the solve.
 pub(super) fn settings(method: Method, common: &Common, watch: &Watch) -> Settings {

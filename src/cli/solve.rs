@@ -1,5 +1,6 @@
 //! `signorini solve`: one answer.
 
+use crate::output::{About, Along, InWords, Pictures, remove_files, why_text, write_files};
 use std::path::Path;
 
 use super::about::about;
@@ -11,15 +12,11 @@ use super::options::{Accuracy, Solve};
 use super::outcome::{Outcome, Report, unfit, warn};
 use super::settings::settings;
 use super::total_error;
-use crate::error::Error;
-use crate::output::gallery::{self, Pictures};
-use crate::output::page::{About, write_answer_page, write_problem_page};
-use crate::output::{remove_files, solve_text, tables, why_text, write_files};
-use crate::qp::{Method, Settings, Start, plan_in_words, read_vector, solve_from};
+use crate::Error;
+use crate::qp;
+use crate::qp::{Goal, Method, Settings, Solution, Start, Watch, read_vector};
 use crate::scene::Scene;
-use crate::solution::{Goal, Solution};
-use crate::study::total_error::TotalErrorGoal;
-use crate::watch::Watch;
+use crate::study::TotalErrorGoal;
 
 /// Assembly that takes at most this many seconds is done even if no time is left: the report can then state the time that the rest
 /// needs.
@@ -80,7 +77,7 @@ pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome
     }
     let start = options.start.as_deref().map_or_else(|| Ok(Start::default()), earlier)?;
     if options.plan {
-        let plan = plan_in_words(input.problem(), &start, &settings).map_err(|error| input.explain(error))?;
+        let plan = input.problem().plan(&start, &settings).map_err(|error| input.explain(error))?;
         return Ok(Outcome::done(plan));
     }
     let about = about(&input.title, "solve", &options.input, options.common.out.as_ref(), options.common.threads);
@@ -130,17 +127,17 @@ fn assembly_seconds(scene: &Scene, options: &Solve, watch: &Watch) -> Result<f64
     }
     let needed = scene.size().assembly_seconds();
     match watch.time_left().filter(|_| needed > AT_ONCE && !watch.allows(needed)) {
-        Some(time) => Err(Error::OutOfTime { needed, time }),
+        Some(time) => Err(qp::Error::OutOfTime { needed, time }.into()),
         None => Ok(needed),
     }
 }
 
 /// The answer, certified or not.
 fn best_of(input: &Input, start: &Start, settings: &Settings) -> Result<Solution, Error> {
-    match solve_from(input.problem(), start, settings) {
-        Err(error @ Error::NotCertified { .. }) => {
+    match input.problem().solve_from(start, settings) {
+        Err(error @ qp::Error::NotCertified { .. }) => {
             warn(&format!("error: {error}\n"));
-            let Error::NotCertified { solution, .. } = error else { return Err(error) };
+            let qp::Error::NotCertified { solution, .. } = error else { return Err(error.into()) };
             Ok(*solution)
         }
         solved => solved.map_err(|error| input.explain(error)),
@@ -162,18 +159,18 @@ fn reported(
     if let Some(answer) = &answer
         && !watch.is_over()
     {
-        let of_mesh = answer.estimated_error()?;
-        summary.discretisation_error = Some(of_mesh.relative());
-        summary.strain_energy = Some(answer.model().parts_of_whole() * of_mesh.strain_energy());
+        let (of_mesh, energy) = answer.error_and_energy()?;
+        summary.discretisation_error = Some(of_mesh);
+        summary.strain_energy = Some(answer.model().parts_of_whole() * energy);
     }
-    let mut text = solve_text(&input.title, &summary, &input.units);
+    let mut text = summary.text(&input.title, &input.units);
     if options.explain {
         text += &why_text(&summary.solution.why);
     }
     let report = Report::new(&summary, text)?;
     let status = summary.status;
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
-    gallery::write_answer(&folder, &summary.solution, answer.as_ref())?;
+    common.wanted(Pictures::Answer).write_answer(&folder, &summary.solution, answer.as_ref())?;
     // The lines of an earlier run would not belong to this answer.
     remove_files(&folder, &["along.csv"])?;
     report.write(&folder)?;
@@ -183,16 +180,16 @@ fn reported(
         return Ok(outcome);
     }
     let Some(answer) = answer else {
-        write_problem_page(&folder, &about, &summary)?;
+        about.write_problem(&folder, &summary)?;
         return Ok(outcome);
     };
     let wanted = common.wanted(Pictures::Answer);
     let along = along::along(&options.along, &answer)?;
     if !along.is_empty() {
-        write_files(&folder, &[("along.csv", tables::along(&along))])?;
+        write_files(&folder, &[("along.csv", Along::table(&along))])?;
     }
     Ok(outcome.with_pictures(move || {
-        write_answer_page(&folder, &about, (&answer, &along), &summary)?;
-        gallery::write_solve(&folder, &answer, &summary.solution.history, wanted)
+        about.write_answer(&folder, (&answer, &along), &summary)?;
+        wanted.write_solve(&folder, &answer, &summary.solution.history)
     }))
 }

@@ -5,22 +5,16 @@ use super::input::{Input, scene_title, still_model, warnings};
 use super::options::{Gaps, Sweep};
 use super::outcome::{Outcome, Report, unfit, warn};
 use super::settings::settings;
-use crate::error::{Error, memory as written};
-use crate::memory;
-use crate::output::gallery::{self, Pictures, Wanted};
-use crate::output::page::write_sweep_page;
-use crate::output::{draw_problem_sweep, problem_sweep_text, sweep_text, write_points};
-use crate::qp::cost::bytes;
-use crate::qp::is_problem_directory;
-use crate::qp::matrix_market::read_other_end;
+use crate::Error;
+use crate::output::{InWords, Pictures, Wanted};
+use crate::qp::memory::in_words as written;
+use crate::qp::{ContactProblem, Watch, memory};
 use crate::scene::Scene;
-use crate::study::scene::even_gaps;
-use crate::study::{Sweep as Swept, sweep_problem};
-use crate::watch::Watch;
+use crate::study::{ProblemSweep, Sweep as Swept};
 
 pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     // Any other folder is refused as a scene.
-    let is_problem = is_problem_directory(&options.scene);
+    let is_problem = ContactProblem::is_directory(&options.scene);
     match (is_problem, options.points) {
         (true, Some(points)) => of_problem(options, points, watch),
         (true, None) => {
@@ -47,14 +41,14 @@ fn of_scene(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let title = scene_title(&model, &options.scene);
     let about = about(&title, "sweep", &options.scene, common.out.as_ref(), common.threads);
     let settings = settings(options.method, common, watch);
-    let even = |range: &Gaps| even_gaps(range.first, range.last, range.count);
+    let even = |range: &Gaps| Swept::even_gaps(range.first, range.last, range.count);
     let swept = match (&options.gaps, &options.forces) {
         (_, Some(forces)) => Swept::over_forces(&model, &even(forces), &settings)
             .map_err(|error| Scene::located(error, &options.scene))?,
         (gaps, None) => Swept::over_gaps(&model, &gaps.as_ref().map_or_else(Vec::new, even), &settings)?,
     };
     watch.step("report", 0);
-    let text = sweep_text(&title, &swept, model.units());
+    let text = swept.text(&title, model.units());
     let report = Report::new(&swept, text)?;
     let status = swept.points.iter().map(|point| point.summary.status).collect();
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
@@ -62,8 +56,8 @@ fn of_scene(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let outcome = report.outcome(common.format, status);
     let wanted = with_room(common.wanted(Pictures::usual_of_series(&model)), &swept, common.limits.most_memory());
     Ok(outcome.with_pictures(move || {
-        write_sweep_page(&folder, &about, &swept)?;
-        gallery::write_sweep(&folder, &swept, wanted)
+        about.write_sweep(&folder, &swept)?;
+        wanted.write_sweep(&folder, &swept)
     }))
 }
 
@@ -71,7 +65,7 @@ fn of_scene(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
 fn with_room(wanted: Wanted, swept: &Swept, most: f64) -> Wanted {
     let Some(first) = swept.points.first().filter(|_| wanted.pictures == Pictures::All) else { return wanted };
     let count = swept.points.len();
-    let needed = bytes::of_pictures(count as f64, first.answer.model().problem().dofs() as f64);
+    let needed = Wanted::bytes(count as f64, first.answer.model().problem().dofs() as f64);
     let left = most - memory::held();
     if needed <= left {
         return wanted;
@@ -86,16 +80,16 @@ fn with_room(wanted: Wanted, swept: &Swept, most: f64) -> Wanted {
 fn of_problem(options: &Sweep, points: usize, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
     let input = Input::read(&options.scene, &common.limits)?;
-    let last = read_other_end(&options.scene, input.problem())?;
+    let last = input.problem().read_other_end(&options.scene)?;
     let settings = settings(options.method, common, watch);
-    let swept = sweep_problem(input.problem(), &last, points, &settings)?;
+    let swept = ProblemSweep::of(input.problem(), &last, points, &settings)?;
     watch.step("report", 0);
-    let report = Report::new(&swept, problem_sweep_text(&input.title, &swept))?;
+    let report = Report::new(&swept, swept.text(&input.title, &input.units))?;
     let status = swept.points.iter().map(|point| point.summary.status).collect();
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
-    write_points(&folder, &swept)?;
+    let wanted = common.wanted(Pictures::All);
+    wanted.write_points(&folder, &swept)?;
     report.write(&folder)?;
     let outcome = report.outcome(common.format, status);
-    let wanted = common.wanted(Pictures::All);
-    Ok(outcome.with_pictures(move || draw_problem_sweep(&folder, &input.title, &swept, wanted)))
+    Ok(outcome.with_pictures(move || wanted.draw_problem_sweep(&folder, &input.title, &swept)))
 }

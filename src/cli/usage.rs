@@ -8,8 +8,8 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, CommandFactory, Error};
 
 use super::options::Arguments;
-use crate::error::nearest;
-use crate::scene::absent;
+use crate::scene::Scene;
+use signorini_mechanics::nearest;
 
 /// The error without the tip to pass an unknown option as a value behind `--`, and with the option of the nearest name.
 pub(super) fn with_nearest_option(mut error: Error, given: &[OsString]) -> Error {
@@ -24,7 +24,7 @@ pub(super) fn with_nearest_option(mut error: Error, given: &[OsString]) -> Error
         return error;
     }
     error.remove(ContextKind::Suggested);
-    if let Some(sentence) = absent(unknown.trim_start_matches('-')) {
+    if let Some(sentence) = Scene::not_modelled(unknown.trim_start_matches('-')) {
         error.remove(ContextKind::SuggestedArg);
         error.remove(ContextKind::Usage);
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![sentence.into()]));

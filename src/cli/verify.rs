@@ -2,11 +2,11 @@
 
 use super::options::{Verify, most_memory};
 use super::outcome::{Outcome, Report};
-use crate::error::Error;
-use crate::output::verify_text;
-use crate::qp::{Settings, certify_within, read_problem, read_vector};
+use crate::Error;
+use crate::output::InWords;
+use crate::qp::{Settings, Watch, read_problem, read_vector};
+use crate::scene::Units;
 use crate::study::{ModelSize, Verification};
-use crate::watch::Watch;
 
 pub(super) fn run(options: &Verify, watch: &Watch) -> Result<Outcome, Error> {
     // The available memory is asked for before the problem takes its own.
@@ -15,9 +15,10 @@ pub(super) fn run(options: &Verify, watch: &Watch) -> Result<Outcome, Error> {
     let multiplier = read_vector(&options.multiplier)?;
     let problem = read_problem(&options.directory)?;
     let (threads, tolerance) = (options.threads, Some(options.tolerance));
-    let settings = Settings { memory, threads, tolerance, watch: watch.clone(), ..Settings::default() };
-    let certificate = certify_within(&problem, options.factor_time, (&displacement, &multiplier), &settings)?;
+    let mut settings = Settings::default().with_threads(threads).watched(watch);
+    (settings.memory, settings.tolerance) = (memory, tolerance);
+    let certificate = problem.certify_within(options.factor_time, (&displacement, &multiplier), &settings)?;
     let verification = Verification::new(certificate, &multiplier, ModelSize::of(&problem), options.tolerance);
-    let text = verify_text(&format!("Problem directory {}", options.directory.display()), &verification);
+    let text = verification.text(&format!("Problem directory {}", options.directory.display()), &Units::unnamed());
     Ok(Report::new(&verification, text)?.outcome(options.format, verification.status))
 }

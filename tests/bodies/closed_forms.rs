@@ -10,7 +10,7 @@ use crate::exact_solutions::{
 use crate::solved_block::solve_block;
 use serde_json::{Value, json};
 use signorini::fem::{ElementKind, Integration};
-use signorini::internals::Cholesky;
+use signorini::qp::Cholesky;
 
 /// Tolerance of the bar and of the patch test, relative to the largest value: the elements are exact, so only rounding
 /// remains.

@@ -5,12 +5,9 @@
 //! moved by up to a fifth of a cell; E = 7, nu = 0.3.
 
 use crate::bodies::{difference, distort, distorted, largest, nodal_of, solve_held};
-use signorini::fem::Formulation;
-use signorini::fem::Material;
-use signorini::fem::Stress;
-use signorini::fem::{self, DofMap, ExactState, error_norms};
-use signorini::fem::{ElasticBody, Integration};
-use signorini::fem::{ElementKind, Mesh};
+use signorini::fem::{
+    self, DofMap, ElasticBody, ElementKind, ExactState, Formulation, Integration, Material, Mesh, Stress, error_norms,
+};
 use signorini::scene::{bar, cuboid, rectangle};
 
 /// Rounding of a few thousand operations on numbers of order one.

@@ -3,11 +3,10 @@
 //!
 //! REFERENCE: shares of line2 1/2; line3 1/6, 4/6, 1/6; Q4 1/4; T3 1/3; of a conical surface, weighted by the radius.
 
-use signorini::fem::ElasticBody;
-use signorini::fem::Formulation;
-use signorini::fem::Material;
-use signorini::fem::{Boundary, ElementKind, FacetKind, Mesh};
-use signorini::fem::{add_pressure, add_traction, tributary_areas};
+use signorini::fem::{
+    Boundary, ElasticBody, ElementKind, FacetKind, Formulation, Material, Mesh, add_pressure, add_traction,
+    tributary_areas,
+};
 use signorini::scene::{bar, cuboid, rectangle};
 
 const ROUNDING: f64 = 1e-14;

@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use signorini::fem::{ElasticBody, Formulation, GmshFile, Material, tributary_areas};
-use signorini::fem::{ElementKind, Mesh};
+use signorini::fem::{ElasticBody, ElementKind, Formulation, GmshFile, Material, Mesh, tributary_areas};
 
 fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(name)

@@ -1,10 +1,7 @@
 //! Consistent loads: nodal shares, totals, tributary areas.
 
 use crate::bodies::{VARIANTS, distorted_body};
-use signorini::fem::ElementKind;
-use signorini::fem::Formulation;
-use signorini::fem::Material;
-use signorini::fem::{add_body_force, add_traction, tributary_areas};
+use signorini::fem::{ElementKind, Formulation, Material, add_body_force, add_traction, tributary_areas};
 use signorini::scene::rectangle;
 
 const ROUNDING: f64 = 1e-14;

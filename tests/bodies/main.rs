@@ -11,7 +11,6 @@ mod solved_block;
 
 mod accuracy;
 mod closed_forms;
-mod curved_bodies;
 mod elements;
 mod facets;
 mod gmsh_binary_faults;

@@ -4,15 +4,12 @@
 //! shape functions represent exactly.
 
 use crate::bodies::{distort, distorted, nodal_of};
-use signorini::Error;
-use signorini::fem::ElasticBody;
-use signorini::fem::ElementKind;
-use signorini::fem::Formulation;
-use signorini::fem::Material;
-use signorini::fem::{DofMap, Frame, MassForm, add_body_force_field, mass};
-use signorini::internals::Cholesky;
-use signorini::internals::dot;
+use signorini::fem::{
+    DofMap, ElasticBody, ElementKind, Formulation, Frame, MassForm, Material, add_body_force_field, mass,
+};
+use signorini::qp::{Cholesky, dot};
 use signorini::scene::{bar, cuboid};
+use signorini::{Error, qp};
 
 /// Rounding of sums over a mesh with two quadratures.
 const SAME: f64 = 1e-12;
@@ -143,7 +140,7 @@ fn a_mesh_too_coarse_and_a_material_without_density_are_refused() {
     let refused = |body: &ElasticBody| {
         mass(body, &all_free(body), MassForm::Redistributed, &contact_nodes(body, "right")).unwrap_err()
     };
-    assert!(matches!(refused(&body(material, &LINES)), Error::Setting { name: "density", .. }));
+    assert!(matches!(refused(&body(material, &LINES)), Error::Qp(qp::Error::Setting { name: "density", .. })));
     let heavy = material.with_density(1.0).unwrap();
     let everywhere = body(heavy, &LINES);
     let all: Vec<usize> = (0..LINES.len()).collect();
@@ -151,6 +148,6 @@ fn a_mesh_too_coarse_and_a_material_without_density_are_refused() {
     assert!(none_left.to_string().contains("every node of a body is a contact node"), "{none_left}");
     assert!(refused(&body(heavy, &[0.0, 1.0])).to_string().contains("too coarse"));
     for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(material.with_density(wrong), Err(Error::Setting { name: "density", .. })));
+        assert!(matches!(material.with_density(wrong), Err(Error::Qp(qp::Error::Setting { name: "density", .. }))));
     }
 }

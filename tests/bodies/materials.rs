@@ -1,9 +1,9 @@
 //! Orthotropic materials and bodies of several materials: closed forms along and off the axes, layers, refused input.
 
 use crate::bodies::{difference, distorted, largest, nodal, solve_held};
-use signorini::Error;
 use signorini::fem::{self, DofMap, ElasticBody, ElementKind, Formulation, MassForm, Material};
 use signorini::scene::{cuboid, rectangle};
+use signorini::{Error, qp};
 
 const STRESS: Formulation = Formulation::PlaneStress { thickness: 0.5 };
 const STRAIN: Formulation = Formulation::PlaneStrain { thickness: 0.5 };
@@ -130,7 +130,7 @@ fn each_material_contributes_its_density_to_the_mass() {
 fn constants_without_a_positive_definite_stiffness_are_refused() {
     let refused = |young, ratios, shear, expected: &str| {
         let error = Material::orthotropic(young, ratios, shear).unwrap_err();
-        assert!(matches!(&error, Error::Setting { name, .. } if *name == expected), "{error:?}");
+        assert!(matches!(&error, Error::Qp(qp::Error::Setting { name, .. }) if *name == expected), "{error:?}");
     };
     refused([140.0, 0.0, 9.0], RATIOS, SHEAR, "orthotropic.young[1]");
     refused(YOUNG, RATIOS, [5.0, 3.6, f64::INFINITY], "orthotropic.shear[2]");

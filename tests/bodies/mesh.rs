@@ -1,10 +1,7 @@
 //! Structured meshes: geometry, boundaries, and refused input.
 
 use signorini::Error;
-use signorini::fem::ElasticBody;
-use signorini::fem::Formulation;
-use signorini::fem::Material;
-use signorini::fem::{Axis, Boundary, ElementKind, FacetKind, Mesh};
+use signorini::fem::{Axis, Boundary, ElasticBody, ElementKind, FacetKind, Formulation, Material, Mesh};
 use signorini::scene::rectangle;
 
 fn axis(points: &[f64], divisions: &[usize], ratios: &[f64]) -> Axis {

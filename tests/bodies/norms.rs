@@ -6,11 +6,7 @@
 //! REFERENCE   integral of (eps - c)^2 = 9/8 (1-x0)^2 - 2 c (1-x0)^1.5 + c^2, of eps^2 = 9/8 (1-x0)^2;
 //!             of (u - c x)^2 = (1-x0)^4/4 - 2 c ((1-x0)^3.5/3.5 + x0 (1-x0)^2.5/2.5) + c^2/3, of u^2 = (1-x0)^4/4
 
-use signorini::fem::ElasticBody;
-use signorini::fem::ElementKind;
-use signorini::fem::Formulation;
-use signorini::fem::Material;
-use signorini::fem::{ExactState, error_norms};
+use signorini::fem::{ElasticBody, ElementKind, ExactState, Formulation, Material, error_norms};
 use signorini::scene::{cuboid, rectangle};
 
 /// The norms are accurate to four digits.

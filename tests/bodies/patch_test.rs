@@ -4,8 +4,7 @@
 //! 0.5.
 
 use crate::bodies::{VARIANTS, difference, distorted_body, largest, nodal, solve_held};
-use signorini::fem::Formulation;
-use signorini::fem::{self, Stress};
+use signorini::fem::{self, Formulation, Stress};
 
 /// Rounding of a few hundred operations on numbers of order one.
 const ROUNDING: f64 = 1e-13;

@@ -13,6 +13,7 @@ mod oracle;
 #[path = "../../tools/fuzz/problem.rs"]
 mod problem;
 
+use signorini::{ContactProblem, InteriorPoint, Method, Penalty, Prepared, Settings, Solution, qp, solve};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -20,7 +21,6 @@ use std::path::{Path, PathBuf};
 use damage::{damaged, fault, faults, read};
 use draws::Draws;
 use signorini::qp::read_problem;
-use signorini::{ContactProblem, Error, InteriorPoint, Method, Penalty, Prepared, Settings, Solution, solve};
 
 fn corpus() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus")
@@ -78,7 +78,7 @@ fn the_active_set_loop_ends_on_every_kept_problem() {
         let Ok(problem) = problem::problem(&mut Draws(seed)) else { continue };
         let found = match solve(&problem, &Settings::with_method(Method::ActiveSet)) {
             Ok(solution) => solution,
-            Err(Error::NotCertified { solution, .. }) => *solution,
+            Err(qp::Error::NotCertified { solution, .. }) => *solution,
             Err(_) => continue,
         };
         longest = longest.max(found.history.len());
@@ -124,7 +124,7 @@ fn methods() -> Vec<Method> {
 
 /// The codes of `solve`, of data prepared for one gap, and of data prepared at other gaps for many.
 fn codes(problem: &ContactProblem, settings: &Settings) -> [&'static str; 3] {
-    let code = |solved: Result<Solution, Error>| solved.map_or_else(|error| error.code(), |_| "solved");
+    let code = |solved: Result<Solution, qp::Error>| solved.map_or_else(|error| error.code(), |_| "solved");
     let elsewhere = problem.gap().iter().map(|gap| gap.abs() + 1.0).collect();
     let of_one = Prepared::for_gaps(problem, 1, settings).and_then(|prepared| prepared.solve(problem.gap()));
     let of_many = (problem.with_gap(elsewhere))

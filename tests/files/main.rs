@@ -2,8 +2,6 @@
 
 #[path = "../support/oracles/mod.rs"]
 mod oracles;
-#[path = "../support/output_fixture/mod.rs"]
-mod output_fixture;
 #[path = "../support/program.rs"]
 mod program;
 
@@ -15,9 +13,5 @@ mod drawn_bodies;
 mod faults;
 mod matrix_market;
 mod out_folder;
-mod output_files;
-mod output_pictures;
-mod output_plots;
-mod output_ticks;
 mod petsc;
 mod petsc_faults;

@@ -4,8 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::oracles::{Draws, random};
-use signorini::qp;
-use signorini::{Error, solve_qp};
+use signorini::{qp, solve_qp};
 
 fn write(folder: &Path, files: &[(&str, String)]) {
     files.iter().for_each(|(name, text)| fs::write(folder.join(name), text).unwrap());
@@ -20,10 +19,11 @@ fn written_problems_and_answers_are_read_back_bit_by_bit() {
         dense.gap[2] = f64::INFINITY;
         dense.load[0] = 1e-310;
         let problem = dense.problem().unwrap();
-        write(folder.path(), &qp::problem_files(&problem));
+        let texts: Vec<_> = problem.files().iter().map(|file| (file.name, file.text())).collect();
+        write(folder.path(), &texts);
         assert_eq!(qp::read_problem(folder.path()).unwrap(), problem);
         let solution = solve_qp(&problem).unwrap();
-        write(folder.path(), &qp::solution_files(&solution));
+        write(folder.path(), &solution.files());
         assert_eq!(qp::read_vector(&folder.path().join("u.mtx")).unwrap(), solution.displacement);
         assert_eq!(qp::read_vector(&folder.path().join("lambda.mtx")).unwrap(), solution.multiplier);
     }
@@ -77,7 +77,7 @@ fn faults_are_reported_with_their_line_and_what_is_allowed() {
         let folder = tempfile::tempdir().unwrap();
         write(folder.path(), &[("K.mtx", text.to_string())]);
         match qp::read_problem(folder.path()) {
-            Err(Error::FileSyntax { line, message, .. }) => {
+            Err(qp::Error::FileSyntax { line, message, .. }) => {
                 assert!(line == expected_line && message.contains(phrase), "{text:?}: line {line}: {message}");
             }
             other => panic!("{text:?}: {other:?}"),

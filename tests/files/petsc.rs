@@ -124,7 +124,7 @@ fn compare_sweep_and_tradeoff_read_petsc_files() {
     desk.run(&["tradeoff", "p", "--runs", "1", "--format", "json"]).ends_with(0);
     let problem = read_problem(&desk.path("p")).unwrap();
     let deeper: Vec<f64> = problem.gap().iter().map(|gap| gap - 0.01).collect();
-    desk.write("p/g1.mtx", signorini::internals::format_vector(&deeper));
+    desk.write("p/g1.mtx", signorini::qp::format_vector(&deeper));
     let swept = desk.run(&["sweep", "p", "--points", "3", "--format", "json"]).ends_with(0).json();
     assert!(swept.to_string().contains("certified"), "{swept}");
 }

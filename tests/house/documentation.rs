@@ -209,21 +209,14 @@ fn declaration(lines: &[&str]) -> String {
     lines[..=end.unwrap_or(0)].join(" ")
 }
 
-/// The items that a user sees, file by file: those of the front, with their fields, variants and methods.
+/// The items that a user sees, file by file: those of all crates, with their fields, variants and methods.
 fn front(house: &House) -> Vec<Item> {
-    let root = &house.files[&Vec::new()];
-    let rooms = root.text.split("#[doc(hidden)]").next().unwrap();
-    let shown: BTreeSet<&str> = rooms.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
-    let of_root = root.exports.iter().filter(|(name, _)| shown.contains(name.as_str()));
-    let mut seen: BTreeSet<(Vec<String>, String)> =
-        of_root.map(|(name, path)| (house.file_of(path), name.clone())).collect();
-    for line in rooms.lines() {
-        let Some(room) = line.strip_prefix("pub mod ") else { continue };
-        let room = vec![room.trim_end_matches(';').to_string()];
-        let source = &house.files[&room];
+    let mut seen: BTreeSet<(Vec<String>, String)> = BTreeSet::new();
+    for module in house.public_modules() {
+        let source = &house.files[&module];
         seen.extend(source.exports.iter().map(|(name, path)| (house.file_of(path), name.clone())));
         let own = source.text.lines().filter_map(|line| declared(line, 0, "", ""));
-        seen.extend(own.map(|name| (room.clone(), name)));
+        seen.extend(own.map(|name| (module.clone(), name)));
     }
     let of_file = |(module, source): (&Vec<String>, &Source)| {
         items(&source.path, &source.text, |name| {

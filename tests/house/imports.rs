@@ -1,16 +1,25 @@
-//! The imports between files of `src/`: the `use` declarations and the paths in the code (`crate::a::b(..)`,
-//! `super::c`), followed through re-exports to the file that defines the name.
+//! The imports between the files of all crates: the `use` declarations and the paths in the code (`crate::a::b(..)`,
+//! `super::c`, `signorini_qp::d`), followed through re-exports to the file that defines the name.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A module by its names from the crate root; `[]` is the crate itself.
+/// A module by its names, as a user of `signorini` knows it: `qp::method::start`, `fem::mesh`, `output::page`, `cli`; `[]` is the crate
+/// of the mechanics, and `lib` what `signorini` re-exports.
 type Module = Vec<String>;
+
+/// The sources of each crate, its name in code, and the names that come before those of its modules.
+pub const CRATES: [(&str, &str, &[&str]); 4] = [
+    ("crates/qp/src", "signorini_qp", &["qp"]),
+    ("crates/mechanics/src", "signorini_mechanics", &[]),
+    ("crates/output/src", "signorini_output", &["output"]),
+    ("src", "signorini", &[]),
+];
 
 /// A source file, and the content of its `use` declarations.
 pub struct Source {
-    /// Path below `src/`.
+    /// Its path as that of its module: `qp/method/start.rs`, `fem/mesh/mod.rs`, `output/page/write.rs`, `cli/solve.rs`.
     pub path: PathBuf,
     /// Text of the file.
     pub text: String,
@@ -22,7 +31,7 @@ pub struct Source {
     pub exports: BTreeMap<String, Module>,
 }
 
-/// All files of `src/` by their modules.
+/// All files of all crates by their modules.
 pub struct House {
     pub files: BTreeMap<Module, Source>,
 }
@@ -44,14 +53,30 @@ pub fn rust_files(folder: &Path) -> Vec<PathBuf> {
 }
 
 impl House {
-    /// Reads `src/`.
+    /// Reads the sources of all crates, without files of tests.
     pub fn read() -> Self {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
         let mut texts = BTreeMap::new();
-        for path in rust_files(&root) {
-            let inside = path.strip_prefix(&root).unwrap().to_path_buf();
-            texts.insert(module_of(&inside), (inside, fs::read_to_string(&path).unwrap()));
+        for (folder, _, before) in CRATES {
+            let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+            for path in rust_files(&root) {
+                let inside = path.strip_prefix(&root).unwrap();
+                // What `signorini` re-exports is not the root of the mechanics.
+                let name = if folder == "src" { "lib" } else { "" };
+                let module = module_of(inside, before, name);
+                texts.insert(
+                    module,
+                    (before.iter().collect::<PathBuf>().join(inside), fs::read_to_string(&path).unwrap()),
+                );
+            }
         }
+        let of_tests = |module: &Module| {
+            (1..=module.len()).any(|length| {
+                let declared = format!("#[cfg(test)]\nmod {};", module[length - 1]);
+                texts.get(&module[..length - 1]).is_some_and(|(_, text): &(PathBuf, String)| text.contains(&declared))
+            })
+        };
+        let of_tests: Vec<Module> = texts.keys().filter(|module| of_tests(module)).cloned().collect();
+        of_tests.iter().for_each(|module| drop(texts.remove(module)));
         let known: BTreeSet<Module> = texts.keys().cloned().collect();
         let read = |(module, (path, text)): (Module, (PathBuf, String))| {
             let (declarations, paths) = named(&text);
@@ -87,6 +112,22 @@ impl House {
         found
     }
 
+    /// The modules that a user sees, of all crates: their roots, and what is public in them.
+    pub fn public_modules(&self) -> Vec<Module> {
+        let mut found: Vec<Module> = Vec::new();
+        let mut next: Vec<Module> =
+            CRATES.iter().map(|of_crate| of_crate.2.iter().map(|name| (*name).to_string()).collect()).collect();
+        next.push(vec!["lib".to_string()]);
+        while let Some(module) = next.pop() {
+            let Some(source) = self.files.get(&module).filter(|_| !found.contains(&module)) else { continue };
+            let before = if module == ["lib"] { Vec::new() } else { module.clone() };
+            let inside = source.text.lines().filter_map(|line| line.strip_prefix("pub mod "));
+            next.extend(inside.map(|name| [&before[..], &[name.trim_end_matches(';').to_string()]].concat()));
+            found.push(module);
+        }
+        found
+    }
+
     /// The file that defines what a path from the crate root names.
     pub fn file_of(&self, path: &[String]) -> Module {
         self.defining(path, 0)
@@ -114,13 +155,14 @@ impl House {
     }
 }
 
-fn module_of(path: &Path) -> Module {
+/// The module of a file in a crate whose modules stand behind `before`; `root` is the name of the crate's own file.
+fn module_of(path: &Path, before: &[&str], root: &str) -> Module {
     let mut names: Module =
         path.with_extension("").components().map(|part| part.as_os_str().to_str().unwrap().to_string()).collect();
-    if names.last().is_some_and(|name| name == "mod") || names == ["lib"] {
+    if names.last().is_some_and(|name| name == "mod") || names == ["lib"] && root.is_empty() {
         names.pop();
     }
-    names
+    before.iter().map(|name| (*name).to_string()).chain(names).collect()
 }
 
 /// The names in the code of a file: its `use` declarations, each as public or not, name and path; and its other paths.
@@ -240,13 +282,21 @@ fn taken_apart(tree: &[String]) -> Vec<(String, Module)> {
     items.iter().filter(|item| !item.is_empty()).flat_map(|item| taken_apart(item)).map(whole).collect()
 }
 
-/// The path from the crate root, if it stays in the crate.
+/// The path as a user knows it, if it stays in the workspace.
 fn from_root(path: &Module, module: &Module, known: &BTreeSet<Module>) -> Option<Module> {
     let mut here = module.clone();
     let mut rest = path.as_slice();
     match rest.first().map(String::as_str) {
         Some("crate") => {
-            here.clear();
+            // The modules of the mechanics and of the program have no name before theirs.
+            let depth =
+                usize::from(["qp", "output"].iter().any(|name| module.first().is_some_and(|first| first == name)));
+            here.truncate(depth);
+            rest = &rest[1..];
+        }
+        Some(name) if CRATES.iter().any(|of_crate| of_crate.1 == name) => {
+            let before = CRATES.iter().find(|of_crate| of_crate.1 == name).map_or(&[][..], |of_crate| of_crate.2);
+            here = before.iter().map(|name| (*name).to_string()).collect();
             rest = &rest[1..];
         }
         Some("super") => {

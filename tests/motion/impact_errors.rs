@@ -1,6 +1,6 @@
 //! Invalid motions are refused before the first step, or at the step whose values overflow.
 
-use signorini::motion::{DynamicProblem, Integrator, Scheme, TimeFunction, stable_step};
+use signorini::motion::{DynamicProblem, Integrator, Scheme, TimeFunction};
 use signorini::{ContactProblem, Error, Settings, SparseMatrix, SymmetricMatrix};
 
 fn symmetric(dofs: usize, entries: &[(usize, usize, f64)]) -> SymmetricMatrix {
@@ -55,10 +55,10 @@ fn steps_and_schemes_that_the_motion_does_not_allow_are_refused() {
     let massless = [(0, 0, 1.0)];
     refused(integrator(with_mass(&massless), Scheme::Trapezoidal, 0.1), "setting", &["mass of a dof", "midpoint rule"]);
     assert!(integrator(with_mass(&massless), Scheme::Midpoint, 0.1).is_ok());
-    refused(stable_step(&with_mass(&massless)), "setting", &["mass of a dof is 0", "explicit"]);
+    refused(with_mass(&massless).stable_step(), "setting", &["mass of a dof is 0", "explicit"]);
     let consistent = [(0, 0, 1.0), (1, 0, 0.25), (1, 1, 1.0)];
-    refused(stable_step(&with_mass(&consistent)), "setting", &["beside its diagonal is 0.25", "lumped"]);
-    let most = stable_step(&with_mass(&LUMPED)).unwrap();
+    refused(with_mass(&consistent).stable_step(), "setting", &["beside its diagonal is 0.25", "lumped"]);
+    let most = with_mass(&LUMPED).stable_step().unwrap();
     assert!(integrator(with_mass(&LUMPED), EXPLICIT, most).is_ok());
     refused(integrator(with_mass(&LUMPED), EXPLICIT, 1.01 * most), "numerical", &["beyond the largest stable one"]);
 }
@@ -70,9 +70,9 @@ fn the_stable_step_of_two_masses_follows_from_their_larger_frequency_and_falls_w
     // det(K - omega^2) = (3 - w)(1 - w) - 1: w = 2 +- sqrt(2). The bound uses the magnitudes of K, which have the same
     // largest eigenvalue.
     let omega = (2.0 + 2.0_f64.sqrt()).sqrt();
-    let free = stable_step(&with_mass(&LUMPED)).unwrap();
+    let free = with_mass(&LUMPED).stable_step().unwrap();
     assert!((free * omega / 2.0 - 1.0).abs() < 1e-6, "{free}");
-    let damped = stable_step(&with_mass(&LUMPED).with_damping(0.4, 0.1).unwrap()).unwrap();
+    let damped = with_mass(&LUMPED).with_damping(0.4, 0.1).unwrap().stable_step().unwrap();
     let xi = 0.4 / (2.0 * omega) + 0.1 * omega / 2.0;
     assert!((damped / free - (xi.hypot(1.0) - xi)).abs() < 1e-6, "{damped}");
 }

@@ -7,10 +7,9 @@
 use crate::bodies::{built, clamped_block, clamped_square};
 use crate::oracles::{Draws, random};
 use serde_json::{Value, json};
-use signorini::internals::multigrid::{Multigrid, NearNullSpace};
-use signorini::internals::{Blocks, Cholesky};
+use signorini::qp::{Cholesky, Error, Multigrid, NearNullSpace};
 use signorini::{
-    ContactProblem, Error, Method, Prepared, Settings, Solution, SparseMatrix, Start, SymmetricMatrix, Watch, solve,
+    ContactProblem, Method, Prepared, Settings, Solution, SparseMatrix, Start, SymmetricMatrix, Watch, solve,
 };
 
 /// Rounding error of the reference answer, in the relative energy norm; the bound holds for the exact answer.
@@ -320,8 +319,8 @@ fn the_energy_of_each_block_of_a_matrix_is_between_its_bounds() {
         (0..both.dofs()).map(|dof| draws.signed() * if dof < stiff.dofs() { 1.0 } else { 1e-20 }).collect();
     let of_unknown: Vec<usize> = (0..both.dofs()).map(|dof| usize::from(dof >= stiff.dofs())).collect();
     let multigrid = Multigrid::new(both.stiffness(), both.near_null().unwrap(), 1).unwrap();
-    let blocks = Blocks { of_unknown: &of_unknown, count: 2 };
-    let found = multigrid.preconditioning(both.stiffness()).dual_norms(&force, blocks, &Watch::default()).unwrap();
+    let found =
+        multigrid.preconditioning(both.stiffness()).dual_norms(&force, &of_unknown, 2, &Watch::default()).unwrap();
     let parts = [(stiff, &force[..stiff.dofs()], 1.0), (soft, &force[stiff.dofs()..], 1e-12)];
     for (found, (problem, force, softness)) in found.iter().zip(parts) {
         let moved = Cholesky::of(problem.stiffness()).unwrap().solve(force);

@@ -10,8 +10,8 @@ use std::path::Path;
 use crate::bodies::{built, clamped_block, clamped_square, largest};
 use crate::oracles::{Dense, Draws, random};
 use serde_json::json;
-use signorini::internals::multigrid::NearNullSpace;
-use signorini::{ContactProblem, ContactSet, Error, Method, Prepared, Scene, Settings, Solution, Start, solve};
+use signorini::qp::{Error, NearNullSpace};
+use signorini::{ContactProblem, ContactSet, Method, Prepared, Scene, Settings, Solution, Start, solve};
 
 /// Both answers are certified to 1e-9; the condition numbers of these bodies are at most 1e3.
 const SAME: f64 = 1e-6;

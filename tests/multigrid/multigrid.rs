@@ -6,9 +6,8 @@
 use crate::bodies::{built, clamped_block, clamped_square, largest};
 use crate::oracles::Draws;
 use serde_json::json;
-use signorini::internals::Cholesky;
-use signorini::internals::multigrid::{Multigrid, NearNullSpace, Width};
-use signorini::{ContactProblem, Error, SparseMatrix, SymmetricMatrix};
+use signorini::qp::{Cholesky, Error, Multigrid, NearNullSpace, Width};
+use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
 
 /// Relative residual at which the iteration ends.
 const TOLERANCE: f64 = 1e-10;

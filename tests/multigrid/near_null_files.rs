@@ -8,12 +8,12 @@ use std::path::Path;
 use crate::bodies::{built, clamped_block, clamped_square};
 use crate::program::Desk;
 use serde_json::json;
-use signorini::qp;
-use signorini::{ContactProblem, Method, Settings, solve};
+use signorini::{ContactProblem, Method, Settings, qp, solve};
 
 fn write(folder: &Path, problem: &ContactProblem) {
-    for (name, text) in qp::problem_files(problem) {
-        fs::write(folder.join(name), text).unwrap();
+    // Without the near-null space.
+    for file in &problem.files()[..4] {
+        fs::write(folder.join(file.name), file.text()).unwrap();
     }
 }
 

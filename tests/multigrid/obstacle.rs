@@ -80,7 +80,7 @@ fn ones_as_the_near_null_space_of_a_membrane_change_nothing() {
     let problem = membrane(63).unwrap();
     let ones = signorini::qp::NearNullSpace::new(vec![vec![1.0; problem.dofs()]], problem.dofs()).unwrap();
     let with_ones = problem.clone().with_near_null(ones).unwrap();
-    let estimate = signorini::internals::Estimate::of;
+    let estimate = signorini::qp::Estimate::of;
     assert_eq!(estimate(&with_ones), estimate(&problem));
     let iterated = |problem: &ContactProblem| solve(problem, &Settings::default()).unwrap();
     let (with, without) = (iterated(&with_ones), iterated(&problem));

@@ -6,7 +6,7 @@
 
 use crate::bodies::{built, clamped_block};
 use serde_json::{Value, json};
-use signorini::internals::Estimate;
+use signorini::qp::Estimate;
 use signorini::{Method, Settings, Solution, solve};
 
 /// Both methods are certified to 1e-9 in the energy norm; single values are less accurate.

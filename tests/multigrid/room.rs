@@ -5,9 +5,9 @@
 
 use crate::bodies::{built, clamped_block};
 use serde_json::{Value, json};
-use signorini::internals::Estimate;
+use signorini::qp::{Error, Estimate};
 use signorini::study::{ModelSize, Summary};
-use signorini::{ContactProblem, Error, Method, Prepared, Settings, solve};
+use signorini::{ContactProblem, Method, Prepared, Settings, solve};
 
 fn within(memory: f64) -> Settings {
     let mut settings = Settings::default();

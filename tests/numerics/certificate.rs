@@ -2,7 +2,8 @@
 //! CONDITIONS: the exact answer of a small problem, with one planted fault at a time.
 
 use crate::oracles::{Dense, Draws, random};
-use signorini::{Certificate, ContactProblem, Error, Method, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp};
+use signorini::qp::Error;
+use signorini::{Certificate, ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp};
 
 const TOLERANCE: f64 = 1e-9;
 
@@ -113,7 +114,7 @@ fn answers_that_are_not_certified_are_returned_with_their_numbers() {
     let loose = signorini::InteriorPoint { polish: false, tolerance: 1e-2 };
     let settings = Settings::with_method(Method::Qp(loose));
     match solve(&two_springs().0, &settings) {
-        Err(signorini::Error::NotCertified { solution, value, tolerance, .. }) => {
+        Err(Error::NotCertified { solution, value, tolerance, .. }) => {
             assert_eq!(solution.method, "qp-unpolished");
             assert!(value > tolerance && (solution.displacement[1] - 1.0).abs() < 0.1);
         }
@@ -124,7 +125,7 @@ fn answers_that_are_not_certified_are_returned_with_their_numbers() {
 #[test]
 fn vectors_of_wrong_length_or_with_values_that_are_not_finite_are_refused_in_one_sentence() {
     let (problem, u, lambda) = two_springs();
-    let message = |result: Result<Certificate, signorini::Error>| result.unwrap_err().to_string();
+    let message = |result: Result<Certificate, Error>| result.unwrap_err().to_string();
     assert_eq!(message(problem.certify(&u[1..], &lambda)), "displacement has length 1, but there are 2 dofs");
     assert_eq!(message(problem.certify(&u, &[])), "multiplier has length 0, but there are 2 contact rows");
     assert!(!problem.certify(&[f64::NAN, 1.0], &lambda).unwrap().meets(TOLERANCE));

@@ -3,8 +3,8 @@
 //! CONDITIONS: a stiffness that resists no motion, or not every motion; loads in balance and not in balance; rows that
 //! stop the motion in one direction, in both or in none. REFERENCE: the answers follow directly from the data.
 
-use signorini::qp::NearNullSpace;
-use signorini::{ContactProblem, Error, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve};
+use signorini::qp::{Error, NearNullSpace};
+use signorini::{ContactProblem, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve};
 
 const ALL: [Method; 5] = [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
 

@@ -4,15 +4,15 @@
 //! CONDITIONS: every example scene, the reference gaps, a body in space, inclined and two-sided rows, bodies held only
 //! by their rows, redundant rows; one thread and two.
 
-use signorini::Penalty;
+use signorini::{
+    Condense, ContactProblem, Method, Penalty, Prepared, Scene, Settings, Solution, SparseMatrix, SymmetricMatrix,
+    solve,
+};
 use std::path::Path;
 
 use crate::oracles::{Draws, random};
 use serde_json::json;
-use signorini::internals::Cholesky;
-use signorini::{
-    Condense, ContactProblem, Error, Method, Prepared, Scene, Settings, Solution, SparseMatrix, SymmetricMatrix, solve,
-};
+use signorini::qp::{Cholesky, Error};
 
 /// Condensed and full answers differ by rounding times the condition number of the stiffness.
 const SAME: f64 = 1e-11;

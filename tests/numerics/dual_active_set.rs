@@ -4,17 +4,8 @@
 
 use crate::oracles::{Dense, Draws, random};
 use nalgebra::{DMatrix, DVector};
-use signorini::Start;
-use signorini::internals::AugmentedMatrix;
-use signorini::internals::{Definiteness, DualActiveSet, Ending, Outcome, ScaledProblem, Solver};
-use signorini::{ContactProblem, Error, Method, Settings, SparseMatrix, SymmetricMatrix, solve};
-
-/// Runs the method on an unscaled problem, with what is known about its stiffness.
-fn run(problem: &ContactProblem, definiteness: Definiteness) -> Result<Outcome, Error> {
-    let augmented = AugmentedMatrix::new(problem.stiffness(), problem.contact()).unwrap();
-    let scaled = ScaledProblem::new(problem, &augmented, definiteness);
-    DualActiveSet::of(&scaled)?.expect("the problem is small enough").solve(Start::default())
-}
+use signorini::qp::{Ending, Error, Outcome};
+use signorini::{ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, solve};
 
 /// `|u - u*|_K / |u*|_K`.
 fn energy_error(dense: &Dense, displacement: &[f64], exact: &DVector<f64>) -> f64 {
@@ -77,7 +68,7 @@ fn random_problems_have_the_answer_of_the_best_of_all_contact_sets() {
     for case in 0..1000 {
         let (n, m) = (1 + draws.below(6), 1 + draws.below(9));
         let dense = random(&mut draws, n, m);
-        let outcome = run(&dense.problem().unwrap(), Definiteness::Definite).unwrap();
+        let outcome = dense.problem().unwrap().dual_active_set(true).unwrap();
         let error = energy_error(&dense, &outcome.displacement, &dense.enumerate().displacement);
         assert!(outcome.is_settled() && error <= 1e-11, "case {case}: {error:e}");
     }
@@ -92,7 +83,7 @@ fn conditions_hold_to_rounding_with_equal_and_dependent_rows_in_other_units() {
         let (n, m) = (1 + draws.below(6), 1 + draws.below(9));
         let mut dense = random(&mut draws, n, m);
         make_dependent(&mut draws, &mut dense);
-        let outcome = run(&dense.problem().unwrap(), Definiteness::Definite).unwrap();
+        let outcome = dense.problem().unwrap().dual_active_set(true).unwrap();
         let found = conditions(&dense, &outcome);
         assert!(outcome.is_settled() && found.iter().all(|&value| value <= ROUNDED), "case {case}: {found:?}");
     }
@@ -130,7 +121,7 @@ fn networks_with_a_weakly_held_part_are_solved_to_rounding() {
     for case in 0..1000 {
         let n = 6 + draws.below(55);
         let dense = network(&mut draws, n);
-        let outcome = run(&dense.problem().unwrap(), Definiteness::Definite).unwrap();
+        let outcome = dense.problem().unwrap().dual_active_set(true).unwrap();
         let found = conditions(&dense, &outcome);
         assert!(outcome.is_settled() && found.iter().all(|&value| value <= ROUNDED), "case {case}: {found:?}");
     }
@@ -141,7 +132,7 @@ fn networks_with_a_weakly_held_part_are_solved_to_rounding() {
 fn a_network_of_600_dofs_is_solved_to_rounding() {
     let mut draws = Draws::new(4);
     let dense = network(&mut draws, 600);
-    let outcome = run(&dense.problem().unwrap(), Definiteness::Definite).unwrap();
+    let outcome = dense.problem().unwrap().dual_active_set(true).unwrap();
     let found = conditions(&dense, &outcome);
     assert!(outcome.is_settled() && found.iter().all(|&value| value <= ROUNDED), "{found:?}");
     assert!(outcome.contact_set.count() > 200, "{}", outcome.contact_set.count());
@@ -165,7 +156,7 @@ fn bodies_held_by_their_rows_alone_are_solved_to_rounding() {
         }
         let push = dense.contact.transpose() * DVector::from_fn(m, |_, _| draws.uniform());
         dense.load = &dense.stiffness * DVector::from_fn(n, |_, _| draws.signed()) + push;
-        let outcome = run(&dense.problem().unwrap(), Definiteness::Semidefinite).unwrap();
+        let outcome = dense.problem().unwrap().dual_active_set(false).unwrap();
         let found = conditions(&dense, &outcome);
         settled += usize::from(outcome.is_settled());
         assert!(!outcome.is_settled() || found.iter().all(|&value| value <= ROUNDED), "case {case}: {found:?}");
@@ -201,7 +192,7 @@ fn contradicting_rows_are_found_with_weights_that_the_problem_verifies() {
         let overlap = 2.0_f64.powi(-(draws.below(20) as i32));
         let dense = contradicting(&mut draws, overlap);
         let problem = dense.problem().unwrap();
-        let Ending::Infeasible { rows, weights } = run(&problem, Definiteness::Definite).unwrap().ending else {
+        let Ending::Infeasible { rows, weights } = problem.dual_active_set(true).unwrap().ending else {
             panic!("case {case}: an overlap of {overlap:e} is not found");
         };
         assert!(problem.overlap(&rows, &weights).is_some(), "case {case}: {rows:?} {weights:?}");
@@ -222,7 +213,7 @@ fn rows_that_miss_a_contradiction_by_one_rounding_are_not_called_infeasible() {
         dense.contact = dense.contact.insert_column(n, 0.0);
         dense.contact[(last, n)] = dense.contact.row(last).amax() * f64::EPSILON;
         dense.load = dense.load.insert_row(n, 0.0);
-        let found = run(&dense.problem().unwrap(), Definiteness::Definite);
+        let found = dense.problem().unwrap().dual_active_set(true);
         assert!(
             found.as_ref().is_ok_and(|found| !matches!(found.ending, Ending::Infeasible { .. })),
             "case {case}: {found:?}"
@@ -261,7 +252,7 @@ fn two_rows_that_share_a_soft_dof_are_both_closed_exactly() {
 fn an_apex_of_more_rows_than_dofs_has_the_multipliers_of_the_rows_that_push() {
     let rows: [&[f64]; 5] = [&[1.0, 0.0], &[0.0, 1.0], &[-1.0, 1e-3], &[-1.0, -1.0], &[1e-3, -1.0]];
     let dense = Dense::new(&[&[1.0, 0.0], &[0.0, 1.0]], &[1.0, 2.0], &rows, &[0.0; 5]);
-    let found = run(&dense.problem().unwrap(), Definiteness::Definite).unwrap();
+    let found = dense.problem().unwrap().dual_active_set(true).unwrap();
     assert!(found.is_settled() && found.displacement.iter().all(|u| u.abs() <= 1e-15), "{found:?}");
     let force = dense.contact.transpose() * DVector::from_column_slice(&found.multiplier);
     assert!((force + dense.load).amax() <= 1e-15, "{found:?}");

@@ -3,9 +3,8 @@
 
 use crate::program::examples;
 use crate::random::{springs, stacked};
-use signorini::qp::{Condense, Method, Settings};
-use signorini::{ContactProblem, Error, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
-use signorini::{InteriorPoint, Penalty};
+use signorini::qp::{Condense, Error, Method, Settings};
+use signorini::{ContactProblem, InteriorPoint, Penalty, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
 
 /// Smaller errors may be errors of the reference, a solve in double precision on matrices of condition 1e4.
 const OF_THE_REFERENCE: f64 = 1e-12;

@@ -3,7 +3,8 @@
 //! REFERENCE: independent solves at random gaps; enumeration of all contact sets for few rows.
 
 use crate::oracles::{Draws, random};
-use signorini::{Condense, Error, Prepared, Scene, Settings, SparseMatrix, SymmetricMatrix, solve_qp};
+use signorini::qp::Error;
+use signorini::{Condense, Prepared, Scene, Settings, SparseMatrix, SymmetricMatrix, solve_qp};
 
 /// The path and an independent solve differ by rounding times the condition number of the compliance.
 const SAME: f64 = 1e-10;
@@ -85,7 +86,9 @@ fn rows_that_touch_release_and_touch_again_agree_with_independent_solves() {
         let path = match prepared.path(&from, &to) {
             Ok(path) => path,
             // The gaps at the end may contradict each other, or there may be too many rows to condense.
-            Err(Error::Infeasible { .. } | Error::NotCondensed { .. } | Error::Numerical { .. }) => continue,
+            Err(Error::Infeasible { .. } | Error::NotCondensed { .. } | Error::Numerical { .. }) => {
+                continue;
+            }
             Err(error) => panic!("case {case}: {error}"),
         };
         for event in path.events() {

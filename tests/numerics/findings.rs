@@ -15,8 +15,8 @@ use crate::exact::measure::Errors;
 use crate::exact::solve::{Answer, Exact, Outcome};
 use crate::program::{Desk, Run};
 use serde_json::{Value, json};
-use signorini::qp::{read_problem, read_vector};
-use signorini::{ContactProblem, Error, Method, Settings, Solution, solve};
+use signorini::qp::{Error, read_problem, read_vector};
+use signorini::{ContactProblem, Method, Settings, Solution, solve};
 
 const ALL: [Method; 5] = [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
 

@@ -3,8 +3,8 @@
 
 use crate::oracles::{Dense, Draws, random};
 use nalgebra::{DMatrix, DVector};
-use signorini::internals::multigrid::NearNullSpace;
-use signorini::{Condense, ContactSet, Error, Method, Prepared, Settings, Solution, Start, solve};
+use signorini::qp::{Error, NearNullSpace};
+use signorini::{Condense, ContactSet, Method, Prepared, Settings, Solution, Start, solve};
 
 /// The expected ending.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -288,7 +288,9 @@ fn hostile_problems_end_with_a_certified_answer_or_an_error_by_the_penalty_metho
     for (name, dense, _) in cases() {
         match dense.problem().and_then(|problem| solve(&problem, &Settings::with_method(Method::penalty()))) {
             Ok(solution) => check(&name, &dense, &solution),
-            Err(Error::NotCertified { value, tolerance, .. }) => assert!(value.is_nan() || value > tolerance, "{name}"),
+            Err(Error::NotCertified { value, tolerance, .. }) => {
+                assert!(value.is_nan() || value > tolerance, "{name}")
+            }
             Err(_) => {}
         }
     }

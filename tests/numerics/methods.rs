@@ -2,8 +2,10 @@
 
 use crate::oracles::{Dense, Draws, random};
 use nalgebra::DMatrix;
-use signorini::{ContactProblem, Error, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve, solve_qp};
-use signorini::{InteriorPoint, Penalty};
+use signorini::qp::Error;
+use signorini::{
+    ContactProblem, InteriorPoint, Method, Penalty, Settings, Solution, SparseMatrix, SymmetricMatrix, solve, solve_qp,
+};
 
 const EXACT: [Method; 2] = [Method::qp(), Method::ActiveSet];
 

@@ -1,8 +1,7 @@
 //! The penalty ladder with a requested accuracy, and Richardson's extrapolation over the penalty.
 
-use signorini::Penalty;
-use signorini::qp::{Condense, Method, Settings};
-use signorini::{ContactProblem, Error, Scene, Solution, solve};
+use signorini::qp::{Condense, Error, Method, Settings};
+use signorini::{ContactProblem, Penalty, Scene, Solution, solve};
 
 /// The scenes whose stiffness is positive definite without contact, and small enough for a solve on all dofs.
 fn problems() -> Vec<(String, ContactProblem)> {

@@ -2,8 +2,8 @@
 //! is not accurate enough.
 
 use crate::random::springs;
-use signorini::qp::{Condense, Method, Precision, Prepared, Settings};
-use signorini::{ContactProblem, Error, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
+use signorini::qp::{Condense, Error, Method, Precision, Prepared, Settings};
+use signorini::{ContactProblem, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
 
 /// Two answers certified in double precision agree to this: rounding times the condition of the larger scenes.
 const AGREEMENT: f64 = 1e-11;

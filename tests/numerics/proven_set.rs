@@ -1,9 +1,8 @@
 //! The proven contact set: it is never wrong, at any accuracy, and it is complete if the answer is accurate.
 
 use crate::random::springs;
-use signorini::qp::{Condense, Method, Settings};
-use signorini::{ContactProblem, Error, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
-use signorini::{InteriorPoint, Penalty};
+use signorini::qp::{Condense, Error, Method, Settings};
+use signorini::{ContactProblem, InteriorPoint, Penalty, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
 
 /// Forces and distances below this share of the largest may be zero in the exact answer.
 const WEAK: f64 = 1e-9;

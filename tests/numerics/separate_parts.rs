@@ -5,7 +5,8 @@
 //! REFERENCE: the closed form, which is exact at the nodes; `certify`, which factorises the whole problem.
 
 use crate::exact_solutions::ObstacleString;
-use signorini::{ContactProblem, Error, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve};
+use signorini::qp::Error;
+use signorini::{ContactProblem, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve};
 
 const STRINGS: usize = 44;
 const CELLS: usize = 100;

@@ -2,11 +2,10 @@
 
 use crate::program::scene;
 use serde_json::{Value, json};
-use signorini::InteriorPoint;
-use signorini::internals::even_gaps;
 use signorini::motion::Integrator;
-use signorini::study::{Sweep, TradeoffGrid, compare, motion_tradeoff, tradeoff};
-use signorini::{Condense, Error, Method, Prepared, Scene, Settings, Solution, Watch, solve};
+use signorini::qp::Error;
+use signorini::study::{MotionTradeoff, Sweep, Tradeoff, TradeoffGrid, compare};
+use signorini::{Condense, InteriorPoint, Method, Prepared, Scene, Settings, Solution, Watch, solve};
 
 /// A block of `cells` x `cells` cells under a parabola.
 fn block(cells: usize) -> Value {
@@ -69,13 +68,19 @@ fn work_that_is_stopped_before_it_begins_is_interrupted_by_every_method() {
         assert!(matches!(solve(model.problem(), &settings), Err(Error::Interrupted)), "{method:?}");
         assert!(matches!(Prepared::new(model.problem(), &settings), Err(Error::Interrupted)));
         assert!(settings.watch.is_noticed());
-        assert!(matches!(compare(model.problem(), &settings), Err(Error::Interrupted)));
-        assert!(matches!(Sweep::over_gaps(&model, &even_gaps(0.0, -0.01, 3), &settings), Err(Error::Interrupted)));
+        assert!(matches!(compare(model.problem(), &settings), Err(signorini::Error::Qp(Error::Interrupted))));
+        assert!(matches!(
+            Sweep::over_gaps(&model, &Sweep::even_gaps(0.0, -0.01, 3), &settings),
+            Err(signorini::Error::Qp(Error::Interrupted))
+        ));
     }
     let settings = Settings::default();
     settings.watch.stop();
     let scene = Scene::from_json(&scene().to_string(), "scene").unwrap();
-    assert!(matches!(tradeoff(&scene, &TradeoffGrid::default(), &settings.watch), Err(Error::Interrupted)));
+    assert!(matches!(
+        Tradeoff::of_scene(&scene, &TradeoffGrid::default(), &settings.watch),
+        Err(signorini::Error::Qp(Error::Interrupted))
+    ));
 }
 
 #[test]
@@ -125,7 +130,7 @@ fn interior_point_and_multigrid_end_early_on_request() {
 #[test]
 fn a_stopped_sweep_returns_the_gaps_solved_so_far() {
     let model = build(&block(20));
-    let gaps = even_gaps(0.0, -0.05, 400);
+    let gaps = Sweep::even_gaps(0.0, -0.05, 400);
     let whole = Sweep::over_gaps(&model, &gaps, &Settings::default()).unwrap();
     assert!(whole.points.len() == gaps.len() && !whole.events.is_empty());
     let mut settings = Settings::default();
@@ -144,8 +149,8 @@ fn a_stopped_tradeoff_returns_the_points_measured_so_far() {
     let scene = Scene::from_json(&block(20).to_string(), "scene").unwrap();
     let watch = stopping_at("run", 4);
     let grid = TradeoffGrid { refinements: 0, runs: 1, ..TradeoffGrid::default() };
-    let measured = tradeoff(&scene, &grid, &watch).unwrap();
-    let whole = tradeoff(&scene, &grid, &Watch::default()).unwrap();
+    let measured = Tradeoff::of_scene(&scene, &grid, &watch).unwrap();
+    let whole = Tradeoff::of_scene(&scene, &grid, &Watch::default()).unwrap();
     assert!((3..whole.points.len()).contains(&measured.points.len()), "{}", measured.points.len());
     for (point, expected) in measured.points.iter().zip(&whole.points) {
         assert_eq!(
@@ -182,7 +187,7 @@ fn a_stopped_motion_keeps_its_last_complete_step_and_resumes_bit_for_bit() {
         stopped.advance().unwrap();
     }
     settings.watch.stop();
-    assert!(matches!(stopped.advance(), Err(Error::Interrupted)));
+    assert!(matches!(stopped.advance(), Err(signorini::Error::Qp(Error::Interrupted))));
     assert_eq!(stopped.state(), whole.state());
     let mut resumed = begun(&Settings::default());
     resumed.resume(stopped.state().clone()).unwrap();
@@ -192,7 +197,7 @@ fn a_stopped_motion_keeps_its_last_complete_step_and_resumes_bit_for_bit() {
     }
     assert_eq!(resumed.state(), whole.state());
 
-    assert!(matches!(motion_tradeoff(&scene, &settings), Err(Error::Interrupted)));
+    assert!(matches!(MotionTradeoff::of(&scene, &settings), Err(signorini::Error::Qp(Error::Interrupted))));
     // On a slow machine the time may be over before the preparation is complete.
     let limited = |seconds: f64| {
         let mut settings = Settings::default();
@@ -203,7 +208,7 @@ fn a_stopped_motion_keeps_its_last_complete_step_and_resumes_bit_for_bit() {
     while settings.watch.time_left() != Some(0.0) {
         std::thread::yield_now();
     }
-    assert!(matches!(limited.advance(), Err(Error::Interrupted)));
+    assert!(matches!(limited.advance(), Err(signorini::Error::Qp(Error::Interrupted))));
     assert_eq!(limited.state().steps, 0);
 }
 

@@ -4,7 +4,7 @@
 use crate::program::{Desk, example, examples};
 use serde_json::json;
 use signorini::qp::{Condense, Method, Precision, Prepared, Settings};
-use signorini::{ContactProblem, Error, Scene, Solution, solve};
+use signorini::{ContactProblem, Scene, Solution, qp, solve};
 use std::time::Duration;
 
 fn problem(name: &str) -> ContactProblem {
@@ -60,7 +60,7 @@ fn enough_time_gives_the_exact_answer_and_no_time_gives_one_that_is_not_certifie
         let mut settings = Settings::within(Duration::ZERO);
         settings.method = method;
         match solve(&problem, &settings) {
-            Err(Error::NotCertified { solution, .. }) => {
+            Err(qp::Error::NotCertified { solution, .. }) => {
                 let cut = solution.cut_short.as_ref().unwrap();
                 assert!(cut.starts_with("the time does not suffice"), "{cut}");
                 assert_eq!((solution.displacement.len(), solution.multiplier.len()), (problem.dofs(), problem.rows()));
@@ -69,7 +69,7 @@ fn enough_time_gives_the_exact_answer_and_no_time_gives_one_that_is_not_certifie
         }
     }
     let none = Settings::within(Duration::ZERO);
-    assert!(matches!(Prepared::new(&problem, &none), Err(Error::OutOfTime { .. })));
+    assert!(matches!(Prepared::new(&problem, &none), Err(qp::Error::OutOfTime { .. })));
 }
 
 #[test]
@@ -80,7 +80,8 @@ fn a_loop_without_time_does_not_begin_and_a_stopped_loop_ends_after_one_iteratio
     for method in [Method::ActiveSet, Method::penalty()] {
         let mut settings = Settings::with_method(method);
         settings.time = Some(Duration::ZERO);
-        let Err(Error::NotCertified { solution, .. }) = prepared.with_settings(&settings).unwrap().solve(problem.gap())
+        let Err(qp::Error::NotCertified { solution, .. }) =
+            prepared.with_settings(&settings).unwrap().solve(problem.gap())
         else {
             panic!("{method:?}");
         };
@@ -89,7 +90,7 @@ fn a_loop_without_time_does_not_begin_and_a_stopped_loop_ends_after_one_iteratio
         settings.time = None;
         settings.watch.stop();
         match prepared.with_settings(&settings).unwrap().solve(problem.gap()) {
-            Err(Error::NotCertified { solution, .. }) => assert_eq!(solution.iterations, 1, "{method:?}"),
+            Err(qp::Error::NotCertified { solution, .. }) => assert_eq!(solution.iterations, 1, "{method:?}"),
             other => panic!("{:?}", other.map(|found| found.iterations)),
         }
     }
@@ -100,7 +101,7 @@ fn invalid_accuracies_are_refused_by_name() {
     let problem = problem("bar");
     for wrong in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
         let refused = solve(&problem, &Settings::for_accuracy(wrong));
-        assert!(matches!(refused, Err(Error::Setting { name: "accuracy", .. })), "{wrong}");
+        assert!(matches!(refused, Err(qp::Error::Setting { name: "accuracy", .. })), "{wrong}");
     }
 }
 

@@ -6,8 +6,7 @@ use std::process::Command;
 
 use crate::program::{Desk, Problem, Run, matrix, vector};
 use serde_json::{Value, json};
-use signorini::internals::Cholesky;
-use signorini::internals::guarded;
+use signorini::qp::Cholesky;
 use signorini::{Scene, SparseMatrix, SymmetricMatrix};
 
 /// The estimate and the measured peak may differ by this factor.
@@ -292,17 +291,6 @@ fn a_pipe_is_read_like_a_file() {
     let script = format!("cat scene.json | '{}' solve /dev/stdin", env!("CARGO_BIN_EXE_signorini"));
     let output = Command::new("sh").args(["-c", &script]).current_dir(desk.path(".")).output().unwrap();
     assert!(output.status.success(), "{output:?}");
-}
-
-#[test]
-fn a_panic_of_a_library_is_an_error_with_its_message() {
-    assert_eq!(guarded(|| 1), Ok(1));
-    let formatted: Result<(), String> = guarded(|| panic!("{} of {}", 1, 2));
-    assert_eq!(formatted, Err("it panicked: 1 of 2".into()));
-    let odd: Result<(), String> = guarded(|| std::panic::panic_any(7));
-    assert_eq!(odd, Err("it panicked: without a message".into()));
-    let beyond: Result<usize, String> = guarded(|| [1, 2, 3].get(7).copied().unwrap());
-    assert!(beyond.unwrap_err().contains("None"));
 }
 
 /// A system that cannot be solved yields NaN, which no certificate accepts.

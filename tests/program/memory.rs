@@ -1,6 +1,7 @@
 //! A memory limit is kept: the peak stays below it, and a refusal names the smallest sufficient limit.
 #![cfg(target_os = "linux")]
 
+use signorini::{Method, Scene, Settings, qp, solve};
 use std::fs;
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -8,9 +9,7 @@ use std::time::Duration;
 use crate::blocks::{block, cube, pressed, pressed_on_a_plane, stiff_in_volume, strip};
 use crate::program::Desk;
 use serde_json::{Value, json};
-use signorini::internals::bytes::{START, of_problem};
-use signorini::qp::{Condense, Prepared};
-use signorini::{Error, Method, Scene, Settings, solve};
+use signorini::qp::{Condense, Estimate, Prepared};
 
 /// Exit code, standard error, and the largest resident size in bytes of a run of the program.
 fn measured(desk: &Desk, arguments: &[&str]) -> (i32, String, f64) {
@@ -152,7 +151,7 @@ fn a_limit_of_memory_tries_methods_that_fit_and_names_those_that_failed() {
     };
     let free = solve(&problem, &Settings::default()).unwrap();
     assert!(free.attempts.is_empty() && free.condensed_dofs < problem.dofs());
-    assert!(matches!(solve(&problem, &Settings::with_method(Method::Mprgp)), Err(Error::NotCertified { .. })));
+    assert!(matches!(solve(&problem, &Settings::with_method(Method::Mprgp)), Err(qp::Error::NotCertified { .. })));
     let (mut on_all_dofs, mut refused_after_multigrid) = (0, 0);
     for megabytes in (25..60).step_by(5).chain((60..300).step_by(20)) {
         match within(1e6 * f64::from(megabytes)) {
@@ -160,7 +159,7 @@ fn a_limit_of_memory_tries_methods_that_fit_and_names_those_that_failed() {
                 assert_eq!(found.contact_set, free.contact_set);
                 on_all_dofs += usize::from(found.condensed_dofs == problem.dofs());
             }
-            Err(Error::NoRoom { factor, multigrid, allowed, ended }) => {
+            Err(qp::Error::NoRoom { factor, multigrid, allowed, ended }) => {
                 assert!(factor > allowed);
                 assert_eq!(multigrid > allowed, ended.is_none());
                 if let Some(ended) = ended {
@@ -186,15 +185,16 @@ fn a_smaller_memory_than_the_named_one_is_refused() {
                 Prepared::new(&problem, &settings)
             };
             let entries = 2 * problem.stiffness().lower().entries() - problem.dofs();
-            let mut memory = START + 1.01 * of_problem(problem.dofs() as f64, entries as f64);
+            let mut memory =
+                Estimate::START + 1.01 * Estimate::bytes_of_factor(problem.dofs() as f64, entries as f64, 0.0, 0.0);
             let mut refusals = 0;
             while let Err(error) = prepared(memory) {
-                let Error::TooLarge { bytes, .. } = error else { panic!("{error}") };
+                let qp::Error::TooLarge { bytes, .. } = error else { panic!("{error}") };
                 assert!(bytes > memory && refusals < 4, "{bytes} of {memory}");
                 (memory, refusals) = (1.0001 * bytes, refusals + 1);
             }
             assert!(refusals > 0);
-            assert!(matches!(prepared(0.99 * memory), Err(Error::TooLarge { .. })), "less than {memory} suffices");
+            assert!(matches!(prepared(0.99 * memory), Err(qp::Error::TooLarge { .. })), "less than {memory} suffices");
         }
     }
 }

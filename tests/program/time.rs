@@ -1,13 +1,13 @@
 //! A time limit is kept; it includes failed attempts, which the report names.
 #![cfg(target_os = "linux")]
 
+use signorini::{ContactProblem, Method, Scene, Settings, Watch, qp, solve};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use crate::blocks::{block, cube, pressed, pressed_on_a_plane, strip};
 use crate::program::Desk;
 use serde_json::{Value, json};
-use signorini::{ContactProblem, Error, Method, Scene, Settings, Watch, solve};
 
 #[test]
 fn time_of_failed_attempts_is_included_and_the_attempts_are_named() {
@@ -18,7 +18,7 @@ fn time_of_failed_attempts_is_included_and_the_attempts_are_named() {
     // Nothing is closer than doubles can hold the displacement; an answer as exact as that meets every accuracy.
     let solution = match solve(&problem, &settings) {
         Ok(solution) => solution,
-        Err(Error::NotCertified { solution, .. }) => *solution,
+        Err(qp::Error::NotCertified { solution, .. }) => *solution,
         Err(error) => panic!("{error}"),
     };
     let tried: f64 = solution.attempts.iter().map(|attempt| attempt.seconds).sum();
@@ -59,7 +59,7 @@ fn no_method_begins_a_step_for_which_its_time_does_not_suffice() {
             settings.watch.learn(1e6);
             settings.time = Some(Duration::from_secs(60));
             match solve(model.problem(), &settings) {
-                Err(Error::NotCertified { solution, .. }) => {
+                Err(qp::Error::NotCertified { solution, .. }) => {
                     assert_eq!((solution.method.as_str(), solution.iterations), ("none", 0));
                     let cut = solution.cut_short.unwrap();
                     assert!(cut.starts_with("the time does not suffice"), "{cut}");
@@ -140,7 +140,7 @@ fn a_stopped_certificate_returns_a_larger_bound() {
             }
         });
         let solution = match solve(model.problem(), &settings) {
-            Err(Error::NotCertified { solution, .. }) => *solution,
+            Err(qp::Error::NotCertified { solution, .. }) => *solution,
             found => found.unwrap(),
         };
         let seconds = began.lock().unwrap().unwrap().elapsed().as_secs_f64();

@@ -43,7 +43,7 @@ fn the_classical_scene_takes_at_most_the_unknowns_of_a_prototype() {
     assert_eq!(report["total_error"]["guaranteed"], true);
     let levels = report["levels"].as_array().unwrap();
     let number = |level: &Value, name: &str| level[name].as_f64().unwrap();
-    let first_below = |bound: f64| levels.iter().find(|level| number(level, "bound") <= bound).unwrap();
+    let first_below = |bound: f64| levels.iter().find(|level| number(level, "total_error") <= bound).unwrap();
     // The numbers of unknowns of an independent prototype.
     assert!(number(first_below(0.05), "dofs") <= 1312.0 && number(first_below(0.01), "dofs") <= 6142.0, "{report}");
     let [low, high] = [0, 1].map(|end| report["force_interval"][end].as_f64().unwrap());
@@ -53,7 +53,8 @@ fn the_classical_scene_takes_at_most_the_unknowns_of_a_prototype() {
     assert!(own["element"] == "Q4" && own["total_error"]["bound"].as_f64().unwrap() > 0.2, "{own}");
     // The rate with respect to the number of unknowns, from 3 % on.
     let (from, to) = (first_below(0.03), levels.last().unwrap());
-    let rate = (number(from, "bound") / number(to, "bound")).ln() / (number(to, "dofs") / number(from, "dofs")).ln();
+    let rate = (number(from, "total_error") / number(to, "total_error")).ln()
+        / (number(to, "dofs") / number(from, "dofs")).ln();
     assert!(rate > 0.95, "{rate}");
 }
 
@@ -97,7 +98,7 @@ fn quadratic_triangles_of_a_file_with_a_curved_side_have_a_bound() {
     let found = desk.run(&["solve", "scene.json", "--total-error", "0.05", "--format", "json"]).ends_with(0).json();
     assert!(found["own_mesh"]["element"] == "T6" && found["defect"].as_f64().unwrap() < 1e-10, "{found}");
     let intervals: Vec<f64> =
-        found["levels"].as_array().unwrap().iter().map(|one| one["bound"].as_f64().unwrap()).collect();
+        found["levels"].as_array().unwrap().iter().map(|one| one["total_error"].as_f64().unwrap()).collect();
     assert!(intervals.last().unwrap() <= &0.05, "{intervals:?}");
 }
 
@@ -353,7 +354,7 @@ fn the_output_folder_has_fields_meshes_and_pictures() {
         assert!(desk.path("out").join(name).exists(), "{name}");
     }
     let table = std::fs::read_to_string(desk.path("out/meshes.csv")).unwrap();
-    assert!(table.starts_with("triangles,dofs,stress_dofs,bound,"), "{table}");
+    assert!(table.starts_with("elements,dofs,total_error,contact_force,stress_dofs,"), "{table}");
 }
 
 /// A pad of 40 under a roller that is narrower than the pad: its vertical sides lie above the top. It first missed the bound by far,

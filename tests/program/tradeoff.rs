@@ -2,13 +2,15 @@
 
 use crate::program::{Desk, scene};
 use serde_json::{Value, json};
-use signorini::output::tradeoff_text;
-use signorini::study::{Tradeoff, TradeoffGrid, TradeoffPoint, tradeoff};
+use signorini::output::InWords;
+use signorini::scene::Units;
+use signorini::study::{Tradeoff, TradeoffGrid, TradeoffPoint};
 use signorini::{Scene, Watch};
 
 fn measured(value: &Value) -> Tradeoff {
     let scene = Scene::from_json(&value.to_string(), "scene").unwrap();
-    tradeoff(&scene, &TradeoffGrid { refinements: 1, runs: 1, ..TradeoffGrid::default() }, &Watch::default()).unwrap()
+    Tradeoff::of_scene(&scene, &TradeoffGrid { refinements: 1, runs: 1, ..TradeoffGrid::default() }, &Watch::default())
+        .unwrap()
 }
 
 #[test]
@@ -69,7 +71,7 @@ fn the_text_compares_time_and_error_of_loose_and_exact_answers() {
     for point in &mut timed.points {
         point.seconds = 1e-3 * (1.0 - 0.01 * point.energy_error.max(1e-16).log10());
     }
-    let text = tradeoff_text("block", &timed);
+    let text = timed.text("block", &Units::unnamed());
     assert!(text.contains("the last penalty over the local stiffness"), "{text}");
     for method in ["penalty", "qp", "mprgp"] {
         let line = text.lines().find(|line| line.starts_with(&format!("  {method} ")) && line.contains(" and loses "));
@@ -107,7 +109,7 @@ fn a_total_error_or_a_time_chooses_mesh_and_method() {
         best.mesh == 1 && best.total_error.unwrap() < 1.02 * result.meshes[1].discretisation_error.unwrap(),
         "{best:?}"
     );
-    let text = tradeoff_text("block", &result);
+    let text = result.text("block", &Units::unnamed());
     assert!(text.contains("  in 10 s") && text.contains("72 dofs by "), "{text}");
 }
 

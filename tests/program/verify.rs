@@ -124,7 +124,7 @@ fn verify_without_a_factor_takes_only_the_memory_of_the_hierarchy_and_refuses_a_
     let desk = Desk::new();
     solved_cube(&desk, 24);
     let file = std::fs::metadata(desk.path("p/K.petsc")).unwrap().len() as f64;
-    let peak = desk.peak(&WITHOUT_FACTOR) - signorini::internals::bytes::START;
+    let peak = desk.peak(&WITHOUT_FACTOR) - signorini::qp::Estimate::START;
     assert!(peak < 2.4 * file, "{:.2} times the file of the stiffness", peak / file);
     let refused = desk.run(&[&WITHOUT_FACTOR[..], &["--max-memory", "30MB"]].concat());
     refused.fails_with(1, &["the problem does not fit into 30 MB of memory"]);

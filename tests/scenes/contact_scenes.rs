@@ -3,12 +3,12 @@
 //! REFERENCE: bar against a wall and contact patch in closed form; `reference/results.json` (cvxpy with Clarabel and
 //! OSQP, polished by sparse LU; versions in the file).
 
+use signorini::{Method, Model, Scene, Settings, Solution, qp, solve, solve_qp};
 use std::path::PathBuf;
 
 use crate::exact_solutions::{Bar, ContactPatch, Sides};
 use serde_json::{Value, json};
 use signorini::study::compare;
-use signorini::{Error, Method, Model, Scene, Settings, Solution, solve, solve_qp};
 
 const EXACT: [Method; 2] = [Method::qp(), Method::ActiveSet];
 
@@ -162,7 +162,7 @@ fn block_pressed_by_a_prescribed_displacement_has_the_pressure_of_the_closed_for
 fn answer(model: &Model, method: Method) -> Solution {
     match solve(model.problem(), &Settings::with_method(method)) {
         Ok(solution) => solution,
-        Err(Error::NotCertified { solution, .. }) if method == Method::penalty() => *solution,
+        Err(qp::Error::NotCertified { solution, .. }) if method == Method::penalty() => *solution,
         Err(error) => panic!("{error}"),
     }
 }

@@ -5,7 +5,7 @@ use crate::bodies::{built, largest};
 use crate::exact_solutions::Bar;
 use serde_json::{Value, json};
 use signorini::scene::Warning;
-use signorini::{Error, Model, Scene, solve_qp};
+use signorini::{Error, Model, Scene, qp, solve_qp};
 
 /// Rounding times the condition number of the stiffness, below 1e4 here; closed forms must agree to this.
 const CLOSED_FORM: f64 = 1e-11;
@@ -191,7 +191,7 @@ fn rigid_body_motions_without_support_are_named_in_every_dimension() {
         (pinned, "rotation about z through (0, 0, 0.3): add a support"),
     ] {
         match refused(&scene) {
-            Error::UnderHeld { mode: found, direction } => {
+            Error::Qp(qp::Error::UnderHeld { mode: found, direction }) => {
                 assert!(found.starts_with(motion), "{found}");
                 assert!(largest(&direction) > 0.1);
             }

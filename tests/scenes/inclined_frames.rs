@@ -1,13 +1,13 @@
 //! GOAL: normals and coordinates that are prescribed at one node form one frame or are refused; rigid-body modes along
 //! rollers are named; the dof map transforms vectors in both directions.
 
+use signorini::{Error, Scene, qp, solve_qp};
 use std::collections::BTreeMap;
 
 use crate::bodies::{built, difference};
 use crate::rollers::{ROUNDING, check, cube, dot, lines, square};
 use serde_json::{Value, json};
 use signorini::fem::{DofMap, Frame};
-use signorini::{Error, Scene, solve_qp};
 
 #[test]
 fn a_normal_along_an_axis_of_either_sign_equals_a_support_along_that_axis() {
@@ -112,7 +112,7 @@ fn supports_that_contradict_each_other_are_refused_by_name_and_place() {
 
 fn under_held(scene: &Value) -> (String, Vec<f64>) {
     match Scene::from_json(&scene.to_string(), "scene").unwrap().build() {
-        Err(Error::UnderHeld { mode, direction }) => (mode, direction),
+        Err(Error::Qp(qp::Error::UnderHeld { mode, direction })) => (mode, direction),
         other => panic!("{other:?}"),
     }
 }
@@ -156,7 +156,7 @@ fn an_unbounded_translation_along_rollers_is_named() {
     scene["loads"] = json!([{"body-force": [-1, 0]}]);
     let model = built(&scene);
     let error = model.explain(solve_qp(model.problem()).unwrap_err());
-    let Error::Unbounded { mode, .. } = &error else { panic!("{error}") };
+    let Error::Qp(qp::Error::Unbounded { mode, .. }) = &error else { panic!("{error}") };
     assert_eq!(mode, "translation along (-0.800, 0.600)");
     scene["loads"] = json!([{"body-force": [1, 0]}]);
     check(&scene);
@@ -192,7 +192,10 @@ fn frames_transform_vectors_in_both_directions() {
     assert!(difference(&dofs.supported_part(&force).unwrap(), &[0.0, 0.0, -0.84, -1.12, 0.25, 0.0]) < ROUNDING);
 
     for given in [&[[1.0, 1.0, 0.0]][..], &[[1.0, 0.0, 0.0], [0.6, 0.8, 0.0]], &[[0.0, 0.0, 1.0]], &[[f64::NAN; 3]]] {
-        assert!(matches!(Frame::completing(given, 2), Err(Error::Setting { name: "frame", .. })), "{given:?}");
+        assert!(
+            matches!(Frame::completing(given, 2), Err(Error::Qp(qp::Error::Setting { name: "frame", .. }))),
+            "{given:?}"
+        );
     }
     assert!(Frame::completing(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], 2).is_err());
     let outside = DofMap::with_frames(vec![None; 4], 2, BTreeMap::from([(2, plane)]));

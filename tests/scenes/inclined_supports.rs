@@ -1,12 +1,12 @@
 //! GOAL: rollers on inclined planes, compared with Lagrange multipliers in the coordinate axes: displacement, contact
 //! forces, reactions along the normals, balance.
 
+use signorini::{Error, qp, solve_qp};
 use std::collections::BTreeMap;
 
 use crate::bodies::built;
 use crate::rollers::{ROUNDING, check, cube, square};
 use serde_json::{Value, json};
-use signorini::{Error, solve_qp};
 
 #[test]
 fn rollers_in_the_plane_agree_with_lagrange_multipliers() {
@@ -128,6 +128,6 @@ fn a_row_along_the_normal_of_a_roller_is_dropped_or_infeasible() {
     let model = built(&parallel(0.05, 0.06));
     assert_eq!(model.rows().len(), 1, "only the corner penetrates");
     let error = model.explain(solve_qp(model.problem()).unwrap_err());
-    let Error::Infeasible { reason, .. } = &error else { panic!("{error}") };
+    let Error::Qp(qp::Error::Infeasible { reason, .. }) = &error else { panic!("{error}") };
     assert!(reason.contains("at (1, 1)") && reason.contains("obstacles[0]"), "{reason}");
 }

@@ -1,12 +1,12 @@
 //! Scenes on bodies from mesh files and on round bodies, solved completely and compared with closed forms.
 
+use signorini::{Error, Model, Scene, qp, solve_qp};
 use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
 
 use serde_json::{Value, json};
 use signorini::scene::Answer;
-use signorini::{Error, Model, Scene, solve_qp};
 
 const YOUNG: f64 = 1000.0;
 const POISSON: f64 = 0.3;
@@ -263,7 +263,10 @@ fn the_path_of_a_mesh_file_is_relative_to_its_scene() {
     assert!(Scene::read(folder.path().join("scene.json")).unwrap().build().is_ok());
     // A scene from text has no folder: the path is relative to the current one.
     let error = Scene::from_json(&value.to_string(), "scene").unwrap().build().unwrap_err();
-    assert!(matches!(&error, Error::File { action: "read", path, .. } if path.ends_with("parts/block.msh")), "{error}");
+    assert!(
+        matches!(&error, Error::Qp(qp::Error::File { action: "read", path, .. }) if path.ends_with("parts/block.msh")),
+        "{error}"
+    );
 }
 
 #[test]
@@ -275,7 +278,7 @@ fn faults_of_a_mesh_are_reported_with_file_and_line() {
     let value = pressed("plane-strain", json!({"gmsh": {"file": "cut.msh"}}), "y", &[("bottom", "y")]);
     let read = Scene::from_json(&value.to_string(), "scene").unwrap();
     let error = Scene { folder: Some(folder.path().into()), ..read }.build().unwrap_err();
-    assert!(matches!(&error, Error::FileSyntax { line, .. } if *line > 20), "{error}");
+    assert!(matches!(&error, Error::Qp(qp::Error::FileSyntax { line, .. }) if *line > 20), "{error}");
     assert!(error.to_string().contains("cut.msh:"), "{error}");
 }
 

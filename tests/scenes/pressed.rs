@@ -5,7 +5,7 @@ use crate::solved_scene::{answer, built};
 use serde_json::{Value, json};
 use signorini::scene::{Answer, Resultant};
 use signorini::study::Sweep;
-use signorini::{Error, Settings};
+use signorini::{Error, Settings, qp};
 
 use crate::exact_solutions::LineContact;
 use crate::program::Desk;
@@ -194,7 +194,7 @@ fn obstacles_that_cannot_be_pressed_are_refused_at_their_path() {
         let mut scene = plain();
         change(&mut scene);
         let error = built(&scene).unwrap_err();
-        assert!(matches!(error, Error::Scene { .. } | Error::UnderHeld { .. }), "{error:?}");
+        assert!(matches!(error, Error::Scene { .. } | Error::Qp(qp::Error::UnderHeld { .. })), "{error:?}");
         phrases.iter().for_each(|phrase| assert!(error.to_string().contains(phrase), "{error}"));
     };
     refused(&|scene| scene["obstacles"][0]["force"] = json!(-3), &["obstacles[0].force", "-3", "positive"]);

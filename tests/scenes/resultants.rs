@@ -6,9 +6,9 @@ use std::sync::Arc;
 use crate::exact_solutions::{LineContact, PointContact};
 use crate::verification::round_bodies::{half_cylinder, quarter_ball};
 use serde_json::{Value, json};
-use signorini::output::solve_text;
+use signorini::output::InWords;
 use signorini::scene::{Answer, Resultant, Units};
-use signorini::study::{Summary, scene_summary};
+use signorini::study::Summary;
 use signorini::{Scene, solve_qp};
 
 /// Rounding of the solves: forces balance to about 1e-12 of the largest.
@@ -305,8 +305,8 @@ fn missing_advice_on_tolerance_and_mesh_names_its_reason() {
     let model = Arc::new(Scene::from_json(&block(plane, json!([])).to_string(), "scene").unwrap().build().unwrap());
     let solution = solve_qp(model.problem()).unwrap();
     let answer = Answer::of(model, &solution).unwrap();
-    let mut summary = scene_summary(&answer, solution, 1e-9, 0.0).unwrap();
-    let advice = |summary: &Summary| solve_text("block", summary, &Units::default());
+    let mut summary = Summary::of_answer(&answer, solution, 1e-9, 0.0).unwrap();
+    let advice = |summary: &Summary| summary.text("block", &Units::default());
     summary.discretisation_error = Some(0.1);
     assert!(advice(&summary).contains("only a finer mesh improves the answer"));
     summary.solution.certificate.energy_error_bound = 0.5;

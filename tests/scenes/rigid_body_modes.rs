@@ -4,7 +4,7 @@
 
 use crate::oracles::Dense;
 use serde_json::{Value, json};
-use signorini::{Error, Scene, solve_qp};
+use signorini::{Error, Scene, qp, solve_qp};
 
 /// Rounding of K d for a null vector d, relative to its terms.
 const NULL: f64 = 1e-9;
@@ -209,7 +209,7 @@ fn exactly_the_bodies_without_enough_supports_are_refused_with_their_motion() {
         let built = Scene::from_json(&text, "scene").unwrap().build();
         let named = format!("{model} {} floor {on_floor}", json!(supports));
         match (built, motion) {
-            (Err(Error::UnderHeld { mode: found, direction }), Some(motion)) => {
+            (Err(Error::Qp(qp::Error::UnderHeld { mode: found, direction })), Some(motion)) => {
                 caught += 1;
                 // A floor that touches only supported nodes has no rows, and supports nothing.
                 let guided = on_floor && found.contains("a frictionless obstacle does not hold it, add a guide");
@@ -252,13 +252,13 @@ fn problems_without_a_mesh_return_the_null_vector() {
             dense.contact[(0, springs - 1)] = 1.0;
             dense.gap = nalgebra::DVector::from_element(1, gap);
             let error = solve_qp(&dense.problem().unwrap()).unwrap_err();
-            let (Error::Unbounded { direction, .. } | Error::UnderHeld { direction, .. }) = &error else {
+            let (qp::Error::Unbounded { direction, .. } | qp::Error::UnderHeld { direction, .. }) = &error else {
                 panic!("{error}")
             };
             let direction = nalgebra::DVector::from_row_slice(direction);
             assert!((&dense.stiffness * &direction).amax() <= NULL * direction.amax(), "{springs}: {error}");
             assert!((direction.amax() - 1.0).abs() < NULL);
-            if let Error::Unbounded { .. } = error {
+            if let qp::Error::Unbounded { .. } = error {
                 assert!(dense.load.dot(&direction) > 0.0, "{springs}: the load does no work");
                 assert!(
                     gap.is_infinite() || (&dense.contact * &direction)[0] <= NULL,
@@ -289,7 +289,7 @@ fn contradicting_rows_have_farkas_weights_and_an_overlap() {
         dense.gap = nalgebra::DVector::from_fn(3, |row, _| -overlap / 3.0 * lengths[row]);
         let problem = dense.problem().unwrap();
         let error = solve_qp(&problem).unwrap_err();
-        let Error::Infeasible { rows, weights, overlap: found, reason } = &error else {
+        let qp::Error::Infeasible { rows, weights, overlap: found, reason } = &error else {
             panic!("case {case}: {error}")
         };
         assert_eq!(rows, &[0, 1, 2], "case {case}");

@@ -1,7 +1,7 @@
 //! Malformed scenes: each is refused in one sentence that names the place, the fault, and what is allowed.
 
 use serde_json::{Value, json};
-use signorini::{Error, Scene};
+use signorini::{Error, Scene, qp};
 
 /// A valid scene; each entry of the tables below changes one field.
 fn right() -> Value {
@@ -273,7 +273,7 @@ fn a_schema_address_and_a_byte_order_mark_are_accepted() {
 #[test]
 fn a_missing_scene_file_is_named() {
     let error = Scene::read("no/such/scene.json").unwrap_err();
-    assert!(matches!(&error, Error::File { action: "read", .. }));
+    assert!(matches!(&error, Error::Qp(qp::Error::File { action: "read", .. })));
     assert!(error.to_string().contains("no/such/scene.json"), "{error}");
 }
 

@@ -2,9 +2,9 @@
 
 use crate::bodies::{built, clamped_square, difference, largest, solve_with_closed_rows};
 use serde_json::{Value, json};
-use signorini::internals::Cholesky;
+use signorini::qp::Cholesky;
 use signorini::scene::Warning;
-use signorini::{Error, Model, Scene};
+use signorini::{Error, Model, Scene, qp};
 
 const ROUNDING: f64 = 1e-14;
 
@@ -147,8 +147,12 @@ fn a_row_on_supported_dofs_is_dropped_if_it_holds_and_kept_empty_if_it_fails() {
     assert_eq!((inside.rows().len(), inside.rows()[0].node), (5, 0));
     assert_eq!(inside.problem().contact().transposed().column(0).count(), 0);
     assert_eq!(inside.problem().gap()[0], -0.1);
-    let explained =
-        inside.explain(Error::Infeasible { reason: "row 0".into(), rows: vec![0], weights: vec![1.0], overlap: 0.0 });
+    let explained = inside.explain(Error::Qp(qp::Error::Infeasible {
+        reason: "row 0".into(),
+        rows: vec![0],
+        weights: vec![1.0],
+        overlap: 0.0,
+    }));
     let text = explained.to_string();
     assert!(text.contains("node 0 at (0, 0) is supported inside obstacles[0] (gap -0.1)"), "{text}");
 }
@@ -164,12 +168,12 @@ fn a_node_between_two_obstacles_has_a_row_and_a_pressure_for_each() {
     assert_eq!(areas, [0.5, 0.25, 0.5, 0.25]);
     assert_eq!(model.pressure(&[-2.0, -2.0, -1.0, 0.0]).unwrap(), [4.0, 8.0, 2.0, 0.0]);
     let explained = model
-        .explain(Error::Infeasible {
+        .explain(Error::Qp(qp::Error::Infeasible {
             reason: "rows 1, 3".into(),
             rows: vec![1, 3],
             weights: vec![1.0; 2],
             overlap: 0.5,
-        })
+        }))
         .to_string();
     assert!(explained.contains("node 8 at (1, 1) has no room between obstacles[0]"), "{explained}");
 }
@@ -178,16 +182,16 @@ fn a_node_between_two_obstacles_has_a_row_and_a_pressure_for_each() {
 fn vectors_of_wrong_length_are_refused_by_a_model() {
     let model = built(&plane_above(0.0));
     let (u, lambda) = (vec![0.0; model.problem().dofs()], vec![0.0; model.rows().len()]);
-    assert!(matches!(model.nodal_displacement(&u[1..]), Err(Error::Length { .. })));
-    assert!(matches!(model.pressure(&lambda[1..]), Err(Error::Length { .. })));
-    assert!(matches!(model.reactions(&u[1..], &lambda), Err(Error::Length { .. })));
-    assert!(matches!(model.force_balance(&u, &lambda[1..]), Err(Error::Length { .. })));
-    assert!(matches!(model.stress(&u[1..]), Err(Error::Length { .. })));
+    assert!(matches!(model.nodal_displacement(&u[1..]), Err(Error::Qp(qp::Error::Length { .. }))));
+    assert!(matches!(model.pressure(&lambda[1..]), Err(Error::Qp(qp::Error::Length { .. }))));
+    assert!(matches!(model.reactions(&u[1..], &lambda), Err(Error::Qp(qp::Error::Length { .. }))));
+    assert!(matches!(model.force_balance(&u, &lambda[1..]), Err(Error::Qp(qp::Error::Length { .. }))));
+    assert!(matches!(model.stress(&u[1..]), Err(Error::Qp(qp::Error::Length { .. }))));
 }
 
 fn under_held(scene: &Value) -> (String, Vec<f64>) {
     match Scene::from_json(&scene.to_string(), "scene").unwrap().build() {
-        Err(Error::UnderHeld { mode, direction }) => (mode, direction),
+        Err(Error::Qp(qp::Error::UnderHeld { mode, direction })) => (mode, direction),
         Err(other) => panic!("{other}"),
         Ok(_) => panic!("the body is not refused"),
     }
@@ -258,8 +262,10 @@ fn unbounded_motions_are_explained_in_words() {
         let nodal: Vec<f64> = nodes.iter().flat_map(|&[x, y, _]| field([x, y])).collect();
         model.dofs().restrict(&nodal).unwrap()
     };
-    let explained = |direction: Vec<f64>| match model.explain(Error::Unbounded { mode: "column 3".into(), direction }) {
-        Error::Unbounded { mode, .. } => mode,
+    let explained = |direction: Vec<f64>| match model
+        .explain(Error::Qp(qp::Error::Unbounded { mode: "column 3".into(), direction }))
+    {
+        Error::Qp(qp::Error::Unbounded { mode, .. }) => mode,
         other => other.to_string(),
     };
     assert_eq!(explained(restricted(&|_| [0.0, -3.0])), "translation along -y");
@@ -273,8 +279,8 @@ fn unbounded_motions_are_explained_in_words() {
         let model = built(&scene);
         let nodal: Vec<f64> = model.mesh().nodes().iter().flat_map(|&[x, y, _]| field([x, y])).collect();
         let direction = model.dofs().restrict(&nodal).unwrap();
-        match model.explain(Error::UnderHeld { mode: "?".into(), direction }) {
-            Error::UnderHeld { mode, .. } => mode,
+        match model.explain(Error::Qp(qp::Error::UnderHeld { mode: "?".into(), direction })) {
+            Error::Qp(qp::Error::UnderHeld { mode, .. }) => mode,
             other => other.to_string(),
         }
     };

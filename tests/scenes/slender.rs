@@ -5,13 +5,13 @@
 //!
 //! REFERENCE: beam theory in closed form; the answers of four settings of the solver.
 
+use signorini::{Condense, Method, Scene, Settings, Solution, qp, solve};
 use std::f64::consts::PI;
 
 use serde_json::{Value, json};
-use signorini::output::solve_text;
+use signorini::output::InWords;
 use signorini::scene::{Answer, Units};
-use signorini::study::scene_summary;
-use signorini::{Condense, Error, Method, Scene, Settings, Solution, solve};
+use signorini::study::Summary;
 
 const PLANE: [&str; 4] = ["q4", "q8", "t3", "t6"];
 const ALL: [&str; 5] = ["q4", "q8", "t3", "t6", "hex8"];
@@ -43,7 +43,7 @@ fn ways() -> [Settings; 4] {
     [Settings::default(), never, with(Method::qp()), with(Method::ActiveSet)]
 }
 
-fn answer(scene: &Value, settings: &Settings) -> Result<Solution, Error> {
+fn answer(scene: &Value, settings: &Settings) -> Result<Solution, qp::Error> {
     let model = Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build()).unwrap();
     solve(model.problem(), settings)
 }
@@ -188,7 +188,7 @@ fn a_clamped_body_a_thousand_times_as_long_as_thick_is_certified() {
 fn a_stiffness_without_digits_is_reported_with_bending_as_the_reason() {
     let error = answer(&cantilever("q4", 1e7, (1000, 1), "right", 0.0), &Settings::default());
     let text = error.as_ref().map_or_else(|error| error.to_string(), |found| format!("{:?}", found.certificate));
-    assert!(matches!(error, Err(Error::NotCertified { .. })), "{text}");
+    assert!(matches!(error, Err(qp::Error::NotCertified { .. })), "{text}");
     assert!(text.contains("the stiffness has lost digits to rounding (smallest pivot"), "{text}");
     assert!(text.contains("bending") && text.contains("fewer elements along the thickness"), "{text}");
 }
@@ -215,7 +215,7 @@ fn a_certified_answer_whose_stiffness_has_few_digits_has_a_warning() {
         let error = (solution.contact_force() / (0.7 / (1.3 * 0.4) * 0.01) - 1.0).abs();
         let digits = solution.digits_of_stiffness();
         let answer = Answer::of(model.into(), &solution).unwrap();
-        (error, scene_summary(&answer, solution, TOLERANCE, 0.0).unwrap(), digits)
+        (error, Summary::of_answer(&answer, solution, TOLERANCE, 0.0).unwrap(), digits)
     };
     let (error, summary, digits) = block(1e6);
     let digits = digits.unwrap();
@@ -226,10 +226,10 @@ fn a_certified_answer_whose_stiffness_has_few_digits_has_a_warning() {
     let message = warning["message"].as_str().unwrap();
     assert!(message.contains(&format!("{digits} digit")) && message.contains("smallest pivot"), "{message}");
     assert!(message.contains("bending") && message.contains("contrast"), "{message}");
-    let text = solve_text("block", &summary, &Units::default());
+    let text = summary.text("block", &Units::default());
     assert!(text.contains("  warning       the entries of the stiffness"), "{text}");
     assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
     let (_, summary, digits) = block(1.0);
     assert!(digits.is_none() && json!(summary).get("warnings").is_none());
-    assert!(!solve_text("block", &summary, &Units::default()).contains("warning"));
+    assert!(!summary.text("block", &Units::default()).contains("warning"));
 }

@@ -2,7 +2,7 @@
 
 use crate::exact_solutions::LineContact;
 use serde_json::{Value, json};
-use signorini::{Error, Model, Scene, Solution, solve_qp};
+use signorini::{Error, Model, Scene, Solution, qp, solve_qp};
 
 /// Two solves of one problem in different unknowns differ by rounding times the condition number of these meshes.
 const ROUNDING: f64 = 1e-10;
@@ -243,7 +243,7 @@ fn an_under_held_body_is_named() {
         let mut scene = value.clone();
         scene["supports"] = Value::Array(without(missing));
         let built = Scene::from_json(&scene.to_string(), "scene").unwrap().build();
-        let Err(Error::UnderHeld { mode, .. }) = built else { panic!("{built:?}") };
+        let Err(Error::Qp(qp::Error::UnderHeld { mode, .. })) = built else { panic!("{built:?}") };
         assert!(mode.starts_with(named), "{mode}");
     }
     // The upper body, resting on the base and pressed by a load, only needs a guide.
@@ -258,7 +258,7 @@ fn an_under_held_body_is_named() {
     scene["loads"] = json!([{"traction": {"boundary": "top", "value": [0, 0.01]}}]);
     let model = self::model(&scene);
     let error = model.explain(solve_qp(model.problem()).unwrap_err());
-    let Error::Unbounded { mode, .. } = &error else { panic!("{error:?}") };
+    let Error::Qp(qp::Error::Unbounded { mode, .. }) = &error else { panic!("{error:?}") };
     assert_eq!(mode, "translation along y of the first body");
 }
 

@@ -3,11 +3,8 @@
 
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
-use signorini::fem::Formulation;
-use signorini::fem::Material;
-use signorini::fem::{self, ElasticBody};
-use signorini::fem::{ElementKind, Mesh};
-use signorini::internals::Cholesky;
+use signorini::fem::{self, ElasticBody, ElementKind, Formulation, Material, Mesh};
+use signorini::qp::Cholesky;
 use signorini::scene::rectangle;
 use signorini::{ContactProblem, Model, Scene};
 

@@ -5,10 +5,10 @@ use std::time::Instant;
 
 use crate::exact_solutions::manufactured::{ContactSolution, PlaneElasticity};
 use signorini::fem::{
-    DofMap, ElasticBody, ElementKind, ErrorNorms, ExactState, Formulation, Integration, Material, add_body_force_field,
-    discretisation_error, error_norms, free_load, stiffness, stress, tributary_areas,
+    DofMap, ElasticBody, ElementKind, ErrorNorms, ExactState, Formulation, Integration, Material, QuadraturePoint,
+    add_body_force_field, discretisation_error, error_norms, error_norms_by, free_load, stiffness, stress,
+    tributary_areas,
 };
-use signorini::internals::{QuadraturePoint, error_norms_by};
 use signorini::scene::{cuboid, rectangle};
 use signorini::{ContactProblem, Error, SparseMatrix, solve_qp};
 

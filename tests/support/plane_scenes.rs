@@ -5,7 +5,7 @@
 #![allow(dead_code)]
 
 use serde_json::{Value, json};
-use signorini::internals::{Examined, examined};
+use signorini::study::Examined;
 use signorini::{Error, Scene};
 
 /// Elements of the scene's own mesh.
@@ -146,7 +146,7 @@ pub fn column(seed: u64) -> (Scene, &'static str, [f64; 2]) {
 pub fn of_column(seed: u64, levels: usize) -> Result<Vec<String>, Error> {
     let (scene, element, [energy, force]) = column(seed);
     let mut violations = Vec::new();
-    for (number, one) in examined(&scene, levels)?.iter().enumerate() {
+    for (number, one) in Examined::of(&scene, levels)?.iter().enumerate() {
         // Both sides contain the quadratic displacement: only rounding of their energies is left, and its root in the
         // distance.
         let size = ROUNDING * one.norm.powi(2).max(energy.abs());
@@ -181,7 +181,7 @@ pub struct Shown {
 /// Those of the total error.
 pub fn shown(seed: u64, levels: usize) -> Result<Shown, Error> {
     let (scene, element) = scene(seed);
-    let found = examined(&scene, levels)?;
+    let found = Examined::of(&scene, levels)?;
     let last = found.last().unwrap();
     let size = found.iter().flat_map(|one| one.energies).fold(0.0, |size: f64, energy| size.max(energy.abs()));
     let mut violations = Vec::new();

@@ -1,9 +1,8 @@
 //! The measured tasks.
 
+use signorini::{Condense, ContactSet, Error, Method, Model, Prepared, Settings, qp};
 use std::hint::black_box;
 use std::time::Instant;
-
-use signorini::{Condense, ContactSet, Error, Method, Model, Prepared, Settings};
 
 use crate::case::{Case, FIRST_GAP};
 use crate::clock::processor_seconds;
@@ -94,8 +93,8 @@ impl Task {
                 match signorini::solve(problem, &settings) {
                     Ok(solution) => drop(black_box(solution)),
                     // The penalty method ends at its best accuracy, which may be below the tolerance of a certificate.
-                    Err(Error::NotCertified { solution, .. }) => drop(black_box(solution)),
-                    Err(error) => return Err(error),
+                    Err(qp::Error::NotCertified { solution, .. }) => drop(black_box(solution)),
+                    Err(error) => return Err(error.into()),
                 }
             }
             Work::Uncertified => {
@@ -147,7 +146,7 @@ impl Bench {
     }
 
     fn prepared(&self) -> Result<Prepared, Error> {
-        Prepared::new(self.model.problem(), &active_set())
+        Ok(Prepared::new(self.model.problem(), &active_set())?)
     }
 
     /// Returns the mean seconds of `step` over the next gaps; each step starts from the contact set of the previous

@@ -10,8 +10,8 @@
 use std::time::Instant;
 
 use serde_json::json;
-use signorini::internals::Cholesky;
 use signorini::motion::{Integrator, Scheme};
+use signorini::qp::Cholesky;
 use signorini::{Scene, Settings, SparseMatrix, SymmetricMatrix};
 
 /// Cells along a side of each block; the blocks have 8,320, 33,024 and 131,584 dofs.
@@ -67,8 +67,8 @@ fn mean(seconds: Vec<f64>) -> f64 {
     seconds.iter().sum::<f64>() / seconds.len() as f64
 }
 
-fn factor(matrix: &SymmetricMatrix) -> Result<Cholesky, signorini::Error> {
-    Ok(Cholesky::of(matrix)?)
+fn factor(matrix: &SymmetricMatrix) -> Result<Cholesky, signorini::qp::Error> {
+    Cholesky::of(matrix)
 }
 
 /// A block that is clamped at its bottom, with an initial velocity of its top towards a parabola.
@@ -93,5 +93,5 @@ fn effective(
 ) -> Result<SymmetricMatrix, signorini::Error> {
     let inertia = mass.lower().triplets().map(|(row, column, value)| (row, column, factor * value));
     let entries: Vec<_> = inertia.chain(stiffness.lower().triplets()).collect();
-    SymmetricMatrix::from_lower(SparseMatrix::from_triplets(mass.dim(), mass.dim(), &entries)?)
+    Ok(SymmetricMatrix::from_lower(SparseMatrix::from_triplets(mass.dim(), mass.dim(), &entries)?)?)
 }

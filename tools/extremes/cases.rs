@@ -77,7 +77,7 @@ fn chain(springs: &[f64], held: bool, force: f64, walls: &[(usize, f64)]) -> Res
     let rows: Vec<_> = walls.iter().enumerate().map(|(row, &(dof, _))| (row, dof, 1.0)).collect();
     let contact = SparseMatrix::from_triplets(walls.len(), dofs, &rows)?;
     let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries)?)?;
-    ContactProblem::new(stiffness, load, contact, walls.iter().map(|wall| wall.1).collect())
+    Ok(ContactProblem::new(stiffness, load, contact, walls.iter().map(|wall| wall.1).collect())?)
 }
 
 /// A node on unit springs under the given force, with walls of these normals and gaps.
@@ -85,7 +85,7 @@ fn node(force: [f64; 2], walls: &[([f64; 2], f64)]) -> Result<ContactProblem, Er
     let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &[(0, 0, 1.0), (1, 1, 1.0)])?)?;
     let rows: Vec<_> = walls.iter().enumerate().flat_map(|(row, (n, _))| [(row, 0, n[0]), (row, 1, n[1])]).collect();
     let contact = SparseMatrix::from_triplets(walls.len(), 2, &rows)?;
-    ContactProblem::new(stiffness, force.to_vec(), contact, walls.iter().map(|wall| wall.1).collect())
+    Ok(ContactProblem::new(stiffness, force.to_vec(), contact, walls.iter().map(|wall| wall.1).collect())?)
 }
 
 fn powers(exponents: impl IntoIterator<Item = i32>) -> impl Iterator<Item = f64> {

@@ -2,8 +2,8 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
-use signorini::Penalty;
-use signorini::{Condense, ContactProblem, Error, Method, Settings, SparseMatrix, solve};
+use signorini::qp::Error;
+use signorini::{Condense, ContactProblem, Method, Penalty, Settings, SparseMatrix, solve};
 
 /// Rounding error of the entries of a stiffness, relative to its diagonal.
 const OF_ENTRIES: f64 = 512.0 * f64::EPSILON;

@@ -22,7 +22,7 @@ const HEADING: &str = "
 pub(in crate::qp) static STEPS: &[Step] = &[
 ";
 
-/// The constants of `src/qp/cost/fitted.rs`.
+/// The constants of `crates/qp/src/cost/fitted.rs`.
 pub fn fitted(points: &[Point]) -> String {
     let mut fitted = HEADING.to_string();
     for condensed in [true, false] {

@@ -1,7 +1,7 @@
 //! Fits the rules of `Method::Auto` to measured times, and checks them on other scenes.
 //!
 //! `cargo run --release --example fit_rules` measures the training problems, writes `tools/fit_rules/measured.csv` and
-//! fits the constants of `src/qp/cost/fitted.rs` to it. With `-- --fit` it fits to the times in the existing file; with `-- --check` it
+//! fits the constants of `crates/qp/src/cost/fitted.rs` to it. With `-- --fit` it fits to the times in the existing file; with `-- --check` it
 //! measures the other scenes.
 
 #[path = "../contact_cost/clock.rs"]
@@ -14,7 +14,7 @@ use std::fs;
 use std::process::ExitCode;
 
 const MEASURED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tools/fit_rules/measured.csv");
-const FITTED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/qp/cost/fitted.rs");
+const FITTED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/crates/qp/src/cost/fitted.rs");
 
 /// The line with which the constants begin.
 const FIRST_LINE: &str = "// Written by the fit.";

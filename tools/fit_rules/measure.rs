@@ -1,10 +1,9 @@
 //! Measures the time of every method and setting ("way") that solves a problem.
 
 use super::clock::processor_seconds;
-use signorini::{InteriorPoint, Penalty};
+use signorini::{ContactProblem, Error, InteriorPoint, Penalty, Solution, solve};
 
 use signorini::qp::{Condense, Method, Precision, Prepared, Settings};
-use signorini::{ContactProblem, Error, Solution, solve};
 
 /// The accuracies for which rules are fitted. Zero stands for the full accuracy of double precision.
 pub const ACCURACIES: [f64; 4] = [1e-2, 1e-4, 1e-8, 0.0];

@@ -136,5 +136,5 @@ fn over_an_obstacle(
 ) -> Result<ContactProblem, Error> {
     let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, entries)?)?;
     let rows: Vec<_> = (0..dofs).map(|dof| (dof, dof, 1.0)).collect();
-    ContactProblem::new(stiffness, load, SparseMatrix::from_triplets(dofs, dofs, &rows)?, gap)
+    Ok(ContactProblem::new(stiffness, load, SparseMatrix::from_triplets(dofs, dofs, &rows)?, gap)?)
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use signorini::fem::GmshFile;
 use signorini::qp::read_problem;
-use signorini::{Error, Scene};
+use signorini::{Error, Scene, qp};
 
 use super::draws::Draws;
 
@@ -80,9 +80,9 @@ pub fn read(name: &str, bytes: &[u8], desk: &Path) -> Result<(), Error> {
         }
         Some("msh") => GmshFile::parse(bytes, name)?.mesh(None, 1.0).map(drop),
         _ => {
-            let io = |source| Error::File { action: "write", path: desk.into(), source };
+            let io = |source| qp::Error::File { action: "write", path: desk.into(), source };
             std::fs::write(desk.join(name), bytes).map_err(io)?;
-            read_problem(desk).map(drop)
+            Ok(read_problem(desk).map(drop)?)
         }
     }
 }

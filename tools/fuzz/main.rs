@@ -35,7 +35,7 @@ use std::time::Instant;
 use damage::{damaged, fault, faults, read, wording};
 use draws::Draws;
 use signorini::ContactProblem;
-use signorini::internals::format_vector;
+use signorini::qp::format_vector;
 
 /// Seconds above which an input counts as taking too long.
 const LONG: f64 = 5.0;

@@ -1,6 +1,7 @@
 //! Random contact problems with few dofs, often degenerate or with extreme data, and a check of their answers.
 
-use signorini::{ContactProblem, Error, Solution, SparseMatrix, SymmetricMatrix, solve_qp};
+use signorini::qp::Error;
+use signorini::{ContactProblem, Solution, SparseMatrix, SymmetricMatrix, solve_qp};
 
 use super::draws::Draws;
 use super::oracle::dyadic::Dyadic;

@@ -1,6 +1,6 @@
 //! Elastic bodies as scenes: slabs, blocks and bars of Hex8 with uniform and graded meshes, and a layer of Q8.
 
-use super::problems::noise;
+use super::noise::noise;
 use serde_json::{Value, json};
 use signorini::qp::NearNullSpace;
 use signorini::{ContactProblem, Error, Scene, SparseMatrix, SymmetricMatrix};
@@ -69,7 +69,7 @@ pub fn blocks_apart(count: usize, cells: usize) -> Result<ContactProblem, Error>
     let modes = one.near_null().map_or(&[][..], |modes| modes.vectors());
     let modes = modes.iter().map(|mode| mode.repeat(count)).collect();
     let problem = ContactProblem::new(SymmetricMatrix::from_lower(stiffness)?, load, contact, gap)?;
-    problem.with_near_null(NearNullSpace::new(modes, count * dofs)?)
+    Ok(problem.with_near_null(NearNullSpace::new(modes, count * dofs)?)?)
 }
 
 /// A cube under a sphere, clamped at its bottom, whose cells become smaller towards the contact.

@@ -19,7 +19,7 @@ pub fn problem(
 ) -> Result<ContactProblem, Error> {
     let lower: Vec<_> = entries.iter().copied().filter(|&(row, column, _)| row >= column).collect();
     let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &lower)?)?;
-    ContactProblem::new(stiffness, load, contact, gap)
+    Ok(ContactProblem::new(stiffness, load, contact, gap)?)
 }
 
 /// The membrane of step-41 of deal.II under a load of -10 above a staircase: bilinear cells on (-1, 1)^2, `n` unknowns

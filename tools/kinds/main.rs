@@ -13,6 +13,7 @@
 mod bodies;
 mod floors;
 mod growth;
+mod noise;
 mod peers;
 mod problems;
 mod table;
@@ -26,7 +27,7 @@ use growth::Times;
 use peers::{Interpreter, Peer};
 use problems::{KINDS, Kind};
 use signorini::output::write_picture;
-use signorini::{ContactProblem, ContactSet, Error, Method, Scene, Settings, Solution, SparseMatrix, solve};
+use signorini::{ContactProblem, ContactSet, Error, Method, Scene, Settings, Solution, SparseMatrix, qp, solve};
 use unseen::UNSEEN;
 
 fn main() -> ExitCode {
@@ -132,7 +133,7 @@ fn measure(task: &Task, names: &str, most: f64, interpreter: Option<&Interpreter
                         }
                     }
                 }
-                Err(Error::NotCertified { solution, condition, value, .. }) => {
+                Err(qp::Error::NotCertified { solution, condition, value, .. }) => {
                     let remark = format!("NOT certified: {condition} {value:.1e}");
                     print_answer(&start, solution, seconds, &remark, &mut reference);
                 }

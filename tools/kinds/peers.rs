@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use signorini::ContactProblem;
-use signorini::qp::problem_files;
 
 /// The result of a solver of PETSc for a problem.
 pub struct Peer {
@@ -60,8 +59,8 @@ impl Interpreter {
 pub fn peers(interpreter: &Interpreter, problem: &ContactProblem) -> std::io::Result<Vec<Peer>> {
     let folder = std::env::temp_dir().join(format!("signorini-kinds-{}", std::process::id()));
     std::fs::create_dir_all(&folder)?;
-    for (name, text) in problem_files(problem) {
-        std::fs::write(folder.join(name), text)?;
+    for file in &problem.files()[..4] {
+        std::fs::write(folder.join(file.name), file.text())?;
     }
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("reference/petsc_bounds.py");
     let output = interpreter.command().arg(script).arg(&folder).output();

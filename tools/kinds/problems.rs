@@ -2,6 +2,7 @@
 
 use super::bodies::{block, blocks_apart, graded_block, slab};
 use super::floors::{bounds, membrane, plate, problem};
+use super::noise::noise;
 use signorini::{ContactProblem, Error};
 
 /// A problem and its name.
@@ -78,14 +79,6 @@ fn torsion(n: usize) -> Result<ContactProblem, Error> {
         }
     }
     problem(n * n, &entries, vec![5.0 * h * h; n * n], bounds(n * n, &lower, &upper)?)
-}
-
-/// Returns a pseudorandom number in [0, 1) that depends only on `index`.
-pub fn noise(index: usize) -> f64 {
-    let mut x = (index as u64).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
 /// The graph of an image: edges with weights from 1e-3 to 1e3, weak springs to noisy values, and bounds 0 and 1.

@@ -2,7 +2,8 @@
 
 use super::bodies::{bar, jelly, soft_layer};
 use super::floors::{bounds, problem};
-use super::problems::{Kind, noise};
+use super::noise::noise;
+use super::problems::Kind;
 use signorini::{ContactProblem, Error};
 
 /// All kinds.

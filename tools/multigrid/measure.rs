@@ -1,11 +1,11 @@
 //! The measurements, each of which runs in a process of its own.
 
+use signorini::{Error, Method, Model, Prepared, Settings, qp};
 use std::time::Instant;
 
 use crate::process::peak_bytes;
 use serde_json::{Value, json};
-use signorini::internals::multigrid::Multigrid;
-use signorini::{Error, Method, Model, Prepared, Settings};
+use signorini::qp::Multigrid;
 
 /// Relative residual of the linear solve, and tolerance of the contact solve.
 const TOLERANCE: f64 = 1e-8;
@@ -35,7 +35,7 @@ pub fn iterative(model: &Model, threads: usize) -> Result<Value, Error> {
     let settings = Settings::with_method(Method::Mprgp).with_tolerance(TOLERANCE).with_threads(threads);
     let prepared = Prepared::new(problem, &settings)?;
     let (set_up, set_up_clock) = (since(start), clock.elapsed().as_secs_f64());
-    let multigrid: &Multigrid = prepared.hierarchy().ok_or(Error::Interrupted)?;
+    let multigrid: &Multigrid = prepared.hierarchy().ok_or(qp::Error::Interrupted)?;
     let load = problem.contact().mul_transposed(&vec![-1.0; problem.rows()]);
     let (from, from_clock) = (processor_seconds(clock), clock.elapsed().as_secs_f64());
     // A body that is supported by contact only has a singular stiffness, so that no linear solve is measured.

@@ -3,9 +3,7 @@
 use crate::exact_solutions::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
 use crate::solved_block::solve_block;
 use signorini::Error;
-use signorini::fem::ElementKind;
-use signorini::fem::ErrorNorms;
-use signorini::fem::Integration;
+use signorini::fem::{ElementKind, ErrorNorms, Integration};
 use signorini::output::{Drawing, Plot, Quantity, Scale, Series, line_plots};
 
 use super::answer::Answer;

@@ -76,7 +76,7 @@ fn pushed(stiffness: &[(usize, usize, f64)], load: Vec<f64>, gap: f64) -> Result
     let n = load.len();
     let rows: Vec<_> = (0..n).map(|i| (i, i, -1.0)).collect();
     let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(n, n, stiffness)?)?;
-    ContactProblem::new(stiffness, load, SparseMatrix::from_triplets(n, n, &rows)?, vec![gap; n])
+    Ok(ContactProblem::new(stiffness, load, SparseMatrix::from_triplets(n, n, &rows)?, vec![gap; n])?)
 }
 
 /// Compares the indentation at three gaps with the stored answers of cvxpy, Clarabel and OSQP.

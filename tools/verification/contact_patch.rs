@@ -1,13 +1,12 @@
 //! The contact patch test on distorted meshes: a block pressed onto a frictionless plane is compressed uniformly.
 
-use signorini::fem;
 use signorini::fem::ElementKind::{self, Hex8, Hex20, Q4, Q8, T3, T6, Tet4, Tet10};
-use signorini::fem::Formulation;
-use signorini::fem::Material;
-use signorini::fem::{DofMap, Mesh, StressField, add_pressure, free_load, stiffness, tributary_areas};
-use signorini::fem::{ElasticBody, Integration};
+use signorini::fem::{
+    DofMap, ElasticBody, Formulation, Integration, Material, Mesh, StressField, add_pressure, free_load, stiffness,
+    tributary_areas,
+};
 use signorini::scene::{cuboid, rectangle};
-use signorini::{ContactProblem, Error, SparseMatrix, solve_qp};
+use signorini::{ContactProblem, Error, SparseMatrix, fem, solve_qp};
 
 use crate::bodies::distort;
 

@@ -5,7 +5,7 @@
 //! reproduced.
 
 use signorini::fem::ElementKind::{self, Q4, Q8, T3, T6};
-use signorini::internals::QuadraturePoint;
+use signorini::fem::QuadraturePoint;
 
 /// Relative errors in energy and in L2 of one element on one block.
 pub struct ReferenceErrors {

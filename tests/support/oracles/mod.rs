@@ -4,7 +4,8 @@
 mod dual;
 
 use nalgebra::{DMatrix, DVector};
-use signorini::{ContactProblem, Error, SparseMatrix, SymmetricMatrix};
+use signorini::qp::Error;
+use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
 
 /// A small problem in dense arrays, row by row.
 #[derive(Clone, Debug)]

@@ -1,7 +1,8 @@
 //! A problem in dense doubles, as it is given to the program.
 
 use nalgebra::DMatrix;
-use signorini::{ContactProblem, Error, SparseMatrix, SymmetricMatrix};
+use signorini::qp::Error;
+use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
 
 /// QP solvers take gaps from this value on as infinite; any smaller finite gap is a length, however large.
 const UNBOUNDED: [f64; 2] = [1e20, 1e30];

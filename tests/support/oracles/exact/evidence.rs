@@ -1,6 +1,6 @@
 //! Compares the reason that the program gives for a claim with the data.
 
-use signorini::Error;
+use signorini::qp::Error;
 
 use super::dyadic::Dyadic;
 use super::solve::Exact;

@@ -1,6 +1,7 @@
 //! Compares the program's answers and claims with the exact ones.
 
-use signorini::{Certificate, ContactProblem, Error, Goal, ProvenSet, Solution};
+use signorini::qp::Error;
+use signorini::{Certificate, ContactProblem, Goal, ProvenSet, Solution};
 
 use nalgebra::DMatrix;
 

@@ -1,6 +1,7 @@
 //! Random problems of springs and dense matrices. K is definite and u = 0 meets every row, so that each has one answer.
 
-use signorini::{ContactProblem, Error, SparseMatrix, SymmetricMatrix};
+use signorini::qp::Error;
+use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
 
 use super::draws::Draws;
 use super::exact::case::Case;

@@ -8,8 +8,7 @@ use std::process::{Command, Stdio};
 
 use serde_json::Value;
 use signorini::ContactProblem;
-use signorini::internals::format_vector;
-use signorini::qp::{problem_files, read_vector};
+use signorini::qp::{format_vector, read_vector};
 
 /// A binary of the program.
 #[derive(Clone, Debug)]
@@ -46,7 +45,7 @@ impl Ending {
 /// Writes a problem directory.
 pub fn write(directory: &Path, problem: &ContactProblem) -> io::Result<()> {
     fs::create_dir_all(directory)?;
-    problem_files(problem).into_iter().try_for_each(|(name, text)| fs::write(directory.join(name), text))
+    problem.files()[..4].iter().try_for_each(|file| fs::write(directory.join(file.name), file.text()))
 }
 
 impl Program {

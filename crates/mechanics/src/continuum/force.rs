@@ -1,0 +1,261 @@
+//! Guaranteed bounds of the contact force, of second order in the error.
+//!
+//! Let z be a displacement that is -1 towards the obstacle in the computed contact, `tau_z` a stress without load, free of tractions
+//! outside the contact and with a pressure `p_z <= 0`, and `r = eps(z) - C^-1 tau_z`. The exact stress lies in a ball about the mean
+//! `tau_m` of both stresses, with `|sigma - tau_m|^2 + S = rho^2`. Then
+//!
+//! ```text
+//! F = (tau_m, r) + integral of p_z g + supports - l(z)
+//!   + (sigma - tau_m, r) + integral of (-p_z) (g - u_n) + integral of (-p) (1 + z_n)
+//! ```
+//!
+//! and the last two terms lie between 0 and `beta S`, if `1 + z_n <= beta (g - v_n)` and `-p_z <= beta (-p_tau)`, coefficient by
+//! coefficient, with `S = integral of (-p) (g - v_n) + (-p_tau) (g - u_n) >= 0`. z and `tau_z` solve the two problems with contact held.
+
+use std::collections::BTreeSet;
+
+use super::bound::{Bracket, Side};
+use super::johnson_mercier::{PartStress, at, mean_over_parts};
+use super::problem::work;
+use super::system::{Block, Unknowns};
+use crate::error::Error;
+use crate::fem::geometry::minus;
+use crate::fem::material::Lame;
+use signorini_qp::{Cholesky, ContactProblem};
+
+/// Values between 0 and -1 by less than this, and pressures below this share of the largest, are rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Trial caps of beta, over the beta at which its term would reach that of the ball.
+const CAPS: [f64; 2] = [f64::INFINITY, 2.0];
+
+/// Largest number of rounds that change rows of the wrong sign.
+const ROUNDS: usize = 12;
+
+/// The data for every pair: the matrices of the triangles, and the stress of edges at rest.
+struct Blocks {
+    displacement: Vec<Block>,
+    stress: Vec<Block>,
+    at_rest: Vec<PartStress>,
+}
+
+/// A stress, and its force at each place.
+type Pressed = (Vec<PartStress>, Vec<f64>);
+
+/// A pair z, tau_z and the ratios of its rows.
+struct Test {
+    displacement: Vec<f64>,
+    stress: Vec<PartStress>,
+    /// The force at each place of the bracket, `<= 0`.
+    pulls: Vec<f64>,
+    /// For each row the ratio over its slack, and for each place the ratio over its pressure: the largest is beta.
+    ratios: [Vec<f64>; 2],
+    /// The distance of z below -1.
+    beyond: f64,
+}
+
+impl Bracket<'_> {
+    /// Bounds on the sum of the contact forces, in force; `None` if obstacles come from several directions, or no bound was found.
+    ///
+    /// # Errors
+    /// Those of [`ContactProblem::new`].
+    pub fn force_interval(&self) -> Result<Option<[f64; 2]>, Error> {
+        let ends: BTreeSet<_> = self.places.iter().map(|place| (place.edge, place.end)).collect();
+        if !self.problem.has_one_direction() || ends.len() != self.places.len() || self.is_at_rest() {
+            return Ok(None);
+        }
+        let closed = &self.primal.solution.contact_set;
+        let mut bonded: Vec<bool> = (0..self.primal.rows.len()).map(|row| closed.contains(row)).collect();
+        let mut pressed: Vec<bool> = (0..self.places.len()).map(|row| self.pull(row) < 0.0).collect();
+        let blocks = Blocks {
+            displacement: self.displacements.blocks().map(|(_, block)| block).collect(),
+            stress: self.stresses.blocks().map(|(_, block)| block).collect(),
+            at_rest: self.stresses.stresses(&vec![0.0; self.dual.values.len()]),
+        };
+        let mut last: Option<Test> = None;
+        let (mut interval, mut scale): (Option<[f64; 2]>, f64) = (None, 0.0);
+        for cap in CAPS {
+            if let Some(test) = &last {
+                let most = cap * scale;
+                if test.ratios.iter().flatten().all(|&ratio| ratio <= most) {
+                    continue;
+                }
+                bonded.iter_mut().zip(&test.ratios[0]).for_each(|(bonded, &ratio)| *bonded |= ratio > most);
+                pressed.iter_mut().zip(&test.ratios[1]).for_each(|(pressed, &ratio)| *pressed &= ratio <= most);
+            }
+            let Some(test) = self.test(&mut bonded, &mut pressed, &blocks)? else { break };
+            let (found, natural) = self.interval(&test);
+            scale = if last.is_none() { natural } else { scale };
+            if found.iter().all(|bound| bound.is_finite()) {
+                let [low, high] = interval.unwrap_or([0.0, f64::INFINITY]);
+                interval = Some([low.max(found[0]), high.min(found[1])]);
+            }
+            last = Some(test);
+        }
+        // If only rounding is left, the ends may be exchanged.
+        Ok(interval.map(|[low, high]| [low.min(high), low.max(high)]))
+    }
+
+    /// The interval of a pair, and the beta at which its term would reach that of the ball.
+    fn interval(&self, test: &Test) -> ([f64; 2], f64) {
+        let (mut base, mut square) = (self.work_on_supports(&test.stress), 0.0);
+        for triangle in 0..self.mesh.triangles.len() {
+            let mean = |value: &dyn Fn(usize, [f64; 3]) -> f64| self.volume(triangle) * mean_over_parts(value);
+            let rest = |k: usize, weights: [f64; 3]| {
+                let strain = self.strain(&test.displacement, triangle, k, weights);
+                minus(strain, self.problem.compliance(at(&test.stress[triangle], k, weights)))
+            };
+            square += mean(&|k, weights| {
+                let rest = rest(k, weights);
+                work(self.problem.stress(rest), rest)
+            });
+            base += mean(&|k, weights| {
+                let strain = self.problem.stress(self.strain(&self.primal.values, triangle, k, weights));
+                let stress = at(&self.stress[triangle], k, weights);
+                let middle = [0, 1, 2].map(|entry| (strain[entry] + stress[entry]) / 2.0);
+                work(middle, rest(k, weights))
+            });
+        }
+        let load = self.displacements.load();
+        base -= test.displacement.iter().zip(&load).map(|(value, load)| value * load).sum::<f64>();
+        let [mut low, mut high] = [base; 2];
+        for (place, (&pull, row)) in self.places.iter().zip(test.pulls.iter().zip(&self.dual.rows)) {
+            let [from, to] = self.mesh.edges[place.edge].map(|node| self.mesh.nodes[node]);
+            let gap = self.problem.obstacles[place.obstacle].surface.gap(from, to);
+            low += pull * row.gap;
+            high += pull * (row.gap - gap.map_or(0.0, |gap| gap.below + gap.above));
+        }
+        let (length, radius) = (square.sqrt(), self.square_of_radius().max(0.0).sqrt());
+        let beta = test.ratios.iter().flatten().fold(0.0, |beta: f64, &ratio| beta.max(ratio));
+        // The largest x |r| + beta (rho^2 - x^2).
+        let most = if length >= 2.0 * beta * radius {
+            radius * length
+        } else {
+            beta * radius * radius + length * length / (4.0 * beta)
+        };
+        ([(low - radius * length) / (1.0 + test.beyond), high + most], length / (2.0 * radius))
+    }
+
+    /// The pair with these rows held; rows of the wrong sign are bonded or released until every row has the right sign.
+    fn test(&self, bonded: &mut [bool], pressed: &mut [bool], blocks: &Blocks) -> Result<Option<Test>, Error> {
+        let Some(displacement) = self.bonded_displacement(bonded, &blocks.displacement)? else {
+            return Ok(None);
+        };
+        let Some((stress, pulls)) = self.bonded_stress(pressed, blocks)? else { return Ok(None) };
+        let (primal, values) = (&self.primal, &self.primal.values);
+        let mut beyond: f64 = 0.0;
+        let mut of_rows: Vec<f64> = Vec::with_capacity(primal.rows.len());
+        for row in &primal.rows {
+            let open = 1.0 + row.sense * displacement[row.unknown];
+            beyond = beyond.max(-open);
+            of_rows.push(over(open, row.gap - row.sense * values[row.unknown]));
+        }
+        // Places that a support holds do not move in the test, and may be touched.
+        for (edge, [from, to], number) in self.problem.facing(self.mesh) {
+            let facing = &self.problem.obstacles[number];
+            let Some(gap) = facing.surface.gap(from, to) else { continue };
+            for (function, bound) in self.displacements.on_edge(edge, facing.axis).into_iter().zip(gap.lower()) {
+                if let Some(held) = primal.unknowns.held[function] {
+                    of_rows.push(over(1.0, bound - facing.sense * held));
+                }
+            }
+        }
+        let of_places =
+            pulls.iter().enumerate().map(|(row, &pull)| if pull < 0.0 { pull / self.pull(row) } else { 0.0 }).collect();
+        Ok(Some(Test { displacement, stress, pulls, ratios: [of_rows, of_places], beyond }))
+    }
+
+    /// The displacement -1 at bonded rows, without load; rows below -1 are bonded too.
+    fn bonded_displacement(&self, bonded: &mut [bool], blocks: &[Block]) -> Result<Option<Vec<f64>>, Error> {
+        for _ in 0..ROUNDS {
+            let (unknowns, load) = with_contact_held(&self.primal, bonded);
+            let posed = unknowns.problem(self.displacements.numbers.iter().zip(blocks.iter().copied()), &load, &[])?;
+            let Some(free) = linear(&posed) else { return Ok(None) };
+            let values = unknowns.expanded(&free);
+            let wrong: Vec<usize> = (0..bonded.len())
+                .filter(|&row| {
+                    let of_row = &self.primal.rows[row];
+                    1.0 + of_row.sense * values[of_row.unknown] < -ROUNDING && !bonded[row]
+                })
+                .collect();
+            if wrong.is_empty() {
+                return Ok(Some(values));
+            }
+            wrong.into_iter().for_each(|row| bonded[row] = true);
+        }
+        Ok(None)
+    }
+
+    /// The stress under edges held at -1 where pressed, and its forces there; places with a pulling force are released.
+    fn bonded_stress(&self, pressed: &mut [bool], blocks: &Blocks) -> Result<Option<Pressed>, Error> {
+        for _ in 0..ROUNDS {
+            let (unknowns, load) = with_contact_held(&self.dual, pressed);
+            let posed =
+                unknowns.problem(self.stresses.numbers.iter().zip(blocks.stress.iter().copied()), &load, &[])?;
+            let Some(free) = linear(&posed) else { return Ok(None) };
+            let mut stress = self.stresses.stresses(&unknowns.expanded(&free));
+            // The difference of two answers under the same body force has no body force.
+            for (values, at_rest) in
+                stress.iter_mut().flatten().flatten().zip(blocks.at_rest.iter().flatten().flatten())
+            {
+                *values = minus(*values, *at_rest);
+            }
+            let mut pulls = self.pulls(&stress);
+            // The force for a displacement of one of a body as wide as high, for comparison: a body that nothing holds moves without
+            // force.
+            let Lame { lambda, mu } = self.problem.lame;
+            let unit = (lambda + 2.0 * mu) * self.problem.thickness;
+            let largest = pulls.iter().fold(unit, |largest: f64, pull| largest.max(pull.abs()));
+            let wrong: Vec<usize> =
+                (0..pressed.len()).filter(|&row| pressed[row] && pulls[row] > ROUNDING * largest).collect();
+            if wrong.is_empty() {
+                pulls
+                    .iter_mut()
+                    .zip(pressed.iter())
+                    .for_each(|(pull, pressed)| *pull = if *pressed { pull.min(0.0) } else { 0.0 });
+                return Ok(Some((stress, pulls)));
+            }
+            wrong.into_iter().for_each(|row| pressed[row] = false);
+        }
+        Ok(None)
+    }
+
+    /// The force of a stress at each place, along the obstacle.
+    fn pulls(&self, stress: &[PartStress]) -> Vec<f64> {
+        let at_ends = self.jumps(stress);
+        let pull = |place: &super::stress::Place| {
+            let facing = &self.problem.obstacles[place.obstacle];
+            facing.sense * at_ends[place.edge][place.end][facing.axis] * self.stresses.half_area(place.edge)
+        };
+        self.places.iter().map(pull).collect()
+    }
+
+    /// The force of the displacement: the sum of its multipliers, `>= 0`.
+    pub fn force(&self) -> f64 {
+        -self.primal.solution.multiplier.iter().sum::<f64>()
+    }
+}
+
+/// The unknowns with supports at zero and the unknowns of these rows at -1 towards the obstacle; and a zero load.
+fn with_contact_held(side: &Side, rows: &[bool]) -> (Unknowns, Vec<f64>) {
+    let mut held: Vec<Option<f64>> = side.unknowns.held.iter().map(|held| held.map(|_| 0.0)).collect();
+    let chosen = side.rows.iter().zip(rows).filter(|row| *row.1);
+    chosen.for_each(|(row, _)| held[row.unknown] = Some(-row.sense));
+    let load = vec![0.0; held.len()];
+    (Unknowns::new(held), load)
+}
+
+/// The displacement of a problem without rows, refined once; `None` if the stiffness is not definite.
+fn linear(problem: &ContactProblem) -> Option<Vec<f64>> {
+    let factor = Cholesky::of(problem.stiffness()).ok()?;
+    let mut solution = factor.solve(problem.load());
+    let balanced = problem.stiffness().mul(&solution);
+    let left: Vec<f64> = problem.load().iter().zip(balanced).map(|(load, force)| load - force).collect();
+    solution.iter_mut().zip(factor.solve(&left)).for_each(|(value, step)| *value += step);
+    Some(solution)
+}
+
+/// A ratio with a displacement of order one as numerator: zero if that is rounding, infinite if only the denominator is zero.
+fn over(value: f64, size: f64) -> f64 {
+    if value <= ROUNDING { 0.0 } else { value / size.max(0.0) }
+}

@@ -1,0 +1,142 @@
+//! The one error type of a user: each error states what is wrong, where, which value, and what is allowed.
+
+use signorini_qp::memory::in_words as memory;
+use signorini_qp::{Failure, Solution};
+
+/// All errors between a scene and a certified answer: those of the quadratic program, and those of bodies and scenes. Each has a
+/// [`code`](Self::code), and one sentence for a reader.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// An error of the quadratic program, of a file or of a setting, with the same sentence and the same code.
+    #[error(transparent)]
+    Qp(#[from] signorini_qp::Error),
+    /// A sweep whose answers leave too little memory to each solve.
+    #[error(
+        "{count} answers with {dofs} dofs, which a sweep keeps, take about {}, and a solve about {}, but {} are allowed; take fewer \
+         points, or allow more memory",
+        memory(*kept),
+        memory(*solve),
+        memory(*allowed)
+    )]
+    TooManyAnswers {
+        /// Points of the sweep, each with an answer of its own.
+        count: usize,
+        /// Number of unknowns of each.
+        dofs: usize,
+        /// Memory of the answers, estimated, in bytes.
+        kept: f64,
+        /// Memory of a solve, estimated, in bytes.
+        solve: f64,
+        /// Memory that all may take, in bytes.
+        allowed: f64,
+    },
+    /// Nodes and elements that form no mesh.
+    #[error("mesh: {message}")]
+    Mesh {
+        /// A sentence on the node or element, its fault, and what is allowed.
+        message: String,
+    },
+    /// A scene with JSON of the wrong form or with a wrong value, at its place in the text.
+    #[error("{source_name}:{line}:{column}: at {}: {message}", place_in_scene(path))]
+    SceneSyntax {
+        /// The file, or `scene` if it came as text.
+        source_name: String,
+        /// Line of the fault in the text, from 1.
+        line: usize,
+        /// Column of the fault in its line, from 1.
+        column: usize,
+        /// JSON path of the field; `.` for the scene itself.
+        path: String,
+        /// A sentence on what is wrong, and what is allowed.
+        message: String,
+    },
+    /// A scene that can be solved, but with an answer to another question than was meant.
+    #[error("{place}at `{path}`: {message}")]
+    Refused {
+        /// The name of the kind of refusal, the same in every version.
+        code: &'static str,
+        /// Place of the scene: `scene, `, or its file with line and column.
+        place: String,
+        /// JSON path of the field that would change it, such as `obstacles[0].approach`.
+        path: String,
+        /// A sentence on what would go wrong and where, with numbers, and on what to change.
+        message: String,
+    },
+    /// A scene with values that do not describe a problem.
+    #[error("{} `{path}`: {message}", if path.starts_with("--") { "option" } else { "scene, at" })]
+    Scene {
+        /// JSON path of the value, or the option of the program.
+        path: String,
+        /// A sentence on what is wrong, and what is allowed.
+        message: String,
+    },
+}
+
+impl Error {
+    /// The best answer that was found, if the error carries one.
+    pub fn into_best(self) -> Option<Solution> {
+        match self {
+            Error::Qp(error) => error.into_best(),
+            _ => None,
+        }
+    }
+
+    /// The name of the kind of error, the same in every version: for programs that distinguish errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Error::Qp(error) => error.code(),
+            Error::TooManyAnswers { .. } => "too-large",
+            Error::Mesh { .. } => "mesh",
+            Error::SceneSyntax { .. } | Error::Scene { .. } => "scene",
+            Error::Refused { code, .. } => code,
+        }
+    }
+
+    /// The `status` of a report that ends with the error, such as `under_held`.
+    pub fn status(&self) -> &'static str {
+        match self {
+            Error::Qp(error) => error.status(),
+            _ => "bad_input",
+        }
+    }
+
+    /// The statement of the error about the problem.
+    pub fn failure(&self) -> Failure {
+        match self {
+            Error::Qp(error) => error.failure(),
+            _ => Failure::BadInput,
+        }
+    }
+}
+
+/// A JSON path in words; `.` is the scene itself.
+fn place_in_scene(path: &str) -> String {
+    if path == "." { "the top level".to_string() } else { format!("`{path}`") }
+}
+
+/// Names longer than this are no spelling errors.
+const LONGEST_NAME: usize = 100;
+
+/// `; did you mean ...?` for a name that differs from one of `names` by a few letters, otherwise nothing.
+pub fn nearly<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+    nearest(name, names).map_or_else(String::new, |other| format!("; did you mean `{other}`?"))
+}
+
+/// The nearest of `names` if it differs from `name` by a few letters.
+///
+/// One letter in three may be replaced, missing, added, or exchanged with its neighbour.
+pub fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    if name.len() > LONGEST_NAME {
+        return None;
+    }
+    let length = name.chars().count();
+    let most = length.max(3) / 3;
+    let written = name.to_lowercase();
+    let away = |other: &str| strsim::damerau_levenshtein(&written, &other.to_lowercase());
+    let others = names.into_iter().filter(|other| !other.is_empty() && other.len() <= LONGEST_NAME);
+    let near = others.map(|other| (away(other), other));
+    // A name of one letter that differs has no letter in common.
+    let near = near.filter(|(away, other)| *away <= most && *away < length.max(other.chars().count()));
+    near.min_by_key(|(away, _)| *away).map(|(_, other)| other)
+}

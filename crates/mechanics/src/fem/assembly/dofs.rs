@@ -1,0 +1,307 @@
+//! Free and supported dofs: eliminate, and expand again.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use super::{Frame, PositiveBasis};
+use crate::error::Error;
+use crate::fem::body::ElasticBody;
+use crate::fem::geometry::COORDINATES;
+use crate::fem::mesh::Mesh;
+use signorini_qp as qp;
+
+/// Takes the place of the number at a supported dof.
+const SUPPORTED: usize = usize::MAX;
+
+/// A component of a vector along an axis of a frame below this, relative to the vector, is rounding of the frame.
+const NO_COMPONENT: f64 = 1e-14;
+
+/// The free dofs, their numbers in the problem, and the displacement of the supported dofs.
+///
+/// The dofs of a node run along the coordinate axes; those of a node with a [`Frame`] run along the axes of the frame and are called
+/// local dofs. Nodal vectors always run along the coordinate axes.
+///
+/// On quadratic faces in space that may touch an obstacle, the dofs of a mid-side node are coefficients of shape functions with positive
+/// integrals; those of all other nodes are their displacements.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DofMap {
+    /// Zero at free dofs.
+    prescribed: Vec<f64>,
+    /// [`SUPPORTED`] at supported dofs.
+    number: Vec<usize>,
+    free: Vec<usize>,
+    /// Dofs of a node; used only for frames.
+    dimension: usize,
+    frames: BTreeMap<usize, Frame>,
+    /// The coefficients at mid-side nodes.
+    pub(crate) basis: PositiveBasis,
+}
+
+/// The displacement of a node, or its coefficient, along a vector: the sum of `coefficient * free dof` and of the part of the supported
+/// dofs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Along {
+    /// Numbers of free dofs with their coefficients.
+    pub free: Vec<(usize, f64)>,
+    /// The part of the supported dofs, in units of length.
+    pub prescribed: f64,
+}
+
+impl DofMap {
+    /// From one entry per nodal dof, length `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`: the prescribed
+    /// displacement, in length along the positive axis, or `None` for a free dof.
+    ///
+    /// # Errors
+    /// [`qp::Error::NotFinite`] for a prescribed displacement that is not finite.
+    pub fn new(prescribed: Vec<Option<f64>>) -> Result<Self, Error> {
+        let (mut number, mut free) = (Vec::with_capacity(prescribed.len()), Vec::new());
+        for (dof, value) in prescribed.iter().enumerate() {
+            match *value {
+                Some(value) if !value.is_finite() => {
+                    let (name, at) = ("prescribed displacement", format!("dof {dof}"));
+                    return Err(qp::Error::NotFinite { name, at, value, allowed: "finite" }.into());
+                }
+                Some(_) => number.push(SUPPORTED),
+                None => {
+                    number.push(free.len());
+                    free.push(dof);
+                }
+            }
+        }
+        free.shrink_to_fit();
+        let prescribed = prescribed.into_iter().map(Option::unwrap_or_default).collect();
+        let (frames, basis) = (BTreeMap::new(), PositiveBasis::default());
+        Ok(DofMap { prescribed, number, free, dimension: 1, frames, basis })
+    }
+
+    /// From one entry per dof, `dimension` per node, in length; those of the nodes in `frames` are local: along the
+    /// axes of their frame.
+    ///
+    /// # Errors
+    /// As [`DofMap::new`]; [`Error::Mesh`] for a frame of a node that the mesh does not have.
+    pub fn with_frames(
+        prescribed: Vec<Option<f64>>,
+        dimension: usize,
+        frames: BTreeMap<usize, Frame>,
+    ) -> Result<Self, Error> {
+        let nodes = prescribed.len().checked_div(dimension).unwrap_or(0);
+        match frames.keys().find(|&&node| node >= nodes) {
+            Some(node) => Err(Error::Mesh { message: format!("a frame for node {node}, but there are {nodes} nodes") }),
+            None => Ok(DofMap { dimension, frames, ..Self::new(prescribed)? }),
+        }
+    }
+
+    /// The same with coefficients at the mid-side nodes of `boundaries`, which obstacles may touch, if `body` has quadratic faces in
+    /// space. The coefficients belong to shape functions with positive integrals, so that a uniform pressure pushes at every node.
+    ///
+    /// A mid-side node keeps its displacement if a support holds it but does not hold both ends of its edge in the same way. Boundaries
+    /// that the mesh does not have are ignored.
+    ///
+    /// # Source
+    /// A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, *Dual quadratic mortar finite element methods for 3D finite deformation
+    /// contact*, SIAM J. Sci. Comput. 34 (2012) B421-B446.
+    pub fn with_contact_faces<'a>(mut self, body: &ElasticBody, boundaries: impl IntoIterator<Item = &'a str>) -> Self {
+        let dimension = body.dimension();
+        let boundaries = boundaries.into_iter().filter_map(|name| body.mesh().boundary(name));
+        let mut basis = PositiveBasis::on(body, boundaries);
+        if basis.is_nodal() {
+            return self;
+        }
+        let held = |node: usize, axis: usize| self.number[dimension * node + axis] == SUPPORTED;
+        let is_turned = |node: usize| self.frames.contains_key(&node);
+        basis.retain(|middle, ends| {
+            let held_alike =
+                |axis: usize| !held(middle, axis) || ends.iter().all(|&end| held(end, axis) && !is_turned(end));
+            !is_turned(middle) && (0..dimension).all(held_alike)
+        });
+        for dof in (0..self.number.len()).filter(|&dof| self.number[dof] == SUPPORTED) {
+            let (node, axis) = (dof / dimension, dof % dimension);
+            self.prescribed[dof] = basis.coefficient(node, |node| self.prescribed[dimension * node + axis]);
+        }
+        DofMap { dimension, basis, ..self }
+    }
+
+    /// The coefficient at a node of a function with these values at the nodes, in their unit: the gap of its contact
+    /// row. It is the value itself, except at mid-side nodes of [contact faces](Self::with_contact_faces).
+    pub fn coefficient(&self, node: usize, value: impl Fn(usize) -> f64) -> f64 {
+        self.basis.coefficient(node, value)
+    }
+
+    /// The tributary areas of contact rows from those of the nodes of a boundary: `(node, area)` in the order of the
+    /// boundary, in area. They are the integrals of the shape functions of their dofs: the areas themselves, except on
+    /// [contact faces](Self::with_contact_faces).
+    pub fn row_areas(&self, of_nodes: &[(usize, f64)]) -> Vec<(usize, f64)> {
+        let mut areas: BTreeMap<usize, f64> = BTreeMap::new();
+        if !self.basis.is_nodal() {
+            areas.extend(of_nodes.iter().copied());
+            self.basis.gather_areas(&mut areas);
+        }
+        of_nodes.iter().map(|&(node, area)| (node, areas.get(&node).copied().unwrap_or(area))).collect()
+    }
+
+    /// All dofs of `mesh` free, except those of the nodes of `boundaries`: they move by `displacement(point)`. Point
+    /// and displacement have the order [x, y, z], in length; entries beyond the dimension are ignored.
+    ///
+    /// # Errors
+    /// As [`DofMap::new`]; [`Error::Mesh`] for a boundary that the mesh does not have.
+    pub fn holding(
+        mesh: &Mesh,
+        boundaries: &[&str],
+        displacement: impl Fn([f64; 3]) -> [f64; 3],
+    ) -> Result<Self, Error> {
+        let dimension = mesh.dimension();
+        let mut prescribed = vec![None; dimension * mesh.nodes().len()];
+        for name in boundaries {
+            let missing = || Error::Mesh { message: format!("there is no boundary `{name}`") };
+            for node in mesh.boundary(name).ok_or_else(missing)?.nodes() {
+                let value = displacement(mesh.nodes()[node]);
+                for (axis, &component) in value.iter().enumerate().take(dimension) {
+                    prescribed[dimension * node + axis] = Some(component);
+                }
+            }
+        }
+        Self::new(prescribed)
+    }
+
+    /// Number of nodal dofs, free and supported.
+    pub fn nodal_count(&self) -> usize {
+        self.prescribed.len()
+    }
+
+    /// The frame of a node with local dofs.
+    #[inline]
+    pub fn frame(&self, node: usize) -> Option<&Frame> {
+        self.frames.get(&node)
+    }
+
+    /// The directions of the dofs of `node`: the axes of its frame, or else of the coordinates.
+    pub(crate) fn axes(&self, node: usize) -> &[[f64; 3]; 3] {
+        self.frame(node).map_or(&COORDINATES, Frame::axes)
+    }
+
+    /// The displacement of `node` along `vector`, which has one entry per coordinate and no unit, in terms of the free
+    /// dofs: the form of a contact row or of a measured displacement. At a mid-side node with a coefficient it is the
+    /// coefficient.
+    pub fn along(&self, node: usize, vector: &[f64]) -> Along {
+        let mut local = vector.to_vec();
+        if let Some(frame) = self.frame(node) {
+            frame.turn_in(&mut local);
+            let rounding = NO_COMPONENT * local.iter().fold(0.0, |length: f64, part| length.hypot(*part));
+            local.iter_mut().filter(|part| part.abs() < rounding).for_each(|part| *part = 0.0);
+        }
+        let mut along = Along { free: Vec::with_capacity(local.len()), prescribed: 0.0 };
+        for (axis, &component) in local.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
+            let dof = vector.len() * node + axis;
+            match self.number(dof) {
+                Some(number) => along.free.push((number, component)),
+                None => along.prescribed += component * self.prescribed(dof).unwrap_or(0.0),
+            }
+        }
+        along
+    }
+
+    /// The displacement of `node` itself, never its coefficient, along `vector`, which has one entry per coordinate.
+    pub(crate) fn displacement_along(&self, node: usize, vector: &[f64]) -> Along {
+        let mut sum = Along { free: Vec::new(), prescribed: 0.0 };
+        for (of, share) in self.basis.values(node) {
+            let along = self.along(of, vector);
+            sum.prescribed += share * along.prescribed;
+            sum.free.extend(along.free.into_iter().map(|(number, part)| (number, share * part)));
+        }
+        sum
+    }
+
+    /// The nodal dof of each free dof, increasing: entry i is the index, from 0, among the `dim * n_nodes` nodal dofs.
+    pub fn free(&self) -> &[usize] {
+        &self.free
+    }
+
+    /// The number of nodal dof `dof` among the free dofs, from 0; `None` if it is supported.
+    #[inline]
+    pub fn number(&self, dof: usize) -> Option<usize> {
+        self.number.get(dof).copied().filter(|&number| number != SUPPORTED)
+    }
+
+    /// The displacement of nodal dof `dof`, in length, if it is supported.
+    pub fn prescribed(&self, dof: usize) -> Option<f64> {
+        let supported = self.number.get(dof) == Some(&SUPPORTED);
+        self.prescribed.get(dof).copied().filter(|_| supported)
+    }
+
+    /// Nodal displacements, length `dim * n_nodes`, in length, from those of the free dofs (`free`, one entry per free
+    /// dof, in length); supported dofs take their prescribed values.
+    ///
+    /// # Errors
+    /// [`qp::Error::Length`] if `free` does not have one entry per free dof.
+    pub fn expand(&self, free: &[f64]) -> Result<Vec<f64>, Error> {
+        self.expand_with(free, |dof| self.prescribed(dof).unwrap_or(0.0))
+    }
+
+    /// A nodal motion, length `dim * n_nodes`, from that of the free dofs (`free`, one entry per free dof), both in
+    /// length, or in length over time; supported dofs stay at zero.
+    ///
+    /// # Errors
+    /// As [`DofMap::expand`].
+    pub fn expand_motion(&self, free: &[f64]) -> Result<Vec<f64>, Error> {
+        self.expand_with(free, |_| 0.0)
+    }
+
+    fn expand_with(&self, free: &[f64], supported: impl Fn(usize) -> f64) -> Result<Vec<f64>, Error> {
+        qp::Error::check_length("displacement", free.len(), self.free.len(), "free dofs")?;
+        let value = |(dof, &number): (usize, &usize)| if number == SUPPORTED { supported(dof) } else { free[number] };
+        let mut nodal: Vec<f64> = self.number.iter().enumerate().map(value).collect();
+        self.turn_back(&mut nodal);
+        self.basis.evaluate(&mut nodal, self.dimension);
+        Ok(nodal)
+    }
+
+    /// The entries of nodal forces (`nodal`, length `dim * n_nodes`, in force) at the free dofs: one entry per free
+    /// dof, in force.
+    ///
+    /// # Errors
+    /// [`qp::Error::Length`] if `nodal` does not have one entry per nodal dof.
+    pub fn restrict(&self, nodal: &[f64]) -> Result<Vec<f64>, Error> {
+        let local = self.turned_in(nodal)?;
+        Ok(self.free.iter().map(|&dof| local[dof]).collect())
+    }
+
+    /// The part of nodal forces (`nodal`, length `dim * n_nodes`, in force) along the supported dofs, of the same
+    /// length: the reactions among the forces on all nodes.
+    ///
+    /// # Errors
+    /// As [`DofMap::restrict`].
+    pub fn supported_part(&self, nodal: &[f64]) -> Result<Vec<f64>, Error> {
+        self.part(nodal, |dof| self.number(dof).is_none())
+    }
+
+    /// The part of nodal forces along some of the dofs.
+    ///
+    /// # Errors
+    /// As [`DofMap::restrict`].
+    pub(crate) fn part(&self, nodal: &[f64], keeps: impl Fn(usize) -> bool) -> Result<Vec<f64>, Error> {
+        let mut part = self.turned_in(nodal)?.into_owned();
+        part.iter_mut().enumerate().filter(|(dof, _)| !keeps(*dof)).for_each(|(_, value)| *value = 0.0);
+        self.turn_back(&mut part);
+        self.basis.scatter(&mut part, self.dimension);
+        Ok(part)
+    }
+
+    /// Nodal forces as forces on coefficients; the entries of nodes with frames run along the axes of the frame.
+    fn turned_in<'a>(&self, nodal: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
+        qp::Error::check_length("nodal vector", nodal.len(), self.nodal_count(), "nodal dofs")?;
+        let mut local = Cow::Borrowed(nodal);
+        if !self.basis.is_nodal() {
+            self.basis.gather(local.to_mut(), self.dimension);
+        }
+        for (node, frame) in &self.frames {
+            frame.turn_in(&mut local.to_mut()[self.dimension * node..self.dimension * (node + 1)]);
+        }
+        Ok(local)
+    }
+
+    fn turn_back(&self, local: &mut [f64]) {
+        for (node, frame) in &self.frames {
+            frame.turn_back(&mut local[self.dimension * node..self.dimension * (node + 1)]);
+        }
+    }
+}

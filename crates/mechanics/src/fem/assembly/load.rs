@@ -1,0 +1,206 @@
+//! Consistent nodal loads: f_a = integral of N_a times the force.
+
+use std::borrow::Cow;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::surface::{FacetPoint, for_each_point, for_each_point_of};
+use super::{DofMap, internal_force};
+use crate::error::Error;
+use crate::fem::body::{BodyElement, ElasticBody};
+use crate::fem::element::{Tabulated, between_levels};
+use crate::fem::geometry::{cross, dot, minus};
+use crate::fem::mesh::Boundary;
+
+/// A moment of inertia of a boundary below this times the largest is rounding: the boundary is a straight line about that axis.
+const NO_INERTIA: f64 = 1e-12;
+
+/// Adds to the nodal load (length `dim * n_nodes`) a constant traction (x, y, z; force per area) on a boundary.
+pub fn add_traction(body: &ElasticBody, boundary: &Boundary, traction: [f64; 3], load: &mut [f64]) {
+    for_each_point(body, boundary, &mut |point| add_share(body, point, traction, load));
+}
+
+/// Adds to the nodal load (length `dim * n_nodes`) a pressure (force per area) on a boundary: a positive pressure acts against the
+/// outward normal.
+pub fn add_pressure(body: &ElasticBody, boundary: &Boundary, pressure: f64, load: &mut [f64]) {
+    let visit = &mut |point: &FacetPoint| {
+        add_share(body, point, point.normal.map(|component| -pressure * component), load);
+    };
+    for_each_point(body, boundary, visit);
+}
+
+/// Adds to the nodal load (length `dim * n_nodes`) the traction `field(point, outward unit normal)` (force per area) on
+/// a boundary, by five quadrature points in each direction of a facet.
+pub fn add_traction_field(
+    body: &ElasticBody,
+    boundary: &Boundary,
+    field: impl Fn([f64; 3], [f64; 3]) -> [f64; 3],
+    load: &mut [f64],
+) {
+    add_traction_with_kinks(body, boundary, Kinks { along: [0.0; 3], at: &[] }, field, load);
+}
+
+/// Planes normal to a unit vector, at these coordinates along it, increasing.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kinks<'a> {
+    pub along: [f64; 3],
+    pub at: &'a [f64],
+}
+
+/// The same for a field with kinks: facets are cut at the kinks, and every piece has five quadrature points in each direction.
+pub(crate) fn add_traction_with_kinks(
+    body: &ElasticBody,
+    boundary: &Boundary,
+    kinks: Kinks,
+    field: impl Fn([f64; 3], [f64; 3]) -> [f64; 3],
+    load: &mut [f64],
+) {
+    let (reference, nodes) = (boundary.kind.reference(), body.mesh().nodes());
+    let whole = Tabulated::fine(reference);
+    let table_of = |facet: &[usize]| {
+        let along: Vec<f64> = facet[..reference.corners].iter().map(|&node| dot(nodes[node], kinks.along)).collect();
+        let [low, high] = [f64::min, f64::max].map(|of| along.iter().copied().reduce(of).unwrap_or_default());
+        let (from, to) = (kinks.at.partition_point(|&at| at <= low), kinks.at.partition_point(|&at| at < high));
+        match kinks.at.get(from..to) {
+            Some(levels @ [_, ..]) => {
+                Cow::Owned(Tabulated::with_rule(reference, between_levels(reference, &along, levels)))
+            }
+            _ => Cow::Borrowed(&whole),
+        }
+    };
+    let visit = &mut |point: &FacetPoint| add_share(body, point, field(point.at, point.normal), load);
+    for_each_point_of(body, boundary, &table_of, visit);
+}
+
+/// Adds to the nodal load (length `dim * n_nodes`) the traction `omega x (x - c)` on a boundary, c its centre of area, which has the
+/// given moment (force times length) and zero force. `None` for a moment that no such traction has.
+pub(crate) fn add_moment(body: &ElasticBody, boundary: &Boundary, moment: [f64; 3], load: &mut [f64]) -> Option<()> {
+    let table = Tabulated::fine(boundary.kind.reference());
+    let visit = |visit: &mut dyn FnMut(&FacetPoint)| {
+        for_each_point_of(body, boundary, &|_| Cow::Borrowed(&table), visit);
+    };
+    // From the first node, so that a boundary far from the origin loses no digits.
+    let first = body.mesh().nodes()[*boundary.connectivity.first()?];
+    let (mut area, mut sum) = (0.0, [0.0; 3]);
+    visit(&mut |point| {
+        area += point.area;
+        let away = minus(point.at, first);
+        (0..3).for_each(|axis| sum[axis] += point.area * away[axis]);
+    });
+    let centre = [0, 1, 2].map(|axis| first[axis] + sum[axis] / area);
+    let mut inertia = Matrix3::zeros();
+    visit(&mut |point| {
+        let away = Vector3::from(minus(point.at, centre));
+        inertia += (Matrix3::identity() * away.norm_squared() - away * away.transpose()) * point.area;
+    });
+    // The eigenvalue iteration does not end if an entry is not a number.
+    if !inertia.iter().all(|entry| entry.is_finite()) {
+        return None;
+    }
+    let principal = inertia.symmetric_eigen();
+    let (moment, largest) = (Vector3::from(moment), principal.eigenvalues.max());
+    let mut omega = Vector3::zeros();
+    for (axis, &about) in principal.eigenvectors.column_iter().zip(&principal.eigenvalues) {
+        let part = axis.dot(&moment);
+        if about > NO_INERTIA * largest {
+            omega += axis * (part / about);
+        } else if part.abs() > NO_INERTIA * moment.norm() {
+            return None;
+        }
+    }
+    let omega = [omega.x, omega.y, omega.z];
+    visit(&mut |point| add_share(body, point, cross(omega, minus(point.at, centre)), load));
+    Some(())
+}
+
+/// Adds the force of a traction on the area of a quadrature point.
+fn add_share(body: &ElasticBody, point: &FacetPoint, traction: [f64; 3], load: &mut [f64]) {
+    for (&node, share) in point.nodes.iter().zip(point.shape) {
+        add_at(body, node, traction, share * point.area, load);
+    }
+}
+
+/// Adds to the nodal load (length `dim * n_nodes`) a constant body force (x, y, z; force per volume).
+pub fn add_body_force(body: &ElasticBody, force: [f64; 3], load: &mut [f64]) {
+    add_force_at(body, &body.tabulated(), |_, _| force, load);
+}
+
+/// Adds to the nodal load (length `dim * n_nodes`) the body force `field(point)` (force per volume), by five quadrature
+/// points in each direction of an element.
+pub fn add_body_force_field(body: &ElasticBody, field: impl Fn([f64; 3]) -> [f64; 3], load: &mut [f64]) {
+    add_force_at(body, &Tabulated::fine(body.mesh().kind().reference()), |_, at| field(at), load);
+}
+
+/// Adds to the nodal load (length `dim * n_nodes`) the densities of the materials times a constant acceleration (length per time
+/// squared).
+///
+/// # Errors
+/// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a material without density.
+pub(crate) fn add_gravity(body: &ElasticBody, acceleration: [f64; 3], load: &mut [f64]) -> Result<(), Error> {
+    let densities = body.densities()?;
+    let force = |element: usize, _| acceleration.map(|component| densities[element] * component);
+    add_force_at(body, &body.tabulated(), force, load);
+    Ok(())
+}
+
+/// Adds to the nodal load (length `dim * n_nodes`) the force of a rotation by `omega` (radians per time) about the axis through `point`
+/// along the unit vector `axis`: the density times omega squared times the vector from the axis to the point.
+///
+/// # Errors
+/// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a material without density.
+pub(crate) fn add_centrifugal(
+    body: &ElasticBody,
+    omega: f64,
+    (axis, point): ([f64; 3], [f64; 3]),
+    load: &mut [f64],
+) -> Result<(), Error> {
+    let densities = body.densities()?;
+    let force = |element: usize, at: [f64; 3]| {
+        let away = minus(at, point);
+        let along = dot(away, axis);
+        [0, 1, 2].map(|k| densities[element] * omega * omega * (away[k] - along * axis[k]))
+    };
+    add_force_at(body, &Tabulated::fine(body.mesh().kind().reference()), force, load);
+    Ok(())
+}
+
+/// Adds the body force `field(element, point)`.
+fn add_force_at(body: &ElasticBody, table: &Tabulated, field: impl Fn(usize, [f64; 3]) -> [f64; 3], load: &mut [f64]) {
+    for (element, BodyElement { nodes, cell, .. }) in body.elements().enumerate() {
+        let scale = cell.unit().powi(body.dimension() as i32);
+        for at in &table.points {
+            let volume = body.point(&cell, at).weight * scale;
+            let force = field(element, cell.place(&at.shape));
+            for (&node, share) in nodes.iter().zip(at.shape) {
+                add_at(body, node, force, share * volume, load);
+            }
+        }
+    }
+}
+
+/// The load of the free dofs, one entry per free dof, in force: the nodal load (`nodal`, length `dim * n_nodes`, in
+/// force) at the free dofs, minus the internal forces of the prescribed displacements, temperatures and initial
+/// stresses.
+///
+/// # Errors
+/// [`qp::Error::Length`](signorini_qp::Error::Length) if load or dofs do not belong to the mesh.
+pub fn free_load(body: &ElasticBody, dofs: &DofMap, nodal: &[f64]) -> Result<Vec<f64>, Error> {
+    let mut load = nodal.to_vec();
+    let is_moved = || (0..dofs.nodal_count()).any(|dof| dofs.prescribed(dof).is_some_and(|value| value != 0.0));
+    if body.has_own_stress() || is_moved() {
+        let lifted = dofs.expand(&vec![0.0; dofs.free().len()])?;
+        let forces = internal_force(body, &lifted)?;
+        load.iter_mut().zip(forces).for_each(|(load, force)| *load -= force);
+    }
+    dofs.restrict(&load)
+}
+
+/// Adds `force` times `factor` at a node; axes beyond the dimension of the body are left out.
+fn add_at(body: &ElasticBody, node: usize, force: [f64; 3], factor: f64, load: &mut [f64]) {
+    let dimension = body.dimension();
+    for (axis, component) in force.iter().enumerate().take(dimension) {
+        if let Some(entry) = load.get_mut(dimension * node + axis) {
+            *entry += component * factor;
+        }
+    }
+}

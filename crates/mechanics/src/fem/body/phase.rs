@@ -1,0 +1,100 @@
+//! A phase: the material and the stress without strain that a set of elements shares.
+
+use crate::error::Error;
+use crate::fem::formulation::Formulation;
+use crate::fem::geometry::{Symmetric, dot};
+use crate::fem::material::{Law, Material};
+use signorini_qp as qp;
+
+/// A material and its law in the formulation of the body, and its stress without strain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Phase {
+    material: Material,
+    /// The law of the material.
+    pub law: Law,
+    /// The stress without strain, if there is one.
+    pub own: Option<OwnStress>,
+}
+
+/// The temperature above the stress-free one, linear in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Temperature {
+    /// At the origin, in degrees.
+    pub value: f64,
+    /// In degrees per length.
+    pub gradient: [f64; 3],
+}
+
+/// The stress without strain: `sigma_0 - C alpha T(x)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OwnStress {
+    initial: Symmetric,
+    /// `- C alpha`, the stress per degree.
+    per_degree: Symmetric,
+    temperature: Temperature,
+}
+
+impl OwnStress {
+    /// No stress without strain.
+    const NONE: OwnStress = OwnStress {
+        initial: [0.0; 6],
+        per_degree: [0.0; 6],
+        temperature: Temperature { value: 0.0, gradient: [0.0; 3] },
+    };
+
+    /// The stress at a point.
+    #[inline]
+    pub fn at(&self, place: [f64; 3]) -> Symmetric {
+        let warmer = self.temperature.value + dot(self.temperature.gradient, place);
+        [0, 1, 2, 3, 4, 5].map(|component| self.initial[component] + warmer * self.per_degree[component])
+    }
+}
+
+impl Phase {
+    /// # Errors
+    /// As [`Material::law`].
+    pub(super) fn new(material: Material, formulation: &Formulation) -> Result<Self, Error> {
+        Ok(Phase { material, law: material.law(formulation)?, own: None })
+    }
+
+    /// The same state of another material.
+    pub(super) fn of(&self, material: Material, formulation: &Formulation) -> Result<Self, Error> {
+        let phase = Self::new(material, formulation)?;
+        let Some(own) = self.own else { return Ok(phase) };
+        let phase = Phase { own: Some(OwnStress { initial: own.initial, ..OwnStress::NONE }), ..phase };
+        match own.temperature == OwnStress::NONE.temperature {
+            true => Ok(phase),
+            false => phase.with_temperature(own.temperature),
+        }
+    }
+
+    pub(super) fn with_temperature(self, temperature: Temperature) -> Result<Self, Error> {
+        let [x, y, z] = temperature.gradient;
+        if let Some(&value) = [temperature.value, x, y, z].iter().find(|value| !value.is_finite()) {
+            return Err(qp::Error::Setting { name: "temperature", value, allowed: "finite" }.into());
+        }
+        let missing = qp::Error::Setting { name: "expansion", value: f64::NAN, allowed: "finite" };
+        let per_degree = self.law.holding(&self.material.expansion().ok_or(missing)?);
+        let own = self.own.unwrap_or(OwnStress::NONE);
+        Ok(Phase { own: Some(OwnStress { per_degree, temperature, ..own }), ..self })
+    }
+
+    pub(super) fn with_initial_stress(self, initial: Symmetric, formulation: &Formulation) -> Result<Self, Error> {
+        let has = |component: usize| formulation.stresses().contains(&component);
+        for (component, value) in initial.into_iter().enumerate() {
+            if !value.is_finite() {
+                return Err(qp::Error::Setting { name: "initial stress", value, allowed: "finite" }.into());
+            }
+            if value != 0.0 && !has(component) {
+                let allowed = "zero in a component that the formulation does not have";
+                return Err(qp::Error::Setting { name: "initial stress", value, allowed }.into());
+            }
+        }
+        Ok(Phase { own: Some(OwnStress { initial, ..self.own.unwrap_or(OwnStress::NONE) }), ..self })
+    }
+
+    /// The material.
+    pub fn material(&self) -> &Material {
+        &self.material
+    }
+}

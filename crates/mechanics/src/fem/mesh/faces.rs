@@ -1,0 +1,99 @@
+//! The element that a facet belongs to.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use super::outline::chained;
+use super::{Boundary, Mesh, fail};
+use crate::error::Error;
+
+/// The largest number of nodes of a facet.
+const MOST_NODES: usize = 8;
+
+/// The nodes of a facet in increasing order, padded at the end: the same for a face of any orientation.
+type Key = [usize; MOST_NODES];
+
+fn key(nodes: impl Iterator<Item = usize>) -> Key {
+    let mut key = [usize::MAX; MOST_NODES];
+    for (place, node) in key.iter_mut().zip(nodes) {
+        *place = node;
+    }
+    key.sort_unstable();
+    key
+}
+
+impl Mesh {
+    /// The element and its local face for each facet of a boundary: the first one if the boundary lies between two elements, `None` if
+    /// the facet is not a face of any element.
+    pub fn faces_of(&self, boundary: &Boundary) -> Vec<Option<(usize, usize)>> {
+        let mut places: HashMap<Key, Vec<usize>> = HashMap::with_capacity(boundary.facet_count());
+        let mut marked = vec![false; self.nodes().len()];
+        for (index, facet) in boundary.facets().enumerate() {
+            places.entry(key(facet.iter().copied())).or_default().push(index);
+            for &node in facet {
+                if let Some(mark) = marked.get_mut(node) {
+                    *mark = true;
+                }
+            }
+        }
+        let mut found = vec![None; boundary.facet_count()];
+        let faces = self.kind().reference().faces;
+        for (element, nodes) in self.elements().enumerate() {
+            // Most elements do not touch the boundary.
+            if !nodes.iter().any(|&node| marked[node]) {
+                continue;
+            }
+            for (face, local) in faces.iter().enumerate() {
+                if !local.iter().all(|&place| marked[nodes[place]]) {
+                    continue;
+                }
+                for &index in places.get(&key(local.iter().map(|&place| nodes[place]))).into_iter().flatten() {
+                    found[index].get_or_insert((element, face));
+                }
+            }
+        }
+        found
+    }
+
+    /// All faces that belong to one of these elements only, seen from outside; edges in the order in which they follow each other.
+    pub fn surface(&self, elements: Range<usize>) -> Boundary {
+        let faces = self.kind().reference().faces;
+        let of_element = |element: usize| {
+            let nodes = self.element(element);
+            faces.iter().map(move |face| face.iter().map(move |&local| nodes[local]))
+        };
+        let mut count: HashMap<Key, usize> = HashMap::new();
+        for face in elements.clone().flat_map(of_element) {
+            *count.entry(key(face)).or_default() += 1;
+        }
+        let outer = elements.flat_map(of_element).filter(|face| count.get(&key(face.clone())) == Some(&1));
+        let kind = self.kind().facet();
+        Boundary::new("surface", kind, chained(kind, outer.flatten().collect()))
+    }
+
+    /// The number of the piece of each element: elements of one piece are joined by common faces.
+    pub(crate) fn pieces(&self) -> Vec<usize> {
+        let faces = self.kind().reference().faces;
+        let mut first_at: HashMap<Key, usize> = HashMap::new();
+        let mut forest = signorini_qp::Forest::new(self.element_count());
+        for (element, nodes) in self.elements().enumerate() {
+            for face in faces {
+                forest.join(*first_at.entry(key(face.iter().map(|&local| nodes[local]))).or_insert(element), element);
+            }
+        }
+        forest.into_trees().0
+    }
+
+    pub(super) fn check_facets(&self) -> Result<(), Error> {
+        for boundary in self.boundaries() {
+            if let Some(index) = self.faces_of(boundary).iter().position(Option::is_none) {
+                let facet: Vec<usize> = boundary.facets().nth(index).unwrap_or_default().to_vec();
+                return fail(format!(
+                    "boundary `{}`: facet {index} (nodes {facet:?}, from 0) is not a face of any element",
+                    boundary.name
+                ));
+            }
+        }
+        Ok(())
+    }
+}

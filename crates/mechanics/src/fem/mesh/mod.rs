@@ -1,0 +1,276 @@
+//! Meshes of one kind of element, in one, two or three dimensions: nodes, elements, named boundaries.
+
+mod axis;
+pub(crate) mod bisection;
+mod boundary;
+mod elevation;
+mod faces;
+pub mod gmsh;
+mod group;
+pub(crate) mod lattice;
+mod outline;
+pub(crate) mod round;
+pub(crate) mod triangle_pieces;
+mod zone;
+
+pub use crate::fem::element::{ElementKind, FacetKind};
+pub use axis::Axis;
+pub use boundary::Boundary;
+pub(crate) use group::ElementGroup;
+pub use zone::Zone;
+
+use crate::error::Error;
+use crate::fem::geometry::distance;
+use std::ops::Range;
+
+/// More nodes than this are refused before memory is allocated: a direct factorisation of a plane problem with ten million dofs does not
+/// fit in memory.
+pub const MAX_NODES: usize = 5_000_000;
+
+/// A mesh of one kind of element, checked once, when it is built.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    nodes: Vec<[f64; 3]>,
+    kind: ElementKind,
+    connectivity: Vec<usize>,
+    boundaries: Vec<Boundary>,
+    groups: Vec<ElementGroup>,
+}
+
+impl Mesh {
+    /// The mesh of `nodes` (coordinates x, y, z in the unit of length; those beyond the dimension of the element are
+    /// zero) and elements of one `kind`.
+    ///
+    /// `connectivity` lists the nodes of element 0, then of element 1, ..., each in the order of [`ElementKind`],
+    /// indices from 0.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] for a mesh without elements, coordinates that are not finite or lie outside the space of the element, a
+    /// connectivity whose length is not a multiple of the nodes of an element, a node beyond the last, a node that no element uses, two
+    /// boundaries of one name, facets of the wrong kind, a facet that is not a face of an element.
+    pub fn new(
+        nodes: Vec<[f64; 3]>,
+        kind: ElementKind,
+        connectivity: Vec<usize>,
+        boundaries: Vec<Boundary>,
+    ) -> Result<Self, Error> {
+        let mesh = Mesh { nodes, kind, connectivity, boundaries, groups: Vec::new() };
+        mesh.check_nodes()?;
+        mesh.check_boundaries()?;
+        Ok(mesh)
+    }
+
+    fn check_nodes(&self) -> Result<(), Error> {
+        if self.connectivity.is_empty() {
+            return fail("there are no elements; a mesh needs at least one".into());
+        }
+        let (nodes, dimension) = (&self.nodes, self.dimension());
+        for (node, at) in nodes.iter().enumerate() {
+            if !at.iter().all(|value| value.is_finite()) {
+                return fail(format!("node {node} lies at {:?}; coordinates must be finite", &at[..dimension]));
+            }
+            if at[dimension..].iter().any(|&value| value != 0.0) {
+                let unused = ["y and z", "z"][dimension - 1];
+                let name = self.kind.name();
+                return fail(format!("node {node} lies at {at:?}; in a mesh of {name}, {unused} must be 0"));
+            }
+        }
+        let each = self.kind.nodes();
+        if !self.connectivity.len().is_multiple_of(each) {
+            let length = self.connectivity.len();
+            return fail(format!(
+                "the connectivity has length {length}, which is not a multiple of the {each} nodes of an element"
+            ));
+        }
+        let of_facets = self.boundaries.iter().flat_map(|boundary| &boundary.connectivity);
+        if let Some(node) = self.connectivity.iter().chain(of_facets).find(|&&node| node >= nodes.len()) {
+            return fail(format!("node {node} is used, but there are only {} (indices from 0)", nodes.len()));
+        }
+        let mut used = vec![false; nodes.len()];
+        self.connectivity.iter().for_each(|&node| used[node] = true);
+        match used.iter().position(|used| !used) {
+            Some(node) => fail(format!(
+                "node {node} belongs to no element; it lies at {:?}: remove it",
+                &nodes[node][..self.dimension()]
+            )),
+            None => Ok(()),
+        }
+    }
+
+    fn check_boundaries(&self) -> Result<(), Error> {
+        let expected = self.kind.facet();
+        for (index, boundary) in self.boundaries.iter().enumerate() {
+            let name = &boundary.name;
+            if self.boundaries[..index].iter().any(|other| other.name == *name) {
+                return fail(format!("two boundaries are called `{name}`"));
+            }
+            if boundary.kind != expected || !boundary.connectivity.len().is_multiple_of(expected.nodes()) {
+                let (found, element) = (boundary.kind, self.kind.name());
+                return fail(format!(
+                    "boundary `{name}` has facets {found:?} and {} node numbers; faces of {element} are {expected:?}",
+                    boundary.connectivity.len()
+                ));
+            }
+        }
+        self.check_facets()
+    }
+
+    /// Coordinates [x, y, z] of every node, length `n_nodes`, in length; those beyond the dimension are zero.
+    pub fn nodes(&self) -> &[[f64; 3]] {
+        &self.nodes
+    }
+
+    /// The one kind that all elements have.
+    pub fn kind(&self) -> ElementKind {
+        self.kind
+    }
+
+    /// Number of coordinates: 1, 2 or 3.
+    pub fn dimension(&self) -> usize {
+        self.kind.dimension()
+    }
+
+    /// Number of elements, of all bodies in the mesh.
+    pub fn element_count(&self) -> usize {
+        self.connectivity.len() / self.kind.nodes()
+    }
+
+    /// The node indices of each element, from 0, in the order of [`ElementKind`].
+    pub fn elements(&self) -> impl Iterator<Item = &[usize]> + '_ {
+        self.connectivity.chunks_exact(self.kind.nodes())
+    }
+
+    /// The nodes of one element, from 0, in the order of its reference cell.
+    ///
+    /// # Panics
+    /// If there is no such element.
+    #[inline]
+    pub fn element(&self, element: usize) -> &[usize] {
+        let each = self.kind.nodes();
+        &self.connectivity[element * each..(element + 1) * each]
+    }
+
+    /// All named boundaries, in the order in which they were given.
+    pub fn boundaries(&self) -> &[Boundary] {
+        &self.boundaries
+    }
+
+    /// The boundary called `name`, if there is one.
+    pub fn boundary(&self, name: &str) -> Option<&Boundary> {
+        self.boundaries.iter().find(|boundary| boundary.name == name)
+    }
+
+    /// The groups of elements; only a mesh from a file has groups.
+    pub(crate) fn groups(&self) -> &[ElementGroup] {
+        &self.groups
+    }
+
+    /// The same mesh with other groups of its elements.
+    fn with_groups(self, groups: Vec<ElementGroup>) -> Self {
+        Mesh { groups, ..self }
+    }
+
+    /// The mirror image across the plane where the coordinate `axis` (0, 1, 2 for x, y, z) is `plane`; boundaries keep
+    /// their names.
+    pub fn mirrored(mut self, axis: usize, plane: f64) -> Self {
+        self.nodes.iter_mut().filter_map(|at| at.get_mut(axis)).for_each(|value| *value = 2.0 * plane - *value);
+        let order = self.kind.reference().mirrored();
+        for element in self.connectivity.chunks_exact_mut(order.len()) {
+            let nodes: Vec<usize> = order.iter().map(|&local| element[local]).collect();
+            element.copy_from_slice(&nodes);
+        }
+        self
+    }
+
+    /// This mesh and `other` in one, sharing no node: nodes and elements of `other` follow those of this mesh; its boundaries are called
+    /// `name.boundary`, and its groups of elements `name.group`.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] for meshes of two kinds, or a boundary name that exists.
+    pub fn beside(mut self, other: &Mesh, name: &str) -> Result<Self, Error> {
+        if self.kind != other.kind {
+            let (one, two) = (self.kind.name(), other.kind.name());
+            return fail(format!("a mesh has one kind of element; here {one} and {two}"));
+        }
+        let first = self.nodes.len();
+        let behind = |nodes: &[usize]| nodes.iter().map(|node| first + node).collect::<Vec<usize>>();
+        self.nodes.extend_from_slice(&other.nodes);
+        self.connectivity.extend(behind(&other.connectivity));
+        self.boundaries.extend(other.boundaries.iter().map(|boundary| {
+            Boundary::new(format!("{name}.{}", boundary.name), boundary.kind, behind(&boundary.connectivity))
+        }));
+        let first = self.connectivity.len() / self.kind.nodes() - other.element_count();
+        self.groups.extend(other.groups.iter().map(|group| ElementGroup {
+            name: format!("{name}.{}", group.name),
+            elements: group.elements.iter().map(|element| first + element).collect(),
+        }));
+        Ok(Self::new(self.nodes, self.kind, self.connectivity, self.boundaries)?.with_groups(self.groups))
+    }
+
+    /// The same mesh with one more boundary, after the others.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] for a name that exists, facets of the wrong kind, a facet that is not a face of an element.
+    pub(crate) fn with_boundary(mut self, boundary: Boundary) -> Result<Self, Error> {
+        self.boundaries.push(boundary);
+        self.check_boundaries()?;
+        Ok(self)
+    }
+
+    /// The smallest and the largest coordinates, `([x_min, y_min, z_min], [x_max, y_max, z_max])`, in length.
+    pub fn extent(&self) -> ([f64; 3], [f64; 3]) {
+        extent(&self.nodes)
+    }
+
+    /// The smallest and the largest coordinates of some of its nodes, numbered from 0: `[x, y, z]` each, in length.
+    pub fn extent_of(&self, nodes: Range<usize>) -> ([f64; 3], [f64; 3]) {
+        extent(&self.nodes[nodes])
+    }
+
+    /// The diagonal of the extent: the body's size, in the unit of length.
+    pub fn size(&self) -> f64 {
+        let (low, high) = self.extent();
+        distance(low, high)
+    }
+
+    /// The index of the node nearest to `point` ([x, y, z], in length), from 0, and its distance, in length; `None` in
+    /// a mesh without nodes.
+    pub fn nearest_node(&self, point: [f64; 3]) -> Option<(usize, f64)> {
+        let away = |&node: &[f64; 3]| distance(node, point);
+        self.nodes.iter().map(away).enumerate().min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// The smallest and the largest coordinates of `nodes`.
+pub(crate) fn extent(nodes: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for node in nodes {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(node[axis]);
+            high[axis] = high[axis].max(node[axis]);
+        }
+    }
+    (low, high)
+}
+
+/// An [`Error::Mesh`].
+pub(crate) fn fail<T>(message: String) -> Result<T, Error> {
+    Err(Error::Mesh { message })
+}
+
+/// Checks the lines of a structured mesh and counts the nodes of the grid that is `refined` times as fine.
+pub(crate) fn check_lines(axes: &[(&str, &[f64])], refined: usize) -> Result<(), Error> {
+    let mut nodes: usize = 1;
+    for (name, lines) in axes {
+        let increasing = |pair: &[f64]| pair[1].partial_cmp(&pair[0]) == Some(std::cmp::Ordering::Greater);
+        if lines.len() < 2 || !lines.windows(2).all(increasing) {
+            return fail(format!("the {name} lines must be at least two, and increase"));
+        }
+        nodes = nodes.saturating_mul((lines.len() - 1).saturating_mul(refined).saturating_add(1));
+    }
+    if nodes > MAX_NODES {
+        let cells: Vec<String> = axes.iter().map(|(_, lines)| (lines.len() - 1).to_string()).collect();
+        return fail(format!("{} cells make more than the {MAX_NODES} nodes that are allowed", cells.join(" x ")));
+    }
+    Ok(())
+}

@@ -1,0 +1,90 @@
+//! The estimated discretisation error: the stress of the elements against the recovered stress.
+
+use super::StressField;
+use crate::error::Error;
+use crate::fem::body::ElasticBody;
+use crate::fem::element::{MAX_NODES, PerNode, Rule, Tabulated};
+use crate::fem::geometry::Symmetric;
+use signorini_qp as qp;
+
+/// Estimates the relative error in energy norm of the nodal displacement `displacement` (length `dim * n_nodes`), whose stress is
+/// `field`, against the solution of the continuum: `||sigma* - sigma_h|| / sqrt(||sigma_h||^2 + ||sigma* - sigma_h||^2)` in the norm of
+/// the complementary energy, where sigma* interpolates the averaged nodal stresses by the shape functions; where materials meet, the
+/// average is taken within each. Zero if there is no stress.
+///
+/// # Source
+/// O. C. Zienkiewicz, J. Z. Zhu, 1987, "A simple error estimator and adaptive procedure for practical engineering
+/// analysis".
+///
+/// # Errors
+/// [`qp::Error::Length`] if displacement or field do not belong to the body.
+pub fn discretisation_error(body: &ElasticBody, displacement: &[f64], field: &StressField) -> Result<f64, Error> {
+    Ok(EstimatedError::of(body, displacement, field)?.relative())
+}
+
+/// The estimate as squares of its norms: twice an energy.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct EstimatedError {
+    /// `||sigma* - sigma_h||^2` on each element.
+    pub of_elements: Vec<f64>,
+    /// `||sigma_h||^2`.
+    pub whole: f64,
+    /// The same of the stress without strain: in a free body it is cancelled except for rounding.
+    unstrained: f64,
+}
+
+/// Stresses below this times the stress without strain are rounding.
+const ROUNDING: f64 = 1e-12;
+
+impl EstimatedError {
+    /// As [`discretisation_error`].
+    ///
+    /// # Errors
+    /// As [`discretisation_error`].
+    pub fn of(body: &ElasticBody, displacement: &[f64], field: &StressField) -> Result<Self, Error> {
+        body.check_nodal("nodal displacement", displacement.len())?;
+        qp::Error::check_length("nodal stress", field.nodes.len(), body.mesh().nodes().len(), "nodes")?;
+        // The rule for bodies of revolution also integrates the squares of linear differences.
+        let table = Tabulated::new(body.mesh().kind().reference(), Rule::Revolved);
+        let standard = body.tabulated();
+
+        let mut of_elements = Vec::with_capacity(body.mesh().element_count());
+        let (mut whole, mut unstrained) = (0.0, 0.0);
+        for element in body.elements() {
+            let (nodes, cell, law) = (element.nodes, &element.cell, &element.phase.law);
+            let strained = body.strained(&standard, displacement, &element);
+            let mut recovered: PerNode<Symmetric> = [[0.0; 6]; MAX_NODES];
+            for (stress, &node) in recovered.iter_mut().zip(nodes) {
+                *stress = field.within(node, element.phase_number).components();
+            }
+            let volume = cell.unit().powi(body.dimension() as i32);
+            let mut difference = 0.0;
+            for at in &table.points {
+                let (point, stress) = strained.at(at);
+                let mut away = stress;
+                for (share, of_node) in at.shape.iter().zip(&recovered) {
+                    away.iter_mut().zip(of_node).for_each(|(entry, component)| *entry -= share * component);
+                }
+                difference += volume * point.weight * law.complementary_energy(&away);
+                whole += volume * point.weight * law.complementary_energy(&stress);
+                if let Some(own) = element.own_stress(at) {
+                    unstrained += volume * point.weight * law.complementary_energy(&own);
+                }
+            }
+            of_elements.push(difference);
+        }
+        Ok(EstimatedError { of_elements, whole, unstrained })
+    }
+
+    /// The strain energy of the displaced body, `1/2 ||sigma_h||^2`, in force times length.
+    pub fn strain_energy(&self) -> f64 {
+        self.whole / 2.0
+    }
+
+    /// The error over the norm of the exact stress, both estimated.
+    pub fn relative(&self) -> f64 {
+        let difference: f64 = self.of_elements.iter().sum();
+        let total = self.whole + difference;
+        if total > ROUNDING * ROUNDING * self.unstrained { (difference / total).sqrt() } else { 0.0 }
+    }
+}

@@ -1,0 +1,215 @@
+//! Stress recovery: at the centroids, and extrapolated to the nodes and averaged there; the discretisation error from it.
+
+pub(crate) mod along;
+pub(crate) mod discretisation;
+
+pub use discretisation::discretisation_error;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use nalgebra::Matrix3;
+
+use crate::error::Error;
+use crate::fem::body::ElasticBody;
+use crate::fem::formulation::Formulation;
+use crate::fem::geometry::Symmetric;
+
+/// The stress at a point, in force per area; tension is positive.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stress {
+    /// Normal stress along x; the radial stress of a body of revolution.
+    pub sigma_xx: f64,
+    /// Normal stress along y.
+    pub sigma_yy: f64,
+    /// Normal stress along z: `nu (sigma_xx + sigma_yy)` in plane strain, 0 in plane stress, the hoop stress of a body
+    /// of revolution.
+    pub sigma_zz: f64,
+    /// Shear stress between x and y.
+    pub sigma_xy: f64,
+    /// Shear stress between y and z; 0 except in space.
+    pub sigma_yz: f64,
+    /// Shear stress between z and x; 0 except in space.
+    pub sigma_zx: f64,
+    /// The largest principal stress; except in space, the largest of those in the plane.
+    pub sigma_1: f64,
+    /// The second principal stress. In the plane the smaller one, and so the largest compression there.
+    pub sigma_2: f64,
+    /// The smallest principal stress in space; otherwise sigma_zz, whatever its size.
+    pub sigma_3: f64,
+    /// The von Mises stress of all components.
+    pub von_mises: f64,
+}
+
+impl Stress {
+    /// The stress with the given components in the plane and normal to it, in force per area, tension positive.
+    pub fn new(sigma_xx: f64, sigma_yy: f64, sigma_xy: f64, sigma_zz: f64) -> Self {
+        let centre = (sigma_xx + sigma_yy) / 2.0;
+        let radius = ((sigma_xx - sigma_yy) / 2.0).hypot(sigma_xy);
+        // sqrt(((s1-s2)^2 + (s2-s3)^2 + (s3-s1)^2)/2) with (s1-s2)/2 = radius, (s1+s2)/2 = centre, s3 = sigma_zz.
+        let von_mises = (3_f64.sqrt() * radius).hypot(centre - sigma_zz);
+        let (sigma_1, sigma_2, sigma_3) = (centre + radius, centre - radius, sigma_zz);
+        let (sigma_yz, sigma_zx) = (0.0, 0.0);
+        Stress { sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx, sigma_1, sigma_2, sigma_3, von_mises }
+    }
+
+    /// The stress with the components `[xx, yy, zz, xy, yz, zx]` in space, in force per area, tension positive.
+    pub fn in_space([sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx]: Symmetric) -> Self {
+        let tensor =
+            Matrix3::new(sigma_xx, sigma_xy, sigma_zx, sigma_xy, sigma_yy, sigma_yz, sigma_zx, sigma_yz, sigma_zz);
+        let finite = tensor.iter().all(|component| component.is_finite());
+        let mut principal: [f64; 3] = if finite { tensor.symmetric_eigenvalues().into() } else { [f64::NAN; 3] };
+        principal.sort_by(|a, b| b.total_cmp(a));
+        let [sigma_1, sigma_2, sigma_3] = principal;
+        let normal = (sigma_xx - sigma_yy).hypot(sigma_yy - sigma_zz).hypot(sigma_zz - sigma_xx) / 2_f64.sqrt();
+        let shear = sigma_xy.hypot(sigma_yz).hypot(sigma_zx) * 3_f64.sqrt();
+        let von_mises = normal.hypot(shear);
+        Stress { sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx, sigma_1, sigma_2, sigma_3, von_mises }
+    }
+
+    /// The components `[xx, yy, zz, xy, yz, zx]`.
+    pub fn components(&self) -> Symmetric {
+        [self.sigma_xx, self.sigma_yy, self.sigma_zz, self.sigma_xy, self.sigma_yz, self.sigma_zx]
+    }
+
+    /// The traction on a plane with the unit normal `normal`, in force per area.
+    pub(crate) fn on(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        [
+            self.sigma_xx * x + self.sigma_xy * y + self.sigma_zx * z,
+            self.sigma_xy * x + self.sigma_yy * y + self.sigma_yz * z,
+            self.sigma_zx * x + self.sigma_yz * y + self.sigma_zz * z,
+        ]
+    }
+}
+
+/// The stress of a displaced body, at the centroid of each element and, averaged, at each node.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StressField {
+    /// One stress per element, at its centroid, in the order of the mesh.
+    pub elements: Vec<Stress>,
+    /// One stress per node, in the order of the mesh: extrapolated from the quadrature points, averaged over the
+    /// elements around the node, of all materials.
+    pub nodes: Vec<Stress>,
+    /// The average over the elements of each phase, by node and phase, where several phases meet: there the stress jumps.
+    sides: BTreeMap<(usize, u32), Stress>,
+}
+
+impl StressField {
+    /// The stress of a node in a phase with an element at that node.
+    pub fn within(&self, node: usize, phase: u32) -> &Stress {
+        match self.sides.is_empty() {
+            true => &self.nodes[node],
+            false => self.sides.get(&(node, phase)).unwrap_or(&self.nodes[node]),
+        }
+    }
+
+    /// The field of the whole of which `body` is a part: at a node on a plane of symmetry the shear stresses of the mirror images cancel.
+    /// `axes_at` gives the axes across the planes on which a node lies.
+    pub(crate) fn of_whole(mut self, body: &ElasticBody, axes_at: impl Fn(usize) -> [bool; 3]) -> Self {
+        let nodes = self.nodes.iter_mut().enumerate();
+        let sides = self.sides.iter_mut().map(|(&(node, _), stress)| (node, stress));
+        for (node, stress) in nodes.chain(sides) {
+            let [x, y, z] = axes_at(node);
+            if x || y || z {
+                let [xx, yy, zz, xy, yz, zx] = stress.components();
+                let shear = |cancels: bool, value: f64| if cancels { 0.0 } else { value };
+                *stress = finished(body, [xx, yy, zz, shear(x || y, xy), shear(y || z, yz), shear(z || x, zx)]);
+            }
+        }
+        self
+    }
+}
+
+/// The nodes at which elements of several phases meet.
+fn interfaces(body: &ElasticBody) -> BTreeSet<usize> {
+    let mut found = BTreeSet::new();
+    if body.phases().len() > 1 {
+        let mut first = vec![None; body.mesh().nodes().len()];
+        for element in body.elements() {
+            let meets = |&&node: &&usize| *first[node].get_or_insert(element.phase_number) != element.phase_number;
+            found.extend(element.nodes.iter().filter(meets));
+        }
+    }
+    found
+}
+
+/// The stress in `body` (force per area, tension positive) at the nodal displacement `displacement` (length
+/// `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in length).
+///
+/// Exact where the displacement is linear. In each element the nodes take the linear function (multilinear in
+/// quadrilaterals and hexahedra) that fits the stresses at the quadrature points by least squares.
+///
+/// # Errors
+/// [`qp::Error::Length`](signorini_qp::Error::Length) if the displacement does not have `dim` entries per node.
+pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, Error> {
+    body.check_nodal("nodal displacement", displacement.len())?;
+    let node_count = body.mesh().nodes().len();
+    let table = body.tabulated();
+    let extrapolation = table.extrapolation();
+    let mut elements = Vec::with_capacity(body.mesh().element_count());
+    let mut sums: Vec<(Symmetric, usize)> = vec![([0.0; 6], 0); node_count];
+    let (interfaces, mut sides) = (interfaces(body), BTreeMap::<(usize, u32), (Symmetric, usize)>::new());
+    for element in body.elements() {
+        let nodes = element.nodes;
+        let strained = body.strained(&table, displacement, &element);
+        elements.push(finished(body, strained.at(&table.centroid).1));
+        for (index, at) in table.points.iter().enumerate() {
+            let at_point = strained.at(at).1;
+            for (local, &node) in nodes.iter().enumerate() {
+                let weight = extrapolation[(local, index)];
+                add(&mut sums[node].0, weight, &at_point);
+                if interfaces.contains(&node) {
+                    add(&mut sides.entry((node, element.phase_number)).or_default().0, weight, &at_point);
+                }
+            }
+        }
+        for &node in nodes {
+            sums[node].1 += 1;
+            sides.get_mut(&(node, element.phase_number)).into_iter().for_each(|side| side.1 += 1);
+        }
+    }
+    let average = |(sum, count): &(Symmetric, usize)| finished(body, sum.map(|component| component / *count as f64));
+    let nodes = sums.iter().map(average).collect();
+    Ok(StressField { elements, nodes, sides: sides.iter().map(|(&side, sum)| (side, average(sum))).collect() })
+}
+
+/// The stresses at some nodes of a boundary, averaged over the elements around. `displacement` has `dim` entries per node.
+///
+/// Quadratic elements are extrapolated, as in [`StressField::nodes`]. Linear ones give the stress at their centroid, where it is most
+/// accurate: on a boundary without friction the normal stress does not change with the depth to first order.
+pub(crate) fn stress_at(body: &ElasticBody, displacement: &[f64], nodes: &BTreeSet<usize>) -> BTreeMap<usize, Stress> {
+    let table = body.tabulated();
+    let extrapolation = table.extrapolation();
+    let is_quadratic = body.mesh().kind().is_quadratic();
+    let weight = |local: usize, point: usize| if is_quadratic { extrapolation[(local, point)] } else { 1.0 };
+    let mut sums: BTreeMap<usize, (Symmetric, usize)> = BTreeMap::new();
+    let mut is_wanted = vec![false; body.mesh().nodes().len()];
+    nodes.iter().for_each(|&node| is_wanted[node] = true);
+    for element in body.elements().filter(|element| element.nodes.iter().any(|&node| is_wanted[node])) {
+        let strained = body.strained(&table, displacement, &element);
+        let at_points: Vec<Symmetric> = if is_quadratic {
+            table.points.iter().map(|at| strained.at(at).1).collect()
+        } else {
+            vec![strained.at(&table.centroid).1]
+        };
+        for (local, &node) in element.nodes.iter().enumerate().filter(|&(_, &node)| is_wanted[node]) {
+            let (sum, count) = sums.entry(node).or_default();
+            at_points.iter().enumerate().for_each(|(point, stress)| add(sum, weight(local, point), stress));
+            *count += 1;
+        }
+    }
+    let average = |(sum, count): (Symmetric, usize)| finished(body, sum.map(|component| component / count as f64));
+    sums.into_iter().map(|(node, sum)| (node, average(sum))).collect()
+}
+
+fn finished(body: &ElasticBody, s: Symmetric) -> Stress {
+    match body.formulation() {
+        Formulation::Space => Stress::in_space(s),
+        _ => Stress::new(s[0], s[1], s[3], s[2]),
+    }
+}
+
+fn add(sum: &mut Symmetric, weight: f64, stress: &Symmetric) {
+    for (sum, component) in sum.iter_mut().zip(stress) {
+        *sum += weight * component;
+    }
+}

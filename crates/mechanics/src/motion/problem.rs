@@ -1,0 +1,206 @@
+//! The motion of a body with contact: mass, damping, loads in time, initial state.
+
+use super::TimeFunction;
+use crate::error::Error;
+use signorini_qp as qp;
+use signorini_qp::{ContactProblem, SparseMatrix, SymmetricMatrix, dot};
+
+/// The motion of a body with contact, from a given displacement and velocity:
+///
+/// ```text
+/// M a + C v + K u = f(t) + B' lambda,   B u - g <= 0,   lambda <= 0,   lambda_i (B u - g)_i = 0,   C = c_m M + c_k K
+/// ```
+///
+/// Time, mass, length and force are in one consistent system of units. A dof has no mass if its diagonal entry of M is zero.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DynamicProblem {
+    statics: ContactProblem,
+    /// Transposed contact rows: the entries of a row form a column.
+    by_row: SparseMatrix,
+    mass: SymmetricMatrix,
+    /// c_m and c_k.
+    damping: [f64; 2],
+    loads: Vec<(TimeFunction, Vec<f64>)>,
+    displacement: Vec<f64>,
+    velocity: Vec<f64>,
+    /// Forces on the free dofs from prescribed displacements, and the strain energy of these displacements.
+    held: (Vec<f64>, f64),
+}
+
+impl DynamicProblem {
+    /// The motion from rest of the body of `statics`, under its constant load, with the mass M (n x n).
+    ///
+    /// # Errors
+    /// [`qp::Error::Shape`] for a mass of another size, [`qp::Error::Setting`] for a negative diagonal entry.
+    pub fn new(statics: ContactProblem, mass: SymmetricMatrix) -> Result<Self, Error> {
+        let dofs = statics.dofs();
+        if mass.dim() != dofs {
+            let (found, expected) = ((mass.dim(), mass.dim()), (dofs, dofs));
+            return Err(qp::Error::Shape { name: "mass", found, expected }.into());
+        }
+        if let Some(&value) = mass.diagonal().iter().find(|&&entry| entry < 0.0) {
+            return Err(
+                qp::Error::Setting { name: "diagonal entry of the mass", value, allowed: "zero or positive" }.into()
+            );
+        }
+        let zeros = vec![0.0; dofs];
+        Ok(DynamicProblem {
+            by_row: statics.contact().transposed(),
+            statics,
+            mass,
+            damping: [0.0; 2],
+            loads: Vec::new(),
+            displacement: zeros.clone(),
+            velocity: zeros.clone(),
+            held: (zeros, 0.0),
+        })
+    }
+
+    /// The same with Rayleigh damping `C = mass M + stiffness K`; `mass` in one over time, `stiffness` in time.
+    ///
+    /// # Errors
+    /// [`qp::Error::Setting`] for a coefficient that is negative or not finite.
+    pub fn with_damping(mut self, mass: f64, stiffness: f64) -> Result<Self, Error> {
+        for (name, value) in [("mass damping", mass), ("stiffness damping", stiffness)] {
+            if !(value.is_finite() && value >= 0.0) {
+                return Err(qp::Error::Setting { name, value, allowed: "zero or positive, and finite" }.into());
+            }
+        }
+        self.damping = [mass, stiffness];
+        Ok(self)
+    }
+
+    /// The same with one more load (length n, in force, along the positive axes), multiplied by a factor that changes
+    /// with time.
+    ///
+    /// # Errors
+    /// As [`TimeFunction::check`]; [`qp::Error::Length`] and [`qp::Error::NotFinite`] for a load of another length or not finite.
+    pub fn with_load(mut self, factor: TimeFunction, load: Vec<f64>) -> Result<Self, Error> {
+        factor.check()?;
+        let load = self.statics.with_load(load)?.load().to_vec();
+        self.loads.push((factor, load));
+        Ok(self)
+    }
+
+    /// The same from another displacement and velocity (length n each, in length and length over time).
+    ///
+    /// # Errors
+    /// [`qp::Error::Length`] and [`qp::Error::NotFinite`] for vectors of another length or not finite.
+    pub fn starting_from(mut self, displacement: Vec<f64>, velocity: Vec<f64>) -> Result<Self, Error> {
+        for (name, values) in [("initial displacement", &displacement), ("initial velocity", &velocity)] {
+            qp::Error::check_length(name, values.len(), self.statics.dofs(), "dofs")?;
+            if let Some((index, &value)) = values.iter().enumerate().find(|entry| !entry.1.is_finite()) {
+                return Err(
+                    qp::Error::NotFinite { name, at: format!("entry {index}"), value, allowed: "finite" }.into()
+                );
+            }
+        }
+        (self.displacement, self.velocity) = (displacement, velocity);
+        Ok(self)
+    }
+
+    /// The same with the part of the constant load that holds prescribed displacements (length n, in force), and the strain energy of
+    /// these displacements alone. They are used only to separate strain energy from potential energy.
+    pub fn holding(mut self, forces: Vec<f64>, energy: f64) -> Self {
+        self.held = (forces, energy);
+        self
+    }
+
+    /// The problem without inertia: stiffness, constant load, contact rows and gaps.
+    pub fn statics(&self) -> &ContactProblem {
+        &self.statics
+    }
+
+    /// The mass M (n x n), symmetric, in mass.
+    pub fn mass(&self) -> &SymmetricMatrix {
+        &self.mass
+    }
+
+    /// The coefficients `[c_m, c_k]` of the damping `C = c_m M + c_k K`: the first in one over time, the second in
+    /// time.
+    pub fn damping(&self) -> [f64; 2] {
+        self.damping
+    }
+
+    /// The initial displacement, length n, in length, along the positive axes.
+    pub fn displacement(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    /// The initial velocity, length n, in length over time, along the positive axes.
+    pub fn velocity(&self) -> &[f64] {
+        &self.velocity
+    }
+
+    /// The kinetic energy at the start and the work of deformation, `(v'M v + u'K u)/2`.
+    pub fn initial_energy(&self) -> f64 {
+        let [u, v] = [&self.displacement, &self.velocity];
+        (dot(v, &self.mass.mul(v)) + dot(u, &self.statics.stiffness().mul(u))) / 2.0
+    }
+
+    /// The load at time `t`, length n, in force, along the positive axes.
+    pub fn load_at(&self, t: f64) -> Vec<f64> {
+        let mut load = self.statics.load().to_vec();
+        for (factor, of_factor) in &self.loads {
+            let factor = factor.at(t);
+            load.iter_mut().zip(of_factor).for_each(|(sum, part)| *sum += factor * part);
+        }
+        load
+    }
+
+    /// The dofs without mass: their indices, from 0, increasing.
+    pub fn massless(&self) -> Vec<usize> {
+        (0..).zip(self.mass.diagonal()).filter(|entry| entry.1 == 0.0).map(|(dof, _)| dof).collect()
+    }
+
+    /// The deepest penetration, `max(B u - g, 0)`, in length, at a displacement u of length n, in length.
+    pub fn penetration(&self, displacement: &[f64]) -> f64 {
+        self.remaining_gap(displacement).into_iter().fold(0.0, |deepest, gap| (-gap).max(deepest))
+    }
+
+    /// The remaining gaps after a displacement, `g - B u`, one entry per row.
+    pub(super) fn remaining_gap(&self, displacement: &[f64]) -> Vec<f64> {
+        let moved = |row: usize| self.by_row.column(row).map(|(dof, b)| b * displacement[dof]).sum::<f64>();
+        self.statics.gap().iter().enumerate().map(|(row, gap)| gap - moved(row)).collect()
+    }
+
+    /// `mass M + damping C + stiffness K`.
+    pub(super) fn combination(&self, mass: f64, damping: f64, stiffness: f64) -> Result<SymmetricMatrix, Error> {
+        let [of_mass, of_stiffness] = self.damping;
+        let (m, k) = (mass + damping * of_mass, stiffness + damping * of_stiffness);
+        let parts = [(m, &self.mass), (k, self.statics.stiffness())];
+        let entries: Vec<_> = parts
+            .into_iter()
+            .filter(|part| part.0 != 0.0)
+            .flat_map(|(factor, matrix)| matrix.lower().triplets().map(move |(i, j, value)| (i, j, factor * value)))
+            .collect();
+        let dofs = self.statics.dofs();
+        Ok(SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries)?)?)
+    }
+
+    /// Subtracts `factor C v` from a force.
+    pub(super) fn damp(&self, factor: f64, velocity: &[f64], force: &mut [f64]) {
+        for (coefficient, matrix) in self.damping.into_iter().zip([&self.mass, self.statics.stiffness()]) {
+            if coefficient != 0.0 {
+                let product = matrix.mul(velocity);
+                force.iter_mut().zip(product).for_each(|(f, c)| *f -= factor * coefficient * c);
+            }
+        }
+    }
+
+    /// Work of the loads between two displacements, with the mean of their values at some times, without the part that holds prescribed
+    /// displacements.
+    pub(super) fn work(&self, times: impl ExactSizeIterator<Item = f64>, from: &[f64], to: &[f64]) -> f64 {
+        let count = times.len() as f64;
+        let moved: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
+        times.map(|t| dot(&self.load_at(t), &moved)).sum::<f64>() / count - dot(&self.held.0, &moved)
+    }
+
+    /// Strain energy of a displacement with the elastic forces K u, and the potential of the loads at time `t`.
+    pub(super) fn energies(&self, displacement: &[f64], elastic: &[f64], t: f64) -> [f64; 2] {
+        let (forces, energy) = &self.held;
+        let of_held = dot(forces, displacement);
+        let strain = dot(displacement, elastic) / 2.0 - of_held + energy;
+        [strain, 0.0 + of_held - dot(&self.load_at(t), displacement)]
+    }
+}

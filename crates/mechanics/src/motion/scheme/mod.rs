@@ -1,0 +1,243 @@
+//! The schemes: each has its own file and is named only there and here.
+
+mod central_difference;
+mod contact_stabilised;
+mod hht;
+mod midpoint;
+mod newmark;
+mod penalty;
+mod penalty_loop;
+mod stable_step;
+mod trapezoidal;
+
+pub(crate) use stable_step::MOST_IN_CONTACT;
+pub(crate) use stable_step::stable_step;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use signorini_qp as qp;
+
+use super::step::{About, Parameter};
+use crate::error::Error;
+use crate::fem::assembly::MassForm;
+
+/// The schemes to choose from, without the values of their parameters: the names that a scene uses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SchemeSpec {
+    /// Midpoint rule; contact nodes have no mass: preserves energy, and the pressure does not chatter.
+    #[default]
+    Midpoint,
+    /// Trapezoidal Newmark with the constraint at the end of each step: gains energy at every impact. For comparison.
+    Trapezoidal,
+    /// Newmark with a contact-stabilised prediction: loses a little energy at every impact, never gains.
+    ContactStabilised,
+    /// HHT-alpha: damps waves that the mesh does not resolve.
+    Hht,
+    /// Trapezoidal Newmark with penalty springs: penetrates, and gains energy if the springs are stiff. For comparison.
+    Penalty,
+    /// Trapezoidal Newmark with the classical loop: the penalty grows by factors of ten until nothing penetrates. For comparison.
+    PenaltyLoop,
+    /// Explicit central differences with Moreau's impact law; steps are small and cheap.
+    CentralDifference,
+}
+
+impl SchemeSpec {
+    /// All schemes: the default first, those for comparison after the others, the explicit scheme last.
+    pub const ALL: [SchemeSpec; 7] = [
+        SchemeSpec::Midpoint,
+        SchemeSpec::ContactStabilised,
+        SchemeSpec::Hht,
+        SchemeSpec::Trapezoidal,
+        SchemeSpec::Penalty,
+        SchemeSpec::PenaltyLoop,
+        SchemeSpec::CentralDifference,
+    ];
+
+    /// The scheme with a value of its parameter, or with the default value.
+    pub fn with(self, value: Option<f64>) -> Scheme {
+        let value = value.or(self.parameter().map(|parameter| parameter.default)).unwrap_or_default();
+        match self {
+            SchemeSpec::Midpoint => Scheme::Midpoint,
+            SchemeSpec::Trapezoidal => Scheme::Trapezoidal,
+            SchemeSpec::ContactStabilised => Scheme::ContactStabilised,
+            SchemeSpec::Hht => Scheme::Hht { alpha: value },
+            SchemeSpec::Penalty => Scheme::Penalty { penalty: value },
+            SchemeSpec::PenaltyLoop => Scheme::PenaltyLoop { threshold: value },
+            SchemeSpec::CentralDifference => Scheme::CentralDifference { restitution: value },
+        }
+    }
+
+    /// The name in scenes and reports.
+    pub fn name(self) -> &'static str {
+        self.about().name
+    }
+
+    /// Name, range and default of the parameter; `None` if the scheme has none.
+    pub fn parameter(self) -> Option<Parameter> {
+        self.about().parameter
+    }
+
+    /// Returns `true` if the step is limited.
+    pub fn is_explicit(self) -> bool {
+        self.about().is_explicit
+    }
+
+    fn about(self) -> &'static About {
+        match self {
+            SchemeSpec::Midpoint => &midpoint::ABOUT,
+            SchemeSpec::Trapezoidal => &trapezoidal::ABOUT,
+            SchemeSpec::ContactStabilised => &contact_stabilised::ABOUT,
+            SchemeSpec::Hht => &hht::ABOUT,
+            SchemeSpec::Penalty => &penalty::ABOUT,
+            SchemeSpec::PenaltyLoop => &penalty_loop::ABOUT,
+            SchemeSpec::CentralDifference => &central_difference::ABOUT,
+        }
+    }
+}
+
+/// A scheme of time integration.
+///
+/// | scheme | energy at an impact | pressure | penetration |
+/// |---|---|---|---|
+/// | midpoint, redistributed mass | preserved to about 1e-5 per step | smooth | none |
+/// | trapezoidal | **gained**, more the smaller the step | chatters | none |
+/// | contact-stabilised | lost a little, never gained | smooth after some steps | none |
+/// | HHT-alpha | **gained**, less than by the trapezoidal rule | chatters, damped | none |
+/// | penalty | **gained** if the springs are stiff | chatters | force over penalty |
+/// | penalty-loop | **gained**, as by the trapezoidal rule | chatters | below a threshold |
+/// | central differences | lost a little: the mass of the contact nodes stops | smooth on lumped mass | none |
+///
+/// On its own the midpoint rule uses the force at the middle of a step; a node that closes in the second half does not touch yet at that
+/// time. A bar of length L and cells h that hits a wall flatly would gain or lose up to `(c dt/h)^2 h/(4 L)` of its energy. If the energy
+/// of a step is wrong by more than 1e-5, the step therefore uses a force between those of its middle and of its ends that does the right
+/// work, at the cost of a few solves. Bodies with nodes that close one after the other hardly need it; with damping it is not applied.
+///
+/// Implicit steps slow down short waves, and a consistent mass speeds them up: along a uniform mesh of linear elements the wave number k
+/// travels with `c (1 + (1/12 - (c dt/h)^2/6) (k h)^2/2)`. The returning front is smeared over some cells, and the waves behind it stay
+/// in the body: the rebound is too slow by a share that falls with h^(2/3).
+///
+/// `tools/impact` prints the figures.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Scheme {
+    /// The midpoint rule: contact at the middle of each step; massless dofs follow in equilibrium at its end.
+    #[default]
+    Midpoint,
+    /// Newmark's trapezoidal rule, beta = 1/4 and gamma = 1/2, with the constraint at the end of each step.
+    ///
+    /// **Gains energy**: the acceleration that stops a node in one step returns in the next. Kept to show this effect.
+    Trapezoidal,
+    /// Newmark's rule with a prediction that is projected onto the admissible displacements in the norm of the mass,
+    /// contact forces implicit.
+    ContactStabilised,
+    /// HHT-alpha with beta = (1 - alpha)^2/4, gamma = 1/2 - alpha, and the constraint at the end of each step.
+    ///
+    /// **Gains energy** at an impact as the trapezoidal rule does, and damps it afterwards.
+    Hht {
+        /// Dimensionless, from -1/3 (most damping) to 0 (the trapezoidal rule).
+        alpha: f64,
+    },
+    /// The trapezoidal rule with closed rows as springs in every step: `(K_eff + eps C) u = f_eff + eps C g` until C
+    /// repeats.
+    ///
+    /// **Gains energy** if the springs are stiff, and penetrates if they are soft.
+    Penalty {
+        /// Stiffness of the springs eps in multiples of the local stiffness of a step, positive.
+        penalty: f64,
+    },
+    /// The trapezoidal rule with the classical loop in every step: the penalty of [`Scheme::Penalty`] grows by factors of ten, and C is
+    /// found again, until norm\[C (u - g)\] is below a threshold.
+    ///
+    /// **Gains energy** as the trapezoidal rule does, because the last springs are stiff.
+    PenaltyLoop {
+        /// Largest norm of the penetration over the largest displacement of the body, positive and at most 0.1.
+        threshold: f64,
+    },
+    /// Central differences: explicit; a node that would cross the obstacle gets an impulse, by Moreau's law.
+    CentralDifference {
+        /// Velocity of a node after its impact over that before, from 0 to 1.
+        restitution: f64,
+    },
+}
+
+impl Scheme {
+    /// The scheme without the value of its parameter.
+    pub fn spec(self) -> SchemeSpec {
+        match self {
+            Scheme::Midpoint => SchemeSpec::Midpoint,
+            Scheme::Trapezoidal => SchemeSpec::Trapezoidal,
+            Scheme::ContactStabilised => SchemeSpec::ContactStabilised,
+            Scheme::Hht { .. } => SchemeSpec::Hht,
+            Scheme::Penalty { .. } => SchemeSpec::Penalty,
+            Scheme::PenaltyLoop { .. } => SchemeSpec::PenaltyLoop,
+            Scheme::CentralDifference { .. } => SchemeSpec::CentralDifference,
+        }
+    }
+
+    /// The value of the parameter, dimensionless; 0 if the scheme has none.
+    pub fn value(self) -> f64 {
+        match self {
+            Scheme::Midpoint | Scheme::Trapezoidal | Scheme::ContactStabilised => 0.0,
+            Scheme::Hht { alpha: value }
+            | Scheme::Penalty { penalty: value }
+            | Scheme::PenaltyLoop { threshold: value }
+            | Scheme::CentralDifference { restitution: value } => value,
+        }
+    }
+
+    /// The name in scenes and reports.
+    pub fn name(self) -> &'static str {
+        self.spec().name()
+    }
+
+    /// Returns `true` if the scheme can gain energy at an impact.
+    pub fn gains_energy(self) -> bool {
+        self.about().gains_energy
+    }
+
+    /// Returns `true` if closed rows are springs, so that no answer of a step is certified.
+    pub fn penetrates(self) -> bool {
+        self.about().penetrates
+    }
+
+    /// The form of the mass that a motion takes if its scene names none.
+    pub fn mass_form(self) -> MassForm {
+        self.about().masses[0]
+    }
+
+    /// Returns `true` if the scheme can use a mass of this form. Only the midpoint rule allows dofs without mass; the explicit scheme
+    /// needs a diagonal mass.
+    pub fn allows(self, form: MassForm) -> bool {
+        self.about().masses.contains(&form)
+    }
+
+    /// Returns `true` if the step is limited.
+    pub fn is_explicit(self) -> bool {
+        self.spec().is_explicit()
+    }
+
+    /// Returns `true` if, with a mass of this form, the energy grows whenever bodies touch.
+    pub fn is_unstable_in_contact(self, form: MassForm) -> bool {
+        self.about().unstable_in_contact.contains(&form)
+    }
+
+    /// The times in a step at which the scheme evaluates the loads, from 0 to 1.
+    /// Checks the range of the parameter.
+    ///
+    /// # Errors
+    /// [`qp::Error::Setting`] for a value outside its range.
+    pub fn check(self) -> Result<(), Error> {
+        let value = self.value();
+        match self.spec().parameter() {
+            Some(Parameter { name, allows, range, .. }) if !allows(value) => {
+                Err(qp::Error::Setting { name, value, allowed: range }.into())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The function that prepares the steps.
+    pub(super) fn about(self) -> &'static About {
+        self.spec().about()
+    }
+}

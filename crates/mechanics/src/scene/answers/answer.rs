@@ -1,0 +1,288 @@
+//! An answer: a model with displacements and multipliers. The results that follow from them are computed once.
+
+use std::sync::{Arc, OnceLock};
+
+use crate::error::Error;
+use crate::fem::assembly::internal_force;
+use crate::fem::geometry::dot;
+use crate::fem::recovery::{self, StressField};
+use crate::scene::Model;
+use crate::scene::models::resultants::{Resultant, without_rounding};
+use crate::scene::models::rigid_body_modes::RigidBodyModes;
+use crate::scene::models::rows::ContactRow;
+use signorini_qp as qp;
+use signorini_qp::{ContactSet, Solution};
+
+/// Reactions below this times the largest nodal force of temperatures and initial stresses are rounding of the solve: these forces cancel
+/// if the body is free.
+const OWN_ROUNDING: f64 = 1e-10;
+
+/// Displacements, multipliers and closed rows of a model, and the results that follow: stresses, pressures, forces. Stresses and forces
+/// are computed on demand, and only once.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    model: Arc<Model>,
+    displacement: Vec<f64>,
+    /// The values of all unknowns.
+    unknowns: Vec<f64>,
+    /// The travel of each obstacle that a force presses, in length.
+    travel: Vec<Option<f64>>,
+    multiplier: Vec<f64>,
+    contact_set: ContactSet,
+    pressure: Vec<f64>,
+    stress: OnceLock<StressField>,
+    forces: OnceLock<Forces>,
+    resultants: OnceLock<Vec<Resultant>>,
+}
+
+/// The forces on all nodes of a model, sorted by their source.
+///
+/// Each array has length `dim * n_nodes`, order `[f_x0, f_y0, f_x1, ...]`, in force, along the positive axes on the
+/// body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Forces {
+    /// Contact forces on the body, length `dim * n_nodes`, in force, as [`Model::contact_forces`].
+    pub contact: Vec<f64>,
+    /// Reactions of supports on the body, length `dim * n_nodes`, in force, as [`Model::reactions`].
+    pub reactions: Vec<f64>,
+    /// Forces of springs on the body, length `dim * n_nodes`, in force.
+    pub springs: Vec<f64>,
+    /// Forces of rigid faces on the body, length `dim * n_nodes`, in force.
+    pub rigid_faces: Vec<f64>,
+    /// The imbalance of loads, reactions, springs, rigid faces and contact forces, relative, as
+    /// [`Model::force_balance`].
+    pub balance: f64,
+}
+
+impl Answer {
+    /// The answer of a solver, with its displacement, multiplier and closed rows.
+    ///
+    /// # Errors
+    /// [`qp::Error::Length`] if it is not an answer to this model.
+    pub fn of(model: Arc<Model>, solution: &Solution) -> Result<Self, Error> {
+        Self::new(model, &solution.displacement, &solution.multiplier, &solution.contact_set)
+    }
+
+    /// An answer from the displacement of the free dofs (one entry per free dof, in length) with the multiplier (one entry per contact
+    /// row, in force) and the closed rows.
+    ///
+    /// # Errors
+    /// [`qp::Error::Length`] if a vector does not fit the model.
+    pub fn new(
+        model: Arc<Model>,
+        displacement: &[f64],
+        multiplier: &[f64],
+        contact_set: &ContactSet,
+    ) -> Result<Self, Error> {
+        qp::Error::check_length("contact set", contact_set.rows(), model.rows().len(), "contact rows")?;
+        Ok(Answer {
+            displacement: model.nodal_displacement(displacement)?,
+            unknowns: displacement.to_vec(),
+            travel: (0..model.obstacles().len())
+                .map(|index| model.travel(displacement, index))
+                .collect::<Result<_, _>>()?,
+            pressure: model.pressure(multiplier)?,
+            multiplier: multiplier.to_vec(),
+            contact_set: contact_set.clone(),
+            stress: OnceLock::new(),
+            forces: OnceLock::new(),
+            resultants: OnceLock::new(),
+            model,
+        })
+    }
+
+    /// The discretised scene to which the answer belongs.
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
+    /// Nodal displacements, length `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in length, along the positive
+    /// axes.
+    pub fn displacement(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    /// Displacement of an obstacle that a force presses, against its approach direction, in length; `None` for an obstacle that stands
+    /// still.
+    pub fn travel(&self, obstacle: usize) -> Option<f64> {
+        self.travel.get(obstacle).copied().flatten()
+    }
+
+    /// The whole shift of an obstacle along its approach direction, in length: the gap of the scene plus its own gap, minus its travel.
+    pub fn shift(&self, obstacle: usize) -> f64 {
+        self.model.obstacles()[obstacle].shift(self.model.gap()) - self.travel(obstacle).unwrap_or(0.0)
+    }
+
+    /// The remaining gap at the node of each row, one entry per contact row, in length, `>= 0` up to rounding.
+    pub fn remaining_gaps(&self) -> Vec<f64> {
+        let moved = |row: &ContactRow| -> f64 {
+            let of_node = |(node, sign)| sign * dot(self.model.at_node(&self.displacement, node), row.normal);
+            row.ends().map(of_node).sum()
+        };
+        let travelled = |row: &ContactRow| {
+            let approach = self.model.obstacles()[row.obstacle].approach();
+            self.travel(row.obstacle).unwrap_or(0.0) * dot(row.normal, approach)
+        };
+        self.model.rows().iter().map(|row| row.gap - moved(row) - travelled(row)).collect()
+    }
+
+    /// The multiplier of each row, one entry per contact row, in force, `<= 0` in compression.
+    pub fn multiplier(&self) -> &[f64] {
+        &self.multiplier
+    }
+
+    /// The closed rows.
+    pub fn contact_set(&self) -> &ContactSet {
+        &self.contact_set
+    }
+
+    /// Contact pressure of each row, one entry per contact row, in force per area, `>= 0` in compression.
+    pub fn pressure(&self) -> &[f64] {
+        &self.pressure
+    }
+
+    /// The stress in the displaced body, per element and per node, in force per area, tension positive; computed at the
+    /// first call.
+    ///
+    /// # Errors
+    /// As [`Model::stress`].
+    pub fn stress(&self) -> Result<&StressField, Error> {
+        once(&self.stress, || self.model.stress_of_nodal(&self.displacement))
+    }
+
+    /// The forces on all nodes by their source; computed at the first call.
+    ///
+    /// # Errors
+    /// As [`Model::reactions`].
+    pub fn forces(&self) -> Result<&Forces, Error> {
+        once(&self.forces, || self.model.forces(&self.displacement, &self.multiplier))
+    }
+
+    /// The resultants of contact forces, support reactions and loads: obstacle by obstacle, support by support.
+    ///
+    /// # Errors
+    /// As [`Answer::forces`].
+    pub fn resultants(&self) -> Result<&[Resultant], Error> {
+        let found = once(&self.resultants, || {
+            let mut all = self.model.contact_resultants(&self.multiplier)?;
+            all.iter_mut().zip(&self.travel).for_each(|(resultant, travel)| resultant.travel = *travel);
+            let reactions = &self.forces()?.reactions;
+            all.extend(self.model.support_resultants(|node| self.model.at_node(reactions, node)));
+            all.extend(self.model.spring_resultants(&self.displacement));
+            all.extend(self.model.face_resultants(&self.forces()?.rigid_faces, &self.unknowns)?);
+            all.extend(self.model.load_resultant());
+            without_rounding(&mut all);
+            Ok(all)
+        });
+        found.map(Vec::as_slice)
+    }
+
+    /// The discretisation error, relative in energy, estimated from the stress.
+    ///
+    /// # Errors
+    /// As [`Model::stress`].
+    ///
+    /// # Source
+    /// [`recovery::discretisation_error`].
+    pub fn discretisation_error(&self) -> Result<f64, Error> {
+        recovery::discretisation_error(self.model.body(), &self.displacement, self.stress()?)
+    }
+
+    /// The same, and the strain energy of the meshed part, in force times length.
+    ///
+    /// # Errors
+    /// As [`discretisation_error`](Self::discretisation_error).
+    pub fn error_and_energy(&self) -> Result<(f64, f64), Error> {
+        let estimated = self.estimated_error()?;
+        Ok((estimated.relative(), estimated.strain_energy()))
+    }
+
+    /// The error, element by element.
+    ///
+    /// # Errors
+    /// As [`discretisation_error`](Self::discretisation_error).
+    pub(crate) fn estimated_error(&self) -> Result<recovery::discretisation::EstimatedError, Error> {
+        recovery::discretisation::EstimatedError::of(self.model.body(), &self.displacement, self.stress()?)
+    }
+}
+
+/// The content of a cell, computed by `find` if the cell is empty.
+fn once<T>(cell: &OnceLock<T>, find: impl FnOnce() -> Result<T, Error>) -> Result<&T, Error> {
+    match cell.get() {
+        Some(found) => Ok(found),
+        None => {
+            let found = find()?;
+            Ok(cell.get_or_init(|| found))
+        }
+    }
+}
+
+impl Model {
+    /// Nodal support reactions on the body, length `dim * n_nodes`, in force, along the positive axes; zero along free
+    /// dofs, so that a roller pushes along its normal. `multiplier` has one entry per contact row, in force, `<= 0`.
+    ///
+    /// They are the internal forces at the supported dofs, minus load and contact force there. The multiplier enters because a contact
+    /// row may press on a supported dof.
+    ///
+    /// # Errors
+    /// [`qp::Error::Length`] if `displacement` or `multiplier` do not fit.
+    pub fn reactions(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Vec<f64>, Error> {
+        Ok(self.forces(&self.nodal_displacement(displacement)?, multiplier)?.reactions)
+    }
+
+    /// The imbalance of loads, support reactions and contact forces on each body: the largest of the virtual works on
+    /// its unit rigid-body modes (the resultant forces, and the resultant moments over half its size), relative to the
+    /// sum of all force magnitudes. A body of revolution has one rigid-body mode, and its forces count along the axis.
+    /// `multiplier` has one entry per contact row, in force, `<= 0`.
+    ///
+    /// # Errors
+    /// As [`Model::reactions`].
+    pub fn force_balance(&self, displacement: &[f64], multiplier: &[f64]) -> Result<f64, Error> {
+        Ok(self.forces(&self.nodal_displacement(displacement)?, multiplier)?.balance)
+    }
+
+    /// The stress in the displaced body, per element and per node, in force per area, tension positive.
+    ///
+    /// # Errors
+    /// As [`Model::nodal_displacement`].
+    pub fn stress(&self, displacement: &[f64]) -> Result<StressField, Error> {
+        self.stress_of_nodal(&self.nodal_displacement(displacement)?)
+    }
+
+    fn stress_of_nodal(&self, displacement: &[f64]) -> Result<StressField, Error> {
+        let nodes = self.mesh().nodes();
+        let of_part = recovery::stress(self.body(), displacement)?;
+        Ok(of_part.of_whole(self.body(), |node| self.parts.symmetry.axes_at(&nodes[node])))
+    }
+
+    /// The forces of a nodal displacement.
+    fn forces(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Forces, Error> {
+        let contact = self.contact_forces(multiplier)?;
+        let mut forces = internal_force(self.body(), displacement)?;
+        let acting = self.nodal_load().iter().zip(&contact);
+        forces.iter_mut().zip(acting).for_each(|(force, (load, contact))| *force = *force - load - contact);
+        let springs = self.parts.spring_forces(displacement);
+        forces.iter_mut().zip(&springs).for_each(|(force, spring)| *force -= spring);
+        let mut reactions = self.dofs().supported_part(&forces)?;
+        let rigid_faces = self.force_of_faces(&forces, |_| true)?;
+        let motions = RigidBodyModes::of(self.body());
+        let mut all = vec![self.nodal_load(), &contact, &springs, &rigid_faces];
+        let own;
+        if self.body().has_own_stress() {
+            own = internal_force(self.body(), &vec![0.0; displacement.len()])?;
+            // These forces balance each other: they are the scale of their rounding in a free body.
+            all.push(&own);
+            // Each body has its own scale.
+            let dimension = self.body().dimension();
+            for region in self.body().regions() {
+                let dofs = dimension * region.nodes().start..dimension * region.nodes().end;
+                let largest = own[dofs.clone()].iter().fold(0.0, |largest: f64, force| largest.max(force.abs()));
+                let is_rounding = |force: &&mut f64| force.abs() <= OWN_ROUNDING * largest;
+                reactions[dofs].iter_mut().filter(is_rounding).for_each(|force| *force = 0.0);
+            }
+        }
+        all.push(&reactions);
+        let balance = motions.imbalance(self.mesh().nodes(), &all);
+        Ok(Forces { contact, reactions, springs, rigid_faces, balance })
+    }
+}

@@ -1,0 +1,6 @@
+//! Answers to a scene: stresses, forces, and the contact in pieces.
+
+pub(crate) mod answer;
+pub(crate) mod depths;
+pub(crate) mod patch;
+pub(crate) mod segments;

@@ -1,0 +1,150 @@
+//! The trait of every body shape: its mesh, its size before the mesh is built, its refinement.
+
+use crate::error::Error;
+use crate::fem::Integration;
+use crate::fem::element::LatticeCounts;
+use crate::fem::mesh::{Axis, ElementKind, MAX_NODES, Mesh, Zone};
+use crate::scene::input::entry::wrong;
+use crate::scene::input::files::Files;
+use crate::scene::input::schema::model::ModelSpec;
+
+/// The approximate part of a round body's radius outside the core, along the diagonal.
+const SHELLS: f64 = 0.6;
+
+/// The name of a body shape and the models that allow it.
+#[derive(Clone, Copy, Debug)]
+pub struct About {
+    /// The name in a scene.
+    pub name: &'static str,
+    /// The number of coordinates of the body; `None` if only its file determines it.
+    pub dimension: Option<usize>,
+}
+
+/// A body shape with its numbers.
+pub(crate) trait BodyShape {
+    /// The integration of the stiffness.
+    fn integration(&self) -> Integration;
+
+    /// The cross-section of a bar, in area.
+    fn area(&self) -> f64 {
+        1.0
+    }
+
+    /// The boundaries that approximate circles in the plane, with centre and radius.
+    fn circles(&self) -> Vec<(&'static str, [f64; 2], f64)> {
+        Vec::new()
+    }
+
+    /// The mesh; errors without a place in the scene count as errors of the whole body.
+    fn mesh(&self, site: &Site) -> Result<Mesh, Error>;
+
+    /// A block of cells that represents the mesh, which may be one of `files`.
+    fn block(&self, files: Option<Files>) -> Block;
+
+    /// Cuts every cell into `times` cells along each edge.
+    fn refine(&mut self, times: usize) -> Result<(), Error>;
+}
+
+/// The place of a body in a scene.
+pub(crate) struct Site<'a> {
+    /// Its JSON path, as `body.ring`.
+    pub path: String,
+    pub model: ModelSpec,
+    /// The files of the scene.
+    pub files: Files<'a>,
+    /// `true` if the scene names groups of elements with their own materials.
+    pub names_groups: bool,
+}
+
+impl Site<'_> {
+    /// The mesh lines of an axis that is the field `name`.
+    pub fn lines(&self, axis: &Axis, name: &str) -> Result<Vec<f64>, Error> {
+        axis.coordinates().map_err(|error| wrong(format!("{}.{name}.{}", self.path, error.field), error.message))
+    }
+
+    /// Refuses a product of divisions with more nodes than allowed, before its lines are made.
+    pub fn check_product(&self, axes: &[&Axis]) -> Result<(), Error> {
+        let cells: Vec<usize> = axes.iter().map(|axis| axis.cells()).collect();
+        // A single axis with too many cells is refused at its own path.
+        let possible = cells.iter().all(|&cells| cells <= MAX_NODES);
+        let product = cells.iter().fold(1_usize, |product, &cells| product.saturating_mul(cells));
+        if possible && product > MAX_NODES {
+            let cells: Vec<String> = cells.iter().map(usize::to_string).collect();
+            let message = format!("{} cells make more than the {MAX_NODES} nodes that are allowed", cells.join(" x "));
+            return Err(wrong(self.path.clone(), message));
+        }
+        Ok(())
+    }
+
+    /// The same by an estimate, which refuses only sizes far beyond the limit.
+    pub fn check_estimate(&self, block: &Block) -> Result<(), Error> {
+        let cells: f64 = block.cells.iter().product();
+        if cells > 4.0 * MAX_NODES as f64 {
+            let message = format!("about {cells:.0e} cells make more than the {MAX_NODES} nodes that are allowed");
+            return Err(wrong(self.path.clone(), message));
+        }
+        Ok(())
+    }
+}
+
+/// The meshed part of a round body along an axis through its centre.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sides {
+    /// The whole body, on both sides of the centre.
+    Both,
+    /// The part beyond the centre, which ends at a plane of symmetry.
+    Beyond,
+}
+
+impl Sides {
+    /// The part of a body that `is_symmetric`.
+    pub(crate) fn of(is_symmetric: bool) -> Self {
+        if is_symmetric { Sides::Beyond } else { Sides::Both }
+    }
+
+    /// The lines across the body: those of one side, from 0 on, and their mirror images if there are two sides.
+    pub(crate) fn lines(self, aside: &[f64]) -> Vec<f64> {
+        match self {
+            Sides::Both => aside.iter().skip(1).rev().map(|line| -line).chain(aside.iter().copied()).collect(),
+            Sides::Beyond => aside.to_vec(),
+        }
+    }
+}
+
+/// A block of cells that represents the mesh of a body.
+pub(crate) struct Block {
+    /// Cells along each axis.
+    pub cells: Vec<f64>,
+    /// Lengths along each axis, if they are known.
+    pub lengths: Vec<f64>,
+    /// The counts of one cell.
+    pub counts: LatticeCounts,
+}
+
+impl Block {
+    /// The product of divided axes.
+    pub fn product(axes: &[&Axis], kind: ElementKind) -> Self {
+        let of = |axis: &Axis| axis.divisions.iter().map(|&cells| cells as f64).sum::<f64>();
+        Block {
+            cells: axes.iter().map(|axis| of(axis)).collect(),
+            lengths: axes.iter().map(|axis| axis.length()).collect(),
+            counts: kind.reference().counts,
+        }
+    }
+}
+
+/// Estimated cells of a round body: from the lowest point to the corner of its core, from there to the cut, in the shells.
+pub(crate) struct RoundCells {
+    pub aside: f64,
+    pub down: f64,
+    pub shells: f64,
+}
+
+impl RoundCells {
+    pub fn of(zone: &Zone, radius: f64) -> Self {
+        let quarter = radius * std::f64::consts::FRAC_PI_4;
+        let (aside, last) = zone.count(quarter);
+        let (shells, _) = zone.count(radius * SHELLS);
+        RoundCells { aside, down: quarter / last, shells }
+    }
+}

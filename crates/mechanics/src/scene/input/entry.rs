@@ -1,0 +1,138 @@
+//! Entries of a scene: their checks, and their form in messages.
+
+use crate::error::{Error, nearly};
+use crate::fem::geometry::{distance, unit};
+use crate::fem::mesh::{Boundary, Mesh};
+use signorini_qp as qp;
+
+/// Tolerance, in units of the body's size, for a point on a node and for a table that reaches a candidate: above the rounding of written
+/// decimals, far below the size of any cell.
+pub(crate) const PLACE_TOLERANCE: f64 = 1e-9;
+
+/// Lengths below this times the body's size are rounding of coordinates.
+pub(crate) const COORDINATE_ROUNDING: f64 = 1e-12;
+
+pub(crate) fn wrong(path: impl Into<String>, message: impl Into<String>) -> Error {
+    Error::Scene { path: path.into(), message: message.into() }
+}
+
+/// The refusal of a scene that poses another problem than was meant.
+pub fn refused(code: &'static str, path: impl Into<String>, message: String) -> Error {
+    Error::Refused { code, place: "scene, ".to_string(), path: path.into(), message }
+}
+
+pub(crate) fn finite(path: impl Into<String>, value: f64) -> Result<(), Error> {
+    if value.is_finite() { Ok(()) } else { Err(wrong(path, format!("{value} is not finite"))) }
+}
+
+pub(crate) fn positive(path: &str, value: f64) -> Result<f64, Error> {
+    finite(path, value)?;
+    if value > 0.0 {
+        Ok(value)
+    } else {
+        Err(wrong(path, format!("{} is not allowed: it must be positive", number(value))))
+    }
+}
+
+/// Checks a table at a JSON path: as many factors as `places`, at least one; the places have this name, and increase.
+pub(crate) fn table(path: &str, (name, places): (&str, &[f64]), factors: &[f64]) -> Result<(), Error> {
+    if places.len() != factors.len() || places.is_empty() {
+        let message = format!("{} {name} and {} factors; give as many, at least one", places.len(), factors.len());
+        return Err(wrong(path, message));
+    }
+    for (index, &place) in places.iter().enumerate() {
+        finite(format!("{path}.{name}[{index}]"), place)?;
+        if index > 0 && place <= places[index - 1] {
+            let message = format!("{place:?} does not lie beyond {:?}; {name} must increase", places[index - 1]);
+            return Err(wrong(format!("{path}.{name}[{index}]"), message));
+        }
+        finite(format!("{path}.factors[{index}]"), factors[index])?;
+    }
+    Ok(())
+}
+
+/// A number as a person writes it: plain for moderate sizes, with an exponent for extremes.
+pub(crate) fn number(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || (1e-4..1e7).contains(&size) { format!("{value}") } else { format!("{value:e}") }
+}
+
+/// A point as a person writes it, with all of its entries.
+pub(crate) fn point(at: &[f64]) -> String {
+    let coordinates: Vec<String> = at.iter().map(|&coordinate| number(coordinate)).collect();
+    format!("({})", coordinates.join(", "))
+}
+
+/// Rounded to six significant digits: computed places are not known to more.
+pub(crate) fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+/// A point or vector of a scene in `dimension` coordinates; those beyond are zero.
+pub(crate) fn vector(path: &str, entries: &[f64], dimension: usize) -> Result<[f64; 3], Error> {
+    if entries.len() != dimension {
+        let entry = if entries.len() == 1 { "entry" } else { "entries" };
+        let (room, names) =
+            [("a bar", "[x]"), ("a plane or axisymmetric model", "[x, y]"), ("a model in space", "[x, y, z]")]
+                [dimension - 1];
+        let found = entries.len();
+        let message = format!("the array has {found} {entry}, but must have {dimension} in {room}: {names}");
+        return Err(wrong(path, message));
+    }
+    let mut vector = [0.0; 3];
+    for (index, (place, &entry)) in vector.iter_mut().zip(entries).enumerate() {
+        finite(format!("{path}[{index}]"), entry)?;
+        *place = entry;
+    }
+    Ok(vector)
+}
+
+/// The same, of unit length.
+pub(crate) fn direction(path: &str, entries: &[f64], dimension: usize) -> Result<[f64; 3], Error> {
+    let direction = unit(vector(path, entries, dimension)?);
+    if direction == [0.0; 3] {
+        return Err(wrong(path, "the vector is zero and has no direction; it needs a length"));
+    }
+    Ok(direction)
+}
+
+/// A setting that a lower module refused, with its place in the scene.
+pub(crate) fn located(error: Error, prefix: &str) -> Error {
+    match error {
+        Error::Qp(qp::Error::Setting { name, value, allowed }) => {
+            wrong(format!("{prefix}{name}"), format!("{} is not allowed: it must be {allowed}", number(value)))
+        }
+        other => other,
+    }
+}
+
+/// The boundary of this name.
+pub(crate) fn boundary<'a>(mesh: &'a Mesh, name: &str, path: &str) -> Result<&'a Boundary, Error> {
+    mesh.boundary(name).ok_or_else(|| {
+        let names: Vec<&str> = mesh.boundaries().iter().map(|boundary| boundary.name.as_str()).collect();
+        let meant = nearly(name, names.iter().copied());
+        wrong(path, format!("there is no boundary `{name}`; there are {}{meant}", names.join(", ")))
+    })
+}
+
+/// The node at a point of a scene.
+pub(crate) fn node_at(mesh: &Mesh, at: &[f64], path: &str) -> Result<usize, Error> {
+    let dimension = mesh.dimension();
+    let place = vector(path, at, dimension)?;
+    let away = |node: &[f64; 3]| distance(*node, place);
+    let tolerance = PLACE_TOLERANCE * mesh.size();
+    let there: Vec<usize> = (0..mesh.nodes().len()).filter(|&node| away(&mesh.nodes()[node]) <= tolerance).collect();
+    match (&there[..], mesh.nearest_node(place)) {
+        ([node], _) => Ok(*node),
+        ([one, other, ..], _) => {
+            let message =
+                format!("nodes {one} and {other} of two bodies lie at {}; name a boundary instead", point(at));
+            Err(wrong(path, message))
+        }
+        ([], Some((node, _))) => {
+            let nearest = point(&mesh.nodes()[node][..dimension]);
+            Err(wrong(path, format!("there is no node at {}; the nearest is node {node} at {nearest}", point(at))))
+        }
+        ([], None) => Err(wrong(path, "the mesh has no nodes")),
+    }
+}

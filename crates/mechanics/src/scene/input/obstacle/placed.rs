@@ -1,0 +1,224 @@
+//! An obstacle of a model: its surface, and the candidates that may touch it.
+
+use std::sync::Arc;
+
+use super::row::{Obstacle, ObstacleRow};
+use super::shape::{Geometry, Site};
+use crate::error::Error;
+use crate::fem::assembly::{node_normals, tributary_areas};
+use crate::fem::body::ElasticBody;
+use crate::fem::geometry::length;
+use crate::scene::input::entry::{boundary, finite, number, wrong};
+use crate::scene::input::files::Files;
+use crate::scene::input::schema::approach::Rule;
+use crate::scene::input::schema::obstacle::ObstacleSpec;
+
+/// A component of a unit normal below this is rounding of the geometry, not a direction.
+const NO_COMPONENT: f64 = 1e-14;
+
+/// A given normal is of unit length to within this rounding.
+const UNIT: f64 = 1e-9;
+
+/// An obstacle of a model: a rigid shape, or the surface of another body, with the boundary that may touch it.
+#[derive(Clone, Debug)]
+pub struct PlacedObstacle {
+    boundary: String,
+    candidates: Vec<(usize, f64)>,
+    /// The outward normal of the body at each candidate.
+    outward: Vec<[f64; 3]>,
+    approach: [f64; 3],
+    dimension: usize,
+    geometry: Geometry,
+    /// The rule for its rows; `None` for a user-defined obstacle.
+    rule: Option<Rule>,
+    /// Shift along the approach direction in addition to that of the scene, in length.
+    gap: f64,
+    /// The force that presses it against its approach direction, in force.
+    force: Option<f64>,
+}
+
+impl PlacedObstacle {
+    /// Checks the obstacle at the JSON path `path`.
+    pub(crate) fn of_scene(spec: &ObstacleSpec, path: &str, body: &ElasticBody, files: Files) -> Result<Self, Error> {
+        let (candidates, outward) = candidates(body, &spec.boundary, &format!("{path}.boundary"))?;
+        let (gap, force) = pressing(spec, path)?;
+        let dimension = body.dimension();
+        let (axis, _) = spec.approach.axis();
+        if axis >= dimension {
+            let names = ["x", "x and y", "x, y and z"][dimension - 1];
+            let message = format!("`{}` is no direction of this model, which has {names}", spec.approach.name());
+            return Err(wrong(format!("{path}.approach"), message));
+        }
+        if let Some(misfit) = spec.shape.misfit(dimension) {
+            return Err(wrong(format!("{path}.shape"), misfit));
+        }
+        let shape = spec.shape.shape();
+        let site = Site {
+            obstacle: path,
+            path: format!("{path}.shape.{}", spec.shape.about().name),
+            boundary: &spec.boundary,
+            approach: spec.approach,
+            rule: spec.rule,
+            body,
+            candidates: &candidates,
+            files,
+        };
+        let (approach, geometry) = (site.direction(), shape.place(&site)?);
+        if force.is_some() && matches!(geometry, Geometry::Pairs(_)) {
+            let message = "another body is pressed by its own loads; give it one instead";
+            return Err(wrong(format!("{path}.force"), message));
+        }
+        let (boundary, rule) = (spec.boundary.clone(), Some(spec.rule));
+        Ok(PlacedObstacle { boundary, candidates, outward, approach, dimension, geometry, rule, gap, force })
+    }
+
+    /// A user-defined obstacle, at `path`.
+    pub(crate) fn of_user(
+        boundary: &str,
+        obstacle: Arc<dyn Obstacle>,
+        path: &str,
+        body: &ElasticBody,
+    ) -> Result<Self, Error> {
+        let (candidates, outward) = candidates(body, boundary, &format!("{path}.boundary"))?;
+        let (approach, dimension) = (obstacle.approach(), body.dimension());
+        check_direction(approach, dimension)
+            .map_err(|reason| wrong(format!("{path}.approach"), format!("the approach direction {reason}")))?;
+        let (boundary, geometry) = (boundary.into(), Geometry::Rigid(obstacle));
+        let (rule, gap, force) = (None, 0.0, None);
+        Ok(PlacedObstacle { boundary, candidates, outward, approach, dimension, geometry, rule, gap, force })
+    }
+
+    /// Name of the boundary that contains its candidates.
+    pub fn boundary(&self) -> &str {
+        &self.boundary
+    }
+
+    /// The obstacle, if it is rigid; `None` for the surface of another body.
+    pub fn rigid(&self) -> Option<&dyn Obstacle> {
+        match &self.geometry {
+            Geometry::Rigid(obstacle) => Some(obstacle.as_ref()),
+            Geometry::Pairs(_) => None,
+        }
+    }
+
+    /// Its whole shift along the approach direction if the scene shifts all obstacles by `gap`, in length, without the travel under a
+    /// force.
+    pub fn shift(&self, gap: f64) -> f64 {
+        gap + self.gap
+    }
+
+    /// The force that presses it against its approach direction, in force, `>= 0`; `None` for an obstacle that stands
+    /// still.
+    pub fn force(&self) -> Option<f64> {
+        self.force
+    }
+
+    /// The rule for its rows; `None` for a user-defined obstacle.
+    pub fn rule(&self) -> Option<Rule> {
+        self.rule
+    }
+
+    /// The approach direction [x, y, z], a dimensionless vector of length 1: from the body to the obstacle.
+    pub fn approach(&self) -> [f64; 3] {
+        self.approach
+    }
+
+    /// The candidate nodes as `(node, area)`, in the order of the boundary: index from 0, and tributary area.
+    pub fn candidates(&self) -> &[(usize, f64)] {
+        &self.candidates
+    }
+
+    /// The surface as a polyline [x, y] for pictures, in length: over the body's extent and its size beyond, shifted by `gap`
+    /// along the approach direction, in `segments` pieces (10,000 at most), with exact corners. The obstacle lies on
+    /// the side to which [`approach`](Self::approach) points. Empty if the surface does not reach over the body, for
+    /// another body, and outside the plane.
+    pub fn outline(&self, gap: f64, segments: usize) -> Vec<[f64; 2]> {
+        self.rigid().map_or_else(Vec::new, |obstacle| obstacle.outline(gap, segments))
+    }
+
+    /// The node of another body opposite to the candidate of this index; `None` if the obstacle is rigid.
+    pub(crate) fn partner(&self, candidate: usize) -> Option<usize> {
+        match &self.geometry {
+            Geometry::Pairs(pairs) => pairs.get(candidate).map(|pair| pair.partner),
+            Geometry::Rigid(_) => None,
+        }
+    }
+
+    /// The outward normal of the body at the candidate of this index; zero if the facets around it cancel.
+    pub(crate) fn outward(&self, candidate: usize) -> [f64; 3] {
+        self.outward.get(candidate).copied().unwrap_or_default()
+    }
+
+    /// The unit normal of the surface, into the obstacle, at the point where the row of the candidate of this index meets it; for another
+    /// body the mean of both normals. `None` if it is out of reach.
+    pub(crate) fn surface_normal(&self, candidate: usize, node: [f64; 3], gap: f64) -> Option<[f64; 3]> {
+        match &self.geometry {
+            Geometry::Rigid(obstacle) => obstacle.surface_normal(node, gap),
+            Geometry::Pairs(pairs) => pairs.get(candidate).map(|pair| pair.mean),
+        }
+    }
+
+    /// The row of the candidate of this index, at the place `node`, with the surface shifted by `gap`; `None` if it is out of reach.
+    ///
+    /// # Errors
+    /// A predicate of the node, if no meaningful row exists.
+    pub(crate) fn row(&self, candidate: usize, node: [f64; 3], gap: f64) -> Result<Option<ObstacleRow>, String> {
+        let row = match &self.geometry {
+            Geometry::Rigid(obstacle) => obstacle.shifted_row(node, gap).map_err(|reason| away(&reason))?,
+            Geometry::Pairs(pairs) => pairs.get(candidate).map(|pair| pair.row(gap, self.approach)),
+        };
+        let Some(row) = row else { return Ok(None) };
+        if row.gap.is_nan() {
+            return Err(away("has a distance that is not a number"));
+        }
+        if !row.gap.is_finite() {
+            return Ok(None);
+        }
+        check_direction(row.normal, self.dimension).map_err(|reason| format!("has a row whose normal {reason}"))?;
+        Ok(Some(ObstacleRow { normal: row.normal.map(|c| if c.abs() < NO_COMPONENT { 0.0 } else { c }), ..row }))
+    }
+}
+
+/// The shift of an obstacle in addition to the gap of the scene, and the force that presses it.
+fn pressing(spec: &ObstacleSpec, path: &str) -> Result<(f64, Option<f64>), Error> {
+    finite(format!("{path}.gap"), spec.gap.unwrap_or(0.0))?;
+    if let Some(force) = spec.force {
+        finite(format!("{path}.force"), force)?;
+        if force <= 0.0 {
+            let message = format!(
+                "{} is not allowed: the force presses the obstacle on the body, and must be positive",
+                number(force)
+            );
+            return Err(wrong(format!("{path}.force"), message));
+        }
+        if spec.gap.is_some() {
+            return Err(wrong(path, "gives both gap and force; the force determines the gap, so give only one"));
+        }
+    }
+    Ok((spec.gap.unwrap_or(0.0), spec.force))
+}
+
+/// The nodes of a boundary with their tributary areas, and the outward normals there.
+#[allow(clippy::type_complexity)]
+fn candidates(body: &ElasticBody, name: &str, path: &str) -> Result<(Vec<(usize, f64)>, Vec<[f64; 3]>), Error> {
+    let boundary = boundary(body.mesh(), name, path)?;
+    let outward = node_normals(body, boundary).into_iter().map(|(_, normal)| normal).collect();
+    Ok((tributary_areas(body, boundary), outward))
+}
+
+/// The fault of a node, and a remedy.
+fn away(reason: &str) -> String {
+    format!("{reason}; move the obstacle away from it")
+}
+
+/// Checks that a vector is of unit length and lies in a space of `dimension` coordinates.
+fn check_direction(vector: [f64; 3], dimension: usize) -> Result<(), String> {
+    let length = length(vector);
+    if length.is_nan() || (length - 1.0).abs() > UNIT {
+        return Err(format!("has the length {}; it must be 1", number(length)));
+    }
+    match vector[dimension..].iter().any(|&component| component != 0.0) {
+        true => Err(format!("leads out of the model, which has {dimension} coordinates")),
+        false => Ok(()),
+    }
+}

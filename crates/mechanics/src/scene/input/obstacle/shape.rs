@@ -1,0 +1,172 @@
+//! The trait of every obstacle shape: the models that allow it, and its surface in a model.
+
+use std::sync::Arc;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::pairs::Pair;
+use super::row::Obstacle;
+use super::ruled::{RigidSurface, Ruled};
+use super::surface::Local;
+use crate::error::Error;
+use crate::fem::body::ElasticBody;
+use crate::fem::geometry::along_axis;
+use crate::scene::input::entry::{COORDINATE_ROUNDING, positive, vector, wrong};
+use crate::scene::input::files::Files;
+use crate::scene::input::schema::approach::{Approach, Rule};
+
+/// The name of an obstacle shape and the models that allow it.
+#[derive(Clone, Copy, Debug)]
+pub struct About {
+    /// The name in a scene.
+    pub name: &'static str,
+    /// The allowed numbers of coordinates of a model.
+    pub dimensions: &'static [usize],
+}
+
+/// An obstacle shape with its numbers.
+pub(crate) trait ObstacleShape {
+    /// Checks the numbers, and places the surface.
+    fn place(&self, site: &Site) -> Result<Geometry, Error>;
+
+    /// The boundary that forms the surface, if it is the surface of another body.
+    fn other_boundary(&self) -> Option<&str> {
+        None
+    }
+
+    /// A length beyond which the surface cannot be touched.
+    fn radius(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Estimated memory in addition to its rows, in bytes.
+    fn bytes(&self, _files: Files) -> f64 {
+        0.0
+    }
+}
+
+/// The geometry of an obstacle in a model.
+#[derive(Clone, Debug)]
+pub(crate) enum Geometry {
+    /// A rigid surface.
+    Rigid(Arc<dyn Obstacle>),
+    /// The nodes of another body, in the order of the candidates.
+    Pairs(Vec<Pair>),
+}
+
+impl Geometry {
+    /// A rigid surface; the rule of the site makes its rows.
+    pub(super) fn rigid(site: &Site, surface: impl RigidSurface + 'static) -> Self {
+        Geometry::Rigid(Arc::new(Ruled { surface, rule: site.rule, approach: site.direction() }))
+    }
+}
+
+/// The place of an obstacle in a scene.
+pub(crate) struct Site<'a> {
+    /// JSON path of the obstacle, as `obstacles[0]`.
+    pub obstacle: &'a str,
+    /// JSON path of its shape, as `obstacles[0].shape.plane`.
+    pub path: String,
+    /// The boundary that contains the candidates.
+    pub boundary: &'a str,
+    pub approach: Approach,
+    pub rule: Rule,
+    pub body: &'a ElasticBody,
+    /// The candidate nodes with their tributary areas.
+    pub candidates: &'a [(usize, f64)],
+    pub files: Files<'a>,
+}
+
+/// The side of the body relative to a round or closed surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// The body lies outside; the obstacle is enclosed by the surface.
+    #[default]
+    Outside,
+    /// The body lies inside, as a ball in a cup or a pin in a hole; the obstacle is all around it.
+    Inside,
+}
+
+impl Side {
+    pub(super) fn is_outside(&self) -> bool {
+        *self == Side::Outside
+    }
+
+    /// A radius, signed along the approach direction from the apex to the centre.
+    pub(super) fn signed(self, radius: f64) -> f64 {
+        match self {
+            Side::Outside => radius,
+            Side::Inside => -radius,
+        }
+    }
+}
+
+impl Site<'_> {
+    /// The JSON path of a field of the shape.
+    pub fn field(&self, name: &str) -> String {
+        format!("{}.{name}", self.path)
+    }
+
+    /// The approach direction, a unit vector [x, y, z].
+    pub fn direction(&self) -> [f64; 3] {
+        let (axis, sense) = self.approach.axis();
+        along_axis(axis, sense)
+    }
+
+    /// A point or a direction of the plane in the axes of the obstacle: along its surface, and towards it.
+    pub fn local(&self, global: [f64; 3]) -> Local {
+        let (axis, sense) = self.approach.axis();
+        [global[1 - axis], sense * global[axis]]
+    }
+
+    /// The name of the coordinate along an obstacle in the plane.
+    pub fn name_along(&self) -> &'static str {
+        ["y", "x"][self.approach.axis().0]
+    }
+
+    /// Lengths below this are rounding of coordinates.
+    pub fn rounding(&self) -> f64 {
+        COORDINATE_ROUNDING * self.body.mesh().size()
+    }
+
+    /// A field that is a point.
+    pub fn point(&self, name: &str, entries: &[f64]) -> Result<[f64; 3], Error> {
+        vector(&self.field(name), entries, entries.len())
+    }
+
+    /// A field that is a direction of any length except zero, its largest component scaled to 1.
+    pub fn axis(&self, name: &str, entries: &[f64; 3]) -> Result<[f64; 3], Error> {
+        let path = self.field(name);
+        let axis = vector(&path, entries, 3)?;
+        let largest = axis.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
+        if largest == 0.0 {
+            return Err(wrong(path, "(0, 0, 0) has no direction; the axis needs a length"));
+        }
+        Ok(axis.map(|part| part / largest))
+    }
+
+    /// A field that is positive.
+    pub fn positive(&self, name: &str, value: f64) -> Result<f64, Error> {
+        positive(&self.field(name), value)
+    }
+
+    /// The apex of a round shape, given directly or by its centre, which lies `radius` further along the approach direction.
+    pub fn apex<const N: usize>(
+        &self,
+        centre: Option<[f64; N]>,
+        apex: Option<[f64; N]>,
+        radius: f64,
+    ) -> Result<[f64; 3], Error> {
+        match (centre, apex) {
+            (None, Some(apex)) => self.point("apex", &apex),
+            (Some(centre), None) => {
+                let (centre, approach) = (self.point("centre", &centre)?, self.direction());
+                Ok([0, 1, 2].map(|axis| centre[axis] - radius * approach[axis]))
+            }
+            (Some(_), Some(_)) => Err(wrong(self.path.as_str(), "has both `centre` and `apex`; give only one")),
+            (None, None) => Err(wrong(self.path.as_str(), "has neither `centre` nor `apex`; give one")),
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! From a scene to a model: every value is checked at its use, and errors name it by its JSON path.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::elastic::{locking, stiffness_jumps, unit_of_young};
+use super::model::Model;
+use super::parts::Parts;
+use super::unknowns::Unknowns;
+use crate::error::Error;
+use crate::fem::{DofMap, ElasticBody};
+use crate::scene::input::entry::wrong;
+use crate::scene::input::files::Files;
+use crate::scene::input::obstacle::{Obstacle, PlacedObstacle};
+use crate::scene::input::schema::Scene;
+
+impl Scene {
+    /// Discretises the scene and sets up its contact problem.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a value that describes no problem, [`qp::Error::UnderHeld`](signorini_qp::Error::UnderHeld) for a rigid-body mode that neither
+    /// supports nor obstacles resist.
+    pub fn build(&self) -> Result<Model, Error> {
+        self.build_with(&[])
+    }
+
+    /// The same with user-defined obstacles after those of the scene, each with the name of the boundary that may touch it.
+    ///
+    /// # Errors
+    /// As [`Scene::build`]; [`Error::Scene`] for a boundary that does not exist, and for a direction or a normal that is
+    /// not of unit length or leads out of the model.
+    pub fn build_with(&self, further: &[(&str, Arc<dyn Obstacle>)]) -> Result<Model, Error> {
+        self.build_of(self.bodies()?, further)
+    }
+
+    /// As [`Scene::build`], for a scene that may take at most `most` bytes.
+    ///
+    /// # Errors
+    /// As [`Scene::build`]; [`qp::Error::TooLarge`](signorini_qp::Error::TooLarge) before the assembly of bodies that are too large.
+    pub fn build_within(&self, most: f64) -> Result<Model, Error> {
+        let bodies = self.bodies()?;
+        Scene::check_bodies(&bodies, most)?;
+        self.build_of(bodies, &[])
+    }
+
+    /// The files that the scene names.
+    pub(crate) fn files(&self) -> Files<'_> {
+        Files { folder: self.folder.as_deref().unwrap_or(Path::new("")), reads_outside: self.reads_outside }
+    }
+
+    /// The same for other meshes of the bodies, given in the order of the scene.
+    pub(crate) fn build_of(
+        &self,
+        bodies: Vec<ElasticBody>,
+        further: &[(&str, Arc<dyn Obstacle>)],
+    ) -> Result<Model, Error> {
+        let body = self.with_parts(self.joined(bodies)?)?;
+        let (symmetry, springs) = (self.planes_of_symmetry(&body)?, self.springs(&body)?);
+        let mut held = self.held(&body)?;
+        symmetry.hold(&body, &mut held);
+        let rigid_faces = self.rigid_faces(&body, &mut held)?;
+        let dofs = self.with_contact_faces(held.dofs(body.mesh())?, &body, further);
+        let (supports, is_part) = (self.supports.len(), self.may_be_part(&body)?);
+        let load = self.load(&body)?;
+        let path = |index: usize| format!("obstacles[{index}]");
+        let mut obstacles = Vec::with_capacity(self.obstacles.len() + further.len());
+        for (index, spec) in self.obstacles.iter().enumerate() {
+            obstacles.push(PlacedObstacle::of_scene(spec, &path(index), &body, self.files())?);
+        }
+        for (boundary, obstacle) in further {
+            let path = path(obstacles.len());
+            obstacles.push(PlacedObstacle::of_user(boundary, obstacle.clone(), &path, &body)?);
+        }
+        let mut warnings: Vec<_> = locking(&body).into_iter().collect();
+        warnings.extend(stiffness_jumps(&body));
+        warnings.extend(unit_of_young(&body, &self.units));
+        warnings.extend(self.suspect(&body, &dofs)?);
+        let (title, units) = (self.title.clone(), self.units.clone());
+        let moves = self.analysis.is_some();
+        let nodes = body.mesh().nodes();
+        let unknowns = Unknowns::of(nodes, &dofs, body.dimension(), &rigid_faces, &obstacles)?;
+        if let Some(index) = unknowns.pressed.first().filter(|_| moves) {
+            let message = "an obstacle without mass has no motion of its own; let it stand still, or load the body";
+            return Err(wrong(format!("{}.force", path(*index)), message));
+        }
+        Model::new(
+            Parts {
+                title,
+                units,
+                body,
+                dofs,
+                held,
+                supports,
+                is_part,
+                load,
+                springs,
+                symmetry,
+                rigid_faces,
+                obstacles,
+                unknowns,
+                warnings,
+                moves,
+            },
+            self.gap,
+        )
+    }
+
+    /// The dofs with coefficients on the quadratic faces that may touch an obstacle.
+    fn with_contact_faces(&self, dofs: DofMap, body: &ElasticBody, further: &[(&str, Arc<dyn Obstacle>)]) -> DofMap {
+        let of_scene = self
+            .obstacles
+            .iter()
+            .flat_map(|spec| [Some(spec.boundary.as_str()), spec.shape.shape().other_boundary()].into_iter().flatten());
+        dofs.with_contact_faces(body, of_scene.chain(further.iter().map(|(boundary, _)| *boundary)))
+    }
+}

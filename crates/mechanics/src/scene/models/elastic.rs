@@ -1,0 +1,189 @@
+//! The bodies of a scene: mesh, materials, formulation.
+
+use super::materials::BodyMaterials;
+use super::unstrained::Unstrained;
+use crate::error::Error;
+use crate::fem::{ElasticBody, Formulation, Integration, Mesh, Region};
+use crate::scene::Warning;
+use crate::scene::input::body::{BodySpec, Site};
+use crate::scene::input::entry::{located, wrong};
+use crate::scene::input::schema::{ModelSpec, Scene, Units};
+use signorini_qp as qp;
+
+/// Poisson's ratios above which elements lock: linear elements noticeably above the first; measured, quadratic elements above the second.
+const LOCKING_POISSON: [f64; 2] = [0.49, 0.499];
+
+/// Young's moduli of one body that differ by more than this leave few digits in the strain of the soft part, and slow down iterations.
+const STIFFNESS_JUMP: f64 = 1e4;
+
+/// Young's modulus of steel, in pascals.
+pub(crate) const STEEL: f64 = 2.1e11;
+
+/// The largest Young's modulus of diamond by direction, in pascals: no material of engineering is stiffer.
+///
+/// # Source
+/// H. J. McSkimin, P. Andreatch, "Elastic moduli of diamond as a function of pressure and temperature", J. Appl. Phys. 43 (1972)
+/// 2944-2948: stiffnesses of 1079, 124 and 578 GPa.
+const DIAMOND: f64 = 1.2e12;
+
+/// A modulus above that of diamond by this factor is in another unit: the next unit in use, the pascal, is a factor of 1e6 away.
+const OTHER_UNIT: f64 = 2.0;
+
+/// A body as a scene describes it, with its place.
+struct DescribedBody<'a> {
+    scene: &'a Scene,
+    spec: &'a BodySpec,
+    materials: BodyMaterials<'a>,
+    unstrained: Unstrained<'a>,
+    /// The prefix of its JSON paths.
+    place: String,
+}
+
+impl Scene {
+    /// The bodies of the scene, separately.
+    pub(crate) fn bodies(&self) -> Result<Vec<ElasticBody>, Error> {
+        self.described().map(|described| described.elastic_body()).collect()
+    }
+
+    /// The bodies in the order of the scene, combined in one.
+    pub(crate) fn joined(&self, bodies: Vec<ElasticBody>) -> Result<ElasticBody, Error> {
+        let (mut bodies, mut described) = (bodies.into_iter(), self.described());
+        let (Some(mut joined), Some(_)) = (bodies.next(), described.next()) else {
+            return Err(wrong("body", "there is no body"));
+        };
+        let further = self.further_bodies.iter().zip(described).zip(bodies).enumerate();
+        for (index, ((spec, described), body)) in further {
+            let name = &spec.name;
+            if name.is_empty() || self.further_bodies[..index].iter().any(|other| other.name == *name) {
+                let message = format!("`{name}` is not allowed: every further body needs a name of its own");
+                return Err(wrong(format!("{}name", described.place), message));
+            }
+            joined = joined.beside(&body, name).map_err(|error| described.at_body(error))?;
+        }
+        Ok(joined)
+    }
+
+    fn described(&self) -> impl Iterator<Item = DescribedBody<'_>> {
+        let (model, moves) = (self.model, self.analysis.is_some());
+        let of_body = move |material, parts, place: &str| {
+            let place = place.into();
+            BodyMaterials { material, parts, place, model, moves }
+        };
+        let materials = of_body(self.material.as_ref(), &self.materials, "");
+        let unstrained = Unstrained { temperature: &self.temperature, stress: &self.initial_stress };
+        let first = DescribedBody { scene: self, spec: &self.body, materials, unstrained, place: String::new() };
+        let further = self.further_bodies.iter().enumerate().map(move |(index, further)| {
+            let place = format!("further-bodies[{index}].");
+            let materials = of_body(further.material.as_ref(), &further.materials, &place);
+            let unstrained = Unstrained { temperature: &further.temperature, stress: &further.initial_stress };
+            DescribedBody { scene: self, spec: &further.body, materials, unstrained, place }
+        });
+        std::iter::once(first).chain(further)
+    }
+}
+
+impl DescribedBody<'_> {
+    /// The JSON path of a field of the body.
+    fn path(&self, field: &str) -> String {
+        format!("{}body.{}{field}", self.place, self.spec.about().name)
+    }
+
+    /// Returns `true` if groups of elements are named.
+    fn names_groups(&self) -> bool {
+        let materials = self.materials.parts.iter().map(|part| &part.group);
+        let temperature = self.unstrained.temperature.iter().map(|entry| &entry.group);
+        let stress = self.unstrained.stress.iter().map(|entry| &entry.group);
+        materials.chain(temperature).chain(stress).any(Option::is_some)
+    }
+
+    /// The mesh of the shape.
+    fn mesh(&self) -> Result<Mesh, Error> {
+        let (path, names_groups) = (self.path(""), self.names_groups());
+        let site = Site { path, model: self.scene.model, files: self.scene.files(), names_groups };
+        self.spec.shape().mesh(&site).map_err(|error| self.at_body(error))
+    }
+
+    /// An error of the mesh at its place in the scene; an error with its own file and line keeps them.
+    fn at_body(&self, error: Error) -> Error {
+        match error {
+            Error::Mesh { message } => wrong(self.path(""), message),
+            other => located(other, &self.path(".")),
+        }
+    }
+
+    fn formulation(&self) -> Result<Formulation, Error> {
+        let (thickness, model) = (self.scene.thickness, self.scene.model);
+        let about = self.spec.about();
+        if about.dimension.is_some_and(|dimension| dimension != model.dimension()) {
+            let (body, fitting, model) = (about.name, BodySpec::fitting(model.dimension()), model.name());
+            let message = format!("a {body} does not fit the model `{model}`; a body of this model is a {fitting}");
+            return Err(wrong(self.path(""), message));
+        }
+        let formulation = match model {
+            ModelSpec::Bar => Formulation::Bar { area: self.spec.shape().area() },
+            ModelSpec::PlaneStrain => Formulation::PlaneStrain { thickness },
+            ModelSpec::PlaneStress => Formulation::PlaneStress { thickness },
+            ModelSpec::Axisymmetric => Formulation::Axisymmetric,
+            ModelSpec::Space => Formulation::Space,
+        };
+        let plane = matches!(formulation, Formulation::PlaneStrain { .. } | Formulation::PlaneStress { .. });
+        if !plane && thickness != 1.0 {
+            let message = format!("the model `{}` has no thickness; leave it out", model.name());
+            return Err(wrong("thickness", message));
+        }
+        let prefix = if model == ModelSpec::Bar { self.path(".") } else { String::new() };
+        formulation.check().map_err(|error| located(error, &prefix))?;
+        Ok(formulation)
+    }
+
+    fn elastic_body(&self) -> Result<ElasticBody, Error> {
+        let first = self.materials.first()?;
+        let formulation = self.formulation()?;
+        self.materials.check(&formulation)?;
+        let at_body = |error| match error {
+            // A setting next to the body: the thickness.
+            Error::Qp(qp::Error::Setting { .. }) => located(error, ""),
+            other => self.at_body(other),
+        };
+        let body = ElasticBody::new(self.mesh()?, first, formulation).map_err(at_body)?;
+        let body = self.unstrained.placed(self.materials.placed(body)?, &self.place, self.scene.analysis.as_ref())?;
+        body.with_integration(self.spec.shape().integration()).map_err(|error| match error {
+            Error::Mesh { message } => wrong(self.path(".integration"), message),
+            other => other,
+        })
+    }
+}
+
+/// The warning for a body with elements that lock.
+pub(crate) fn locking(body: &ElasticBody) -> Option<Warning> {
+    let kind = body.mesh().kind();
+    let ratios = body.phases().iter().filter_map(|phase| phase.material().poisson());
+    let poisson = ratios.fold(f64::NEG_INFINITY, f64::max);
+    let limit = LOCKING_POISSON[usize::from(kind.is_quadratic())];
+    let locks = body.formulation().can_lock() && body.integration() == Integration::Standard && poisson > limit;
+    locks.then(|| Warning::NearlyIncompressible { poisson, element: kind.name() })
+}
+
+/// The warnings for bodies with materials of very different stiffness.
+pub(crate) fn stiffness_jumps(body: &ElasticBody) -> Vec<Warning> {
+    let jump = |region: &Region| {
+        let [soft, stiff] = [f64::min, f64::max].map(|of| {
+            let moduli = body.materials(region).flat_map(|material| material.young());
+            moduli.reduce(of).unwrap_or(f64::NAN)
+        });
+        let name = region.name().to_string();
+        let is_jump = body.materials(region).count() > 1 && stiff > STIFFNESS_JUMP * soft;
+        is_jump.then_some(Warning::StiffnessJump { body: name, stiff, soft, ratio: stiff / soft })
+    };
+    body.regions().iter().filter_map(jump).collect()
+}
+
+/// The warning for the largest Young's modulus, if no material has it in these units.
+pub(crate) fn unit_of_young(body: &ElasticBody, units: &Units) -> Option<Warning> {
+    let pascals = units.pascals()?;
+    let young = body.phases().iter().flat_map(|phase| phase.material().young()).reduce(f64::max)?;
+    let times = young * pascals / DIAMOND;
+    let Units { length, force } = units.clone();
+    let [meant, steel] = [young, STEEL].map(|value| value / pascals);
+    (times > OTHER_UNIT).then_some(Warning::UnitOfYoung { young, force, length, times, meant, steel })
+}

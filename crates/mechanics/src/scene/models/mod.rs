@@ -1,0 +1,25 @@
+//! A discretised scene: mesh and materials, supports, loads and springs, contact rows, and the problem that they make.
+
+mod build;
+pub(crate) mod condition;
+pub(crate) mod continuum;
+mod elastic;
+mod explain;
+pub(crate) mod held;
+pub(crate) mod load;
+mod materials;
+pub(crate) mod model;
+mod part;
+mod parts;
+pub(crate) mod resultants;
+pub(crate) mod rigid_body_modes;
+mod rigid_face;
+pub(crate) mod rows;
+mod selection;
+pub(crate) mod set_up;
+mod springs;
+pub(crate) mod start;
+mod suspect;
+mod symmetry;
+pub(crate) mod unknowns;
+mod unstrained;

@@ -1,0 +1,364 @@
+//! The model: a discretised scene, its contact problem, and the meaning of its rows and dofs.
+
+use std::sync::Arc;
+
+use super::parts::Parts;
+use super::rigid_body_modes::RigidBodyModes;
+use super::rows::{self, ContactRow};
+use super::suspect::suspect_rows;
+use crate::error::Error;
+use crate::fem::geometry::distance;
+use crate::fem::{DofMap, ElasticBody, Mesh, free_load, rigid_body_modes, stiffness};
+use crate::scene::input::entry::{finite, wrong};
+use crate::scene::input::obstacle::PlacedObstacle;
+use crate::scene::{Units, Warning};
+use signorini_qp as qp;
+use signorini_qp::{ContactProblem, NearNullSpace, Settings, Solution, SymmetricMatrix, solve};
+
+/// Tributary areas below this, relative to the largest, are rounding of zero; radii, relative to the size of the body.
+const NO_AREA: f64 = 1e-12;
+
+/// A discretised scene: mesh, contact problem, and the meaning of its rows and dofs.
+///
+/// Nodal vectors have length `dim * n_nodes` and the order `[x_0, y_0, x_1, ...]` (with z in space). `displacement` arguments are those
+/// of a solution: one entry per free dof, then the travel of each obstacle that a force presses.
+///
+/// ```
+/// use signorini_mechanics::Scene;
+/// use signorini_qp::solve_qp;
+///
+/// // A bar of 2 m and 0.1 m x 0.1 m with Young's modulus 1e6 Pa is a spring of 1e6 x 0.01 / 2 = 5000 N/m. Pulled with
+/// // 2000 Pa x 0.01 m2 = 20 N towards a wall at 0.001 m, it presses against the wall with 20 - 5000 x 0.001 = 15 N.
+/// let scene = r#"{
+///     "model": "plane-stress", "thickness": 0.1, "gap": 0.001,
+///     "body": {"rectangle": {"x": {"points": [0, 2], "divisions": [20]}, "y": {"points": [0, 0.1], "divisions": [1]}}},
+///     "material": {"young": 1e6, "poisson": 0},
+///     "supports": [{"on": {"boundary": "left"}, "x": 0}, {"on": {"point": [0, 0]}, "y": 0}],
+///     "loads": [{"traction": {"boundary": "right", "value": [2000, 0]}}],
+///     "obstacles": [{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [2, 0], "normal": [1, 0]}}}]
+/// }"#;
+/// let model = Scene::from_json(scene, "bar")?.build()?;
+/// let solution = solve_qp(model.problem())?;
+/// assert!((solution.contact_force() - 15.0).abs() < 1e-9);
+/// # Ok::<(), signorini_mechanics::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub(crate) parts: Arc<Parts>,
+    gap: f64,
+    rows: Vec<ContactRow>,
+    warnings: Vec<Warning>,
+    problem: ContactProblem,
+}
+
+impl Model {
+    /// Rows first: they decide whether the body is held, before anything expensive is built.
+    pub(crate) fn new(parts: Parts, gap: f64) -> Result<Self, Error> {
+        let built = rows::build(&parts, gap)?;
+        if !parts.moves {
+            RigidBodyModes::of_parts(&parts).check_held(&parts, &built.rows)?;
+        }
+        let stiffness = stiffness(&parts.body, &parts.dofs).and_then(|of_body| parts.on_springs(of_body));
+        let of_free = stiffness.map_err(|error| match error {
+            Error::Qp(qp::Error::NotFinite { .. }) => {
+                let message = "the stiffness that it makes with body and thickness overflows; choose other units";
+                wrong("material", message)
+            }
+            other => other,
+        })?;
+        let force = |obstacle: usize| parts.share_of(obstacle, parts.obstacles[obstacle].force().unwrap_or(0.0));
+        let load = free_load(&parts.body, &parts.dofs, &parts.load_on_springs()?)?;
+        let load = parts.unknowns.load(load, &of_free, force);
+        let stiffness = parts.unknowns.stiffness(of_free)?;
+        let modes = rigid_body_modes(&parts.body, &parts.dofs).into_iter();
+        let modes = modes.map(|mode| parts.unknowns.of_motion(mode, |_| 0.0)).collect();
+        let near_null = NearNullSpace::of_modes(modes).map(Arc::new);
+        Self::with_rows(Arc::new(parts), gap, built, (stiffness, load, near_null))
+    }
+
+    fn with_rows(
+        parts: Arc<Parts>,
+        gap: f64,
+        built: rows::Rows,
+        (stiffness, load, near_null): (SymmetricMatrix, Vec<f64>, Option<Arc<NearNullSpace>>),
+    ) -> Result<Self, Error> {
+        let mut problem = ContactProblem::new(stiffness, load, built.contact, built.gap)?;
+        if let Some(near_null) = near_null {
+            problem = problem.with_near_null(near_null)?;
+        }
+        let suspect = suspect_rows(&parts, &built.rows);
+        let warnings = parts.warnings.iter().cloned().chain(built.warnings).chain(suspect).collect();
+        Ok(Model { parts, gap, rows: built.rows, warnings, problem })
+    }
+
+    /// The same scene with another scene-wide gap: only the contact rows are built again.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a gap that is not finite or puts a node so deep that it has no closest point,
+    /// [`qp::Error::UnderHeld`] if the new rows leave a rigid-body mode free.
+    pub fn with_gap(&self, gap: f64) -> Result<Self, Error> {
+        let built = rows::build(&self.parts, gap)?;
+        if !self.parts.moves {
+            RigidBodyModes::of_parts(&self.parts).check_held(&self.parts, &built.rows)?;
+        }
+        let (stiffness, load) = (self.problem.stiffness().clone(), self.problem.load().to_vec());
+        let near_null = self.problem.near_null().cloned();
+        Self::with_rows(self.parts.clone(), gap, built, (stiffness, load, near_null))
+    }
+
+    /// Returns `true` if a force presses the obstacle.
+    pub(crate) fn is_pressed(&self, obstacle: usize) -> bool {
+        self.parts.unknowns.travel(obstacle).is_some()
+    }
+
+    /// The force that presses an obstacle, on the whole body; `None` if none does.
+    pub fn pressing_force_on(&self, obstacle: usize) -> Option<f64> {
+        let parts = self.parts.parts_of_obstacle(obstacle);
+        self.parts.unknowns.travel(obstacle).map(|unknown| parts * self.problem.load()[unknown])
+    }
+
+    /// The force on each obstacle that a force presses, in their order, in force.
+    pub fn pressing_forces(&self) -> Vec<f64> {
+        self.parts.unknowns.pressed.iter().filter_map(|&obstacle| self.pressing_force_on(obstacle)).collect()
+    }
+
+    /// The same scene with another force on the one obstacle that a force presses.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] if a force presses no obstacle or several, or for a force that is negative or not finite.
+    pub(crate) fn pressed_by(&self, force: f64) -> Result<Self, Error> {
+        let parts = &self.parts;
+        let &[obstacle] = parts.unknowns.pressed.as_slice() else {
+            let message = match parts.unknowns.pressed.len() {
+                0 => "no obstacle is pressed by a force; a sweep over forces needs the key `force` in one obstacle, such as \
+                      \"force\": 100"
+                    .to_string(),
+                count => format!("{count} obstacles have the key `force`; a sweep over forces needs exactly one"),
+            };
+            return Err(wrong("obstacles", message));
+        };
+        let path = || format!("obstacles[{obstacle}].force");
+        finite(path(), force)?;
+        if force < 0.0 {
+            return Err(wrong(path(), format!("{force} would pull the obstacle away: forces are 0 or positive")));
+        }
+        let load = self.problem.load().to_vec();
+        let load = parts.unknowns.pressed_by(load, |obstacle| parts.share_of(obstacle, force));
+        let problem = self.problem.with_load(load)?;
+        Ok(Model { problem, ..self.clone() })
+    }
+
+    /// The solution with pressed obstacles at their first contact with the body, without a force.
+    ///
+    /// # Errors
+    /// As [`solve`].
+    pub(crate) fn touched(&self, settings: &Settings) -> Result<Solution, Error> {
+        let (parts, problem) = (&self.parts, &self.problem);
+        let is_pressed = |row: usize| parts.unknowns.travel(self.rows[row].obstacle).is_some();
+        // The obstacles are out of reach, on springs that nothing stretches.
+        let away = |(row, &gap): (usize, &f64)| if is_pressed(row) { f64::INFINITY } else { gap };
+        let gap = problem.gap().iter().enumerate().map(away).collect();
+        let load = parts.unknowns.pressed_by(problem.load().to_vec(), |_| 0.0);
+        let stiffness = parts.unknowns.on_springs(problem.stiffness())?;
+        let mut solution = solve(&ContactProblem::new(stiffness, load, problem.contact().clone(), gap)?, settings)?;
+        let left = problem.violation(&solution.displacement);
+        for &obstacle in &parts.unknowns.pressed {
+            let Some(travel) = parts.unknowns.travel(obstacle) else { continue };
+            let rows = problem.contact().column(travel);
+            // Adding zero removes the sign of a zero.
+            solution.displacement[travel] =
+                0.0 + rows.map(|(row, lean)| -left[row] / lean).fold(f64::INFINITY, f64::min);
+        }
+        Ok(solution)
+    }
+
+    /// The meaning of each unknown of the problem, in order.
+    pub fn meanings(&self) -> impl Iterator<Item = crate::scene::Meaning> + '_ {
+        let parts = &self.parts;
+        parts.unknowns.meanings(&parts.dofs, parts.body.dimension(), &parts.rigid_faces)
+    }
+
+    /// Number of copies of the modelled part in the whole, by planes of symmetry.
+    pub fn parts_of_whole(&self) -> f64 {
+        self.parts.symmetry.parts()
+    }
+
+    /// The sum of the contact forces on each obstacle and pair of bodies, in force, `>= 0`, for the multipliers of the rows (in force,
+    /// `<= 0`).
+    pub fn obstacle_forces(&self, multiplier: &[f64]) -> Vec<f64> {
+        let mut forces = vec![0.0; self.obstacles().len()];
+        self.rows().iter().zip(multiplier).for_each(|(row, lambda)| forces[row.obstacle] -= lambda);
+        forces
+    }
+
+    /// Number of copies of an obstacle in the whole: a plane of symmetry normal to its approach direction gives it a mirror image.
+    pub(crate) fn copies_of_obstacle(&self, obstacle: usize) -> f64 {
+        self.parts_of_whole() / self.parts.parts_of_obstacle(obstacle)
+    }
+
+    /// Number of places at which a contact at these nodes stands on one copy of an obstacle.
+    pub(crate) fn contacts_of(&self, obstacle: usize, nodes: &[usize]) -> usize {
+        let places: Vec<[f64; 3]> = nodes.iter().map(|&node| self.mesh().nodes()[node]).collect();
+        let approach = self.obstacles()[obstacle].approach();
+        self.parts.symmetry.contacts(&places, |axis| approach[axis] == 0.0)
+    }
+
+    /// Returns `true` if two nodes lie on one plane of symmetry.
+    pub(crate) fn share_plane(&self, node: usize, other: usize) -> bool {
+        let nodes = self.mesh().nodes();
+        self.parts.symmetry.share_plane(&nodes[node], &nodes[other])
+    }
+
+    /// The places of the node `other` and its mirror images that are around a node in the whole.
+    pub(crate) fn images_around(&self, node: usize, other: usize) -> Vec<[f64; 3]> {
+        let nodes = self.mesh().nodes();
+        self.parts.symmetry.images_around(&nodes[node], &nodes[other])
+    }
+
+    /// The title of the scene, as reports and pictures print it.
+    pub fn title(&self) -> &str {
+        &self.parts.title
+    }
+
+    /// Names of the units of length and force, for tables and pictures.
+    pub fn units(&self) -> &Units {
+        &self.parts.units
+    }
+
+    /// The scene-wide gap, in length: the shift of every obstacle along its approach direction; negative into the body.
+    pub fn gap(&self) -> f64 {
+        self.gap
+    }
+
+    /// The body, or all bodies in one: mesh, materials, thickness.
+    pub fn body(&self) -> &ElasticBody {
+        &self.parts.body
+    }
+
+    /// The mesh of all bodies, further bodies after the first.
+    pub fn mesh(&self) -> &Mesh {
+        self.parts.body.mesh()
+    }
+
+    /// Free and supported dofs.
+    pub fn dofs(&self) -> &DofMap {
+        &self.parts.dofs
+    }
+
+    /// The obstacles in the order of the scene, then those of a user.
+    pub fn obstacles(&self) -> &[PlacedObstacle] {
+        &self.parts.obstacles
+    }
+
+    /// The surface of obstacle `obstacle` at this model's gap as a polyline [x, y], in length, as
+    /// [`PlacedObstacle::outline`]; empty if there is no such obstacle.
+    pub fn obstacle_outline(&self, obstacle: usize, segments: usize) -> Vec<[f64; 2]> {
+        self.obstacles().get(obstacle).map_or_else(Vec::new, |one| one.outline(one.shift(self.gap), segments))
+    }
+
+    /// The contact rows, in the order of the rows of [`problem`](Self::problem): obstacle by obstacle, each in the
+    /// order of its boundary.
+    pub fn rows(&self) -> &[ContactRow] {
+        &self.rows
+    }
+
+    /// Warnings for the reader of the answer.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// Returns `true` if the supports alone hold all bodies; otherwise contact holds some rigid-body mode.
+    pub(crate) fn is_supported(&self) -> bool {
+        RigidBodyModes::of_parts(&self.parts).free(&self.parts, &[]).is_empty()
+    }
+
+    /// The contact problem in the free dofs.
+    pub fn problem(&self) -> &ContactProblem {
+        &self.problem
+    }
+
+    /// Nodal displacements, length `dim * n_nodes`, in length, from those of the free dofs; supports have their
+    /// prescribed values.
+    ///
+    /// # Errors
+    /// [`qp::Error::Length`] if `displacement` does not have one entry per free dof.
+    pub fn nodal_displacement(&self, displacement: &[f64]) -> Result<Vec<f64>, Error> {
+        self.parts.dofs.expand(&self.parts.unknowns.displacement(displacement)?)
+    }
+
+    /// Travel of an obstacle that a force presses, against its approach direction, in length, in a solution with these `displacement`s;
+    /// `None` for an obstacle at rest.
+    ///
+    /// # Errors
+    /// As [`Model::nodal_displacement`].
+    pub fn travel(&self, displacement: &[f64], obstacle: usize) -> Result<Option<f64>, Error> {
+        self.parts.unknowns.motion(displacement)?;
+        Ok(self.parts.unknowns.travel(obstacle).map(|unknown| displacement[unknown]))
+    }
+
+    /// Contact pressure of each row, `-lambda` over the tributary area projected along the row, in force per area,
+    /// `>= 0` in compression. `multiplier` has one entry per contact row, in force.
+    ///
+    /// The end of a quadratic edge on an axis of revolution has no tributary area, or next to none if the edge is
+    /// curved; it shows the pressure of the candidate next to it.
+    ///
+    /// # Errors
+    /// [`qp::Error::Length`] if `multiplier` does not have one entry per contact row.
+    pub fn pressure(&self, multiplier: &[f64]) -> Result<Vec<f64>, Error> {
+        self.check_multiplier(multiplier)?;
+        let largest = self.rows.iter().fold(0.0, |largest: f64, row| largest.max(row.tributary_area));
+        let (mesh, nodes) = (self.mesh(), self.mesh().nodes());
+        let ends_on_axis = self.body().formulation().is_axisymmetric() && mesh.kind().is_quadratic();
+        let reach = NO_AREA * mesh.size();
+        let has_area = |row: &ContactRow| {
+            row.tributary_area > NO_AREA * largest && !(ends_on_axis && nodes[row.node][0].abs() <= reach)
+        };
+        let of_row = |index: usize| -multiplier[index] / self.rows[index].projected_area();
+        let pressure = |(index, row): (usize, &ContactRow)| {
+            if has_area(row) {
+                return of_row(index);
+            }
+            let away = |other: &ContactRow| distance(nodes[row.node], nodes[other.node]);
+            let others = self.rows.iter().enumerate().filter(|(_, other)| other.obstacle == row.obstacle);
+            let with_area = others.filter(|(_, other)| has_area(other));
+            with_area.min_by(|a, b| away(a.1).total_cmp(&away(b.1))).map_or(0.0, |(next, _)| of_row(next))
+        };
+        Ok(self.rows.iter().enumerate().map(pressure).collect())
+    }
+
+    /// Nodal contact forces on the body, `lambda n`, length `dim * n_nodes`, in force, along the positive axes; with
+    /// two bodies the opposite forces on the other body. `multiplier` has one entry per contact row, in force, `<= 0`.
+    /// On quadratic faces in space they are those of the shape functions: zero or negative at corners under a uniform
+    /// pressure.
+    ///
+    /// # Errors
+    /// As [`Model::pressure`].
+    pub fn contact_forces(&self, multiplier: &[f64]) -> Result<Vec<f64>, Error> {
+        self.check_multiplier(multiplier)?;
+        let dimension = self.body().dimension();
+        let mut forces = vec![0.0; self.parts.dofs.nodal_count()];
+        for (row, lambda) in self.rows.iter().zip(multiplier) {
+            for (node, sign) in row.ends() {
+                let entries = &mut forces[dimension * node..dimension * (node + 1)];
+                entries.iter_mut().zip(row.normal).for_each(|(entry, component)| *entry += sign * lambda * component);
+            }
+        }
+        self.parts.dofs.basis.scatter(&mut forces, dimension);
+        Ok(forces)
+    }
+
+    /// External loads at all nodes, length `dim * n_nodes`, order `[f_x0, f_y0, f_x1, ...]`, in force, along the
+    /// positive axes.
+    pub fn nodal_load(&self) -> &[f64] {
+        &self.parts.load
+    }
+
+    /// The point of application of the force of a row for moments: the node, or, in the middle of a curved edge, its coefficient.
+    pub(crate) fn place(&self, node: usize) -> [f64; 3] {
+        self.parts.dofs.basis.place(self.mesh().nodes(), node)
+    }
+
+    pub(crate) fn check_multiplier(&self, multiplier: &[f64]) -> Result<(), Error> {
+        Ok(qp::Error::check_length("multiplier", multiplier.len(), self.rows.len(), "contact rows")?)
+    }
+}

@@ -1,0 +1,85 @@
+//! The components of a model before its contact rows.
+
+use super::held::Held;
+use super::rigid_face::RigidFace;
+use super::symmetry::Symmetry;
+use super::unknowns::Unknowns;
+use crate::error::Error;
+use crate::fem::assembly::{DofMap, Springs};
+use crate::fem::body::ElasticBody;
+use crate::scene::input::obstacle::PlacedObstacle;
+use crate::scene::{Units, Warning};
+use signorini_qp::SymmetricMatrix;
+
+/// The data that do not depend on the gap.
+#[derive(Debug)]
+pub(crate) struct Parts {
+    pub title: String,
+    pub units: Units,
+    pub body: ElasticBody,
+    pub dofs: DofMap,
+    /// The prescribed components of the nodes.
+    pub held: Held,
+    /// Number of supports in the scene.
+    pub supports: usize,
+    /// `true` if a support may replace the other half of a symmetric body.
+    pub is_part: bool,
+    /// External load at all nodes, length `dim * n_nodes`.
+    pub load: Vec<f64>,
+    /// Springs to the ground, in the order of the scene.
+    pub springs: Vec<Springs>,
+    pub symmetry: Symmetry,
+    /// Boundaries that move as rigid plates, in the order of the scene.
+    pub rigid_faces: Vec<RigidFace>,
+    pub obstacles: Vec<PlacedObstacle>,
+    pub unknowns: Unknowns,
+    pub warnings: Vec<Warning>,
+    /// `true` if the analysis is dynamic: inertia then resists motions that no support holds.
+    pub moves: bool,
+}
+
+impl Parts {
+    /// The stiffness of the free dofs with the springs added.
+    ///
+    /// # Errors
+    /// [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) if it overflows.
+    pub fn on_springs(&self, of_body: SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
+        let add = |stiffness: SymmetricMatrix, springs: &Springs| {
+            springs.added_to(&stiffness, &self.dofs, self.body.dimension())
+        };
+        self.springs.iter().try_fold(of_body, add)
+    }
+
+    /// The external load with the forces of springs on nodes with prescribed displacements.
+    ///
+    /// # Errors
+    /// None for the dofs of the body.
+    pub fn load_on_springs(&self) -> Result<Vec<f64>, Error> {
+        let mut load = self.load.clone();
+        if !self.springs.is_empty() {
+            let lifted = self.dofs.expand(&vec![0.0; self.dofs.free().len()])?;
+            load.iter_mut().zip(self.spring_forces(&lifted)).for_each(|(load, force)| *load += force);
+        }
+        Ok(load)
+    }
+
+    /// The forces of all springs on the nodes in a nodal displacement.
+    pub fn spring_forces(&self, displacement: &[f64]) -> Vec<f64> {
+        let mut forces = vec![0.0; displacement.len()];
+        for springs in &self.springs {
+            let own = springs.forces(displacement, self.body.dimension());
+            forces.iter_mut().zip(own).for_each(|(force, own)| *force += own);
+        }
+        forces
+    }
+
+    /// The share of the modelled part of the body in a force that presses an obstacle.
+    pub fn share_of(&self, obstacle: usize, force: f64) -> f64 {
+        force / self.parts_of_obstacle(obstacle)
+    }
+
+    /// Number of copies of the modelled part that one copy of an obstacle presses.
+    pub fn parts_of_obstacle(&self, obstacle: usize) -> f64 {
+        self.symmetry.parts_of_obstacle(self.obstacles[obstacle].approach())
+    }
+}

@@ -1,0 +1,348 @@
+//! Resultants: the force, moment and centre of each obstacle, pair of bodies, support, and of the loads.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use serde::Serialize;
+
+use super::held::Holder;
+use super::rigid_face::Motion;
+use crate::error::Error;
+use crate::fem::assembly::Springs;
+use crate::fem::formulation::Formulation;
+use crate::fem::geometry::{cross, dot, length, minus};
+use crate::scene::Model;
+use crate::scene::input::obstacle::PlacedObstacle;
+use crate::scene::input::schema::approach::Rule;
+
+/// Forces that cancel to this share of the sum of their magnitudes leave only rounding, which has no line of action.
+const CANCELS: f64 = 1e-10;
+
+/// The basis of the forces if a sliding support may be a plane of symmetry.
+const MESHED_PART: &str = "of the meshed part: a plane of symmetry at a sliding support doubles it";
+
+/// The resultant of all forces of one kind on the body: force, moment, and a point on the line of action.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Resultant {
+    /// The source of the forces: `obstacles[0]`; `pair[0]` for the first obstacle that is another body; `supports[0]`; `loads`.
+    pub of: String,
+    /// The body on which the forces act, if there are several; the first one is called `body`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on: Option<String>,
+    /// The rule for the rows of the obstacle; `None` for a user-defined obstacle, and for supports and loads.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rule: Option<Rule>,
+    /// Number of nodes on which the forces act.
+    pub nodes: usize,
+    /// The force on the body, one component for each coordinate, in force, along the positive axes. In an axisymmetric
+    /// model the radial component is summed around the circle and cancels.
+    pub force: Vec<f64>,
+    /// The moment about the origin, in force times length, counterclockwise positive, of the undeformed body: about z
+    /// in the plane, three components in space, empty on a line and in an axisymmetric model.
+    pub moment: Vec<f64>,
+    /// A point on the line of action, one coordinate for each axis, in length: the force at this point gives the moment
+    /// above, except its part along the force. For parallel forces it is their centre. `None` if the forces cancel.
+    pub centre: Option<Vec<f64>>,
+    /// Displacement of an obstacle that a force presses, against its approach direction, in length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub travel: Option<f64>,
+    /// The motion of a rigid face.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<FaceMotion>,
+}
+
+/// The motion of a rigid face.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FaceMotion {
+    /// Displacement of its centre, in length, a component for each coordinate.
+    pub displacement: Vec<f64>,
+    /// Its rotation, in radians: about z in the plane, three components in space, otherwise empty.
+    pub rotation: Vec<f64>,
+}
+
+/// The sum of forces at points.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sum {
+    /// Each force with its point.
+    forces: Vec<([f64; 3], [f64; 3])>,
+}
+
+impl Sum {
+    pub fn add(&mut self, at: [f64; 3], force: [f64; 3]) {
+        if force != [0.0; 3] {
+            self.forces.push((at, force));
+        }
+    }
+
+    pub fn force(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| self.forces.iter().fold(0.0, |sum, (_, force)| sum + force[axis]))
+    }
+
+    fn moment(&self) -> [f64; 3] {
+        let moments = || self.forces.iter().map(|&(at, force)| cross(at, force));
+        [0, 1, 2].map(|axis| moments().fold(0.0, |sum, moment| sum + moment[axis]))
+    }
+
+    /// The centre of the forces along their resultant, moved perpendicular to it onto the line of action if the forces have moments; in
+    /// an axisymmetric model they have no moments.
+    pub fn centre(&self, formulation: &Formulation) -> Option<[f64; 3]> {
+        let (force, moment) = (self.force(), self.moment());
+        let magnitudes = self.forces.iter().fold(0.0, |sum, &(_, force)| sum + length(force));
+        let square = dot(force, force);
+        if square.sqrt() <= CANCELS * magnitudes {
+            return None;
+        }
+        // Relative to the first point, so that a body far from the origin loses no digits.
+        let &(first, _) = self.forces.first()?;
+        let weighted = self.forces.iter().fold([0.0; 3], |sum, &(at, of)| {
+            let (away, weight) = (minus(at, first), dot(of, force) / square);
+            [0, 1, 2].map(|axis| sum[axis] + weight * away[axis])
+        });
+        let centre = [0, 1, 2].map(|axis| first[axis] + weighted[axis]);
+        if formulation.is_axisymmetric() {
+            return Some(centre);
+        }
+        let left = minus(moment, cross(centre, force));
+        let across = cross(force, left);
+        Some([0, 1, 2].map(|axis| centre[axis] + across[axis] / square))
+    }
+
+    fn resultant(&self, model: &Model, of: String) -> Resultant {
+        let dimension = model.body().dimension();
+        let formulation = model.body().formulation();
+        let moment = self.moment();
+        Resultant {
+            of,
+            on: None,
+            rule: None,
+            nodes: self.forces.len(),
+            force: self.force()[..dimension].to_vec(),
+            moment: match dimension {
+                2 if !formulation.is_axisymmetric() => vec![moment[2]],
+                3 => moment.to_vec(),
+                _ => Vec::new(),
+            },
+            centre: self.centre(formulation).map(|centre| centre[..dimension].to_vec()),
+            travel: None,
+            motion: None,
+        }
+    }
+}
+
+/// Removes the centre of each force that is rounding relative to the largest one: its position would be arbitrary.
+pub(crate) fn without_rounding(all: &mut [Resultant]) {
+    let size = |resultant: &Resultant| resultant.force.iter().fold(0.0, |size: f64, part| size.hypot(*part));
+    let largest = all.iter().map(size).fold(0.0, f64::max);
+    all.iter_mut()
+        .filter(|resultant| size(resultant) <= CANCELS * largest)
+        .for_each(|resultant| resultant.centre = None);
+}
+
+impl Model {
+    /// The resultants of the contact forces, obstacle by obstacle, from the multipliers of all rows (one entry per
+    /// contact row, in force, `<= 0`).
+    ///
+    /// # Errors
+    /// [`qp::Error::Length`](signorini_qp::Error::Length) if `multiplier` does not have one entry per contact row.
+    pub fn contact_resultants(&self, multiplier: &[f64]) -> Result<Vec<Resultant>, Error> {
+        self.check_multiplier(multiplier)?;
+        let mut sums = vec![Sum::default(); self.obstacles().len()];
+        for (row, &lambda) in self.rows().iter().zip(multiplier) {
+            let force = row.normal.map(|component| 0.0 + lambda * component);
+            // A plane of symmetry normal to its approach direction gives an obstacle a mirror image, whose force does not count here.
+            let approach = self.obstacles()[row.obstacle].approach();
+            self.add_images(&mut sums[row.obstacle], self.place(row.node), force, |axis| approach[axis] == 0.0);
+        }
+        let names = self.obstacle_names();
+        let resultant = |(index, sum): (usize, &Sum)| {
+            let (obstacle, of) = (&self.obstacles()[index], names[index].clone());
+            let first = obstacle.candidates().first().map(|&(node, _)| node);
+            Resultant { on: self.name_of_body(first), rule: obstacle.rule(), ..sum.resultant(self, of) }
+        };
+        Ok(sums.iter().enumerate().map(resultant).collect())
+    }
+
+    /// The names of the obstacles in reports: `obstacles[i]`, and `pair[k]` for the k-th obstacle that is another body.
+    pub fn obstacle_names(&self) -> Vec<String> {
+        let mut pairs = 0..;
+        let name = |(index, obstacle): (usize, &PlacedObstacle)| match obstacle.rigid() {
+            Some(_) => format!("obstacles[{index}]"),
+            None => format!("pair[{}]", pairs.next().unwrap_or_default()),
+        };
+        self.obstacles().iter().enumerate().map(name).collect()
+    }
+
+    /// The names of the supports in reports: `supports[i]`.
+    pub fn support_names(&self) -> impl Iterator<Item = String> {
+        (0..self.parts.supports).map(|index| format!("supports[{index}]"))
+    }
+
+    /// The resultants of the support reactions, support by support, from the force on each held node; its part along free dofs is left
+    /// out.
+    pub(crate) fn support_resultants(&self, reaction: impl Fn(usize) -> [f64; 3]) -> Vec<Resultant> {
+        let nodes = self.mesh().nodes();
+        let mut supports = vec![Sum::default(); self.parts.supports];
+        let mut held: Vec<Option<usize>> = vec![None; supports.len()];
+        for (node, shares) in self.parts.held.shares(reaction) {
+            // A support may hold a node in several directions.
+            let mut of_node = BTreeMap::<usize, [f64; 3]>::new();
+            for (by, force) in shares {
+                if let Holder::Support { index, .. } = by {
+                    let sum = of_node.entry(index).or_default();
+                    *sum = [0, 1, 2].map(|axis| sum[axis] + force[axis]);
+                }
+            }
+            for (index, force) in of_node {
+                held[index] = held[index].or(Some(node));
+                self.add_images(&mut supports[index], nodes[node], force, |_| true);
+            }
+        }
+        let of_support = |((sum, held), name): ((&Sum, Option<usize>), String)| Resultant {
+            on: self.name_of_body(held),
+            ..sum.resultant(self, name)
+        };
+        supports.iter().zip(held).zip(self.support_names()).map(of_support).collect()
+    }
+
+    /// Adds a force on the modelled part with its mirror images in those planes of symmetry for whose axis `across` is `true`.
+    fn add_images(&self, sum: &mut Sum, at: [f64; 3], force: [f64; 3], across: impl Fn(usize) -> bool) {
+        self.parts.symmetry.images(at, force, across).into_iter().for_each(|(at, force)| sum.add(at, force));
+    }
+
+    /// The sum of nodal forces (length `dim * n_nodes`) on the whole body.
+    fn sum_of(&self, forces: &[f64]) -> Sum {
+        let mut sum = Sum::default();
+        for (node, &at) in self.mesh().nodes().iter().enumerate() {
+            self.add_images(&mut sum, at, self.at_node(forces, node), |_| true);
+        }
+        sum
+    }
+
+    /// The resultants of the springs on the body, in the order of the scene, at a nodal displacement.
+    pub(crate) fn spring_resultants(&self, displacement: &[f64]) -> Vec<Resultant> {
+        let of_springs = |(index, springs): (usize, &Springs)| {
+            let forces = springs.forces(displacement, self.body().dimension());
+            self.sum_of(&forces).resultant(self, format!("springs[{index}]"))
+        };
+        self.parts.springs.iter().enumerate().map(of_springs).collect()
+    }
+
+    /// The forces on the nodes of those rigid faces for which `keeps` returns `true`, among all forces that hold the body.
+    ///
+    /// # Errors
+    /// [`qp::Error::Length`](signorini_qp::Error::Length) if the forces are not those of all nodes.
+    pub(crate) fn force_of_faces(&self, forces: &[f64], keeps: impl Fn(usize) -> bool) -> Result<Vec<f64>, Error> {
+        let faces = self.parts.rigid_faces.iter().enumerate().filter(|(index, _)| keeps(*index));
+        let mut on_face = vec![false; self.mesh().nodes().len()];
+        faces.flat_map(|(_, face)| &face.nodes).for_each(|&node| on_face[node] = true);
+        let dimension = self.body().dimension();
+        self.dofs().part(forces, |dof| on_face[dof / dimension])
+    }
+
+    /// The resultants of the rigid faces on the body, in the order of the scene, with their motions.
+    ///
+    /// # Errors
+    /// As [`Model::force_of_faces`].
+    pub(crate) fn face_resultants(&self, forces: &[f64], unknowns: &[f64]) -> Result<Vec<Resultant>, Error> {
+        let mut all = Vec::with_capacity(self.parts.rigid_faces.len());
+        for (index, face) in self.parts.rigid_faces.iter().enumerate() {
+            let sum = self.sum_of(&self.force_of_faces(forces, |other| other == index)?);
+            let found = self.parts.unknowns.motions(unknowns, index);
+            let amount = |(motion, unknown): (&Motion, Option<f64>)| {
+                let by_unknown = unknown.map(|unknown| unknown * face.unit(motion));
+                (motion.kind, by_unknown.or(motion.prescribed).unwrap_or(0.0))
+            };
+            let moved: Vec<(usize, f64)> = face.motions.iter().zip(found).map(amount).collect();
+            let of = |kinds: Range<usize>| {
+                moved.iter().filter(|entry| kinds.contains(&entry.0)).map(|entry| entry.1).collect::<Vec<f64>>()
+            };
+            let motion = FaceMotion { displacement: of(0..3), rotation: of(3..6) };
+            let on = self.name_of_body(face.nodes.first().copied());
+            all.push(Resultant { on, motion: Some(motion), ..sum.resultant(self, format!("rigid-faces[{index}]")) });
+        }
+        Ok(all)
+    }
+
+    /// The resultant of the loads, if there are any.
+    pub(crate) fn load_resultant(&self) -> Option<Resultant> {
+        let loads = self.sum_of(self.nodal_load());
+        (!loads.forces.is_empty()).then(|| loads.resultant(self, "loads".into()))
+    }
+
+    /// The force or the displacement of a node among those of all nodes (length `dim * n_nodes`).
+    pub(crate) fn at_node(&self, forces: &[f64], node: usize) -> [f64; 3] {
+        let dimension = self.body().dimension();
+        let of_node = &forces[dimension * node..dimension * (node + 1)];
+        [0, 1, 2].map(|axis| of_node.get(axis).copied().unwrap_or(0.0))
+    }
+
+    /// The body of a node, if there are several.
+    fn name_of_body(&self, node: Option<usize>) -> Option<String> {
+        let regions = self.body().regions();
+        let region = regions.iter().find(|region| node.is_some_and(|node| region.nodes().contains(&node)))?;
+        (regions.len() > 1).then(|| if region.name().is_empty() { "body".into() } else { region.name().into() })
+    }
+
+    /// The reference of the forces in a report, as `per metre, of the whole body, 2 times the meshed part`; empty if they are those of the whole body.
+    ///
+    /// With planes of symmetry the report gives the forces of the whole, a multiple of the modelled part. Without them the body counts as a
+    /// part if a support lets a flat boundary slide along itself and prescribes nothing else: that may be a plane of symmetry.
+    pub fn basis_of_forces(&self) -> String {
+        let unit = match self.units().length.as_str() {
+            "m" => "metre",
+            "mm" => "millimetre",
+            "" => "unit of length",
+            other => other,
+        };
+        let across = match *self.body().formulation() {
+            Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => match thickness == 1.0 {
+                true => Some(format!("per {unit}")),
+                false => Some(format!("of a thickness of {thickness} {}", self.units().length).trim_end().to_string()),
+            },
+            Formulation::Axisymmetric => Some("per full circle".to_string()),
+            Formulation::Bar { .. } | Formulation::Space => None,
+        };
+        let part = match self.parts_of_whole() {
+            1.0 => self.parts.is_part.then(|| MESHED_PART.to_string()),
+            parts => Some(format!("of the whole body, {parts} times the meshed part")),
+        };
+        across.into_iter().chain(part).collect::<Vec<_>>().join(", ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLANE: Formulation = Formulation::PlaneStrain { thickness: 1.0 };
+
+    /// Parallel forces 1 and 3 at the ends of a rod of length 4: the centre is at three quarters.
+    #[test]
+    fn the_centre_of_parallel_forces_is_their_weighted_mean() {
+        let mut sum = Sum::default();
+        sum.add([1.0, 2.0, 0.0], [0.0, -1.0, 0.0]);
+        sum.add([5.0, 2.0, 0.0], [0.0, -3.0, 0.0]);
+        assert_eq!(sum.force(), [0.0, -4.0, 0.0]);
+        assert_eq!(sum.moment(), [0.0, 0.0, -16.0]);
+        assert_eq!(sum.centre(&PLANE), Some([4.0, 2.0, 0.0]));
+    }
+
+    /// Forces that are not parallel: the moment of the resultant at its centre is that of the forces.
+    #[test]
+    fn the_resultant_at_its_centre_has_the_moment() {
+        let mut sum = Sum::default();
+        for (at, force) in [([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]), ([2.0, 0.0, 0.0], [0.0, 3.0, 0.0])] {
+            sum.add(at, force);
+        }
+        let centre = sum.centre(&PLANE).unwrap();
+        assert!(length(minus(cross(centre, sum.force()), sum.moment())) < 1e-14, "{centre:?}");
+    }
+
+    #[test]
+    fn a_couple_has_no_centre() {
+        let mut sum = Sum::default();
+        sum.add([0.0, 0.0, 0.0], [0.0, 0.1, 0.0]);
+        sum.add([1.0, 0.0, 0.0], [0.0, -0.1, 0.0]);
+        assert_eq!((sum.force(), sum.centre(&PLANE)), ([0.0; 3], None));
+    }
+}

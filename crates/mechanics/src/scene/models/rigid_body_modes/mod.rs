@@ -1,0 +1,287 @@
+//! Rigid-body modes: those that nothing resists, and their names.
+
+mod unit;
+
+use nalgebra::DMatrix;
+use signorini_qp as qp;
+
+use super::parts::Parts;
+use super::rigid_face::{Motion, RigidFace};
+use super::rows::ContactRow;
+use crate::error::Error;
+use crate::fem::body::ElasticBody;
+use crate::fem::geometry::COORDINATES;
+use signorini_qp::dot;
+use unit::{AXES, NAMED, Sense, UnitMotions};
+
+/// A motion is held if its singular value exceeds this times the largest. A free motion has zero up to rounding, 1e-16, and any intended
+/// support or normal gives a value far above.
+const HELD: f64 = 1e-10;
+
+/// The rigid-body modes of the bodies of a model; each body moves independently.
+///
+/// Amplitudes are multiples of the unit motions, six for each body in turn.
+#[derive(Clone, Debug)]
+pub(crate) struct RigidBodyModes {
+    /// The elastic bodies, followed by the pressed obstacles.
+    bodies: Vec<UnitMotions>,
+    dimension: usize,
+    /// The obstacles that follow the bodies.
+    obstacles: Vec<usize>,
+}
+
+impl RigidBodyModes {
+    pub fn of(body: &ElasticBody) -> Self {
+        let bodies = body.regions().iter().map(|region| UnitMotions::of(body, region)).collect();
+        RigidBodyModes { bodies, dimension: body.dimension(), obstacles: Vec::new() }
+    }
+
+    /// The same with the pressed obstacles: each moves along its approach direction.
+    pub fn of_parts(parts: &Parts) -> Self {
+        let mut modes = Self::of(&parts.body);
+        let size = parts.body.mesh().size();
+        modes.obstacles = parts.unknowns.pressed.clone();
+        let of_obstacle = |&index: &usize| UnitMotions::of_obstacle(index, parts.obstacles[index].approach(), size);
+        modes.bodies.extend(parts.unknowns.pressed.iter().map(of_obstacle));
+        modes
+    }
+
+    /// The indices of those amplitudes whose motions have no strain energy.
+    fn modes(&self) -> Vec<usize> {
+        let of_body = |(body, motions): (usize, &UnitMotions)| motions.modes.iter().map(move |mode| 6 * body + mode);
+        self.bodies.iter().enumerate().flat_map(|entry| of_body(entry).collect::<Vec<_>>()).collect()
+    }
+
+    /// The component along `direction` of each unit motion at a place that moves with a node; zero for those of other bodies.
+    fn along(&self, node: usize, at: [f64; 3], direction: [f64; 3]) -> Vec<f64> {
+        let of_body = |motions: &UnitMotions| match motions.nodes.contains(&node) {
+            true => motions.along(at, direction),
+            false => [0.0; 6],
+        };
+        self.bodies.iter().flat_map(of_body).collect()
+    }
+
+    /// The component of each unit motion at a nodal dof: along an axis of the node's frame if it has one.
+    fn at_dof(&self, parts: &Parts, dof: usize) -> Vec<f64> {
+        let (node, axis) = (dof / self.dimension, dof % self.dimension);
+        self.along(node, parts.body.mesh().nodes()[node], parts.dofs.axes(node)[axis])
+    }
+
+    /// The component of each unit motion along a contact row, positive towards closing.
+    fn in_row(&self, nodes: &[[f64; 3]], row: &ContactRow) -> Vec<f64> {
+        let mut components = vec![0.0; 6 * self.bodies.len()];
+        for (node, sign) in row.ends() {
+            let of_node = self.along(node, nodes[node], row.normal);
+            components.iter_mut().zip(of_node).for_each(|(component, part)| *component += sign * part);
+        }
+        if let Some(place) = self.obstacles.iter().position(|&obstacle| obstacle == row.obstacle) {
+            let body = self.bodies.len() - self.obstacles.len() + place;
+            let of_obstacle = self.bodies[body].along([0.0; 3], row.normal);
+            (0..6).for_each(|mode| components[6 * body + mode] -= of_obstacle[mode]);
+        }
+        components
+    }
+
+    /// The travel of each pressed obstacle in a motion, against its approach direction.
+    fn travels(&self, parts: &Parts, amplitudes: &[f64]) -> Vec<f64> {
+        let first = self.bodies.len() - self.obstacles.len();
+        let travel = |(place, &obstacle): (usize, &usize)| {
+            let along = self.bodies[first + place].along([0.0; 3], parts.obstacles[obstacle].approach());
+            -dot(&along, &amplitudes[6 * (first + place)..6 * (first + place + 1)])
+        };
+        self.obstacles.iter().enumerate().map(travel).collect()
+    }
+
+    /// The component of each unit motion along each motion that a rigid face prescribes.
+    fn prescribed(&self, face: &RigidFace) -> Vec<Vec<f64>> {
+        let Some(&node) = face.nodes.first() else { return Vec::new() };
+        let of_motion = |motion: &Motion| {
+            let (one, two) = ((motion.kind + 1) % 3, (motion.kind + 2) % 3);
+            if motion.kind < 3 {
+                return self.along(node, face.centre, COORDINATES[motion.kind]);
+            }
+            // A rotation is the difference along the second next axis between the motions of the centre and of a place one step along the
+            // next axis.
+            let mut beside = face.centre;
+            beside[one] += 1.0 / face.unit(motion);
+            let [near, far] = [face.centre, beside].map(|place| self.along(node, place, COORDINATES[two]));
+            far.iter().zip(near).map(|(far, near)| far - near).collect()
+        };
+        face.motions.iter().filter(|motion| motion.prescribed.is_some()).map(of_motion).collect()
+    }
+
+    /// Refuses bodies with a rigid-body mode that neither supports nor contact rows resist.
+    ///
+    /// # Errors
+    /// [`qp::Error::UnderHeld`] with the names of all such motions.
+    pub fn check_held(&self, parts: &Parts, rows: &[ContactRow]) -> Result<(), Error> {
+        let free = self.free(parts, rows);
+        let Some(first) = free.first() else { return Ok(()) };
+        let names: Vec<String> = free.iter().map(|motion| self.describe(motion, Sense::Either)).collect();
+        let of_free = parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(parts, dof), first)).collect();
+        let travels = self.travels(parts, first);
+        let travel = |obstacle: usize| {
+            self.obstacles.iter().position(|&other| other == obstacle).map_or(0.0, |place| travels[place])
+        };
+        let direction = parts.unknowns.of_motion(of_free, travel);
+        let advice = self.advice(parts, rows, &free);
+        Err(qp::Error::UnderHeld { mode: format!("{}: {advice}", names.join(", ")), direction }.into())
+    }
+
+    /// A basis of the motions that nothing resists: unit motions first.
+    pub fn free(&self, parts: &Parts, rows: &[ContactRow]) -> Vec<Vec<f64>> {
+        let nodes = parts.body.mesh().nodes();
+        let supported = (0..parts.dofs.nodal_count()).filter(|&dof| parts.dofs.number(dof).is_none());
+        let of_supports = supported.map(|dof| self.at_dof(parts, dof));
+        let of_rows = rows.iter().map(|row| self.in_row(nodes, row));
+        let held = parts.springs.iter().flat_map(|springs| springs.held());
+        let of_springs = held.map(|(node, direction)| self.along(node, nodes[node], direction));
+        let of_faces = parts.rigid_faces.iter().flat_map(|face| self.prescribed(face));
+        let mut resisted: Vec<Vec<f64>> = of_supports.chain(of_rows).chain(of_springs).chain(of_faces).collect();
+        let (modes, amplitudes) = (self.modes(), 6 * self.bodies.len());
+        // At least one row for each motion; otherwise the decomposition would omit part of the null space.
+        resisted.resize(resisted.len().max(modes.len()), vec![0.0; amplitudes]);
+        let matrix = DMatrix::from_fn(resisted.len(), modes.len(), |row, column| resisted[row][modes[column]]);
+        let svd = matrix.svd(false, true);
+        let Some(right) = svd.v_t else { return Vec::new() };
+        let largest = svd.singular_values.max();
+        let mut null: Vec<Vec<f64>> = Vec::new();
+        for row in (0..modes.len()).filter(|&row| svd.singular_values[row] <= HELD * largest) {
+            let mut motion = vec![0.0; amplitudes];
+            modes.iter().enumerate().for_each(|(column, &mode)| motion[mode] = right[(row, column)]);
+            null.push(motion);
+        }
+        // Rotate the basis towards the unit motions, then add the rest.
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        for mode in modes {
+            if null.iter().map(|motion| motion[mode].powi(2)).sum::<f64>() > 1.0 - NAMED {
+                let mut unit = vec![0.0; amplitudes];
+                unit[mode] = 1.0;
+                basis.push(unit);
+            }
+        }
+        let units = basis.len();
+        for motion in &mut null {
+            for known in &basis {
+                let part = dot(motion, known);
+                motion.iter_mut().zip(known).for_each(|(value, known)| *value -= part * known);
+            }
+            let length = dot(motion, motion).sqrt();
+            if length > NAMED {
+                basis.push(motion.iter().map(|part| part / length).collect());
+            }
+        }
+        let rest = basis.split_off(units);
+        basis.extend(translations_first(&rest));
+        basis
+    }
+
+    /// The rigid-body mode closest to a nodal motion (length `dim * n_nodes`), if every body moves rigidly.
+    pub fn closest(&self, nodes: &[[f64; 3]], motion: &[f64]) -> Option<Vec<f64>> {
+        if !motion.iter().all(|value| value.is_finite()) {
+            return None;
+        }
+        let (mut amplitudes, mut rest) = (Vec::new(), 0.0_f64);
+        for body in &self.bodies {
+            let target = &motion[self.dimension * body.nodes.start..self.dimension * body.nodes.end];
+            let (fitted, away) = body.fit(&nodes[body.nodes.clone()], target)?;
+            amplitudes.extend(fitted);
+            rest = rest.hypot(away);
+        }
+        let whole = dot(motion, motion).sqrt();
+        (rest <= NAMED * whole && whole > 0.0).then_some(amplitudes)
+    }
+
+    /// The name of a motion with its sense.
+    pub fn name_of(&self, amplitudes: &[f64]) -> String {
+        self.describe(amplitudes, Sense::Signed)
+    }
+
+    /// The advice for bodies with these free motions.
+    pub fn advice(&self, parts: &Parts, rows: &[ContactRow], free: &[Vec<f64>]) -> String {
+        let advice =
+            if rows.is_empty() { "add a support" } else { "a frictionless obstacle does not hold it, add a guide" };
+        let advice = match self.support_against(parts, free) {
+            Some(support) => format!("{advice}, such as {support} in `supports`"),
+            None => advice.to_string(),
+        };
+        let is_free = parts.supports == 0 && parts.springs.is_empty();
+        let first =
+            if is_free { ". The scene has no supports: first hold the side where the body is fixed" } else { "" };
+        advice + first
+    }
+
+    /// A support of the first moving body against its free motions, as a scene writes it.
+    fn support_against(&self, parts: &Parts, free: &[Vec<f64>]) -> Option<String> {
+        let moves = |(place, _): &(usize, &UnitMotions)| {
+            free.iter().any(|motion| motion[6 * place..6 * (place + 1)].iter().any(|part| part.abs() > NAMED))
+        };
+        let (place, body) = self.bodies.iter().enumerate().find(moves)?;
+        let is_free = |axis: usize| {
+            // A translation along the axis, or a rotation about one of the two others.
+            let moving = [axis, 3 + (axis + 1) % 3, 3 + (axis + 2) % 3];
+            free.iter().any(|motion| moving.iter().any(|part| motion[6 * place + part].abs() > NAMED))
+        };
+        let is_touched = |name: &str| parts.obstacles.iter().any(|obstacle| obstacle.boundary() == name);
+        let of_body = |nodes: Vec<usize>| !nodes.is_empty() && nodes.iter().all(|node| body.nodes.contains(node));
+        let boundaries = parts.body.mesh().boundaries().iter().filter(|boundary| of_body(boundary.nodes()));
+        let boundary = boundaries.map(|boundary| boundary.name.as_str()).find(|name| !is_touched(name))?;
+        let held: Vec<String> =
+            (0..self.dimension).filter(|&axis| is_free(axis)).map(|axis| format!("\"{}\": 0", AXES[axis])).collect();
+        Some(format!("{{\"on\": {{\"boundary\": \"{boundary}\"}}, {}}}", held.join(", ")))
+    }
+
+    /// The name of a motion, body by body if there are several.
+    fn describe(&self, amplitudes: &[f64], sense: Sense) -> String {
+        let whole = dot(amplitudes, amplitudes).sqrt();
+        let mut names = Vec::new();
+        for (body, part) in self.bodies.iter().zip(amplitudes.as_chunks::<6>().0) {
+            if dot(part, part).sqrt() <= NAMED * whole {
+                continue;
+            }
+            let motion = body.describe(part, sense);
+            names.push(match body.name.as_str() {
+                _ if self.bodies.len() == 1 => motion,
+                "" => format!("{motion} of the first body"),
+                name => format!("{motion} of `{name}`"),
+            });
+        }
+        names.join(" with ")
+    }
+
+    /// The largest virtual work of the nodal `forces` (each of length `dim * n_nodes`) on the unit motions of the bodies, relative to the
+    /// sum of the magnitudes of all forces; works on motions that a body does not have are left out.
+    pub fn imbalance(&self, nodes: &[[f64; 3]], forces: &[&[f64]]) -> f64 {
+        let (mut largest, mut magnitude) = (0.0_f64, 0.0);
+        for body in &self.bodies {
+            let mut works = [0.0; 6];
+            for node in body.nodes.clone() {
+                for of_node in forces.iter().map(|forces| &forces[self.dimension * node..self.dimension * (node + 1)]) {
+                    let mut force = [0.0; 3];
+                    for (axis, component) in of_node.iter().enumerate().filter(|entry| body.modes.contains(&entry.0)) {
+                        force[axis] = *component;
+                    }
+                    for (work, part) in works.iter_mut().zip(body.along(nodes[node], force)) {
+                        *work += part;
+                    }
+                    magnitude += force[0].hypot(force[1]).hypot(force[2]);
+                }
+            }
+            largest = works.iter().fold(largest, |largest, work| largest.max(work.abs()));
+        }
+        if magnitude == 0.0 { 0.0 } else { largest / magnitude }
+    }
+}
+
+/// A basis of the same space of motions with translations before rotations: orthonormal before and after.
+fn translations_first(motions: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let amplitudes = motions.first().map_or(0, Vec::len);
+    let turning = |row: usize, part: usize| if part % 6 < 3 { 0.0 } else { motions[row][part] };
+    let turning = DMatrix::from_fn(motions.len(), amplitudes, turning);
+    let mix = if motions.len() > 1 { turning.svd(true, false).u } else { None };
+    let Some(mix) = mix else { return motions.to_vec() };
+    let part = |column: usize, part: usize| (0..motions.len()).map(|row| mix[(row, column)] * motions[row][part]).sum();
+    let mixed = |column: usize| (0..amplitudes).map(|place| part(column, place)).collect();
+    // Singular values decrease: the motion with the least rotation comes last.
+    (0..motions.len()).rev().map(mixed).collect()
+}

@@ -1,0 +1,149 @@
+//! Contact rows: B u <= g in the free dofs, from the candidates of every obstacle.
+
+use std::collections::BTreeMap;
+
+use super::parts::Parts;
+use crate::error::Error;
+use crate::fem::assembly::DofMap;
+use crate::fem::geometry::dot;
+use crate::scene::Warning;
+use crate::scene::input::entry::{COORDINATE_ROUNDING, finite, point, refused, wrong};
+use crate::scene::input::obstacle::ObstacleRow;
+use signorini_qp::SparseMatrix;
+
+/// One contact row: `normal . u <= gap` at a node, or `normal . (u - u_partner) <= gap` between two nodes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactRow {
+    /// Index of the node in the mesh, from 0.
+    pub node: usize,
+    /// Index of the node opposite to it, if the obstacle is another body.
+    pub partner: Option<usize>,
+    /// The obstacle, numbered from 0 in the order of the scene.
+    pub obstacle: usize,
+    /// Dimensionless unit vector [x, y, z] into the obstacle; zero beyond the dimension of the model.
+    pub normal: [f64; 3],
+    /// Signed distance of the undeformed node to the obstacle, or to its partner, along `normal`, in length; negative inside.
+    ///
+    /// The gap of the problem is this value minus the prescribed displacements of its nodes along the normal. At mid-side nodes of
+    /// quadratic faces in space, row and gap of the problem are those of a coefficient (see
+    /// [`DofMap::with_contact_faces`](crate::fem::DofMap::with_contact_faces)).
+    pub gap: f64,
+    /// Integral of the node's shape function over the candidate boundary, in area: thickness, cross-section or circumference included. On
+    /// quadratic faces in space the shape function is one with a positive integral.
+    pub tributary_area: f64,
+    /// Outward unit normal [x, y, z] of the body at the node: the mean over the facets around it; zero if these cancel.
+    pub outward: [f64; 3],
+}
+
+impl ContactRow {
+    /// The tributary area projected along `normal`, in area: a pressure times this area is the force of the row. The
+    /// area itself if the boundary faces away from the obstacle, where there is no force.
+    pub fn projected_area(&self) -> f64 {
+        let facing = dot(self.normal, self.outward);
+        if facing > 0.0 { self.tributary_area * facing.min(1.0) } else { self.tributary_area }
+    }
+
+    /// The nodes that the row couples: its own with the sign 1, and the partner with -1.
+    pub fn ends(&self) -> impl Iterator<Item = (usize, f64)> {
+        [(Some(self.node), 1.0), (self.partner, -1.0)].into_iter().filter_map(|(node, sign)| Some((node?, sign)))
+    }
+}
+
+/// The rows of all obstacles, with their matrix B and vector g in the free dofs.
+pub(crate) struct Rows {
+    pub rows: Vec<ContactRow>,
+    pub contact: SparseMatrix,
+    pub gap: Vec<f64>,
+    pub warnings: Vec<Warning>,
+}
+
+/// Builds the rows with all obstacles shifted by `scene_gap`.
+///
+/// If all dofs of a row are supported, no unknown can change it: it is left out if it is satisfied, and stays as an empty row with a
+/// negative gap if it is violated.
+pub(crate) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
+    finite("gap", scene_gap)?;
+    let (mesh, dofs) = (parts.body.mesh(), &parts.dofs);
+    let dimension = parts.body.dimension();
+    let rounding = COORDINATE_ROUNDING * mesh.size();
+    let (mut rows, mut gap, mut entries, mut warnings) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for index in 0..parts.obstacles.len() {
+        let found = of_obstacle(parts, index, scene_gap)?;
+        let travel = parts.unknowns.travel(index);
+        if found.is_empty() && travel.is_some() {
+            let message = "no travel produces the force: on its way the obstacle meets no node of its boundary; check its place, its \
+                           approach direction and its radius";
+            return Err(wrong(format!("obstacles[{index}].force"), message));
+        }
+        if found.is_empty() {
+            warnings.push(Warning::NoContactRow { obstacle: index });
+        }
+        let by_node: BTreeMap<usize, ContactRow> = match dofs.basis.is_nodal() {
+            true => BTreeMap::new(),
+            false => found.iter().map(|row| (row.node, *row)).collect(),
+        };
+        for row in found {
+            check_pair(dofs, &by_node, &row)?;
+            let mut free = Vec::new();
+            // Beyond the rim of the obstacle its gap is continued with the value at the node.
+            let mut remaining =
+                dofs.coefficient(row.node, |node| by_node.get(&node).map_or(row.gap, |other| other.gap));
+            for (node, sign) in row.ends() {
+                let along = dofs.along(node, &row.normal[..dimension]);
+                let (entries, prescribed) = parts.unknowns.combination(&along.free);
+                remaining -= sign * (along.prescribed + prescribed);
+                free.extend(entries.into_iter().map(|(column, component)| (rows.len(), column, sign * component)));
+            }
+            if let Some(travel) = travel {
+                free.push((rows.len(), travel, dot(row.normal, parts.obstacles[index].approach())));
+            }
+            if !free.is_empty() || remaining < -rounding {
+                entries.extend(free);
+                rows.push(row);
+                gap.push(remaining);
+            }
+        }
+    }
+    let contact = SparseMatrix::from_triplets(rows.len(), parts.unknowns.count(), &entries)?;
+    Ok(Rows { rows, contact, gap, warnings })
+}
+
+/// The rows of an obstacle, in the order of its candidates.
+fn of_obstacle(parts: &Parts, index: usize, scene_gap: f64) -> Result<Vec<ContactRow>, Error> {
+    let (nodes, dimension) = (parts.body.mesh().nodes(), parts.body.dimension());
+    let obstacle = &parts.obstacles[index];
+    let mut rows = Vec::with_capacity(obstacle.candidates().len());
+    let areas = parts.dofs.row_areas(obstacle.candidates());
+    for (candidate, (node, tributary_area)) in areas.into_iter().enumerate() {
+        let at = nodes[node];
+        let found = obstacle.row(candidate, at, obstacle.shift(scene_gap)).map_err(|reason| {
+            let message = format!("node {node} at {} {reason}", point(&at[..dimension]));
+            wrong(format!("obstacles[{index}]"), message)
+        })?;
+        let Some(ObstacleRow { normal, gap }) = found else { continue };
+        let (partner, outward) = (obstacle.partner(candidate), obstacle.outward(candidate));
+        let outward = parts.symmetry.of_whole(&at, outward);
+        rows.push(ContactRow { node, partner, obstacle: index, normal, gap, tributary_area, outward });
+    }
+    Ok(rows)
+}
+
+/// Checks that the node opposite to a mid-side node is a mid-side node too, between the nodes opposite to the ends of its edge.
+fn check_pair(dofs: &DofMap, by_node: &BTreeMap<usize, ContactRow>, row: &ContactRow) -> Result<(), Error> {
+    let Some(partner) = row.partner.filter(|_| !dofs.basis.is_nodal()) else { return Ok(()) };
+    let across = |end: usize| by_node.get(&end).and_then(|row| row.partner);
+    let fits = match (dofs.basis.ends(row.node), dofs.basis.ends(partner)) {
+        (None, None) => true,
+        (Some(own), Some([a, b])) => [[Some(a), Some(b)], [Some(b), Some(a)]].contains(&own.map(across)),
+        _ => false,
+    };
+    if fits {
+        return Ok(());
+    }
+    let message = format!(
+        "nodes {} and {partner} lie across each other, but do not both lie in the middle of edges that do; quadratic faces of two \
+         bodies must match, edge for edge",
+        row.node
+    );
+    Err(refused("unpaired-nodes", format!("obstacles[{}]", row.obstacle), message))
+}

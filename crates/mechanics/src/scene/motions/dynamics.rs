@@ -1,0 +1,424 @@
+//! The motion of a scene: mass, scheme, step, initial state, loads in time.
+
+use super::loads_in_time::NodalLoads;
+use super::moving_supports::MovingSupports;
+use crate::error::{Error, nearly};
+use crate::fem::assembly::{MassForm, free_load, free_mass, internal_force, nodal_mass};
+use crate::fem::body::{ElasticBody, Phase};
+use crate::motion::{DynamicProblem, Integrator, MOST_IN_CONTACT, Scheme, SchemeSpec, stable_step};
+use crate::scene::input::entry::{COORDINATE_ROUNDING, located, number, point, refused, vector, wrong};
+use crate::scene::input::schema::analysis::PATH;
+use crate::scene::input::schema::{AnalysisSpec, DynamicSpec, FieldSpec, PenetrationSpec, Scene};
+use crate::scene::models::resultants::without_rounding;
+use crate::scene::{Model, Resultant, Warning, WatchedPoint};
+use signorini_qp as qp;
+use signorini_qp::{ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, dot, solve};
+
+/// Steps and durations that differ by less than this, relative, are equal up to rounding.
+const STEP_ROUNDING: f64 = 1e-12;
+
+/// Largest number of steps: no run would end within reasonable time.
+const MOST_STEPS: f64 = 1e9;
+
+/// Largest number of states that are written.
+const MOST_FRAMES: usize = 10_000;
+
+/// The default steps, in the time of a wave through the smallest cell, and in the largest stable step.
+const COURANT: [f64; 2] = [0.5, 0.9];
+
+/// Contact forces are averaged over this share of the time in which a pressure wave crosses the body.
+///
+/// An impact lasts at least two such times, so this is at most a tenth of an impact: the mean over it reduces the peak of half a sine wave by
+/// 0.4 %. The oscillations of a mesh behind a wave front are shorter the finer the cells are, and disappear from this mean; the largest
+/// force of a single step contains them.
+const WINDOW: f64 = 0.2;
+
+/// A motion to be computed: the problem, the scheme, its steps, and the times and points of its output.
+#[derive(Clone, Debug)]
+pub struct Dynamics {
+    /// Mass, damping, loads in time, initial state.
+    pub problem: DynamicProblem,
+    /// Scheme of time integration, with the value of its parameter.
+    pub scheme: Scheme,
+    /// Length of each step, in time, positive.
+    pub step: f64,
+    /// Number of steps to the end of the motion.
+    pub steps: usize,
+    /// Number of states to be written, besides the first.
+    pub frames: usize,
+    /// Time over which contact forces are averaged, for a peak without the oscillations of the mesh: a fifth of the time in which a
+    /// pressure wave crosses the body along the first contact normal; zero without contact rows.
+    pub window: f64,
+    /// Points with output at every step.
+    pub watched: Vec<WatchedPoint>,
+    /// The data for the reactions of the supports.
+    supports: MovingSupports,
+    /// Warnings for the reader of the answer.
+    pub warnings: Vec<Warning>,
+}
+
+impl Scene {
+    /// The specification of the motion, if the scene has one.
+    pub fn dynamic(&self) -> Option<&DynamicSpec> {
+        self.analysis.as_ref().map(|AnalysisSpec::Dynamic(spec)| spec)
+    }
+
+    /// The motion of `model`, which this scene built; `None` for a static scene.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a value that describes no motion, an initial penetration, a step beyond the stable one.
+    pub fn dynamics(&self, model: &Model) -> Result<Option<Dynamics>, Error> {
+        let Some(spec) = self.dynamic() else { return Ok(None) };
+        if !model.dofs().basis.is_nodal() {
+            let kind = model.mesh().kind();
+            let message = format!(
+                "contact of {} elements is for equilibria only; take {} for a motion",
+                kind.name(),
+                kind.linear().name()
+            );
+            return Err(wrong("analysis", message));
+        }
+        let scheme = spec.scheme();
+        spec.check_parameters()?;
+        scheme.check().map_err(in_place)?;
+        if !(spec.duration.is_finite() && spec.duration > 0.0) {
+            return Err(not_positive("duration", spec.duration));
+        }
+        if !(1..=MOST_FRAMES).contains(&spec.frames) {
+            let message = format!("{} is not allowed: it must be from 1 to {MOST_FRAMES}", spec.frames);
+            return Err(wrong(format!("{PATH}.frames"), message));
+        }
+        let form = spec.mass.unwrap_or(scheme.mass_form());
+        if !scheme.allows(form) {
+            let message = match scheme.is_explicit() {
+                true => "central differences need a lumped mass",
+                false => "a redistributed mass leaves dofs without mass, which only the scheme `midpoint` allows",
+            };
+            return Err(wrong(format!("{PATH}.mass"), message));
+        }
+        if scheme.is_unstable_in_contact(form) && !model.rows().is_empty() {
+            let message = format!(
+                "`{}` leaves mass on the contact nodes, and with the scheme `{}` the energy then grows at impacts: \
+                 only `redistributed` is allowed, or take the scheme `contact-stabilised`",
+                form.word(),
+                scheme.name()
+            );
+            return Err(refused("unstable", format!("{PATH}.mass"), message));
+        }
+        let path = |index: usize| format!("{PATH}.watch[{index}]");
+        let watched = spec.watch.iter().enumerate().map(|(index, spec)| WatchedPoint::new(model, spec, &path(index)));
+        let watched = watched.collect::<Result<_, Error>>()?;
+        let loads = self.loads_in_time(model.body(), spec)?;
+        let nodal_mass = nodal_mass_of(model, form)?;
+        let mass = free_mass(model.body(), model.dofs(), &nodal_mass)?;
+        let problem = Self::starting(model, spec, Self::moving(model, spec, mass, &loads)?)?;
+        let supports = MovingSupports::new(model, &nodal_mass, problem.damping(), &loads)?;
+        let (step, steps) = spec.steps(model.body(), &problem, scheme)?;
+        let name = scheme.name();
+        let warnings = scheme.gains_energy().then_some(Warning::GainsEnergy { scheme: name }).into_iter().collect();
+        let window = WINDOW * crossing_time(model).unwrap_or(0.0);
+        Ok(Some(Dynamics { problem, scheme, step, steps, frames: spec.frames, window, watched, supports, warnings }))
+    }
+
+    /// Mass, damping, loads in time: the motion from rest.
+    fn moving(
+        model: &Model,
+        spec: &DynamicSpec,
+        mass: SymmetricMatrix,
+        loads: &NodalLoads,
+    ) -> Result<DynamicProblem, Error> {
+        let (body, dofs) = (model.body(), model.dofs());
+        let statics = model.problem().with_load(free_load(body, dofs, &loads.constant)?)?;
+        let lifted = dofs.expand(&vec![0.0; dofs.free().len()])?;
+        let energy = dot(&lifted, &internal_force(body, &lifted)?) / 2.0;
+        let held = free_load(body, dofs, &vec![0.0; body.nodal_dofs()])?;
+        let mut problem = DynamicProblem::new(statics, mass)?
+            .with_damping(spec.damping.mass, spec.damping.stiffness)
+            .map_err(|error| match error {
+                Error::Qp(qp::Error::Setting { name, value, allowed }) => {
+                    let field = if name == "mass damping" { "mass" } else { "stiffness" };
+                    let message = format!("{} is not allowed: it must be {allowed}", number(value));
+                    wrong(format!("{PATH}.damping.{field}"), message)
+                }
+                other => other,
+            })?
+            .holding(held, energy);
+        for (factor, load) in &loads.changing {
+            problem = problem.with_load(factor.clone(), dofs.restrict(load)?)?;
+        }
+        Ok(problem)
+    }
+
+    /// The same from the initial state, after a check.
+    fn starting(model: &Model, spec: &DynamicSpec, problem: DynamicProblem) -> Result<DynamicProblem, Error> {
+        let (displacement, velocity) = spec.initial(model.body())?;
+        let mut displacement = model.dofs().restrict(&displacement)?;
+        if let Some(deepest) = deepest(model, &displacement) {
+            if spec.initial_penetration == PenetrationSpec::Refuse {
+                return Err(deepest);
+            }
+            let mass = free_mass(model.body(), model.dofs(), &nodal_mass_of(model, MassForm::Lumped)?)?;
+            displacement = projected(model.problem(), mass, &displacement)?;
+        }
+        let problem = problem.starting_from(displacement, model.dofs().restrict(&velocity)?)?;
+        let energy = problem.initial_energy();
+        if !energy.is_finite() {
+            let message = format!("displacements and velocities are too large: their energy is {energy}");
+            return Err(wrong(format!("{PATH}.initial"), message));
+        }
+        Ok(problem)
+    }
+}
+
+/// The mass of the nodes of a model, in one of its forms; the lower triangle.
+fn nodal_mass_of(model: &Model, form: MassForm) -> Result<SparseMatrix, Error> {
+    let contact_nodes: Vec<usize> =
+        model.rows().iter().flat_map(|row| row.ends().collect::<Vec<_>>()).map(|(node, _)| node).collect();
+    nodal_mass(model.body(), form, &contact_nodes).map_err(|error| match error {
+        Error::Mesh { message } => wrong("body", message),
+        other => located(other, "material."),
+    })
+}
+
+impl Dynamics {
+    /// The resultants of contact forces and support reactions of the last step, obstacle by obstacle and then support by
+    /// support. `integrator` moves [`problem`](Self::problem), that of `model`.
+    ///
+    /// Both are those of the balance that the scheme solved in the step: at its middle (`midpoint`, `contact-stabilised`), at its end
+    /// (`trapezoidal`, `penalty`, `penalty-loop`), `1 + alpha` times that of the end minus `alpha` times that of the beginning (`hht`),
+    /// the mean of both ends (`central-difference`). The reactions on the body are, at supported dofs,
+    ///
+    /// ```text
+    /// R = M a + C v + K u - f(t) - B' lambda
+    /// ```
+    ///
+    /// Schemes of Newmark's kind take the acceleration a at the end of the step, others its mean over the step. So contact
+    /// forces, reactions and loads add up to the change of momentum. Before the first step, and between a resume and the next step, this
+    /// balance does not exist, and the supports are left out.
+    ///
+    /// # Errors
+    /// [`qp::Error::Length`] for an integrator of another model.
+    pub fn resultants(&self, model: &Model, integrator: &Integrator) -> Result<Vec<Resultant>, Error> {
+        let multiplier = &integrator.state().multiplier;
+        let [found, expected] = [integrator.problem(), &self.problem].map(|problem| problem.statics().dofs());
+        qp::Error::check_length("displacement", found, expected, "free dofs")?;
+        let mut all = model.contact_resultants(multiplier)?;
+        if let Some(balance) = integrator.balance(&self.supports.around) {
+            all.extend(model.support_resultants(self.supports.reactions(model, balance, multiplier)));
+        }
+        without_rounding(&mut all);
+        Ok(all)
+    }
+}
+
+impl DynamicSpec {
+    /// The scheme with its parameter.
+    pub fn scheme(&self) -> Scheme {
+        let own = self.scheme.parameter().map(|parameter| parameter.name);
+        let given = self.parameters().into_iter().find(|(name, _)| Some(*name) == own);
+        self.scheme.with(given.and_then(|(_, value)| value))
+    }
+
+    /// The same with another scheme, without the parameters that it does not have.
+    pub fn with_scheme(mut self, scheme: SchemeSpec) -> Self {
+        self.scheme = scheme;
+        let own = scheme.parameter().map(|parameter| parameter.name);
+        let [alpha, penalty, threshold, restitution] =
+            self.parameters().map(|(name, value)| value.filter(|_| Some(name) == own));
+        (self.alpha, self.penalty, self.threshold, self.restitution) = (alpha, penalty, threshold, restitution);
+        self
+    }
+
+    /// The given parameters of all schemes.
+    fn parameters(&self) -> [(&'static str, Option<f64>); 4] {
+        [
+            ("alpha", self.alpha),
+            ("penalty", self.penalty),
+            ("threshold", self.threshold),
+            ("restitution", self.restitution),
+        ]
+    }
+
+    /// Refuses a parameter that is given but belongs to another scheme.
+    fn check_parameters(&self) -> Result<(), Error> {
+        let named = |scheme: SchemeSpec, name| scheme.parameter().is_some_and(|parameter| parameter.name == name);
+        for (name, value) in self.parameters() {
+            if value.is_none() || named(self.scheme, name) {
+                continue;
+            }
+            let others = SchemeSpec::ALL.into_iter().filter(|&scheme| named(scheme, name));
+            let others: Vec<String> = others.map(|scheme| format!("`{}`", scheme.name())).collect();
+            let message =
+                format!("only the scheme {} has this key; the scheme is `{}`", others.join(" or "), self.scheme.name());
+            return Err(wrong(format!("{PATH}.{name}"), message));
+        }
+        Ok(())
+    }
+
+    /// The step and the number of steps.
+    fn steps(&self, body: &ElasticBody, problem: &DynamicProblem, scheme: Scheme) -> Result<(f64, usize), Error> {
+        let stable = if scheme.is_explicit() { Some(stable_step(problem)?) } else { None };
+        let share = if problem.statics().rows() > 0 { MOST_IN_CONTACT } else { 1.0 };
+        let step = match (self.step, self.courant) {
+            (Some(_), Some(_)) => return Err(wrong(format!("{PATH}.courant"), "give `step` or `courant`, not both")),
+            (Some(step), None) => {
+                if !(step.is_finite() && step > 0.0) {
+                    return Err(not_positive("step", step));
+                }
+                if let Some(stable) = stable.filter(|stable| step > share * stable * (1.0 + STEP_ROUNDING)) {
+                    let [step, most, stable] = [step, share * stable, stable].map(number);
+                    let message = format!(
+                        "{step} is beyond {most}: central differences are unstable beyond {share} times {stable}, the largest \
+                         stable step of a body that touches nothing"
+                    );
+                    return Err(refused("unstable", format!("{PATH}.step"), message));
+                }
+                if step > self.duration * (1.0 + STEP_ROUNDING) {
+                    let message = format!("{} is longer than the duration {}", number(step), number(self.duration));
+                    return Err(wrong(format!("{PATH}.step"), message));
+                }
+                step
+            }
+            (None, courant) => {
+                let courant = courant.unwrap_or(COURANT[usize::from(scheme.is_explicit())]);
+                if !(courant.is_finite() && courant > 0.0) {
+                    return Err(not_positive("courant", courant));
+                }
+                if scheme.is_explicit() && courant > share {
+                    let message =
+                        format!("{} is not allowed: at most {share}, or the motion is unstable", number(courant));
+                    return Err(refused("unstable", format!("{PATH}.courant"), message));
+                }
+                let unit = stable.unwrap_or_else(|| wave_time(body));
+                // Independent of the duration: a run can then be continued to a longer one.
+                (courant * unit).min(self.duration)
+            }
+        };
+        let count = (self.duration / step * (1.0 - STEP_ROUNDING)).ceil();
+        if count > MOST_STEPS {
+            let message = format!("{count:.2e} steps of {} are too many; take a longer step", number(step));
+            return Err(wrong(format!("{PATH}.step"), message));
+        }
+        Ok((step, (count as usize).max(1)))
+    }
+
+    /// The initial displacement and velocity of all nodes.
+    fn initial(&self, body: &ElasticBody) -> Result<(Vec<f64>, Vec<f64>), Error> {
+        let dimension = body.dimension();
+        let (mut displacement, mut velocity) = (vec![0.0; body.nodal_dofs()], vec![0.0; body.nodal_dofs()]);
+        for (index, initial) in self.initial.iter().enumerate() {
+            let path = format!("{PATH}.initial[{index}]");
+            let nodes = match &initial.body {
+                None => 0..body.mesh().nodes().len(),
+                Some(name) => {
+                    let region = body.regions().iter().find(|region| region.name() == name && !name.is_empty());
+                    let missing = || {
+                        let meant = nearly(name, body.regions().iter().map(|region| region.name()));
+                        wrong(format!("{path}.body"), format!("there is no further body `{name}`{meant}"))
+                    };
+                    region.ok_or_else(missing)?.nodes()
+                }
+            };
+            let fields = [
+                (&initial.displacement, "displacement", &mut displacement),
+                (&initial.velocity, "velocity", &mut velocity),
+            ];
+            for (field, name, values) in fields {
+                let Some(field) = field else { continue };
+                let field = field.linear(&format!("{path}.{name}"), dimension)?;
+                for node in nodes.clone() {
+                    let value = field(body.mesh().nodes()[node]);
+                    values[dimension * node..dimension * (node + 1)].copy_from_slice(&value[..dimension]);
+                }
+            }
+        }
+        Ok((displacement, velocity))
+    }
+}
+
+impl FieldSpec {
+    /// The field as a function of the point.
+    fn linear(&self, path: &str, dimension: usize) -> Result<impl Fn([f64; 3]) -> [f64; 3] + use<>, Error> {
+        let value = vector(&format!("{path}.value"), &self.value, dimension)?;
+        let mut gradient = [[0.0; 3]; 3];
+        if !self.gradient.is_empty() {
+            if self.gradient.len() != dimension {
+                let message = format!("the array has {} rows; in this model it has {dimension}", self.gradient.len());
+                return Err(wrong(format!("{path}.gradient"), message));
+            }
+            for (index, (row, entries)) in gradient.iter_mut().zip(&self.gradient).enumerate() {
+                *row = vector(&format!("{path}.gradient[{index}]"), entries, dimension)?;
+            }
+        }
+        Ok(move |at: [f64; 3]| [0, 1, 2].map(|axis| value[axis] + dot(&gradient[axis], &at)))
+    }
+}
+
+/// A parameter of the scheme at its JSON path.
+fn in_place(error: Error) -> Error {
+    located(error, &format!("{PATH}."))
+}
+
+fn not_positive(field: &str, value: f64) -> Error {
+    let message = format!("{} is not allowed: it must be positive and finite", number(value));
+    wrong(format!("{PATH}.{field}"), message)
+}
+
+/// The shortest time of a pressure wave from one node of an element to another.
+fn wave_time(body: &ElasticBody) -> f64 {
+    let nodes = body.mesh().nodes();
+    let away = |a: usize, b: usize| (0..3).map(|axis| (nodes[a][axis] - nodes[b][axis]).powi(2)).sum::<f64>();
+    let mut squares = vec![f64::INFINITY; body.phases().len()];
+    for element in body.elements() {
+        let around = element.nodes;
+        let pairs = around.iter().enumerate().flat_map(|(k, &a)| around[..k].iter().map(move |&b| (a, b)));
+        let least = &mut squares[element.phase_number as usize];
+        *least = pairs.fold(*least, |least, (a, b)| least.min(away(a, b)));
+    }
+    let times = squares.iter().zip(body.phases()).map(|(square, phase)| square.sqrt() / wave_speed(phase));
+    times.fold(f64::INFINITY, f64::min)
+}
+
+/// The speed of pressure waves in a phase with a density, in length over time.
+fn wave_speed(phase: &Phase) -> f64 {
+    (phase.law.wave_modulus() / phase.material().density().unwrap_or(f64::NAN)).sqrt()
+}
+
+/// The time in which a pressure wave crosses the body behind the row with the smallest gap, along its normal; for several obstacles the
+/// shortest, for several materials that of the fastest. `None` without contact rows.
+fn crossing_time(model: &Model) -> Option<f64> {
+    let (body, nodes) = (model.body(), model.mesh().nodes());
+    let of_obstacle = (0..model.obstacles().len()).filter_map(|obstacle| {
+        let rows = model.rows().iter().filter(|row| row.obstacle == obstacle);
+        let nearest = rows.min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+        let region = body.regions().iter().find(|region| region.nodes().contains(&nearest.node))?;
+        let along = region.nodes().map(|node| dot(&nearest.normal, &nodes[node]));
+        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        Some((high - low) / body.phases_of(region).iter().map(wave_speed).fold(0.0, f64::max))
+    });
+    of_obstacle.reduce(f64::min)
+}
+
+/// The error of the deepest initial penetration, if there is one.
+fn deepest(model: &Model, displacement: &[f64]) -> Option<Error> {
+    let violation = model.problem().violation(displacement);
+    let (row, depth) = violation.into_iter().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    if depth <= COORDINATE_ROUNDING * model.mesh().size() {
+        return None;
+    }
+    let row = model.rows()[row];
+    let at = point(&model.mesh().nodes()[row.node][..model.mesh().dimension()]);
+    let message = format!(
+        "node {} at {at} starts {depth:.3e} inside obstacles[{}]; lift the body, move the obstacle, or set \
+         `initial-penetration` to `project`",
+        row.node, row.obstacle
+    );
+    Some(wrong(format!("{PATH}.initial"), message))
+}
+
+/// The admissible displacement nearest to a given one in the norm of a mass.
+fn projected(problem: &ContactProblem, mass: SymmetricMatrix, displacement: &[f64]) -> Result<Vec<f64>, Error> {
+    let load = mass.mul(displacement);
+    let nearest = ContactProblem::new(mass, load, problem.contact().clone(), problem.gap().to_vec())?;
+    Ok(solve(&nearest, &Settings::with_method(Method::ActiveSet))?.displacement)
+}

@@ -1,0 +1,183 @@
+//! The cost of accuracy in a motion: every scheme at several steps, timed, against the same mesh at a far smaller step.
+
+use std::time::Instant;
+
+use serde::Serialize;
+use signorini_qp as qp;
+
+use super::front::on_front;
+use crate::error::Error;
+use crate::motion::{Integrator, SchemeSpec};
+use crate::scene::input::schema::AnalysisSpec;
+use crate::scene::{Dynamics, Model, Scene};
+use signorini_qp::Settings;
+
+/// Times at which displacements are compared.
+const SAMPLES: usize = 20;
+
+/// Numbers of steps of an implicit scheme, and of the reference, over a quarter of those of the scene.
+const QUARTERS: [usize; 4] = [1, 2, 4, 8];
+const REFERENCE: usize = 32;
+
+/// Numbers of steps of the explicit scheme over the smallest stable number.
+const EXPLICIT: [usize; 2] = [1, 2];
+
+/// One scheme at one length of its step, with its seconds and its errors against a reference of smaller steps.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MotionPoint {
+    /// Name of the scheme in scenes, as `midpoint`.
+    pub scheme: &'static str,
+    /// Length of each step, in time.
+    pub step: f64,
+    /// Number of steps to the end of the motion.
+    pub steps: usize,
+    /// Seconds from the assembled problem to the last step.
+    pub seconds: f64,
+    /// Root mean square error of the displacement at the sampled times, relative to the motion of the reference.
+    pub displacement_error: f64,
+    /// Relative error of the impulse; zero if both impulses are zero.
+    pub impulse_error: f64,
+    /// Energy at the end minus that at the start, over the largest kinetic and strain energy.
+    pub energy_change: f64,
+    /// Deepest penetration, in length.
+    pub penetration: f64,
+    /// `true` if the point is on the Pareto front: no other point is both faster and more accurate.
+    pub best: bool,
+}
+
+/// A motion computed by every scheme at several steps, each compared with a reference of smaller steps.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MotionTradeoff {
+    /// Number of unknown displacements n.
+    pub dofs: usize,
+    /// Length of each step of the reference, in time, which uses the scheme `midpoint`.
+    pub reference_step: f64,
+    /// One entry for each scheme and length of a step, scheme by scheme.
+    pub points: Vec<MotionPoint>,
+}
+
+impl MotionTradeoff {
+    /// Runs a scene with a motion by every scheme at several steps.
+    ///
+    /// A run that fails has an infinite error. If the watch of `settings` is asked to stop, the result holds the points of the completed
+    /// runs.
+    ///
+    /// # Errors
+    /// As [`Scene::build`] and [`Scene::dynamics`]; [`Error::Scene`] for a scene without a motion; [`qp::Error::Interrupted`] if no run was
+    /// completed.
+    pub fn of(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
+        let model = scene.build()?;
+        let own = scene.dynamics(&model)?.ok_or_else(still)?;
+        // The samples coincide with steps.
+        let quarter = own.steps.div_ceil(4 * SAMPLES).max(1);
+        let of = |scheme, steps: usize| with(scene, &model, scheme, Some(steps));
+        let reference = run(of(SchemeSpec::default(), SAMPLES * quarter * REFERENCE)?, settings)?;
+        let mut runs = Vec::new();
+        for scheme in SchemeSpec::ALL {
+            let counts: Vec<usize> = if scheme.is_explicit() {
+                let fewest = with(scene, &model, scheme, None)?.steps.div_ceil(SAMPLES);
+                EXPLICIT.iter().map(|times| SAMPLES * fewest * times).collect()
+            } else {
+                QUARTERS.iter().map(|quarters| SAMPLES * quarter * quarters).collect()
+            };
+            runs.extend(counts.into_iter().map(|steps| (scheme, steps)));
+        }
+        let mut points = Vec::new();
+        for (index, &(scheme, steps)) in runs.iter().enumerate() {
+            settings.watch.part("run", index + 1, runs.len());
+            let dynamics = of(scheme, steps)?;
+            let (name, step) = (dynamics.scheme.name(), dynamics.step);
+            let found = match run(dynamics, settings) {
+                Err(_) if settings.watch.acknowledge() => break,
+                found => found.unwrap_or_default(),
+            };
+            points.push(MotionPoint {
+                scheme: name,
+                step,
+                steps,
+                seconds: found.seconds,
+                displacement_error: found.error(&reference),
+                impulse_error: relative(found.impulse - reference.impulse, reference.impulse),
+                energy_change: found.energy_change,
+                penetration: found.penetration,
+                best: false,
+            });
+        }
+        if points.is_empty() {
+            return Err(qp::Error::Interrupted.into());
+        }
+        let costs: Vec<[f64; 2]> = points.iter().map(|point| [point.seconds, point.displacement_error]).collect();
+        points.iter_mut().zip(on_front(&costs)).for_each(|(point, best)| point.best = best);
+        let steps = SAMPLES * quarter * REFERENCE;
+        let duration = own.step * own.steps as f64;
+        Ok(MotionTradeoff { dofs: model.problem().dofs(), reference_step: duration / steps as f64, points })
+    }
+}
+
+/// The result of a run.
+#[derive(Default)]
+struct Run {
+    seconds: f64,
+    samples: Vec<Vec<f64>>,
+    first: Vec<f64>,
+    impulse: f64,
+    energy_change: f64,
+    penetration: f64,
+}
+
+impl Run {
+    fn error(&self, reference: &Run) -> f64 {
+        if self.samples.len() != reference.samples.len() {
+            return f64::INFINITY;
+        }
+        let square = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        let away: f64 = self.samples.iter().zip(&reference.samples).map(|(a, b)| square(a, b)).sum();
+        let way: f64 = reference.samples.iter().map(|sample| square(sample, &reference.first)).sum();
+        relative(away.sqrt(), way.sqrt())
+    }
+}
+
+fn relative(value: f64, scale: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { (value / scale).abs() }
+}
+
+fn run(dynamics: Dynamics, settings: &Settings) -> Result<Run, Error> {
+    let clock = Instant::now();
+    let Dynamics { problem, scheme, step, steps, window, .. } = dynamics;
+    let first = problem.displacement().to_vec();
+    let mut integrator = Integrator::new(problem, scheme, step, settings)?;
+    let mut summary = super::MotionSummary::starting(&integrator.observe(), 0, window, step);
+    let mut samples = Vec::with_capacity(SAMPLES);
+    for number in 1..=steps {
+        integrator.advance()?;
+        summary.add(&integrator.observe(), &[], step);
+        if number % (steps / SAMPLES).max(1) == 0 {
+            samples.push(integrator.state().displacement.clone());
+        }
+    }
+    Ok(Run {
+        seconds: clock.elapsed().as_secs_f64(),
+        samples,
+        first,
+        impulse: summary.contact.impulse,
+        energy_change: summary.energy_change(),
+        penetration: summary.penetration_max,
+    })
+}
+
+/// The motion of the scene by a scheme with its own form of the mass, in this number of steps or in the default number.
+fn with(scene: &Scene, model: &Model, scheme: SchemeSpec, steps: Option<usize>) -> Result<Dynamics, Error> {
+    let mut scene = scene.clone();
+    if let Some(AnalysisSpec::Dynamic(spec)) = &mut scene.analysis {
+        (spec.mass, spec.courant) = (None, None);
+        spec.step = steps.map(|steps| spec.duration / steps as f64);
+        *spec = spec.clone().with_scheme(scheme);
+    }
+    let mut found = scene.dynamics(model)?.ok_or_else(still)?;
+    found.steps = steps.unwrap_or(found.steps);
+    Ok(found)
+}
+
+fn still() -> Error {
+    Error::Scene { path: "analysis".into(), message: "the scene does not move".into() }
+}

@@ -1,0 +1,224 @@
+//! What a search for a total error is given, and what it finds: plain data.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use serde::Serialize;
+use signorini_qp::{Settings, Solution};
+
+use super::goal::{Ended, TotalErrorGoal};
+use crate::continuum::PlaneAnswer;
+use crate::error::Error;
+use crate::scene::{Answer, Model, Scene};
+use crate::study::{AnswerWarning, ModelSize, Status};
+
+/// A relative error against the continuum, as reports give it, with the statement of how much it may be trusted.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Bound {
+    /// Upper bound of |u - v| / |v|; an approximate value if that is not guaranteed.
+    pub bound: f64,
+    /// `true` if it is proven, not estimated.
+    pub guaranteed: bool,
+}
+
+/// The numbers of one mesh on the way to a total error that is small enough.
+#[derive(Clone, Debug, Serialize)]
+pub struct Level {
+    /// Its elements: triangles if the error is guaranteed.
+    pub elements: usize,
+    /// Unknowns of the displacement.
+    pub dofs: usize,
+    /// |u - v| / |v|: the bound, or the estimate.
+    pub total_error: f64,
+    /// The sum of the contact forces of v, in force.
+    pub contact_force: f64,
+    /// The numbers that only a bound has, or only an estimate.
+    #[serde(flatten)]
+    pub kind: LevelKind,
+    /// Seconds since the start.
+    pub seconds: f64,
+}
+
+/// The numbers of one mesh that only a proven bound has, or only an estimate.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub enum LevelKind {
+    /// A proven bound.
+    Guaranteed {
+        /// Unknowns of the stress in balance.
+        stress_dofs: usize,
+        /// The bound on the error of the mean stress, over |v|.
+        mean_stress_error: f64,
+        /// The interval `[low, high]` that contains the exact contact force, in force, if it was requested.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        force_interval: Option<[f64; 2]>,
+        /// Seconds for the displacement on this mesh.
+        displacement_seconds: f64,
+        /// Seconds to find its stress in balance with the loads.
+        stress_seconds: f64,
+    },
+    /// From the stresses that the answer recovers; not proven.
+    Estimated {
+        /// Number of candidate rows of the contact problem.
+        contact_rows: usize,
+        /// The method for the contact problem.
+        method: String,
+        /// The estimated discretisation error, relative in energy.
+        discretisation_error: f64,
+        /// The bound on the algebraic error, relative in energy.
+        energy_error_bound: f64,
+        /// The largest depth in an obstacle between nodes, over the displacement that the obstacles impose.
+        depth_between_nodes: f64,
+    },
+}
+
+impl Level {
+    /// Half the width of the interval of the force, over the force; `None` without an interval.
+    pub fn half_width(&self) -> Option<f64> {
+        let [low, high] = self.force_interval()?;
+        Some(if high > low { (high - low) / 2.0 / self.contact_force.abs() } else { 0.0 })
+    }
+
+    /// The interval `[low, high]` that contains the exact contact force, in force, if it is known.
+    pub fn force_interval(&self) -> Option<[f64; 2]> {
+        match self.kind {
+            LevelKind::Guaranteed { force_interval, .. } => force_interval,
+            LevelKind::Estimated { .. } => None,
+        }
+    }
+
+    /// The largest depth between nodes, relative; none where the rows hold between the nodes too.
+    pub fn depth_between_nodes(&self) -> Option<f64> {
+        match self.kind {
+            LevelKind::Estimated { depth_between_nodes, .. } => Some(depth_between_nodes),
+            LevelKind::Guaranteed { .. } => None,
+        }
+    }
+
+    /// If a mesh misses the tip of an obstacle between its nodes, the stresses do not show that error.
+    pub(super) fn meets(&self, goal: TotalErrorGoal) -> bool {
+        let force_met = goal.force_error.is_none_or(|wanted| self.half_width().is_some_and(|half| half <= wanted));
+        self.total_error.max(self.depth_between_nodes().unwrap_or(0.0)) <= goal.total_error && force_met
+    }
+}
+
+/// An answer with its error against the continuum: u is the exact displacement, v the answer.
+#[derive(Clone, Debug, Serialize)]
+pub struct TotalError {
+    /// Whether the goal was reached.
+    pub status: Status,
+    /// The errors that were asked for.
+    pub goal: TotalErrorGoal,
+    /// The reason for which the search ended.
+    pub ended: Ended,
+    /// |u - v| / |v| in the energy norm.
+    pub total_error: Bound,
+    /// If the error is estimated: that of the scene which has no guaranteed bound, and what would have one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// If the error is guaranteed: all that is proven beside the bound.
+    #[serde(flatten)]
+    pub guarantee: Option<Guarantee>,
+    /// The meshes, from the first to the last.
+    pub levels: Vec<Level>,
+    /// The size of the problem on the last mesh; on the scene's own mesh if the last has no answer.
+    pub model: ModelSize,
+    /// Wall-clock time of the whole search, in seconds.
+    pub seconds: f64,
+    /// The cells of each mesh, by the places of their corners, in length: in space the facets that may touch, along the approach
+    /// direction; without cells for a bar.
+    #[serde(skip)]
+    pub meshes: Vec<Vec<Vec<[f64; 2]>>>,
+    /// The answer of `solve` on the last mesh, or the reason for which there is none. With a guarantee its rows are at nodes, while those
+    /// of the bound hold between them as well.
+    #[serde(skip)]
+    pub last: Result<Box<(Answer, Solution)>, String>,
+}
+
+/// All that is proven beside the bound of a guaranteed error, and the displacement that it bounds.
+#[derive(Clone, Debug, Serialize)]
+pub struct Guarantee {
+    /// The body for which the bounds hold.
+    pub domain: Domain,
+    /// |sigma - tau_m| / |v|: tau_m the mean of the stress of v and of the stress in balance.
+    pub mean_stress_error: Bound,
+    /// The interval that contains the exact potential energy: D(tau) and J(v), in force times length.
+    pub potential_energy: [f64; 2],
+    /// The sum of the contact forces of v, in force.
+    pub contact_force: f64,
+    /// The part of the body that carries the force, as "per metre".
+    pub force_basis: String,
+    /// The interval `[low, high]` that contains the exact contact force, in force; `None` if obstacles come from several directions.
+    pub force_interval: Option<[f64; 2]>,
+    /// The largest relative defect found by the check of balance, signs and distances: rounding.
+    pub defect: f64,
+    /// The result on the scene's own mesh; `None` if that has no answer.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub own_mesh: Option<JudgedMesh>,
+    /// The judgement of the answer on the last mesh; `None` without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub last_mesh: Option<JudgedMesh>,
+    /// Warnings about the answer on the scene's own mesh that no finer mesh settles.
+    pub warnings: Vec<AnswerWarning>,
+    /// Triangles of the next mesh, if it was not made.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub next_triangles: Option<usize>,
+    /// The displacement and the stresses.
+    #[serde(skip)]
+    pub answer: PlaneAnswer,
+}
+
+/// The size of the problem on one mesh, and how far its answer is from the continuum at most.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct JudgedMesh {
+    /// The kind of its elements by name, as `Q4`.
+    pub element: &'static str,
+    /// Number of unknowns of its displacement.
+    pub dofs: usize,
+    /// The bound on |u - w| / |w|, w its displacement.
+    pub total_error: Bound,
+    /// The error by recovered stresses: an estimate.
+    pub estimated: f64,
+}
+
+impl JudgedMesh {
+    /// The judgement of an answer of this norm, which is at most `distance` from the continuum.
+    pub(super) fn of(answer: &Answer, distance: f64, norm: f64) -> Result<Self, Error> {
+        let model = answer.model();
+        let bound = if distance == 0.0 { 0.0 } else { distance / norm };
+        Ok(JudgedMesh {
+            element: model.mesh().kind().name(),
+            dofs: model.problem().dofs(),
+            total_error: Bound { bound, guaranteed: true },
+            estimated: answer.discretisation_error()?,
+        })
+    }
+}
+
+/// The body for which a bound holds, if curved sides make it differ from mesh to mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Domain {
+    /// That of straight edges between the nodes of the first mesh.
+    FirstPolygon,
+    /// The polygon of the last mesh; its nodes on known circles lie on the circles.
+    LastPolygon,
+}
+
+/// What a search for either kind of error is given.
+pub(super) struct Search<'a> {
+    pub scene: &'a Scene,
+    pub model: &'a Arc<Model>,
+    pub goal: TotalErrorGoal,
+    pub settings: &'a Settings,
+    /// Called with what was found, after each mesh but the last.
+    pub keep: &'a dyn Fn(&TotalError),
+    pub clock: Instant,
+}
+
+impl Search<'_> {
+    /// Seconds since the start.
+    pub fn seconds(&self) -> f64 {
+        self.clock.elapsed().as_secs_f64()
+    }
+}

@@ -1,0 +1,206 @@
+//! The total error with a guaranteed bound: a mesh refined where the elements contribute most to the bound, until it is small enough.
+
+use std::sync::Arc;
+
+use signorini_qp::{Settings, Solution, dot, solve};
+
+use super::found::{Bound, Domain, Guarantee, JudgedMesh, Level, LevelKind, Search as Given, TotalError};
+use super::goal::{Answering, Ended, marked, shortage};
+use crate::continuum::{Bracket, Judged, PlaneAnswer, PlaneProblem, Triangulation};
+use crate::error::Error;
+use crate::fem::assembly::internal_force;
+use crate::scene::Answer;
+use crate::study::warnings::{check_motion, of_refined};
+use crate::study::{AnswerWarning, ModelSize, Status};
+
+/// The seconds of the next mesh over those of this one, approximately.
+const GROWTH: f64 = 2.2;
+
+/// Refines the mesh of a plane problem until its total error is small enough, or time or memory end.
+///
+/// # Errors
+/// Those of [`signorini_qp::solve`] on the first mesh; [`Error::Scene`] for a bound of the force with obstacles from several directions.
+pub(super) fn total_error(given: &Given, problem: &PlaneProblem, mesh: Triangulation) -> Result<TotalError, Error> {
+    if given.goal.force_error.is_some() && !problem.has_one_direction() {
+        let message =
+            "the contact force has a guaranteed interval only if all obstacles lie in one direction from the body";
+        return Err(Error::Scene { path: "obstacles".into(), message: message.into() });
+    }
+    // A stress in balance requires a linear solve with a settled contact set; other methods do not give one.
+    let search = Search { given, problem, settings: given.settings.clone().exactly() };
+    let mut found = search.run(mesh)?;
+    given.settings.watch.step("answer", 0);
+    match found.guarantee.as_ref().map(|guarantee| on_last_mesh(given, &guarantee.answer, found.total_error.bound)) {
+        Some(Ok((last, judged))) => {
+            found.model = ModelSize::of(last.0.model().problem());
+            found.last = Ok(Box::new(last));
+            found.guarantee.iter_mut().for_each(|guarantee| guarantee.last_mesh = Some(judged));
+        }
+        Some(Err(error)) => found.last = Err(error.to_string()),
+        None => {}
+    }
+    Ok(TotalError { seconds: given.seconds(), ..found })
+}
+
+/// The answer to the scene on the last mesh, and its distance from the continuum: that of the displacement of the bound, which is `bound`
+/// of its norm, plus the one from that displacement.
+fn on_last_mesh(given: &Given, of_bound: &PlaneAnswer, bound: f64) -> Result<((Answer, Solution), JudgedMesh), Error> {
+    let model = Arc::new(given.scene.on_last_mesh(given.model, of_bound)?);
+    let solution = solve(model.problem(), given.settings)?;
+    let answer = Answer::of(model.clone(), &solution)?;
+    let size = |displacement: &[f64]| -> Result<f64, Error> {
+        Ok(dot(displacement, &internal_force(model.body(), displacement)?).max(0.0).sqrt())
+    };
+    let of_bound = of_bound.displacement.as_flattened();
+    let away: Vec<f64> = answer.displacement().iter().zip(of_bound).map(|(own, other)| own - other).collect();
+    let distance = bound * size(of_bound)? + size(&away)?;
+    let judged = JudgedMesh::of(&answer, distance, size(answer.displacement())?)?;
+    Ok(((answer, solution), judged))
+}
+
+/// The data that stay the same from mesh to mesh.
+struct Search<'a> {
+    given: &'a Given<'a>,
+    problem: &'a PlaneProblem,
+    settings: Settings,
+}
+
+impl Search<'_> {
+    fn run(&self, first: Triangulation) -> Result<TotalError, Error> {
+        let mut found: Option<TotalError> = None;
+        let (mut next, mut own, mut touching) = (first, None, None);
+        let (mut before, mut displacement_seconds) = (0.0, 0.0);
+        let mut answering = Answering::new();
+        let goal = self.given.goal;
+        loop {
+            let mesh = next;
+            self.settings.watch.step("mesh", found.as_ref().map_or(0, |found| found.levels.len()));
+            let settings = self.keeping(displacement_seconds);
+            let bracket = match Bracket::new(self.problem, &mesh, touching.as_deref(), &settings) {
+                Ok(bracket) => bracket,
+                Err(error) => {
+                    let (Some(found), Some(ended)) = (found, shortage(&error)) else { return Err(error) };
+                    // Its mesh is the one that was not made.
+                    return Ok(TotalError { ended, ..found });
+                }
+            };
+            let level = self.level(&bracket)?;
+            displacement_seconds = bracket.primal.seconds;
+            let is_late = !self.settings.watch.allows(GROWTH * (level.seconds - before + displacement_seconds));
+            before = level.seconds;
+            let (is_first, is_met) = (found.is_none(), level.meets(goal));
+            let (earlier, mut levels, mut meshes) =
+                found.map_or_else(Default::default, |found| (found.guarantee, found.levels, found.meshes));
+            let mut guarantee = self.guarantee(&bracket, &level, earlier);
+            // An obstacle that just touches presses less from mesh to mesh.
+            let components = guarantee.answer.displacement.iter().flatten();
+            check_motion(self.given.model, components.fold(0.0, |largest: f64, part| largest.max(part.abs())))?;
+            if let Some((answer, warnings)) = if is_first { self.own_answer()? } else { None } {
+                (own, guarantee.warnings) = (Some(answer), warnings);
+            }
+            // The answer on the scene's own mesh belongs to the polygon of the first mesh.
+            if is_first || !self.problem.has_circles() && (is_met || is_late) {
+                let judged_by = |own: &Answer| {
+                    let Judged { bound, norm, .. } = judged(own, &bracket);
+                    JudgedMesh::of(own, bound, norm)
+                };
+                guarantee.own_mesh = own.as_ref().map(judged_by).transpose()?;
+            }
+            // The force converges at its own rate.
+            let share =
+                answering.share(bracket.bound(), if goal.force_error.is_some() { 0.0 } else { goal.total_error });
+            let finer = (!is_met).then(|| self.problem.refined(&mesh, &marked(&bracket.shares, share)));
+            guarantee.next_triangles = finer.as_ref().map(|finer| finer.triangles.len());
+            meshes.push((0..mesh.triangles.len()).map(|triangle| mesh.corners(triangle).to_vec()).collect());
+            let total_error = Bound { bound: level.total_error, guaranteed: true };
+            levels.push(level);
+            let now = TotalError {
+                status: if is_met { Status::Certified } else { Status::NotCertified },
+                goal,
+                ended: if is_met { Ended::Goal } else { Ended::Time },
+                total_error,
+                reason: None,
+                guarantee: Some(guarantee),
+                levels,
+                model: ModelSize::of(self.given.model.problem()),
+                seconds: self.given.seconds(),
+                meshes,
+                last: Err("it is not computed yet".into()),
+            };
+            let Some(finer) = finer.filter(|_| !is_late) else { return Ok(now) };
+            touching = Some(finer.carried(bracket.touching()));
+            next = finer;
+            (self.given.keep)(&now);
+            found = Some(now);
+        }
+    }
+
+    /// The settings with a deadline that leaves the time for the answer on the last mesh, which takes as long as its displacement.
+    fn keeping(&self, displacement_seconds: f64) -> Settings {
+        self.settings.clone().watched(&self.settings.watch.keeping(GROWTH * displacement_seconds))
+    }
+
+    /// What is proven on one more mesh; what earlier meshes say of the scene's own mesh stays.
+    fn guarantee(&self, bracket: &Bracket, level: &Level, earlier: Option<Guarantee>) -> Guarantee {
+        let (own_mesh, warnings) =
+            earlier.map_or_else(Default::default, |earlier| (earlier.own_mesh, earlier.warnings));
+        Guarantee {
+            domain: if self.problem.has_circles() { Domain::LastPolygon } else { Domain::FirstPolygon },
+            mean_stress_error: Bound { bound: bracket.bound_of_mean(), guaranteed: true },
+            potential_energy: [bracket.energy_of_stress(), bracket.energy_of_displacement()],
+            contact_force: level.contact_force,
+            force_basis: self.given.model.basis_of_forces(),
+            force_interval: level.force_interval(),
+            defect: bracket.defect,
+            own_mesh,
+            last_mesh: None,
+            warnings,
+            next_triangles: None,
+            answer: bracket.answer(),
+        }
+    }
+
+    /// The answer on the scene's own mesh and its warnings; `None` without an answer.
+    ///
+    /// # Errors
+    /// Those of [`of_refined`].
+    fn own_answer(&self) -> Result<Option<(Answer, Vec<AnswerWarning>)>, Error> {
+        let Ok(solution) = solve(self.given.model.problem(), &self.settings) else { return Ok(None) };
+        let Ok(answer) = Answer::of(self.given.model.clone(), &solution) else { return Ok(None) };
+        let warnings = of_refined(&answer, &solution)?;
+        Ok(Some((answer, warnings)))
+    }
+
+    /// The numbers of a mesh; the interval of the force if it is requested, or if nothing else is.
+    fn level(&self, bracket: &Bracket) -> Result<Level, Error> {
+        let goal = self.given.goal;
+        let is_near = bracket.bound() <= goal.total_error || goal.force_error.is_some();
+        let is_last = is_near || self.settings.watch.time_left().is_some();
+        let force_interval = if is_last { bracket.force_interval()? } else { None };
+        Ok(Level {
+            elements: bracket.mesh.triangles.len(),
+            dofs: bracket.primal.unknowns.free,
+            total_error: bracket.bound(),
+            contact_force: bracket.force(),
+            kind: LevelKind::Guaranteed {
+                stress_dofs: bracket.dual.unknowns.free,
+                mean_stress_error: bracket.bound_of_mean(),
+                force_interval,
+                displacement_seconds: bracket.primal.seconds,
+                stress_seconds: bracket.dual.seconds,
+            },
+            seconds: self.given.seconds(),
+        })
+    }
+}
+
+/// Judges an answer by a bracket on pieces of its elements.
+pub(super) fn judged(answer: &Answer, bracket: &Bracket) -> Judged {
+    bracket.judged(|element| {
+        let strain = answer.model().body().strain_in(answer.displacement(), element);
+        move |[x, y]| {
+            let [xx, yy, _, xy, ..] = strain([x, y, 0.0]);
+            [xx, yy, xy]
+        }
+    })
+}

@@ -1,0 +1,78 @@
+//! The mesh refined until the error against the continuum is small enough: guaranteed if the scene has a guarantee, else estimated.
+
+mod estimated;
+mod examined;
+mod found;
+mod goal;
+mod guaranteed;
+
+pub use crate::continuum::PlaneAnswer;
+pub use examined::Examined;
+pub use found::{Bound, Domain, Guarantee, JudgedMesh, Level, LevelKind, TotalError};
+pub use goal::{Ended, TotalErrorGoal};
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use signorini_qp::Settings;
+
+use crate::error::Error;
+use crate::scene::models::continuum::{NoGuarantee, WhyNot};
+use crate::scene::{Model, Scene};
+use found::Search;
+
+/// Refines the mesh of a scene until its total error is at most `goal`, as with the default settings.
+///
+/// ```
+/// use signorini_mechanics::{Scene, study};
+///
+/// let scene = Scene::from_json(
+///     r#"{
+///         "model": "plane-strain",
+///         "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [2]}, "y": {"points": [0, 1], "divisions": [2]}}},
+///         "material": {"young": 1, "poisson": 0.3},
+///         "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+///         "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"parabola": {"apex": [0.5, 0.95], "radius": 1}}}]
+///     }"#,
+///     "block",
+/// )?;
+/// let found = study::total_error(&scene, 0.2)?;
+/// assert!(found.total_error.guaranteed && found.total_error.bound <= 0.2);
+/// # Ok::<(), signorini_mechanics::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Scene`] for a scene without an answer in the continuum; those of [`Scene::build`] and of [`signorini_qp::solve`] on the first
+/// mesh.
+pub fn total_error(scene: &Scene, goal: impl Into<TotalErrorGoal>) -> Result<TotalError, Error> {
+    let model = Arc::new(scene.build()?);
+    TotalError::search(scene, &model, goal.into(), &Settings::default(), &|_| {}).map_err(|error| model.explain(error))
+}
+
+impl TotalError {
+    /// Refines the mesh of a scene, given with its model, until its total error is small enough, or time or memory end. `keep` is called
+    /// with what was found after each mesh but the last.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a scene without an answer in the continuum, and for an error of the force without a guarantee; those of
+    /// [`signorini_qp::solve`] on the first mesh.
+    pub fn search(
+        scene: &Scene,
+        model: &Arc<Model>,
+        goal: TotalErrorGoal,
+        settings: &Settings,
+        keep: &dyn Fn(&TotalError),
+    ) -> Result<Self, Error> {
+        scene.check_continuum()?;
+        let search = Search { scene, model, goal, settings, keep, clock: Instant::now() };
+        match scene.plane_problem(model) {
+            Ok((problem, mesh)) => guaranteed::total_error(&search, &problem, mesh),
+            Err(WhyNot::NoGuarantee(NoGuarantee { path, message })) if goal.force_error.is_some() => {
+                let message = format!("{message}; without it the force has no bound: leave out --force-error");
+                Err(Error::Scene { path, message })
+            }
+            Err(WhyNot::NoGuarantee(why)) => estimated::total_error(&search, format!("{}: {}", why.path, why.message)),
+            Err(WhyNot::Failed(error)) => Err(error),
+        }
+    }
+}

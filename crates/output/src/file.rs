@@ -1,0 +1,117 @@
+//! Atomic writing of files: each is written as a whole or not at all.
+
+use std::{
+    io::{self, BufWriter, Write},
+    path::{Path, PathBuf},
+};
+
+use super::Drawing;
+use signorini_mechanics::Error;
+use signorini_qp as qp;
+use signorini_qp::file::Streamed;
+
+/// Size of the write buffer in bytes.
+const PIECE: usize = 1 << 20;
+
+/// Writes `contents` to `path` as a whole or not at all, and makes its folder if that is missing.
+///
+/// The contents go to a new file in the same folder, which is synced and then replaces `path` in one step.
+///
+/// # Errors
+/// [`qp::Error::File`] if the system refuses; an older file at `path` is then untouched, and nothing is left beside it.
+pub fn write_atomically(path: &Path, contents: &[u8]) -> Result<(), Error> {
+    streamed_atomically(path, |out| out.write_all(contents))
+}
+
+/// Writes the output of `contents`, which need not be in memory, as [`write_atomically`] does.
+///
+/// # Errors
+/// As [`write_atomically`].
+fn streamed_atomically(path: &Path, contents: impl Fn(&mut dyn Write) -> io::Result<()>) -> Result<(), Error> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    make_folder(folder)?;
+    Ok(write(folder, path, contents).map_err(|source| qp::Error::File {
+        action: "write",
+        path: path.to_owned(),
+        source,
+    })?)
+}
+
+/// Makes a folder and its parent folders if they are missing.
+///
+/// # Errors
+/// [`qp::Error::File`] if the system refuses.
+pub(crate) fn make_folder(folder: &Path) -> Result<(), Error> {
+    let made = std::fs::create_dir_all(folder).map_err(|error| match error.kind() {
+        // The system reports that it exists, which is not the fault.
+        io::ErrorKind::AlreadyExists => io::Error::new(io::ErrorKind::NotADirectory, "there is a file of that name"),
+        _ => error,
+    });
+    Ok(made.map_err(|source| qp::Error::File { action: "make the folder", path: folder.to_owned(), source })?)
+}
+
+fn write(folder: &Path, path: &Path, contents: impl Fn(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut builder = tempfile::Builder::new();
+    // A temporary file is private by default; the final file has ordinary permissions under the umask.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.prefix(".signorini-").tempfile_in(folder)?;
+    let mut out = BufWriter::with_capacity(PIECE, file.as_file_mut());
+    contents(&mut out)?;
+    out.flush()?;
+    drop(out);
+    file.as_file().sync_all()?;
+    file.persist(path).map(drop).map_err(|error| error.error)
+}
+
+/// Writes a drawing as `stem.svg` and `stem.png` (for paper `stem.svg` and `stem.pdf`) into `folder`; returns both paths.
+///
+/// # Errors
+/// [`qp::Error::File`] if the system refuses, [`qp::Error::Numerical`] if the rasteriser fails (then neither file is
+/// written).
+pub fn write_picture(folder: &Path, stem: &str, drawing: &Drawing) -> Result<[PathBuf; 2], Error> {
+    let (other, bytes) = match drawing.is_for_paper() {
+        true => ("pdf", drawing.pdf()),
+        false => ("png", drawing.png(1.0)?),
+    };
+    let paths = ["svg", other].map(|extension| folder.join(format!("{stem}.{extension}")));
+    write_atomically(&paths[0], drawing.svg().as_bytes())?;
+    write_atomically(&paths[1], &bytes)?;
+    Ok(paths)
+}
+
+/// Writes named texts into `folder`, one file each, from the first to the last.
+///
+/// # Errors
+/// [`qp::Error::File`] if the system refuses; the files before the one that failed are complete.
+pub fn write_files(folder: &Path, files: &[(&str, impl AsRef<str>)]) -> Result<(), Error> {
+    files.iter().try_for_each(|(name, text)| write_atomically(&folder.join(name), text.as_ref().as_bytes()))
+}
+
+/// Writes files into `folder`, piece by piece.
+///
+/// # Errors
+/// As [`write_files`].
+pub fn write_streamed(folder: &Path, files: &[Streamed]) -> Result<(), Error> {
+    make_folder(folder)?;
+    files.iter().try_for_each(|file| streamed_atomically(&folder.join(file.name), |out| file.write(out)))
+}
+
+/// Removes files that an earlier run left in a folder, and that would not belong to this one.
+///
+/// # Errors
+/// [`qp::Error::File`] if a file stays.
+pub fn remove_files(folder: &Path, names: &[&str]) -> Result<(), Error> {
+    for name in names {
+        match std::fs::remove_file(folder.join(name)) {
+            Err(source) if source.kind() != std::io::ErrorKind::NotFound && folder.exists() => {
+                return Err(qp::Error::File { action: "remove", path: folder.join(name), source }.into());
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}

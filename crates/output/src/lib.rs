@@ -1,0 +1,38 @@
+//! Output of answers: reports as text and JSON, pictures (SVG and PNG), `.vtu` files for ParaView, problem files.
+//!
+//! Pictures and `.vtu` files take plain data (nodes, elements, values, labels) and know nothing of scenes, meshes or
+//! methods; `view` alone takes them from a model and its answer. A picture is a [`Drawing`]: the
+//! same shapes are written as SVG and painted as PNG with an embedded typeface, so that both show the same on every machine.
+
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+
+mod draw;
+mod file;
+mod folder;
+mod json;
+mod page;
+mod picture;
+mod plots;
+mod reports;
+#[cfg(test)]
+mod tests;
+mod text;
+mod view;
+
+pub use draw::drawing::Drawing;
+pub use file::{remove_files, write_atomically, write_files, write_picture, write_streamed};
+pub use folder::gallery::{Pictures, Wanted};
+pub use folder::motion::MotionFolder;
+pub use folder::tables::of_model as tables_of_model;
+pub use folder::vtu::{Array, Unstructured};
+pub use page::About;
+pub use picture::set_up::set_up_picture;
+pub use plots::medium::Medium;
+pub use plots::plot::{Plot, Series, line_plots};
+pub use plots::ticks::{Quantity, Scale};
+pub use reports::in_words::{InWords, Measured};
+pub use reports::motion_report::MotionReport;
+pub use reports::report::why_text;
+pub use text::printable;
+pub use view::along::Along;

@@ -1,0 +1,165 @@
+//! The bound if the energy norm knows the contact boundary: the answer is repaired in energy, all rows together.
+//!
+//! The sweep of a force `alpha r + B' x` through the factor differs from that of `alpha r` on the boundary only; r is swept
+//! once. With Z = L_tt^-1 B_t' multipliers eta move the rows by c Z'Z eta. Two repairs are tried:
+//!
+//! * v is the equilibrium of the rows that look closed. If all these rows push, v is the exact answer, and the bound is the
+//!   error itself;
+//! * the rows that look closed are put at their gaps by the smallest shift, and keep the forces of the answer.
+
+use super::repair::{Repair, Witness};
+use super::{Answer, EnergyNorm, ErrorBound};
+use crate::problem::ContactProblem;
+
+/// Repairs that start from the witness of the previous one.
+const MOST_NEAR: usize = 4;
+
+/// If the way to the witness makes up this share of a bound, the bound cannot become much better.
+const FAR: f64 = 0.5;
+
+/// Another repair is worth its time if the last one brought the bound below this share of the previous one.
+const GAINS: f64 = 0.1;
+
+/// Rounding of forces that cancel each other does no harm below this share of the bound.
+const SMALL: f64 = 1e-3;
+
+/// With springs, a factor that loses more than this is too inaccurate for the energy of a shift.
+const LOST_WITH_SPRINGS: f64 = 1e4;
+
+impl ContactProblem {
+    /// The bound from the repair on the boundary; `None` if there is no boundary, or if the rows that look closed cannot be met
+    /// together.
+    pub(super) fn bound_on_boundary(&self, norm: &EnergyNorm, answer: &Answer, closed: &[bool]) -> Option<ErrorBound> {
+        let own = self.beside_springs(norm, answer);
+        let first = FirstRepair::new(self, norm, &own, closed)?;
+        if first.is_sharp { Some(first.bound) } else { self.repeated(first, answer).0 }
+    }
+
+    /// The answer moved to the witness of its own bound, in doubles; `None` if there is none, or if the boundary is not known.
+    pub(crate) fn repaired(&self, norm: &EnergyNorm, u: &[f64], lambda: &[f64]) -> Option<Moved> {
+        let answer = self.answer(u, lambda);
+        let own = self.beside_springs(norm, &answer);
+        let closed = self.rows_that_look_closed(&answer);
+        let first = FirstRepair::new(self, norm, &own, &closed)?;
+        if first.is_sharp { Some(first.repair.answer(&first.witness)) } else { Some(self.repeated(first, &answer).1) }
+    }
+
+    /// The answer with the forces of the springs of the norm in its residual.
+    fn beside_springs<'a>(&self, norm: &EnergyNorm, answer: &Answer<'a>) -> Answer<'a> {
+        let residual = match &norm.springs {
+            Some(springs) => springs.residual(&self.contact, &answer.residual, &answer.violation),
+            None => answer.residual.clone(),
+        };
+        Answer { residual, violation: answer.violation.clone(), ..*answer }
+    }
+
+    /// Repairs that start from the witness of the previous one: the best bound, if there is one, with the answer moved to its witness.
+    ///
+    /// The rounding of a large shift may be a large distance between rows that follow from others, and forces that cancel each
+    /// other leave what the factor has rounded. A repair from the witness itself has small shifts, forces and changes of force;
+    /// the distance of the answer from there needs no factor.
+    fn repeated(&self, first: FirstRepair, answer: &Answer) -> (Option<ErrorBound>, Moved) {
+        let FirstRepair { repair, mut witness, .. } = first;
+        let norm = repair.norm;
+        let mut multipliers = vec![answer.multiplier.to_vec()];
+        let mut next = (repair.answer(&witness), repair.expanded(&witness.change));
+        let mut best: (Option<ErrorBound>, Moved) = (None, next.0.clone());
+        for _ in 0..MOST_NEAR {
+            let ((moved, multiplier), change) = next;
+            // Multipliers stay sums: if rounded, they would leave more than all other forces on a dof with almost no stiffness.
+            let rounded = |row: usize| if multiplier[row] < 0.0 { 1.0 } else { 0.0 };
+            multipliers.iter_mut().flat_map(|part| part.iter_mut().enumerate()).for_each(|(row, x)| *x *= rounded(row));
+            multipliers.push(change);
+            let parts: Vec<&[f64]> = multipliers.iter().map(Vec::as_slice).collect();
+            let violation = self.accurate_violation(&moved);
+            let residual = self.accurate_residual_of(&moved, &parts);
+            let near = Answer { displacement: &moved, multiplier: &multiplier, residual, violation, ..*answer };
+            let near = self.beside_springs(norm, &near);
+            let Some(repair) = Repair::new(self, norm, &near) else { break };
+            let Some(settled) = repair.best_witness(&witness.closed) else { break };
+            witness = settled;
+            let step: Vec<f64> = moved.iter().zip(answer.displacement).map(|(v, u)| v - u).collect();
+            let of_near = repair.bound(&witness);
+            let size = of_near.size();
+            let bound = of_near.farther(self, &step);
+            let size_of_best = best.0.as_ref().map_or(f64::INFINITY, ErrorBound::size);
+            let is_last = gains_nothing(size, bound.size(), size_of_best);
+            next = (repair.answer(&witness), repair.expanded(&witness.change));
+            if best.0.is_none() || bound.size() <= size_of_best {
+                best = (Some(bound), next.0.clone());
+            }
+            if is_last {
+                break;
+            }
+        }
+        best
+    }
+}
+
+/// A displacement with its multipliers.
+type Moved = (Vec<f64>, Vec<f64>);
+
+/// The first repair of an answer.
+struct FirstRepair<'a> {
+    repair: Repair<'a>,
+    witness: Witness,
+    bound: ErrorBound,
+    /// `true` if rounding takes no part in the bound, or the whole bound is what rounding the displacement does.
+    is_sharp: bool,
+}
+
+impl<'a> FirstRepair<'a> {
+    /// `None` if the boundary is not known, or if the rows that look closed cannot be met together.
+    fn new(problem: &'a ContactProblem, norm: &'a EnergyNorm, answer: &'a Answer<'a>, closed: &[bool]) -> Option<Self> {
+        let repair = Repair::new(problem, norm, answer)?;
+        let witness = repair.best_witness(closed)?;
+        let bound = repair.bound(&witness);
+        // With springs the shift is large and bends little: a factor that loses digits makes its energy mere rounding.
+        let is_precise = norm.springs.is_none() || norm.loss() <= LOST_WITH_SPRINGS;
+        let is_exact = norm.widening == 1.0 && !witness.is_rounded && is_precise;
+        let is_rounding = problem.parts().count() == 1 && bound.whole <= answer.rounding;
+        let is_sharp = is_exact && (is_rounding || repair.vague(&witness) <= SMALL * bound.whole);
+        Some(FirstRepair { repair, witness, bound, is_sharp })
+    }
+}
+
+/// Returns `true` if another repair gains nothing. A repair gains the digits that the last one has, unless `rest`, the bound
+/// without the way to the witness, is at most half of the `bound`, or the last one has gained little on the `best` before.
+fn gains_nothing(rest: f64, bound: f64, best: f64) -> bool {
+    rest <= FAR * bound || bound >= GAINS * best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rounding of a handful of operations.
+    const ROUNDING: f64 = 1e-14;
+
+    #[test]
+    fn an_answer_is_repaired_to_the_equilibrium_of_the_rows_that_look_closed() {
+        // K = (2, -1; -1, 2) under forces of 3 and 1, a wall before the first dof at 1, and one far from the second. At the wall
+        // the second dof is at 1, and a force of 2 is left on the first.
+        let (stiffness, walls) = ([(0, 0, 2.0), (1, 0, -1.0), (1, 1, 2.0)], [(0, 0, 1.0), (1, 1, 1.0)]);
+        let problem = ContactProblem::of_entries(&stiffness, &[3.0, 1.0], &walls, &[1.0, 9.0]);
+        let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
+        for (u, lambda) in [([1.25, 0.5], [-1.0, 0.0]), ([1.0, 1.0], [-2.0, 0.0]), ([0.75, 2.0], [-5.0, -1e-3])] {
+            let (moved, multiplier) = problem.repaired(&norm, &u, &lambda).unwrap();
+            let is_near = |a: &[f64], b: [f64; 2]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < ROUNDING);
+            assert!(is_near(&moved, [1.0, 1.0]), "{u:?}: {moved:?}");
+            assert!(is_near(&multiplier, [-2.0, 0.0]), "{u:?}: {multiplier:?}");
+        }
+    }
+
+    #[test]
+    fn repairs_end_when_half_the_bound_is_the_way_or_a_tenth_of_the_last_is_not_reached() {
+        // The way takes no part in the bound, and there is no previous bound, or one more than ten times as large.
+        assert!(!gains_nothing(1.0, 1.0, f64::INFINITY) && !gains_nothing(2.0, 2.0, 20.5));
+        // The way is half of the bound, then a little less.
+        assert!(gains_nothing(1.0, 2.0, f64::INFINITY) && !gains_nothing(1.01, 2.0, f64::INFINITY));
+        // The previous bound is ten times as large, then less than that.
+        assert!(gains_nothing(2.0, 2.0, 20.0) && gains_nothing(2.0, 2.0, 1.0));
+        // Without a bound no repair follows.
+        assert!(gains_nothing(f64::INFINITY, f64::INFINITY, f64::INFINITY));
+    }
+}

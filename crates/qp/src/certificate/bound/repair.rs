@@ -1,0 +1,253 @@
+//! A repaired answer on the contact boundary: its shifts, forces and bound.
+
+use std::cell::OnceCell;
+
+use super::super::energy_norm::Boundary;
+use super::{Answer, EnergyNorm, ErrorBound};
+use crate::linear::{dot, exponent, ldexp};
+use crate::problem::ContactProblem;
+
+/// The multipliers of a repair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Multipliers {
+    /// The multipliers that balance the closed rows at their gaps.
+    InEquilibrium,
+    /// The multipliers of the answer.
+    OfTheAnswer,
+}
+
+/// Rounding of a sum of forces, in units of its terms; a factor multiplies it by its [loss](EnergyNorm::loss).
+const CANCELLED: f64 = 4.0 * f64::EPSILON;
+
+/// The way of rows to their gaps counts three times: as a shift of the answer, as the residual of that shift, and for the
+/// rounding of its length.
+const COUNTS: f64 = 3.0;
+
+/// The force `alpha r + B' x`, x in the units of normalised rows.
+pub(super) struct Force {
+    pub alpha: f64,
+    pub rows: Vec<f64>,
+    /// Magnitudes of the terms of x, the scale of rounding of their sum.
+    pub terms: Vec<f64>,
+}
+
+impl Force {
+    pub fn new(alpha: f64, rows: Vec<f64>) -> Self {
+        let terms = rows.iter().map(|x| x.abs()).collect();
+        Force { alpha, rows, terms }
+    }
+
+    /// The force with more of each row, added up from steps of the magnitudes `steps`.
+    pub fn plus(&self, more: &[f64], steps: &[f64]) -> Self {
+        let rows = self.rows.iter().zip(more).map(|(a, b)| a + b).collect();
+        let terms = self.terms.iter().zip(steps).map(|(a, b)| a + b).collect();
+        Force { alpha: self.alpha, rows, terms }
+    }
+
+    pub fn is_none(&self) -> bool {
+        self.alpha == 0.0 && self.rows.iter().all(|&x| x == 0.0)
+    }
+}
+
+/// A feasible v and multipliers mu: `v - u = K^-1 error`, and the forces left out of balance at (v, mu).
+pub(super) struct Witness {
+    pub error: Force,
+    pub left: Force,
+    /// The multipliers mu, rounded: those of the answer, if they push, plus the change.
+    pub multiplier: Vec<f64>,
+    pub change: Vec<f64>,
+    pub closed: Vec<bool>,
+    /// For each closed row an upper bound on the energy norm of the shift that puts it exactly at its gap and leaves the other
+    /// closed rows there.
+    pub rest: Vec<f64>,
+    /// `true` if a row counts as met by rounding: a closed row that follows from others, or an open one at its gap.
+    pub is_rounded: bool,
+}
+
+/// An answer on the contact boundary, in equilibrated units, rows normalised by powers of two.
+pub(super) struct Repair<'a> {
+    problem: &'a ContactProblem,
+    pub norm: &'a EnergyNorm,
+    boundary: &'a Boundary,
+    answer: &'a Answer<'a>,
+    /// The entries of each row: place on the boundary, coefficient.
+    pub rows: Vec<Vec<(usize, f64)>>,
+    /// Exponent by which each row was multiplied.
+    shift: Vec<i32>,
+    pub violation: Vec<f64>,
+    pub multiplier: Vec<f64>,
+    /// `L_tt^-1 B_i'` of each row that was used.
+    halves: Vec<OnceCell<Vec<f64>>>,
+    /// The sweep of the residual: squares of the interior, and the boundary.
+    interior: f64,
+    swept: Vec<f64>,
+}
+
+impl<'a> Repair<'a> {
+    /// `None` if the boundary is not known, or if a row reaches beyond it.
+    pub fn new(problem: &'a ContactProblem, norm: &'a EnergyNorm, answer: &'a Answer<'a>) -> Option<Self> {
+        let boundary = norm.boundary.as_deref()?;
+        // A row without obstacle and without force may reach beyond the boundary.
+        let counts = |row: usize| problem.gap[row].is_finite() || answer.multiplier[row] != 0.0;
+        let mut rows = norm.rows_on_boundary(&problem.contact, counts)?;
+        let largest = |row: &Vec<(usize, f64)>| row.iter().fold(0.0, |largest: f64, entry| largest.max(entry.1.abs()));
+        let shift: Vec<i32> = rows.iter().map(|row| -exponent(largest(row))).collect();
+        for (row, &shift) in rows.iter_mut().zip(&shift) {
+            row.iter_mut().for_each(|entry| entry.1 = ldexp(entry.1, shift));
+        }
+        let scaled = |values: &[f64], sign: i32, unit: i32| -> Vec<f64> {
+            values.iter().zip(&shift).map(|(&value, &shift)| ldexp(value, sign * shift - unit)).collect()
+        };
+        let unit = norm.equilibration.factor;
+        let (violation, multiplier) = (scaled(&answer.violation, 1, unit), scaled(answer.multiplier, -1, 0));
+        let (interior, swept) = norm.sweep(&answer.residual);
+        let halves = vec![OnceCell::new(); rows.len()];
+        Some(Repair { problem, norm, boundary, answer, rows, shift, violation, multiplier, halves, interior, swept })
+    }
+
+    pub fn spread(&self, weights: &[f64]) -> Vec<f64> {
+        let mut sum = vec![0.0; self.boundary.dofs.len()];
+        for (row, &weight) in self.rows.iter().zip(weights).filter(|entry| *entry.1 != 0.0) {
+            row.iter().for_each(|&(place, b)| sum[place] += weight * b);
+        }
+        self.boundary.block.forward(sum)
+    }
+
+    /// `L_tt'^-1 y`.
+    pub fn backward(&self, y: Vec<f64>) -> Vec<f64> {
+        self.boundary.block.backward(y)
+    }
+
+    pub fn half(&self, row: usize) -> &[f64] {
+        self.halves[row].get_or_init(|| {
+            let mut unit = vec![0.0; self.rows.len()];
+            unit[row] = 1.0;
+            self.spread(&unit)
+        })
+    }
+
+    /// The sweep of a force on the boundary.
+    pub fn sweep(&self, force: &Force) -> Vec<f64> {
+        let mut sweep = self.spread(&force.rows);
+        sweep.iter_mut().zip(&self.swept).for_each(|(entry, swept)| *entry += force.alpha * swept);
+        sweep
+    }
+
+    /// The energy norm of the shift that a force causes.
+    fn length(&self, force: &Force) -> f64 {
+        let sweep = self.sweep(force);
+        self.norm.length(force.alpha * force.alpha * self.interior + dot(&sweep, &sweep))
+    }
+
+    /// The energy norm of the shift that a unit force along a row causes.
+    fn reach(&self, row: usize) -> f64 {
+        if self.norm.is_over() {
+            return f64::INFINITY;
+        }
+        let half = self.half(row);
+        self.norm.length(dot(half, half))
+    }
+
+    /// The shift of the whole body that a force causes, length n.
+    fn shift(&self, force: &Force) -> Vec<f64> {
+        let contact = self.problem.contact.mul_transposed(&self.expanded(&force.rows));
+        let total: Vec<f64> = self.answer.residual.iter().zip(contact).map(|(r, b)| force.alpha * r + b).collect();
+        self.norm.displacement(&total)
+    }
+
+    /// The displacements and multipliers of a witness, in the units of the problem.
+    pub fn answer(&self, witness: &Witness) -> (Vec<f64>, Vec<f64>) {
+        let shift = self.shift(&witness.error);
+        let moved = self.answer.displacement.iter().zip(shift).map(|(u, d)| u + d).collect();
+        (moved, self.expanded(&witness.multiplier))
+    }
+
+    pub fn bound(&self, witness: &Witness) -> ErrorBound {
+        let Witness { error, left, multiplier, closed, rest, .. } = witness;
+        let of_left = self.length(left);
+        let springs = self.norm.springs.as_deref();
+        // A force that is the rounding of changes of the answer's force holds nothing.
+        let terms = |row: usize| self.multiplier[row].abs() + error.terms[row] + left.terms[row];
+        let force = |row: usize| if closed[row] { -multiplier[row] - CANCELLED * terms(row) } else { 0.0 };
+        let force = self.expanded(&(0..rest.len()).map(force).collect::<Vec<_>>());
+        if springs.is_some_and(|springs| !springs.hold(|row| force[row], |_| of_left)) {
+            return ErrorBound::none();
+        }
+        // Closed rows are put exactly at their gaps, which moves the answer and its residual; forces that cancel each other
+        // leave their rounding.
+        let put: Vec<f64> = (0..rest.len()).map(|row| COUNTS * rest[row] + self.cancelled_on(witness, row)).collect();
+        let of_error = match springs {
+            // The energy of the springs is no error, but it adds rounding.
+            Some(_) => self.problem.length(&self.shift(error)) + (self.norm.rounding() - 1.0) * self.length(error),
+            None => self.length(error),
+        };
+        let whole = of_error + of_left + put.iter().sum::<f64>();
+        let parts = self.problem.parts();
+        let of_parts = (parts.count() > 1).then(|| {
+            let mut sizes = vec![0.0; parts.count()];
+            put.iter().enumerate().for_each(|(row, put)| sizes[parts.of_row(row)] += put);
+            [error, left].iter().for_each(|force| self.problem.add_sizes(parts, &self.shift(force), &mut sizes));
+            sizes
+        });
+        ErrorBound { whole, of_parts }
+    }
+
+    /// Upper bound, in energy norm, of the rounding of forces that cancel each other on this row.
+    fn cancelled_on(&self, witness: &Witness, row: usize) -> f64 {
+        let terms = witness.error.terms[row] + witness.left.terms[row];
+        if terms > 0.0 { CANCELLED * self.norm.loss() * terms * self.reach(row) } else { 0.0 }
+    }
+
+    /// The sum of `cancelled_on` over all rows and the residual.
+    fn cancelled(&self, witness: &Witness) -> f64 {
+        let alpha = witness.error.alpha.abs() + witness.left.alpha.abs();
+        let residual = self.length(&Force::new(alpha, vec![0.0; self.rows.len()]));
+        let of_residual = CANCELLED * self.norm.loss() * residual;
+        (0..self.rows.len()).map(|row| self.cancelled_on(witness, row)).fold(of_residual, |sum, of_row| sum + of_row)
+    }
+
+    /// The part of a bound that another repair can make smaller: rounding of forces that cancel each other, and of the way to the
+    /// gaps.
+    pub fn vague(&self, witness: &Witness) -> f64 {
+        self.cancelled(witness) + COUNTS * witness.rest.iter().sum::<f64>()
+    }
+
+    /// Forces on the rows in the units of the problem.
+    pub fn expanded(&self, multiplier: &[f64]) -> Vec<f64> {
+        multiplier.iter().zip(&self.shift).map(|(&mu, &shift)| ldexp(mu, shift)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rounding of a handful of operations.
+    const ROUNDING: f64 = 1e-12;
+
+    #[test]
+    fn a_spring_behind_its_wall_is_repaired_by_its_penetration() {
+        // K = 4, f = 8, g = 1; u = 3/2 under a force of 3 leaves -1 out of balance. The repair is u = 1 under a force of 4.
+        let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[8.0], &[(0, 0, 1.0)], &[1.0]);
+        let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
+        let answer = problem.answer(&[1.5], &[-3.0]);
+        assert_eq!((&answer.residual[..], &answer.violation[..]), (&[-1.0][..], &[0.5][..]));
+        let repair = Repair::new(&problem, &norm, &answer).unwrap();
+        let witness = repair.best_witness(&[true]).unwrap();
+        let (moved, multiplier) = repair.answer(&witness);
+        assert!((moved[0] - 1.0).abs() < ROUNDING, "{moved:?}");
+        let change = repair.expanded(&witness.change);
+        assert!((multiplier[0] + 3.0).abs() < ROUNDING || (multiplier[0] + 4.0).abs() < ROUNDING, "{multiplier:?}");
+        assert!((change[0] + 1.0).abs() < ROUNDING, "{change:?}");
+        // A way of 1/2 against a stiffness of 4.
+        assert!((repair.bound(&witness).whole - 1.0).abs() < ROUNDING, "{:?}", repair.bound(&witness));
+        // The residual and the change of the force, one each, move the spring by 1/2 in energy norm each.
+        assert!((repair.cancelled(&witness) / CANCELLED - 1.0).abs() < ROUNDING, "{:e}", repair.cancelled(&witness));
+        // A distance that is left to the gap counts for the answer, for its residual and for its rounding.
+        let open = Witness { rest: vec![0.25], ..witness };
+        assert!((repair.bound(&open).whole - (1.0 + 3.0 * 0.25)).abs() < ROUNDING, "{:?}", repair.bound(&open));
+        // If the force stays 3, a force of 1 is left at the gap; it moves the spring by 1/4, 1/2 in energy norm.
+        let kept = repair.settle(&[true], Multipliers::OfTheAnswer).unwrap();
+        assert!((repair.bound(&kept).whole - 1.5).abs() < ROUNDING, "{:?}", repair.bound(&kept));
+    }
+}

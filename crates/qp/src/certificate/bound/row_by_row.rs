@@ -1,0 +1,163 @@
+//! The bound if the contact boundary is not known: the rows are repaired by their own dofs, and the body follows.
+
+use super::{Answer, EnergyNorm, ErrorBound};
+use crate::linear::{Blocks, Iterate};
+use crate::problem::ContactProblem;
+
+/// Rounding of a sum, relative to the sum of its terms.
+const SUM_ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// Steps in which the rest of the body adapts to the rows that were put at their gaps; each costs a product with K.
+const RELAXATIONS: usize = 20;
+
+/// An answer moved by `repair`, and from there by a `rest` of at most these lengths in each part.
+struct Repaired<'a> {
+    repair: Vec<f64>,
+    residual: Vec<f64>,
+    multiplier: Vec<f64>,
+    rest: Vec<f64>,
+    /// The rows that are at their gaps then.
+    closed: &'a [bool],
+}
+
+impl ContactProblem {
+    /// Possible rounding error of B u - g from rounding of u, row by row.
+    pub(in super::super) fn negligible(&self, displacement: &[f64]) -> Vec<f64> {
+        let magnitude: Vec<f64> = displacement.iter().map(|value| SUM_ROUNDING * value).collect();
+        self.contact.mul_abs(&magnitude)
+    }
+
+    /// The bound from a displacement with the `closed` rows moved to their gaps, and all others out of their obstacles. Only the closed
+    /// rows keep their forces, or all if none are named.
+    pub(super) fn bound_row_by_row(&self, norm: &EnergyNorm, answer: &Answer, closed: Option<Vec<bool>>) -> ErrorBound {
+        let watched = self.watched_rows(&norm.watch);
+        let negligible = self.negligible(answer.displacement);
+        let touches = |row: usize| {
+            let violation = answer.violation[row];
+            violation > 0.0 || (answer.multiplier[row] < 0.0 && violation >= -negligible[row])
+        };
+        let keeps_all = closed.is_none();
+        let at_gap = closed.unwrap_or_else(|| (0..self.rows()).map(touches).collect());
+        let Some(placed) = self.placed(&watched, answer.displacement, at_gap) else {
+            return ErrorBound::none();
+        };
+        let (closed, mut repair) = (&placed.closed, placed.shift);
+        let is_moved = repair.iter().any(|&change| change != 0.0);
+        let keeps = |row: usize| self.gap[row].is_finite() && (keeps_all || closed[row]);
+        let kept: Vec<f64> =
+            (0..self.rows()).map(|row| if keeps(row) { answer.multiplier[row].min(0.0) } else { 0.0 }).collect();
+        let mut residual = self.residual_at(answer, &[&kept], &repair);
+        if !keeps_all && is_moved {
+            let mut held = vec![false; self.dofs()];
+            for row in (0..self.rows()).filter(|&row| closed[row]) {
+                watched.by_row.column(row).filter(|entry| entry.1 != 0.0).for_each(|(dof, _)| held[dof] = true);
+            }
+            let follow = self.relaxed(&residual, &held);
+            let both: Vec<f64> = repair.iter().zip(&follow).map(|(a, b)| a + b).collect();
+            let (moved_by, terms, moves) =
+                (self.contact.mul(&both), self.contact.mul_abs(&both), self.contact.mul_abs(&follow));
+            let is_feasible = |row: usize| {
+                let (violation, moved) = (answer.violation[row], moved_by[row]);
+                moves[row] == 0.0 || violation + moved <= -SUM_ROUNDING * (violation.abs() + terms[row])
+            };
+            if (0..self.rows()).all(is_feasible) {
+                repair = both;
+                residual = self.residual_at(answer, &[&kept], &repair);
+            }
+        }
+        let mut multiplier = kept.clone();
+        if !keeps_all && let Some(forces) = self.balancing(&watched, closed, &residual) {
+            let pushing = |(mu, force): (&f64, f64)| if mu + force < 0.0 { force } else { -mu };
+            let change: Vec<f64> = kept.iter().zip(forces).map(pushing).collect();
+            // Not rounded: a sum of two multipliers may leave more than all other forces on a dof.
+            let left = self.residual_at(answer, &[&kept, &change], &repair);
+            if self.size_alone(&left) < self.size_alone(&residual) {
+                multiplier.iter_mut().zip(&change).for_each(|(mu, change)| *mu += change);
+                residual = left;
+            }
+        }
+        self.with_slack(norm, answer, &Repaired { repair, residual, multiplier, rest: placed.rest, closed })
+    }
+
+    /// The forces that are out of balance at an answer moved by `repair`, with multipliers that are sums.
+    fn residual_at(&self, answer: &Answer, multipliers: &[&[f64]], repair: &[f64]) -> Vec<f64> {
+        let mut residual = self.accurate_residual_of(answer.displacement, multipliers);
+        residual.iter_mut().zip(self.accurate_forces(repair).sums()).for_each(|(entry, force)| *entry -= force);
+        residual
+    }
+
+    /// The square of a force in the energy norm of dofs that stand alone.
+    fn size_alone(&self, force: &[f64]) -> f64 {
+        let squares = force.iter().zip(&self.diagonal().values).filter(|entry| *entry.1 > 0.0);
+        squares.map(|(force, stiffness)| force * force / stiffness).sum()
+    }
+
+    /// The bound of a repaired answer.
+    fn with_slack(&self, norm: &EnergyNorm, answer: &Answer, repaired: &Repaired) -> ErrorBound {
+        let Repaired { repair, residual, multiplier, rest, closed } = repaired;
+        let parts = self.parts();
+        let moved_by = self.contact.mul(repair);
+        let mut slack_work = vec![0.0; parts.count()];
+        for row in 0..self.rows() {
+            if multiplier[row] != 0.0 && !closed[row] {
+                slack_work[parts.of_row(row)] += (answer.violation[row] + moved_by[row]).min(0.0) * multiplier[row];
+            }
+        }
+        let length = |square: f64, slack: f64| (square + 2.0 * slack).max(0.0).sqrt();
+        let total = |values: &[f64]| values.iter().sum::<f64>();
+        // A shift of the answer changes its residual too, by K times the shift.
+        let left = length(norm.of_force(residual).powi(2), total(&slack_work));
+        let rounding = |row: usize| f64::EPSILON * answer.multiplier[row].abs();
+        let force = |row: usize| if closed[row] { -multiplier[row] - rounding(row) } else { 0.0 };
+        if norm.springs.as_ref().is_some_and(|springs| !springs.hold(force, |_| left)) {
+            return ErrorBound::none();
+        }
+        let whole = left + self.length(repair) + 2.0 * total(rest);
+        let of_parts = (parts.count() > 1).then(|| {
+            let mut sizes = rest.iter().map(|cost| 2.0 * cost).collect::<Vec<f64>>();
+            self.add_sizes(parts, repair, &mut sizes);
+            let energies = self.energies(parts, &norm.displacement(residual));
+            sizes
+                .iter_mut()
+                .zip(energies.iter().zip(&slack_work))
+                .for_each(|(size, (&e, &slack))| *size += length(e, slack));
+            sizes
+        });
+        ErrorBound { whole, of_parts }
+    }
+
+    /// A displacement d that follows the force `residual` on all dofs that are not `held`, by a few steps of conjugate
+    /// gradients.
+    fn relaxed(&self, residual: &[f64], held: &[bool]) -> Vec<f64> {
+        let diagonal = &self.diagonal().values;
+        let free = |mut values: Vec<f64>| {
+            values.iter_mut().zip(held).filter(|entry| *entry.1).for_each(|(value, _)| *value = 0.0);
+            values
+        };
+        let mut iterate = Iterate::new(vec![0.0; self.dofs()], free(residual.to_vec()), Blocks::ONE);
+        for _ in 0..RELAXATIONS {
+            let scaled = iterate.rest.iter().zip(diagonal).map(|(rest, diagonal)| rest / diagonal).collect();
+            if !iterate.step(scaled, |p| free(self.stiffness.mul(p))) {
+                break;
+            }
+        }
+        iterate.solution
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rest_of_the_body_follows_a_force_to_its_equilibrium() {
+        // A chain of four springs between two walls: K = tridiag(-1, 2, -1) has (n - i) / n of a force on the first dof at dof i.
+        let entries: Vec<_> = (0..4).map(|i| (i, i, 2.0)).chain((1..4).map(|i| (i, i - 1, -1.0))).collect();
+        let problem = ContactProblem::of_entries(&entries, &[0.0; 4], &[], &[]);
+        for (last_is_held, exact) in [(false, [0.8, 0.6, 0.4, 0.2]), (true, [0.75, 0.5, 0.25, 0.0])] {
+            let found = problem.relaxed(&[1.0, 0.0, 0.0, 0.0], &[false, false, false, last_is_held]);
+            let is_near = |(a, b): (&f64, &f64)| (a - b).abs() < SUM_ROUNDING;
+            assert!(found.iter().zip(&exact).all(is_near), "{found:?}");
+        }
+    }
+}

@@ -1,0 +1,312 @@
+//! The energy norm of a definite stiffness, with its data on the contact boundary.
+
+use std::sync::Arc;
+
+use super::springs::Springs;
+use crate::error::Error;
+use crate::linear::{
+    Analysis, Cholesky, Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, generic, if_definite, ldexp,
+};
+use crate::watch::Watch;
+
+/// Contact dofs beyond this share of all are not ordered last: the boundary would be most of the body.
+const LARGEST_SHARE: f64 = 0.25;
+
+/// Up to this number, contact dofs are ordered last whatever their share: their dense matrices cost less than a millisecond.
+const FEW_DOFS: usize = 100;
+
+/// The true contraction may be larger than the measured one by this factor.
+const MEASURED: f64 = 10.0;
+
+/// Steps of the power method for a contraction.
+const POWER_STEPS: usize = 3;
+
+/// Rounding of a sweep, relative, over the smallest pivot.
+const SWEEP_ROUNDING: f64 = 1e5 * f64::EPSILON;
+
+/// If the rounding of a sweep may reach this multiple of the sweep itself, the factor belongs to another matrix.
+const LOST: f64 = 1e3;
+
+/// A bound is multiplied with this, because its own sums are rounded too.
+pub(super) const ROUNDED_BOUND: f64 = 1.0 + 1e-6;
+
+/// Values of a dense matrix on the boundary that are not worth counting.
+const FEW_VALUES: usize = 1_000_000;
+
+/// The energy norm of a positive definite stiffness and its dual, from one factorisation of K with a diagonal near one.
+#[derive(Clone, Debug)]
+pub(crate) struct EnergyNorm {
+    /// The factor of `c D K D`.
+    pub(super) cholesky: Cholesky,
+    /// D and c, as exponents of two: `K^-1 = c D (c D K D)^-1 D`.
+    pub(super) equilibration: Equilibration,
+    /// The contact boundary, if it is known.
+    pub(super) boundary: Option<Arc<Boundary>>,
+    /// Factor by which a bound in this norm is multiplied, because the factor is not exactly that of K.
+    pub(super) widening: f64,
+    /// The springs that made a singular K definite.
+    pub(super) springs: Option<Arc<Springs>>,
+    /// The dofs without stiffness, in which the matrix has a stiffness of one, if these made K singular.
+    pub(super) loose: Option<Arc<Loose>>,
+    /// Time limit of the bounds in this norm.
+    pub(super) watch: Watch,
+}
+
+/// Dofs without stiffness, load and contact force. The energy does not see them: in the norm they have a stiffness of one, on
+/// which no force may act.
+#[derive(Clone, Debug)]
+pub(super) struct Loose {
+    /// The dofs.
+    pub dofs: Vec<usize>,
+    /// `true` for each row that acts on one of them.
+    pub rows: Vec<bool>,
+}
+
+/// The contact dofs t, eliminated last: their block of the factor is that of the Schur complement.
+#[derive(Clone, Debug)]
+pub(super) struct Boundary {
+    pub dofs: Vec<usize>,
+    /// L_tt, t x t.
+    pub block: LowerTriangle,
+}
+
+impl EnergyNorm {
+    /// The energy norm of `stiffness`, with the boundary of the dofs in the rows `contact`; `None` if the stiffness is not
+    /// positive definite to working precision.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] if the factorisation fails for another reason, such as memory.
+    pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Option<Self>, Error> {
+        if stiffness.diagonal().iter().any(|&value| value <= 0.0) {
+            return Ok(None);
+        }
+        let equilibration = Equilibration::of(stiffness);
+        let scaled = equilibration.apply(stiffness);
+        let dofs = Self::last_dofs(contact);
+        let factor = Analysis::with_last(&scaled, &dofs).and_then(|analysis| analysis.factor(&scaled));
+        let definite = if_definite(factor)?.filter(|cholesky| cholesky.is_definite(&scaled));
+        Ok(definite.map(|cholesky| Self::new(cholesky, equilibration, dofs)))
+    }
+
+    /// The dofs to eliminate last, so that the contact boundary is known: those that appear in the rows `contact`, or none if
+    /// that is most of the body.
+    pub fn last_dofs(contact: &SparseMatrix) -> Vec<usize> {
+        let dofs: Vec<usize> =
+            (0..contact.columns()).filter(|&dof| contact.column(dof).any(|entry| entry.1 != 0.0)).collect();
+        let most = FEW_DOFS.max((LARGEST_SHARE * contact.columns() as f64) as usize);
+        if dofs.len() > most { Vec::new() } else { dofs }
+    }
+
+    /// The energy norm from an available factor of the equilibrated stiffness `c D K D`, with `last` as its last columns.
+    pub fn new(cholesky: Cholesky, equilibration: Equilibration, last: Vec<usize>) -> Self {
+        let values = last.len().saturating_mul(last.len());
+        let worth = !last.is_empty() && values <= FEW_VALUES.max(cholesky.entries());
+        let boundary = worth.then(|| Arc::new(Boundary { block: cholesky.trailing_block(), dofs: last }));
+        let watch = Watch::default();
+        EnergyNorm { cholesky, equilibration, boundary, widening: 1.0, springs: None, loose: None, watch }
+    }
+
+    /// The energy norm of the equilibrated stiffness itself.
+    pub fn equilibrated(&self) -> Self {
+        EnergyNorm { equilibration: Equilibration::none(self.cholesky.dim()), ..self.clone() }
+    }
+
+    /// The same norm, with bounds that are cut short when `watch` says so: then a weaker bound, or none, is left.
+    pub fn watched(&self, watch: &Watch) -> Self {
+        EnergyNorm { watch: watch.clone(), ..self.clone() }
+    }
+
+    /// Returns `true` if the time for a bound is over.
+    pub(super) fn is_over(&self) -> bool {
+        self.watch.is_over()
+    }
+
+    /// The same norm, for a factor K~ with this measured contraction `|I - K~^-1 K|`.
+    pub fn off_by(&self, contraction: f64) -> Self {
+        EnergyNorm { widening: 1.0 + MEASURED * contraction, ..self.clone() }
+    }
+
+    /// An estimate from below of `|I - K~^-1 K|` for this factor K~ and the stiffness K: by some steps of the power method,
+    /// since the steps of a refinement may be too few, or too short, to show it.
+    pub fn contraction(&self, stiffness: &SymmetricMatrix) -> f64 {
+        let (mut vector, mut contraction) = (generic(self.cholesky.dim(), 0), 0.0_f64);
+        let size = |vector: &[f64]| dot(vector, &stiffness.mul(vector)).max(0.0).sqrt();
+        for _ in 0..POWER_STEPS {
+            let length = size(&vector);
+            let kept = self.displacement(&stiffness.mul(&vector));
+            vector.iter_mut().zip(kept).for_each(|(value, kept)| *value -= kept);
+            let left = size(&vector);
+            if left == 0.0 {
+                break;
+            }
+            contraction = contraction.max(left / length);
+        }
+        contraction
+    }
+
+    /// Relative rounding of a norm that comes from sweeps through the factor: some units in the last place over the smallest
+    /// pivot, on a diagonal of order one.
+    pub(super) fn rounding(&self) -> f64 {
+        let share = SWEEP_ROUNDING * self.loss();
+        if share < LOST { ROUNDED_BOUND + share } else { f64::INFINITY }
+    }
+
+    /// Amplification of the rounding of a force by a sweep, on a diagonal of order one: one over the smallest pivot, at least
+    /// one.
+    pub(super) fn loss(&self) -> f64 {
+        1.0 / self.cholesky.smallest_pivot().min(1.0)
+    }
+
+    /// The same norm with the stiffness in another unit, `2^unit`.
+    pub(super) fn with_unit(&self, unit: i32) -> Self {
+        let mut norm = self.clone();
+        norm.equilibration.factor += unit;
+        norm.springs = norm.springs.map(|springs| Arc::new(springs.in_unit(unit)));
+        norm
+    }
+
+    /// The displacement of the equilibrated stiffness under an equilibrated load.
+    pub fn scaled_displacement(&self, load: &[f64]) -> Vec<f64> {
+        self.cholesky.solve(load)
+    }
+
+    /// `sqrt(r' K^-1 r)`: the energy norm of the displacement that the force r causes.
+    ///
+    /// Infinite if the force acts on a dof without stiffness.
+    pub(super) fn of_force(&self, force: &[f64]) -> f64 {
+        if self.loose.as_ref().is_some_and(|loose| loose.dofs.iter().any(|&dof| force[dof] != 0.0)) {
+            return f64::INFINITY;
+        }
+        // K^-1 = c D (c D K D)^-1 D
+        ldexp(self.cholesky.inverse_product(&self.scaled(force)), self.equilibration.factor).max(0.0).sqrt()
+    }
+
+    /// The displacement that the force r causes: `K^-1 r`.
+    pub(super) fn displacement(&self, force: &[f64]) -> Vec<f64> {
+        let scaled = self.cholesky.solve(&self.scaled(force));
+        let exponents = self.equilibration.diagonal.iter().map(|d| d + self.equilibration.factor);
+        scaled.iter().zip(exponents).map(|(&value, exponent)| ldexp(value, exponent)).collect()
+    }
+
+    /// Number of dofs without stiffness that the energy does not see.
+    pub(super) fn loose_dofs(&self) -> usize {
+        self.loose.as_ref().map_or(0, |loose| loose.dofs.len())
+    }
+
+    /// Returns `true` if a row acts on a dof without stiffness.
+    pub(super) fn is_on_loose_dof(&self, row: usize) -> bool {
+        self.loose.as_ref().is_some_and(|loose| loose.rows[row])
+    }
+
+    /// `L^-1 D r`, of which the [`length`](Self::length) is the energy norm of the displacement that the force r causes: the
+    /// squares of the interior added up, and the entries of the boundary.
+    pub(super) fn sweep(&self, force: &[f64]) -> (f64, Vec<f64>) {
+        let swept = self.cholesky.forward(&self.scaled(force));
+        let size = self.boundary.as_ref().map_or(0, |boundary| boundary.dofs.len());
+        let (interior, last) = swept.split_at(swept.len() - size.min(swept.len()));
+        (dot(interior, interior), last.to_vec())
+    }
+
+    /// The length of a sweep, from its square, as an energy norm.
+    pub(super) fn length(&self, square: f64) -> f64 {
+        ldexp(square, self.equilibration.factor).sqrt()
+    }
+
+    /// The entries of each row of `contact` that `counts`, on the boundary: place among its dofs, coefficient times D; `None`
+    /// if the boundary is not known, or if such a row reaches beyond it.
+    pub(super) fn rows_on_boundary(
+        &self,
+        contact: &SparseMatrix,
+        counts: impl Fn(usize) -> bool,
+    ) -> Option<Vec<Vec<(usize, f64)>>> {
+        let is_entry = |entry: &(usize, f64)| entry.1 != 0.0 && counts(entry.0);
+        let rows = self.rows_at(&self.boundary.as_ref()?.dofs, contact, is_entry);
+        let count: usize = rows.iter().map(Vec::len).sum();
+        let whole = (0..contact.columns()).flat_map(|dof| contact.column(dof)).filter(is_entry).count();
+        (count == whole).then_some(rows)
+    }
+
+    /// The entries of each row of `contact` in the whole body: dof, coefficient times D.
+    pub(super) fn rows_in_body(&self, contact: &SparseMatrix) -> Vec<Vec<(usize, f64)>> {
+        self.rows_at(&(0..contact.columns()).collect::<Vec<_>>(), contact, |entry| entry.1 != 0.0)
+    }
+
+    fn rows_at(
+        &self,
+        dofs: &[usize],
+        contact: &SparseMatrix,
+        is_entry: impl Fn(&(usize, f64)) -> bool,
+    ) -> Vec<Vec<(usize, f64)>> {
+        let mut rows = vec![Vec::new(); contact.rows()];
+        for (place, &dof) in dofs.iter().enumerate() {
+            for (row, value) in contact.column(dof).filter(&is_entry) {
+                rows[row].push((place, ldexp(value, self.equilibration.diagonal[dof])));
+            }
+        }
+        rows
+    }
+
+    fn scaled(&self, force: &[f64]) -> Vec<f64> {
+        force.iter().zip(&self.equilibration.diagonal).map(|(&r, &d)| ldexp(r, d)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two dofs of the same stiffness, and a share of that stiffness between them.
+    fn pair(stiffness: f64, coupling: f64) -> SymmetricMatrix {
+        let entries = [(0, 0, stiffness), (1, 0, -coupling * stiffness), (1, 1, stiffness)];
+        SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &entries).unwrap()).unwrap()
+    }
+
+    fn norm(stiffness: &SymmetricMatrix) -> EnergyNorm {
+        EnergyNorm::of(stiffness, &SparseMatrix::from_triplets(0, 2, &[]).unwrap()).unwrap().unwrap()
+    }
+
+    #[test]
+    fn the_contraction_of_a_factor_is_measured_and_widens_the_bounds_tenfold() {
+        let stiffness = pair(4.0, 0.5);
+        assert!(norm(&stiffness).contraction(&stiffness) < 1e-15);
+        // I - K~^-1 K is one half for K~ = 2 K, and -1 for K~ = K / 2.
+        for (other, contraction) in [(8.0, 0.5), (2.0, 1.0)] {
+            let found = norm(&pair(other, 0.5)).contraction(&stiffness);
+            assert!((found - contraction).abs() < 1e-14, "{other}: {found}");
+        }
+        // For K~ = K + diag(e) on the diagonal only e / (4 + e) of the softest motion is missing at most.
+        let found = norm(&pair(4.0 / 0.9, 0.45)).contraction(&stiffness);
+        let (soft, stiff): (f64, f64) = (1.0 - 2.0 / (4.0 / 0.9 * 0.55), 1.0 - 6.0 / (4.0 / 0.9 * 1.45));
+        // Each step multiplies the component along (1, 1), of stiffness 2, by the one factor, and that along (1, -1), of 6, by
+        // the other.
+        let start = generic(2, 0);
+        let energy = |steps: i32| {
+            let (along, across) = ((start[0] + start[1]) * soft.powi(steps), (start[0] - start[1]) * stiff.powi(steps));
+            2.0 * along * along + 6.0 * across * across
+        };
+        let step = |steps: usize| (energy(steps as i32) / energy(steps as i32 - 1)).sqrt();
+        let exact = (1..=POWER_STEPS).map(step).fold(0.0, f64::max);
+        assert!((found - exact).abs() < 1e-14 && found <= soft, "{found} {exact} {soft}");
+        assert_eq!(norm(&stiffness).off_by(0.25).widening, 1.0 + MEASURED * 0.25);
+        assert_eq!(norm(&stiffness).widening, 1.0);
+    }
+
+    #[test]
+    fn a_small_pivot_is_a_loss_of_digits_that_widens_the_bound() {
+        assert_eq!(norm(&pair(4.0, 0.0)).loss(), 1.0);
+        for slack in [1e-3, 1e-6] {
+            // The second pivot of (1, -c; -c, 1) is 1 - c^2.
+            let (loss, exact) = (norm(&pair(4.0, 1.0 - slack)).loss(), 1.0 / (slack * (2.0 - slack)));
+            assert!((loss / exact - 1.0).abs() < 1e-8, "{loss} {exact}");
+            let rounding = norm(&pair(4.0, 1.0 - slack)).rounding();
+            assert!((rounding - ROUNDED_BOUND - SWEEP_ROUNDING * exact).abs() < 1e-8 * rounding, "{rounding}");
+        }
+    }
+
+    #[test]
+    fn a_norm_ends_with_its_watch() {
+        let norm = norm(&pair(4.0, 0.5));
+        assert!(!norm.is_over());
+        assert!(norm.watched(&Watch::default().within(0.0)).is_over());
+    }
+}

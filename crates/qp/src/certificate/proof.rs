@@ -1,0 +1,333 @@
+//! The rows of a contact set that are proven open or closed, from the bound on the energy norm of the error.
+//!
+//! With `|u - u*|_K <= E` and the compliance `G = B K^-1 B'` of the rows:
+//!
+//! * `|B_i (u - u*)| <= sqrt(G_ii) E`: a row with a larger distance is open in the exact answer too.
+//! * Let C be all other rows, `r = f + B_C' lambda_C - K u`, and w a shift with `B_i w = 1` that moves no other row of C. From
+//!   `B_C' (lambda - lambda*)_C = r + K (u - u*)`: `|lambda_i - lambda*_i| <= |w|_K (|r|_{K^-1} + E)`. A row with a larger
+//!   force is closed in the exact answer too. The cheapest such shift has `|w|_K^2 = (G_CC^-1)_ii`.
+
+use super::EnergyNorm;
+use super::bound::Answer;
+use super::conditions::{Bounding, Evidence};
+use super::energy_norm::{Boundary, ROUNDED_BOUND};
+use super::units::ldexp_root;
+use crate::error::Error;
+use crate::linear::multigrid::Multigrid;
+use crate::linear::{Dependence, SparseMatrix, dot, inverse_lengths};
+use crate::problem::ContactProblem;
+use crate::solution::{ContactSet, ProvenSet};
+use crate::watch::Watch;
+
+/// Accuracy of the solve for an M-matrix without a factor; its error widens the bounds.
+const ROUGH: f64 = 1e-2;
+
+/// Largest number of cycles of that solve.
+const MOST_CYCLES: usize = 20;
+
+/// Multiplications that the compliance of the rows in question may cost; beyond this, one dof of each row is moved alone.
+const MOST_WORK: f64 = 2e9;
+
+/// An answer whose rows are to be proven.
+pub(crate) struct WithEvidence<'a> {
+    pub displacement: &'a [f64],
+    pub multiplier: &'a [f64],
+    /// What its certificate has found, if that is known.
+    pub evidence: Option<Evidence>,
+}
+
+impl Evidence {
+    /// The same with the rounding of its bound; `None` if no bound is known.
+    fn bounded(self) -> Option<Self> {
+        let error = ROUNDED_BOUND * self.error;
+        error.is_finite().then_some(Evidence { error, ..self })
+    }
+}
+
+impl ContactProblem {
+    /// The rows for which an answer (u of length n, in m; lambda of length m, in N, `<= 0` in compression) proves, by
+    /// its distance and force, that they are open or closed in the exact answer; `None` if K is not positive definite
+    /// by itself and no bound is known.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::certify`].
+    pub fn prove(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Option<ProvenSet>, Error> {
+        self.check_answer(displacement, multiplier)?;
+        let norm = EnergyNorm::of(&self.stiffness, &self.contact)?;
+        Ok(norm.and_then(|norm| self.prove_in(&norm, WithEvidence { displacement, multiplier, evidence: None })))
+    }
+
+    /// As [`ContactProblem::prove`], by the means of a certificate, for vectors that fit; from the evidence of that certificate if
+    /// there is any.
+    pub(crate) fn prove_by(&self, by: &Bounding, answer: WithEvidence) -> Option<ProvenSet> {
+        match by {
+            Bounding::Factor(norm) => self.prove_in(norm, answer),
+            Bounding::Cycles(multigrid, watch) => self.prove_by_cycles(multigrid, watch, answer),
+            Bounding::Nothing | Bounding::OwnFactor | Bounding::Pieces(_) => None,
+        }
+    }
+
+    /// As [`ContactProblem::prove`], in an energy norm that is already available.
+    fn prove_in(&self, norm: &EnergyNorm, answer: WithEvidence) -> Option<ProvenSet> {
+        let WithEvidence { displacement, multiplier, evidence } = answer;
+        if let Some(units) = self.far_units(displacement) {
+            let (problem, norm) = (self.in_units(&units).ok()?, norm.with_unit(units.stiffness));
+            let [displacement, multiplier] = [&units.displacement(displacement), &units.force(multiplier)];
+            return problem.prove_in(&norm, WithEvidence { displacement, multiplier, evidence: None });
+        }
+        if norm.loose_dofs() > 0 {
+            return None;
+        }
+        let found = || self.recomputed(&Bounding::Factor(norm.clone()), displacement, multiplier).evidence;
+        let Evidence { residual, violation, error, .. } = evidence.or_else(found)?.bounded()?;
+        let answer = Answer { displacement, multiplier, residual, violation, rounding: 0.0 };
+        let widening = norm.widening;
+        let compliance = ComplianceFactor::of(self, norm);
+        let wide_error = widening * error;
+        // One solve saves sweeps.
+        let at_once = || compliance.reach_at_once().or_else(|| self.monotone_reach(|s| Some(norm.displacement(s))));
+        let reach = if norm.is_over() { None } else { at_once() }.unwrap_or_else(|| self.any_reach());
+        let mut open = self.open_by(&answer, wide_error, &reach);
+        let least = self.least_reach();
+        let limits = self.distances(&answer).into_iter().map(|distance| distance / wide_error).enumerate();
+        let is_doubtful = |&(row, limit): &(usize, f64)| limit > least[row] && !open.contains(row);
+        let doubtful: Vec<(usize, f64)> = limits.filter(is_doubtful).collect();
+        self.within_reach(norm, &compliance, &doubtful).into_iter().for_each(|row| open.insert(row));
+        let of_force = ROUNDED_BOUND * widening * norm.of_force(&self.unbalanced(&answer, &open).force);
+        let imbalance = widening * (of_force + error);
+        let mut closed = self.closed_alone(&answer, &open, imbalance);
+        let in_question: Vec<usize> = (0..self.rows()).filter(|&row| !open.contains(row)).collect();
+        let is_doubtful = |row: &usize| multiplier[*row] < 0.0 && !closed.contains(*row);
+        if in_question.iter().any(is_doubtful) && compliance.work(in_question.len()) <= MOST_WORK {
+            for (&row, length) in in_question.iter().zip(compliance.moved_together(&self.contact, &in_question)) {
+                if -multiplier[row] > length * imbalance {
+                    closed.insert(row);
+                }
+            }
+        }
+        Some(ProvenSet { open, closed })
+    }
+
+    /// As [`ContactProblem::prove`], without a factor: with the bound by the cycles of the hierarchy of K, and one solve by
+    /// cycles for an M-matrix. `None` if the cycles find no bound, or if K is singular.
+    fn prove_by_cycles(&self, multigrid: &Multigrid, watch: &Watch, answer: WithEvidence) -> Option<ProvenSet> {
+        let WithEvidence { displacement, multiplier, evidence } = answer;
+        // A hierarchy of one level is already a factor.
+        if multigrid.unknowns().len() <= 1 {
+            return self.prove(displacement, multiplier).ok()?;
+        }
+        // Without a bound on the move of a travel, nothing is known of its rows.
+        if multigrid.is_shifted() || !self.without_stiffness().is_empty() {
+            return None;
+        }
+        let Evidence { residual, violation, error, measured } = evidence?.bounded()?;
+        let answer = Answer { displacement, multiplier, residual, violation, rounding: 0.0 };
+        let stiffness = multigrid.preconditioning(&self.stiffness);
+        let reach = self.monotone_reach(|s| stiffness.solve(s, ROUGH, MOST_CYCLES).ok().map(|found| found.solution));
+        let by_eigenvalues = || {
+            let least = measured?.ritz;
+            Some(self.measured_reach(least, self.largest_eigenvalue(multigrid, displacement, watch)?))
+        };
+        let reach = reach.or_else(by_eigenvalues).unwrap_or_else(|| self.any_reach());
+        let open = self.open_by(&answer, error, &reach);
+        let Unbalanced { force, is_residual } = self.unbalanced(&answer, &open);
+        let of_force = match measured {
+            Some(measured) if is_residual => Some(measured.of_residual),
+            _ => stiffness.dual_norm(&force, watch).map(|norm| ROUNDED_BOUND * norm.most),
+        };
+        let closed = self.closed_alone(&answer, &open, of_force.map_or(f64::INFINITY, |force| force + error));
+        Some(ProvenSet { open, closed })
+    }
+
+    /// Bounds on the reach of the rows if nothing is known about it: infinite.
+    fn any_reach(&self) -> Vec<f64> {
+        vec![f64::INFINITY; self.rows()]
+    }
+
+    /// The distance `g - B u` of each row, less its possible error from rounding of u; infinite without obstacle.
+    fn distances(&self, answer: &Answer) -> Vec<f64> {
+        let distances = answer.violation.iter().zip(self.negligible(answer.displacement));
+        distances.map(|(violation, negligible)| -violation - negligible).collect()
+    }
+
+    /// The rows that are open beyond an error of `error` in the energy norm; `reach` bounds the move of each row by it.
+    fn open_by(&self, answer: &Answer, error: f64, reach: &[f64]) -> ContactSet {
+        let distances = self.distances(answer);
+        ContactSet::from_fn(self.rows(), |row| {
+            let distance = distances[row];
+            distance > 0.0 && (distance.is_infinite() || error == 0.0 || distance > reach[row] * error)
+        })
+    }
+
+    /// The force that is out of balance without the multipliers of the `open` rows.
+    fn unbalanced(&self, answer: &Answer, open: &ContactSet) -> Unbalanced {
+        let dropped: Vec<f64> =
+            (0..self.rows()).map(|row| if open.contains(row) { -answer.multiplier[row] } else { 0.0 }).collect();
+        let force =
+            answer.residual.iter().zip(self.contact.mul_transposed(&dropped)).map(|(r, part)| r + part).collect();
+        Unbalanced { force, is_residual: dropped.iter().all(|&force| force == 0.0) }
+    }
+
+    /// The rows that are closed, proven by one dof each: the shift of that dof moves no other row that is not `open`.
+    fn closed_alone(&self, answer: &Answer, open: &ContactSet, imbalance: f64) -> ContactSet {
+        // `|w|_K` of that shift.
+        let mut lengths = vec![f64::INFINITY; self.rows()];
+        for (dof, &stiffness) in self.diagonal().values.iter().enumerate() {
+            let mut felt = self.contact.column(dof).filter(|&(row, b)| b != 0.0 && !open.contains(row));
+            if let (Some((row, b)), None) = (felt.next(), felt.next()) {
+                lengths[row] = lengths[row].min(stiffness.sqrt() / b.abs());
+            }
+        }
+        ContactSet::from_fn(self.rows(), |row| -answer.multiplier[row] > lengths[row] * imbalance)
+    }
+}
+
+/// The force that is left over at each dof.
+struct Unbalanced {
+    force: Vec<f64>,
+    /// `true` if it is the residual of the answer.
+    is_residual: bool,
+}
+
+/// The columns of `L^-1 B'`; their products are the compliance of the rows.
+pub(super) struct ComplianceFactor<'a> {
+    norm: &'a EnergyNorm,
+    /// The entries of each row, in the dofs that are swept: on the boundary, or in the whole body.
+    rows: Vec<Vec<(usize, f64)>>,
+    /// The boundary, if all rows are on it.
+    boundary: Option<&'a Boundary>,
+}
+
+impl<'a> ComplianceFactor<'a> {
+    pub(super) fn of(problem: &ContactProblem, norm: &'a EnergyNorm) -> Self {
+        match norm.rows_on_boundary(&problem.contact, |_| true) {
+            Some(rows) => ComplianceFactor { norm, rows, boundary: norm.boundary.as_deref() },
+            None => ComplianceFactor { norm, rows: norm.rows_in_body(&problem.contact), boundary: None },
+        }
+    }
+
+    /// Length of a column.
+    fn length(&self) -> usize {
+        self.boundary.map_or(self.norm.cholesky.dim(), |boundary| boundary.dofs.len())
+    }
+
+    fn column(&self, row: usize) -> Vec<f64> {
+        let mut column = vec![0.0; self.length()];
+        self.rows[row].iter().for_each(|&(place, b)| column[place] += b);
+        match self.boundary {
+            Some(boundary) => boundary.block.forward(column),
+            None => self.norm.cholesky.forward(&column),
+        }
+    }
+
+    /// `sqrt(G_ii)`: the distance by which a displacement of unit energy norm moves the row.
+    pub(super) fn reach(&self, row: usize) -> f64 {
+        if self.norm.is_over() {
+            return f64::INFINITY;
+        }
+        let column = self.column(row);
+        self.norm.length(dot(&column, &column))
+    }
+
+    /// Upper bounds on the reach of all rows by one sweep, if the contact boundary is known: the length of a column is at most
+    /// the sum of its magnitudes.
+    fn reach_at_once(&self) -> Option<Vec<f64>> {
+        let sums = self.boundary?.block.sums_of_inverse();
+        let of_row = |row: &Vec<(usize, f64)>| row.iter().map(|&(place, b)| b.abs() * sums[place]).sum::<f64>();
+        Some(self.rows.iter().map(|row| self.norm.length(of_row(row).powi(2))).collect())
+    }
+
+    /// Multiplications of one sweep.
+    pub(super) fn sweep(&self) -> f64 {
+        match self.boundary {
+            Some(boundary) => (boundary.dofs.len() as f64).powi(2) / 2.0,
+            None => self.norm.cholesky.entries() as f64,
+        }
+    }
+
+    /// Multiplications of the compliance of this number of rows.
+    fn work(&self, rows: usize) -> f64 {
+        (rows * rows) as f64 * (self.length() + rows) as f64
+    }
+
+    /// `sqrt((G_CC^-1)_ii)` of the rows C of `contact`; infinite for those that take part in a dependence.
+    fn moved_together(&self, contact: &SparseMatrix, rows: &[usize]) -> Vec<f64> {
+        let none = || vec![f64::INFINITY; rows.len()];
+        let Some(Dependence { independent, takes_part }) = Dependence::of(contact, rows, || self.norm.is_over()) else {
+            return none();
+        };
+        let basis: Vec<usize> = (0..rows.len()).filter(|&index| independent[index]).collect();
+        let in_time = |&index: &usize| if self.norm.is_over() { None } else { Some(self.column(rows[index])) };
+        let Some(columns) = basis.iter().map(in_time).collect::<Option<Vec<_>>>() else { return none() };
+        let Some(reciprocals) = inverse_lengths(columns, || self.norm.is_over()) else { return none() };
+        let mut lengths = none();
+        for (&index, reciprocal) in basis.iter().zip(reciprocals).filter(|entry| !takes_part[*entry.0]) {
+            lengths[index] = ldexp_root(reciprocal, -self.norm.equilibration.factor, 0);
+        }
+        lengths
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chain of springs of both signs across, with a row `b u_i - u_(i-1) <= 1` at every fifth of its 50 dofs.
+    #[test]
+    fn the_reach_of_all_rows_by_one_sweep_is_above_that_of_each() {
+        let dofs = 50;
+        let stiff = |i: usize| 3.0 + (i % 7) as f64;
+        let mut entries: Vec<_> = (0..dofs).map(|i| (i, i, stiff(i))).collect();
+        entries.extend((1..dofs).map(|i| (i, i - 1, if i % 3 == 0 { 1.0 } else { -1.4 })));
+        let rows: Vec<_> = (0..9).flat_map(|r| [(r, 5 * r + 1, 2.0), (r, 5 * r, -1.0)]).collect();
+        let problem = ContactProblem::of_entries(&entries, &vec![1.0; dofs], &rows, &[1.0; 9]);
+        let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
+        let compliance = ComplianceFactor::of(&problem, &norm);
+        let at_once = compliance.reach_at_once().unwrap();
+        for (row, &bound) in at_once.iter().enumerate() {
+            let exact = compliance.reach(row);
+            assert!(bound >= exact && bound < 10.0 * exact, "row {row}: {bound} {exact}");
+        }
+    }
+
+    #[test]
+    fn what_is_out_of_balance_without_the_open_rows_is_free_of_their_forces() {
+        // K = 4, f = 8 and u = 1: a row that is proven open has no force in the exact answer, and -4 on the other balances.
+        let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[8.0], &[(0, 0, 1.0), (1, 0, -2.0)], &[1.0, 9.0]);
+        let (displacement, multiplier) = ([1.0], [-4.0, -0.5]);
+        let answer = problem.answer(&displacement, &multiplier);
+        assert_eq!(answer.residual, [1.0]);
+        for (open, balance) in [([false, true], 0.0), ([false, false], 1.0)] {
+            let left = problem.unbalanced(&answer, &open.into_iter().collect());
+            assert_eq!((left.is_residual, &left.force[..]), (!open[1], &[balance][..]));
+        }
+    }
+
+    #[test]
+    fn a_row_has_the_same_reach_on_the_boundary_and_in_the_whole_body() {
+        // With K = tridiag(-1, 3, -1) and B = 2 the compliance is 4 K^-1, and its inverse K / 4.
+        for (dofs, on_boundary) in [(30, true), (400, false)] {
+            let diagonal = (0..dofs).map(|i| (i, i, 3.0));
+            let entries: Vec<_> = diagonal.chain((1..dofs).map(|i| (i, i - 1, -1.0))).collect();
+            let rows: Vec<_> = (0..dofs).map(|row| (row, row, 2.0)).collect();
+            let problem = ContactProblem::of_entries(&entries, &vec![1.0; dofs], &rows, &vec![1.0; dofs]);
+            let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
+            assert_eq!(norm.boundary.is_some(), on_boundary);
+            let compliance = ComplianceFactor::of(&problem, &norm);
+            // A sweep takes one multiplication for each value of the factor: those of a full triangle, or no less than those of K.
+            let full = dofs * (dofs + 1) / 2;
+            let least = if on_boundary { full - dofs } else { 2 * dofs - 1 };
+            assert!((least as f64..=full as f64).contains(&compliance.sweep()), "{}", compliance.sweep());
+            for row in [0, 1, dofs / 2, dofs - 1] {
+                let mut force = vec![0.0; dofs];
+                force[row] = 2.0;
+                let exact = (2.0 * norm.displacement(&force)[row]).sqrt();
+                assert!((compliance.reach(row) / exact - 1.0).abs() < 1e-14, "row {row} of {dofs}");
+            }
+            let all: Vec<usize> = (0..dofs).collect();
+            for length in compliance.moved_together(problem.contact(), &all) {
+                assert!((length / (0.75_f64).sqrt() - 1.0).abs() < 1e-13, "{length} of {dofs}");
+            }
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! The scales of an answer: the size of its norm for each part, the forces on each part, and the reach of each row.
+
+use crate::linear::Accumulator;
+use crate::problem::{ContactProblem, Parts};
+
+/// The scales that the errors of an answer are measured against.
+pub(super) struct Scales {
+    /// The least reach of each row: the distance by which a shift of unit energy norm of a single dof moves it.
+    pub reach: Vec<f64>,
+    /// The parts.
+    pub of_parts: Vec<OfPart>,
+    /// All parts together.
+    pub whole: OfPart,
+}
+
+/// The forces on each dof at a displacement u, with twice the working precision.
+pub(super) struct Balance {
+    /// `f + B' lambda - K u`.
+    pub residual: Vec<f64>,
+    /// `|K u|`.
+    pub elastic: Vec<f64>,
+    /// `u' K u`.
+    pub strain: f64,
+    /// `|K| |u|`, the terms of the elastic forces and the scale of rounding in them.
+    pub terms: Vec<f64>,
+}
+
+/// The scales of one part.
+#[derive(Clone, Copy, Default)]
+pub(super) struct OfPart {
+    /// `true` if the part has stiffness. The error of a part without stiffness has no energy, and rows alone judge it.
+    pub is_stiff: bool,
+    /// `true` if a dof with stiffness moves.
+    pub moves: bool,
+    /// `u_p' K_pp u_p`.
+    pub strain: f64,
+    /// The sum of `|u_i| (|K| |u|)_i`, the terms of the strain.
+    pub terms: f64,
+    /// `max |F_i| / sqrt(K_ii)` over loads, contact forces and couplings to other parts F: the energy norm that they could give
+    /// a single dof.
+    pub force: f64,
+    /// The sum of the squares `F_i^2 / K_ii`.
+    pub force_squares: f64,
+    /// The same sum of loads and elastic forces alone: contact forces that cancel each other may be of any size.
+    pub given_squares: f64,
+}
+
+impl OfPart {
+    /// The scales of all `parts` as one, without their strain.
+    fn together(parts: &[OfPart]) -> Self {
+        OfPart {
+            is_stiff: true,
+            moves: parts.iter().any(|part| part.moves),
+            strain: 0.0,
+            terms: parts.iter().map(|part| part.terms).sum(),
+            force: parts.iter().fold(0.0, |largest, part| larger(part.force, largest)),
+            force_squares: parts.iter().map(|part| part.force_squares).sum(),
+            given_squares: parts.iter().map(|part| part.given_squares).sum(),
+        }
+    }
+}
+
+/// The larger of two numbers; NaN is larger than all.
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
+/// `value / scale`, with 0 / 0 = 0.
+pub(super) fn relative(value: f64, scale: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value / scale }
+}
+
+impl Scales {
+    /// The scales of a displacement u of `problem` in this balance, under the loads and contact forces `applied`, `|f| + |B' lambda|`.
+    pub fn of(problem: &ContactProblem, u: &[f64], balance: &Balance, applied: &[f64]) -> Self {
+        let (parts, diagonal) = (problem.parts(), problem.diagonal());
+        let strains = if parts.count() == 1 { vec![balance.strain] } else { problem.energies(parts, u) };
+        let mut of_parts = vec![OfPart::default(); parts.count()];
+        let couplings = problem.couplings(parts, u, applied);
+        for (dof, &root) in diagonal.roots.iter().enumerate() {
+            let part = &mut of_parts[parts.of_dof(dof)];
+            part.terms += u[dof].abs() * balance.terms[dof];
+            if root > 0.0 {
+                part.is_stiff = true;
+                part.moves |= u[dof] != 0.0;
+                let force = larger(applied[dof], couplings.get(dof).copied().unwrap_or(0.0)) / root;
+                part.force = larger(force, part.force);
+                part.force_squares += force * force;
+                part.given_squares += (larger(problem.load[dof].abs(), balance.elastic[dof]) / root).powi(2);
+            }
+        }
+        of_parts.iter_mut().zip(&strains).for_each(|(part, &strain)| part.strain = strain);
+        let whole = OfPart { strain: balance.strain, ..OfPart::together(&of_parts) };
+        Scales { reach: problem.least_reach(), of_parts, whole }
+    }
+
+    /// The distance by which the forces on its `part`, if that rests, could move a single dof of a row, its loads and elastic forces
+    /// at most; zero for a part that moves.
+    pub fn rest_of_row(&self, row: usize, part: usize) -> f64 {
+        let part = &self.of_parts[part];
+        let rests = part.is_stiff && !part.moves;
+        if rests { self.reach[row] * part.force_squares.min(part.given_squares).sqrt() } else { 0.0 }
+    }
+}
+
+impl ContactProblem {
+    /// `w_p' K_pp w_p` of each part p: twice its energy under the displacement w, without couplings to other parts.
+    pub(super) fn energies(&self, parts: &Parts, w: &[f64]) -> Vec<f64> {
+        let within = |column: usize| {
+            let of_part = move |entry: &(usize, f64)| parts.of_dof(entry.0) == parts.of_dof(column);
+            self.stiffness.lower().column(column).filter(of_part)
+        };
+        let mut sums = Accumulator::new(&vec![0.0; w.len()]);
+        sums.add_matrix_product(within, w);
+        sums.products_by(w, |dof| parts.of_dof(dof), parts.count())
+    }
+
+    /// The forces on each dof by other parts: by their displacements u, and by those that `forces` could give each of their dofs
+    /// alone. Empty if there is one part.
+    fn couplings(&self, parts: &Parts, u: &[f64], forces: &[f64]) -> Vec<f64> {
+        if parts.count() == 1 {
+            return Vec::new();
+        }
+        let diagonal = &self.diagonal().values;
+        let moved = |dof: usize| u[dof].abs() + if diagonal[dof] > 0.0 { forces[dof] / diagonal[dof] } else { 0.0 };
+        let mut couplings = vec![0.0; self.dofs()];
+        for (row, column, value) in self.stiffness.lower().triplets() {
+            if parts.of_dof(row) != parts.of_dof(column) {
+                couplings[row] += value.abs() * moved(column);
+                couplings[column] += value.abs() * moved(row);
+            }
+        }
+        couplings
+    }
+}

@@ -1,0 +1,99 @@
+//! A load on a factorised body, swept through its factor once for all gaps.
+
+use std::sync::{Arc, OnceLock};
+
+use super::reduction::Reduction;
+use crate::linear::{exponent, largest, ldexp};
+
+/// A load, and its sweep through a factor once that has been used.
+#[derive(Debug)]
+pub(crate) struct Load {
+    force: Vec<f64>,
+    swept: OnceLock<Arc<Loading>>,
+}
+
+impl Load {
+    /// The load f, length n.
+    pub fn new(force: Vec<f64>) -> Self {
+        Load { force, swept: OnceLock::new() }
+    }
+
+    /// The load swept through the factor of `reduction`; the first call does this in a unit that fits `gap`, the gaps of the
+    /// selected rows.
+    pub(super) fn swept(&self, reduction: &Reduction, gap: &[f64]) -> Arc<Loading> {
+        self.swept.get_or_init(|| Arc::new(Loading::of(reduction, self.force.clone(), gap))).clone()
+    }
+}
+
+/// A load in all the forms in which a solve needs it.
+#[derive(Clone, Debug)]
+pub(super) struct Loading {
+    /// The load f of the problem, length n.
+    pub load: Vec<f64>,
+    /// Exponent of the reference displacement of the fields below.
+    pub unit: i32,
+    /// Forward sweep of the scaled load, if the body is condensed.
+    pub sweep: Vec<f64>,
+    /// The scaled load on the dofs that the methods work on.
+    scaled: Vec<f64>,
+    /// The largest displacement that the load alone causes, if the stiffness is definite.
+    free: Option<f64>,
+    /// The load over the stiffness.
+    statics: f64,
+}
+
+impl Loading {
+    /// Scales `load` (length n) in a unit that fits it and `gap`, the gaps of the selected rows, and sweeps it.
+    pub fn of(reduction: &Reduction, load: Vec<f64>, gap: &[f64]) -> Self {
+        let stiffness = reduction.stiffest;
+        let statics = if stiffness > 0.0 { largest(&load) / stiffness } else { 0.0 };
+        let unit = exponent(largest(gap).max(statics));
+        let scaled = reduction.scaling.load(&load, unit);
+        let (sweep, scaled, free) = match &reduction.condensation {
+            Some(condensed) => {
+                let sweep = condensed.sweep(&scaled);
+                let free = reduction.is_definite().then(|| largest(&condensed.free_displacement(&sweep)));
+                let condensed = condensed.load(&sweep);
+                (sweep, condensed, free)
+            }
+            None => {
+                let free = reduction.norm().map(|norm| largest(&norm.scaled_displacement(&scaled)));
+                (Vec::new(), scaled, free)
+            }
+        };
+        Loading { load, unit, sweep, scaled, free: free.map(|free| ldexp(free, unit)), statics }
+    }
+
+    /// The load together with a force (length n) on contact dofs alone, which needs no sweep.
+    pub fn with_contact_force(mut self, reduction: &Reduction, force: &[f64]) -> Self {
+        if let Some(condensed) = &reduction.condensation {
+            let scaled = reduction.scaling.load(force, self.unit);
+            self.scaled.iter_mut().zip(condensed.dofs()).for_each(|(entry, &dof)| *entry += scaled[dof]);
+        }
+        self
+    }
+
+    /// The same forms, with another load f as their original.
+    pub fn with_load(&self, load: Vec<f64>) -> Self {
+        Loading { load, ..self.clone() }
+    }
+
+    /// The exponent of the reference displacement with the gaps of the selected rows.
+    ///
+    /// If the stiffness is definite, the reference displacement is the larger of what the load alone causes and what the
+    /// obstacle enforces. It is at most the larger of the gaps and the load over the stiffness, because on a soft support the
+    /// free body would move far.
+    pub fn unit_with(&self, gap: &[f64]) -> i32 {
+        let local = largest(gap).max(self.statics);
+        let enforced = gap.iter().fold(0.0, |enforced: f64, gap| enforced.max(-gap));
+        match self.free.map(|free| free.max(enforced)) {
+            Some(reach) if reach > 0.0 && reach < local => exponent(reach),
+            _ => exponent(local),
+        }
+    }
+
+    /// The load on the dofs that the methods work on, for u0 = `2^unit`.
+    pub fn scaled(&self, unit: i32) -> Vec<f64> {
+        self.scaled.iter().map(|&value| ldexp(value, self.unit - unit)).collect()
+    }
+}

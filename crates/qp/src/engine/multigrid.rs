@@ -1,0 +1,103 @@
+//! The method without a factorisation of the body: one multigrid hierarchy, MPRGP, the certificate.
+
+use std::time::Instant;
+
+use super::interface::{Engine, Found, Task};
+use crate::certificate::Bounding;
+use crate::cost::{Kept, NEAR_CYCLES, bytes, check_memory, check_time, seconds};
+use crate::error::Error;
+use crate::linear::multigrid::{Multigrid, NearNullSpace};
+use crate::method::mprgp::{Limits, Mprgp, takes_travels};
+use crate::method::{Solver, Start};
+use crate::plan::{Means, Tried};
+use crate::problem::ContactProblem;
+use crate::settings::{ByFactor, Method, Settings};
+use crate::solution::Seconds;
+use crate::watch::Watch;
+
+/// A start for another method ends at this relative imbalance of forces.
+const NEAR: f64 = 1e-4;
+
+/// A contact problem with the multigrid hierarchy of its stiffness: built once, for all gaps, loads and starts.
+///
+/// Nothing is scaled: the hierarchy scales itself to order one, and MPRGP compares only relative quantities. The bound on the energy
+/// error takes a few more cycles; it rests on a measured eigenvalue, as its certificates say.
+#[derive(Debug)]
+pub(crate) struct Hierarchical {
+    problem: ContactProblem,
+    multigrid: Multigrid,
+    seconds: f64,
+}
+
+impl Hierarchical {
+    /// Builds the hierarchy from the near-null space of `problem`, or from constants if it has none.
+    ///
+    /// # Errors
+    /// Those of [`Multigrid::new`], also for a dof without stiffness that is no travel; before that [`Error::Interrupted`], [`Error::TooLarge`] and [`Error::OutOfTime`].
+    pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
+        let Settings { watch, threads, .. } = settings;
+        if watch.acknowledge() {
+            return Err(Error::Interrupted);
+        }
+        if !takes_travels(problem) {
+            let dof = problem.without_stiffness().first().copied().unwrap_or_default();
+            return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is 0e0, indices from 0") });
+        }
+        check_memory(problem, Kept::Multigrid, settings.memory)?;
+        seconds::learn(watch);
+        let entries = problem.stiffness().lower().entries();
+        let estimate = seconds::hierarchy(problem.dofs() as f64, entries as f64);
+        check_time(watch, estimate + seconds::certificate(problem))?;
+        watch.step("multigrid hierarchy", 0);
+        let clock = Instant::now();
+        let multigrid = watch.timed(estimate, || match problem.near_null() {
+            Some(near_null) => Multigrid::new(problem.stiffness(), near_null, *threads),
+            None => Multigrid::new(problem.stiffness(), &NearNullSpace::constants(problem.stiffness())?, *threads),
+        })?;
+        Ok(Hierarchical { problem: problem.clone(), multigrid, seconds: clock.elapsed().as_secs_f64() })
+    }
+}
+
+impl Engine for Hierarchical {
+    fn serves(&self, means: &Means) -> bool {
+        *means == Means::Multigrid
+    }
+
+    fn seconds(&self) -> Seconds {
+        Seconds { factor: self.seconds, solve: self.seconds, ..Seconds::default() }
+    }
+
+    fn tried(&self, _: Option<ByFactor>, _: &Settings) -> Tried {
+        Tried { is_singular: self.multigrid.is_shifted(), ..Tried::on_all_dofs(Method::Mprgp) }
+    }
+
+    fn make(&self, task: &Task) -> Result<Option<Found>, Error> {
+        let Task { problem, limits, settings, .. } = *task;
+        // Once the loop ends, its answer is still to be certified.
+        let watch = &settings.watch.keeping(seconds::certificate(problem));
+        let mprgp = Mprgp { problem, multigrid: &self.multigrid, limits, watch };
+        Ok(Some(Found { outcome: mprgp.solve(task.start.clone())?, factor_seconds: 0.0, refined: None }))
+    }
+
+    fn bounding(&self, watch: &Watch, _: f64) -> Bounding<'_> {
+        Bounding::Cycles(&self.multigrid, watch.clone())
+    }
+
+    fn bytes(&self) -> f64 {
+        bytes::of_hierarchy(self.problem.dofs() as f64, self.problem.stiffness().entries() as f64)
+    }
+
+    fn hierarchy(&self) -> Option<&Multigrid> {
+        Some(&self.multigrid)
+    }
+}
+
+impl Hierarchical {
+    /// A contact set near that of the answer; `None` if the method meets a difficulty that another method must treat.
+    pub fn near(&self, watch: &Watch) -> Option<Start> {
+        let most_cycles = NEAR_CYCLES as usize;
+        let limits = Limits { tolerance: NEAR, most_cycles, worth: usize::MAX };
+        let mprgp = Mprgp { problem: &self.problem, multigrid: &self.multigrid, limits, watch };
+        Some(mprgp.solve(Start::default()).ok()?.contact_set.into())
+    }
+}

@@ -1,0 +1,194 @@
+//! The work that is done once for all loads and gaps: rows selected, data scaled, the stiffness ordered and factorised.
+
+use std::sync::OnceLock;
+use std::time::Instant;
+
+use super::factored::Factored;
+use super::reduction::{Norm, Reduction};
+use crate::certificate::EnergyNorm;
+use crate::cost::seconds::factor_seconds;
+use crate::cost::{Kept, check_memory, check_time, seconds};
+use crate::error::Error;
+use crate::linear::{Analysis, AugmentedMatrix, Cholesky, FactorError, Width, largest};
+use crate::plan::{Layout, WithFactor};
+use crate::problem::ContactProblem;
+use crate::settings::Settings;
+use crate::solution::Seconds;
+use crate::transform::{Condensation, RowSelection, Scaling};
+
+/// A pivot of the equilibrated stiffness below this is too uncertain in single precision.
+const SINGLE_PIVOT: f64 = 1e-4;
+
+/// A pivot below this share of a diagonal of order one leaves fewer than four digits of a double.
+pub(super) const LOST_PIVOT: f64 = 1e-10;
+
+impl Factored {
+    /// Scales, condenses and factorises `problem`.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`](crate::Prepared::new).
+    pub fn new(problem: &ContactProblem, with: &WithFactor, settings: &Settings) -> Result<Self, Error> {
+        let Settings { threads, watch, .. } = settings;
+        let clock = Instant::now();
+        watch.step("ordering", 0);
+        seconds::learn(watch);
+        let selection = RowSelection::of(problem.contact(), problem.gap());
+        let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
+        let stiffest = largest(&problem.stiffness().diagonal());
+        let factor_clock = Instant::now();
+        let layout = Layout::within(problem, &scaling, with, settings)?;
+        let Layout { analysis, last, size, mut way, width, keeps_norm, .. } = layout;
+        if watch.acknowledge() {
+            return Err(Error::Interrupted);
+        }
+        watch.step("factorisation", 0);
+        let of_row = match last.len() as f64 {
+            0.0 => analysis.factor_entries() as f64,
+            boundary => boundary * boundary,
+        };
+        let proof_seconds = seconds::sweeps(problem.rows(), of_row).min(seconds::selected_inverse(&analysis));
+        let norm_seconds = seconds::ordering(problem) + seconds::factorisation(&analysis);
+        let mut factoring = Factoring { problem, scaling: &scaling, analysis: &analysis, settings, least_pivot: None };
+        let cholesky = factoring.definite(width, last.len())?;
+        let least_pivot = factoring.least_pivot;
+        // If no columns come last, the contact sets have the order of the stiffness.
+        let analysis = last.is_empty().then_some(analysis);
+        if cholesky.is_none() {
+            // Without a bound no accuracy can be reached, so only exact methods are left.
+            way = with.way(None, size);
+        }
+        let condensation = match size.is_condensed {
+            true => condensed(cholesky.as_ref(), &scaling, &last, settings)?,
+            false => None,
+        };
+        let norm = match (cholesky, &analysis) {
+            (None, _) => Norm::Missing,
+            (Some(_), Some(analysis)) if !keeps_norm => Norm::Again(analysis.clone()),
+            (Some(cholesky), _) => Norm::Kept(EnergyNorm::new(cholesky, scaling.equilibration().clone(), last)),
+        };
+        let augmented = augmented(condensation.as_ref(), &scaling, analysis)?.with_threads(*threads);
+        let factor = factor_clock.elapsed().as_secs_f64();
+        Ok(Factored {
+            problem: problem.clone(),
+            reduction: Reduction { selection, scaling, stiffest, norm, condensation },
+            lost_pivot: least_pivot.filter(|&pivot| pivot < LOST_PIVOT),
+            augmented,
+            way,
+            multiplications: size.multiplications,
+            proof_seconds,
+            norm_seconds,
+            condensed_norm: OnceLock::new(),
+            seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64(), ..Seconds::default() },
+        })
+    }
+}
+
+/// The factorisation of a stiffness with an analysed pattern.
+struct Factoring<'a> {
+    problem: &'a ContactProblem,
+    scaling: &'a Scaling,
+    analysis: &'a Analysis,
+    settings: &'a Settings,
+    /// The smallest pivot of the last factor; zero without a factor.
+    least_pivot: Option<f64>,
+}
+
+impl Factoring<'_> {
+    /// The factor in single precision if that is asked for and loses nothing, otherwise in double; `None` for a stiffness that
+    /// is not definite to working precision.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] and [`Error::OutOfTime`] for a second factor, [`Error::Numerical`].
+    fn definite(&mut self, width: Width, contact_dofs: usize) -> Result<Option<Cholesky>, Error> {
+        if self.problem.stiffness().diagonal().contains(&0.0) {
+            self.least_pivot = Some(0.0);
+            return Ok(None);
+        }
+        if width == Width::Single {
+            if let Some(cholesky) = self.factor(width)? {
+                return Ok(Some(cholesky));
+            }
+            let values = self.analysis.factor_entries();
+            let kept = Kept::Condensed { values, width: Width::Double, contact_dofs, by_interior_point: false };
+            check_memory(self.problem, kept, self.settings.memory)?;
+            check_time(&self.settings.watch, self.seconds(Width::Double))?;
+        }
+        self.factor(Width::Double)
+    }
+
+    fn seconds(&self, width: Width) -> f64 {
+        factor_seconds(self.analysis.multiplications(), self.analysis.factor_entries(), width)
+    }
+
+    fn factor(&mut self, width: Width) -> Result<Option<Cholesky>, Error> {
+        let scaled = self.scaling.equilibration();
+        let factor = || self.analysis.factor_equilibrated(self.problem.stiffness(), scaled, width);
+        match self.settings.watch.timed(self.seconds(width), factor) {
+            Ok(cholesky) => {
+                self.least_pivot = Some(cholesky.smallest_pivot());
+                let is_uncertain = width == Width::Single && cholesky.smallest_pivot() <= SINGLE_PIVOT;
+                let is_definite = || cholesky.is_safely_definite() || cholesky.is_definite(self.scaling.stiffness());
+                Ok((!is_uncertain && is_definite()).then_some(cholesky))
+            }
+            Err(FactorError::NotPositiveDefinite) => {
+                self.least_pivot = Some(0.0);
+                Ok(None)
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+}
+
+/// The condensation onto the contact dofs `last`, from the factor of the stiffness or, without one, from that of the stiffness
+/// with its rows; `None` if even all rows together do not hold the body: the full problem then gives the reason.
+fn condensed(
+    cholesky: Option<&Cholesky>,
+    scaling: &Scaling,
+    last: &[usize],
+    settings: &Settings,
+) -> Result<Option<Condensation>, Error> {
+    let factor = match cholesky {
+        Some(cholesky) => Some(cholesky.clone()),
+        None => factor_with_rows(scaling, last, settings)?,
+    };
+    let Some(factor) = factor else { return Ok(None) };
+    check_time(&settings.watch, seconds::dense(last.len()))?;
+    let last = last.to_vec();
+    Condensation::new(factor, cholesky.is_none(), last, scaling.contact()).map(Some)
+}
+
+/// The matrices that the methods factorise, analysed; an `analysis` of the stiffness is reused for them.
+///
+/// # Errors
+/// As [`AugmentedMatrix::new`].
+fn augmented(
+    condensation: Option<&Condensation>,
+    scaling: &Scaling,
+    analysis: Option<Analysis>,
+) -> Result<AugmentedMatrix, FactorError> {
+    match (condensation, analysis) {
+        (Some(condensed), _) => {
+            // The condensed matrix is dense: any order gives the same factor, and its last block is the whole factor.
+            let all: Vec<usize> = (0..condensed.stiffness().dim()).collect();
+            AugmentedMatrix::with_last(condensed.stiffness(), condensed.contact(), &all)
+        }
+        (None, Some(analysis)) => AugmentedMatrix::with_analysis(scaling.stiffness(), scaling.contact(), analysis),
+        (None, None) => AugmentedMatrix::new(scaling.stiffness(), scaling.contact()),
+    }
+}
+
+/// The factor of `K + B'B` with the contact dofs last, or `None` if it is not safely definite.
+///
+/// # Errors
+/// [`Error::OutOfTime`] before the factorisation, [`Error::Numerical`].
+fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], settings: &Settings) -> Result<Option<Cholesky>, Error> {
+    let augmented = AugmentedMatrix::with_last(scaling.stiffness(), scaling.contact(), contact_dofs)?;
+    let augmented = augmented.with_threads(settings.threads);
+    check_time(&settings.watch, seconds::factorisation(augmented.analysis()))?;
+    let matrix = augmented.matrix(|_| 1.0, 0.0);
+    match augmented.factor(matrix.clone()) {
+        Ok(cholesky) if cholesky.is_definite(&matrix) => Ok(Some(cholesky)),
+        Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
+        Err(error) => Err(error.into()),
+    }
+}

@@ -1,0 +1,222 @@
+//! The certified quadratic program: minimise 1/2 u'K u - f'u subject to B u - g <= 0, with bounds on the error of its answer.
+//!
+//! ```
+//! use signorini_qp::{ContactProblem, SparseMatrix, SymmetricMatrix, solve_qp};
+//! // K, f, B and g: u_0 and u_1 with u_1 <= 1.
+//! let k = SparseMatrix::from_triplets(2, 2, &[(0, 0, 3.0), (1, 0, -1.0), (1, 1, 1.0)])?;
+//! let b = SparseMatrix::from_triplets(1, 2, &[(0, 1, 1.0)])?;
+//! let problem = ContactProblem::new(SymmetricMatrix::from_lower(k)?, vec![0.0, 3.0], b, vec![1.0])?;
+//! let solution = solve_qp(&problem)?;
+//! assert!((solution.displacement[0] - 1.0 / 3.0).abs() < 1e-15 && solution.certificate.meets(1e-9));
+//! # Ok::<(), signorini_qp::Error>(())
+//! ```
+//!
+//! K is symmetric and positive semidefinite; the multiplier is `lambda = -z <= 0`, with `K u - f - B' lambda = 0`. `Ok` means that
+//! the [`Certificate`], recomputed from K, f, B and g, meets the tolerance. This crate knows no mechanics: meshes, scenes and the
+//! program are in `signorini`, which re-exports all of it as `signorini::qp`.
+//!
+//! From a problem to its answer:
+//!
+//! ```text
+//! problem -> plan -> run: rows selected -> scaled -> condensed -> method -> expanded -> unscaled -> certificate -> plan again
+//! ```
+//!
+//! `plan` alone decides what is tried, by the seconds and bytes of `cost`; `run` carries it out with the data that an engine prepares
+//! once for many loads and gaps; `existence` alone says that a problem has no answer, or more than one.
+
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+
+mod certificate;
+mod cost;
+mod directory;
+mod engine;
+mod error;
+mod existence;
+pub mod file;
+mod linear;
+mod matrix_market;
+pub mod memory;
+mod method;
+mod panics;
+mod petsc;
+mod plan;
+mod prepared;
+mod problem;
+mod run;
+mod settings;
+mod solution;
+mod transform;
+mod watch;
+
+pub use cost::Estimate;
+pub use directory::read_problem;
+pub use error::{Error, Failure};
+pub use linear::multigrid::{Multigrid, NearNullSpace};
+pub use linear::{Cholesky, Forest, SparseMatrix, SymmetricMatrix, Width, dot, largest};
+pub use matrix_market::{format_vector, read_vector};
+pub use method::interior_point::InteriorPoint;
+pub use method::parametric::Event;
+pub use method::penalty::Penalty;
+pub use method::{Ending, Outcome, Start};
+pub use petsc::Layout as PetscLayout;
+pub use prepared::{BoundarySolution, Path, Prepared};
+pub use problem::ContactProblem;
+pub use settings::{Condense, Method, Precision, Settings};
+pub use solution::{Attempt, Certificate, ContactSet, Goal, Iteration, Met, ProvenSet, Seconds, Solution, Why};
+pub use watch::{Activity, Part, Watch};
+
+use certificate::Bounding;
+use engine::Engine;
+use prepared::between;
+
+/// Solves a contact problem; `Ok` means that the answer is certified to `settings.tolerance`.
+///
+/// ```
+/// use signorini_qp::{ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, solve};
+///
+/// // A spring of stiffness 2 at rest, a wall that starts 0.5 inside: g = -0.5.
+/// let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]);
+/// let stiffness = SymmetricMatrix::from_lower(one(2.0)?)?;
+/// let problem = ContactProblem::new(stiffness, vec![0.0], one(1.0)?, vec![-0.5])?;
+///
+/// let solution = solve(&problem, &Settings::with_method(Method::ActiveSet))?;
+/// assert_eq!(solution.displacement, [-0.5]);
+/// assert_eq!(solution.multiplier, [2.0 * -0.5]);
+/// # Ok::<(), signorini_qp::Error>(())
+/// ```
+///
+/// # Errors
+/// * [`Error::Setting`] for a setting outside its range,
+/// * [`Error::Infeasible`] for contact rows that contradict each other,
+/// * [`Error::Unbounded`] for a load along a rigid-body mode that nothing stops,
+/// * [`Error::UnderHeld`] for a rigid-body mode that nothing resists: the answer would not be unique,
+/// * [`Error::NotConvex`] for a stiffness with a negative eigenvalue,
+/// * [`Error::NotCertified`] with the best answer, if it does not meet the tolerance,
+/// * [`Error::NoRoom`] if no way within `settings.memory` leads to a certified answer, [`Error::TooLarge`] if the named method does not
+///   fit,
+/// * [`Error::Interrupted`] if the watch was asked to stop before there was an answer,
+/// * [`Error::Numerical`] if memory does not suffice.
+pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+    run::solved(problem, &Start::default(), settings)
+}
+
+/// Solves a contact problem as a QP by the interior-point method, polished, certified to 1e-9.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
+    solve(problem, &Settings::with_method(Method::qp()))
+}
+
+impl ContactProblem {
+    /// Returns `true` for a directory with the stiffness of a problem.
+    pub fn is_directory(directory: &std::path::Path) -> bool {
+        directory::is_problem_directory(directory)
+    }
+
+    /// The other end of the problem of a directory: its gaps in `g1.mtx`, its load in `f1.mtx`; without a file the gaps or the load stay
+    /// unchanged.
+    ///
+    /// # Errors
+    /// As [`read_problem`]; [`Error::FileSyntax`] if there is neither file, for a vector of another length, and for gaps that are
+    /// infinite in other rows.
+    pub fn read_other_end(&self, directory: &std::path::Path) -> Result<ContactProblem, Error> {
+        matrix_market::read_other_end(directory, self)
+    }
+
+    /// The files of a problem directory: Matrix Market, written piece by piece.
+    pub fn files(&self) -> Vec<file::Streamed<'_>> {
+        matrix_market::streamed_files(self)
+    }
+
+    /// The same as files of PETSc, with this layout of the dofs.
+    pub fn petsc_files<'a>(&'a self, layout: &'a PetscLayout) -> Vec<file::Streamed<'a>> {
+        petsc::streamed_files(self, layout)
+    }
+
+    /// Solves the problem from what is known of its answer; else as [`solve`].
+    ///
+    /// # Errors
+    /// As [`solve`].
+    pub fn solve_from(&self, start: &Start, settings: &Settings) -> Result<Solution, Error> {
+        run::solved(self, start, settings)
+    }
+
+    /// The dual active-set method alone, on a small problem in the units that it has: for comparisons of methods. It is the last attempt
+    /// of [`solve`]. `is_definite` says that K is positive definite by itself.
+    ///
+    /// # Errors
+    /// [`Error::NotCondensed`] for a problem that is too large for a dense basis of its rows, or whose stiffness has no factor;
+    /// [`Error::Numerical`] for lack of memory.
+    pub fn dual_active_set(&self, is_definite: bool) -> Result<Outcome, Error> {
+        method::dual_active_set::dual_active_set(self, is_definite)
+    }
+
+    /// The problem at the share `t` of the way to `last`, which has the same matrices: its loads and gaps lie between those of both.
+    ///
+    /// # Errors
+    /// [`Error::Length`] if `last` has other numbers of dofs or rows.
+    pub fn towards(&self, last: &ContactProblem, t: f64) -> Result<ContactProblem, Error> {
+        self.with(between(self.load(), last.load(), t), between(self.gap(), last.gap(), t))
+    }
+
+    /// The attempts of a solve from a start, in order, each with its condition and its reason: text, a line each.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a setting outside its range, [`Error::NoRoom`] if nothing fits into the memory, and those of an analysis of the
+    /// stiffness.
+    pub fn plan(&self, start: &Start, settings: &Settings) -> Result<String, Error> {
+        let settings = &settings.started()?;
+        let known = plan::Known { gaps: 1, is_whole: !start.is_unknown() };
+        plan::Ladder::of(self, known, settings)?.in_words(self, settings)
+    }
+
+    /// The certificate of an answer (u, lambda), one entry per dof and per row, that came from elsewhere, within the memory of `settings`: with a factor if that is
+    /// estimated to take at most `seconds`, else by multigrid.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::certify`]; [`Error::Infeasible`] as [`solve`], if an answer misses its rows;
+    /// [`Error::NoRoom`] if there is no room for either.
+    pub fn certify_within(
+        &self,
+        seconds: f64,
+        answer: (&[f64], &[f64]),
+        settings: &Settings,
+    ) -> Result<Certificate, Error> {
+        let (displacement, multiplier) = answer;
+        let examine = |by: &Bounding| Ok(self.examine(by, displacement, multiplier)?.certificate);
+        let certificate = if plan::is_bounded_by_factor(self, seconds, settings)? {
+            examine(&Bounding::OwnFactor)
+        } else {
+            match engine::Hierarchical::new(self, settings) {
+                Ok(hierarchical) => examine(&hierarchical.bounding(&settings.watch, 0.0)),
+                // A dof without stiffness, or a direction of negative energy, has no hierarchy.
+                Err(Error::NotConvex { .. }) => examine(&Bounding::Nothing),
+                Err(error) => Err(error),
+            }
+        }?;
+        // An answer that meets its rows shows that they can be met.
+        if certificate.penetration > settings.goal().tolerance {
+            existence::check_rows(self, settings, run::solve_any)?;
+        }
+        Ok(certificate)
+    }
+
+    /// Factorises the stiffness once for many sets of held rows. Each call of the returned function is one iteration of the active-set loop,
+    /// and gives displacement (one entry per dof, in length) and multiplier (one per row, in force), which may have either sign; `None` if these rows do not hold the body.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    pub fn with_contact_sets(&self) -> Result<impl Fn(&ContactSet) -> Option<[Vec<f64>; 2]>, Error> {
+        let factored = engine::Factored::new(self, &plan::WithFactor::BY_RULES, &Settings::default())?;
+        Ok(move |closed: &ContactSet| factored.with_contact_set(closed).map(|(u, lambda)| [u, lambda]))
+    }
+}
+
+impl Solution {
+    /// The files of an answer: name and text, `u.mtx` and `lambda.mtx`.
+    pub fn files(&self) -> [(&'static str, String); 2] {
+        matrix_market::solution_files(self)
+    }
+}

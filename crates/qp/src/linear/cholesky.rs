@@ -1,0 +1,281 @@
+//! Sparse Cholesky factorisation A = L L' on faer: one analysis, and one factorisation for each change of the values.
+
+use std::sync::Arc;
+
+use faer::perm::PermRef;
+use faer::sparse::SymbolicSparseColMatRef;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::{self as fc, supernodal};
+use faer::{Par, Side};
+
+use super::factor::{self, Factor, FactorError, Real, Width, call};
+use super::grouped::group_starts;
+use super::{Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, ldexp, ordering};
+use crate::error::Error;
+
+/// Fill-reducing ordering and structure of the factor, for all matrices of one sparsity pattern.
+#[derive(Clone, Debug)]
+pub struct Analysis {
+    symbolic: Arc<fc::SymbolicCholesky<usize>>,
+    trailing: usize,
+    threads: usize,
+}
+
+/// The factor L of a symmetric positive definite matrix K = L L', sparse, its unknowns in an order with little fill-in.
+#[derive(Clone, Debug)]
+pub struct Cholesky {
+    analysis: Analysis,
+    values: Values,
+    smallest_pivot: f64,
+}
+
+/// Shared, because a factor is the largest object in memory.
+#[derive(Clone, Debug)]
+enum Values {
+    Double(Arc<Vec<f64>>),
+    Single(Arc<Vec<f32>>),
+}
+
+/// Calls a function of the factor in its precision; gives `None` for a matrix without columns.
+macro_rules! by_precision {
+    ($cholesky:expr, $factor:ident => $call:expr) => {
+        $cholesky.supernodes().map(|nodes| match &$cholesky.values {
+            Values::Double(values) => {
+                let $factor = Factor::new(nodes, values);
+                $call
+            }
+            Values::Single(values) => {
+                let $factor = Factor::new(nodes, values);
+                $call
+            }
+        })
+    };
+}
+
+impl Analysis {
+    /// Orders and analyses the pattern of `matrix`.
+    ///
+    /// # Errors
+    /// [`FactorError::Failed`] if memory or the index range does not suffice.
+    pub fn of(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
+        Self::with_last(matrix, &[])
+    }
+
+    /// As [`Analysis::of`], with the columns of `last` eliminated last, in the order given: the trailing block of the
+    /// factor is then that of their Schur complement.
+    ///
+    /// # Errors
+    /// As [`Analysis::of`].
+    pub fn with_last(matrix: &SymmetricMatrix, last: &[usize]) -> Result<Self, FactorError> {
+        let lower = matrix.lower();
+        let order = call(|| ordering::order(lower, last))?;
+        let mut place = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
+        let params = fc::CholeskySymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+            ..Default::default()
+        };
+        let symbolic = call(|| {
+            let order = fc::SymmetricOrdering::Custom(PermRef::new_checked(&order, &place, order.len()));
+            let (starts, rows) = (lower.column_starts(), lower.row_indices());
+            let structure = SymbolicSparseColMatRef::new_checked(lower.rows(), lower.columns(), starts, None, rows);
+            Ok(fc::factorize_symbolic_cholesky(structure, Side::Lower, order, params)?)
+        })?;
+        Ok(Analysis { symbolic: Arc::new(symbolic), trailing: last.len(), threads: 1 })
+    }
+
+    /// The same analysis, for factorisations with this number of threads.
+    pub fn with_threads(self, threads: usize) -> Self {
+        Analysis { threads, ..self }
+    }
+
+    /// Number of values of the factor, zeros inside supernodes included.
+    pub fn factor_entries(&self) -> usize {
+        self.symbolic.len_val()
+    }
+
+    /// Number of multiplications of a factorisation, counted as if each column were eliminated by itself.
+    pub fn multiplications(&self) -> f64 {
+        let Some(nodes) = self.supernodes() else { return 0.0 };
+        let (starts, below) = (nodes.supernode_begin(), nodes.col_ptr_for_row_idx());
+        (0..nodes.n_supernodes())
+            .map(|node| {
+                let (columns, rows) = (nodes.supernode_end()[node] - starts[node], below[node + 1] - below[node]);
+                (0..columns).map(|column| ((columns - column + rows) as f64).powi(2) / 2.0).sum::<f64>()
+            })
+            .sum()
+    }
+
+    /// Factorises `matrix`, which must have the analysed pattern.
+    ///
+    /// # Errors
+    /// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive.
+    pub fn factor(&self, matrix: &SymmetricMatrix) -> Result<Cholesky, FactorError> {
+        self.factor_last(matrix.clone())
+    }
+
+    /// As [`Analysis::factor`], for a matrix that is no longer needed: its values are freed before those of the factor are
+    /// made.
+    ///
+    /// # Errors
+    /// As [`Analysis::factor`].
+    pub fn factor_last(&self, matrix: SymmetricMatrix) -> Result<Cholesky, FactorError> {
+        let permuted = self.permuted(matrix.lower(), |_, _, value| value);
+        drop(matrix);
+        self.factorised(permuted, Values::Double)
+    }
+
+    /// Factorises the equilibrated `c D A D` of `matrix` without building it, in double precision or, with half the
+    /// memory and some seven digits of each entry, if that is the `width`.
+    ///
+    /// # Errors
+    /// As [`Analysis::factor`]; in single precision a pivot may also be lost to rounding.
+    pub fn factor_equilibrated(
+        &self,
+        matrix: &SymmetricMatrix,
+        equilibration: &Equilibration,
+        width: Width,
+    ) -> Result<Cholesky, FactorError> {
+        let scale = &equilibration.diagonal;
+        let entry = |row: usize, column: usize, value| ldexp(value, equilibration.factor + scale[row] + scale[column]);
+        if width == Width::Single {
+            let rounded = |row: usize, column: usize, value| entry(row, column, value) as f32;
+            return self.factorised(self.permuted(matrix.lower(), rounded), Values::Single);
+        }
+        self.factorised(self.permuted(matrix.lower(), entry), Values::Double)
+    }
+
+    fn factorised<T: Real>(
+        &self,
+        (permuted, entries): (SparseMatrix, Vec<T>),
+        shared: fn(Arc<Vec<T>>) -> Values,
+    ) -> Result<Cholesky, FactorError> {
+        let par = if self.threads > 1 { Par::rayon(self.threads) } else { Par::Seq };
+        let (values, smallest_pivot) = match self.supernodes() {
+            Some(supernodes) => call(|| factor::factorise(supernodes, &permuted, &entries, par))?,
+            // Only a matrix without columns has no supernodes.
+            None => (Vec::new(), f64::INFINITY),
+        };
+        Ok(Cholesky { analysis: self.clone(), values: shared(Arc::new(values)), smallest_pivot })
+    }
+
+    /// The structure of the lower triangle of P A P', rows in no order, and its entries as `entry(row, column, value)`
+    /// makes them.
+    fn permuted<T: Real>(
+        &self,
+        lower: &SparseMatrix,
+        entry: impl Fn(usize, usize, f64) -> T,
+    ) -> (SparseMatrix, Vec<T>) {
+        let place = self.symbolic.perm().map_or(&[][..], |perm| perm.arrays().1);
+        let first = |(row, column, _): (usize, usize, f64)| place[column].min(place[row]);
+        let starts = group_starts(lower.columns(), lower.triplets().map(first));
+        let mut next = starts.clone();
+        let (mut rows, mut values) = (vec![0; lower.entries()], vec![T::default(); lower.entries()]);
+        for (column, &to) in place.iter().enumerate() {
+            for (row, value) in lower.column(column) {
+                let (first, second) = (to.min(place[row]), to.max(place[row]));
+                rows[next[first]] = second;
+                values[next[first]] = entry(row, column, value);
+                next[first] += 1;
+            }
+        }
+        (SparseMatrix::from_parts(lower.rows(), starts, rows, Vec::new()), values)
+    }
+
+    fn supernodes(&self) -> Option<&supernodal::SymbolicSupernodalCholesky<usize>> {
+        match self.symbolic.raw() {
+            fc::SymbolicCholeskyRaw::Supernodal(inner) => Some(inner),
+            fc::SymbolicCholeskyRaw::Simplicial(_) => None,
+        }
+    }
+}
+
+impl Cholesky {
+    /// Analyses and factorises `matrix`.
+    ///
+    /// # Errors
+    /// [`Error::NotConvex`] for a matrix that is not positive definite, [`Error::Numerical`] for a lack of memory.
+    pub fn of(matrix: &SymmetricMatrix) -> Result<Self, Error> {
+        Ok(Cholesky::factorised(matrix)?)
+    }
+
+    /// The same with an error that names the pivot.
+    pub(crate) fn factorised(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
+        Analysis::of(matrix)?.factor(matrix)
+    }
+
+    /// Number of rows and of columns.
+    pub fn dim(&self) -> usize {
+        self.analysis.symbolic.nrows()
+    }
+
+    /// Number of values of the factor, zeros inside supernodes included.
+    pub fn entries(&self) -> usize {
+        self.analysis.factor_entries()
+    }
+
+    /// Returns `true` if its values are in single precision.
+    pub fn is_single(&self) -> bool {
+        matches!(self.values, Values::Single(_))
+    }
+
+    /// The solution x of A x = b, length `dim`. If faer fails or b does not fit, every entry of x is NaN, which no certificate
+    /// accepts.
+    pub fn solve(&self, b: &[f64]) -> Vec<f64> {
+        if b.len() == self.dim() { self.backward(self.forward(b)) } else { vec![f64::NAN; b.len()] }
+    }
+
+    /// `b' A^-1 b`: the squared length of L^-1 P b, by one sweep; a solution takes two.
+    pub fn inverse_product(&self, b: &[f64]) -> f64 {
+        let y = self.forward(b);
+        dot(&y, &y)
+    }
+
+    /// The sweep L y = P b through the factor, in the order of elimination; its last entries belong to the columns that
+    /// were put last.
+    pub fn forward(&self, b: &[f64]) -> Vec<f64> {
+        let ordered: Vec<f64> = self.order().iter().map(|&column| b.get(column).copied().unwrap_or(f64::NAN)).collect();
+        by_precision!(self, factor => factor::forward(factor, &ordered)).unwrap_or_default()
+    }
+
+    /// The sweep L' P x = y, `y` in the order of elimination, `x` in that of the matrix.
+    pub fn backward(&self, y: Vec<f64>) -> Vec<f64> {
+        let ordered = by_precision!(self, factor => factor::backward(factor, &y)).unwrap_or_default();
+        let mut x = vec![0.0; ordered.len()];
+        self.order().iter().zip(&ordered).for_each(|(&column, &value)| x[column] = value);
+        x
+    }
+
+    /// The trailing block of L that belongs to the columns put last, m x m. Its product with its transpose is their Schur
+    /// complement.
+    pub fn trailing_block(&self) -> LowerTriangle {
+        let size = self.analysis.trailing;
+        let block = by_precision!(self, factor => factor::trailing_block(factor, size));
+        LowerTriangle::new(size, block.unwrap_or_default())
+    }
+
+    /// The structure of the factor, in block columns.
+    pub(super) fn supernodes(&self) -> Option<&supernodal::SymbolicSupernodalCholesky<usize>> {
+        self.analysis.supernodes()
+    }
+
+    /// The values of block column `node`: the rows of its own columns, then those below.
+    pub(super) fn block_column(&self, node: usize) -> faer::Mat<f64> {
+        by_precision!(self, factor => factor::block_column(factor, node)).unwrap_or_else(faer::Mat::new)
+    }
+
+    /// Number of multiplications of its factorisation, counted as if each column were eliminated by itself.
+    pub fn multiplications(&self) -> f64 {
+        self.analysis.multiplications()
+    }
+
+    /// The columns of the matrix in the order of elimination.
+    pub(super) fn order(&self) -> &[usize] {
+        self.analysis.symbolic.perm().map_or(&[], |perm| perm.arrays().0)
+    }
+
+    /// The smallest pivot, min over j of L_jj^2: small relative to the diagonal of A if A is close to singular.
+    pub fn smallest_pivot(&self) -> f64 {
+        self.smallest_pivot
+    }
+}

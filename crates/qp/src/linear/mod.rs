@@ -1,0 +1,304 @@
+//! Sparse matrices in compressed columns, and their Cholesky factorisation.
+
+mod accumulator;
+mod augmented;
+mod both_triangles;
+mod cholesky;
+mod columns;
+mod conjugate_gradients;
+mod definite;
+mod dense;
+mod dependence;
+mod factor;
+mod forest;
+mod grouped;
+pub mod multigrid;
+mod null_space;
+#[cfg(feature = "faer")]
+mod of_faer;
+#[cfg(feature = "nalgebra")]
+mod of_nalgebra;
+mod ordering;
+mod orthogonal;
+mod power_iteration;
+mod power_of_two;
+mod quotient;
+mod rows;
+pub mod selected_inverse;
+mod symmetric;
+mod threads;
+pub mod twice;
+
+pub use accumulator::Accumulator;
+pub use augmented::AugmentedMatrix;
+pub use both_triangles::SymmetricLines;
+pub use cholesky::{Analysis, Cholesky};
+pub use conjugate_gradients::{Blocks, Iterate};
+pub use dense::{LowerTriangle, UpperTriangle, check_vector, dot, largest, norm, subtract, take_out, turned};
+pub use dependence::Dependence;
+pub use factor::{FactorError, Width, if_definite};
+pub use forest::Forest;
+pub use null_space::{NullSpace, generic};
+pub use ordering::Fill;
+pub use orthogonal::inverse_lengths;
+pub use power_of_two::{Equilibration, exponent, ldexp};
+pub use symmetric::SymmetricMatrix;
+pub use twice::Twice;
+
+use std::sync::Arc;
+
+use crate::error::Error;
+use columns::{Columns, Taken};
+use grouped::group_starts;
+
+/// A real matrix in compressed columns: rows sorted within each column, no duplicates, all values finite.
+///
+/// Clones share their memory, and so do matrices of one pattern: a stiffness and its scaled form keep one set of indices.
+///
+/// ```
+/// use signorini_qp::SparseMatrix;
+///
+/// // One contact row over three dofs: u_1 - u_2.
+/// let contact = SparseMatrix::from_triplets(1, 3, &[(0, 1, 1.0), (0, 2, -1.0)])?;
+/// assert_eq!((contact.rows(), contact.columns()), (1, 3));
+/// # Ok::<(), signorini_qp::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct SparseMatrix {
+    rows: usize,
+    pattern: Arc<Pattern>,
+    values: Arc<Vec<f64>>,
+}
+
+/// The positions of the entries, column by column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Pattern {
+    column_starts: Vec<usize>,
+    row_indices: Vec<usize>,
+}
+
+impl SparseMatrix {
+    /// The matrix of `rows` x `columns` with the given entries `(row, column, value)`, indices from 0, in any order;
+    /// entries with the same row and column are added.
+    ///
+    /// # Errors
+    /// [`Error::IndexOutOfRange`] for an entry outside, [`Error::NotFinite`] for a value that is not finite.
+    pub fn from_triplets(rows: usize, columns: usize, triplets: &[(usize, usize, f64)]) -> Result<Self, Error> {
+        for &(row, column, value) in triplets {
+            if row >= rows || column >= columns {
+                return Err(Error::IndexOutOfRange { row, column, rows, columns });
+            }
+            if !value.is_finite() {
+                let at = format!("({row}, {column})");
+                return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
+            }
+        }
+        let starts = group_starts(columns, triplets.iter().map(|entry| entry.1));
+        let mut place = starts.clone();
+        let mut entries = vec![(0_usize, 0.0_f64); triplets.len()];
+        for &(row, column, value) in triplets {
+            entries[place[column]] = (row, value);
+            place[column] += 1;
+        }
+        let mut column_starts = Vec::with_capacity(columns + 1);
+        let (mut row_indices, mut values) = (Vec::with_capacity(triplets.len()), Vec::with_capacity(triplets.len()));
+        column_starts.push(0);
+        for column in 0..columns {
+            let of_column = &mut entries[starts[column]..starts[column + 1]];
+            of_column.sort_by_key(|entry| entry.0);
+            for alike in of_column.chunk_by(|a, b| a.0 == b.0) {
+                row_indices.push(alike[0].0);
+                values.push(alike.iter().map(|entry| entry.1).sum());
+            }
+            column_starts.push(row_indices.len());
+        }
+        Ok(Self::from_parts(rows, column_starts, row_indices, values))
+    }
+
+    /// The matrix of `rows` rows with given compressed columns: `column_starts` of length `columns + 1`, and for each entry its
+    /// row, from 0 and increasing within a column, and its value. Nothing is copied.
+    ///
+    /// ```
+    /// use signorini_qp::SparseMatrix;
+    ///
+    /// // [1 0; 2 3]
+    /// let matrix = SparseMatrix::from_csc(2, vec![0, 2, 3], vec![0, 1, 1], vec![1.0, 2.0, 3.0])?;
+    /// assert_eq!(matrix.mul(&[1.0, 1.0]), [1.0, 5.0]);
+    /// # Ok::<(), signorini_qp::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Length`] for arrays that do not fit each other, [`Error::Pattern`] for starts that decrease or rows that do not
+    /// increase, [`Error::IndexOutOfRange`] for a row beyond the last, [`Error::NotFinite`] for a value that is not finite.
+    pub fn from_csc(
+        rows: usize,
+        column_starts: Vec<usize>,
+        row_indices: Vec<usize>,
+        values: Vec<f64>,
+    ) -> Result<Self, Error> {
+        let shape = (rows, column_starts.len().saturating_sub(1));
+        let columns = Columns { starts: &column_starts, rows: &row_indices, values: &values };
+        columns.each(|column, rows, values| Taken::Lower.check(shape, column, rows, values))?;
+        Ok(Self::from_parts(rows, column_starts, row_indices, values))
+    }
+
+    /// The matrix with given compressed columns, which must be sorted and in range: `column_starts` has one entry per column and one more, the
+    /// others one entry per value. For the crates of this workspace, which know that; others take [`from_csc`](Self::from_csc).
+    pub fn from_parts(rows: usize, column_starts: Vec<usize>, row_indices: Vec<usize>, values: Vec<f64>) -> Self {
+        let pattern = Arc::new(Pattern { column_starts, row_indices });
+        SparseMatrix { rows, pattern, values: Arc::new(values) }
+    }
+
+    /// The matrix with other values in the same pattern.
+    pub(crate) fn with_values(&self, values: Vec<f64>) -> Self {
+        SparseMatrix { rows: self.rows, pattern: self.pattern.clone(), values: Arc::new(values) }
+    }
+
+    /// The matrix with `count` more rows and columns of zeros at its end; values are not copied, positions only if they are shared.
+    pub(super) fn with_empty(self, count: usize) -> Self {
+        let SparseMatrix { rows, pattern, values } = self;
+        let mut pattern = Arc::unwrap_or_clone(pattern);
+        pattern.column_starts.extend(vec![values.len(); count]);
+        SparseMatrix { rows: rows + count, pattern: Arc::new(pattern), values }
+    }
+
+    /// Number of rows, empty ones included.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Number of columns, empty ones included.
+    pub fn columns(&self) -> usize {
+        self.pattern.column_starts.len() - 1
+    }
+
+    /// Number of stored entries, explicit zeros included.
+    pub fn entries(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Start of each column in [`row_indices`](Self::row_indices) and [`values`](Self::values), length `columns + 1`.
+    pub fn column_starts(&self) -> &[usize] {
+        &self.pattern.column_starts
+    }
+
+    /// Row of each entry, column by column, from 0, length [`entries`](Self::entries).
+    pub fn row_indices(&self) -> &[usize] {
+        &self.pattern.row_indices
+    }
+
+    /// Value of each entry, column by column, in the order of [`row_indices`](Self::row_indices).
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The entries `(row, value)` of one column.
+    #[inline]
+    pub fn column(&self, column: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let (rows, values) = self.column_slices(column);
+        rows.iter().copied().zip(values.iter().copied())
+    }
+
+    /// Rows of the entries of one column.
+    fn column_rows(&self, column: usize) -> &[usize] {
+        self.column_slices(column).0
+    }
+
+    /// Rows and values of one column.
+    #[inline]
+    fn column_slices(&self, column: usize) -> (&[usize], &[f64]) {
+        let range = self.pattern.column_starts[column]..self.pattern.column_starts[column + 1];
+        (&self.pattern.row_indices[range.clone()], &self.values[range])
+    }
+
+    /// All entries `(row, column, value)`, column by column.
+    pub fn triplets(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        (0..self.columns()).flat_map(move |column| self.column(column).map(move |(row, value)| (row, column, value)))
+    }
+
+    /// The product A x, length `rows`; `x` has length `columns`.
+    pub fn mul(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; self.rows];
+        for (row, column, value) in self.triplets() {
+            y[row] += value * x[column];
+        }
+        y
+    }
+
+    /// The product A' y, length `columns`; `y` has length `rows`.
+    pub fn mul_transposed(&self, y: &[f64]) -> Vec<f64> {
+        (0..self.columns()).map(|column| self.column(column).map(|(row, value)| value * y[row]).sum()).collect()
+    }
+
+    /// The product |A| |x|, length `rows`, entry by entry: the scale of rounding in A x; `x` has length `columns`.
+    pub fn mul_abs(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; self.rows];
+        for (row, column, value) in self.triplets() {
+            y[row] += value.abs() * x[column].abs();
+        }
+        y
+    }
+
+    /// The product |A|' |y|, length `columns`; `y` has length `rows`.
+    pub fn mul_abs_transposed(&self, y: &[f64]) -> Vec<f64> {
+        let term = |(row, value): (usize, f64)| value.abs() * y[row].abs();
+        (0..self.columns()).map(|column| self.column(column).map(term).sum()).collect()
+    }
+
+    /// The transposed matrix: its columns are the rows of this one.
+    pub fn transposed(&self) -> Self {
+        let starts = group_starts(self.rows, self.row_indices().iter().copied());
+        let mut place = starts.clone();
+        let mut row_indices = vec![0; self.entries()];
+        let mut values = vec![0.0; self.entries()];
+        for (row, column, value) in self.triplets() {
+            row_indices[place[row]] = column;
+            values[place[row]] = value;
+            place[row] += 1;
+        }
+        Self::from_parts(self.columns(), starts, row_indices, values)
+    }
+
+    /// The matrix diag(left) A diag(right); `left` has length `rows`, `right` has length `columns`.
+    pub fn scaled(&self, left: &[f64], right: &[f64]) -> Self {
+        self.with_values(self.triplets().map(|(row, column, value)| left[row] * value * right[column]).collect())
+    }
+
+    /// The rows listed in `kept` (increasing), as a matrix of `kept.len()` rows.
+    pub fn select_rows(&self, kept: &[usize]) -> Self {
+        let mut new_row = vec![usize::MAX; self.rows];
+        for (new, &old) in kept.iter().enumerate() {
+            new_row[old] = new;
+        }
+        let place = |row: usize| Some(new_row[row]).filter(|&row| row != usize::MAX);
+        self.select(kept.len(), place, 0..self.columns())
+    }
+
+    /// The given columns, as a matrix of `rows` rows; `place` gives the new place of a row, increasing, or `None` to leave it out.
+    pub(crate) fn select(
+        &self,
+        rows: usize,
+        place: impl Fn(usize) -> Option<usize>,
+        columns: impl Iterator<Item = usize>,
+    ) -> Self {
+        let (mut starts, mut row_indices, mut values) = (vec![0], Vec::new(), Vec::new());
+        for column in columns {
+            for (row, value) in self.column(column) {
+                if let Some(row) = place(row) {
+                    row_indices.push(row);
+                    values.push(value);
+                }
+            }
+            starts.push(row_indices.len());
+        }
+        Self::from_parts(rows, starts, row_indices, values)
+    }
+
+    /// The entries `(second, first, product)` of b b' on and below the diagonal, for one column b.
+    pub(crate) fn square(&self, column: usize) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        self.column(column).flat_map(move |(first, a)| {
+            let below = self.column(column).filter(move |entry| entry.0 >= first);
+            below.map(move |(second, b)| (second, first, a * b))
+        })
+    }
+}

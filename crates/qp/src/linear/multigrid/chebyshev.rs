@@ -1,0 +1,180 @@
+//! The smoother: Chebyshev polynomials of the fourth kind in D^-1 A, D the diagonal blocks.
+
+use super::blocks::BlockMatrix;
+use super::coarsest::LOST_DIAGONAL;
+use super::operator::Operator;
+use crate::linear::factor::Real;
+use crate::linear::power_iteration::power_iteration;
+
+/// Products that estimate the largest eigenvalue of D^-1 A.
+const POWER_STEPS: usize = 12;
+
+/// Safety factor of the estimate, which is a lower bound.
+const SAFETY: f64 = 1.1;
+
+/// Factor by which a change of a matrix on few rows may increase the largest eigenvalue.
+const CHANGED: f64 = 1.15;
+
+/// A pivot of a diagonal block below this share of its entry is rounding: such a direction is not smoothed.
+const SINGULAR_PIVOT: f64 = 1e-6;
+
+/// A symmetric smoother of a fixed degree.
+///
+/// # Source
+/// J. Lottes, *Optimal polynomial smoothers for multigrid V-cycles*, Numer. Linear Algebra Appl. 30 (2023) e2518,
+/// algorithm 3.
+#[derive(Clone, Debug)]
+pub struct Chebyshev<T> {
+    degree: usize,
+    /// Blocks of D^-1, one for each node.
+    pub inverse: Vec<T>,
+    /// Upper bound on the eigenvalues of D^-1 A.
+    pub largest: f64,
+}
+
+impl<T: Real> Chebyshev<T> {
+    /// The smoother of `matrix`.
+    pub fn new(matrix: &BlockMatrix<T>, degree: usize, threads: usize) -> Self {
+        let inverse = inverse_diagonal(matrix);
+        let mut smoother = Chebyshev { degree, inverse, largest: 1.0 };
+        smoother.largest = SAFETY * smoother.largest_eigenvalue(&Operator::whole(matrix, threads));
+        smoother
+    }
+
+    /// Improves `x` with the residual `rest` = b - A x. Returns the last step, which the residual does not contain yet: that saves a
+    /// product if it is not used any more.
+    pub fn smooth(&self, operator: &Operator<T>, x: &mut [T], rest: &mut [T]) -> Vec<T> {
+        let (mut step, mut moved) = (vec![T::default(); x.len()], vec![T::default(); x.len()]);
+        for k in 1..=self.degree {
+            let k_real = k as f64;
+            let keep = T::of((2.0 * k_real - 3.0) / (2.0 * k_real + 1.0));
+            let gain = T::of((8.0 * k_real - 4.0) / (2.0 * k_real + 1.0) / self.largest);
+            self.precondition(operator, rest, &mut moved);
+            operator.in_chunks([&mut step, x], |range, [step, x]| {
+                for ((step, &moved), x) in step.iter_mut().zip(&moved[range]).zip(x) {
+                    *step = keep * *step + gain * moved;
+                    *x += *step;
+                }
+            });
+            if k < self.degree {
+                operator.mul_into(&step, &mut moved);
+                operator.subtract(&moved, rest);
+            }
+        }
+        step
+    }
+
+    /// `D^-1 r`, in the face.
+    fn precondition(&self, operator: &Operator<T>, r: &[T], result: &mut [T]) {
+        let size = operator.matrix.height;
+        operator.in_chunks([&mut *result], |range, [result]| {
+            let blocks = self.inverse[range.start * size..range.end * size].chunks_exact(size * size);
+            for ((block, r), result) in blocks.zip(r[range].chunks_exact(size)).zip(result.chunks_exact_mut(size)) {
+                for (row, result) in block.chunks_exact(size).zip(result) {
+                    let mut sum = T::default();
+                    row.iter().zip(r).for_each(|(&a, &r)| sum += a * r);
+                    *result = sum;
+                }
+            }
+        });
+        operator.project(result);
+    }
+
+    /// The same smoother for the matrix minus `change`; blocks in which `change` has no entry are kept.
+    pub fn changed(&self, matrix: &BlockMatrix<T>, change: &BlockMatrix<T>) -> Self {
+        let size = matrix.height;
+        let mut smoother = self.clone();
+        smoother.largest *= CHANGED;
+        let (mut work, mut result) = (vec![0.0; size * size], vec![0.0; size * size]);
+        for node in 0..matrix.rows() {
+            let (Some(own), Some(changed)) = (matrix.diagonal_place(node), change.diagonal_place(node)) else {
+                continue;
+            };
+            for (work, (own, changed)) in work.iter_mut().zip(matrix.block(own).iter().zip(change.block(changed))) {
+                *work = own.double() - changed.double();
+            }
+            for i in 0..size {
+                let whole = matrix.block(own)[i * size + i].double();
+                if work[i * size + i] <= LOST_DIAGONAL * T::EPSILON * whole {
+                    (0..size).for_each(|j| (work[i * size + j], work[j * size + i]) = (0.0, 0.0));
+                }
+            }
+            invert(&mut work, size, &mut result);
+            let place = &mut smoother.inverse[node * size * size..(node + 1) * size * size];
+            place.iter_mut().zip(&result).for_each(|(place, &value)| *place = T::of(value));
+        }
+        smoother
+    }
+
+    fn largest_eigenvalue(&self, operator: &Operator<T>) -> f64 {
+        let product = |x: &[T], y: &[T]| x.iter().zip(y).map(|(x, y)| x.double() * y.double()).sum::<f64>();
+        let mut moved = vec![T::default(); operator.dim()];
+        let mut estimate = 1.0;
+        power_iteration(operator.dim(), -0.5, POWER_STEPS, |x| {
+            operator.mul_into(x, &mut moved);
+            let mut next = vec![T::default(); x.len()];
+            self.precondition(operator, &moved, &mut next);
+            let (energy, dual) = (product(x, &moved), product(&next, &moved));
+            if energy.is_nan() || energy <= 0.0 || !dual.is_finite() {
+                return None;
+            }
+            // The Rayleigh quotient of D^-1 A in the energy product, in which it is symmetric.
+            estimate = dual / energy;
+            Some(next)
+        });
+        estimate
+    }
+}
+
+/// The inverse of each diagonal block.
+fn inverse_diagonal<T: Real>(matrix: &BlockMatrix<T>) -> Vec<T> {
+    let size = matrix.height;
+    let mut inverse = Vec::with_capacity(matrix.rows() * size * size);
+    let (mut work, mut result) = (vec![0.0; size * size], vec![0.0; size * size]);
+    for node in 0..matrix.rows() {
+        match matrix.diagonal_place(node) {
+            Some(place) => work.iter_mut().zip(matrix.block(place)).for_each(|(work, value)| *work = value.double()),
+            None => work.fill(0.0),
+        }
+        invert(&mut work, size, &mut result);
+        inverse.extend(result.iter().map(|&value| T::of(value)));
+    }
+    inverse
+}
+
+/// The inverse of a symmetric block, row by row, by elimination; directions without a pivot are left out.
+fn invert(work: &mut [f64], size: usize, result: &mut [f64]) {
+    result.fill(0.0);
+    let diagonal: Vec<f64> = (0..size).map(|i| work[i * size + i]).collect();
+    let mut kept = vec![true; size];
+    for i in 0..size {
+        result[i * size + i] = 1.0;
+    }
+    for k in 0..size {
+        let pivot = work[k * size + k];
+        if pivot.is_nan() || pivot <= SINGULAR_PIVOT * diagonal[k] || pivot <= 0.0 {
+            kept[k] = false;
+            continue;
+        }
+        for j in 0..size {
+            work[k * size + j] /= pivot;
+            result[k * size + j] /= pivot;
+        }
+        for i in (0..size).filter(|&i| i != k) {
+            let factor = work[i * size + k];
+            if factor != 0.0 {
+                for j in 0..size {
+                    work[i * size + j] -= factor * work[k * size + j];
+                    result[i * size + j] -= factor * result[k * size + j];
+                }
+            }
+        }
+    }
+    for i in 0..size {
+        for j in 0..size {
+            if !kept[i] || !kept[j] {
+                result[i * size + j] = 0.0;
+            }
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! One V-cycle through a hierarchy.
+
+use super::face::FaceLevels;
+use super::hierarchy::Hierarchy;
+use super::operator::Operator;
+use crate::linear::factor::Real;
+
+impl<T: Real> Hierarchy<T> {
+    /// Approximately `A^-1 r`, by one V-cycle, in the given face; r is `force` times `2^exponent`.
+    pub fn cycle(&self, force: &[f64], exponent: i32, face: Option<&FaceLevels<T>>) -> Vec<f64> {
+        let mut rest = self.nodes.gather::<T>(force, exponent);
+        if let Some(face) = face {
+            face.held.subtract_from(&mut rest);
+        }
+        let moved = self.descend(0, rest, face);
+        self.nodes.scatter(&moved, self.shift - exponent)
+    }
+
+    fn descend(&self, depth: usize, mut rest: Vec<T>, face: Option<&FaceLevels<T>>) -> Vec<T> {
+        let Some(level) = self.levels.get(depth) else {
+            let force: Vec<f64> = rest.iter().map(|value| value.double()).collect();
+            let coarsest = face.map_or(&*self.coarsest, |face| &face.coarsest);
+            let mut x: Vec<T> = coarsest.solve(&force).into_iter().map(T::of).collect();
+            if let Some(held) = face.filter(|_| depth == 0).map(|face| &face.held) {
+                held.subtract_from(&mut x);
+            }
+            return x;
+        };
+        let operator = Operator {
+            matrix: &level.matrix,
+            held: face.filter(|_| depth == 0).map(|face| &face.held),
+            change: face.and_then(|face| face.changes.get(depth.wrapping_sub(1))),
+            threads: self.threads,
+        };
+        let smoother = face.and_then(|face| face.smoothers.get(depth.wrapping_sub(1))).unwrap_or(&level.smoother);
+        let mut x = vec![T::default(); rest.len()];
+        let force = rest.clone();
+        operator.subtract_product(&smoother.smooth(&operator, &mut x, &mut rest), &mut rest);
+        let mut restricted = vec![T::default(); level.restriction.rows() * level.restriction.height];
+        level.restriction.mul_into(&rest, &mut restricted, self.threads);
+        let correction = self.descend(depth + 1, restricted, face);
+        let mut moved = rest;
+        level.prolongator.mul_into(&correction, &mut moved, self.threads);
+        operator.project(&mut moved);
+        operator.add(&moved, &mut x);
+        operator.mul_into(&x, &mut moved);
+        let mut rest = force;
+        operator.subtract(&moved, &mut rest);
+        smoother.smooth(&operator, &mut x, &mut rest);
+        x
+    }
+}

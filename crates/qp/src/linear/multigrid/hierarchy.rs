@@ -1,0 +1,146 @@
+//! The levels of a hierarchy.
+
+use std::sync::Arc;
+
+use super::aggregation::{aggregate, strong_connections};
+use super::blocks::BlockMatrix;
+use super::chebyshev::Chebyshev;
+use super::coarsest::Coarsest;
+use super::lines::Lines;
+use super::near_null::NearNullSpace;
+use super::nodes::{Nodes, fill_empty_diagonal};
+use super::prolongator::{Candidates, smoothed, tentative};
+use crate::linear::factor::Real;
+use crate::linear::{FactorError, SymmetricMatrix};
+
+/// Strength of connection on the finest level; it is halved from level to level, as in the source.
+const THRESHOLD: f64 = 0.02;
+
+/// If too few connections are strong to form aggregates, all connections count as strong below this threshold.
+const LEAST_THRESHOLD: f64 = 1e-3;
+
+/// Degree of the smoothing polynomial, before and after the coarse correction.
+const DEGREE: usize = 3;
+
+/// Largest number of unknowns that are factorised directly.
+const COARSEST: usize = 1500;
+
+/// A level with more than this share of the nodes above it is not worth its work: the matrix is factorised there.
+const LEAST_COARSENING: f64 = 0.4;
+
+/// A hierarchy of levels in one precision.
+#[derive(Debug)]
+pub struct Hierarchy<T> {
+    pub(super) nodes: Nodes,
+    /// The matrix times `2^shift` has a diagonal of order one.
+    pub(super) shift: i32,
+    pub(super) levels: Vec<Arc<Level<T>>>,
+    /// The matrix of the coarsest level, and its factor.
+    pub(super) coarsest_matrix: Arc<BlockMatrix<T>>,
+    pub(super) coarsest: Arc<Coarsest>,
+    pub(super) threads: usize,
+}
+
+#[derive(Debug)]
+pub(super) struct Level<T> {
+    pub matrix: BlockMatrix<T>,
+    pub smoother: Chebyshev<T>,
+    pub prolongator: BlockMatrix<T>,
+    pub restriction: BlockMatrix<T>,
+    /// The near-null space in the unknowns of the next level.
+    pub near_null: Candidates,
+}
+
+/// The aggregate of each node and the number of aggregates; `None` if they are too many. The threshold falls until they are
+/// few.
+fn gathered<T: Real>(blocks: &BlockMatrix<T>, count: usize, threshold: &mut f64) -> Option<(Vec<u32>, usize)> {
+    let most = (LEAST_COARSENING * (blocks.rows() * blocks.height) as f64) as usize;
+    loop {
+        let (of_node, aggregates) = aggregate(&strong_connections(blocks, *threshold));
+        match aggregates * count > most {
+            false => return Some((of_node, aggregates)),
+            true if *threshold == 0.0 => return None,
+            true => *threshold = if *threshold > LEAST_THRESHOLD { *threshold / 4.0 } else { 0.0 },
+        }
+    }
+}
+
+impl<T: Real> Hierarchy<T> {
+    /// Builds the levels of `matrix`.
+    ///
+    /// # Errors
+    /// [`FactorError`] if the coarsest matrix has a negative eigenvalue, or if memory does not suffice for its factor.
+    pub fn new(matrix: &SymmetricMatrix, near_null: &NearNullSpace, threads: usize) -> Result<Self, FactorError> {
+        let (nodes, mut blocks, shift) = Nodes::of::<T>(matrix);
+        let count = near_null.count();
+        let mut candidates = Candidates { count, values: vec![0.0; nodes.size * nodes.count * count] };
+        for (index, vector) in near_null.vectors().iter().enumerate() {
+            for (&place, &value) in nodes.place.iter().zip(vector) {
+                candidates.values[place as usize * count + index] = value;
+            }
+        }
+        let mut levels = Vec::new();
+        let mut threshold = THRESHOLD;
+        while blocks.rows() * blocks.height > COARSEST {
+            let lines = Lines::of(&blocks);
+            let gathered = match &lines {
+                Some(lines) => Some((lines.of_node.clone(), lines.aggregates)),
+                None => gathered(&blocks, count, &mut threshold),
+            };
+            let Some((of_node, aggregates)) = gathered else { break };
+            let smoother = Chebyshev::new(&blocks, DEGREE, threads);
+            let (flat, coarse) = tentative::<T>(&candidates, blocks.height, &of_node, aggregates);
+            drop(of_node);
+            let moved = match lines {
+                Some(lines) => lines.product(&blocks, &flat, &candidates, &coarse),
+                None => blocks.product(&flat, threads),
+            };
+            let prolongator = smoothed(&flat, moved, &smoother, threads);
+            drop(flat);
+            let restriction = prolongator.transposed();
+            let mut next = restriction.product(&blocks.product(&prolongator, threads), threads);
+            fill_empty_diagonal(&mut next);
+            let near_null = coarse.clone();
+            levels.push(Arc::new(Level { matrix: blocks, smoother, prolongator, restriction, near_null }));
+            (blocks, candidates) = (next, coarse);
+            threshold /= 2.0;
+        }
+        let coarsest = Arc::new(Coarsest::of(&blocks)?);
+        Ok(Hierarchy { nodes, shift, levels, coarsest_matrix: Arc::new(blocks), coarsest, threads })
+    }
+
+    /// The hierarchy of the second level, which shares the levels; `None` if there is only one.
+    pub fn below(&self) -> Option<Self> {
+        let (_, rest) = self.levels.split_first()?;
+        let matrix = rest.first().map_or(&*self.coarsest_matrix, |level| &level.matrix);
+        Some(Hierarchy {
+            nodes: Nodes::in_order(matrix.height, matrix.rows()),
+            shift: 0,
+            levels: rest.to_vec(),
+            coarsest_matrix: Arc::clone(&self.coarsest_matrix),
+            coarsest: Arc::clone(&self.coarsest),
+            threads: self.threads,
+        })
+    }
+
+    /// The matrix of each level, the finest first.
+    pub fn matrices(&self) -> impl Iterator<Item = &BlockMatrix<T>> {
+        self.levels.iter().map(|level| &level.matrix).chain([&*self.coarsest_matrix])
+    }
+
+    /// Unknowns of each level, the finest first.
+    pub fn unknowns(&self) -> Vec<usize> {
+        self.matrices().map(|matrix| matrix.rows() * matrix.height).collect()
+    }
+
+    /// Bytes of memory that it holds.
+    pub fn bytes(&self) -> usize {
+        let of_level = |level: &Arc<Level<T>>| {
+            level.matrix.bytes()
+                + level.prolongator.bytes()
+                + level.restriction.bytes()
+                + size_of_val(&level.smoother.inverse[..])
+        };
+        self.levels.iter().map(of_level).sum::<usize>() + size_of::<f64>() * self.coarsest.entries()
+    }
+}

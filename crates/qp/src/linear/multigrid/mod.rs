@@ -1,0 +1,208 @@
+//! Smoothed-aggregation multigrid for symmetric matrices with a known near-null space, such as the stiffness of a body.
+//!
+//! Nodes are gathered into aggregates along strong connections. The near-null vectors, cut into aggregates and made
+//! orthonormal, are the tentative prolongator; one step of damped Jacobi smooths it. The next matrix is the Galerkin product.
+//! One cycle smooths by a Chebyshev polynomial, corrects on the next level, and smooths again; the coarsest matrix is
+//! factorised. The cycle is a symmetric positive definite preconditioner.
+//!
+//! # Source
+//! P. Vaněk, M. Brezina, J. Mandel, *Convergence of algebraic multigrid based on smoothed aggregation*, Numer. Math. 88
+//! (2001) 559-579.
+
+mod aggregation;
+mod blocks;
+mod chebyshev;
+mod coarser;
+mod coarsest;
+mod conjugate_gradients;
+mod cycle;
+mod dual_norm;
+mod face;
+mod hierarchy;
+mod lines;
+mod near_null;
+mod nodes;
+mod operator;
+mod prolongator;
+
+pub use coarser::Interval;
+pub use conjugate_gradients::Preconditioned;
+pub use face::Direction;
+pub use near_null::NearNullSpace;
+
+pub use super::Width;
+use super::{FactorError, SymmetricMatrix, exponent, largest};
+use crate::error::Error;
+use face::FaceLevels;
+use hierarchy::Hierarchy;
+
+/// The hierarchy of a symmetric positive (semi)definite matrix: one cycle approximates its inverse.
+#[derive(Debug)]
+pub struct Multigrid {
+    levels: Levels,
+}
+
+/// The levels in the precision in which they are stored; the iteration around them is always in double precision.
+#[derive(Debug)]
+enum Levels {
+    Single(Hierarchy<f32>),
+    Double(Hierarchy<f64>),
+}
+
+/// Calls a function of the levels in their precision.
+macro_rules! by_precision {
+    ($levels:expr, $hierarchy:ident => $call:expr) => {
+        match &$levels {
+            Levels::Single($hierarchy) => $call,
+            Levels::Double($hierarchy) => $call,
+        }
+    };
+}
+
+impl Multigrid {
+    /// Builds the hierarchy of `matrix` (n x n) in single precision, or in double if rounding to single makes the matrix
+    /// indefinite.
+    ///
+    /// # Errors
+    /// [`Error::Length`] for a near-null space of other than n dofs, [`Error::NotConvex`] for a diagonal entry that is negative,
+    /// or zero beside a coupling, and for a coarse matrix with a negative eigenvalue, [`Error::Numerical`] for lack of memory.
+    pub fn new(matrix: &SymmetricMatrix, near_null: &NearNullSpace, threads: usize) -> Result<Self, Error> {
+        match Self::with_precision(matrix, near_null, threads, Width::Single) {
+            Err(Error::NotConvex { .. }) => Self::with_precision(matrix, near_null, threads, Width::Double),
+            built => built,
+        }
+    }
+
+    /// As [`Multigrid::new`], in the precision given.
+    ///
+    /// # Errors
+    /// As [`Multigrid::new`].
+    pub fn with_precision(
+        matrix: &SymmetricMatrix,
+        near_null: &NearNullSpace,
+        threads: usize,
+        precision: Width,
+    ) -> Result<Self, Error> {
+        if near_null.dofs() != matrix.dim() {
+            let (found, expected) = (near_null.dofs(), matrix.dim());
+            return Err(Error::Length { name: "near-null vector", found, expected, of: "dofs" });
+        }
+        check_diagonal(matrix)?;
+        let levels = match precision {
+            Width::Single => Hierarchy::new(matrix, near_null, threads).map(Levels::Single),
+            Width::Double => Hierarchy::new(matrix, near_null, threads).map(Levels::Double),
+        };
+        Ok(Multigrid { levels: levels.map_err(located)? })
+    }
+
+    /// One cycle: approximately the solution x of A x = b, linear in b and symmetric.
+    pub fn cycle(&self, b: &[f64]) -> Vec<f64> {
+        by_precision!(self.levels, hierarchy => hierarchy.cycle(b, to_order_one(b), None))
+    }
+
+    /// The hierarchy if nothing moves along `directions`, orthonormal vectors of few dofs each; `last` is a face of the same
+    /// hierarchy that may be close.
+    ///
+    /// # Errors
+    /// As [`Multigrid::new`].
+    pub fn face(&self, directions: &[Direction], last: Option<&Face>) -> Result<Face<'_>, Error> {
+        let levels = match &self.levels {
+            Levels::Single(hierarchy) => {
+                let last = last
+                    .and_then(|face| if let LevelsInFace::Single(_, last) = &face.levels { Some(last) } else { None });
+                FaceLevels::new(hierarchy, directions, last).map(|face| LevelsInFace::Single(hierarchy, face))
+            }
+            Levels::Double(hierarchy) => {
+                let last = last
+                    .and_then(|face| if let LevelsInFace::Double(_, last) = &face.levels { Some(last) } else { None });
+                FaceLevels::new(hierarchy, directions, last).map(|face| LevelsInFace::Double(hierarchy, face))
+            }
+        };
+        Ok(Face { levels: levels.map_err(located)? })
+    }
+
+    /// Number of threads that a cycle takes; they change no bit of it.
+    pub fn threads(&self) -> usize {
+        by_precision!(self.levels, hierarchy => hierarchy.threads)
+    }
+
+    /// Unknowns of each level, the finest first.
+    pub fn unknowns(&self) -> Vec<usize> {
+        by_precision!(self.levels, hierarchy => hierarchy.unknowns())
+    }
+
+    /// Bytes of memory that it holds.
+    pub fn bytes(&self) -> usize {
+        by_precision!(self.levels, hierarchy => hierarchy.bytes())
+    }
+
+    /// Returns `true` if the matrix was singular to the precision of its levels, so that the coarsest one was shifted.
+    pub fn is_shifted(&self) -> bool {
+        by_precision!(self.levels, hierarchy => hierarchy.coarsest.is_shifted)
+    }
+}
+
+/// A hierarchy in a face: one cycle approximates the inverse of the matrix there.
+#[derive(Debug)]
+pub struct Face<'a> {
+    levels: LevelsInFace<'a>,
+}
+
+#[derive(Debug)]
+enum LevelsInFace<'a> {
+    Single(&'a Hierarchy<f32>, FaceLevels<f32>),
+    Double(&'a Hierarchy<f64>, FaceLevels<f64>),
+}
+
+impl Face<'_> {
+    /// One cycle: approximately the x in the face with A x - b orthogonal to it.
+    pub fn cycle(&self, b: &[f64]) -> Vec<f64> {
+        match &self.levels {
+            LevelsInFace::Single(hierarchy, face) => hierarchy.cycle(b, to_order_one(b), Some(face)),
+            LevelsInFace::Double(hierarchy, face) => hierarchy.cycle(b, to_order_one(b), Some(face)),
+        }
+    }
+
+    /// Returns `true` if the matrix in the face is singular to the precision of its levels, so that the coarsest one was
+    /// shifted.
+    pub fn is_shifted(&self) -> bool {
+        match &self.levels {
+            LevelsInFace::Single(_, face) => face.coarsest.is_shifted,
+            LevelsInFace::Double(_, face) => face.coarsest.is_shifted,
+        }
+    }
+}
+
+/// Checks that a dof without stiffness has no coupling either: a cycle then leaves it to itself.
+///
+/// # Errors
+/// [`Error::NotConvex`] for a diagonal entry that is negative, or zero beside a coupling.
+fn check_diagonal(matrix: &SymmetricMatrix) -> Result<(), Error> {
+    let diagonal = matrix.diagonal();
+    if diagonal.iter().all(|&value| value > 0.0) {
+        return Ok(());
+    }
+    let couples = |&(row, column, value): &(usize, usize, f64)| value != 0.0 && row != column;
+    let coupled = matrix.lower().triplets().filter(couples).flat_map(|(row, column, _)| [row, column]);
+    let negative = (0..diagonal.len()).find(|&dof| diagonal[dof] < 0.0);
+    match negative.or_else(|| coupled.into_iter().find(|&dof| diagonal[dof] <= 0.0)) {
+        Some(dof) => {
+            Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {:e}, indices from 0", diagonal[dof]) })
+        }
+        None => Ok(()),
+    }
+}
+
+/// The exponent that makes b of order one, because single precision has a small range.
+fn to_order_one(b: &[f64]) -> i32 {
+    -exponent(largest(b))
+}
+
+fn located(error: FactorError) -> Error {
+    match error {
+        FactorError::NotPositiveDefinite => {
+            Error::NotConvex { evidence: "the coarsest matrix of its hierarchy has a negative eigenvalue".into() }
+        }
+        other => other.into(),
+    }
+}

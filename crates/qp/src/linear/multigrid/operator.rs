@@ -1,0 +1,72 @@
+//! The matrix of a level, in all dofs or in a face.
+
+use std::ops::Range;
+
+use super::blocks::BlockMatrix;
+use crate::linear::factor::Real;
+
+/// A matrix A minus the change by a face: on the finest level the face is the range of I - Q, on coarser ones A becomes A - C.
+#[derive(Clone, Copy, Debug)]
+pub struct Operator<'a, T> {
+    /// A.
+    pub matrix: &'a BlockMatrix<T>,
+    /// Q, the projection onto the held directions.
+    pub held: Option<&'a BlockMatrix<T>>,
+    /// C.
+    pub change: Option<&'a BlockMatrix<T>>,
+    /// Threads of a product.
+    pub threads: usize,
+}
+
+impl<'a, T: Real> Operator<'a, T> {
+    /// The matrix in all dofs.
+    pub fn whole(matrix: &'a BlockMatrix<T>, threads: usize) -> Self {
+        Operator { matrix, held: None, change: None, threads }
+    }
+
+    /// Number of unknowns.
+    pub fn dim(&self) -> usize {
+        self.matrix.rows() * self.matrix.height
+    }
+
+    /// The product with an `x` in the face.
+    pub fn mul_into(&self, x: &[T], y: &mut [T]) {
+        self.matrix.mul_into(x, y, self.threads);
+        if let Some(change) = self.change {
+            change.subtract_product(x, y);
+        }
+        self.project(y);
+    }
+
+    /// `y -= A x` with an `x` in the face.
+    pub fn subtract_product(&self, x: &[T], y: &mut [T]) {
+        let mut product = vec![T::default(); y.len()];
+        self.mul_into(x, &mut product);
+        self.subtract(&product, y);
+    }
+
+    /// Removes the held components.
+    pub fn project(&self, y: &mut [T]) {
+        if let Some(held) = self.held {
+            held.subtract_from(y);
+        }
+    }
+
+    /// `y += x`.
+    pub fn add(&self, x: &[T], y: &mut [T]) {
+        self.in_chunks([y], |range, [y]| y.iter_mut().zip(&x[range]).for_each(|(y, &x)| *y += x));
+    }
+
+    /// `y -= x`.
+    pub fn subtract(&self, x: &[T], y: &mut [T]) {
+        self.in_chunks([y], |range, [y]| y.iter_mut().zip(&x[range]).for_each(|(y, &x)| *y -= x));
+    }
+
+    /// Runs `work` on runs of unknowns, whole nodes each, with the matching parts of the vectors `ys`.
+    pub fn in_chunks<const N: usize>(&self, ys: [&mut [T]; N], work: impl Fn(Range<usize>, [&mut [T]; N]) + Sync) {
+        let height = self.matrix.height;
+        self.matrix.shared(self.threads).with_vectors(height, ys, |rows, parts| {
+            work(rows.start * height..rows.end * height, parts);
+        });
+    }
+}

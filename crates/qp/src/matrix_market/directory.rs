@@ -1,0 +1,210 @@
+//! Problem directories: the content of each file.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::parse::{Content, Quotes, Values, parse};
+use super::write_columns;
+use super::{format_vector, write_entries};
+use crate::error::Error;
+use crate::file::Streamed;
+use crate::file::open_capped;
+use crate::linear::multigrid::NearNullSpace;
+use crate::linear::{SparseMatrix, SymmetricMatrix};
+use crate::problem::ContactProblem;
+use crate::solution::Solution;
+
+/// Most bytes of a matrix in text, which is not held in memory: fifty million dofs of a body in space.
+const MOST_OF_MATRIX: u64 = 64 << 30;
+
+/// The file that makes a directory one of Matrix Market files.
+pub const STIFFNESS: &str = "K.mtx";
+
+/// Largest number of empty rows or columns: nothing is allocated from an announced size alone.
+const MOST_EMPTY: usize = 1_000_000;
+
+/// Reads the problem of a directory.
+///
+/// # Errors
+/// [`Error::File`] and [`Error::FileSyntax`] for a file that is missing or malformed, and those of
+/// [`ContactProblem::new`].
+pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
+    let file = directory.join(STIFFNESS);
+    let stiffness = read(&file, Values::Finite)?;
+    check_filled(&file, &stiffness, stiffness.rows.max(stiffness.columns))?;
+    let (is_symmetric, stiffness) = (stiffness.symmetric, matrix(stiffness)?);
+    let stiffness =
+        if is_symmetric { SymmetricMatrix::from_lower(stiffness) } else { SymmetricMatrix::from_full(&stiffness) }?;
+    let load = read_vector(&directory.join("f.mtx"))?;
+    let file = directory.join("B.mtx");
+    let contact = read(&file, Values::Finite)?;
+    // A body has many dofs without a contact row: B must have as many columns as the stiffness.
+    let empty = if contact.columns == load.len() { contact.rows } else { contact.rows.max(contact.columns) };
+    check_filled(&file, &contact, empty)?;
+    let contact = matrix(contact)?;
+    let gap = vector(&directory.join("g.mtx"), Values::FiniteOrInfinite)?;
+    let problem = ContactProblem::new(stiffness, load, contact, gap)?;
+    match near_null(directory, problem.dofs())? {
+        Some(near_null) => problem.with_near_null(near_null),
+        None => Ok(problem),
+    }
+}
+
+/// The other end of the problem of a directory: its gaps in `g1.mtx`, its load in `f1.mtx`; without a file the gaps or the load stay
+/// unchanged.
+///
+/// # Errors
+/// As [`read_problem`]; [`Error::FileSyntax`] if there is neither file, for a vector of another length, and for gaps that are
+/// infinite in other rows.
+pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<ContactProblem, Error> {
+    let [gap_file, load_file] = ["g1.mtx", "f1.mtx"].map(|name| directory.join(name));
+    if !gap_file.exists() && !load_file.exists() {
+        let message =
+            "it is missing, and so is f1.mtx: a sweep needs the gaps or the load of the other end".to_string();
+        return Err(fault(gap_file, message));
+    }
+    let end = |file: &Path, values: Values, own: &[f64], of: &str| {
+        if !file.exists() {
+            return Ok(own.to_vec());
+        }
+        let end = vector(file, values)?;
+        if end.len() == own.len() {
+            return Ok(end);
+        }
+        Err(fault(file.to_path_buf(), format!("it has length {}, but there are {} {of}", end.len(), own.len())))
+    };
+    let gap = end(&gap_file, Values::FiniteOrInfinite, problem.gap(), "contact rows")?;
+    let load = end(&load_file, Values::Finite, problem.load(), "dofs")?;
+    let last = problem.with(load, gap)?;
+    let mut rows = problem.gap().iter().zip(last.gap()).enumerate();
+    match rows.find(|(_, (first, last))| first.is_finite() != last.is_finite()) {
+        Some((row, (first, last))) => Err(fault(
+            gap_file,
+            format!(
+                "the gap of row {row} goes from {first} to {last}; a row must have a finite gap at both ends, or an \
+                 infinite gap at both"
+            ),
+        )),
+        None => Ok(last),
+    }
+}
+
+/// The near-null space of the body: from `near_null.mtx`, one column for each vector, or from `coordinates.mtx`, one row for each node.
+/// The dofs of a node then follow each other and are all free.
+fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Error> {
+    let file = directory.join("near_null.mtx");
+    if file.exists() {
+        let content = read(&file, Values::Finite)?;
+        if content.rows != dofs || content.columns == 0 {
+            let found = format!("it is {} x {}", content.rows, content.columns);
+            return Err(fault(
+                file,
+                format!("{found}, but it must have {dofs} rows, one per dof, and a column at least"),
+            ));
+        }
+        let near_null = NearNullSpace::new(columns(content), dofs);
+        return near_null.map(Some).map_err(|error| fault(file, error.to_string()));
+    }
+    let file = directory.join("coordinates.mtx");
+    if !file.exists() {
+        return Ok(None);
+    }
+    let content = read(&file, Values::Finite)?;
+    let (nodes, dimension) = (content.rows, content.columns);
+    if !(1..=3).contains(&dimension) || nodes.checked_mul(dimension) != Some(dofs) {
+        let message = format!(
+            "it is {nodes} x {dimension}, which makes {} dofs, but there are {dofs}; it must have a row for \
+             each node and a column for each coordinate, 1 to 3 (if supports have removed dofs, use \
+             near_null.mtx)",
+            nodes.saturating_mul(dimension)
+        );
+        return Err(fault(file, message));
+    }
+    let of_nodes = NearNullSpace::of_nodes(&columns(content));
+    of_nodes.map(Some).map_err(|error| fault(file, error.to_string()))
+}
+
+fn fault(file: PathBuf, message: String) -> Error {
+    Error::FileSyntax { file, line: 1, message }
+}
+
+fn columns(content: Content) -> Vec<Vec<f64>> {
+    let mut columns = vec![vec![0.0; content.rows]; content.columns];
+    content.entries.iter().for_each(|&(row, column, value)| columns[column][row] += value);
+    columns
+}
+
+/// The files of a problem, with its near-null space if it has one.
+pub fn streamed_files<'a>(problem: &'a ContactProblem) -> Vec<Streamed<'a>> {
+    let mut files = vec![
+        Streamed::new(STIFFNESS, |out| write_entries(out, problem.stiffness().lower(), "symmetric")),
+        Streamed::new("f.mtx", |out| write_columns(out, &[problem.load()])),
+        Streamed::new("B.mtx", |out| write_entries(out, problem.contact(), "general")),
+        Streamed::new("g.mtx", |out| write_columns(out, &[problem.gap()])),
+    ];
+    let of_modes = |near_null: &'a Arc<NearNullSpace>| {
+        Streamed::new("near_null.mtx", |out| write_columns(out, near_null.vectors()))
+    };
+    files.extend(problem.near_null().map(of_modes));
+    files
+}
+
+/// Reads a vector of finite numbers from a Matrix Market file of one column, or of one row; its length and unit are
+/// those of the file.
+///
+/// # Errors
+/// [`Error::File`] and [`Error::FileSyntax`].
+pub fn read_vector(file: &Path) -> Result<Vec<f64>, Error> {
+    vector(file, Values::Finite)
+}
+
+fn vector(file: &Path, values: Values) -> Result<Vec<f64>, Error> {
+    let content = read(file, values)?;
+    if content.columns != 1 && content.rows != 1 {
+        let message = format!("a vector has one column, but this is {} x {}", content.rows, content.columns);
+        return Err(Error::FileSyntax { file: file.to_path_buf(), line: content.line, message });
+    }
+    check_filled(file, &content, content.rows.saturating_mul(content.columns))?;
+    let mut vector = vec![0.0; content.rows * content.columns];
+    for (row, column, value) in content.entries {
+        // Entries with the same row and column are added, as in a matrix.
+        vector[row + column] += value;
+    }
+    Ok(vector)
+}
+
+/// Name and text of the two Matrix Market files of an answer: `u.mtx` (displacement, length n) and `lambda.mtx`
+/// (multiplier, length m).
+pub fn solution_files(solution: &Solution) -> [(&'static str, String); 2] {
+    [("u.mtx", format_vector(&solution.displacement)), ("lambda.mtx", format_vector(&solution.multiplier))]
+}
+
+fn read(file: &Path, values: Values) -> Result<Content, Error> {
+    parse(file, open_capped(file, MOST_OF_MATRIX)?, values, quotes(file))
+}
+
+/// If `file` is a link out of its folder, errors do not quote the content.
+fn quotes(file: &Path) -> Quotes {
+    let folder = match file.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    match (file.canonicalize(), folder.canonicalize()) {
+        (Ok(file), Ok(folder)) if file.starts_with(&folder) => Quotes::Allowed,
+        _ => Quotes::Withheld,
+    }
+}
+
+/// Refuses a number of rows or columns (`lines`) that is not credible for the entries of a file.
+fn check_filled(file: &Path, content: &Content, lines: usize) -> Result<(), Error> {
+    let (rows, columns, entries) = (content.rows, content.columns, content.entries.len());
+    if lines <= entries.saturating_add(MOST_EMPTY) {
+        return Ok(());
+    }
+    let message = format!("a matrix of {rows} x {columns} with {entries} entries is almost empty; correct its size");
+    Err(Error::FileSyntax { file: file.to_path_buf(), line: content.line, message })
+}
+
+fn matrix(content: Content) -> Result<SparseMatrix, Error> {
+    SparseMatrix::from_triplets(content.rows, content.columns, &content.entries)
+}

@@ -1,0 +1,188 @@
+//! The active-set loop with Lagrange multipliers.
+//!
+//! ```text
+//! C <- 0; repeat: solve  [ K  -C ] [u]   [ f   ]
+//!                        [ C  I-C] [l] = [ C g ]      C <- diag heaviside( (I-C)(u-g) - C l )     until C is settled
+//! ```
+//!
+//! A primal-dual active set, or semismooth Newton, method: from most starts it ends in a few steps. It can cycle. When a set
+//! returns, the loop goes on by block principal pivoting, with single pivots (largest row first) if a block exchange does not
+//! reduce the number of violations: finite for every P-matrix. The loop ends unsettled if closed rows contradict each other, or
+//! if a set returns under pivoting too.
+//!
+//! # Source
+//! J. J. Júdice and F. M. Pires, *A block principal pivoting algorithm for large-scale strictly monotone linear
+//! complementarity problems*, Computers & Operations Research 21 (1994) 587-596.
+
+use std::collections::HashSet;
+
+use super::earlier_factor::{EarlierFactor, TRIAL, steps_for_a_factor};
+use super::equilibrium::{Equilibrium, WEIGHT, equilibrium, reach};
+use super::{Ending, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start};
+use crate::error::Error;
+use crate::linear::largest;
+use crate::problem::ContactProblem;
+use crate::solution::{ContactSet, Iteration};
+
+/// Rounding of a multiplier, in units of the last place of the forces that balance it.
+const FORCE_ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Number of block exchanges that may fail to reduce the number of violations before a single pivot.
+const PATIENCE: usize = 3;
+
+/// The active-set loop on a scaled problem.
+#[derive(Clone, Copy)]
+pub struct ActiveSet<'a> {
+    /// The problem.
+    pub scaled: &'a ScaledProblem<'a>,
+    /// Largest number of factorisations.
+    pub most_iterations: usize,
+}
+
+impl Solver for ActiveSet<'_> {
+    /// Runs the loop from the contact set of `start`.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] for lack of memory.
+    fn solve(&self, start: Start) -> Result<Outcome, Error> {
+        let scaled = self.scaled;
+        let rows = scaled.problem.rows();
+        let mut closed = start.into_set(rows);
+        let (mut displacement, mut multiplier) = (vec![0.0; scaled.problem.dofs()], vec![0.0; rows]);
+        let mut history = Vec::new();
+        let mut seen = HashSet::new();
+        let mut rule = Rule::Exchange;
+        let mut ending = Ending::Unsettled;
+        let mut earlier = earlier_factor(scaled);
+        let is_over = |done: usize| done > 0 && scaled.watch().is_over();
+        while ending == Ending::Unsettled && history.len() < self.most_iterations && !is_over(history.len()) {
+            scaled.watch().step("active set", history.len() + 1);
+            let balance = match balance(scaled, &mut earlier, &mut closed, &displacement)? {
+                Ok(balance) => balance,
+                Err(without) => {
+                    ending = without;
+                    break;
+                }
+            };
+            history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
+            if !balance.consistent {
+                break;
+            }
+            (displacement, multiplier) = (balance.displacement, balance.multiplier);
+            let wrong = wrong_rows(scaled.problem, &displacement, &multiplier, &closed);
+            if wrong.is_empty() {
+                ending = Ending::Settled;
+            } else {
+                if !seen.insert((closed.clone(), rule)) {
+                    if matches!(rule, Rule::Pivoting { .. }) {
+                        // Pivoting returns to a set if rounding decides signs: it would then repeat without end.
+                        break;
+                    }
+                    rule = rule.pivoting(wrong.len());
+                }
+                rule.choose(&wrong).iter().for_each(|&row| closed.toggle(row));
+            }
+        }
+        multiplier.iter_mut().for_each(|value| *value = value.min(0.0));
+        let variant = if ending == Ending::Settled { rule.variant() } else { "-unsettled" };
+        let iterations = history.len();
+        Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, ending, variant })
+    }
+}
+
+/// The factor of an earlier set for the steps of a loop, if K is definite, every row bounds one dof, and a factor is expensive.
+fn earlier_factor<'a>(scaled: &ScaledProblem<'a>) -> Option<EarlierFactor<'a>> {
+    let most_steps = steps_for_a_factor(scaled.augmented.analysis());
+    let pays = scaled.is_definite() && most_steps >= TRIAL;
+    if pays { EarlierFactor::of(scaled.problem, most_steps) } else { None }
+}
+
+/// The balance of `closed`, from a displacement `near` it, once the rows that hold the body have joined the set: by the factor of an
+/// `earlier` set if that takes few steps, otherwise by its own. The ending of the loop if there is none.
+///
+/// # Errors
+/// As [`ScaledProblem::hold_with_more`].
+fn balance(
+    scaled: &ScaledProblem,
+    earlier: &mut Option<EarlierFactor>,
+    closed: &mut ContactSet,
+    near: &[f64],
+) -> Result<Result<Equilibrium, Ending>, Error> {
+    if let Some(balance) = earlier.as_mut().and_then(|earlier| earlier.balance(closed, near)) {
+        return Ok(Ok(balance));
+    }
+    Ok(scaled.hold_with_more(closed, WEIGHT, near)?.map(|cholesky| {
+        let balance = equilibrium(scaled.problem, &cholesky, closed);
+        if let Some(earlier) = earlier {
+            earlier.keep(cholesky, closed);
+        }
+        balance
+    }))
+}
+
+/// Balance of forces with the rows of `closed` held at their gaps, pushing or pulling, and all others free; `None` if they do not
+/// hold the body, or contradict each other.
+///
+/// # Errors
+/// [`Error::Numerical`] for lack of memory.
+pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Option<Equilibrium>, Error> {
+    let Some(cholesky) = scaled.hold(closed, WEIGHT)? else { return Ok(None) };
+    let balance = equilibrium(scaled.problem, &cholesky, closed);
+    Ok(Some(balance).filter(|balance| balance.consistent))
+}
+
+/// The rule by which the misclassified rows of a set give the next set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Rule {
+    /// All misclassified rows change sides.
+    Exchange,
+    /// All misclassified rows while their number falls, otherwise the last one alone.
+    Pivoting { fewest: usize, patience: usize, single: bool },
+}
+
+impl Rule {
+    fn pivoting(self, fewest: usize) -> Self {
+        match self {
+            Rule::Exchange => Rule::Pivoting { fewest, patience: 0, single: false },
+            pivoting => pivoting,
+        }
+    }
+
+    /// The suffix of a loop that this rule settled.
+    fn variant(self) -> &'static str {
+        match self {
+            Rule::Exchange => "",
+            Rule::Pivoting { single: false, .. } => "-block-pivoting",
+            Rule::Pivoting { single: true, .. } => "-single-pivoting",
+        }
+    }
+
+    fn choose<'a>(&mut self, wrong: &'a [usize]) -> &'a [usize] {
+        let Rule::Pivoting { fewest, patience, single } = self else { return wrong };
+        if wrong.len() < *fewest {
+            (*fewest, *patience) = (wrong.len(), PATIENCE);
+            wrong
+        } else if *patience > 0 {
+            *patience -= 1;
+            wrong
+        } else {
+            *single = true;
+            &wrong[wrong.len() - 1..]
+        }
+    }
+}
+
+/// The misclassified rows: open and penetrating, or closed and pulling, beyond rounding.
+fn wrong_rows(problem: &ContactProblem, u: &[f64], multiplier: &[f64], closed: &ContactSet) -> Vec<usize> {
+    let reach = reach(problem, u);
+    let mut forces = problem.stiffness().mul_abs(u);
+    forces.iter_mut().zip(problem.load()).for_each(|(sum, f)| *sum += f.abs());
+    let (forces, strongest) = (problem.contact().mul_abs(&forces), SIGN_TOLERANCE * largest(multiplier));
+    let violation = problem.violation(u);
+    (0..problem.rows())
+        .filter(|&row| match closed.contains(row) {
+            false => violation[row] > SIGN_TOLERANCE * (reach + problem.gap()[row].abs()),
+            true => multiplier[row] > strongest + FORCE_ROUNDING * forces[row],
+        })
+        .collect()
+}

@@ -1,0 +1,195 @@
+//! The QP by Clarabel's interior-point method. The only module that uses clarabel, and the sign z = -lambda.
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, SolverError, SolverStatus, SupportedConeT,
+};
+
+use super::{Ending, Outcome, ScaledProblem, Solver, Start};
+use crate::error::Error;
+use crate::linear::{SparseMatrix, exponent, largest, ldexp};
+use crate::panics::guarded;
+use crate::problem::ContactProblem;
+use crate::solution::{ContactSet, Iteration};
+use crate::watch::Watch;
+
+/// A gap this many times the displacement is out of reach: the row is left out, because it would only spoil the scale.
+const OUT_OF_REACH: f64 = 1e12;
+
+/// The answer is computed again in other units while the exponent of its size is off by more than this.
+const UNIT_EXPONENT: i32 = 6;
+
+/// A displacement below 2 to minus this power is only the tolerance.
+const NOTHING_EXPONENT: i32 = 60;
+
+/// Largest number of corrections of the unit.
+const UNIT_CORRECTIONS: usize = 4;
+
+/// Number of steps after which more do not help: on ill-conditioned data the residuals stall while the barrier parameter falls.
+const MAX_STEPS: u32 = 50;
+
+/// Options of [`Method::Qp`](crate::Method::Qp): its tolerance, and whether the active-set loop settles its contact
+/// set.
+///
+/// ```
+/// use signorini_qp::{InteriorPoint, Method, Settings};
+///
+/// let loose = InteriorPoint { polish: false, tolerance: 1e-4 };
+/// let settings = Settings::with_method(Method::Qp(loose)).with_tolerance(1e-3);
+/// assert_eq!(settings.method.name(), "qp");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InteriorPoint {
+    /// `true` to settle the contact set by the active-set loop: the multipliers become those of a linear solve.
+    pub polish: bool,
+    /// Tolerance of the interior-point method, on data of order one.
+    pub tolerance: f64,
+}
+
+impl InteriorPoint {
+    /// Polished, to 1e-9.
+    pub(crate) const DEFAULT: InteriorPoint = InteriorPoint { polish: true, tolerance: 1e-9 };
+}
+
+impl Default for InteriorPoint {
+    fn default() -> Self {
+        InteriorPoint::DEFAULT
+    }
+}
+
+/// The interior-point method on a scaled problem.
+#[derive(Clone, Copy)]
+pub struct Barrier<'a> {
+    /// The problem.
+    pub scaled: &'a ScaledProblem<'a>,
+    /// Tolerance, relative to data of order one.
+    pub tolerance: f64,
+}
+
+impl Solver for Barrier<'_> {
+    /// Solves the QP; the method has no use for a start. The contact set is that of the rows with `z / z_scale > s / s_scale`,
+    /// and `iterations` counts the steps over all units that were tried.
+    ///
+    /// Clarabel's report that a problem is unbounded or infeasible, or that it came no further, is not believed: the outcome is then
+    /// unsettled, and at rest if there is no answer in it.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] if the solver refuses its input.
+    fn solve(&self, _: Start) -> Result<Outcome, Error> {
+        let (problem, watch) = (self.scaled.problem, self.scaled.watch());
+        if problem.rows() == 0 {
+            return Ok(unpolished(Outcome::at_rest(problem, Ending::Settled)));
+        }
+        let mut unit = Unit { displacement: 0, force: exponent(largest(problem.load())) };
+        let mut iterations = 0;
+        let mut corrections = 0;
+        loop {
+            let mut found = solve_in_unit(problem, self.tolerance, unit, watch)?;
+            iterations += found.iterations;
+            found.iterations = iterations;
+            let size = largest(&found.displacement);
+            let displacement = exponent(size) - unit.displacement;
+            let force = exponent(largest(&found.multiplier).max(largest(problem.load()))) - unit.force;
+            let fits = displacement.abs().max(force.abs()) <= UNIT_EXPONENT;
+            if fits
+                || size == 0.0
+                || watch.is_over()
+                || displacement < -NOTHING_EXPONENT
+                || corrections == UNIT_CORRECTIONS
+            {
+                return Ok(found);
+            }
+            unit = Unit { displacement: unit.displacement + displacement, force: unit.force + force };
+            corrections += 1;
+        }
+    }
+}
+
+/// The answer of the interior-point method without polish, with its set as its history.
+fn unpolished(outcome: Outcome) -> Outcome {
+    let history = vec![Iteration { contact_set: outcome.contact_set.clone(), penalty: 0.0 }];
+    Outcome { history, variant: "-unpolished", ..outcome }
+}
+
+/// Units in which the answer is of order one, as exponents of two: if a fine mesh makes the stiffness large beside the forces,
+/// multipliers of order one in the scaled problem would need a displacement far beyond the gap.
+#[derive(Clone, Copy, Debug)]
+struct Unit {
+    displacement: i32,
+    force: i32,
+}
+
+/// Solves the QP of the rows within reach in a unit.
+fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &Watch) -> Result<Outcome, Error> {
+    let gap: Vec<f64> = problem.gap().iter().map(|&g| ldexp(g, -unit.displacement)).collect();
+    let rows: Vec<usize> = (0..gap.len()).filter(|&row| gap[row] < OUT_OF_REACH).collect();
+    let near_gap: Vec<f64> = rows.iter().map(|&row| gap[row]).collect();
+    let q: Vec<f64> = problem.load().iter().map(|&f| -ldexp(f, -unit.force)).collect();
+    let near_rows = problem.contact().select_rows(&rows);
+
+    let settings = DefaultSettings::<f64> {
+        verbose: false,
+        tol_gap_abs: tolerance,
+        tol_gap_rel: tolerance,
+        tol_feas: tolerance,
+        max_iter: MAX_STEPS,
+        max_threads: 1,
+        ..DefaultSettings::default()
+    };
+    let cones = [SupportedConeT::NonnegativeConeT(rows.len())];
+    let (mut p, a) = (csc(&problem.stiffness().upper()), csc(&near_rows));
+    p.nzval.iter_mut().for_each(|value| *value = ldexp(*value, unit.displacement - unit.force));
+    let watch = watch.clone();
+    let solved = guarded(|| {
+        let mut solver = DefaultSolver::new(&p, &q, &a, &near_gap, &cones, settings)?;
+        solver.set_termination_callback(move |info| {
+            watch.step("interior point", info.iterations as usize);
+            watch.is_over()
+        });
+        solver.solve();
+        Ok(solver.solution)
+    });
+    let failed = |reason: String| Error::Numerical { step: "Clarabel", reason };
+    let answer = solved.map_err(failed)?.map_err(|error: SolverError| failed(error.to_string()))?;
+    Ok(read_off(problem, &answer, &rows, unit))
+}
+
+/// The answer of Clarabel on `rows`, in the units of the problem.
+fn read_off(problem: &ContactProblem, answer: &DefaultSolution<f64>, rows: &[usize], unit: Unit) -> Outcome {
+    let iterations = answer.iterations as usize;
+    let displacement: Vec<f64> = answer.x.iter().map(|&x| ldexp(x, unit.displacement)).collect();
+    let mut multiplier = vec![0.0; problem.rows()];
+    let mut contact_set = ContactSet::open(problem.rows());
+    let (z_scale, s_scale) = (largest(&answer.z), largest(&answer.s).min(1.0));
+    for (near, &row) in rows.iter().enumerate() {
+        let (z, s) = (answer.z[near], answer.s[near]);
+        multiplier[row] = -ldexp(z.max(0.0), unit.force);
+        if z * s_scale > s * z_scale {
+            contact_set.insert(row);
+        }
+    }
+    let is_finite = displacement.iter().chain(&multiplier).all(|value| value.is_finite());
+    let ending = Ending::of(matches!(answer.status, SolverStatus::Solved | SolverStatus::AlmostSolved));
+    let is_claim = matches!(
+        answer.status,
+        SolverStatus::PrimalInfeasible
+            | SolverStatus::AlmostPrimalInfeasible
+            | SolverStatus::DualInfeasible
+            | SolverStatus::AlmostDualInfeasible
+    );
+    let at_rest = Outcome { iterations, ..Outcome::at_rest(problem, Ending::Unsettled) };
+    unpolished(match is_finite && !is_claim {
+        true => Outcome { displacement, multiplier, contact_set, ending, ..at_rest },
+        false => at_rest,
+    })
+}
+
+fn csc(matrix: &SparseMatrix) -> CscMatrix<f64> {
+    CscMatrix::new(
+        matrix.rows(),
+        matrix.columns(),
+        matrix.column_starts().to_vec(),
+        matrix.row_indices().to_vec(),
+        matrix.values().to_vec(),
+    )
+}

@@ -1,0 +1,389 @@
+//! The state of MPRGP, and the steps that it takes.
+
+use crate::linear::multigrid::{Direction, Face};
+use crate::linear::{dot, largest};
+use crate::method::Start;
+use crate::method::bounds::{Bound, Bounds};
+use crate::problem::ContactProblem;
+use crate::solution::Iteration;
+
+/// Rows that are open at the start although nothing has moved keep this share of their depth as distance.
+const INSIDE: f64 = 1e-3;
+
+/// The energy of a direction is rounding of zero below this share of the energy of its unknowns one by one.
+const NO_ENERGY: f64 = 1e-13;
+
+/// Bounds within this share of the distance to the first bound are met together with it.
+const FIRST: f64 = 1e-12;
+
+/// The place of an unknown with bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum At {
+    Free,
+    Lower,
+    Upper,
+    /// Both bounds are equal.
+    Fixed,
+}
+
+/// The unknowns after the reflections, their gradient, and the bounds that they are at.
+pub struct Iterate<'a> {
+    pub problem: &'a ContactProblem,
+    pub bounds: &'a Bounds,
+    pub load: Vec<f64>,
+    /// Diagonal of K at the unknowns with bounds and at all others.
+    diagonal: Vec<f64>,
+    pub x: Vec<f64>,
+    pub gradient: Vec<f64>,
+    pub at: Vec<At>,
+    threads: usize,
+}
+
+/// A direction p with its product K p.
+pub struct Conjugate {
+    pub p: Vec<f64>,
+    moved: Vec<f64>,
+    pub energy: f64,
+    /// Free gradient along it.
+    slope: f64,
+    /// `true` if it has no energy and meets no bound.
+    pub is_free: bool,
+}
+
+impl Conjugate {
+    pub fn of(step: Vec<f64>, last: Option<Conjugate>, gradient: &[f64], iterate: &Iterate) -> Self {
+        let mut p = step;
+        if let Some(last) = last {
+            let share = dot(&p, &last.moved) / last.energy;
+            p.iter_mut().zip(&last.p).for_each(|(p, before)| *p -= share * before);
+        }
+        let slope = dot(gradient, &p);
+        if slope < 0.0 {
+            // Rounding of the cycle may make a direction point uphill.
+            p.iter_mut().for_each(|p| *p = -*p);
+        }
+        let slope = slope.abs();
+        let moved = iterate.product(&p);
+        let energy = dot(&p, &moved);
+        let costs_nothing = iterate.is_rounding(&p, energy);
+        let is_free = costs_nothing && iterate.longest_step(&p).is_infinite();
+        let energy = if costs_nothing { 0.0 } else { energy };
+        Conjugate { p, moved, energy, slope, is_free }
+    }
+}
+
+impl<'a> Iterate<'a> {
+    pub fn new(problem: &'a ContactProblem, bounds: &'a Bounds, start: Start, threads: usize) -> Self {
+        let mut load = problem.load().to_vec();
+        bounds.turn_forces(&mut load);
+        let is_unknown = start.displacement.is_none();
+        let mut x = start.displacement.unwrap_or_else(|| vec![0.0; problem.dofs()]);
+        bounds.turn(&mut x);
+        let mut diagonal = problem.stiffness().diagonal();
+        for bound in &bounds.bounds {
+            if let Some((travel, share)) = bound.travel {
+                diagonal[travel] += share * share * diagonal[bound.unknown];
+            }
+        }
+        let at = vec![At::Free; bounds.bounds.len()];
+        let mut iterate = Iterate { problem, bounds, load, diagonal, x, gradient: Vec::new(), at, threads };
+        if is_unknown {
+            iterate.travel_along_load();
+        }
+        if let Some(closed) = &start.contact_set {
+            for bound in &bounds.bounds {
+                let value = &mut iterate.x[bound.unknown];
+                if let Some(held) = bound.closed_at(closed) {
+                    *value = held;
+                } else if *value >= bound.upper {
+                    *value = bound.upper - INSIDE * bound.upper.abs();
+                } else if *value <= bound.lower {
+                    *value = bound.lower + INSIDE * bound.lower.abs();
+                }
+            }
+        }
+        iterate.project();
+        iterate.refresh_gradient();
+        iterate
+    }
+
+    /// Moves each travel, of a body at rest, along its load, about as far as that reaches: N closed rows resist like `sqrt(N)` single
+    /// ones, as a circle of that area on a half space does. Too deep or too shallow by half costs a few cycles.
+    fn travel_along_load(&mut self) {
+        for &travel in &self.bounds.travels {
+            let (load, way) = (self.problem.load()[travel].abs(), self.problem.load()[travel].signum());
+            let of_row = |bound: &Bound| {
+                let share = bound.travel.filter(|own| own.0 == travel && own.1 != 0.0)?.1;
+                let value = if way * share > 0.0 { bound.upper } else { bound.lower };
+                let depth = way * value / share;
+                depth.is_finite().then(|| (depth, share * share * self.diagonal[bound.unknown]))
+            };
+            let mut rows: Vec<(f64, f64)> = self.bounds.bounds.iter().filter_map(of_row).collect();
+            rows.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+            let (mut stiffness, mut force) = (0.0, 0.0);
+            for (index, &(depth, own)) in rows.iter().enumerate() {
+                stiffness += own;
+                let resists = stiffness / ((index + 1) as f64).sqrt();
+                let room = rows.get(index + 1).map_or(f64::INFINITY, |next| next.0 - depth);
+                self.x[travel] = way * (depth + room.min((load - force) / resists));
+                force += resists * room;
+                if force >= load {
+                    break;
+                }
+            }
+        }
+        for bound in &self.bounds.bounds {
+            if let Some((travel, share)) = bound.travel {
+                self.x[bound.unknown] = share * self.x[travel];
+            }
+        }
+    }
+
+    /// Returns `true` if `p'Kp` is rounding of zero.
+    pub fn is_rounding(&self, p: &[f64], energy: f64) -> bool {
+        let scale: f64 = p.iter().zip(&self.diagonal).map(|(p, d)| d * p * p).sum();
+        energy.abs() <= NO_ENERGY * scale || !energy.is_finite()
+    }
+
+    pub fn product(&self, v: &[f64]) -> Vec<f64> {
+        if self.bounds.is_plain() {
+            return self.problem.stiffness().mul_on(self.threads, v);
+        }
+        let mut u = v.to_vec();
+        self.bounds.turn_back(&mut u);
+        let mut moved = self.problem.stiffness().mul_on(self.threads, &u);
+        self.bounds.turn_forces(&mut moved);
+        moved
+    }
+
+    pub fn refresh_gradient(&mut self) {
+        self.gradient = self.product(&self.x);
+        self.gradient.iter_mut().zip(&self.load).for_each(|(g, f)| *g -= f);
+    }
+
+    /// As [`Iterate::refresh_gradient`], in twice the working precision.
+    pub fn refresh_gradient_accurately(&mut self) {
+        let mut u = self.x.clone();
+        self.bounds.turn_back(&mut u);
+        let mut rest = self.problem.accurate_residual(&u, &vec![0.0; self.problem.rows()]);
+        self.bounds.turn_forces(&mut rest);
+        rest.iter_mut().for_each(|rest| *rest = -*rest);
+        self.gradient = rest;
+    }
+
+    /// Moves the unknowns into their bounds, and records which are at a bound.
+    fn project(&mut self) {
+        for (bound, at) in self.bounds.bounds.iter().zip(&mut self.at) {
+            let value = &mut self.x[bound.unknown];
+            *value = value.min(bound.upper).max(bound.lower);
+            *at = match (*value == bound.lower, *value == bound.upper) {
+                (true, true) => At::Fixed,
+                (true, false) => At::Lower,
+                (false, true) => At::Upper,
+                (false, false) => At::Free,
+            };
+        }
+    }
+
+    /// The part of the gradient at a closed bound that the bound carries.
+    pub fn held_gradient(&self, index: usize) -> f64 {
+        let gradient = self.gradient[self.bounds.bounds[index].unknown];
+        match self.at[index] {
+            At::Free => 0.0,
+            At::Lower => gradient.max(0.0),
+            At::Upper => gradient.min(0.0),
+            At::Fixed => gradient,
+        }
+    }
+
+    /// The part of the gradient at a closed bound that would open it.
+    fn chopped_gradient(&self, index: usize) -> f64 {
+        match self.at[index] {
+            At::Free => 0.0,
+            _ => self.gradient[self.bounds.bounds[index].unknown] - self.held_gradient(index),
+        }
+    }
+
+    pub fn free_gradient(&self) -> Vec<f64> {
+        let mut free = self.gradient.clone();
+        self.keep_free(&mut free);
+        free
+    }
+
+    pub fn keep_free(&self, values: &mut [f64]) {
+        for (bound, at) in self.bounds.bounds.iter().zip(&self.at) {
+            if *at != At::Free {
+                values[bound.unknown] = 0.0;
+            }
+        }
+    }
+
+    /// A travel by one while the body stays at rest.
+    pub fn alone(&self, travel: usize) -> Vec<f64> {
+        let mut way = vec![0.0; self.x.len()];
+        way[travel] = 1.0;
+        self.bounds.turn(&mut way);
+        way
+    }
+
+    /// Returns `true` if a row of the travel is at its bound.
+    pub fn is_held(&self, travel: usize) -> bool {
+        let of_bounds = self.bounds.bounds.iter().zip(&self.at);
+        of_bounds.into_iter().any(|(bound, at)| *at != At::Free && bound.travel.is_some_and(|own| own.0 == travel))
+    }
+
+    /// The largest force that is out of balance or wrong-signed, relative to the largest of load and multipliers.
+    pub fn residual(&self) -> f64 {
+        let bounds = 0..self.at.len();
+        let held = bounds.clone().map(|index| self.held_gradient(index).abs()).fold(0.0, f64::max);
+        let chopped = bounds.map(|index| self.chopped_gradient(index).abs()).fold(0.0, f64::max);
+        let wrong = largest(&self.free_gradient()).max(chopped);
+        if wrong == 0.0 { 0.0 } else { wrong / held.max(largest(&self.load)) }
+    }
+
+    /// Returns `true` if the chopped gradient is larger than the free one.
+    pub fn is_disproportionate(&self) -> bool {
+        let weighted = |value: f64, unknown: usize| value * value / self.diagonal[unknown];
+        let free: f64 = self.free_gradient().iter().enumerate().map(|(unknown, &g)| weighted(g, unknown)).sum();
+        let chopped = |(index, bound): (usize, &Bound)| weighted(self.chopped_gradient(index), bound.unknown);
+        self.bounds.bounds.iter().enumerate().map(chopped).sum::<f64>() > free
+    }
+
+    /// A step along the chopped gradient to the least energy, unless other bounds end it before.
+    pub fn proportion(&mut self) {
+        let mut direction = vec![0.0; self.x.len()];
+        for (index, bound) in self.bounds.bounds.iter().enumerate() {
+            direction[bound.unknown] = self.chopped_gradient(index) / self.diagonal[bound.unknown];
+        }
+        let moved = self.product(&direction);
+        let length = (dot(&self.gradient, &direction) / dot(&direction, &moved)).min(self.longest_step(&direction));
+        self.step_along(&direction, &moved, length);
+        self.project();
+    }
+
+    fn step_along(&mut self, direction: &[f64], moved: &[f64], length: f64) {
+        self.x.iter_mut().zip(direction).for_each(|(x, d)| *x -= length * d);
+        self.gradient.iter_mut().zip(moved).for_each(|(g, m)| *g -= length * m);
+    }
+
+    /// The largest t that keeps x - t d within the bounds.
+    pub fn longest_step(&self, direction: &[f64]) -> f64 {
+        let room = |bound: &Bound| {
+            let (value, speed) = (self.x[bound.unknown], direction[bound.unknown]);
+            match speed {
+                _ if speed > 0.0 => (value - bound.lower) / speed,
+                _ if speed < 0.0 => (value - bound.upper) / speed,
+                _ => f64::INFINITY,
+            }
+        };
+        self.bounds.bounds.iter().map(room).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The step of length `room`, which the first bounds end. Their unknowns are set exactly to them; otherwise rounding could
+    /// leave them short of the bound in every iteration.
+    fn step_to_bounds(&mut self, direction: &Conjugate, room: f64) {
+        let meets = |bound: &Bound, x: &[f64]| {
+            let (value, speed) = (x[bound.unknown], direction.p[bound.unknown]);
+            let met = if speed > 0.0 { bound.lower } else { bound.upper };
+            (speed != 0.0 && (value - met) / speed <= room * (1.0 + FIRST)).then_some((bound.unknown, met))
+        };
+        let met: Vec<(usize, f64)> = self.bounds.bounds.iter().filter_map(|bound| meets(bound, &self.x)).collect();
+        self.step_along(&direction.p, &direction.moved, room);
+        met.iter().for_each(|&(unknown, value)| self.x[unknown] = value);
+        self.project();
+    }
+
+    /// The CG step or, if it would cross bounds, the expansion: its projection. If that raises the energy, the expansion is the
+    /// least energy on the way there or the step to the first bound, whichever is lower, and a projected gradient step. Returns
+    /// the direction if the next one is conjugate to it.
+    pub fn advance(&mut self, direction: Conjugate) -> Option<Conjugate> {
+        let length = direction.slope / direction.energy;
+        let room = self.longest_step(&direction.p);
+        if length <= room {
+            self.step_along(&direction.p, &direction.moved, length);
+            self.project();
+            return Some(direction);
+        }
+        let (x, gradient, at) = (self.x.clone(), self.gradient.clone(), self.at.clone());
+        let mut on_the_way = None;
+        if length.is_finite() {
+            self.x.iter_mut().zip(&direction.p).for_each(|(x, p)| *x -= length * p);
+            self.project();
+            self.refresh_gradient();
+            on_the_way = self.least_energy_from(&x, &gradient);
+        }
+        let to_bounds = room * direction.slope - 0.5 * room * room * direction.energy;
+        match on_the_way {
+            Some((share, _)) if share >= 1.0 => return None,
+            Some((share, fall)) if fall >= to_bounds => {
+                for (new, old) in self.x.iter_mut().zip(&x).chain(self.gradient.iter_mut().zip(&gradient)) {
+                    *new = old + share * (*new - old);
+                }
+                self.project();
+            }
+            _ => {
+                (self.x, self.gradient, self.at) = (x, gradient, at);
+                self.step_to_bounds(&direction, room);
+            }
+        }
+        let share = 1.0 / self.largest_eigenvalue();
+        let mut free = self.free_gradient();
+        self.bounds.travels.iter().for_each(|&travel| free[travel] = 0.0);
+        for ((x, g), d) in self.x.iter_mut().zip(&free).zip(&self.diagonal) {
+            *x -= share * g / d;
+        }
+        self.project();
+        self.refresh_gradient();
+        None
+    }
+
+    /// The share of the way from `x`, with its `gradient`, to the present unknowns that is to be taken, and the decrease of the
+    /// energy: the whole way if the energy at its end is lower, otherwise the way to the least energy; `None` if the energy
+    /// rises at once.
+    fn least_energy_from(&self, x: &[f64], gradient: &[f64]) -> Option<(f64, f64)> {
+        let (mut slope, mut curvature) = (0.0, 0.0);
+        for ((new, old), (after, before)) in self.x.iter().zip(x).zip(self.gradient.iter().zip(gradient)) {
+            slope += (new - old) * before;
+            curvature += (new - old) * (after - before);
+        }
+        let at_end = slope + 0.5 * curvature;
+        (slope < 0.0).then(|| match at_end < 0.0 {
+            true => (1.0, -at_end),
+            false => (-slope / curvature, 0.5 * slope * slope / curvature),
+        })
+    }
+
+    /// An upper bound on the eigenvalues of `D^-1 K`, by Gershgorin's circles.
+    fn largest_eigenvalue(&self) -> f64 {
+        let weights: Vec<f64> = self.diagonal.iter().map(|d| 1.0 / d.sqrt()).collect();
+        let sums = self.problem.stiffness().mul_abs(&weights);
+        sums.iter().zip(&weights).map(|(sum, weight)| sum * weight).fold(1.0, f64::max)
+    }
+
+    /// The held directions, in the dofs of the problem.
+    pub fn held(&self) -> Vec<Direction> {
+        let closed = self.bounds.bounds.iter().zip(&self.at).filter(|entry| *entry.1 != At::Free);
+        closed.map(|(bound, _)| self.bounds.direction(bound)).collect()
+    }
+
+    /// One cycle in a face, in which nothing travels and no bound opens.
+    pub fn preconditioned(&self, face: &Face, gradient: &[f64]) -> Vec<f64> {
+        let mut force = gradient.to_vec();
+        self.bounds.travels.iter().for_each(|&travel| force[travel] = 0.0);
+        self.bounds.turn_back(&mut force);
+        let mut step = face.cycle(&force);
+        self.bounds.turn(&mut step);
+        self.keep_free(&mut step);
+        step
+    }
+
+    /// The present set, as an entry of the history.
+    pub fn step(&self) -> Iteration {
+        let (_, contact_set) = self.bounds.multipliers(|index| match self.at[index] {
+            At::Free => 0.0,
+            At::Lower => 1.0,
+            At::Upper | At::Fixed => -1.0,
+        });
+        Iteration { contact_set, penalty: 0.0 }
+    }
+}

@@ -1,0 +1,267 @@
+//! MPRGP: modified proportioning with reduced gradient projections, preconditioned in the free face.
+//!
+//! Rows are turned into bounds by reflections. The gradient g = K u - f is split into the free gradient, of unknowns that may
+//! move, and the chopped gradient, of those that want to leave their bound. An iteration is one of
+//!
+//! ```text
+//! proportioning   if the chopped gradient is larger than the free one: a step along it, which opens rows
+//! CG step         along conjugate directions of the free face, one cycle of the hierarchy each
+//! expansion       if the CG step would cross bounds: its projection, which closes rows; if that raises the energy,
+//!                 the least energy on the way there or the step to the first bound, and a projected gradient step of
+//!                 fixed length
+//! ```
+//!
+//! Each of these steps lowers the energy. The hierarchy is built once, for K; a face is a small change of the hierarchy.
+//!
+//! # Source
+//! Z. Dostál, *Optimal Quadratic Programming Algorithms*, Springer (2009), algorithm 5.8 and section 5.10.
+
+mod iterate;
+mod nested;
+mod travel;
+
+use super::bounds::Bounds;
+use super::{Ending, Outcome, Solver, Start};
+use crate::error::Error;
+use crate::linear::multigrid::{Face, Multigrid};
+use crate::problem::ContactProblem;
+use crate::watch::Watch;
+use iterate::{Conjugate, Iterate};
+use nested::nested_start;
+use travel::Travels;
+pub use travel::takes_travels;
+
+/// The loop has stagnated after this many iterations without a residual half as large as the best before; those that change the
+/// face count only beyond one for each row.
+const PATIENCE: usize = 60;
+
+/// Cycles on one face after which their rate gives an estimate of all cycles, and the factor by which it may be wrong.
+const TRIAL: (usize, f64) = (16, 1.2);
+
+/// At least the worth divided by this number is spent first: conjugate gradients begin slowly on a stretched mesh, and little
+/// is lost by waiting for the other way. If no more cycles than that are left to go, the answer is near.
+const SHARE: usize = 8;
+
+/// A displacement with a residual up to this is near the answer: nothing else is tried as a start.
+const NEAR: f64 = 1e-3;
+
+/// If the residual in twice the precision is above this share of the previous one, it will not decrease any more.
+const NO_GAIN: f64 = 0.5;
+
+/// The limits at which the loop ends.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Largest imbalance of forces and largest wrong-signed multiplier, relative to the largest force.
+    pub tolerance: f64,
+    /// Largest number of cycles of the hierarchy.
+    pub most_cycles: usize,
+    /// Cycles that the answer by another way is worth: the loop ends if its rate shows that clearly more are left, or after
+    /// this number unless few are left.
+    pub worth: usize,
+}
+
+/// MPRGP on an unscaled problem, with the hierarchy of its stiffness.
+#[derive(Clone, Copy)]
+pub struct Mprgp<'a> {
+    /// The problem.
+    pub problem: &'a ContactProblem,
+    /// The hierarchy.
+    pub multigrid: &'a Multigrid,
+    /// The limits at which the loop ends.
+    pub limits: Limits,
+    /// The watch that may end the loop before, with the answer so far.
+    pub watch: &'a Watch,
+}
+
+impl Solver for Mprgp<'_> {
+    /// Finds displacement, multipliers and contact set; `iterations` counts the cycles of the hierarchy.
+    ///
+    /// The loop is finite. It ends at the limits, or if only rounding is left, or, as `-stagnated`, if 60 iterations together do
+    /// not halve the residual; those that change the face count only beyond one for each row.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] for rows that no reflections make bounds, [`Error::NotConvex`] for a coarsest matrix of a face with a
+    /// negative eigenvalue.
+    fn solve(&self, start: Start) -> Result<Outcome, Error> {
+        let Mprgp { problem, multigrid, limits, watch } = *self;
+        let bounds = Bounds::of(problem.contact(), problem.gap(), problem.without_stiffness())?;
+        let mut iterate = started(self, &bounds, start);
+        let mut history = vec![iterate.step()];
+        let mut steps =
+            Steps { multigrid, watch, face: None, travels: Travels::default(), is_old: false, last: None, cycles: 0 };
+        let mut progress = Progress::default();
+        let mut ending = Ending::Unsettled;
+        while steps.cycles < limits.most_cycles
+            && progress.since_best < progress.patience(problem.rows())
+            && !watch.is_over()
+        {
+            let residual = iterate.residual();
+            if residual <= limits.tolerance {
+                if progress.is_fresh || progress.has_settled(&mut iterate) {
+                    ending = Ending::Settled;
+                    break;
+                }
+                steps.last = None;
+                continue;
+            }
+            progress.note(residual);
+            if progress.is_hopeless(steps.cycles, limits) {
+                break;
+            }
+            let before = iterate.at.clone();
+            if !steps.take_one(&mut iterate)? {
+                ending = Ending::Unheld;
+                break;
+            }
+            if iterate.at != before {
+                (steps.is_old, steps.last) = (true, None);
+                progress.changes += 1;
+                progress.on_face = (steps.cycles, residual);
+                history.push(iterate.step());
+            }
+        }
+        let (multiplier, contact_set) = bounds.multipliers(|index| iterate.held_gradient(index));
+        let mut displacement = iterate.x;
+        bounds.turn_back(&mut displacement);
+        let variant = match ending {
+            Ending::Settled => "",
+            _ if steps.cycles >= limits.most_cycles
+                || watch.is_over()
+                || progress.is_hopeless(steps.cycles, limits) =>
+            {
+                "-unsettled"
+            }
+            _ => "-stagnated",
+        };
+        Ok(Outcome { displacement, multiplier, contact_set, iterations: steps.cycles, history, ending, variant })
+    }
+}
+
+/// The iterate at the start; if a displacement is given that is not near the answer, the better one of that and none.
+fn started<'a>(mprgp: &Mprgp<'a>, bounds: &'a Bounds, start: Start) -> Iterate<'a> {
+    let at = |start: Start| Iterate::new(mprgp.problem, bounds, start, mprgp.multigrid.threads());
+    let from_nothing = || at(nested(mprgp, bounds).unwrap_or_default());
+    if start.is_unknown() {
+        return from_nothing();
+    }
+    let is_displacement = start.displacement.is_some();
+    let given = at(start);
+    let residual = given.residual();
+    if !is_displacement || residual <= NEAR {
+        return given;
+    }
+    let other = from_nothing();
+    if other.residual() < residual { other } else { given }
+}
+
+/// The start from the second level, if there is one with nodal values.
+fn nested(mprgp: &Mprgp, bounds: &Bounds) -> Option<Start> {
+    let below = |problem: &ContactProblem, multigrid: &Multigrid, tolerance, most_cycles| {
+        let limits = Limits { tolerance, most_cycles, worth: usize::MAX };
+        Mprgp { problem, multigrid, limits, watch: mprgp.watch }.solve(Start::default())
+    };
+    nested_start(mprgp.problem, bounds, mprgp.multigrid, below).map(Start::near)
+}
+
+/// The progress of the iteration.
+struct Progress {
+    /// Cycles before the last change of the face, and the residual then.
+    on_face: (usize, f64),
+    best: f64,
+    since_best: usize,
+    /// Changes of the face since the best residual.
+    changes: usize,
+    /// `true` if the gradient was just computed from the unknowns, in twice the precision.
+    is_fresh: bool,
+    last_checked: f64,
+}
+
+impl Default for Progress {
+    fn default() -> Self {
+        let best = f64::INFINITY;
+        Progress { on_face: (0, best), best, since_best: 0, changes: 0, is_fresh: true, last_checked: f64::INFINITY }
+    }
+}
+
+impl Progress {
+    fn patience(&self, rows: usize) -> usize {
+        PATIENCE + self.changes.min(rows)
+    }
+
+    /// Notes a residual above the tolerance.
+    fn note(&mut self, residual: f64) {
+        self.is_fresh = false;
+        self.since_best += 1;
+        if residual < 0.5 * self.best {
+            (self.best, self.since_best, self.changes) = (residual, 0, 0);
+        }
+    }
+
+    /// Returns `true` if the other way, which is worth `limits.worth` cycles, is the shorter one from here.
+    fn is_hopeless(&self, cycles: usize, limits: Limits) -> bool {
+        let ((least, unsure), (before, first)) = (TRIAL, self.on_face);
+        let gained = (first / self.best).ln();
+        let needed = (self.best / limits.tolerance).ln();
+        let taken = cycles - before;
+        let left = taken as f64 * needed / gained.max(0.0);
+        let worth = limits.worth as f64;
+        let is_told = taken >= least.max(limits.worth / SHARE);
+        let is_near = left <= worth / SHARE as f64;
+        (is_told && left > unsure * worth) || (cycles >= limits.worth && !is_near)
+    }
+
+    /// Recomputes the gradient, which the steps have only updated. Returns `true` if only rounding of the displacement is left.
+    fn has_settled(&mut self, iterate: &mut Iterate) -> bool {
+        iterate.refresh_gradient_accurately();
+        let checked = iterate.residual();
+        if checked > NO_GAIN * self.last_checked {
+            return true;
+        }
+        (self.is_fresh, self.last_checked) = (true, checked);
+        false
+    }
+}
+
+/// The data that the steps keep from one to the next.
+struct Steps<'a> {
+    multigrid: &'a Multigrid,
+    watch: &'a Watch,
+    face: Option<Face<'a>>,
+    travels: Travels,
+    /// `true` if the set of unknowns at bounds has changed since the face was built.
+    is_old: bool,
+    last: Option<Conjugate>,
+    cycles: usize,
+}
+
+impl Steps<'_> {
+    /// Takes a proportioning, conjugate gradient or expansion step. Returns `false` at a direction along which nothing is held, or
+    /// along which the energy is negative.
+    fn take_one(&mut self, iterate: &mut Iterate) -> Result<bool, Error> {
+        if iterate.is_disproportionate() {
+            iterate.proportion();
+            return Ok(true);
+        }
+        let gradient = iterate.free_gradient();
+        let face = match self.face.take() {
+            Some(face) if !self.is_old => face,
+            old => {
+                let face = self.multigrid.face(&iterate.held(), old.as_ref())?;
+                self.travels = std::mem::take(&mut self.travels).in_face(iterate, &face);
+                self.cycles += iterate.bounds.travels.len();
+                face
+            }
+        };
+        self.is_old = false;
+        let step = self.travels.preconditioned(iterate, &face, &gradient);
+        self.face = Some(face);
+        self.cycles += 1;
+        self.watch.step("MPRGP", self.cycles);
+        let direction = Conjugate::of(step, self.last.take(), &gradient, iterate);
+        if direction.is_free || direction.energy < 0.0 {
+            return Ok(false);
+        }
+        self.last = iterate.advance(direction);
+        Ok(true)
+    }
+}

@@ -1,0 +1,195 @@
+//! The problem of a directory of PETSc files: supported components are left out again.
+
+use std::path::Path;
+
+use super::matrix::{Row, Rows, dense_columns};
+use super::source::{INTEGER, REAL, indices, vector};
+use super::{BLOCK_SIZE, CONTACT, COORDINATES, FREE, GAP, INFO, LOAD, NEAR_NULL, STIFFNESS};
+use crate::error::Error;
+use crate::file::read_text_capped;
+use crate::linear::multigrid::NearNullSpace;
+use crate::linear::{SparseMatrix, SymmetricLines, SymmetricMatrix};
+use crate::problem::ContactProblem;
+
+/// Gaps from this value on mean no obstacle: PETSc has no other infinity for bounds.
+const NO_LIMIT: f64 = 1e20;
+
+/// Most bytes of a file of options.
+const MOST_OF_INFO: u64 = 1 << 16;
+
+/// Mark of a place of a supported component.
+const SUPPORTED: u32 = u32::MAX;
+
+/// Reads the problem of a directory of PETSc files: the small ones first, then the stiffness row by row.
+///
+/// # Errors
+/// [`Error::File`] and [`Error::FileBytes`] for a file that is missing or malformed, [`Error::FileSyntax`] for `K.petsc.info`, and
+/// those of [`ContactProblem::new`].
+pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
+    let stiffness = Rows::open(&directory.join(STIFFNESS))?;
+    let (size, columns) = stiffness.shape;
+    if columns != size {
+        let message = format!("the stiffness is {size} x {columns}; it must have as many columns as rows");
+        return Err(stiffness.wrong_shape(message));
+    }
+    let places = Places::of(indices(&directory.join(FREE), size)?, size);
+    let load = places.load(&directory.join(LOAD))?;
+    let contact = places.contact(Rows::open(&directory.join(CONTACT))?)?;
+    let gap = gap(&directory.join(GAP), contact.rows())?;
+    let near_null = places.near_null(directory)?;
+    let problem = ContactProblem::new(places.stiffness(stiffness)?, load, contact, gap)?;
+    match near_null {
+        Some(near_null) => problem.with_near_null(near_null),
+        None => Ok(problem),
+    }
+}
+
+fn gap(file: &Path, rows: usize) -> Result<Vec<f64>, Error> {
+    let is_allowed = |gap: f64| gap > f64::NEG_INFINITY;
+    let mut gap = vector(file, is_allowed, "a finite gap, or 1e20 or more for a row without obstacle")?;
+    if gap.len() != rows {
+        let message = format!("it has length {}, but {CONTACT} has {rows} rows", gap.len());
+        return Err(fault(file, message));
+    }
+    gap.iter_mut().filter(|gap| **gap >= NO_LIMIT).for_each(|gap| *gap = f64::INFINITY);
+    Ok(gap)
+}
+
+/// The error of a vector of wrong size.
+fn fault(file: &Path, message: String) -> Error {
+    Error::FileBytes { file: file.to_path_buf(), byte: INTEGER as usize, message }
+}
+
+/// The places of the free dofs in the stiffness.
+struct Places {
+    /// The place of each free dof, increasing.
+    free: Vec<u32>,
+    /// The free dof at each place, or [`SUPPORTED`].
+    dof: Vec<u32>,
+}
+
+impl Places {
+    fn of(free: Vec<u32>, size: usize) -> Self {
+        let mut dof = vec![SUPPORTED; size];
+        free.iter().enumerate().for_each(|(number, &place)| dof[place as usize] = number as u32);
+        Places { free, dof }
+    }
+
+    fn load(&self, file: &Path) -> Result<Vec<f64>, Error> {
+        let load = vector(file, f64::is_finite, "finite")?;
+        if load.len() != self.dof.len() {
+            let message = format!("it has length {}, but {STIFFNESS} has {} rows", load.len(), self.dof.len());
+            return Err(fault(file, message));
+        }
+        let supported = |&(place, value): &(usize, &f64)| self.dof[place] == SUPPORTED && *value != 0.0;
+        if let Some((place, value)) = load.iter().enumerate().find(supported) {
+            let message = format!("value {place} is {value} (from 0), but {FREE} does not name it: it must be 0");
+            let byte = (2 * INTEGER + REAL * place as u64) as usize;
+            return Err(Error::FileBytes { file: file.to_path_buf(), byte, message });
+        }
+        Ok(self.free.iter().map(|&place| load[place as usize]).collect())
+    }
+
+    /// Leaves out the columns of supported components, which must be zero.
+    fn leave_out(&self, rows: &Rows, row: &mut Row) -> Result<(), Error> {
+        let mut kept = 0;
+        for entry in 0..row.columns.len() {
+            let (column, value) = (row.columns[entry], row.values[entry]);
+            let dof = self.dof[column as usize];
+            if dof != SUPPORTED {
+                (row.columns[kept], row.values[kept]) = (dof, value);
+                kept += 1;
+            } else if value != 0.0 {
+                let place = format!("entry ({}, {column}) is {value:e} (indices from 0)", rows.row());
+                return Err(rows.fault(entry, format!("{place}, but {FREE} does not name {column}: it must be 0")));
+            }
+        }
+        row.columns.truncate(kept);
+        row.values.truncate(kept);
+        Ok(())
+    }
+
+    fn contact(&self, mut rows: Rows) -> Result<SparseMatrix, Error> {
+        if rows.shape.1 != self.dof.len() {
+            let found = format!("it has {} columns, but {STIFFNESS} has {} rows", rows.shape.1, self.dof.len());
+            return Err(rows.wrong_shape(found));
+        }
+        let (mut starts, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
+        let mut row = Row::default();
+        while rows.read(&mut row)? {
+            self.leave_out(&rows, &mut row)?;
+            columns.extend(row.columns.iter().map(|&column| column as usize));
+            values.extend_from_slice(&row.values);
+            starts.push(columns.len());
+        }
+        Ok(SparseMatrix::from_csc(self.free.len(), starts, columns, values)?.transposed())
+    }
+
+    fn stiffness(&self, mut rows: Rows) -> Result<SymmetricMatrix, Error> {
+        let mut matrix = SymmetricLines::of_rows(self.free.len(), rows.entries)?;
+        let mut row = Row::default();
+        while rows.read(&mut row)? {
+            let own = rows.row();
+            if self.dof[own] == SUPPORTED {
+                let beside = |entry: &usize| row.columns[*entry] as usize != own && row.values[*entry] != 0.0;
+                if let Some(entry) = (0..row.columns.len()).find(beside) {
+                    let (column, value) = (row.columns[entry], row.values[entry]);
+                    let place = format!("entry ({own}, {column}) is {value:e} (indices from 0)");
+                    return Err(rows.fault(entry, format!("{place}, but {FREE} does not name {own}: it must be 0")));
+                }
+                continue;
+            }
+            self.leave_out(&rows, &mut row)?;
+            matrix.take(&row.columns, &row.values).map_err(|error| self.located(error, &rows))?;
+        }
+        SymmetricMatrix::from_lower(matrix.lower().map_err(|error| self.located(error, &rows))?)
+    }
+
+    /// Two triangles that differ, at their places in the file.
+    fn located(&self, error: Error, rows: &Rows) -> Error {
+        let Error::NotSymmetric { row, column, value, mirrored } = error else { return error };
+        let [row, column] = [row, column].map(|dof| self.free[dof]);
+        let entries = format!("entry ({row}, {column}) is {value:e}, entry ({column}, {row}) is {mirrored:e}");
+        let allowed = "they may differ by 1e-10 of the diagonal";
+        rows.fault(0, format!("the stiffness is not symmetric: {entries} (indices from 0); {allowed}"))
+    }
+
+    /// The near-null space: `near_null.petsc`, a column for each vector, or else the rigid-body modes of the nodes in
+    /// `coordinates.petsc`. The latter are not exact if components are in a local frame.
+    fn near_null(&self, directory: &Path) -> Result<Option<NearNullSpace>, Error> {
+        let of_free = |vector: &Vec<f64>| self.free.iter().map(|&place| vector[place as usize]).collect();
+        let file = directory.join(NEAR_NULL);
+        if file.exists() {
+            let vectors = dense_columns(&file, self.dof.len())?;
+            let near_null = NearNullSpace::new(vectors.iter().map(of_free).collect(), self.free.len());
+            return near_null.map(Some).map_err(|error| fault(&file, error.to_string()));
+        }
+        let file = directory.join(COORDINATES);
+        if !file.exists() {
+            return Ok(None);
+        }
+        let (size, coordinates) = (block_size(directory)?, vector(&file, f64::is_finite, "finite")?);
+        if coordinates.len() != self.dof.len() || coordinates.len() % size != 0 {
+            let needed = format!("{STIFFNESS} has {} rows in blocks of {size}", self.dof.len());
+            return Err(fault(&file, format!("it has length {}, but {needed}", coordinates.len())));
+        }
+        let axis = |axis: usize| coordinates.iter().skip(axis).step_by(size).copied().collect();
+        let modes = NearNullSpace::of_nodes(&(0..size).map(axis).collect::<Vec<_>>());
+        let modes = modes.map_err(|error| fault(&file, error.to_string()))?;
+        Ok(NearNullSpace::of_modes(modes.vectors().iter().map(of_free).collect()))
+    }
+}
+
+/// The number of dofs of a node, from `K.petsc.info`.
+fn block_size(directory: &Path) -> Result<usize, Error> {
+    let file = directory.join(INFO);
+    let text = read_text_capped(&file, MOST_OF_INFO)?;
+    let mut words = text.split_whitespace().skip_while(|&word| word != BLOCK_SIZE).skip(1);
+    match words.next().and_then(|word| word.parse().ok()) {
+        Some(size @ 1..=3) => Ok(size),
+        _ => {
+            let message = format!("it must have the line `{BLOCK_SIZE} D`, with 1, 2 or 3 dofs for each node");
+            Err(Error::FileSyntax { file, line: 1, message })
+        }
+    }
+}

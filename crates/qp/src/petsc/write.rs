@@ -1,0 +1,126 @@
+//! Writing a problem as PETSc's files: the stiffness row by row, once for its columns and once for its values.
+
+use std::io::{self, Write};
+
+use super::{
+    BLOCK_SIZE, CONTACT, COORDINATES, Class, DENSE, FREE, GAP, INDICES, INFO, LOAD, Layout, MATRIX, NEAR_NULL,
+    STIFFNESS, TOO_MANY, VECTOR,
+};
+use crate::file::Streamed;
+use crate::linear::multigrid::NearNullSpace;
+use crate::linear::{SparseMatrix, SymmetricMatrix};
+use crate::problem::ContactProblem;
+
+/// The files of a problem with this layout of dofs.
+pub fn streamed_files<'a>(problem: &'a ContactProblem, layout: &'a Layout) -> Vec<Streamed<'a>> {
+    let (stiffness, place) = (problem.stiffness(), &layout.place);
+    let contact = problem.contact().transposed();
+    let mut files = vec![
+        Streamed::new(STIFFNESS, |out| write_stiffness(out, stiffness, layout)),
+        Streamed::new(INFO, |out| writeln!(out, "{BLOCK_SIZE} {}", layout.size)),
+        Streamed::new(LOAD, |out| write_load(out, problem.load(), layout)),
+        Streamed::new(CONTACT, move |out| write_contact(out, &contact, layout)),
+        Streamed::new(GAP, |out| write_vector(out, problem.gap())),
+        Streamed::new(COORDINATES, |out| write_vector(out, &layout.coordinates)),
+        Streamed::new(FREE, |out| {
+            write_header(out, INDICES, &[place.len()])?;
+            write_integers(out, place)
+        }),
+    ];
+    let modes = problem.near_null().map(|modes| Streamed::new(NEAR_NULL, |out| write_modes(out, modes, layout)));
+    files.extend(modes);
+    files
+}
+
+/// The class and the sizes of an object.
+fn write_header(out: &mut dyn Write, class: Class, sizes: &[usize]) -> io::Result<()> {
+    out.write_all(&class.number.to_be_bytes())?;
+    sizes.iter().try_for_each(|&size| out.write_all(&integer(size)?.to_be_bytes()))
+}
+
+/// A size as an integer of 32 bits.
+fn integer(size: usize) -> io::Result<i32> {
+    let too_large = |_| io::Error::new(io::ErrorKind::FileTooLarge, format!("{size} is no integer of 32 bits"));
+    i32::try_from(size).map_err(too_large)
+}
+
+fn write_integers(out: &mut dyn Write, integers: &[u32]) -> io::Result<()> {
+    integers.iter().try_for_each(|integer| out.write_all(&integer.to_be_bytes()))
+}
+
+fn write_reals(out: &mut dyn Write, values: &[f64]) -> io::Result<()> {
+    values.iter().try_for_each(|value| out.write_all(&value.to_be_bytes()))
+}
+
+fn write_vector(out: &mut dyn Write, values: &[f64]) -> io::Result<()> {
+    write_header(out, VECTOR, &[values.len()])?;
+    write_reals(out, values)
+}
+
+/// The load, with 0 at supported components.
+fn write_load(out: &mut dyn Write, load: &[f64], layout: &Layout) -> io::Result<()> {
+    write_header(out, VECTOR, &[layout.places()])?;
+    layout.each_place(|_, dof| out.write_all(&dof.map_or(0.0, |dof| load[dof]).to_be_bytes()))
+}
+
+/// The vectors as columns, with 0 at supported components.
+fn write_modes(out: &mut dyn Write, modes: &NearNullSpace, layout: &Layout) -> io::Result<()> {
+    write_header(out, MATRIX, &[layout.places(), modes.count()])?;
+    out.write_all(&DENSE.to_be_bytes())?;
+    layout.each_place(|_, dof| {
+        let mut vectors = modes.vectors().iter();
+        vectors.try_for_each(|vector| out.write_all(&dof.map_or(0.0, |dof| vector[dof]).to_be_bytes()))
+    })
+}
+
+/// The contact rows, each a column of `contact`.
+fn write_contact(out: &mut dyn Write, contact: &SparseMatrix, layout: &Layout) -> io::Result<()> {
+    write_header(out, MATRIX, &[contact.columns(), layout.places(), contact.entries()])?;
+    for column in contact.column_starts().windows(2) {
+        out.write_all(&integer(column[1] - column[0])?.to_be_bytes())?;
+    }
+    contact.row_indices().iter().try_for_each(|&dof| out.write_all(&layout.place[dof].to_be_bytes()))?;
+    write_reals(out, contact.values())
+}
+
+/// The stiffness; a supported component has the mean size of the diagonal as its diagonal entry, and no other entry.
+fn write_stiffness(out: &mut dyn Write, stiffness: &SymmetricMatrix, layout: &Layout) -> io::Result<()> {
+    let lengths = stiffness.row_lengths();
+    let supported = layout.places() - stiffness.dim();
+    let entries = lengths.iter().map(|&length| u64::from(length)).sum::<u64>() + supported as u64;
+    write_header(out, MATRIX, &[layout.places(), layout.places()])?;
+    out.write_all(&i32::try_from(entries).unwrap_or(TOO_MANY).to_be_bytes())?;
+    layout.each_place(|_, dof| out.write_all(&dof.map_or(1, |dof| lengths[dof]).to_be_bytes()))?;
+    drop(lengths);
+    let place = &layout.place;
+    let own = |place: usize| (place as u32).to_be_bytes();
+    write_rows(out, stiffness, layout, own, |column, _| place[column as usize].to_be_bytes())?;
+    let diagonal = stiffness.diagonal();
+    let mean = diagonal.iter().map(|value| value.abs()).sum::<f64>() / diagonal.len().max(1) as f64;
+    drop(diagonal);
+    write_rows(out, stiffness, layout, |_| mean.to_be_bytes(), |_, value| value.to_be_bytes())
+}
+
+/// The `bytes` of each entry of the stiffness, row by row at their places, and those of `own` if a component is supported.
+fn write_rows<const COUNT: usize>(
+    out: &mut dyn Write,
+    stiffness: &SymmetricMatrix,
+    layout: &Layout,
+    own: impl Fn(usize) -> [u8; COUNT],
+    bytes: impl Fn(u32, f64) -> [u8; COUNT],
+) -> io::Result<()> {
+    let (mut row, mut place) = (Vec::new(), 0);
+    let mut free = layout.place.iter().map(|&free| free as usize);
+    let mut supported = |out: &mut dyn Write, end: usize| {
+        let written = (place..end).try_for_each(|place| out.write_all(&own(place)));
+        place = end + 1;
+        written
+    };
+    stiffness.each_row(|columns, values| {
+        supported(out, free.next().unwrap_or(layout.places()))?;
+        row.clear();
+        columns.iter().zip(values).for_each(|(&column, &value)| row.extend_from_slice(&bytes(column, value)));
+        out.write_all(&row)
+    })?;
+    supported(out, layout.places())
+}

@@ -1,0 +1,125 @@
+//! Factor or multigrid, by the estimates of seconds and bytes.
+
+use crate::cost::{Estimate, Smooth};
+use crate::error::Error;
+use crate::memory::in_words as written;
+use crate::problem::ContactProblem;
+use crate::settings::Method;
+use crate::settings::Settings;
+use crate::solution::{Expected, Why};
+
+/// The direct path is exact and its bound proven: multigrid replaces it only if the direct path takes this many times as long.
+const CLEARLY: f64 = 1.15;
+
+/// The name of the methods with a factor in the comparison with multigrid.
+const WITH_FACTOR: &str = "factor";
+
+/// Cycles allowed beyond those that take the time of a factorisation: the answer may be near.
+const MARGIN: usize = 10;
+
+/// An estimate may be too large by this factor.
+const UNSURE: f64 = 2.0;
+
+/// The chosen path, with the reason.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Choice {
+    /// The direct path.
+    Factor { reason: String },
+    /// Multigrid: it is much faster, unless it takes more cycles than this.
+    Speed { reason: String, most_cycles: usize },
+    /// Multigrid: nothing else fits into the memory.
+    Room { reason: String },
+}
+
+impl Estimate {
+    /// Returns `true` if multigrid is chosen: much faster, or the only path within `most_bytes`.
+    pub fn prefers_multigrid(&self, most_bytes: f64) -> bool {
+        !matches!(self.choose(most_bytes), Ok(Choice::Factor { .. }) | Err(_))
+    }
+
+    /// The path to take within `most_bytes`. If a factor is not clearly too large, only its analysis decides whether it fits.
+    ///
+    /// # Errors
+    /// [`Error::NoRoom`] if neither fits.
+    pub(super) fn choose(&self, most_bytes: f64) -> Result<Choice, Error> {
+        let ratio = self.direct_seconds / self.multigrid_seconds;
+        let fits = self.direct_bytes <= most_bytes;
+        // For a body, constants alone give a poor hierarchy.
+        if ratio > CLEARLY && self.smooth != Smooth::Unknown && self.multigrid_bytes <= most_bytes {
+            let reason = format!("by multigrid: a factorisation would take about {ratio:.0} times as long");
+            // After this number of cycles a factorisation would have been as fast.
+            let most_cycles = if fits { MARGIN + (self.cycles * ratio) as usize } else { usize::MAX };
+            return Ok(Choice::Speed { reason, most_cycles });
+        }
+        if self.direct_bytes > UNSURE * most_bytes {
+            return self.without_factor(self.direct_bytes, most_bytes).map(|reason| Choice::Room { reason });
+        }
+        let slower = 1.0 / ratio;
+        let reason = match self.smooth {
+            Smooth::Unknown => {
+                "with a factor: multigrid has no near-null space, which names the motions of almost no energy"
+                    .to_string()
+            }
+            _ if self.multigrid_bytes > most_bytes => {
+                let [of_multigrid, allowed] = [self.multigrid_bytes, most_bytes].map(written);
+                format!("with a factor: multigrid would take about {of_multigrid}, {allowed} are allowed")
+            }
+            _ if slower > 1.0 => format!("with a factor: multigrid would take about {slower:.1} times as long"),
+            _ => format!("with a factor: its bound is proven, and multigrid is not {CLEARLY} times as fast"),
+        };
+        Ok(Choice::Factor { reason })
+    }
+
+    /// The estimates behind a choice, and its reason.
+    pub(super) fn why(&self, choice: &Choice) -> Why {
+        let mprgp = Method::Mprgp.name();
+        let (chosen, reason) = match choice {
+            Choice::Factor { reason } => (WITH_FACTOR, reason),
+            Choice::Speed { reason, .. } | Choice::Room { reason } => (mprgp, reason),
+        };
+        let expected = |method: &str, seconds, bytes| Expected { method: method.to_string(), seconds, bytes };
+        let considered = vec![
+            expected(WITH_FACTOR, self.direct_seconds, self.direct_bytes),
+            expected(mprgp, self.multigrid_seconds, self.multigrid_bytes),
+        ];
+        Why { chosen: chosen.to_string(), reason: reason.clone(), considered }
+    }
+
+    /// The same for each of many gaps; all gaps share the first factor, and the hierarchy.
+    pub(super) fn of_many(self, gaps: usize) -> Self {
+        let rest = 1.0 - 1.0 / gaps.max(1) as f64;
+        Estimate {
+            direct_seconds: self.direct_seconds - rest * self.shared_seconds,
+            multigrid_seconds: self.multigrid_seconds - rest * self.hierarchy_seconds,
+            ..self
+        }
+    }
+
+    /// The reason for multigrid if a solve with a factor takes `factor` bytes, which is too much.
+    ///
+    /// # Errors
+    /// [`Error::NoRoom`] if multigrid takes too much as well.
+    pub(super) fn without_factor(&self, factor: f64, most_bytes: f64) -> Result<String, Error> {
+        let multigrid = self.multigrid_bytes;
+        if multigrid > most_bytes {
+            return Err(Error::NoRoom { factor, multigrid, allowed: most_bytes, ended: None });
+        }
+        let [of_multigrid, of_factor, allowed] = [multigrid, factor, most_bytes].map(written);
+        Ok(format!(
+            "by multigrid, of about {of_multigrid}: with a factor it would take about {of_factor}, {allowed} are allowed"
+        ))
+    }
+}
+
+/// Returns `true` if the energy bound of an answer from elsewhere comes from a factor of the stiffness, `false` if from multigrid. A
+/// factor gives a proven bound; it is taken if it fits into the memory and is estimated to take at most this number of seconds.
+///
+/// # Errors
+/// [`Error::NoRoom`] if neither fits into the memory.
+pub(crate) fn is_bounded_by_factor(problem: &ContactProblem, seconds: f64, settings: &Settings) -> Result<bool, Error> {
+    let (estimate, memory) = (Estimate::of(problem), settings.memory.unwrap_or(f64::INFINITY));
+    if estimate.direct_bytes > memory {
+        return estimate.without_factor(estimate.direct_bytes, memory).map(|_| false);
+    }
+    Ok(estimate.shared_seconds <= seconds || estimate.multigrid_bytes > memory)
+}

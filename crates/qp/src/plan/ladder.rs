@@ -1,0 +1,189 @@
+//! The ladder: all attempts for a problem, in order.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use super::attempt::{
+    Arrangement, Attempt, From, IN_PIECES, Limits, Means, OF_EXISTENCE, WITH_FACTOR, WITH_MULTIGRID, When, WithFactor,
+};
+use super::choice::Choice;
+use super::pieces::pieces_of;
+use crate::cost::{Estimate, starts_near};
+use crate::error::Error;
+use crate::method::interior_point::InteriorPoint;
+use crate::problem::ContactProblem;
+use crate::settings::{ByFactor, Condense, Method, Precision, Settings};
+use crate::transform::Pieces;
+
+/// MPRGP ends at this share of the tolerance of the certificate, because the scales of the two differ.
+const MARGIN: f64 = 0.1;
+
+/// If an accuracy is given, MPRGP first ends at this share of the accuracy: forces are less accurate than the energy.
+const FIRST: f64 = 0.1;
+
+/// What the caller of a ladder knows and keeps.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Known {
+    /// Number of gaps or loads that share the prepared data.
+    pub gaps: usize,
+    /// `true` if the problem stays in one piece, because a start is given, or because its data are kept.
+    pub is_whole: bool,
+}
+
+/// Everything that may be tried, in order.
+#[derive(Clone, Debug)]
+pub(crate) struct Ladder {
+    pub attempts: Vec<Attempt>,
+    /// The pieces of the first attempt, if the problem is solved in pieces.
+    pub pieces: Option<Arc<Pieces>>,
+    pub(super) settings: Settings,
+    /// The comparison of factor and multigrid, if the program chooses.
+    pub(super) choice: Option<(Estimate, Choice)>,
+    /// The reason for multigrid if a factor was refused before.
+    pub(super) refusal: Option<String>,
+}
+
+impl Ladder {
+    /// The ladder for `problem`.
+    ///
+    /// # Errors
+    /// [`Error::NoRoom`] if neither a factor nor multigrid fits into the memory.
+    pub fn of(problem: &ContactProblem, known: Known, settings: &Settings) -> Result<Self, Error> {
+        let mut ladder = Ladder {
+            attempts: Vec::with_capacity(8),
+            pieces: None,
+            settings: settings.clone(),
+            choice: None,
+            refusal: None,
+        };
+        if !known.is_whole
+            && let Some(pieces) = pieces_of(problem, settings)
+        {
+            let because = format!("nothing couples its {} pieces", pieces.count());
+            ladder.add(Attempt { steps: IN_PIECES, ..ladder.attempt(Means::Problem, because) });
+            ladder.pieces = Some(Arc::new(pieces));
+        }
+        let near = !known.is_whole && starts_by_multigrid(problem, settings);
+        let start = if near { From::Cycles } else { From::Given };
+        let by_name =
+            |ladder: &Self, method| Attempt { start, ..ladder.attempt(ladder.factor(Some(method)), REQUESTED) };
+        match settings.method {
+            Method::Auto => {
+                let estimate = Estimate::of(problem).of_many(known.gaps);
+                let choice = estimate.choose(settings.memory.unwrap_or(f64::INFINITY))?;
+                ladder.by_choice(&choice, start);
+                ladder.choice = Some((estimate, choice));
+            }
+            Method::Mprgp => ladder.add(ladder.attempt(Means::Multigrid, REQUESTED)),
+            Method::ActiveSet => ladder.with_factor(by_name(&ladder, ByFactor::ActiveSet)),
+            Method::Qp(options) => ladder.with_factor(by_name(&ladder, ByFactor::Qp(options))),
+            Method::Penalty(options) => ladder.with_factor(by_name(&ladder, ByFactor::Penalty(options))),
+        }
+        // Its steps have their own conditions, also for an answer that meets the goal.
+        ladder.attempts.push(Attempt { steps: OF_EXISTENCE, ..ladder.attempt(Means::Problem, "") });
+        Ok(ladder)
+    }
+
+    /// The same ladder under settings that change nothing but its limits; `None` if they change more.
+    pub fn under(&self, settings: &Settings) -> Option<Self> {
+        let of = |settings: &Settings| (settings.method, settings.precision, settings.condense, settings.memory);
+        if of(settings) != of(&self.settings) {
+            return None;
+        }
+        let mut ladder = Ladder { settings: settings.clone(), ..self.clone() };
+        for attempt in &mut ladder.attempts {
+            attempt.limits = Limits { worth: attempt.limits.worth, ..limits(settings) };
+        }
+        Some(ladder)
+    }
+
+    /// The attempts of a choice between factor and multigrid.
+    fn by_choice(&mut self, choice: &Choice, start: From) {
+        let after = |ladder: &Self, method| {
+            let because = "a factor may give the answer that the iteration does not";
+            Attempt { start, when: When::ShortOfMultigrid, ..ladder.attempt(ladder.factor(method), because) }
+        };
+        // The way stands before the colon.
+        let because = |reason: &str| reason.split_once(": ").map_or(reason, |(_, because)| because).to_string();
+        match choice {
+            Choice::Factor { reason } => {
+                self.with_factor(Attempt { start, ..self.attempt(self.factor(None), because(reason)) });
+                let refused = self.attempt(Means::Multigrid, "it takes less memory, and begins sooner");
+                self.add(Attempt { when: When::Refused, ..refused });
+                // The refusal was of a faster method, which takes more memory than one factor at a time.
+                self.with_factor(after(self, Some(ByFactor::ActiveSet)));
+            }
+            Choice::Speed { reason, most_cycles } => {
+                let mut multigrid = self.attempt(Means::Multigrid, because(reason));
+                multigrid.limits.worth = *most_cycles;
+                self.add(multigrid);
+                self.with_factor(after(self, None));
+            }
+            Choice::Room { reason } => {
+                self.add(self.attempt(Means::Multigrid, because(reason)));
+                self.with_factor(after(self, None));
+            }
+        }
+    }
+
+    /// Adds an attempt; none but the first is made if an answer meets the goal.
+    fn add(&mut self, attempt: Attempt) {
+        let when = if attempt.when == When::Always && !self.attempts.is_empty() { When::Short } else { attempt.when };
+        self.attempts.push(Attempt { when, ..attempt });
+    }
+
+    /// A factor under the settings as they were given, with this method or that of the rules.
+    fn factor(&self, method: Option<ByFactor>) -> Means {
+        let Settings { precision, condense, .. } = self.settings;
+        let arrangements: &[Arrangement] = match condense {
+            Condense::Auto => &Arrangement::ALL,
+            Condense::Never => &Arrangement::ON_ALL_DOFS,
+        };
+        Means::Factor(WithFactor { method, precision, arrangements })
+    }
+
+    /// An attempt by these means, from the start that was given.
+    fn attempt(&self, means: Means, because: impl Into<Cow<'static, str>>) -> Attempt {
+        let steps = if means == Means::Multigrid { WITH_MULTIGRID } else { WITH_FACTOR };
+        let (start, when, limits) = (From::Given, When::Always, limits(&self.settings));
+        Attempt { means, start, limits, when, because: because.into(), steps }
+    }
+
+    /// Adds the attempts with a factor: the `first`; after a shortcut in double precision; after a condensation on all dofs.
+    fn with_factor(&mut self, first: Attempt) {
+        let means = first.means;
+        self.add(first);
+        let Means::Factor(with) = means else { return };
+        if matches!(with.method, Some(ByFactor::Qp(InteriorPoint { polish: false, .. }))) {
+            let because = "the interior-point method did not reach its tolerance";
+            let polished = self.attempt(self.factor(Some(ByFactor::Qp(InteriorPoint::DEFAULT))), because);
+            self.add(Attempt { when: When::ShortOfUnsettled, ..polished });
+        }
+        let method = Some(with.method.unwrap_or(ByFactor::ActiveSet));
+        let exact = WithFactor { method, precision: Precision::Double, ..with };
+        if with.method.is_none() || with.precision == Precision::Mixed {
+            let because = "the rules prefer speed; the active set in double precision leaves out no digit";
+            let exact = self.attempt(Means::Factor(exact), because);
+            self.add(Attempt { when: When::ShortOfShortcut, start: From::Nothing, ..exact });
+        }
+        if with.arrangements.contains(&Arrangement::Condensed) {
+            let because = "condensing loses digits if the contact boundary feels little of the stiffness of the body";
+            let whole = WithFactor { arrangements: &Arrangement::ON_ALL_DOFS, ..exact };
+            let whole = self.attempt(Means::Factor(whole), because);
+            self.add(Attempt { when: When::ShortOnCondensed, start: From::Best, ..whole });
+        }
+    }
+}
+
+const REQUESTED: &str = "it was requested";
+
+/// The first limits of MPRGP.
+fn limits(settings: &Settings) -> Limits {
+    let tolerance = settings.accuracy.map_or(MARGIN * settings.goal().tolerance, |accuracy| FIRST * accuracy);
+    Limits { tolerance, most_cycles: settings.max_iterations, worth: usize::MAX }
+}
+
+/// Returns `true` if the direct path starts from a few cycles of multigrid.
+fn starts_by_multigrid(problem: &ContactProblem, settings: &Settings) -> bool {
+    matches!(settings.method, Method::Auto | Method::ActiveSet) && starts_near(problem)
+}

@@ -1,0 +1,210 @@
+//! A ladder in words: before anything is solved, and the reasons for an answer after.
+
+use std::fmt;
+
+use super::attempt::{Arrangement, Attempt, From, Means, Rung, Step, Tried, When, WithFactor};
+use super::history::{Ended, History, Record};
+use super::ladder::Ladder;
+use super::layout::Layout;
+use crate::error::Error;
+use crate::memory::in_words as memory;
+use crate::problem::ContactProblem;
+use crate::settings::Precision;
+use crate::settings::Settings;
+use crate::solution::Why;
+use crate::transform::{RowSelection, Scaling};
+
+impl Ladder {
+    /// The ways that were compared before, and the decision; with the method that gave the best answer of `history`.
+    pub fn why(&self, history: &History) -> Why {
+        let Some(best) = &history.best else { return Why::default() };
+        let Some((estimate, choice)) = &self.choice else {
+            let (chosen, first) = (self.settings.method.name().to_string(), usize::from(self.pieces.is_some()));
+            let reason = format!("by {chosen}: {}", self.attempts[first].because);
+            return Why { chosen, reason, considered: Vec::new() };
+        };
+        let why = estimate.why(choice);
+        let then = match self.attempts[best.attempt].means {
+            Means::Problem => None,
+            Means::Factor(_) => best.tried.as_ref().map(Tried::in_words),
+            Means::Multigrid => self.without_factor(history).map(|reason| format!("in the end {reason}")),
+        };
+        let reason = then.map_or_else(|| why.reason.clone(), |then| format!("{}; {then}", why.reason));
+        Why { reason, ..why }
+    }
+
+    /// The reason why no factor was taken, if the program decided that and the best answer has none; otherwise empty.
+    pub fn reason(&self, history: &History) -> String {
+        match (&history.best, &self.choice) {
+            (Some(best), Some((estimate, choice))) if self.attempts[best.attempt].means == Means::Multigrid => {
+                self.without_factor(history).unwrap_or_else(|| estimate.why(choice).reason)
+            }
+            _ => String::new(),
+        }
+    }
+
+    /// The ladder after the refusals of some data, which are not tried again.
+    pub fn after_refusals(self, history: &History) -> Self {
+        Ladder { refusal: self.without_factor(history), ..self }
+    }
+
+    /// The reason for multigrid after a factor was refused.
+    fn without_factor(&self, history: &History) -> Option<String> {
+        let (estimate, _) = self.choice.as_ref()?;
+        let refused = history.records.iter().find_map(|record| match &record.ended {
+            Ended::Refused(Error::TooLarge { bytes, allowed, .. }) => {
+                let [of_multigrid, of_factor, allowed] = [estimate.multigrid_bytes, *bytes, *allowed].map(memory);
+                Some(format!(
+                    "by multigrid, of about {of_multigrid}: with a factor it would take about {of_factor}, {allowed} are allowed"
+                ))
+            }
+            Ended::Refused(Error::OutOfTime { needed, time }) => Some(format!(
+                "by multigrid: a factorisation would take about {needed:.1e} s, but {time:.1e} s are left"
+            )),
+            _ => None,
+        });
+        refused.or_else(|| self.refusal.clone())
+    }
+
+    /// The error that neither a factor nor multigrid has room, if the program chose between them and a factor was refused last.
+    pub fn no_room(&self, history: &History) -> Option<Error> {
+        let (estimate, _) = self.choice.as_ref()?;
+        let last = history.records.iter().rev().find(|record| record.step == Step::Method)?;
+        let Ended::Refused(Error::TooLarge { bytes: factor, allowed, .. }) = last.ended else { return None };
+        let is_of_multigrid = |record: &&Record| self.attempts[record.place.attempt].means == Means::Multigrid;
+        let ended = history.records.iter().rev().find(is_of_multigrid).map(|record| record.shortfall(history.goal));
+        Some(Error::NoRoom { factor, multigrid: estimate.multigrid_bytes, allowed, ended })
+    }
+}
+
+impl Ladder {
+    /// The attempts with a factor, by their numbers.
+    fn factors(&self) -> impl Iterator<Item = (usize, WithFactor)> {
+        self.attempts.iter().enumerate().filter_map(|(number, attempt)| match attempt.means {
+            Means::Factor(with) => Some((number, with)),
+            _ => None,
+        })
+    }
+}
+
+impl Step {
+    fn in_words(self) -> &'static str {
+        match self {
+            Step::Pieces => "each piece by a plan of its own",
+            Step::Method => "the method",
+            Step::Continuation => "the active set again, from the set that a penalty ladder reaches",
+            Step::Dual => "the dual active-set method",
+            Step::Refinement => "refinement, as long as it gains",
+            Step::Repair => "repair, as long as it gains",
+            Step::Existence => "look whether the problem has an answer, from the problem alone",
+            Step::Proximal => "steps with K + rho E in place of K",
+            Step::Uniqueness => "look whether the answer is the only one",
+        }
+    }
+}
+
+impl When {
+    /// The condition, to be read after a step.
+    fn in_words(self) -> &'static str {
+        match self {
+            When::Always => "",
+            When::Refused => "if memory or time do not allow the attempt before",
+            When::Unheld => "if the method meets a motion that nothing stops",
+            When::Unsettled => "if no set is settled",
+            When::Improvable | When::Short => "if the answer falls short",
+            When::ShortOfMultigrid => "if multigrid falls short",
+            When::ShortOfUnsettled => "if the method does not settle and its answer falls short",
+            When::ShortOfShortcut => "if a faster method, or a factor in single precision, falls short",
+            When::ShortOnCondensed => "if the answer on condensed dofs falls short",
+            When::Doubtful => "if an answer has no bound",
+            When::Exists => "if there is an answer, and none was found",
+            When::WasDoubtful => "if that was open",
+        }
+    }
+}
+
+impl Arrangement {
+    fn in_words(self) -> &'static str {
+        match self {
+            Arrangement::Condensed => "condensed to the contact dofs, if that pays",
+            Arrangement::RowsLast => "all dofs, those of the rows last",
+            Arrangement::AnyOrder => "all dofs in the order of least work, one factor at a time if no more fit",
+        }
+    }
+}
+
+impl Attempt {
+    /// Method and means in words, without its condition.
+    fn in_words(&self) -> String {
+        let method = self.method().name();
+        let with = match self.means {
+            Means::Problem if self.steps[0].step == Step::Pieces => return Step::Pieces.in_words().to_string(),
+            Means::Problem => return "existence and uniqueness of the answer".to_string(),
+            Means::Multigrid => return format!("{method} with a multigrid hierarchy"),
+            Means::Factor(with) => with,
+        };
+        let on = match with.arrangements.contains(&Arrangement::Condensed) {
+            true => "condensed to the contact dofs if that pays",
+            false => "on all dofs",
+        };
+        let precision = match with.precision {
+            Precision::Auto => "",
+            Precision::Double => " in double precision",
+            Precision::Mixed => " in single precision",
+        };
+        let start = match self.start {
+            From::Given | From::Nothing => "",
+            From::Cycles => ", from the set that a few cycles of multigrid find",
+            From::Best => ", from the best set so far",
+        };
+        format!("{method} with a factor{precision}, {on}{start}")
+    }
+}
+
+impl Ladder {
+    /// The ladder in words, with the layout of the first factor; only the pattern of the stiffness is analysed.
+    ///
+    /// # Errors
+    /// Those of the scaling, for numbers beyond the range of doubles.
+    pub fn in_words(&self, problem: &ContactProblem, settings: &Settings) -> Result<String, Error> {
+        let words = self.to_string();
+        let Some((first, with)) = self.factors().next() else { return Ok(words) };
+        let selection = RowSelection::of(problem.contact(), problem.gap());
+        let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
+        let layout = match Layout::within(problem, &scaling, &with, settings) {
+            Ok(layout) => layout.in_words(),
+            Err(error) => error.to_string(),
+        };
+        Ok(format!("{words}The factor of {}: {layout}.\n", first + 1))
+    }
+}
+
+/// Two lines for each attempt, with its condition and its reason; its steps are listed once for all attempts that have the same.
+impl fmt::Display for Ladder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut listed: Vec<(&[Rung], usize)> = Vec::new();
+        for (place, attempt) in self.attempts.iter().enumerate() {
+            let (number, condition) = (place + 1, attempt.when.in_words());
+            let comma = if condition.is_empty() { "" } else { ", " };
+            writeln!(f, "{number}. {}{comma}{condition}", attempt.in_words())?;
+            if !attempt.because.is_empty() {
+                writeln!(f, "   because {}", attempt.because)?;
+            }
+            if let Some((_, first)) = listed.iter().find(|listed| std::ptr::eq(listed.0, attempt.steps)) {
+                writeln!(f, "   then the steps of {first}")?;
+                continue;
+            }
+            listed.push((attempt.steps, number));
+            for rung in attempt.steps.iter().filter(|rung| rung.when != When::Always) {
+                writeln!(f, "   - {}: {} ({})", rung.when.in_words(), rung.step.in_words(), rung.because)?;
+            }
+        }
+        match self.factors().next() {
+            Some((_, with)) => {
+                let words: Vec<&str> = with.arrangements.iter().map(|arrangement| arrangement.in_words()).collect();
+                writeln!(f, "A factor has the first of these forms that memory and time allow: {}.", words.join("; "))
+            }
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! A problem prepared once, and solved for many gaps, loads and starts, by the same loop as a single solve.
+
+mod boundary;
+mod path;
+mod reuse;
+
+pub use boundary::BoundarySolution;
+pub use path::Path;
+pub(crate) use path::between;
+pub use reuse::Prepared;

@@ -1,0 +1,246 @@
+//! The prepared data, used again for other gaps, loads, starts and settings.
+
+use std::sync::Arc;
+
+use crate::engine::{Engine, Load, Task};
+use crate::error::Error;
+use crate::linear::multigrid::Multigrid;
+use crate::method::Start;
+use crate::plan::{Attempt, Ended, History, Known, Ladder, Record, Step, Tried};
+use crate::problem::ContactProblem;
+use crate::run::{Run, Workbench, engine_by};
+use crate::settings::Settings;
+use crate::solution::{Seconds, Solution};
+
+/// A contact problem prepared once for many gaps, loads and starts: its stiffness is factorised, or a multigrid hierarchy is
+/// built for it, depending on the method.
+///
+/// Clones are cheap and share the prepared data, and so do [`with_load`](Self::with_load),
+/// [`with_settings`](Self::with_settings) and [`starting_from`](Self::starting_from).
+///
+/// ```
+/// use signorini_qp::{ContactProblem, Prepared, Settings, SparseMatrix, SymmetricMatrix};
+///
+/// // A spring of stiffness 2, pushed with force 3 towards a wall.
+/// let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]);
+/// let stiffness = SymmetricMatrix::from_lower(one(2.0)?)?;
+/// let problem = ContactProblem::new(stiffness, vec![3.0], one(1.0)?, vec![1.0])?;
+/// let prepared = Prepared::new(&problem, &Settings::default())?;
+///
+/// // At distance 1 the spring takes 2 x 1 of the force and the wall the rest; at distance 2 there is no contact.
+/// assert_eq!(prepared.solve(&[1.0])?.multiplier, [-1.0]);
+/// assert_eq!(prepared.solve(&[2.0])?.displacement, [1.5]);
+/// // Twice the force: u = 1, and the wall takes 6 - 2.
+/// assert_eq!(prepared.solve_load(vec![6.0])?.multiplier, [-4.0]);
+/// # Ok::<(), signorini_qp::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The problem under the current load.
+    problem: ContactProblem,
+    pub(super) settings: Settings,
+    ladder: Arc<Ladder>,
+    /// The data of the first attempt that memory and time allow; `None` if the stiffness cannot be prepared.
+    pub(super) bench: Option<Workbench>,
+    pub(super) start: Start,
+}
+
+/// Number of gaps that a problem is prepared for if it is not known.
+const MANY_GAPS: usize = 10;
+
+impl Prepared {
+    /// Prepares `problem` for the method of `settings`: a hierarchy for [`Method::Mprgp`](crate::Method::Mprgp), a factor for every other;
+    /// [`Method::Auto`](crate::Method::Auto) takes the one that serves ten gaps in less time, as [`Prepared::for_gaps`].
+    ///
+    /// # Errors
+    /// * [`Error::Setting`] for a setting outside its range,
+    /// * [`Error::Infeasible`] for rows that contradict each other at the gaps of `problem`,
+    /// * [`Error::OutOfTime`], [`Error::Interrupted`], [`Error::TooLarge`] and [`Error::NoRoom`] if there is not enough time or memory
+    ///   left.
+    ///
+    /// A stiffness that cannot be prepared, for example because it is not convex, is judged by [`Prepared::solve`].
+    pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
+        Self::for_gaps(problem, MANY_GAPS, settings)
+    }
+
+    /// The same for about this number of gaps, which share a factor or a hierarchy.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    pub fn for_gaps(problem: &ContactProblem, gaps: usize, settings: &Settings) -> Result<Self, Error> {
+        problem.check_rows()?;
+        let given = settings;
+        let settings = &given.started()?;
+        // A problem that is prepared stays in one piece.
+        let ladder = Ladder::of(problem, Known { gaps, is_whole: true }, settings)?;
+        let mut history = History::new(settings.goal());
+        let with = |ladder: Ladder, bench: Option<Workbench>| {
+            let (problem, settings, ladder) = (problem.clone(), given.clone(), Arc::new(ladder));
+            Prepared { problem, settings, ladder, bench, start: Start::default() }
+        };
+        let mut has_failed = false;
+        while let Some(next) = ladder.next(&history, &settings.watch) {
+            let attempt = next.place.attempt;
+            let ended = match engine_by(ladder.attempts[attempt].means, problem, settings) {
+                Ok(None) => break,
+                Ok(Some(engine)) => {
+                    let load = Arc::new(Load::new(problem.load().to_vec()));
+                    return Ok(with(ladder.after_refusals(&history), Some(Workbench { attempt, engine, load })));
+                }
+                Err(error) => match Ended::by(error) {
+                    Ended::Decided(error) => return Err(error),
+                    ended => ended,
+                },
+            };
+            has_failed |= matches!(ended, Ended::Failed(_));
+            history.records.push(Record { ended, ..Record::of(next, Step::Method) });
+        }
+        if has_failed {
+            return Ok(with(ladder, None));
+        }
+        Err(ladder.no_room(&history).or_else(|| history.into_refusal()).unwrap_or(Error::Interrupted))
+    }
+
+    /// The same problem under other settings. The prepared data are kept if their method works on them, with its condensation,
+    /// precision and threads; otherwise the problem is prepared again.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    pub fn with_settings(&self, settings: &Settings) -> Result<Self, Error> {
+        settings.started()?;
+        let anew = || Ok(Self::new(&self.problem, settings)?.starting_from(self.start.clone()));
+        let Some(bench) = &self.bench else { return anew() };
+        let (attempt, ladder) = match self.ladder.under(settings) {
+            Some(ladder) => (bench.attempt, ladder),
+            None => {
+                let ladder = Ladder::of(&self.problem, Known { gaps: MANY_GAPS, is_whole: true }, settings)?;
+                let serves = |attempt: &Attempt| bench.engine.serves(&attempt.means);
+                let Some(attempt) = ladder.attempts.iter().position(serves) else { return anew() };
+                (attempt, ladder)
+            }
+        };
+        let bench = Some(Workbench { attempt, ..bench.clone() });
+        Ok(Prepared { settings: settings.clone(), ladder: Arc::new(ladder), bench, ..self.clone() })
+    }
+
+    /// The same problem under another load, length n, in N, along the positive axes; a factor is swept once for it.
+    ///
+    /// # Errors
+    /// [`Error::Length`] and [`Error::NotFinite`] for a load that does not fit.
+    pub fn with_load(&self, load: Vec<f64>) -> Result<Self, Error> {
+        let problem = self.problem.with_load(load.clone())?;
+        let load = Arc::new(Load::new(load));
+        let bench = self.bench.clone().map(|bench| Workbench { load, ..bench });
+        Ok(Prepared { problem, bench, ..self.clone() })
+    }
+
+    /// The same, solved from a start, such as the contact set at the last gap.
+    pub fn starting_from(&self, start: impl Into<Start>) -> Self {
+        Prepared { start: start.into(), ..self.clone() }
+    }
+
+    /// Solves with these gaps, one per contact row, in m; negative if the obstacle starts inside the body.
+    ///
+    /// # Errors
+    /// As [`solve`](crate::solve()); [`Error::Length`] and [`Error::NotFinite`] for gaps or a start that do not fit or, with a factor,
+    /// gaps that are infinite in other rows than those of the problem that was prepared.
+    pub fn solve(&self, gap: &[f64]) -> Result<Solution, Error> {
+        let (problem, settings) = (self.problem_at(gap)?, self.settings.started()?);
+        let run = Run::new(&problem, &self.ladder, &self.start, &settings);
+        match &self.bench {
+            Some(bench) => run.with(bench).solved(),
+            None => run.solved(),
+        }
+    }
+
+    /// Solves with another load, length n, in N, along the positive axes, and the gaps of the problem that was
+    /// prepared.
+    ///
+    /// # Errors
+    /// As [`Prepared::with_load`] and [`Prepared::solve`].
+    pub fn solve_load(&self, load: Vec<f64>) -> Result<Solution, Error> {
+        self.with_load(load)?.solve(self.problem.gap())
+    }
+
+    /// The problem at these gaps, under the current load.
+    ///
+    /// # Errors
+    /// [`Error::Length`] and [`Error::NotFinite`] for gaps or a start that do not fit, [`Error::Infeasible`] for rows that contradict each
+    /// other at sight.
+    fn problem_at(&self, gap: &[f64]) -> Result<ContactProblem, Error> {
+        self.start.check(self.problem.dofs(), self.problem.rows())?;
+        let problem = self.problem.with_gap(gap.to_vec())?;
+        problem.check_rows()?;
+        Ok(problem)
+    }
+
+    /// What the prepared data answer to the method alone, from a start at these gaps; `None` without prepared data.
+    ///
+    /// # Errors
+    /// Those of the gaps and the start, and of the answer; [`Error::Setting`].
+    pub(super) fn ask<T>(
+        &self,
+        gap: &[f64],
+        start: &Start,
+        answer: impl FnOnce(Arc<dyn Engine>, &Task) -> Result<Option<T>, Error>,
+    ) -> Result<Option<T>, Error> {
+        let Some(Workbench { attempt, engine, load }) = &self.bench else { return Ok(None) };
+        let (problem, settings) = (&self.problem_at(gap)?, &self.settings.started()?);
+        let Attempt { means, limits, .. } = self.ladder.attempts[*attempt];
+        let (step, method, best) = (Step::Method, means.method(), None);
+        answer(Arc::clone(engine), &Task { step, problem, load, start, limits, method, settings, best })
+    }
+}
+
+impl Prepared {
+    /// Number of dofs of the problem.
+    pub fn dofs(&self) -> usize {
+        self.problem.dofs()
+    }
+
+    /// The method and its means, if the data are prepared.
+    fn tried(&self) -> Option<Tried> {
+        self.bench.as_ref().map(|bench| bench.engine.tried(None, &self.settings))
+    }
+
+    /// Number of unknowns that the methods work on.
+    pub fn condensed_dofs(&self) -> usize {
+        self.tried().and_then(|tried| tried.condensed_dofs).unwrap_or(self.dofs())
+    }
+
+    /// Number of values of the factor of the stiffness; zero if the methods factorise by themselves or not at all.
+    pub fn factor_entries(&self) -> usize {
+        self.bench.as_ref().map_or(0, |bench| bench.engine.factor_entries())
+    }
+
+    /// Memory of the values of the factor, in bytes: 8 for each, 4 in single precision.
+    pub fn factor_bytes(&self) -> usize {
+        self.factor_entries() * if self.is_single() { size_of::<f32>() } else { size_of::<f64>() }
+    }
+
+    /// Multiplications of the factorisation of the stiffness; zero without one.
+    pub fn multiplications(&self) -> f64 {
+        self.tried().map_or(0.0, |tried| tried.multiplications)
+    }
+
+    /// Returns `true` if the factor is in single precision.
+    pub fn is_single(&self) -> bool {
+        self.tried().is_some_and(|tried| tried.is_single)
+    }
+
+    /// The attempts and steps that a solve makes, in order, each with its condition and its reason, a line each.
+    pub fn plan(&self) -> String {
+        self.ladder.to_string()
+    }
+
+    /// The multigrid hierarchy; `None` if the stiffness was factorised.
+    #[doc(hidden)]
+    pub fn hierarchy(&self) -> Option<&Multigrid> {
+        self.bench.as_ref().and_then(|bench| bench.engine.hierarchy())
+    }
+
+    /// The time of the preparation.
+    pub fn seconds(&self) -> Seconds {
+        self.bench.as_ref().map_or(Seconds::default(), |bench| bench.engine.seconds())
+    }
+}

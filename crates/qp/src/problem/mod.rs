@@ -1,0 +1,282 @@
+//! The contact problem as a convex QP, checked once.
+
+mod diagonal;
+mod opposed;
+mod parts;
+
+pub(crate) use parts::Parts;
+
+use std::sync::{Arc, OnceLock};
+
+use diagonal::Diagonal;
+use opposed::OpposedRows;
+
+use crate::error::Error;
+use crate::linear::multigrid::NearNullSpace;
+use crate::linear::{Accumulator, SparseMatrix, SymmetricMatrix, check_vector, largest};
+
+/// Frictionless unilateral contact as a convex quadratic program:
+///
+/// ```text
+/// minimise 1/2 u'K u - f'u   subject to   B u - g <= 0
+/// K u - f - B' lambda = 0,  B u - g <= 0,  lambda <= 0,  lambda_i (B u - g)_i = 0
+/// ```
+///
+/// Shapes, finite values and symmetry are checked once, when it is built. The solve finds out whether K is positive
+/// semidefinite, and whether supports and obstacle hold the body.
+///
+/// ```
+/// use signorini_qp::{ContactProblem, SparseMatrix, SymmetricMatrix};
+///
+/// // Two springs of stiffness 2 and 1 in a row, pushed with the forces 2 and 3; the end meets a wall at distance 1.
+/// let stiffness = SparseMatrix::from_triplets(2, 2, &[(0, 0, 3.0), (1, 0, -1.0), (1, 1, 1.0)])?;
+/// let contact = SparseMatrix::from_triplets(1, 2, &[(0, 1, 1.0)])?;
+/// let problem = ContactProblem::new(SymmetricMatrix::from_lower(stiffness)?, vec![2.0, 3.0], contact, vec![1.0])?;
+///
+/// assert_eq!((problem.dofs(), problem.rows()), (2, 1));
+/// // At u = (1, 4) the end is 3 inside the wall.
+/// assert_eq!(problem.violation(&[1.0, 4.0]), [3.0]);
+/// // At u = (1, 1) the forces are in balance if the wall pushes back with 3: K u = (2, 0) = f + B' lambda.
+/// assert!(problem.certify(&[1.0, 1.0], &[-3.0])?.meets(1e-12));
+/// assert!(!problem.certify(&[1.0, 1.0], &[-2.0])?.meets(1e-2));
+/// # Ok::<(), signorini_qp::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct ContactProblem {
+    pub(crate) stiffness: SymmetricMatrix,
+    pub(crate) load: Vec<f64>,
+    pub(crate) contact: SparseMatrix,
+    pub(crate) gap: Vec<f64>,
+    near_null: Option<Arc<NearNullSpace>>,
+    diagonal: FoundOnce<Diagonal>,
+    parts: FoundOnce<Parts>,
+    free_mode: FoundOnce<bool>,
+    opposed: FoundOnce<OpposedRows>,
+}
+
+/// Data that follow from the matrices of a problem, and some also from which rows have an obstacle: computed at the first use
+/// and shared by the same problem under other loads and gaps.
+type FoundOnce<T> = Arc<OnceLock<T>>;
+
+impl PartialEq for ContactProblem {
+    /// Data that follow from equal data are equal.
+    fn eq(&self, other: &Self) -> bool {
+        let same_matrices = self.stiffness == other.stiffness && self.contact == other.contact;
+        let same_vectors = self.load == other.load && self.gap == other.gap;
+        same_matrices && same_vectors && self.near_null == other.near_null
+    }
+}
+
+/// Forces of a mode below this share of their terms are rounding.
+const FREE: f64 = 1e-9;
+
+/// Gaps that other QP solvers treat as infinite; any other finite gap is a length.
+const NO_OBSTACLE: [f64; 2] = [1e20, 1e30];
+
+/// The gaps with `+inf` for every [`NO_OBSTACLE`].
+fn with_infinite(mut gap: Vec<f64>) -> Vec<f64> {
+    gap.iter_mut().filter(|gap| NO_OBSTACLE.contains(gap)).for_each(|gap| *gap = f64::INFINITY);
+    gap
+}
+
+impl ContactProblem {
+    /// The problem of stiffness K (n x n, in N/m), load f (length n, in N, along the positive axes), contact rows B (m x n,
+    /// dimensionless) and initial gaps g (length m, in m). A row of B is positive towards the obstacle. A gap is negative if
+    /// the obstacle starts inside the body and `f64::INFINITY`, or exactly 1e20 or 1e30, without an obstacle.
+    ///
+    /// # Errors
+    /// [`Error::Length`] and [`Error::Shape`] for sizes that do not fit, [`Error::NotFinite`] for a load that is not
+    /// finite or a gap that is NaN or minus infinity, [`Error::NotConvex`] for a negative diagonal entry of K.
+    pub fn new(
+        stiffness: SymmetricMatrix,
+        load: Vec<f64>,
+        contact: SparseMatrix,
+        gap: Vec<f64>,
+    ) -> Result<Self, Error> {
+        let dofs = stiffness.dim();
+        if contact.columns() != dofs {
+            let (found, expected) = ((contact.rows(), contact.columns()), (contact.rows(), dofs));
+            return Err(Error::Shape { name: "contact matrix", found, expected });
+        }
+        check_load(&load, dofs)?;
+        check_gap(&gap, contact.rows())?;
+        if let Some((dof, value)) = stiffness.diagonal().iter().enumerate().find(|entry| *entry.1 < 0.0) {
+            return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
+        }
+        let gap = with_infinite(gap);
+        let (diagonal, parts, free_mode) = (FoundOnce::default(), FoundOnce::default(), FoundOnce::default());
+        let opposed = FoundOnce::default();
+        Ok(ContactProblem { stiffness, load, contact, gap, near_null: None, diagonal, parts, free_mode, opposed })
+    }
+
+    /// The same problem with the near-null space of its body for multigrid: displacements of almost no energy, such as the
+    /// rigid-body modes.
+    ///
+    /// # Errors
+    /// [`Error::Length`] if they are for another number of dofs.
+    pub fn with_near_null(self, near_null: impl Into<Arc<NearNullSpace>>) -> Result<Self, Error> {
+        let near_null = near_null.into();
+        let (found, expected) = (near_null.dofs(), self.dofs());
+        if found != expected {
+            return Err(Error::Length { name: "near-null vector", found, expected, of: "dofs" });
+        }
+        Ok(ContactProblem { near_null: Some(near_null), free_mode: FoundOnce::default(), ..self })
+    }
+
+    /// The near-null space, if one was given.
+    pub fn near_null(&self) -> Option<&Arc<NearNullSpace>> {
+        self.near_null.as_ref()
+    }
+
+    /// Number of dofs n.
+    pub fn dofs(&self) -> usize {
+        self.load.len()
+    }
+
+    /// Number of contact rows m.
+    pub fn rows(&self) -> usize {
+        self.gap.len()
+    }
+
+    /// The stiffness K (n x n), in N/m.
+    pub fn stiffness(&self) -> &SymmetricMatrix {
+        &self.stiffness
+    }
+
+    /// The external load f, length n, in N, along the positive axes.
+    pub fn load(&self) -> &[f64] {
+        &self.load
+    }
+
+    /// The contact rows B (m x n), dimensionless, positive towards the obstacle.
+    pub fn contact(&self) -> &SparseMatrix {
+        &self.contact
+    }
+
+    /// The initial gaps g, length m, in m; negative if the obstacle starts inside the body.
+    pub fn gap(&self) -> &[f64] {
+        &self.gap
+    }
+
+    /// The same body and obstacle with other gaps, length m, in m; negative if the obstacle starts inside the body.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`].
+    pub fn with_gap(&self, gap: Vec<f64>) -> Result<Self, Error> {
+        self.with(self.load.clone(), gap)
+    }
+
+    /// The same body and obstacle under another load, length n, in N, along the positive axes.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`].
+    pub fn with_load(&self, load: Vec<f64>) -> Result<Self, Error> {
+        self.with(load, self.gap.clone())
+    }
+
+    /// The same body and contact rows with another load (length n, in N) and other gaps (length m, in m, negative
+    /// inside the body); the matrices are shared.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`].
+    pub fn with(&self, load: Vec<f64>, gap: Vec<f64>) -> Result<Self, Error> {
+        check_load(&load, self.dofs())?;
+        check_gap(&gap, self.rows())?;
+        let (stiffness, contact, near_null) = (self.stiffness.clone(), self.contact.clone(), self.near_null.clone());
+        let gap = with_infinite(gap);
+        let same_rows = gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
+        let parts = if same_rows { self.parts.clone() } else { FoundOnce::default() };
+        let (diagonal, free_mode, opposed) = (self.diagonal.clone(), self.free_mode.clone(), self.opposed.clone());
+        Ok(ContactProblem { stiffness, load, contact, gap, near_null, diagonal, parts, free_mode, opposed })
+    }
+
+    /// The diagonal of K, computed at its first use.
+    pub(crate) fn diagonal(&self) -> &Diagonal {
+        self.diagonal.get_or_init(|| Diagonal::of(&self.stiffness))
+    }
+
+    /// The dofs without stiffness, in increasing order.
+    pub(crate) fn without_stiffness(&self) -> Vec<usize> {
+        (0..self.dofs()).filter(|&dof| self.diagonal().values[dof] == 0.0).collect()
+    }
+
+    /// Returns `true` if one of the vectors of the near-null space has no energy: supports do not hold the body. Computed at its first
+    /// use.
+    pub(crate) fn has_free_mode(&self) -> bool {
+        let is_free =
+            |mode: &Vec<f64>| largest(&self.stiffness.mul(mode)) <= FREE * largest(&self.stiffness.mul_abs(mode));
+        let any_is_free = || self.near_null().is_some_and(|modes| modes.vectors().iter().any(is_free));
+        *self.free_mode.get_or_init(any_is_free)
+    }
+
+    /// Returns `true` if the stiffness is known to be singular: contact alone holds a dof or a mode.
+    pub(crate) fn is_singular(&self) -> bool {
+        !self.without_stiffness().is_empty() || self.has_free_mode()
+    }
+
+    /// The parts, computed at their first use.
+    pub(crate) fn parts(&self) -> &Parts {
+        self.parts.get_or_init(|| Parts::of(&self.stiffness, self.diagonal(), &self.contact, &self.gap))
+    }
+
+    /// Checks that no rows contradict each other at sight; the rows that may do so are found at the first use.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] for a row without dofs and with a negative gap, and for two opposed rows with overlapping gaps.
+    pub(crate) fn check_rows(&self) -> Result<(), Error> {
+        self.opposed.get_or_init(|| OpposedRows::of(&self.contact)).check(&self.gap)
+    }
+
+    /// The violation B u - g of each row, length m, in m: positive is penetration; `-inf` without an obstacle. The
+    /// displacement u has length n, in m.
+    pub fn violation(&self, displacement: &[f64]) -> Vec<f64> {
+        let mut violation = self.contact.mul(displacement);
+        for (value, gap) in violation.iter_mut().zip(&self.gap) {
+            *value -= gap;
+        }
+        violation
+    }
+}
+
+impl ContactProblem {
+    /// The work f'd of the load on a mode d, as a share of its terms `|f|'|d|`, between -1 and 1.
+    pub(crate) fn share_of_work(&self, mode: &[f64]) -> f64 {
+        let mut work = Accumulator::new(&[0.0]);
+        self.load.iter().zip(mode).for_each(|(&f, &d)| work.add_product(0, f, d));
+        let terms: f64 = self.load.iter().zip(mode).map(|(f, d)| (f * d).abs()).sum();
+        if terms > 0.0 { work.into_sums()[0] / terms } else { 0.0 }
+    }
+}
+
+/// Checks that `load` has the right length and allowed values.
+///
+/// # Errors
+/// [`Error::Length`], [`Error::NotFinite`].
+pub(crate) fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
+    check_vector("load vector", load, (dofs, "dofs"), f64::is_finite, "finite")
+}
+
+/// Checks that `gap` has the right length and allowed values.
+///
+/// # Errors
+/// [`Error::Length`], [`Error::NotFinite`] for a gap that is NaN or minus infinity.
+pub(crate) fn check_gap(gap: &[f64], rows: usize) -> Result<(), Error> {
+    let allowed = "finite, or +inf for a row without obstacle";
+    check_vector("gap vector", gap, (rows, "contact rows"), |gap| gap > f64::NEG_INFINITY, allowed)
+}
+
+#[cfg(test)]
+impl ContactProblem {
+    /// The problem with these entries `(row, column, value)` of the lower triangle of K, and of B.
+    pub(crate) fn of_entries(
+        stiffness: &[(usize, usize, f64)],
+        load: &[f64],
+        contact: &[(usize, usize, f64)],
+        gap: &[f64],
+    ) -> Self {
+        let stiffness = SparseMatrix::from_triplets(load.len(), load.len(), stiffness).unwrap();
+        let contact = SparseMatrix::from_triplets(gap.len(), load.len(), contact).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(stiffness).unwrap();
+        ContactProblem::new(stiffness, load.to_vec(), contact, gap.to_vec()).unwrap()
+    }
+}

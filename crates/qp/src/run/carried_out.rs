@@ -1,0 +1,372 @@
+//! The one loop of a solve.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::pieces;
+use crate::certificate::{Bounding, Examined};
+use crate::engine::{Engine, Factored, Found, Hierarchical, Load, Task};
+use crate::error::Error;
+use crate::existence::Existence;
+use crate::method::{Ending, Outcome, Start};
+use crate::plan::{Answered, Attempt, Best, Ended, From, History, Known, Ladder, Means, Next, Record, Step, Tried};
+use crate::problem::ContactProblem;
+use crate::settings::Settings;
+use crate::solution::{Certificate, Seconds, Solution, Why};
+
+/// The answer of `problem` from a start, by the ladder of `settings`.
+///
+/// # Errors
+/// As [`solve`](crate::solve()); [`Error::Length`] and [`Error::NotFinite`] for a start that does not fit.
+pub fn solved(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<Solution, Error> {
+    let settings = &settings.started()?;
+    start.check(problem.dofs(), problem.rows())?;
+    problem.check_rows()?;
+    let ladder = Ladder::of(problem, Known { gaps: 1, is_whole: !start.is_unknown() }, settings)?;
+    Run::new(problem, &ladder, start, settings).solved()
+}
+
+/// The engine with these means; `None` for the problem alone.
+///
+/// # Errors
+/// Those of the engine.
+pub(crate) fn engine_by(
+    means: Means,
+    problem: &ContactProblem,
+    settings: &Settings,
+) -> Result<Option<Arc<dyn Engine>>, Error> {
+    Ok(match means {
+        Means::Problem => None,
+        Means::Multigrid => Some(Arc::new(Hierarchical::new(problem, settings)?)),
+        Means::Factor(with) => Some(Arc::new(Factored::new(problem, &with, settings)?)),
+    })
+}
+
+/// The prepared data of an attempt, and its load.
+#[derive(Clone, Debug)]
+pub(crate) struct Workbench {
+    /// The number of the attempt in its ladder.
+    pub attempt: usize,
+    pub engine: Arc<dyn Engine>,
+    pub load: Arc<Load>,
+}
+
+/// A ladder that is being carried out.
+pub(crate) struct Run<'a> {
+    pub(super) problem: &'a ContactProblem,
+    pub(super) ladder: &'a Ladder,
+    start: &'a Start,
+    pub(super) settings: &'a Settings,
+    pub(super) history: History,
+    /// The data that the caller keeps prepared.
+    pub(super) kept: Option<&'a Workbench>,
+    /// The data that were prepared last.
+    pub(super) made: Option<Workbench>,
+    /// The sets of the last method, and their number, with its attempt.
+    last: Option<(usize, Outcome)>,
+    pub(super) existence: Option<Existence>,
+    pub(super) clock: Instant,
+}
+
+impl<'a> Run<'a> {
+    /// A run on `problem` from `start`, under settings with a running clock.
+    pub fn new(problem: &'a ContactProblem, ladder: &'a Ladder, start: &'a Start, settings: &'a Settings) -> Self {
+        let (history, clock) = (History::new(settings.goal()), Instant::now());
+        Run { problem, ladder, start, settings, history, kept: None, made: None, last: None, existence: None, clock }
+    }
+
+    /// The same with data that are prepared already: the first attempt is that of these data.
+    pub fn with(self, kept: &'a Workbench) -> Self {
+        Run { kept: Some(kept), history: History { first: kept.attempt, ..self.history }, ..self }
+    }
+
+    /// Carries out the ladder; the best answer, if it meets the goal.
+    ///
+    /// # Errors
+    /// As [`solve`](crate::solve()).
+    pub fn solved(mut self) -> Result<Solution, Error> {
+        self.carry_out();
+        self.ended()
+    }
+
+    /// Makes one step after the other, until the plan names none.
+    fn carry_out(&mut self) {
+        while let Some(next) = self.ladder.next(&self.history, &self.settings.watch) {
+            let clock = Instant::now();
+            let attempt = &self.ladder.attempts[next.place.attempt];
+            let step = attempt.steps[next.place.rung].step;
+            let mut record = Record::of(next, step);
+            record.ended = match self.made_step(&next, attempt, &mut record) {
+                Ok(ended) => ended,
+                Err(error @ Error::NotConvex { .. }) if step == Step::Existence => Ended::Decided(error),
+                Err(error) => Ended::by(error),
+            };
+            record.seconds = clock.elapsed().as_secs_f64();
+            self.history.records.push(record);
+        }
+    }
+
+    /// Makes a step and judges its answer.
+    fn made_step(&mut self, next: &Next, attempt: &Attempt, record: &mut Record) -> Result<Ended, Error> {
+        match record.step {
+            Step::Pieces => self.in_pieces(record),
+            Step::Existence => self.looked_at_existence(),
+            Step::Proximal => self.by_proximal_steps(record),
+            Step::Uniqueness => self.looked_at_uniqueness(),
+            _ => self.with_engine(next, attempt, record),
+        }
+    }
+
+    fn with_engine(&mut self, next: &Next, attempt: &Attempt, record: &mut Record) -> Result<Ended, Error> {
+        let Some(bench) = self.prepared(next.place.attempt, record)? else { return Ok(Ended::Empty) };
+        let Workbench { engine, load, .. } = bench;
+        let (method, settings) = (attempt.means.method(), self.settings);
+        let tried = engine.tried(method, settings);
+        record.tried = Some(tried);
+        let start = self.start_from(next.start, record.step);
+        let best = self.history.best.as_ref().map(|best| &best.solution);
+        let (problem, step, limits) = (self.problem, record.step, next.limits);
+        let task = Task { step, problem, load: &load, start: &start, limits, method, settings, best };
+        let Some(found) = engine.make(&task)? else { return Ok(Ended::Empty) };
+        record.stages.factor += found.factor_seconds;
+        if let Ending::Infeasible { rows, weights } = &found.outcome.ending {
+            return Ok(Ended::Decided(problem.infeasible(rows, weights)));
+        }
+        let contraction = found.refined.map_or(0.0, |refined| refined.1);
+        let (ending, solution) = (found.outcome.ending.clone(), self.answer(found, &tried, record));
+        self.settings.watch.step("certificate", 0);
+        let by = engine.bounding(&self.settings.watch.finishing(), contraction);
+        let answer = Best { ending, tried: Some(tried), contraction, ..Best::of(solution, next.place.attempt) };
+        self.judged(answer, &by, record).map(Ended::Answered)
+    }
+
+    /// The prepared data of an attempt; those of another attempt are freed first, unless the caller keeps them.
+    fn prepared(&mut self, attempt: usize, record: &mut Record) -> Result<Option<Workbench>, Error> {
+        let is_of = |bench: &&Workbench| bench.attempt == attempt;
+        if let Some(bench) = self.kept.filter(is_of).or(self.made.as_ref().filter(is_of)) {
+            return Ok(Some(bench.clone()));
+        }
+        self.made = None;
+        let kept_bytes = self.kept.map_or(0.0, |kept| kept.engine.bytes());
+        let memory = self.settings.memory.map(|most| (most - kept_bytes).max(0.0));
+        let settings = Settings { memory, ..self.settings.clone() };
+        let engine = engine_by(self.ladder.attempts[attempt].means, self.problem, &settings)?;
+        let Some(engine) = engine else { return Ok(None) };
+        record.stages.factor += engine.seconds().factor;
+        let load = Arc::new(Load::new(self.problem.load().to_vec()));
+        self.made = Some(Workbench { attempt, engine, load });
+        Ok(self.made.clone())
+    }
+
+    /// The start of a step.
+    fn start_from(&self, from: From, step: Step) -> Start {
+        let best = || self.history.best.as_ref().map(|best| &best.solution);
+        match (from, step) {
+            (_, Step::Continuation | Step::Dual) => {
+                self.last.as_ref().map_or_else(Start::default, |last| Start::from(&last.1.contact_set))
+            }
+            (From::Given, _) => self.start.clone(),
+            (From::Cycles, _) if self.start.is_unknown() => {
+                let near = Hierarchical::new(self.problem, self.settings).ok();
+                near.and_then(|near| near.near(&self.settings.watch)).unwrap_or_default()
+            }
+            (From::Cycles, _) => self.start.clone(),
+            (From::Best, _) => best().map_or_else(Start::default, Start::from),
+            (From::Nothing, _) => Start::default(),
+        }
+    }
+
+    /// What was found as an answer, not judged yet.
+    fn answer(&mut self, found: Found, tried: &Tried, record: &Record) -> Solution {
+        let Found { mut outcome, refined, .. } = found;
+        let attempt = record.place.attempt;
+        match (record.improves(), &self.history.best) {
+            (true, Some(best)) => Solution {
+                displacement: outcome.displacement,
+                multiplier: outcome.multiplier,
+                contact_set: outcome.contact_set,
+                refinements: best.solution.refinements + 1,
+                ..best.solution.clone()
+            },
+            _ => {
+                // The steps of one attempt count together.
+                if let Some((_, before)) = self.last.take().filter(|last| last.0 == attempt) {
+                    outcome = outcome.after(before);
+                }
+                let sets = Outcome { displacement: Vec::new(), multiplier: Vec::new(), ..outcome.clone() };
+                self.last = Some((attempt, sets));
+                let condensed_dofs = tried.condensed_dofs.unwrap_or(outcome.displacement.len());
+                let (lost_pivot, single_precision) = (tried.lost_pivot, refined.is_some());
+                let refinements = refined.map_or(0, |refined| refined.0);
+                let solution = without_certificate(outcome, tried.method.name());
+                Solution { condensed_dofs, single_precision, refinements, lost_pivot, ..solution }
+            }
+        }
+    }
+
+    /// Judges an answer, and the same with those parts at rest that may rest; the better one is kept if it is the best so far.
+    fn judged(&mut self, answer: Best, by: &Bounding, record: &mut Record) -> Result<Answered, Error> {
+        let clock = Instant::now();
+        let Solution { displacement, multiplier, .. } = &answer.solution;
+        let Examined { certificate, evidence, may_rest } = self.problem.examine(by, displacement, multiplier)?;
+        record.stages.certificate += clock.elapsed().as_secs_f64();
+        let wants_best = answer.tried.is_none_or(|tried| tried.method.wants_best());
+        let at_rest = self.problem.at_rest(displacement, &may_rest).filter(|_| wants_best);
+        let at_rest = at_rest.map(|displacement| Best {
+            solution: Solution { displacement, ..answer.solution.clone() },
+            ending: answer.ending.clone(),
+            evidence: None,
+            ..answer
+        });
+        let certificate = certificate.judged(self.settings.goal());
+        let solution = Solution { certificate, ..answer.solution };
+        record.answer = Some((solution.method.clone(), certificate));
+        let answered = self.history.offer(Best { solution, evidence, ..answer });
+        match at_rest {
+            Some(at_rest) => Ok(answered.or(self.judged(at_rest, by, record)?)),
+            None => Ok(answered),
+        }
+    }
+
+    /// The answers of the pieces as one.
+    fn in_pieces(&mut self, record: &mut Record) -> Result<Ended, Error> {
+        let Some(pieces) = &self.ladder.pieces else { return Ok(Ended::Empty) };
+        let pieces = Arc::clone(pieces);
+        let joined = pieces::solved(self.problem, &pieces, self.settings, |piece, settings| {
+            solved(piece, &Start::default(), settings)
+        })?;
+        let Some((solution, certificates)) = joined else { return Ok(Ended::Empty) };
+        let Seconds { factor, certificate, proof, .. } = solution.seconds;
+        record.stages = Seconds { factor, certificate, proof, solve: 0.0 };
+        let answer = Best::of(solution, record.place.attempt);
+        self.judged(answer, &Bounding::Pieces(&certificates), record).map(Ended::Answered)
+    }
+
+    /// Whether an answer exists.
+    fn looked_at_existence(&mut self) -> Result<Ended, Error> {
+        let Some(existence) = Existence::of(self.problem, self.settings, solve_any)? else { return Ok(Ended::Empty) };
+        existence.check_bounded(self.problem, self.settings)?;
+        self.existence = Some(existence);
+        Ok(Ended::MayExist)
+    }
+
+    /// Whether the best answer is the only one.
+    fn looked_at_uniqueness(&mut self) -> Result<Ended, Error> {
+        let (Some(existence), Some(best)) = (&self.existence, &self.history.best) else { return Ok(Ended::Empty) };
+        existence.check_unique(self.problem, &best.solution, self.ladder.sure_tolerance())?;
+        Ok(Ended::MayExist)
+    }
+
+    /// The answer by steps with a regular stiffness.
+    fn by_proximal_steps(&mut self, record: &mut Record) -> Result<Ended, Error> {
+        let Some(existence) = &self.existence else { return Ok(Ended::Empty) };
+        let before = self.history.records.iter().rev().find(|record| record.answer.is_some());
+        let because = before.map_or_else(String::new, |record| record.shortfall(self.settings.goal()));
+        let lost_pivot = self.history.best.as_ref().and_then(|best| best.solution.lost_pivot);
+        let found = existence.proximal_steps(self.problem, self.settings)?;
+        let mut all: Option<Answered> = None;
+        for solution in found {
+            let reason = format!("{}: {because}", solution.reason);
+            let solution = Solution { reason, lost_pivot, ..solution };
+            let answer = Best::of(solution, record.place.attempt);
+            let answered = self.judged(answer, &Bounding::OwnFactor, record)?;
+            all = Some(all.map_or(answered, |all| all.or(answered)));
+        }
+        Ok(all.map_or(Ended::Empty, Ended::Answered))
+    }
+}
+
+/// The outcome of the method called `name` as a solution, without a certificate.
+pub(super) fn without_certificate(outcome: Outcome, name: &str) -> Solution {
+    let Outcome { displacement, multiplier, contact_set, iterations, history, variant, .. } = outcome;
+    Solution {
+        condensed_dofs: displacement.len(),
+        displacement,
+        multiplier,
+        contact_set,
+        method: format!("{name}{variant}"),
+        iterations,
+        history,
+        certificate: Certificate::unknown(),
+        proven: None,
+        cut_short: None,
+        single_precision: false,
+        refinements: 0,
+        lost_pivot: None,
+        reason: String::new(),
+        why: Why::default(),
+        attempts: Vec::new(),
+        seconds: Seconds::default(),
+    }
+}
+
+/// An answer for another problem that this one gives rise to.
+pub(crate) fn solve_any(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+    solved(problem, &Start::default(), settings)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::method::interior_point::InteriorPoint;
+    use crate::plan::Means;
+    use crate::settings::{Method, Precision};
+
+    /// A chain of springs between a support and nothing, its last dofs before walls, under a force on each dof.
+    fn chain(dofs: usize, ground: f64, walls: &[(usize, f64)], force: f64) -> ContactProblem {
+        let mut entries = vec![(0, 0, ground)];
+        for dof in 1..dofs {
+            entries.extend([(dof, dof, 1.0), (dof - 1, dof - 1, 1.0), (dof, dof - 1, -1.0)]);
+        }
+        let rows: Vec<_> = walls.iter().enumerate().map(|(row, wall)| (row, wall.0, 1.0)).collect();
+        let gap: Vec<f64> = walls.iter().map(|wall| wall.1).collect();
+        ContactProblem::of_entries(&entries, &vec![force; dofs], &rows, &gap)
+    }
+
+    fn by(method: Method) -> Settings {
+        Settings::with_method(method)
+    }
+
+    /// The steps of a run are those of its ladder, in its order; only steps that may gain are made again.
+    #[test]
+    fn the_steps_that_are_recorded_are_those_of_the_plan() {
+        let held = || chain(30, 1.0, &[(29, 1.0), (20, 0.5)], 1.0);
+        let loose = Method::Qp(InteriorPoint { polish: false, tolerance: 1e-2 });
+        let kinds: [(&str, ContactProblem, Settings, bool); 12] = [
+            ("held", held(), Settings::default(), true),
+            ("as exact as doubles", held(), Settings::default().with_tolerance(1e-300), true),
+            ("by name", held(), by(Method::ActiveSet), true),
+            ("polished", held(), by(Method::qp()), true),
+            ("unpolished", held(), by(loose), false),
+            ("penalty", held(), by(Method::penalty()), false),
+            ("multigrid", held(), by(Method::Mprgp), true),
+            ("single", held(), by(Method::ActiveSet).with_precision(Precision::Mixed), true),
+            ("held by a wall", chain(30, 0.0, &[(29, 1.0)], 1.0), Settings::default(), true),
+            ("driven away", chain(30, 0.0, &[(29, 1.0)], -1.0), Settings::default(), false),
+            ("in balance", chain(30, 0.0, &[(29, 1.0)], 0.0), Settings::default(), false),
+            ("without time", held(), Settings::default().with_time(Duration::from_nanos(1)), false),
+        ];
+        for (name, problem, settings, is_solved) in kinds {
+            let settings = settings.started().unwrap();
+            let ladder = Ladder::of(&problem, Known { gaps: 1, is_whole: false }, &settings).unwrap();
+            let start = Start::default();
+            let mut run = Run::new(&problem, &ladder, &start, &settings);
+            run.carry_out();
+            let steps: Vec<(usize, usize)> =
+                run.history.records.iter().map(|record| (record.place.attempt, record.place.rung)).collect();
+            assert!(steps.is_sorted(), "{name}: {steps:?}");
+            for (before, record) in run.history.records.iter().zip(run.history.records.iter().skip(1)) {
+                let is_by_cycles = ladder.attempts[record.place.attempt].means == Means::Multigrid;
+                assert!(before.place != record.place || record.improves() || is_by_cycles, "{name}: {steps:?}");
+            }
+            for record in &run.history.records {
+                let attempt = &ladder.attempts[record.place.attempt];
+                assert_eq!(attempt.steps[record.place.rung].step, record.step, "{name}");
+                assert!(record.tried.is_none() || attempt.means != Means::Problem, "{name}");
+            }
+            assert_eq!(run.ended().is_ok(), is_solved, "{name}: {steps:?}");
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! The ending of a run: the best answer, or the error that stands in its way.
+
+use std::time::Instant;
+
+use super::carried_out::{Run, without_certificate};
+use crate::certificate::{Bounding, WithEvidence};
+use crate::error::Error;
+use crate::method::{Ending, Outcome};
+use crate::plan::{Answered, Best, Ended, Record, Step};
+use crate::solution::{Attempt, Goal, ProvenSet, Seconds, Solution};
+
+/// The error of an answer that is not certified, with the condition that decides.
+fn fallen_short(solution: Solution, goal: Goal) -> Error {
+    let (condition, value, tolerance) = solution.certificate.decisive(goal.required());
+    Error::NotCertified { solution: Box::new(solution), condition, value, tolerance }
+}
+
+impl Run<'_> {
+    /// The best answer with everything that was tried, if it meets the goal.
+    ///
+    /// # Errors
+    /// As [`solve`](crate::solve()).
+    pub(super) fn ended(mut self) -> Result<Solution, Error> {
+        let is_decided = |record: &Record| match record.ended {
+            Ended::Decided(Error::Interrupted) => self.history.best.is_none(),
+            Ended::Decided(_) => true,
+            _ => false,
+        };
+        if let Some(place) = self.history.records.iter().position(is_decided)
+            && let Ended::Decided(error) = self.history.records.swap_remove(place).ended
+        {
+            return Err(error);
+        }
+        let goal = self.settings.goal();
+        let certified = self.history.is_certified();
+        if let Some(error) = self.ladder.no_room(&self.history).filter(|_| !certified) {
+            return Err(error);
+        }
+        if !certified && let Some(error) = self.doubt() {
+            return Err(error);
+        }
+        let (why, reason) = (self.ladder.why(&self.history), self.ladder.reason(&self.history));
+        let Some(mut best) = self.history.best.take() else { return Err(self.without_answer()?) };
+        let proven = self.proven(&mut best);
+        let mut attempts = self.other_attempts(&best);
+        attempts.append(&mut best.solution.attempts);
+        let mut solution = Solution { attempts, ..best.solution };
+        if solution.why.is_empty() {
+            solution.why = why;
+        }
+        if solution.reason.is_empty() {
+            solution.reason = reason;
+        }
+        let of =
+            |stage: fn(&Seconds) -> f64| self.history.records.iter().map(|record| stage(&record.stages)).sum::<f64>();
+        let proof = proven.1 + of(|stages| stages.proof);
+        let (factor, certificate) = (of(|stages| stages.factor), of(|stages| stages.certificate));
+        solution.proven = solution.proven.or(proven.0);
+        solution.seconds = Seconds { factor, certificate, proof, solve: self.clock.elapsed().as_secs_f64() };
+        if certified {
+            return Ok(solution);
+        }
+        let cut_short = solution.cut_short.take().or_else(|| self.settings.watch.cut());
+        Err(fallen_short(Solution { cut_short, ..solution }, goal))
+    }
+
+    /// The error if it is open whether there is an answer, after a method met a motion without energy, or failed for a stiffness that
+    /// is not definite. An answer with a bound leaves nothing open, and one of a settled method whose conditions hold stays an answer.
+    fn doubt(&mut self) -> Option<Error> {
+        let is_unheld = |record: &Record| match &record.ended {
+            Ended::Answered(answered) => answered.is_unheld,
+            Ended::Failed(Error::NotConvex { .. }) => true,
+            _ => false,
+        };
+        let tolerance = self.settings.goal().tolerance;
+        let is_answer = |best: &Best| {
+            let certificate = &best.solution.certificate;
+            certificate.has_bound() || best.ending == Ending::Settled && certificate.conditions_hold(tolerance)
+        };
+        let has_answer = self.history.best.as_ref().is_some_and(is_answer);
+        if has_answer || self.settings.watch.cut().is_some() || !self.history.records.iter().any(is_unheld) {
+            return None;
+        }
+        if let Some(existence) = &self.existence {
+            return existence.doubt().map(|reason| Error::Undecided { reason });
+        }
+        let question = self.history.records.iter_mut().find(|record| record.step == Step::Existence)?;
+        match std::mem::replace(&mut question.ended, Ended::Empty) {
+            Ended::Refused(error @ Error::TooLarge { .. }) => Some(error),
+            Ended::Empty => {
+                Some(Error::Undecided { reason: "its numbers leave the range of double precision".to_string() })
+            }
+            _ => None,
+        }
+    }
+
+    /// The error if no step gave an answer: the limit of time, with the body at rest, or the last error.
+    fn without_answer(mut self) -> Result<Error, Error> {
+        let records = std::mem::take(&mut self.history.records);
+        let errors = records.into_iter().filter_map(|record| match record.ended {
+            Ended::Refused(error) | Ended::Failed(error) => Some(error),
+            _ => None,
+        });
+        match (errors.last(), self.settings.watch.cut()) {
+            (Some(Error::OutOfTime { .. }), cut_short) | (Some(_), cut_short @ Some(_)) => {
+                let at_rest = without_certificate(Outcome::at_rest(self.problem, Ending::Unsettled), "none");
+                let (u, lambda) = (&at_rest.displacement, &at_rest.multiplier);
+                let certificate = self.problem.examine(&Bounding::Nothing, u, lambda)?.certificate;
+                Ok(fallen_short(Solution { certificate, cut_short, ..at_rest }, self.settings.goal()))
+            }
+            (Some(error), None) => Ok(error),
+            (None, _) => Ok(Error::Interrupted),
+        }
+    }
+
+    /// The rows that the best answer proves, and the seconds that this took.
+    fn proven(&self, best: &mut Best) -> (Option<ProvenSet>, f64) {
+        let nothing = (None, 0.0);
+        let Some(bench) = self.made.as_ref().or(self.kept) else { return nothing };
+        let watch = &self.settings.watch;
+        if !self.settings.prove || watch.acknowledge() || !watch.allows(bench.engine.proof_seconds()) {
+            return nothing;
+        }
+        let clock = Instant::now();
+        let by = bench.engine.bounding(&watch.finishing(), best.contraction);
+        let Solution { displacement, multiplier, .. } = &best.solution;
+        let evidence = best.evidence.take();
+        (self.problem.prove_by(&by, WithEvidence { displacement, multiplier, evidence }), clock.elapsed().as_secs_f64())
+    }
+
+    /// The attempts that did not give the best answer, each with the ending of its own best.
+    fn other_attempts(&self, best: &Best) -> Vec<Attempt> {
+        let mut others: Vec<(usize, Attempt)> = Vec::new();
+        for record in self.history.records.iter().filter(|record| record.place.attempt != best.attempt) {
+            if !matches!(record.ended, Ended::Answered(_) | Ended::Refused(_) | Ended::Failed(_)) {
+                continue;
+            }
+            let reason = record.shortfall(self.settings.goal());
+            let reason = match record.tried.and_then(|tried| tried.condensed_dofs) {
+                Some(dofs) => format!("on {dofs} condensed dofs {reason}"),
+                None => reason,
+            };
+            let method = match (record.step, &self.ladder.pieces, &record.answer) {
+                (Step::Pieces, Some(pieces), _) => format!("{} pieces", pieces.count()),
+                (_, _, Some((method, _))) => method.clone(),
+                _ => {
+                    let named = self.ladder.attempts[record.place.attempt].method();
+                    record.tried.map_or(named, |tried| tried.method).name().to_string()
+                }
+            };
+            match others.last_mut().filter(|other| other.0 == record.place.attempt) {
+                Some((_, other)) => {
+                    other.seconds += record.seconds;
+                    // An attempt is named by its best answer.
+                    if matches!(record.ended, Ended::Answered(Answered { is_best: true, .. })) {
+                        (other.method, other.reason) = (method, reason);
+                    }
+                }
+                None => others.push((record.place.attempt, Attempt { method, seconds: record.seconds, reason })),
+            }
+        }
+        others.into_iter().map(|other| other.1).collect()
+    }
+}

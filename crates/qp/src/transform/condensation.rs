@@ -1,0 +1,209 @@
+//! Condensation onto the dofs that appear in the contact rows, by one Cholesky factorisation.
+//!
+//! With the contact dofs t ordered last in K = L L':
+//!
+//! ```text
+//! S = K_tt - K_ti K_ii^-1 K_it = L_tt L_tt'      the stiffness that the contact boundary feels
+//! y = L^-1 f,  f_c = L_tt y_t                     the load that reaches it
+//! L' u = (y_i, L_tt' u_t)                         the way back to the whole body
+//! ```
+//!
+//! A body that only its contact rows hold has a singular K. In that case `K + B'B` is factorised; its Schur complement is `S +
+//! B_t'B_t`: the interior blocks, and so both sweeps, are the same.
+
+use crate::error::Error;
+use crate::linear::{Analysis, Cholesky, FactorError, LowerTriangle, SparseMatrix, SymmetricMatrix, dot};
+
+/// If contact dofs exceed this share of all, condensing removes too little.
+const LARGEST_SHARE: f64 = 0.25;
+
+/// A dense factorisation on the contact dofs may cost this many times the estimate for the sparse one, which is low.
+const DENSE_WORK: f64 = 3.0;
+
+/// Number of dense matrices on the contact dofs that exist at one time, in units of the memory of their values.
+const DENSE_MATRICES: f64 = 5.0;
+
+/// A difference below this share of its terms is rounding: the factorisation of a large body loses a few digits.
+const LEFT_OVER: f64 = 1e-12;
+
+/// A number of dense values below which their memory does not count.
+pub(crate) const FEW_VALUES: f64 = 1e6;
+
+/// The condensed stiffness, with the transform back to the whole body.
+#[derive(Clone, Debug)]
+pub struct Condensation {
+    contact_dofs: Vec<usize>,
+    cholesky: Cholesky,
+    trailing: LowerTriangle,
+    stiffness: SymmetricMatrix,
+    contact: SparseMatrix,
+}
+
+impl Condensation {
+    /// The dofs that appear in the rows B, in increasing order.
+    pub fn contact_dofs(contact: &SparseMatrix) -> Vec<usize> {
+        (0..contact.columns()).filter(|&dof| contact.column(dof).any(|entry| entry.1 != 0.0)).collect()
+    }
+
+    /// The analysis of `stiffness` with the contact dofs last, or `None` if condensing onto this number of dofs does not pay.
+    ///
+    /// # Errors
+    /// As [`Analysis::with_last`].
+    pub fn analyse(stiffness: &SymmetricMatrix, contact_dofs: &[usize]) -> Result<Option<Analysis>, FactorError> {
+        let (dim, count) = (stiffness.dim() as f64, contact_dofs.len() as f64);
+        if count == 0.0 || count > LARGEST_SHARE * dim {
+            return Ok(None);
+        }
+        let analysis = Analysis::with_last(stiffness, contact_dofs)?;
+        // The work of the interior is at least the square of its entries over its columns.
+        let interior_entries = (analysis.factor_entries() as f64 - count * count / 2.0).max(0.0);
+        let interior_work = interior_entries * interior_entries / (dim - count);
+        let quick = count.powi(3) / 3.0 <= DENSE_WORK * interior_work;
+        let small = Self::is_small(contact_dofs.len(), analysis.factor_entries() as f64);
+        Ok((quick && small).then_some(analysis))
+    }
+
+    /// Returns `true` if the dense matrices on this number of contact dofs take no more than the values of the factor.
+    pub fn is_small(contact_dofs: usize, factor_entries: f64) -> bool {
+        DENSE_MATRICES * (contact_dofs as f64).powi(2) <= FEW_VALUES.max(factor_entries)
+    }
+
+    /// Condenses with a factorisation of K, or if it `holds_rows` of K + B'B, that put `contact_dofs` last; the rows are subtracted
+    /// from the Schur complement.
+    ///
+    /// # Errors
+    /// Those of the sparse matrices, if the data leave the range of double precision.
+    pub fn new(
+        cholesky: Cholesky,
+        holds_rows: bool,
+        contact_dofs: Vec<usize>,
+        contact: &SparseMatrix,
+    ) -> Result<Self, Error> {
+        let contact = contact.select(contact.rows(), Some, contact_dofs.iter().copied());
+        let trailing = cholesky.trailing_block();
+        let mut schur = trailing.times_transpose();
+        if holds_rows {
+            subtract_rows(&mut schur, &contact);
+        }
+        let stiffness = SymmetricMatrix::from_lower(dense_triangle(&schur, contact_dofs.len())?)?;
+        Ok(Condensation { contact_dofs, cholesky, trailing, stiffness, contact })
+    }
+
+    /// Number of values of the factor.
+    pub fn factor_entries(&self) -> usize {
+        self.cholesky.entries()
+    }
+
+    /// The contact dofs, in increasing order.
+    pub fn dofs(&self) -> &[usize] {
+        &self.contact_dofs
+    }
+
+    /// Returns `true` if the factor is in single precision.
+    pub fn is_single(&self) -> bool {
+        self.cholesky.is_single()
+    }
+
+    /// The condensed stiffness S.
+    pub fn stiffness(&self) -> &SymmetricMatrix {
+        &self.stiffness
+    }
+
+    /// The contact rows in the contact dofs.
+    pub fn contact(&self) -> &SparseMatrix {
+        &self.contact
+    }
+
+    /// The forward sweep y of a load, to be kept for [`load`](Self::load) and [`expand`](Self::expand).
+    pub fn sweep(&self, load: &[f64]) -> Vec<f64> {
+        // Many bodies are loaded by their obstacle alone.
+        if load.iter().all(|&force| force == 0.0) { load.to_vec() } else { self.cholesky.forward(load) }
+    }
+
+    /// The condensed load L_tt y_t.
+    pub fn load(&self, sweep: &[f64]) -> Vec<f64> {
+        let size = self.contact_dofs.len();
+        self.trailing.mul(&sweep[sweep.len() - size..])
+    }
+
+    /// The square of the energy norm that the load alone adds inside the body, for any displacement of the contact dofs.
+    pub fn interior_energy(&self, sweep: &[f64]) -> f64 {
+        let interior = &sweep[..sweep.len() - self.contact_dofs.len()];
+        dot(interior, interior)
+    }
+
+    /// The displacement of the contact dofs that the load alone causes, if K is definite.
+    pub fn free_displacement(&self, sweep: &[f64]) -> Vec<f64> {
+        let size = self.contact_dofs.len();
+        self.trailing.backward(sweep[sweep.len() - size..].to_vec())
+    }
+
+    /// The compliance B S^-1 B' of the contact rows (m x m, column by column), if K is definite.
+    pub fn compliance(&self) -> Vec<f64> {
+        let (rows, size) = (self.contact.rows(), self.contact_dofs.len());
+        let by_row = self.contact.transposed();
+        // The columns of L_tt^-1 B_t', one for each row.
+        let half = |row: usize| {
+            let mut half = vec![0.0; size];
+            by_row.column(row).for_each(|(dof, value)| half[dof] += value);
+            self.trailing.forward(half)
+        };
+        let halves: Vec<Vec<f64>> = (0..rows).map(half).collect();
+        let mut compliance = vec![0.0; rows * rows];
+        for i in 0..rows {
+            for j in 0..=i {
+                let value = dot(&halves[i], &halves[j]);
+                compliance[i * rows + j] = value;
+                compliance[j * rows + i] = value;
+            }
+        }
+        compliance
+    }
+
+    /// The displacement of the whole body from that of the contact dofs.
+    pub fn expand(&self, sweep: &[f64], displacement: &[f64]) -> Vec<f64> {
+        let size = self.contact_dofs.len();
+        let first = sweep.len() - size;
+        let mut y = sweep.to_vec();
+        y[first..].copy_from_slice(&self.trailing.mul_transposed(displacement));
+        let mut expanded = self.cholesky.backward(y);
+        // The sweep gives these values back except for rounding.
+        self.contact_dofs.iter().zip(displacement).for_each(|(&dof, &u)| expanded[dof] = u);
+        expanded
+    }
+}
+
+/// Subtracts B'B from a dense lower triangle, column by column.
+fn subtract_rows(schur: &mut [f64], contact: &SparseMatrix) {
+    let (before, by_row) = (schur.to_vec(), contact.transposed());
+    for (i, j, product) in (0..contact.rows()).flat_map(|row| by_row.square(row)) {
+        schur[j * contact.columns() + i] -= product;
+    }
+    // The difference of equal terms is rounding, and would hold a body that nothing holds.
+    for (entry, before) in schur.iter_mut().zip(&before) {
+        if entry.abs() <= LEFT_OVER * before.abs() {
+            *entry = 0.0;
+        }
+    }
+}
+
+/// The lower triangle of a dense matrix (n x n, column by column), zeros included.
+///
+/// # Errors
+/// [`Error::NotFinite`] for an entry that is not finite.
+fn dense_triangle(matrix: &[f64], size: usize) -> Result<SparseMatrix, Error> {
+    let entries = size * (size + 1) / 2;
+    let (mut starts, mut rows, mut values) =
+        (Vec::with_capacity(size + 1), Vec::with_capacity(entries), Vec::with_capacity(entries));
+    starts.push(0);
+    for column in 0..size {
+        rows.extend(column..size);
+        values.extend_from_slice(&matrix[column * size + column..(column + 1) * size]);
+        starts.push(rows.len());
+    }
+    if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
+        let at = "the condensed stiffness".to_string();
+        return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
+    }
+    Ok(SparseMatrix::from_parts(size, starts, rows, values))
+}

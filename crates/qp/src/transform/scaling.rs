@@ -1,0 +1,91 @@
+//! Scaling to dimensionless data of order one, by powers of two.
+//!
+//! With a reference displacement u0 and the equilibration `c D K D` of the stiffness:
+//!
+//! ```text
+//! u = u0 D v,   K~ = c D K D,   f~ = c D f / u0,   B~ = R B D,   g~ = R g / u0,   lambda = (u0 / c) R mu
+//! ```
+//!
+//! D reduces a stiffness contrast inside the body, R gives every contact row a largest entry near one. All factors are powers
+//! of two: the scaled problem is the same problem in other units, bit by bit. u0 belongs to a load and a gap; the rest belongs
+//! to the body and is computed once.
+
+use std::sync::OnceLock;
+
+use crate::error::Error;
+use crate::linear::{Equilibration, SparseMatrix, SymmetricMatrix, exponent, ldexp};
+
+/// The scaling of a body and its contact rows, with its inverse.
+#[derive(Clone, Debug)]
+pub struct Scaling {
+    equilibration: Equilibration,
+    /// Exponent of each entry of R.
+    rows: Vec<i32>,
+    /// The original stiffness, and the scaled one, which is computed at its first use.
+    unscaled: SymmetricMatrix,
+    stiffness: OnceLock<SymmetricMatrix>,
+    contact: SparseMatrix,
+}
+
+impl Scaling {
+    /// Scales the stiffness K (n x n) and the contact rows B (m x n).
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] if the data leave the range of double precision.
+    pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Self, Error> {
+        let equilibration = Equilibration::of(stiffness);
+        let d = &equilibration.diagonal;
+        let mut largest = vec![i32::MIN; contact.rows()];
+        for (row, dof, value) in contact.triplets().filter(|entry| entry.2 != 0.0) {
+            largest[row] = largest[row].max(exponent(value) + d[dof]);
+        }
+        let rows: Vec<i32> = largest.iter().map(|&e| if e == i32::MIN { 0 } else { -e }).collect();
+        let entries: Vec<_> =
+            contact.triplets().map(|(row, dof, value)| (row, dof, ldexp(value, rows[row] + d[dof]))).collect();
+        let contact = SparseMatrix::from_triplets(contact.rows(), contact.columns(), &entries)?;
+        Ok(Scaling { equilibration, rows, unscaled: stiffness.clone(), stiffness: OnceLock::new(), contact })
+    }
+
+    /// The equilibration of the stiffness.
+    pub fn equilibration(&self) -> &Equilibration {
+        &self.equilibration
+    }
+
+    /// The scaled stiffness.
+    pub fn stiffness(&self) -> &SymmetricMatrix {
+        self.stiffness.get_or_init(|| self.equilibration.apply(&self.unscaled))
+    }
+
+    /// The scaled contact rows.
+    pub fn contact(&self) -> &SparseMatrix {
+        &self.contact
+    }
+
+    /// The scaled load for u0 = `2^unit`.
+    pub fn load(&self, load: &[f64], unit: i32) -> Vec<f64> {
+        let exponent = self.equilibration.factor - unit;
+        load.iter().zip(&self.equilibration.diagonal).map(|(&f, &d)| ldexp(f, d + exponent)).collect()
+    }
+
+    /// The scaled gaps for u0 = `2^unit`.
+    pub fn gap(&self, gap: &[f64], unit: i32) -> Vec<f64> {
+        gap.iter().zip(&self.rows).map(|(&g, &r)| ldexp(g, r - unit)).collect()
+    }
+
+    /// The displacement u of a scaled displacement v, for u0 = `2^unit`.
+    pub fn expand_displacement(&self, scaled: &[f64], unit: i32) -> Vec<f64> {
+        scaled.iter().zip(&self.equilibration.diagonal).map(|(&v, &d)| ldexp(v, d + unit)).collect()
+    }
+
+    /// The scaled multiplier mu of a multiplier lambda, for u0 = `2^unit`.
+    pub fn multiplier(&self, multiplier: &[f64], unit: i32) -> Vec<f64> {
+        let exponent = self.equilibration.factor - unit;
+        multiplier.iter().zip(&self.rows).map(|(&lambda, &r)| ldexp(lambda, exponent - r)).collect()
+    }
+
+    /// The multiplier lambda of a scaled multiplier mu, for u0 = `2^unit`.
+    pub fn expand_multiplier(&self, scaled: &[f64], unit: i32) -> Vec<f64> {
+        let exponent = unit - self.equilibration.factor;
+        scaled.iter().zip(&self.rows).map(|(&mu, &r)| ldexp(mu, r + exponent)).collect()
+    }
+}

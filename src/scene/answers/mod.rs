@@ -1,7 +1,0 @@
-//! Answers to a scene: stresses, forces, and the contact in pieces.
-
-pub(crate) mod answer;
-#[cfg(feature = "cli")]
-pub(crate) mod depths;
-pub(crate) mod patch;
-pub(crate) mod segments;
