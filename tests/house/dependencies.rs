@@ -109,3 +109,53 @@ fn expressions_of_licences_are_evaluated_with_and_or_and_parentheses() {
         assert_eq!(is_allowed(expression, &allowed), expected, "{expression}");
     }
 }
+
+/// The crates of the workspace that are published, each with its direct dependencies outside the workspace.
+fn published() -> Vec<(String, Value, Vec<String>)> {
+    let ours = packages("Cargo.toml").into_iter().filter(|package| package["source"].is_null());
+    let ours = ours.filter(|package| package["publish"].as_array().is_none_or(|registries| !registries.is_empty()));
+    let of_package = |package: Value| {
+        let names = package["dependencies"].as_array().unwrap().iter();
+        let outside = names.filter(|one| one["kind"].is_null() && one["path"].is_null());
+        let names = outside.map(|one| one["name"].as_str().unwrap().to_string()).collect();
+        (package["name"].as_str().unwrap().to_string(), package, names)
+    };
+    ours.map(of_package).collect()
+}
+
+#[test]
+fn each_crate_has_at_most_ten_dependencies_outside_the_workspace_and_that_of_the_qp_eight() {
+    let published = published();
+    let names: Vec<&str> = published.iter().map(|one| one.0.as_str()).collect();
+    assert_eq!(names.len(), 4, "{names:?}");
+    for (name, _, outside) in &published {
+        let most = if name == "signorini-qp" { 8 } else { 10 };
+        assert!((4..=most).contains(&outside.len()), "{name}: {outside:?}");
+    }
+}
+
+/// Cargo refuses an older compiler with a sentence, in place of an error somewhere in a dependency.
+#[test]
+fn the_oldest_compiler_is_the_newest_that_a_dependency_asks_for() {
+    let version = |package: &Value| -> Option<Vec<u32>> {
+        package["rust_version"].as_str().map(|text| text.split('.').map(|part| part.parse().unwrap()).take(2).collect())
+    };
+    let all = packages("Cargo.toml");
+    let of_ours: Vec<_> = published().iter().map(|(_, package, _)| version(package)).collect();
+    let outside: Vec<String> = published().into_iter().flat_map(|one| one.2).collect();
+    let direct = all.iter().filter(|package| outside.iter().any(|name| package["name"] == name.as_str()));
+    let newest = direct.filter_map(version).max().unwrap();
+    for of_crate in of_ours {
+        assert_eq!(of_crate.as_ref(), Some(&newest));
+    }
+}
+
+#[test]
+fn every_crate_forbids_unsafe_code_and_begins_with_an_example() {
+    for folder in ["crates/qp/src", "crates/mechanics/src", "crates/output/src", "src"] {
+        let text = fs::read_to_string(root().join(folder).join("lib.rs")).unwrap();
+        assert!(text.contains("\n#![forbid(unsafe_code)]\n"), "{folder}");
+        let page: Vec<&str> = text.lines().take_while(|line| line.starts_with("//!")).collect();
+        assert!(page.iter().any(|line| line.starts_with("//! ```")), "{folder}");
+    }
+}

@@ -1,4 +1,12 @@
-//! Output of answers: reports as text and JSON, pictures (SVG and PNG), `.vtu` files for ParaView, problem files.
+//! Output of answers: reports as text, pictures (SVG, PNG, PDF), pages, `.vtu` files for ParaView, folders.
+//!
+//! ```
+//! use signorini_output::{Plot, Quantity, Series, line_plots};
+//!
+//! let pressure = Series::new("pressure", vec![[0.0, 2.0], [1.0, 1.0], [2.0, 0.0]]);
+//! let plot = Plot::new(Quantity::new("position", "mm"), Quantity::new("contact pressure", "MPa"), vec![pressure]);
+//! assert!(line_plots("A wedge", &[plot]).svg().contains("contact pressure"));
+//! ```
 //!
 //! Pictures and `.vtu` files take plain data (nodes, elements, values, labels) and know nothing of scenes, meshes or
 //! methods; `view` alone takes them from a model and its answer. A picture is a [`Drawing`]: the

@@ -8,13 +8,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Runs `work`, a call of a library that changes nothing which outlives it; a panic is returned as its message.
 ///
-/// ```
-/// use signorini_qp::internals::guarded;
-///
-/// assert_eq!(guarded(|| 2 + 2), Ok(4));
-/// assert_eq!(guarded(|| -> i32 { panic!("no more") }), Err("it panicked: no more".to_string()));
-/// ```
-///
 /// # Errors
 /// The message of the panic.
 pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
