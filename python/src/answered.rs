@@ -77,7 +77,10 @@ pub fn answered<E: Into<Error> + Send + 'static>(
         End::Done(Ok(solution)) => object(solution),
         End::Done(Err(error)) => Err(exception(py, error, object)),
         End::Signalled(signal, best) => {
-            let best = best.and_then(|ended| ended.map_or_else(|error| error.into().into_best(), Some)).map(object).transpose()?;
+            let best = best
+                .and_then(|ended| ended.map_or_else(|error| error.into().into_best(), Some))
+                .map(object)
+                .transpose()?;
             Err(signalled(py, signal, best))
         }
     }

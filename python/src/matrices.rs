@@ -6,7 +6,7 @@ use signorini::{SparseMatrix, SymmetricMatrix};
 
 use crate::arrays::{Indices, kind_of, room, slice, with_reals, with_table};
 use crate::errors::{bad_input, bad_type};
-use crate::exceptions::{plain_exception};
+use crate::exceptions::plain_exception;
 
 /// The forms in which a matrix can be given.
 enum Source<'py> {

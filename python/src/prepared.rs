@@ -7,12 +7,12 @@ use pyo3::types::PyList;
 use signorini::qp::Error;
 use signorini::{ContactProblem, Settings, Watch};
 
-use crate::arrays::{of_reals, reals};
-use crate::errors::{bad_input};
-use crate::exceptions::{plain_exception};
-use crate::solution::{Solution, rows_of};
 use crate::answered::{answered, start_of};
+use crate::arrays::{of_reals, reals};
+use crate::errors::bad_input;
+use crate::exceptions::plain_exception;
 use crate::exceptions::signalled;
+use crate::solution::{Solution, rows_of};
 use crate::work::{End, Place, run};
 
 /// A problem that is factorised once and then solved for many gaps, loads and starts.

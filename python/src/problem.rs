@@ -8,8 +8,8 @@ use signorini::qp::NearNullSpace;
 use signorini::{ContactProblem, SparseMatrix};
 
 use crate::arrays::{columns, of_reals, of_table, reals};
-use crate::errors::{bad_input};
-use crate::exceptions::{plain_exception};
+use crate::errors::bad_input;
+use crate::exceptions::plain_exception;
 use crate::matrices;
 
 /// The contact problem: minimise 1/2 u'K u - f'u  subject to  B u - g <= 0. The arrays are checked once, here.

@@ -9,14 +9,14 @@ use signorini::scene::Answer;
 use signorini::study::Summary;
 use signorini::{Error, Goal, Model, Settings, Watch};
 
+use crate::answered::{answered, solve_from, start_of};
 use crate::arrays::{kind_of, of_indices, of_reals, of_table};
-use crate::errors::{bad_type};
+use crate::errors::bad_type;
+use crate::exceptions::signalled;
 use crate::exceptions::{exception, plain_exception};
 use crate::options::Options;
 use crate::problem::Problem;
 use crate::solution::{Solution, as_object};
-use crate::answered::{answered, solve_from, start_of};
-use crate::exceptions::signalled;
 use crate::work::{End, Place, run};
 
 /// A contact scene: bodies, supports, loads and obstacles.
@@ -347,7 +347,13 @@ impl SceneSolution {
 }
 
 /// Makes the exception for an error of a scene, with the Python object of the best solution.
-pub fn scene_exception(py: Python<'_>, scene: &Py<Scene>, model: &Arc<Model>, goal: Goal, error: impl Into<Error>) -> PyErr {
+pub fn scene_exception(
+    py: Python<'_>,
+    scene: &Py<Scene>,
+    model: &Arc<Model>,
+    goal: Goal,
+    error: impl Into<Error>,
+) -> PyErr {
     exception(py, model.explain(error), |solution| {
         SceneSolution::object(py, scene.clone_ref(py), model.clone(), solution, goal)
     })

@@ -7,12 +7,12 @@ use signorini::study::{self, TradeoffGrid};
 
 use crate::arrays::reals;
 use crate::errors::{bad_input, bad_type};
-use crate::exceptions::{plain_exception};
+use crate::exceptions::plain_exception;
+use crate::exceptions::signalled;
 use crate::options::Options;
 use crate::problem::Problem;
 use crate::scene::{Scene, SceneSolution, scene_exception};
 use crate::solution::{Solution, as_object};
-use crate::exceptions::signalled;
 use crate::work::{End, Place, run};
 
 /// One problem solved by interior point, active set and penalty.
