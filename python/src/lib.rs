@@ -16,6 +16,7 @@ mod scene;
 mod solution;
 mod solving;
 mod study;
+mod total_error;
 mod work;
 
 use pyo3::prelude::*;
@@ -34,6 +35,7 @@ fn _signorini(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<scene::Scene>()?;
     module.add_class::<scene::SceneSolution>()?;
     module.add_class::<study::Comparison>()?;
+    module.add_class::<total_error::TotalError>()?;
     module.add_function(wrap_pyfunction!(solving::solve, module)?)?;
     module.add_function(wrap_pyfunction!(solving::solve_qp, module)?)?;
     module.add_function(wrap_pyfunction!(solving::prepare, module)?)?;
@@ -41,5 +43,6 @@ fn _signorini(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(study::compare, module)?)?;
     module.add_function(wrap_pyfunction!(study::measured, module)?)?;
     module.add_function(wrap_pyfunction!(study::swept, module)?)?;
+    module.add_function(wrap_pyfunction!(total_error::total_error, module)?)?;
     Ok(())
 }

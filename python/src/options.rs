@@ -26,7 +26,7 @@ pub struct Options<'py> {
 }
 
 /// Reads a real number. One that is not finite is left to the library, which refuses it with its own message.
-fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
+pub fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
     let py = value.py();
     value
         .extract()

@@ -47,6 +47,11 @@ impl Scene {
         Ok(kept().get_or_insert(model).clone())
     }
 
+    /// The same scene with another mesh.
+    pub fn on(&self, model: Arc<Model>) -> Self {
+        Scene { inner: self.inner.clone(), file: self.file.clone(), model: Mutex::new(Some(model)) }
+    }
+
     /// Refuses a scene with an analysis of a motion.
     pub fn check_rest(&self, py: Python<'_>) -> PyResult<()> {
         if self.inner.analysis.is_none() {
@@ -208,9 +213,11 @@ impl Scene {
     }
 
     fn __repr__(&self) -> String {
-        let size = self.inner.size();
+        let built = self.model.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let dofs_of = |model: Arc<Model>| (model.mesh().dimension() * model.mesh().nodes().len()) as f64;
+        let dofs = built.map_or_else(|| self.inner.size().dofs, dofs_of);
         let title = if self.inner.title.is_empty() { "without a title" } else { &self.inner.title };
-        format!("<signorini.Scene: {title}, about {:.0} dofs>", size.dofs)
+        format!("<signorini.Scene: {title}, about {dofs:.0} dofs>")
     }
 }
 
@@ -231,7 +238,19 @@ impl SceneSolution {
         solution: signorini::Solution,
         goal: Goal,
     ) -> PyResult<Py<PyAny>> {
-        let answer = Arc::new(Answer::of(model, &solution).map_err(|error| plain_exception(py, error))?);
+        let answer = Answer::of(model, &solution).map_err(|error| plain_exception(py, error))?;
+        Self::of(py, scene, answer, solution, goal)
+    }
+
+    /// Makes the Python object of a solution whose answer is known.
+    pub fn of(
+        py: Python<'_>,
+        scene: Py<Scene>,
+        answer: Answer,
+        solution: signorini::Solution,
+        goal: Goal,
+    ) -> PyResult<Py<PyAny>> {
+        let answer = Arc::new(answer);
         let base = PyClassInitializer::from(Solution::new(solution));
         Ok(Py::new(py, base.add_subclass(SceneSolution { scene, answer, goal }))?.into_any())
     }

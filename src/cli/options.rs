@@ -11,6 +11,7 @@ use super::line::{Line, parse_line};
 use super::memory::parse_size;
 use crate::output::{Medium, Pictures, Wanted};
 use crate::qp::{Method, Precision, memory};
+use crate::study::TotalErrorGoal;
 
 /// Frictionless contact of elastic bodies with obstacles: a convex QP, cross-checked and certified.
 #[derive(Debug, Parser)]
@@ -365,8 +366,7 @@ fn parse_tolerance(text: &str) -> Result<f64, String> {
 }
 
 fn parse_total_error(text: &str) -> Result<f64, String> {
-    let form = || "a number above 0 and below 1, such as 1e-2: it is a relative error".to_string();
-    allowed(text, |&value| value > 0.0 && value < 1.0, form)
+    allowed(text, |&value| TotalErrorGoal::is_allowed(value), || TotalErrorGoal::ALLOWED.to_string())
 }
 
 /// The value of `--accuracy`.

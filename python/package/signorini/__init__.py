@@ -45,11 +45,13 @@ from signorini._signorini import (
     Scene,
     SceneSolution,
     Solution,
+    TotalError,
     __version__,
     compare,
     prepare,
     solve,
     solve_qp,
+    total_error,
     verify,
 )
 from signorini._studies import Sweep, Tradeoff, sweep, tradeoff
@@ -79,6 +81,7 @@ __all__ = [
     "Solution",
     "Sweep",
     "TooLarge",
+    "TotalError",
     "Tradeoff",
     "Unbounded",
     "Undecided",
@@ -90,6 +93,7 @@ __all__ = [
     "solve",
     "solve_qp",
     "sweep",
+    "total_error",
     "tradeoff",
     "verify",
 ]

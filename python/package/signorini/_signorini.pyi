@@ -18,6 +18,7 @@ __all__ = [
     "Scene",
     "SceneSolution",
     "Solution",
+    "TotalError",
     "__version__",
     "_measured",
     "_swept",
@@ -25,6 +26,7 @@ __all__ = [
     "prepare",
     "solve",
     "solve_qp",
+    "total_error",
     "verify",
 ]
 
@@ -416,6 +418,61 @@ class Comparison:
     def agrees(self) -> bool:
         """`True` if the solutions of interior point and active set are certified and agree."""
 
+@final
+class TotalError:
+    """An answer with its error against the continuum: u is the exact displacement of the linear model, v the answer.
+
+    With a guarantee `nodes`, `elements` and `displacement` describe v, which keeps the distance of the obstacles between its nodes
+    too; they may differ from those of `solution`. Otherwise they are those of `solution`.
+    """
+
+    @property
+    def bound(self) -> float:
+        """|u - v| / |v| in the energy norm: an upper bound if it is guaranteed, otherwise an estimate."""
+    @property
+    def guaranteed(self) -> bool:
+        """`True` if the bound is proven, `False` if it is estimated."""
+    @property
+    def reason(self) -> str | None:
+        """The part of the scene for which there is no guarantee, with its place; None if the bound is guaranteed."""
+    @property
+    def force_interval(self) -> tuple[float, float] | None:
+        """The interval that contains the exact contact force, in the unit of force; None if it is not known."""
+    @property
+    def levels(self) -> list[dict[str, Any]]:
+        """One dictionary per mesh, from the first to the last, under the names that the program uses in its reports.
+
+        All have `elements`, `dofs`, `total_error`, `contact_force` and `seconds`. With a guarantee there are also `stress_dofs`,
+        `mean_stress_error`, `force_interval` where it is known, `displacement_seconds` and `stress_seconds`; otherwise `contact_rows`,
+        `method`, `discretisation_error`, `energy_error_bound` and `depth_between_nodes`.
+        """
+    @property
+    def ended(self) -> str:
+        """Why no finer mesh was made: `goal`, `time`, `memory`, or `mesh` if the mesh of a file cannot be refined."""
+    @property
+    def status(self) -> str:
+        """`certified` if the goal is met, otherwise `not_certified`."""
+    @property
+    def model(self) -> dict[str, Any]:
+        """Size of the problem on the last mesh, under the names that the program uses in its reports, such as `dofs`."""
+    @property
+    def nodes(self) -> NDArray[np.float64]:
+        """Coordinates of the nodes of the last mesh, one row per node, in the unit of length."""
+    @property
+    def elements(self) -> NDArray[np.int64]:
+        """Node numbers of the elements of the last mesh, one row per element, counted from 0, in the order of VTK.
+
+        With a guarantee they are triangles: three corners, then the middles of the sides 0-1, 1-2 and 2-0.
+        """
+    @property
+    def displacement(self) -> NDArray[np.float64]:
+        """The displacement v of each node of the last mesh, one row per node, in the unit of length."""
+    @property
+    def solution(self) -> SceneSolution | None:
+        """The solution of the scene on the last mesh, which its `scene` has; None if time or memory ended before it."""
+    def to_dict(self) -> dict[str, Any]:
+        """Returns all numbers, under the names that the program uses in its reports; the arrays are left out."""
+
 def solve(
     problem: Problem,
     *,
@@ -492,6 +549,28 @@ def compare(problem: Problem | Scene) -> Comparison:
     """Solves a problem or a scene by interior point, active set and penalty, and compares the solutions.
 
     A solution that is not certified is returned as well; its certificate shows the residuals.
+    """
+
+def total_error(
+    scene: Scene,
+    goal: float,
+    *,
+    force_error: float | None = None,
+    time: float | None = None,
+    threads: int | None = None,
+    memory: float | None = None,
+) -> TotalError:
+    """Refines the mesh of a scene until its error against the continuum is at most `goal`, relative in the energy norm.
+
+    The error is guaranteed for plane strain and plane stress with what `docs/accuracy.md` lists, and estimated otherwise.
+
+    goal: largest error |u - v| / |v|, above 0 and below 1. force_error: largest error of the contact force, half the width of its
+    interval over the force; only with a guarantee. time: limit in seconds; after it the finest mesh so far is taken. threads and
+    memory: as in `solve`. A result that does not reach the goal is returned as well; its `status` says so.
+
+    Raises `BadInput` for an error out of its range, `SceneError` for a scene without an answer in the continuum and for `force_error`
+    without a guarantee, `Interrupted`, with the `TotalError` so far in `solution`, after Ctrl-C, and the exceptions of `solve` for the
+    first mesh.
     """
 
 def _measured(

@@ -21,6 +21,29 @@ pub struct TotalErrorGoal {
     pub force_error: Option<f64>,
 }
 
+impl TotalErrorGoal {
+    /// The errors that may be asked for, in words.
+    pub const ALLOWED: &str = "a number above 0 and below 1, such as 1e-2: it is a relative error";
+
+    /// Returns `true` if this error may be asked for.
+    pub fn is_allowed(error: f64) -> bool {
+        error > 0.0 && error < 1.0
+    }
+
+    /// Checks both errors.
+    ///
+    /// # Errors
+    /// [`qp::Error::Setting`] for the first that may not be asked for.
+    pub(super) fn check(self) -> Result<(), Error> {
+        for (name, value) in [("total_error", Some(self.total_error)), ("force_error", self.force_error)] {
+            if let Some(value) = value.filter(|&value| !Self::is_allowed(value)) {
+                return Err(qp::Error::Setting { name, value, allowed: Self::ALLOWED }.into());
+            }
+        }
+        Ok(())
+    }
+}
+
 impl From<f64> for TotalErrorGoal {
     fn from(total_error: f64) -> Self {
         TotalErrorGoal { total_error, force_error: None }
@@ -98,6 +121,19 @@ pub(super) fn marked(shares: &[f64], share: f64) -> Vec<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_error_is_asked_for_between_0_and_1() {
+        assert!(TotalErrorGoal::from(0.5).check().is_ok());
+        for wrong in [0.0, -1.0, 1.0, f64::NAN, f64::INFINITY] {
+            assert!(
+                matches!(TotalErrorGoal::from(wrong).check(), Err(Error::Qp(qp::Error::Setting { .. }))),
+                "{wrong}"
+            );
+            let of_force = TotalErrorGoal { total_error: 0.5, force_error: Some(wrong) };
+            assert!(of_force.check().is_err(), "{wrong}");
+        }
+    }
 
     #[test]
     fn the_fewest_elements_make_half_of_the_whole() {

@@ -42,8 +42,8 @@ use found::Search;
 /// ```
 ///
 /// # Errors
-/// [`Error::Scene`] for a scene without an answer in the continuum; those of [`Scene::build`] and of [`signorini_qp::solve`] on the first
-/// mesh.
+/// [`signorini_qp::Error::Setting`] for a goal out of its range, [`Error::Scene`] for a scene without an answer in the continuum; those
+/// of [`Scene::build`] and of [`signorini_qp::solve`] on the first mesh.
 pub fn total_error(scene: &Scene, goal: impl Into<TotalErrorGoal>) -> Result<TotalError, Error> {
     let model = Arc::new(scene.build()?);
     TotalError::search(scene, &model, goal.into(), &Settings::default(), &|_| {}).map_err(|error| model.explain(error))
@@ -54,8 +54,8 @@ impl TotalError {
     /// with what was found after each mesh but the last.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a scene without an answer in the continuum, and for an error of the force without a guarantee; those of
-    /// [`signorini_qp::solve`] on the first mesh.
+    /// [`signorini_qp::Error::Setting`] for a goal out of its range, [`Error::Scene`] for a scene without an answer in the continuum and
+    /// for an error of the force without a guarantee; those of [`signorini_qp::solve`] on the first mesh.
     pub fn search(
         scene: &Scene,
         model: &Arc<Model>,
@@ -63,6 +63,7 @@ impl TotalError {
         settings: &Settings,
         keep: &dyn Fn(&TotalError),
     ) -> Result<Self, Error> {
+        goal.check()?;
         scene.check_continuum()?;
         let search = Search { scene, model, goal, settings, keep, clock: Instant::now() };
         match scene.plane_problem(model) {
