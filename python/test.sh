@@ -17,7 +17,7 @@ fi
 
 wheels=$CARGO_TARGET_DIR/wheels
 rm -rf "$wheels"
-"$environment/bin/maturin" build --quiet --locked --profile dev --out "$wheels"
+"$environment/bin/maturin" build --quiet --locked --profile dev --features as-tests --out "$wheels"
 install() { "$1/bin/python" -m pip install --quiet --disable-pip-version-check --force-reinstall "${@:2}" "$wheels"/*.whl; }
 install "$environment" --no-deps
 
