@@ -106,7 +106,7 @@ fn expressions_of_licences_are_evaluated_with_and_or_and_parentheses() {
 
 /// The crates of the workspace that are published, each with its direct dependencies outside the workspace.
 fn published() -> Vec<(String, Value, Vec<String>)> {
-    let ours = packages("Cargo.toml").into_iter().filter(|package| package["source"].is_null());
+    let ours = packages().into_iter().filter(|package| package["source"].is_null());
     let ours = ours.filter(|package| package["publish"].as_array().is_none_or(|registries| !registries.is_empty()));
     let of_package = |package: Value| {
         let names = package["dependencies"].as_array().unwrap().iter();
@@ -134,7 +134,7 @@ fn the_oldest_compiler_is_the_newest_that_a_dependency_asks_for() {
     let version = |package: &Value| -> Option<Vec<u32>> {
         package["rust_version"].as_str().map(|text| text.split('.').map(|part| part.parse().unwrap()).take(2).collect())
     };
-    let all = packages("Cargo.toml");
+    let all = packages();
     let of_ours: Vec<_> = published().iter().map(|(_, package, _)| version(package)).collect();
     let outside: Vec<String> = published().into_iter().flat_map(|one| one.2).collect();
     let direct = all.iter().filter(|package| outside.iter().any(|name| package["name"] == name.as_str()));
