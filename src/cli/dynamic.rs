@@ -60,7 +60,7 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     let value = report.value()?;
     let Wanted { pictures, medium } = options.common.wanted(Pictures::Answer);
     Ok(report.outcome(format, status).with_pictures(move || {
-        folder.write_page(&model, &about, value)?;
+        folder.write_page(&model, &about, &value)?;
         match pictures {
             Pictures::None => Ok(()),
             _ => folder.draw_for(&model, medium),

@@ -69,7 +69,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Verify(options) => verify::run(&options, &watch),
         Command::Completions(options) => Ok(shell::completions(&options)),
         Command::Man => Ok(shell::manual()),
-        Command::Schema => Ok(Outcome::done(format!("{:#}\n", Scene::json_schema()))),
+        Command::Schema => Ok(Outcome::done(Scene::json_schema())),
     };
     drop(shown);
     // If the program is being ended with a kept report, it waits here.

@@ -196,7 +196,7 @@ fn samples(shape: &Shape) -> Vec<[f64; 3]> {
 /// Every shape of the schema, tested by `check` in the model that a rule makes of it.
 fn every_shape(rule: &str, check: impl Fn(&Shape, &Model)) {
     let folder = tempfile::tempdir().unwrap();
-    let schema = Scene::json_schema();
+    let schema: Value = serde_json::from_str(&Scene::json_schema()).unwrap();
     let choices = schema.pointer("/$defs/ShapeSpec/oneOf").and_then(Value::as_array).unwrap();
     let names: Vec<String> = choices.iter().map(|choice| choice["required"][0].as_str().unwrap().to_string()).collect();
     assert!(names.len() >= 12, "{names:?}");

@@ -10,7 +10,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 use signorini_qp as qp;
 
 use super::fields::fields;
@@ -296,7 +295,7 @@ impl MotionFolder {
     ///
     /// # Errors
     /// [`qp::Error::File`], and those of the recovery of stresses.
-    pub fn write_page(&self, model: &Arc<Model>, about: &About, report: Value) -> Result<(), Error> {
+    pub fn write_page(&self, model: &Arc<Model>, about: &About, report: &impl Serialize) -> Result<(), Error> {
         let answer = |number: usize| self.read_frame(model, number).map(|(_, answer)| answer);
         let history = self.read_history()?;
         let frames = MotionFrames { history: &history, times: &self.times, answer: &answer };

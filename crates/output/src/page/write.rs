@@ -137,14 +137,19 @@ pub(crate) fn write_motion_page(
     folder: &Path,
     about: &About,
     model: &Model,
-    report: Value,
+    report: &impl Serialize,
     frames: &MotionFrames,
 ) -> Result<(), Error> {
     let (mut packer, shape) = (Packer::default(), Shape::of(model));
     let page = Page::of_model(about, model, &shape, &mut packer);
     let (motion, states) = MotionShown::of(frames, &shape, model.mesh().dimension(), &mut packer)?;
     let plots = history_plots(model, frames.history).iter().map(|plot| PlotShown::of(plot, &mut packer)).collect();
-    write_page(folder, &Page { report: timeless(report), motion: Some(motion), states, plots, ..page }, packer, None)
+    write_page(
+        folder,
+        &Page { report: timeless(value(report)?), motion: Some(motion), states, plots, ..page },
+        packer,
+        None,
+    )
 }
 
 /// The common content of all pages of one answer.
