@@ -1,6 +1,6 @@
 //! `signorini compare`: three methods, one problem.
 
-use crate::output::{InWords, Pictures};
+use crate::output::{InWords, Pictures, Wanted};
 use serde_json::json;
 
 use super::about::about;
@@ -34,7 +34,7 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let methods = json!({ "methods": summaries, "agreement": agreement });
     let report = Report::new(&OfPart::new(methods, is_part, &["agreement"]), text)?;
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, agreement.status())) };
-    common.wanted(Pictures::Answer).write_answer(&folder, &summaries[0].solution, qp.as_ref())?;
+    Wanted::write_answer(&folder, &summaries[0].solution, qp.as_ref())?;
     report.write(&folder)?;
     let outcome = report.outcome(common.format, agreement.status());
     let (Some(qp), Some(active_set), Some(penalty)) = (qp, active_set, penalty) else { return Ok(outcome) };

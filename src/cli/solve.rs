@@ -1,6 +1,6 @@
 //! `signorini solve`: one answer.
 
-use crate::output::{About, Along, InWords, Pictures, remove_files, why_text, write_files};
+use crate::output::{About, Along, InWords, Pictures, Wanted, remove_files, why_text, write_files};
 use std::path::Path;
 
 use super::about::about;
@@ -170,7 +170,7 @@ fn reported(
     let report = Report::new(&summary, text)?;
     let status = summary.status;
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
-    common.wanted(Pictures::Answer).write_answer(&folder, &summary.solution, answer.as_ref())?;
+    Wanted::write_answer(&folder, &summary.solution, answer.as_ref())?;
     // The lines of an earlier run would not belong to this answer.
     remove_files(&folder, &["along.csv"])?;
     report.write(&folder)?;

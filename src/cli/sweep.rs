@@ -88,7 +88,7 @@ fn of_problem(options: &Sweep, points: usize, watch: &Watch) -> Result<Outcome, 
     let status = swept.points.iter().map(|point| point.summary.status).collect();
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
     let wanted = common.wanted(Pictures::All);
-    wanted.write_points(&folder, &swept)?;
+    Wanted::write_points(&folder, &swept)?;
     report.write(&folder)?;
     let outcome = report.outcome(common.format, status);
     Ok(outcome.with_pictures(move || wanted.draw_problem_sweep(&folder, &input.title, &swept)))

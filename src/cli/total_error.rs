@@ -1,6 +1,6 @@
 //! `signorini solve --total-error`: an answer with its error against the continuum, guaranteed or estimated.
 
-use crate::output::{InWords, Pictures, why_text};
+use crate::output::{InWords, Pictures, Wanted, why_text};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -63,7 +63,7 @@ pub(super) fn run(
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, found.status)) };
     let wanted = common.wanted(Pictures::Answer);
     if let Some((answer, summary)) = &answer {
-        wanted.write_answer(&folder, &summary.solution, Some(answer))?;
+        Wanted::write_answer(&folder, &summary.solution, Some(answer))?;
     }
     report.write_with_text(&folder, "total-error.txt")?;
     wanted.write_total_error(&folder, &title, &found, &units)?;

@@ -140,7 +140,7 @@ impl Wanted {
     ///
     /// # Errors
     /// [`qp::Error::File`](signorini_qp::Error::File).
-    pub fn write_answer(self, folder: &Path, solution: &Solution, answer: Option<&Answer>) -> Result<(), Error> {
+    pub fn write_answer(folder: &Path, solution: &Solution, answer: Option<&Answer>) -> Result<(), Error> {
         write_files(folder, &solution.files())?;
         let Some(answer) = answer else { return Ok(()) };
         write_streamed(folder, &tables::of_model(answer.model()))?;

@@ -39,7 +39,7 @@ impl Wanted {
     ///
     /// # Errors
     /// [`qp::Error::File`](signorini_qp::Error::File).
-    pub fn write_points(self, folder: &Path, sweep: &ProblemSweep) -> Result<(), Error> {
+    pub fn write_points(folder: &Path, sweep: &ProblemSweep) -> Result<(), Error> {
         for (index, point) in sweep.points.iter().enumerate() {
             write_files(&folder.join(format!("point-{:02}", index + 1)), &point.summary.solution.files())?;
         }
