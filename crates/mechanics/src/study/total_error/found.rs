@@ -222,3 +222,33 @@ impl Search<'_> {
         self.clock.elapsed().as_secs_f64()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_of_the_force_is_half_the_width_of_its_interval_over_the_force() {
+        let level = |force_interval| Level {
+            elements: 2,
+            dofs: 4,
+            total_error: 0.1,
+            contact_force: -10.0,
+            kind: LevelKind::Guaranteed {
+                stress_dofs: 9,
+                mean_stress_error: 0.1,
+                force_interval,
+                displacement_seconds: 0.0,
+                stress_seconds: 0.0,
+            },
+            seconds: 0.0,
+        };
+        let wide = level(Some([-12.0, -8.0]));
+        assert_eq!(wide.half_width(), Some(0.2));
+        assert_eq!((level(Some([-10.0; 2])).half_width(), level(None).half_width()), (Some(0.0), None));
+        let goal = |force_error| TotalErrorGoal { total_error: 0.1, force_error };
+        assert!(wide.meets(goal(None)) && wide.meets(goal(Some(0.2))) && !wide.meets(goal(Some(0.19))));
+        // A goal for the force is not met without an interval.
+        assert!(!level(None).meets(goal(Some(0.5))));
+    }
+}
