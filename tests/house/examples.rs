@@ -57,7 +57,7 @@ fn each_contact_node_of_the_two_cylinders_has_an_opposite_node() {
     let model = scene("two_cylinders").build().unwrap();
     assert_eq!(model.body().regions().len(), 2);
     for row in model.rows() {
-        let [one, other] = [row.node, row.partner.unwrap()].map(|node| model.mesh().nodes()[node]);
+        let [one, other] = [row.node, row.partner().unwrap()].map(|node| model.mesh().nodes()[node]);
         assert!((one[0] - other[0]).abs() < 1e-12 && (row.gap - (one[1] - other[1])).abs() < 1e-12);
     }
 }

@@ -24,6 +24,7 @@ mod inclined_supports;
 mod loads;
 mod materials;
 mod mesh_scenes;
+mod mortar;
 mod obstacle_rows;
 mod obstacles_in_space;
 mod parts;

@@ -87,7 +87,7 @@ pub fn check(scene: &Value) -> Model {
     }
     right.rows_mut(0, count).copy_from_slice(model.nodal_load());
     let of_supports = held.iter().map(|c| (c.node, c.normal.clone(), c.value));
-    let of_rows = closed.iter().map(|&row| model.rows()[row]);
+    let of_rows = closed.iter().map(|&row| model.rows()[row].clone());
     let of_rows = of_rows.map(|row| (row.node, row.normal[..dimension].to_vec(), row.gap));
     for (place, (node, normal, value)) in of_supports.chain(of_rows).enumerate() {
         for (axis, part) in normal.iter().enumerate() {

@@ -32,11 +32,13 @@ fn dofs(model: &Model, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// A line for each contact row: `normal . (u - u_partner) <= gap`.
+/// A line for each contact row: `normal . (u - u_partner) <= gap`, or, with several nodes of another body as `node:share`,
+/// `normal . sum(share * u) <= gap`.
 fn rows(model: &Model, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "row,obstacle,node,partner,x,y,z,normal_x,normal_y,normal_z,gap,tributary_area")?;
     for (index, row) in model.rows().iter().enumerate() {
-        let partner = row.partner.map_or_else(String::new, |partner| partner.to_string());
+        let ends = || row.ends[1..].iter().map(|(node, share)| format!("{node}:{share}")).collect::<Vec<_>>().join(" ");
+        let partner = row.partner().map_or_else(ends, |partner| partner.to_string());
         let at = vector(model.mesh().nodes().get(row.node).copied());
         let (normal, gap, area) = (vector(Some(row.normal)), row.gap, row.tributary_area);
         writeln!(out, "{index},{},{},{partner},{at},{normal},{gap:e},{area:e}", row.obstacle, row.node)?;

@@ -98,7 +98,8 @@ impl<'a> Contacts<'a> {
         let model = answer.model();
         let mut pressures = vec![BTreeMap::new(); model.obstacles().len()];
         for (row, pressure) in model.rows().iter().zip(answer.pressure()) {
-            row.ends().for_each(|(node, _)| *pressures[row.obstacle].entry(node).or_insert(0.0) += pressure);
+            let nodes = row.ends.iter().take(if row.is_mean { 1 } else { 2 });
+            nodes.for_each(|(node, _)| *pressures[row.obstacle].entry(*node).or_insert(0.0) += pressure);
         }
         let mut facets: BTreeMap<usize, Vec<(usize, &[usize])>> = BTreeMap::new();
         for (obstacle, own) in pressures.iter().enumerate() {

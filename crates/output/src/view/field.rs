@@ -195,7 +195,7 @@ impl Source<'_> {
             normal: vec![0.0; 3 * count],
         };
         for (index, row) in model.rows().iter().enumerate() {
-            for (node, sign) in row.ends() {
+            for &(node, sign) in row.ends.iter().take(if row.is_mean { 1 } else { 2 }) {
                 if at.flag[node] == NO_CANDIDATE || row.gap < at.gap[node] {
                     (at.gap[node], at.remaining[node]) = (row.gap, remaining[index]);
                     (0..3).for_each(|axis| at.normal[3 * node + axis] = sign * row.normal[axis]);

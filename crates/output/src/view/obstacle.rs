@@ -63,6 +63,6 @@ fn stands_on(model: &Model, obstacle: Option<usize>) -> bool {
         length(minus(high, low))
     };
     let row = model.rows().iter().find(|row| Some(row.obstacle) == obstacle);
-    let sizes = row.map(|row| row.ends().map(|(node, _)| size(node)).collect::<Vec<f64>>());
+    let sizes = row.map(|row| row.ends.iter().map(|end| size(end.0)).collect::<Vec<f64>>());
     sizes.is_some_and(|sizes| sizes.len() > 1 && sizes[0] < sizes[1])
 }

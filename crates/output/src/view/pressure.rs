@@ -157,9 +157,11 @@ fn hertz(answer: &Answer, obstacle: usize, along: &[(f64, usize)]) -> Option<Ser
 /// The combined modulus of both sides; `None` if a material is not isotropic, or a body has several.
 fn contact_modulus(model: &Model, obstacle: usize) -> Option<f64> {
     let rows = || model.rows().iter().filter(|row| row.obstacle == obstacle);
-    let ends: Vec<usize> = rows().next()?.ends().map(|(node, _)| node).collect();
+    let first = rows().next()?;
+    // One node of each body.
+    let other = first.ends.iter().find(|end| end.1 < 0.0).map(|end| end.0);
     let mut compliance = 0.0;
-    for node in ends {
+    for node in std::iter::once(first.node).chain(other) {
         let region = model.body().regions().iter().find(|region| region.nodes().contains(&node))?;
         let mut elements = model.body().elements().skip(region.elements().start).take(region.elements().len());
         let first = elements.next()?;

@@ -1,26 +1,14 @@
-//! Shape functions of quadratic faces with positive integrals, so that a uniform pressure pushes at every node.
+//! The unknowns of quadratic faces in space that may touch something: coefficients of shape functions with positive integrals.
 //!
-//! On a quadratic face the integral of a corner's shape function is zero (T6) or negative (Q8): a uniform pressure pulls at the
-//! corners. With `N'_corner = N_corner + w (sum of N_mid around it)`, `N'_mid = (1 - 2 w) N_mid` and w = 1/4 all integrals are
-//! positive: 1/6 of a triangle each; 1/12 of a quadrilateral at corners and 1/6 at mid-sides. On edges and on triangles these are the
-//! Bernstein polynomials, which are nowhere negative; inside quadrilaterals their minimum is -0.04. They span the same space, so that
-//! nothing is lost: the value at a mid-side node is `u_mid = (1 - 2 w) c_mid + w (c_a + c_b)`; the value at a corner is its coefficient.
 //! A contact row holds one coefficient, so that rows stay bounds. On triangles, coefficients below their gaps keep the whole face below
 //! the gap function that these gaps define.
-//!
-//! # Source
-//! A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, *Dual quadratic mortar finite element methods for 3D finite deformation
-//! contact*, SIAM J. Sci. Comput. 34 (2012) B421-B446: the change of basis, with another weight.
 
 use std::collections::BTreeMap;
 
 use super::element_blocks::ElementStiffness;
 use crate::fem::body::ElasticBody;
+use crate::fem::element::{POSITIVE_SHARE as WEIGHT, positive_coefficient};
 use crate::fem::mesh::Boundary;
-
-/// The share w that each end of an edge takes of the function of its mid-side node. Measured on quadrilaterals: 3/8, with which no
-/// function is negative anywhere, has up to 1.8 times the error in energy.
-const WEIGHT: f64 = 0.25;
 
 /// The change from nodal values to coefficients at mid-side nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -71,7 +59,7 @@ impl PositiveBasis {
     /// The coefficient at a node of a function with these values at the nodes.
     pub fn coefficient(&self, node: usize, value: impl Fn(usize) -> f64) -> f64 {
         match self.ends(node) {
-            Some([a, b]) => (value(node) - WEIGHT * (value(a) + value(b))) / (1.0 - 2.0 * WEIGHT),
+            Some(ends) => positive_coefficient(value(node), ends.map(value)),
             None => value(node),
         }
     }

@@ -67,6 +67,24 @@ pub(super) fn for_each_point_of<'a>(
     }
 }
 
+/// The nodes of the facets of a boundary, each in an order from which its area vector points outwards.
+pub(crate) fn outward_facets(body: &ElasticBody, boundary: &Boundary) -> Vec<usize> {
+    let (mesh, mirrored) = (body.mesh(), boundary.kind.reference().mirrored());
+    let faces = mesh.kind().reference().faces;
+    let oriented = |(facet, owner): (&[usize], Option<(usize, usize)>)| -> Vec<usize> {
+        let sense = owner.map_or(1.0, |(element, face)| {
+            let nodes = mesh.element(element);
+            let of_face: Vec<usize> = faces[face].iter().map(|&local| nodes[local]).collect();
+            sense(boundary.kind, facet, &of_face, face)
+        });
+        match sense > 0.0 {
+            true => facet.to_vec(),
+            false => mirrored.iter().map(|&local| facet[local]).collect(),
+        }
+    };
+    boundary.facets().zip(mesh.faces_of(boundary)).flat_map(oriented).collect()
+}
+
 /// 1 if the nodes of a facet run as those of the element's face, whose area vector points outwards, else -1.
 fn sense(kind: FacetKind, facet: &[usize], face: &[usize], number: usize) -> f64 {
     let alike = match kind {

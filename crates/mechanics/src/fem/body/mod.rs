@@ -231,6 +231,11 @@ impl ElasticBody {
         })
     }
 
+    /// The material and the stress without strain of an element.
+    pub(crate) fn phase_of(&self, element: usize) -> &Phase {
+        &self.phases[self.of_elements[element] as usize]
+    }
+
     /// The coordinates of up to [`MAX_NODES`] nodes.
     pub(crate) fn coordinates(&self, nodes: &[usize]) -> PerNode<[f64; 3]> {
         let mut coordinates = [[0.0; 3]; MAX_NODES];

@@ -10,6 +10,7 @@ mod levels;
 mod line2;
 mod line3;
 mod point1;
+mod positive;
 mod product;
 mod q4;
 mod q8;
@@ -24,7 +25,8 @@ mod tet4;
 
 pub use cell::Cell;
 pub use levels::between_levels;
-pub use quadrature::Part;
+pub(crate) use positive::{POSITIVE_SHARE, positive_coefficient, positive_functions};
+pub use quadrature::{Part, gauss_legendre};
 pub use reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, QuadraturePoint, ReferenceElement, Shape};
 pub use tabulated::{Rule, Tabulated, TabulatedPoint};
 

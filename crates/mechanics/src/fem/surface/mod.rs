@@ -16,6 +16,7 @@ use std::path::Path;
 
 pub use closed::ClosedSurface;
 pub(crate) use crossings::Crossing;
+pub(crate) use tree::Tree;
 
 use crate::error::Error;
 use crate::fem::formulation::positive;

@@ -1,5 +1,7 @@
 //! A tree of boxes around triangles, halved at the median along their longest extent.
 
+use crate::fem::geometry::{distance, dot, length, minus};
+
 /// Triangles of a leaf: with fewer triangles more boxes are tested than triangles are saved.
 const LEAF: usize = 4;
 
@@ -16,7 +18,7 @@ struct Branch {
 
 /// A tree of boxes.
 #[derive(Debug)]
-pub(super) struct Tree {
+pub(crate) struct Tree {
     branches: Vec<Branch>,
     order: Vec<u32>,
 }
@@ -29,7 +31,7 @@ struct Thing {
 }
 
 /// Lowest and highest coordinates.
-pub(super) type Limits = [[f64; 3]; 2];
+pub(crate) type Limits = [[f64; 3]; 2];
 
 /// The limits of an empty set.
 pub(super) const NOWHERE: Limits = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
@@ -118,6 +120,33 @@ impl Tree {
         while let Some(place) = open.pop() {
             let branch = self.branches[place];
             if across.iter().any(|&axis| point[axis] < branch.low[axis] || point[axis] > branch.high[axis]) {
+                continue;
+            }
+            self.things(branch).iter().for_each(|&number| visit(number));
+            if branch.count == 0 {
+                open.extend([place + 1, branch.next as usize]);
+            }
+        }
+    }
+
+    /// Visits all items whose boxes may lie in a cone: within `radius` of a line through `point` along a unit vector, more by `spread`
+    /// per distance from the point, and at most `reach` away along the line. It may visit items outside.
+    pub fn around_line(
+        &self,
+        point: [f64; 3],
+        along: [f64; 3],
+        [radius, spread, reach]: [f64; 3],
+        mut visit: impl FnMut(u32),
+    ) {
+        let mut open = vec![0];
+        while let Some(place) = open.pop() {
+            let Some(&branch) = self.branches.get(place) else { continue };
+            let middle = [0, 1, 2].map(|axis| (branch.low[axis] + branch.high[axis]) / 2.0);
+            let half = distance(branch.high, middle);
+            let away = minus(middle, point);
+            let far = dot(away, along);
+            let aside = length(minus(away, along.map(|part| far * part)));
+            if far.abs() > reach + radius + half || aside > radius + half + spread * (far.abs() + half) {
                 continue;
             }
             self.things(branch).iter().for_each(|&number| visit(number));

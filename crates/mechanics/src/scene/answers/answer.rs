@@ -115,9 +115,13 @@ impl Answer {
 
     /// The remaining gap at the node of each row, one entry per contact row, in length, `>= 0` up to rounding.
     pub fn remaining_gaps(&self) -> Vec<f64> {
+        let dofs = self.model.dofs();
         let moved = |row: &ContactRow| -> f64 {
-            let of_node = |(node, sign)| sign * dot(self.model.at_node(&self.displacement, node), row.normal);
-            row.ends().map(of_node).sum()
+            let at = |node: usize| dot(self.model.at_node(&self.displacement, node), row.normal);
+            // A mean is one of coefficients.
+            let of_node =
+                |&(node, share): &(usize, f64)| share * if row.is_mean { dofs.coefficient(node, at) } else { at(node) };
+            row.ends.iter().map(of_node).sum()
         };
         let travelled = |row: &ContactRow| {
             let approach = self.model.obstacles()[row.obstacle].approach();

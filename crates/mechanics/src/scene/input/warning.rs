@@ -64,6 +64,78 @@ pub enum Warning {
         /// Number of the obstacle, from 0.
         obstacle: usize,
     },
+    /// Nothing of two boundaries faces the other.
+    #[error(
+        "{obstacle}: no facet of `{boundary}` faces `{other}` within reach: both bodies are solved without this contact; check the \
+         boundaries, the approach direction and `reach`"
+    )]
+    NoFacingFacet {
+        /// Its place in the scene, as `obstacles[0]`.
+        obstacle: String,
+        /// Name of the boundary that would carry the rows.
+        boundary: String,
+        /// Name of the boundary of the other body.
+        other: String,
+    },
+    /// Two boundaries cover each other only in part.
+    #[error(
+        "{obstacle}: of `{boundary}` {:.1} % face `{other}`, and of `{other}` {:.1} % face `{boundary}`: where nothing faces them, the \
+         bodies can go through each other; name boundaries that contain the whole contact",
+        100.0 * share, 100.0 * of_other
+    )]
+    PartlyCovered {
+        /// Its place in the scene, as `obstacles[0]`.
+        obstacle: String,
+        /// Name of the boundary that carries the rows.
+        boundary: String,
+        /// Name of the boundary of the other body.
+        other: String,
+        /// Covered share of the area of the carrying boundary.
+        share: f64,
+        /// Covered share of the area of the other boundary.
+        of_other: f64,
+    },
+    /// Facets that cut the corner of a curve are off by a large part of the gap.
+    #[error(
+        "{obstacle}: facets stand for curves and miss them by up to {sag:.2e}, the largest gap is {gap:.2e}: gaps are wrong by as much; \
+         give the known distance as `fit`, take quadratic elements, or a finer mesh"
+    )]
+    Sag {
+        /// Its place in the scene, as `obstacles[0]`.
+        obstacle: String,
+        /// Largest distance of a facet from the curve for which it stands, in length.
+        sag: f64,
+        /// Largest gap of a row, in length.
+        gap: f64,
+    },
+    /// The other boundary is much coarser than the one that carries the rows.
+    #[error(
+        "{obstacle}: the facets of `{other}` are {ratio:.1} times as long as those of `{boundary}`: between them the pressure has waves; \
+         refine `{other}`"
+    )]
+    CoarseMaster {
+        /// Its place in the scene, as `obstacles[0]`.
+        obstacle: String,
+        /// Name of the boundary that carries the rows.
+        boundary: String,
+        /// Name of the boundary of the other body.
+        other: String,
+        /// Length of its facets over the length of those that carry rows.
+        ratio: f64,
+    },
+    /// The meshes lie otherwise than the fit says.
+    #[error(
+        "{obstacle}: the meshes lie {differs:.2e} away from the fit {fit:.2e} (interference is negative): the fit counts; check its value, \
+         and that both boundaries are meant"
+    )]
+    FitDiffers {
+        /// Its place in the scene, as `obstacles[0]`.
+        obstacle: String,
+        /// Largest difference of the distance of the meshes and the fit, in length.
+        differs: f64,
+        /// The gap of the fit, in length.
+        fit: f64,
+    },
     /// Most candidates of an obstacle are held by supports.
     #[error(
         "{held} of {of} nodes that may touch obstacles[{obstacle}] are held in all directions by supports: the obstacle cannot press on \
@@ -163,6 +235,11 @@ impl Warning {
             Warning::StiffnessJump { .. } => "stiffness-jump",
             Warning::UnitOfYoung { .. } => "unit-of-young",
             Warning::NoContactRow { .. } => "no-contact-row",
+            Warning::NoFacingFacet { .. } => "no-facing-facet",
+            Warning::PartlyCovered { .. } => "partly-covered",
+            Warning::Sag { .. } => "sag",
+            Warning::CoarseMaster { .. } => "coarse-master",
+            Warning::FitDiffers { .. } => "fit-differs",
             Warning::HeldCandidates { .. } => "held-candidates",
             Warning::DoubledObstacle { .. } => "doubled-obstacle",
             Warning::LoadOnSupport { .. } => "load-on-support",

@@ -65,7 +65,7 @@ impl Scene {
         let path = |index: usize| format!("obstacles[{index}]");
         let mut obstacles = Vec::with_capacity(self.obstacles.len() + further.len());
         for (index, spec) in self.obstacles.iter().enumerate() {
-            obstacles.push(PlacedObstacle::of_scene(spec, &path(index), &body, self.files())?);
+            obstacles.push(PlacedObstacle::of_scene(spec, &path(index), &body, &dofs, self.files())?);
         }
         for (boundary, obstacle) in further {
             let path = path(obstacles.len());

@@ -338,9 +338,9 @@ impl Model {
         let dimension = self.body().dimension();
         let mut forces = vec![0.0; self.parts.dofs.nodal_count()];
         for (row, lambda) in self.rows.iter().zip(multiplier) {
-            for (node, sign) in row.ends() {
+            for &(node, share) in &row.ends {
                 let entries = &mut forces[dimension * node..dimension * (node + 1)];
-                entries.iter_mut().zip(row.normal).for_each(|(entry, component)| *entry += sign * lambda * component);
+                entries.iter_mut().zip(row.normal).for_each(|(entry, component)| *entry += share * lambda * component);
             }
         }
         self.parts.dofs.basis.scatter(&mut forces, dimension);

@@ -4,20 +4,20 @@ use std::collections::BTreeMap;
 
 use super::parts::Parts;
 use crate::error::Error;
-use crate::fem::assembly::DofMap;
 use crate::fem::geometry::dot;
 use crate::scene::Warning;
-use crate::scene::input::entry::{COORDINATE_ROUNDING, finite, point, refused, wrong};
+use crate::scene::input::entry::{COORDINATE_ROUNDING, finite, point, wrong};
 use crate::scene::input::obstacle::ObstacleRow;
 use signorini_qp::SparseMatrix;
 
-/// One contact row: `normal . u <= gap` at a node, or `normal . (u - u_partner) <= gap` between two nodes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// One contact row: `normal . sum(share * u) <= gap` over its ends. Against a rigid obstacle its node is the only end.
+#[derive(Clone, Debug, PartialEq)]
 pub struct ContactRow {
     /// Index of the node in the mesh, from 0.
     pub node: usize,
-    /// Index of the node opposite to it, if the obstacle is another body.
-    pub partner: Option<usize>,
+    /// The nodes that the row couples, each as `(node, share)`, its own first, with dimensionless shares that add up to 1 on its own body
+    /// and to -1 on another body: 1 and -1 for a pair of nodes.
+    pub ends: Vec<(usize, f64)>,
     /// The obstacle, numbered from 0 in the order of the scene.
     pub obstacle: usize,
     /// Dimensionless unit vector [x, y, z] into the obstacle; zero beyond the dimension of the model.
@@ -31,6 +31,8 @@ pub struct ContactRow {
     /// Integral of the node's shape function over the candidate boundary, in area: thickness, cross-section or circumference included. On
     /// quadratic faces in space the shape function is one with a positive integral.
     pub tributary_area: f64,
+    /// `true` if the row holds means over its area, between meshes that do not match; `false` if it holds the values at its nodes.
+    pub is_mean: bool,
     /// Outward unit normal [x, y, z] of the body at the node: the mean over the facets around it; zero if these cancel.
     pub outward: [f64; 3],
 }
@@ -43,9 +45,12 @@ impl ContactRow {
         if facing > 0.0 { self.tributary_area * facing.min(1.0) } else { self.tributary_area }
     }
 
-    /// The nodes that the row couples: its own with the sign 1, and the partner with -1.
-    pub fn ends(&self) -> impl Iterator<Item = (usize, f64)> {
-        [(Some(self.node), 1.0), (self.partner, -1.0)].into_iter().filter_map(|(node, sign)| Some((node?, sign)))
+    /// Index of the node opposite to it, if the row couples a pair of nodes.
+    pub fn partner(&self) -> Option<usize> {
+        match self.ends[..] {
+            [_, (partner, -1.0)] => Some(partner),
+            _ => None,
+        }
     }
 }
 
@@ -75,24 +80,24 @@ pub(crate) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
                            approach direction and its radius";
             return Err(wrong(format!("obstacles[{index}].force"), message));
         }
+        warnings.extend(parts.obstacles[index].warnings().iter().cloned());
         if found.is_empty() {
             warnings.push(Warning::NoContactRow { obstacle: index });
         }
-        let by_node: BTreeMap<usize, ContactRow> = match dofs.basis.is_nodal() {
+        let by_node: BTreeMap<usize, f64> = match dofs.basis.is_nodal() {
             true => BTreeMap::new(),
-            false => found.iter().map(|row| (row.node, *row)).collect(),
+            false => found.iter().map(|row| (row.node, row.gap)).collect(),
         };
         for row in found {
-            check_pair(dofs, &by_node, &row)?;
             let mut free = Vec::new();
             // Beyond the rim of the obstacle its gap is continued with the value at the node.
-            let mut remaining =
-                dofs.coefficient(row.node, |node| by_node.get(&node).map_or(row.gap, |other| other.gap));
-            for (node, sign) in row.ends() {
+            let value = |node: usize| by_node.get(&node).copied().unwrap_or(row.gap);
+            let mut remaining = if row.is_mean { row.gap } else { dofs.coefficient(row.node, value) };
+            for &(node, share) in &row.ends {
                 let along = dofs.along(node, &row.normal[..dimension]);
                 let (entries, prescribed) = parts.unknowns.combination(&along.free);
-                remaining -= sign * (along.prescribed + prescribed);
-                free.extend(entries.into_iter().map(|(column, component)| (rows.len(), column, sign * component)));
+                remaining -= share * (along.prescribed + prescribed);
+                free.extend(entries.into_iter().map(|(column, component)| (rows.len(), column, share * component)));
             }
             if let Some(travel) = travel {
                 free.push((rows.len(), travel, dot(row.normal, parts.obstacles[index].approach())));
@@ -121,29 +126,12 @@ fn of_obstacle(parts: &Parts, index: usize, scene_gap: f64) -> Result<Vec<Contac
             wrong(format!("obstacles[{index}]"), message)
         })?;
         let Some(ObstacleRow { normal, gap }) = found else { continue };
-        let (partner, outward) = (obstacle.partner(candidate), obstacle.outward(candidate));
+        let (facing, outward) = (obstacle.facing(candidate), obstacle.outward(candidate));
         let outward = parts.symmetry.of_whole(&at, outward);
-        rows.push(ContactRow { node, partner, obstacle: index, normal, gap, tributary_area, outward });
+        let ends = facing.map_or_else(|| vec![(node, 1.0)], |facing| facing.ends.clone());
+        let mean = facing.and_then(|facing| facing.area);
+        let (tributary_area, is_mean) = (mean.unwrap_or(tributary_area), mean.is_some());
+        rows.push(ContactRow { node, ends, obstacle: index, normal, gap, tributary_area, is_mean, outward });
     }
     Ok(rows)
-}
-
-/// Checks that the node opposite to a mid-side node is a mid-side node too, between the nodes opposite to the ends of its edge.
-fn check_pair(dofs: &DofMap, by_node: &BTreeMap<usize, ContactRow>, row: &ContactRow) -> Result<(), Error> {
-    let Some(partner) = row.partner.filter(|_| !dofs.basis.is_nodal()) else { return Ok(()) };
-    let across = |end: usize| by_node.get(&end).and_then(|row| row.partner);
-    let fits = match (dofs.basis.ends(row.node), dofs.basis.ends(partner)) {
-        (None, None) => true,
-        (Some(own), Some([a, b])) => [[Some(a), Some(b)], [Some(b), Some(a)]].contains(&own.map(across)),
-        _ => false,
-    };
-    if fits {
-        return Ok(());
-    }
-    let message = format!(
-        "nodes {} and {partner} lie across each other, but do not both lie in the middle of edges that do; quadratic faces of two \
-         bodies must match, edge for edge",
-        row.node
-    );
-    Err(refused("unpaired-nodes", format!("obstacles[{}]", row.obstacle), message))
 }

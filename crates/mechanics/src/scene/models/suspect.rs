@@ -104,8 +104,7 @@ fn doubled_obstacles(parts: &Parts, rows: &[ContactRow]) -> Vec<Warning> {
     let mut kinds_of: Vec<Vec<usize>> = vec![Vec::new(); parts.obstacles.len()];
     for row in sorted {
         let is_near = |other: &&&ContactRow| other.node == row.node && row.gap - other.gap <= rounding;
-        let is_same =
-            |other: &ContactRow| other.partner == row.partner && dot(other.normal, row.normal) > 1.0 - PARALLEL;
+        let is_same = |other: &ContactRow| other.ends == row.ends && dot(other.normal, row.normal) > 1.0 - PARALLEL;
         let same = different.iter().rev().take_while(is_near).position(|other| is_same(other));
         let kind = match same {
             Some(back) => different.len() - 1 - back,

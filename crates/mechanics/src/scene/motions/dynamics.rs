@@ -172,8 +172,7 @@ impl Scene {
 
 /// The mass of the nodes of a model, in one of its forms; the lower triangle.
 fn nodal_mass_of(model: &Model, form: MassForm) -> Result<SparseMatrix, Error> {
-    let contact_nodes: Vec<usize> =
-        model.rows().iter().flat_map(|row| row.ends().collect::<Vec<_>>()).map(|(node, _)| node).collect();
+    let contact_nodes: Vec<usize> = model.rows().iter().flat_map(|row| row.ends.iter().map(|end| end.0)).collect();
     nodal_mass(model.body(), form, &contact_nodes).map_err(|error| match error {
         Error::Mesh { message } => wrong("body", message),
         other => located(other, "material."),
@@ -406,7 +405,7 @@ fn deepest(model: &Model, displacement: &[f64]) -> Option<Error> {
     if depth <= COORDINATE_ROUNDING * model.mesh().size() {
         return None;
     }
-    let row = model.rows()[row];
+    let row = &model.rows()[row];
     let at = point(&model.mesh().nodes()[row.node][..model.mesh().dimension()]);
     let message = format!(
         "node {} at {at} starts {depth:.3e} inside obstacles[{}]; lift the body, move the obstacle, or set \

@@ -88,10 +88,10 @@ impl MovingSupports {
         let parts = self.mass.mul_transposed(&acceleration).into_iter().zip(&self.holding).zip(self.loads.mean(&loads));
         forces.iter_mut().zip(parts).for_each(|(force, ((inertia, held), load))| *force += inertia + held - load);
         for (row, lambda) in model.rows().iter().zip(multiplier) {
-            for (node, sign) in row.ends() {
+            for &(node, share) in &row.ends {
                 let Ok(place) = self.nodes.binary_search(&node) else { continue };
                 let of_node = &mut forces[dimension * place..dimension * (place + 1)];
-                of_node.iter_mut().zip(row.normal).for_each(|(force, normal)| *force -= sign * lambda * normal);
+                of_node.iter_mut().zip(row.normal).for_each(|(force, normal)| *force -= share * lambda * normal);
             }
         }
         move |node| {

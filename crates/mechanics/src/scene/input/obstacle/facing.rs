@@ -1,15 +1,18 @@
-//! The surface of another body, node to node: n . (u - u_partner) <= gap.
+//! The surface of another body: n . (u - u_partner) <= gap for nodes that lie opposite each other, or means over segments.
+
+use std::collections::HashMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::pairs::Pair;
+use super::mortar;
+use super::pairs::{Between, Facing};
 use super::shape::{About, Geometry, ObstacleShape, Site};
 use crate::error::Error;
 use crate::fem::assembly::node_normals;
 use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
 use crate::fem::{Boundary, ElasticBody, FacetKind};
-use crate::scene::input::entry::{PLACE_TOLERANCE, boundary, point, refused, wrong};
+use crate::scene::input::entry::{PLACE_TOLERANCE, boundary, number, point, refused, wrong};
 use crate::scene::input::schema::approach::Rule;
 
 /// Allowed lateral offset of a partner, in units of its distance: at the end of a curved boundary only the facets on one side give the
@@ -21,21 +24,85 @@ const ASLANT: f64 = 0.2;
 /// edge of a facet than this share of the edge counts as on the edge.
 const SAME_PLACE: f64 = 1e-3;
 
-/// The surface of another elastic body: every candidate lies opposite one of its nodes.
+/// The surface of another elastic body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FacingSpec {
     /// The boundary of the other body, as `name.boundary`.
     pub boundary: String,
+    /// How rows are made: between pairs of nodes, or as means over segments of both meshes.
+    #[serde(default, skip_serializing_if = "RowsSpec::is_auto")]
+    pub rows: RowsSpec,
+    /// The boundary that carries the rows if they are means.
+    #[serde(default, skip_serializing_if = "SideSpec::is_auto")]
+    pub side: SideSpec,
+    /// The largest distance, positive, at which the surfaces get rows if they are means; without it any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub reach: Option<f64>,
+    /// The distance of the surfaces, instead of the distance that the meshes have.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fit: Option<FitSpec>,
+}
+
+/// The kind of the rows between two bodies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum RowsSpec {
+    /// Pairs if the nodes of both boundaries pair up, else means.
+    #[default]
+    Auto,
+    /// Each node of the boundary lies opposite one node of the other.
+    Pairs,
+    /// Means over the area of each node of one boundary: the meshes need not match.
+    Mortar,
+}
+
+/// The boundary that carries the rows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SideSpec {
+    /// That of the softer body, if Young's moduli differ by more than a factor of 2; else the one with the smaller facets.
+    #[default]
+    Auto,
+    /// The boundary of the obstacle in the scene.
+    This,
+    /// The boundary of the other body.
+    Other,
+}
+
+/// How two bodies fit before they are deformed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FitSpec {
+    /// By how much the bodies overlap everywhere, in length, 0 or more: a press fit.
+    Interference(f64),
+    /// The distance of the bodies everywhere, in length, 0 or more.
+    Clearance(f64),
+}
+
+impl RowsSpec {
+    fn is_auto(&self) -> bool {
+        *self == RowsSpec::Auto
+    }
+}
+
+impl SideSpec {
+    fn is_auto(&self) -> bool {
+        *self == SideSpec::Auto
+    }
 }
 
 /// What the nodes of two boundaries must do, and the page that shows how.
-const PAIR_UP: &str = "the nodes of the two boundaries must pair up, as docs/assemblies.md shows";
+const PAIR_UP: &str = "for `\"rows\": \"pairs\"` the nodes of the two boundaries must pair up, as docs/assemblies.md shows; `mortar` takes any meshes";
+
+/// The code of boundaries whose nodes do not pair up.
+const UNPAIRED: &str = "unpaired-nodes";
 
 pub(super) const ABOUT: About = About { name: "body", dimensions: &[1, 2, 3] };
 
 impl ObstacleShape for FacingSpec {
-    /// Finds the node of the other body opposite to each candidate.
+    /// Finds the rows: pairs where all nodes pair up, else means.
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let mesh = site.body.mesh();
         let own = boundary(mesh, site.boundary, &format!("{}.boundary", site.obstacle))?;
@@ -44,20 +111,27 @@ impl ObstacleShape for FacingSpec {
             let message = format!("`{}` and `{}` belong to one body; take a boundary of another", own.name, other.name);
             return Err(wrong(site.field("boundary"), message));
         }
-        let (normals, partners) = (node_normals(site.body, own), node_normals(site.body, other));
-        let edges = shortest_edges(own, mesh.nodes());
-        let search = Search { site, own, other, partners, edges };
-        let candidates = site.candidates.iter().zip(&normals);
-        let pairs: Result<Vec<Pair>, Error> = candidates
-            .map(|(&(node, _), &(_, outward))| {
-                let way = search.nearest(node, outward)?;
-                search.check(node, &way)?;
-                Ok(way.pair)
-            })
-            .collect();
-        let pairs = pairs?;
-        search.check_others(&pairs)?;
-        Ok(Geometry::Pairs(pairs))
+        let fit = self.fit.map(|fit| fit.gap(&site.field("fit"))).transpose()?;
+        let reach = self.reach.map(|reach| site.positive("reach", reach)).transpose()?;
+        let is_pair = |error: &Error| matches!(error, Error::Refused { code: UNPAIRED, .. });
+        let pairs = match self.rows {
+            RowsSpec::Mortar => None,
+            RowsSpec::Pairs => Some(pairs(site, own, other)?),
+            RowsSpec::Auto => match pairs(site, own, other) {
+                Err(error) if is_pair(&error) && mesh.dimension() > 1 => None,
+                found => Some(found?),
+            },
+        };
+        let Some(pairs) = pairs else {
+            return Ok(Geometry::Body(mortar::between(site, [own, other], self.side, reach, fit)?));
+        };
+        let row = |(&(node, _), pair): (&(usize, f64), Pair)| {
+            let distance = fit.unwrap_or(pair.distance);
+            let ends = vec![(node, 1.0), (pair.partner, -1.0)];
+            Some(Facing { ends, normal: pair.normal, mean: pair.mean, distance, area: None })
+        };
+        let rows = site.candidates.iter().zip(pairs).map(row).collect();
+        Ok(Geometry::Body(Between { rows, is_swapped: false, warnings: Vec::new() }))
     }
 
     fn other_boundary(&self) -> Option<&str> {
@@ -65,8 +139,56 @@ impl ObstacleShape for FacingSpec {
     }
 }
 
+impl FitSpec {
+    /// The gap of all rows, in length.
+    fn gap(self, path: &str) -> Result<f64, Error> {
+        let (name, size, sense) = match self {
+            FitSpec::Interference(size) => ("interference", size, -1.0),
+            FitSpec::Clearance(size) => ("clearance", size, 1.0),
+        };
+        if size >= 0.0 && size.is_finite() {
+            return Ok(0.0 + sense * size);
+        }
+        Err(wrong(format!("{path}.{name}"), format!("{} is not allowed: a length is 0 or more", number(size))))
+    }
+}
+
+/// The node of the other body opposite to each candidate.
+///
+/// # Errors
+/// [`Error::Refused`] with [`UNPAIRED`] if a node has no node opposite to it.
+fn pairs(site: &Site, own: &Boundary, other: &Boundary) -> Result<Vec<Pair>, Error> {
+    let (normals, partners) = (node_normals(site.body, own), node_normals(site.body, other));
+    let edges = shortest_edges(own, site.body.mesh().nodes());
+    let search = Search { site, own, other, partners, edges };
+    let candidates = site.candidates.iter().zip(&normals);
+    let pairs: Result<Vec<Pair>, Error> = candidates
+        .map(|(&(node, _), &(_, outward))| {
+            let way = search.nearest(node, outward)?;
+            search.check(node, &way)?;
+            Ok(way.pair)
+        })
+        .collect();
+    let pairs = pairs?;
+    search.check_others(&pairs)?;
+    search.check_mid_sides(&pairs)?;
+    Ok(pairs)
+}
+
 fn unpaired(site: &Site, message: String) -> Error {
-    refused("unpaired-nodes", site.field("boundary"), message)
+    refused(UNPAIRED, site.field("boundary"), message)
+}
+
+/// The node of another body opposite to a candidate.
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    partner: usize,
+    /// Unit vector from the candidate's body into the other.
+    normal: [f64; 3],
+    /// Half way between the normals of both surfaces, from the candidate's body into the other.
+    mean: [f64; 3],
+    /// Distance along the normal from the candidate to its partner, in length.
+    distance: f64,
 }
 
 /// The body to which a boundary belongs.
@@ -158,6 +280,31 @@ impl Search<'_> {
                 site.approach.name()
             );
             return Err(wrong(format!("{}.approach", site.obstacle), message));
+        }
+        Ok(())
+    }
+
+    /// Checks that the node opposite to a mid-side node with a coefficient is one too, between the nodes opposite to the ends of its edge.
+    fn check_mid_sides(&self, pairs: &[Pair]) -> Result<(), Error> {
+        let basis = &self.site.dofs.basis;
+        if basis.is_nodal() {
+            return Ok(());
+        }
+        let partners: HashMap<usize, usize> =
+            self.site.candidates.iter().zip(pairs).map(|(&(node, _), pair)| (node, pair.partner)).collect();
+        for (&(node, _), &Pair { partner, .. }) in self.site.candidates.iter().zip(pairs) {
+            let across = |end: usize| partners.get(&end).copied();
+            let fits = match (basis.ends(node), basis.ends(partner)) {
+                (None, None) => true,
+                (Some(own), Some([a, b])) => [[Some(a), Some(b)], [Some(b), Some(a)]].contains(&own.map(across)),
+                _ => false,
+            };
+            if !fits {
+                let message = format!(
+                    "nodes {node} and {partner} lie across each other, but do not both lie in the middle of edges that do; {PAIR_UP}"
+                );
+                return Err(unpaired(self.site, message));
+            }
         }
         Ok(())
     }

@@ -6,6 +6,7 @@ mod cylinder;
 mod facing;
 mod graph;
 mod height_map;
+mod mortar;
 mod pairs;
 mod parabola;
 mod patch;
@@ -68,7 +69,7 @@ pub enum ShapeSpec {
     Torus(TorusSpec),
     /// In space: a closed surface of triangles from a file.
     Surface(SurfaceSpec),
-    /// The surface of another elastic body, node to node.
+    /// The surface of another elastic body.
     Body(FacingSpec),
 }
 

@@ -1,23 +1,38 @@
-//! Node pairs: the contact rows against another body.
+//! The contact rows against another body.
 
 use super::row::ObstacleRow;
 use crate::fem::geometry::dot;
+use crate::scene::Warning;
 
-/// The node of another body opposite to a candidate.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Pair {
-    pub partner: usize,
+/// The row of a candidate against another body: the node opposite to it, or the mean over its area.
+#[derive(Clone, Debug)]
+pub(crate) struct Facing {
+    /// The nodes that it couples, as in a [`ContactRow`](crate::scene::ContactRow).
+    pub ends: Vec<(usize, f64)>,
     /// Unit vector from the candidate's body into the other.
     pub normal: [f64; 3],
     /// Half way between the normals of both surfaces, from the candidate's body into the other.
     pub mean: [f64; 3],
-    /// Distance along the normal from the candidate to its partner, in length.
+    /// Distance along the normal to the other body, in length.
     pub distance: f64,
+    /// The area over which the row is a mean, in area; `None` for a pair of nodes.
+    pub area: Option<f64>,
 }
 
-impl Pair {
+impl Facing {
     /// The row of the candidate, with the other body shifted by `gap` along the unit vector `approach`.
     pub fn row(&self, gap: f64, approach: [f64; 3]) -> ObstacleRow {
         ObstacleRow { normal: self.normal, gap: self.distance + gap * dot(self.normal, approach) }
     }
+}
+
+/// The rows between two bodies.
+#[derive(Clone, Debug)]
+pub(crate) struct Between {
+    /// The row of each candidate of the boundary that carries the rows; `None` where nothing faces it.
+    pub rows: Vec<Option<Facing>>,
+    /// The boundary of the other body carries the rows, so that they lead against the approach direction.
+    pub is_swapped: bool,
+    /// What the search for rows noticed.
+    pub warnings: Vec<Warning>,
 }

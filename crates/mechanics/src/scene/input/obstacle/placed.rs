@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
+use super::pairs::Facing;
 use super::row::{Obstacle, ObstacleRow};
 use super::shape::{Geometry, Site};
 use crate::error::Error;
-use crate::fem::assembly::{node_normals, tributary_areas};
+use crate::fem::assembly::{DofMap, node_normals, tributary_areas};
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::length;
+use crate::scene::Warning;
 use crate::scene::input::entry::{boundary, finite, number, wrong};
 use crate::scene::input::files::Files;
 use crate::scene::input::schema::approach::Rule;
@@ -39,8 +41,14 @@ pub struct PlacedObstacle {
 
 impl PlacedObstacle {
     /// Checks the obstacle at the JSON path `path`.
-    pub(crate) fn of_scene(spec: &ObstacleSpec, path: &str, body: &ElasticBody, files: Files) -> Result<Self, Error> {
-        let (candidates, outward) = candidates(body, &spec.boundary, &format!("{path}.boundary"))?;
+    pub(crate) fn of_scene(
+        spec: &ObstacleSpec,
+        path: &str,
+        body: &ElasticBody,
+        dofs: &DofMap,
+        files: Files,
+    ) -> Result<Self, Error> {
+        let (mut candidates, mut outward) = candidates(body, &spec.boundary, &format!("{path}.boundary"))?;
         let (gap, force) = pressing(spec, path)?;
         let dimension = body.dimension();
         let (axis, _) = spec.approach.axis();
@@ -60,15 +68,22 @@ impl PlacedObstacle {
             approach: spec.approach,
             rule: spec.rule,
             body,
+            dofs,
             candidates: &candidates,
             files,
         };
-        let (approach, geometry) = (site.direction(), shape.place(&site)?);
-        if force.is_some() && matches!(geometry, Geometry::Pairs(_)) {
+        let (mut approach, geometry) = (site.direction(), shape.place(&site)?);
+        if force.is_some() && matches!(geometry, Geometry::Body(_)) {
             let message = "another body is pressed by its own loads; give it one instead";
             return Err(wrong(format!("{path}.force"), message));
         }
-        let (boundary, rule) = (spec.boundary.clone(), Some(spec.rule));
+        let (mut boundary, rule) = (spec.boundary.clone(), Some(spec.rule));
+        if let (Geometry::Body(between), Some(other)) = (&geometry, shape.other_boundary())
+            && between.is_swapped
+        {
+            (candidates, outward) = self::candidates(body, other, path)?;
+            (boundary, approach) = (other.into(), approach.map(|part| 0.0 - part));
+        }
         Ok(PlacedObstacle { boundary, candidates, outward, approach, dimension, geometry, rule, gap, force })
     }
 
@@ -97,7 +112,7 @@ impl PlacedObstacle {
     pub fn rigid(&self) -> Option<&dyn Obstacle> {
         match &self.geometry {
             Geometry::Rigid(obstacle) => Some(obstacle.as_ref()),
-            Geometry::Pairs(_) => None,
+            Geometry::Body(_) => None,
         }
     }
 
@@ -136,11 +151,19 @@ impl PlacedObstacle {
         self.rigid().map_or_else(Vec::new, |obstacle| obstacle.outline(gap, segments))
     }
 
-    /// The node of another body opposite to the candidate of this index; `None` if the obstacle is rigid.
-    pub(crate) fn partner(&self, candidate: usize) -> Option<usize> {
+    /// The row of the candidate of this index against another body; `None` if the obstacle is rigid, or nothing faces the candidate.
+    pub(crate) fn facing(&self, candidate: usize) -> Option<&Facing> {
         match &self.geometry {
-            Geometry::Pairs(pairs) => pairs.get(candidate).map(|pair| pair.partner),
+            Geometry::Body(between) => between.rows.get(candidate)?.as_ref(),
             Geometry::Rigid(_) => None,
+        }
+    }
+
+    /// What the search for the rows against another body noticed.
+    pub(crate) fn warnings(&self) -> &[Warning] {
+        match &self.geometry {
+            Geometry::Body(between) => &between.warnings,
+            Geometry::Rigid(_) => &[],
         }
     }
 
@@ -154,7 +177,7 @@ impl PlacedObstacle {
     pub(crate) fn surface_normal(&self, candidate: usize, node: [f64; 3], gap: f64) -> Option<[f64; 3]> {
         match &self.geometry {
             Geometry::Rigid(obstacle) => obstacle.surface_normal(node, gap),
-            Geometry::Pairs(pairs) => pairs.get(candidate).map(|pair| pair.mean),
+            Geometry::Body(_) => self.facing(candidate).map(|facing| facing.mean),
         }
     }
 
@@ -165,7 +188,7 @@ impl PlacedObstacle {
     pub(crate) fn row(&self, candidate: usize, node: [f64; 3], gap: f64) -> Result<Option<ObstacleRow>, String> {
         let row = match &self.geometry {
             Geometry::Rigid(obstacle) => obstacle.shifted_row(node, gap).map_err(|reason| away(&reason))?,
-            Geometry::Pairs(pairs) => pairs.get(candidate).map(|pair| pair.row(gap, self.approach)),
+            Geometry::Body(_) => self.facing(candidate).map(|facing| facing.row(gap, self.approach)),
         };
         let Some(row) = row else { return Ok(None) };
         if row.gap.is_nan() {

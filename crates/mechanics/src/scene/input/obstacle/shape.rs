@@ -5,11 +5,12 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::pairs::Pair;
+use super::pairs::Between;
 use super::row::Obstacle;
 use super::ruled::{RigidSurface, Ruled};
 use super::surface::Local;
 use crate::error::Error;
+use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::along_axis;
 use crate::scene::input::entry::{COORDINATE_ROUNDING, positive, vector, wrong};
@@ -51,8 +52,8 @@ pub(crate) trait ObstacleShape {
 pub(crate) enum Geometry {
     /// A rigid surface.
     Rigid(Arc<dyn Obstacle>),
-    /// The nodes of another body, in the order of the candidates.
-    Pairs(Vec<Pair>),
+    /// Another body.
+    Body(Between),
 }
 
 impl Geometry {
@@ -73,6 +74,7 @@ pub(crate) struct Site<'a> {
     pub approach: Approach,
     pub rule: Rule,
     pub body: &'a ElasticBody,
+    pub dofs: &'a DofMap,
     /// The candidate nodes with their tributary areas.
     pub candidates: &'a [(usize, f64)],
     pub files: Files<'a>,

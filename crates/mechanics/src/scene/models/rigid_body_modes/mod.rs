@@ -70,9 +70,9 @@ impl RigidBodyModes {
     /// The component of each unit motion along a contact row, positive towards closing.
     fn in_row(&self, nodes: &[[f64; 3]], row: &ContactRow) -> Vec<f64> {
         let mut components = vec![0.0; 6 * self.bodies.len()];
-        for (node, sign) in row.ends() {
+        for &(node, share) in &row.ends {
             let of_node = self.along(node, nodes[node], row.normal);
-            components.iter_mut().zip(of_node).for_each(|(component, part)| *component += sign * part);
+            components.iter_mut().zip(of_node).for_each(|(component, part)| *component += share * part);
         }
         if let Some(place) = self.obstacles.iter().position(|&obstacle| obstacle == row.obstacle) {
             let body = self.bodies.len() - self.obstacles.len() + place;

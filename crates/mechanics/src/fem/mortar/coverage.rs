@@ -1,0 +1,175 @@
+//! The covered part of a surface, facet by facet, and the functions of the multipliers on it.
+
+use nalgebra::DMatrix;
+
+use super::facet::{Facet, SharedPoint};
+use crate::fem::element::PerNode;
+
+/// A node with less than this share of its area covered carries no row.
+const LEAST_COVERED: f64 = 0.1;
+
+/// A facet covered by less than this share of its area counts as not covered.
+const NO_COVER: f64 = 1e-10;
+
+/// Most nodes of a facet.
+const MOST: usize = 8;
+
+/// The integrals over the covered part of one slave facet.
+pub(super) struct Covered<'a> {
+    pub facet: &'a Facet<'a>,
+    /// Its covered area, and its whole area.
+    pub area: f64,
+    pub whole: f64,
+    /// Integrals of the functions of its nodes over the covered part, and over all of it.
+    functions: [f64; MOST],
+    full: [f64; MOST],
+    /// Integrals of their products.
+    products: [[f64; MOST]; MOST],
+    /// For each node of the other surface: the integrals of the products of its function with theirs.
+    with_master: Vec<(usize, [f64; MOST])>,
+}
+
+impl<'a> Covered<'a> {
+    pub fn new(facet: &'a Facet<'a>) -> Self {
+        Covered {
+            facet,
+            area: 0.0,
+            whole: 0.0,
+            functions: [0.0; MOST],
+            full: [0.0; MOST],
+            products: [[0.0; MOST]; MOST],
+            with_master: Vec::new(),
+        }
+    }
+
+    /// Adds a point of the whole facet, with the values of its functions there.
+    pub fn add_whole(&mut self, shape: &PerNode<f64>, area: f64) {
+        self.whole += area;
+        self.full.iter_mut().zip(shape).for_each(|(sum, value)| *sum += area * value);
+    }
+
+    /// Adds a shared point.
+    pub fn add(&mut self, point: &SharedPoint, area: f64, shape: &PerNode<f64>, master: &Facet) {
+        let count = self.facet.nodes.len();
+        self.area += area;
+        for j in 0..count {
+            self.functions[j] += area * shape[j];
+            for k in 0..count {
+                self.products[j][k] += area * shape[j] * shape[k];
+            }
+        }
+        let other = (master.reference().shape)(point.master);
+        for (&node, value) in master.nodes.iter().zip(other) {
+            let place = match self.with_master.iter().position(|entry| entry.0 == node) {
+                Some(place) => place,
+                None => {
+                    self.with_master.push((node, [0.0; MOST]));
+                    self.with_master.len() - 1
+                }
+            };
+            self.with_master[place].1.iter_mut().zip(shape).for_each(|(sum, own)| *sum += area * own * value);
+        }
+    }
+
+    pub fn is_covered(&self) -> bool {
+        self.area > NO_COVER * self.whole
+    }
+
+    /// The weights of the dual functions of the kept nodes: `psi_j = sum_k A_jk phi_k`. A node that is dropped hands its function over
+    /// to the kept nodes of the facet, in equal parts.
+    ///
+    /// Without dropped nodes `integral psi_j phi_k = delta_jk integral phi_j`, and `sum_j psi_j = 1` always.
+    fn dual(&self, is_kept: &[bool]) -> DMatrix<f64> {
+        let count = is_kept.len();
+        let kept: Vec<usize> = (0..count).filter(|&j| is_kept[j]).collect();
+        let mut weights = DMatrix::zeros(count, count);
+        if let [only] = kept[..] {
+            weights.row_mut(only).fill(1.0);
+            return weights;
+        }
+        let products = DMatrix::from_fn(count, count, |j, k| self.products[j][k]);
+        let scaled = DMatrix::from_fn(count, count, |j, k| if j == k { self.functions[j] } else { 0.0 });
+        // Products are symmetric: the transposed weights solve products * weights' = diagonal of the integrals.
+        let Some(transposed) = products.full_piv_lu().solve(&scaled) else { return weights };
+        for k in 0..count {
+            let dropped: f64 = (0..count).filter(|&d| !is_kept[d]).map(|d| transposed[(k, d)]).sum();
+            kept.iter().for_each(|&j| weights[(j, k)] = transposed[(k, j)] + dropped / kept.len() as f64);
+        }
+        weights
+    }
+}
+
+/// The parts of the rows of all kept nodes of a surface, by node.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Part {
+    /// The area of the node.
+    pub area: f64,
+    /// The integral of its dual function with the function of a slave node, and with that of a master node.
+    pub slave: Vec<(usize, f64)>,
+    pub master: Vec<(usize, f64)>,
+}
+
+fn add(list: &mut Vec<(usize, f64)>, node: usize, value: f64) {
+    match list.iter_mut().find(|entry| entry.0 == node) {
+        Some(entry) => entry.1 += value,
+        None => list.push((node, value)),
+    }
+}
+
+/// The nodes that carry rows, from all facets of the surface: of those that `may_carry` one, the nodes of which enough is covered, and
+/// the best covered node of each covered facet that would have none.
+pub(super) fn kept(covered: &[Covered], nodes: usize, may_carry: &dyn Fn(usize) -> bool) -> Vec<bool> {
+    let (mut area, mut full) = (vec![0.0; nodes], vec![0.0; nodes]);
+    for facet in covered {
+        for (local, &node) in facet.facet.nodes.iter().enumerate() {
+            area[node] += facet.functions[local];
+            full[node] += facet.full[local];
+        }
+    }
+    let largest = full.iter().fold(0.0, |largest: f64, full| largest.max(*full));
+    let share = |node: usize| if full[node] > NO_COVER * largest { area[node] / full[node] } else { 0.0 };
+    let mut kept: Vec<bool> = (0..nodes).map(|node| may_carry(node) && share(node) > LEAST_COVERED).collect();
+    for facet in covered.iter().filter(|facet| facet.is_covered()) {
+        let nodes = facet.facet.nodes;
+        if nodes.iter().any(|&node| kept[node]) {
+            continue;
+        }
+        let best = nodes.iter().filter(|&&node| may_carry(node)).max_by(|&&a, &&b| share(a).total_cmp(&share(b)));
+        if let Some(&best) = best.filter(|&&node| share(node) > 0.0) {
+            kept[best] = true;
+        }
+    }
+    kept
+}
+
+/// The parts of the rows, by node; `None` for nodes that carry none.
+pub(super) fn parts(covered: &[Covered], kept: &[bool]) -> Vec<Option<Part>> {
+    let mut parts: Vec<Option<Part>> = vec![None; kept.len()];
+    for facet in covered.iter().filter(|facet| facet.is_covered()) {
+        let nodes = facet.facet.nodes;
+        let is_kept: Vec<bool> = nodes.iter().map(|&node| kept[node]).collect();
+        let count = is_kept.iter().filter(|&&is_kept| is_kept).count();
+        if count == 0 {
+            continue;
+        }
+        let weights = facet.dual(&is_kept);
+        for j in (0..nodes.len()).filter(|&j| is_kept[j]) {
+            let part = parts[nodes[j]].get_or_insert_default();
+            for (k, &node) in nodes.iter().enumerate() {
+                // The dual functions see the own node, and what dropped nodes hand over.
+                let own = match (k == j, is_kept[k]) {
+                    (true, _) => facet.functions[k],
+                    (false, true) => continue,
+                    (false, false) => facet.functions[k] / count as f64,
+                };
+                part.area += own;
+                add(&mut part.slave, node, own);
+            }
+            for (node, with) in &facet.with_master {
+                let sum = (0..nodes.len()).map(|k| weights[(j, k)] * with[k]).sum();
+                add(&mut part.master, *node, sum);
+            }
+        }
+    }
+    parts
+}

@@ -1,0 +1,426 @@
+//! Rows between two surfaces whose meshes do not match: dual mortar elements, integrated segment by segment over the covered part.
+//!
+//! The slave surface carries a row at each of its nodes, with a dual function `psi_j` of the multiplier,
+//! `integral psi_j phi_k = delta_jk D_j`, and `D_j = integral phi_j`, all over the part of the slave surface that the master surface
+//! covers:
+//!
+//! ```text
+//! n_j . (u_j - sum_l P_jl u_l) <= g_j,    P_jl = (integral psi_j phi_l) / D_j,    sum_l P_jl = 1.
+//! ```
+//!
+//! A multiplier is a force; over `D_j` it is a pressure. A uniform pressure passes between any two meshes without error. A node of
+//! which less than a tenth is covered carries no row: its function goes to the other nodes of its facets, and its motion enters their
+//! rows. Functions of quadratic faces in space are those of the positive basis, because a uniform pressure has no force at the corners
+//! of the others.
+//!
+//! # Source
+//! B. I. Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989-1012 (dual functions); M. A. Puso, T. A. Laursen, J. Solberg, Comput. Methods Appl.
+//! Mech. Engrg. 197 (2008) 555-566 (segments of quadratic faces); T. Cichosz, M. Bischoff, Comput. Methods Appl. Mech. Engrg. 200 (2011)
+//! 1317-1332 (functions over the covered part); A. Popp, A. Seitz, M. W. Gee, W. A. Wall, Comput. Methods Appl. Mech. Engrg. 264 (2013)
+//! 67-80 (nodes that are dropped).
+
+mod coverage;
+mod face;
+mod facet;
+mod line;
+#[cfg(test)]
+mod tests;
+
+use coverage::{Covered, Part, kept, parts};
+use face::Projected;
+use facet::Facet;
+use signorini_qp::SparseMatrix;
+
+use crate::error::Error;
+use crate::fem::element::{FacetKind, PerNode, positive_coefficient, positive_functions};
+use crate::fem::formulation::Formulation;
+use crate::fem::geometry::{dot, length, minus, unit};
+use crate::fem::surface::Tree;
+
+/// A share below this is rounding of zero; one this close to 1 is 1.
+const ROUNDING: f64 = 1e-12;
+
+/// A facet whose covered area exceeds its area by more than this share lies behind several layers of the other surface.
+const TWICE: f64 = 1e-6;
+
+/// A surface of a body: facets of one kind.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceMesh<'a> {
+    /// Coordinates [x, y, z] of the nodes, in length; z = 0 in the plane.
+    pub nodes: &'a [[f64; 3]],
+    /// The kind of all facets: edges in the plane, faces in space.
+    pub kind: FacetKind,
+    /// The nodes of facet 0, then of facet 1, ..., indices from 0. The body lies to the left of an edge; from outside, the corners of a
+    /// face run counterclockwise.
+    pub facets: &'a [usize],
+}
+
+/// Two surfaces of different bodies that may touch, each with its own mesh.
+///
+/// ```
+/// use signorini_mechanics::fem::{FacetKind, Formulation, Mortar, SurfaceMesh};
+///
+/// // The lower side of an upper body: one edge. The upper side of a lower body: two edges.
+/// let upper = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
+/// let lower = [[1.0, -0.1, 0.0], [0.5, -0.1, 0.0], [0.0, -0.1, 0.0]];
+/// let slave = SurfaceMesh { nodes: &upper, kind: FacetKind::Line2, facets: &[0, 1] };
+/// let master = SurfaceMesh { nodes: &lower, kind: FacetKind::Line2, facets: &[0, 1, 1, 2] };
+/// let rows = Mortar::new(slave, master, Formulation::PlaneStrain { thickness: 1.0 }).rows()?;
+/// // Row 0 along -y: -u_y of node 0 of the upper body, and 3/4, 1/2, -1/4 of the lower nodes from left to right.
+/// let row: Vec<f64> = (0..10).map(|dof| rows.contact.column(dof).filter(|entry| entry.0 == 0).map(|entry| entry.1).sum()).collect();
+/// let expected = [0.0, -1.0, 0.0, 0.0, 0.0, -0.25, 0.0, 0.5, 0.0, 0.75];
+/// assert!(row.iter().zip(expected).all(|(value, expected)| (value - expected).abs() < 1e-15));
+/// assert!(rows.gap.iter().all(|gap| (gap - 0.1).abs() < 1e-15));
+/// # Ok::<(), signorini_mechanics::Error>(())
+/// ```
+#[derive(Clone, Copy)]
+pub struct Mortar<'a> {
+    slave: SurfaceMesh<'a>,
+    master: SurfaceMesh<'a>,
+    formulation: Formulation,
+    direction: Option<[f64; 3]>,
+    reach: f64,
+    may_carry: Option<&'a dyn Fn(usize) -> bool>,
+    has_coefficient: Option<&'a dyn Fn(usize) -> bool>,
+}
+
+/// The rows of a [`Mortar`] in the nodal displacements: `contact * [u_slave, u_master] <= gap`.
+#[derive(Clone, Debug)]
+pub struct MortarRows {
+    /// B, dimensionless: a row for each entry of `nodes`, `dim` columns for each node of the slave surface, then of the master surface.
+    pub contact: SparseMatrix,
+    /// The mean distance of the undeformed surfaces over the area of each row, in length; negative where they overlap.
+    pub gap: Vec<f64>,
+    /// The area of each row, positive: thickness or circumference included. A multiplier over it is a pressure.
+    pub area: Vec<f64>,
+    /// Dimensionless unit normal [x, y, z] of each row, from the slave body into the other.
+    pub normal: Vec<[f64; 3]>,
+    /// The node of the slave surface that carries each row, from 0.
+    pub nodes: Vec<usize>,
+}
+
+/// One row: `normal . (sum slave - sum master) <= gap`.
+#[derive(Clone, Debug)]
+pub(crate) struct MortarRow {
+    /// The slave node that carries it.
+    pub node: usize,
+    /// The coefficients of slave nodes with their shares, which add up to 1, and displacements of master nodes with theirs.
+    pub slave: Vec<(usize, f64)>,
+    pub master: Vec<(usize, f64)>,
+    pub normal: [f64; 3],
+    /// Half way between the normals of both surfaces, from the slave body into the other.
+    pub mean: [f64; 3],
+    pub gap: f64,
+    pub area: f64,
+}
+
+/// All rows with what the search for them found.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Found {
+    pub rows: Vec<MortarRow>,
+    /// Covered shares of the slave and the master surface.
+    pub covered: [f64; 2],
+    /// Slave nodes that are partly covered and carry no row.
+    pub dropped: usize,
+    /// The largest distance of a straight facet from the curve for which it stands, in length, by the angles of the normals around it.
+    pub sag: f64,
+}
+
+impl std::fmt::Debug for Mortar<'_> {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (slave, master) = (self.slave.facets.len(), self.master.facets.len());
+        write!(out, "Mortar({slave} and {master} nodes of facets, {:?})", self.formulation)
+    }
+}
+
+impl<'a> Mortar<'a> {
+    /// Rows at the nodes of `slave`, against `master`. Better on the softer body, and on the finer mesh if both are as soft.
+    pub fn new(slave: SurfaceMesh<'a>, master: SurfaceMesh<'a>, formulation: Formulation) -> Self {
+        let reach = f64::INFINITY;
+        Mortar { slave, master, formulation, direction: None, reach, may_carry: None, has_coefficient: None }
+    }
+
+    /// The same with all rows along `direction`, a unit vector [x, y, z] from the slave body into the other, instead of half way between
+    /// the normals of both surfaces.
+    pub fn along(self, direction: [f64; 3]) -> Self {
+        Mortar { direction: Some(direction), ..self }
+    }
+
+    /// The same without rows where the surfaces are farther apart than `reach`, in length.
+    pub fn within(self, reach: f64) -> Self {
+        Mortar { reach, ..self }
+    }
+
+    /// The same with rows only at slave nodes that may carry one.
+    pub(crate) fn carried_by(self, may_carry: &'a dyn Fn(usize) -> bool) -> Self {
+        Mortar { may_carry: Some(may_carry), ..self }
+    }
+
+    /// The same with coefficients of the positive basis at some of the mid-side nodes of slave faces in space; without this, at all.
+    pub(crate) fn with_coefficients(self, has_coefficient: &'a dyn Fn(usize) -> bool) -> Self {
+        Mortar { has_coefficient: Some(has_coefficient), ..self }
+    }
+
+    /// The rows in nodal displacements.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] for facets that do not fit the formulation, nodes that do not exist, and a surface that lies in several layers
+    /// before the other within reach.
+    pub fn rows(&self) -> Result<MortarRows, Error> {
+        let (found, dimension) = (self.found()?, self.formulation.dimension());
+        let first_of_master = self.slave.nodes.len();
+        let ends = self.ends_of_middles();
+        let mut entries = Vec::new();
+        for (index, row) in found.rows.iter().enumerate() {
+            let slave = row.slave.iter().flat_map(|&(node, share)| {
+                // A coefficient in nodal displacements.
+                let inverse = positive_coefficient(1.0, [0.0; 2]);
+                let [own, of_end] = match ends[node] {
+                    Some(_) => [inverse, positive_coefficient(0.0, [1.0, 0.0])],
+                    None => [1.0, 0.0],
+                };
+                let of_ends = ends[node].into_iter().flatten().map(move |end| (end, share * of_end));
+                std::iter::once((node, share * own)).chain(of_ends)
+            });
+            let master = row.master.iter().map(|&(node, share)| (first_of_master + node, -share));
+            for (node, share) in slave.chain(master) {
+                let parts = row.normal.iter().take(dimension).enumerate().filter(|part| *part.1 != 0.0);
+                entries.extend(parts.map(|(axis, part)| (index, dimension * node + axis, share * part)));
+            }
+        }
+        let columns = dimension * (first_of_master + self.master.nodes.len());
+        Ok(MortarRows {
+            contact: SparseMatrix::from_triplets(found.rows.len(), columns, &entries)?,
+            gap: found.rows.iter().map(|row| row.gap).collect(),
+            area: found.rows.iter().map(|row| row.area).collect(),
+            normal: found.rows.iter().map(|row| row.normal).collect(),
+            nodes: found.rows.iter().map(|row| row.node).collect(),
+        })
+    }
+
+    /// The rows in coefficients of slave nodes and displacements of master nodes.
+    ///
+    /// # Errors
+    /// As [`Mortar::rows`].
+    pub(crate) fn found(&self) -> Result<Found, Error> {
+        self.check()?;
+        let slave = facets(&self.slave);
+        let master = facets(&self.master);
+        let [own, others] =
+            [(&self.slave, &slave), (&self.master, &master)].map(|(surface, facets)| normals(surface, facets));
+        let covered = self.covered(&slave, &master, &own)?;
+        let carries = |node: usize| self.may_carry.is_none_or(|may_carry| may_carry(node));
+        let kept = kept(&covered, self.slave.nodes.len(), &carries);
+        let ends = self.ends_of_middles();
+        let parts = parts(&covered, &kept);
+        let rows: Vec<MortarRow> = parts
+            .into_iter()
+            .enumerate()
+            .filter_map(|(node, part)| self.row(node, part?, &own, &others, &ends))
+            .collect();
+        let touched: std::collections::HashSet<usize> = covered
+            .iter()
+            .filter(|facet| facet.is_covered())
+            .flat_map(|facet| facet.facet.nodes.iter().copied())
+            .collect();
+        let sum = |part: fn(&Covered) -> f64| covered.iter().map(part).sum::<f64>();
+        let area = sum(|facet| facet.area);
+        let of_master: f64 = master.iter().map(|facet| self.whole(facet)).sum();
+        let share = |of: f64| if of > 0.0 { area / of } else { 0.0 };
+        Ok(Found {
+            covered: [share(sum(|facet| facet.whole)), share(of_master)],
+            dropped: touched.len() - touched.iter().filter(|&&node| kept[node]).count(),
+            sag: facet::sag(&slave, &own).max(facet::sag(&master, &others)),
+            rows,
+        })
+    }
+
+    /// Checks that facets and formulation fit.
+    fn check(&self) -> Result<(), Error> {
+        for surface in [self.slave, self.master] {
+            let (reference, count) = (surface.kind.reference(), surface.kind.nodes());
+            let dimension = self.formulation.dimension();
+            if reference.dimension == 0 || reference.dimension + 1 != dimension {
+                let (facet, name) = (reference.name, self.formulation.name());
+                return Err(Error::Mesh { message: format!("facets {facet} are no surface of {name}") });
+            }
+            if surface.facets.len() % count != 0 {
+                let message = format!("{} nodes are no facets of {count} nodes each", surface.facets.len());
+                return Err(Error::Mesh { message });
+            }
+            if let Some(node) = surface.facets.iter().find(|&&node| node >= surface.nodes.len()) {
+                let message = format!("a facet names node {node}, but there are {} nodes", surface.nodes.len());
+                return Err(Error::Mesh { message });
+            }
+            if let Some(node) = surface.nodes.iter().position(|at| at.iter().any(|part| !part.is_finite())) {
+                return Err(Error::Mesh { message: format!("node {node} has a coordinate that is not finite") });
+            }
+        }
+        Ok(())
+    }
+
+    /// The ends of the edge of each slave node that has a coefficient.
+    fn ends_of_middles(&self) -> Vec<Option<[usize; 2]>> {
+        let reference = self.slave.kind.reference();
+        let mut ends = vec![None; self.slave.nodes.len()];
+        if reference.dimension == 2 {
+            for facet in self.slave.facets.chunks_exact(self.slave.kind.nodes()) {
+                for (&middle, corners) in facet[reference.corners..].iter().zip(reference.mid_sides) {
+                    if self.has_coefficient.is_none_or(|has| has(middle)) {
+                        ends[middle] = Some(corners.map(|corner| facet[corner]));
+                    }
+                }
+            }
+        }
+        ends
+    }
+
+    /// The values of the functions of a slave facet.
+    fn functions(&self, facet: &Facet, at: [f64; 3]) -> PerNode<f64> {
+        let mut values = (facet.reference().shape)(at);
+        if facet.reference().dimension == 2 {
+            let has = |local: usize| self.has_coefficient.is_none_or(|has| has(facet.nodes[local]));
+            positive_functions(facet.reference(), has, &mut values);
+        }
+        values
+    }
+
+    /// The factor from length or area to area at a point of a facet.
+    fn measure(&self, facet: &Facet, shape: &PerNode<f64>) -> f64 {
+        let radius = facet.places().iter().zip(shape).map(|(place, share)| share * place[0]).sum();
+        self.formulation.measure(radius)
+    }
+
+    /// The area of a facet.
+    fn whole(&self, facet: &Facet) -> f64 {
+        let mut sum = 0.0;
+        let mut add = |at: [f64; 3], size: f64| sum += size * self.measure(facet, &(facet.reference().shape)(at));
+        match facet.reference().dimension {
+            1 => line::for_each_of_whole(facet, &mut add),
+            _ => Projected::new(facet, facet.normal).for_each_of_whole(&mut add),
+        }
+        sum
+    }
+
+    /// The integrals over the covered part of every slave facet.
+    fn covered<'f>(
+        &self,
+        slave: &'f [Facet<'f>],
+        master: &[Facet],
+        normals: &[[f64; 3]],
+    ) -> Result<Vec<Covered<'f>>, Error> {
+        let numbers: Vec<u32> = (0..master.len() as u32).collect();
+        let tree = Tree::new(&numbers, |number| {
+            let places = master[number as usize].places();
+            let [low, high] = [f64::min, f64::max]
+                .map(|pick| [0, 1, 2].map(|axis| places.iter().map(|place| place[axis]).reduce(pick).unwrap_or(0.0)));
+            // A curved edge leaves the box of its nodes.
+            let radius = master[number as usize].radius;
+            [low.map(|at| at - radius / 4.0), high.map(|at| at + radius / 4.0)]
+        });
+        let mut all = Vec::with_capacity(slave.len());
+        for (index, facet) in slave.iter().enumerate() {
+            let mut covered = Covered::new(facet);
+            let is_edge = facet.reference().dimension == 1;
+            let direction = self.direction.unwrap_or(facet.normal);
+            let projected = (!is_edge).then(|| Projected::new(facet, direction));
+            let mut whole = |at: [f64; 3], size: f64| {
+                let area = size * self.measure(facet, &(facet.reference().shape)(at));
+                covered.add_whole(&self.functions(facet, at), area);
+            };
+            match &projected {
+                None => line::for_each_of_whole(facet, &mut whole),
+                Some(face) => face.for_each_of_whole(&mut whole),
+            }
+            if dot(direction, facet.normal) <= 0.0 {
+                all.push(covered);
+                continue;
+            }
+            let directions: Vec<[f64; 3]> =
+                facet.nodes.iter().map(|&node| self.direction.unwrap_or(normals[node])).collect();
+            let spread = directions.iter().fold(0.0, |spread: f64, &way| {
+                let along = dot(way, direction);
+                spread.max(length(minus(way, direction.map(|part| along * part))) / along.max(0.1))
+            });
+            let mut near = Vec::new();
+            tree.around_line(facet.middle, direction, [facet.radius, spread, self.reach], |number| near.push(number));
+            near.sort_unstable();
+            for other in near.into_iter().map(|number| &master[number as usize]).filter(|other| facet.faces(other)) {
+                let mut add = |point| {
+                    let facet::SharedPoint { slave: at, weight, .. } = point;
+                    let area = weight * self.measure(facet, &(facet.reference().shape)(at));
+                    covered.add(&point, area, &self.functions(facet, at), other);
+                };
+                match &projected {
+                    None => line::for_each_point(facet, &directions, other, self.reach, &mut add),
+                    Some(face) => face.for_each_point(other, self.reach, &mut add),
+                }
+            }
+            if covered.area > (1.0 + TWICE) * covered.whole {
+                return Err(Error::Mesh {
+                    message: format!(
+                        "facet {index} at {:?} faces several layers of the other surface, {:.3} times its area; give a reach that \
+                         leaves one",
+                        facet.middle,
+                        covered.area / covered.whole
+                    ),
+                });
+            }
+            all.push(covered);
+        }
+        Ok(all)
+    }
+
+    /// The row of a node; `None` if it has no area.
+    fn row(
+        &self,
+        node: usize,
+        part: Part,
+        own: &[[f64; 3]],
+        others: &[[f64; 3]],
+        ends: &[Option<[usize; 2]>],
+    ) -> Option<MortarRow> {
+        let area = part.area;
+        if area.is_nan() || area <= 0.0 {
+            return None;
+        }
+        let shares = |sums: Vec<(usize, f64)>| -> Vec<(usize, f64)> {
+            let snapped = |(node, sum): (usize, f64)| {
+                let share = sum / area;
+                (node, if (share - 1.0).abs() <= ROUNDING { 1.0 } else { share })
+            };
+            sums.into_iter().map(snapped).filter(|(_, share)| share.abs() > ROUNDING).collect()
+        };
+        let (slave, mut master) = (shares(part.slave), shares(part.master));
+        master.sort_unstable_by_key(|entry| entry.0);
+        let outward = master.iter().fold([0.0; 3], |sum, &(other, share)| {
+            [0, 1, 2].map(|axis| sum[axis] + share.max(0.0) * others[other][axis])
+        });
+        let mean = unit(minus(own[node], unit(outward)));
+        let normal = self.direction.unwrap_or(mean);
+        // Relative to the node, so that surfaces far from the origin lose no digits.
+        let origin = self.slave.nodes[node];
+        let place = |at: usize| match ends[at] {
+            Some(ends) => [0, 1, 2].map(|axis| {
+                let value = |node: usize| self.slave.nodes[node][axis] - origin[axis];
+                positive_coefficient(value(at), ends.map(value))
+            }),
+            None => minus(self.slave.nodes[at], origin),
+        };
+        let of_slave = slave.iter().map(|&(at, share)| share * dot(normal, place(at))).sum::<f64>();
+        let of_master =
+            master.iter().map(|&(at, share)| share * dot(normal, minus(self.master.nodes[at], origin))).sum::<f64>();
+        Some(MortarRow { node, slave, master, normal, mean, gap: of_master - of_slave, area })
+    }
+}
+
+fn facets<'a>(surface: &SurfaceMesh<'a>) -> Vec<Facet<'a>> {
+    surface.facets.chunks_exact(surface.kind.nodes()).map(|nodes| Facet::new(surface, nodes)).collect()
+}
+
+/// The mean outward unit normal at each node.
+fn normals(surface: &SurfaceMesh, facets: &[Facet]) -> Vec<[f64; 3]> {
+    let mut sums = vec![[0.0; 3]; surface.nodes.len()];
+    facets.iter().for_each(|facet| facet.add_normals(&mut sums));
+    sums.into_iter().map(unit).collect()
+}

@@ -1,0 +1,158 @@
+//! Rows between two bodies whose meshes do not match: means over the areas of the nodes of one boundary.
+
+use std::collections::HashMap;
+
+use super::facing::SideSpec;
+use super::pairs::{Between, Facing};
+use super::shape::Site;
+use crate::error::Error;
+use crate::fem::assembly::{facet_sizes, outward_facets};
+use crate::fem::{Boundary, ElasticBody, Mortar, SurfaceMesh};
+use crate::scene::Warning;
+use crate::scene::input::entry::wrong;
+use crate::scene::input::schema::approach::Rule;
+
+/// Bodies whose Young's moduli differ by less than this factor count as equally soft.
+const AS_SOFT: f64 = 2.0;
+
+/// Facets of the other boundary larger than this many facets of the carrying one leave waves in the pressure.
+const COARSE: f64 = 4.0;
+
+/// A boundary covered by less than this share is only partly covered.
+const COVERED: f64 = 1.0 - 1e-6;
+
+/// The sag of curved facets that counts, as a share of the gap.
+const SAG: f64 = 0.1;
+
+/// The rows between the boundary of an obstacle and that of another body.
+///
+/// # Errors
+/// [`Error::Scene`] if the approach direction does not lead from one into the other, or the surfaces lie in several layers.
+pub(super) fn between(
+    site: &Site,
+    boundaries: [&Boundary; 2],
+    side: SideSpec,
+    reach: Option<f64>,
+    fit: Option<f64>,
+) -> Result<Between, Error> {
+    let is_swapped = match side {
+        SideSpec::This => false,
+        SideSpec::Other => true,
+        SideSpec::Auto => carries_other(site.body, boundaries),
+    };
+    let [slave, master] = if is_swapped { [boundaries[1], boundaries[0]] } else { boundaries };
+    let [slave_facets, master_facets] = [slave, master].map(|boundary| outward_facets(site.body, boundary));
+    let nodes = site.body.mesh().nodes();
+    let surface = |boundary: &Boundary, facets| SurfaceMesh { nodes, kind: boundary.kind, facets };
+    let (slave_mesh, master_mesh) = (surface(slave, &slave_facets[..]), surface(master, &master_facets[..]));
+    let basis = &site.dofs.basis;
+    let has_coefficient = |node: usize| basis.ends(node).is_some();
+    let dimension = site.body.dimension();
+    // A node that supports hold in all directions cannot make a row a bound: its function goes to its neighbours.
+    let may_carry = |node: usize| (0..dimension).any(|axis| site.dofs.number(dimension * node + axis).is_some());
+    let mut mortar = Mortar::new(slave_mesh, master_mesh, *site.body.formulation())
+        .within(reach.unwrap_or(f64::INFINITY))
+        .carried_by(&may_carry)
+        .with_coefficients(&has_coefficient);
+    if site.rule == Rule::Approach {
+        let towards = site.direction();
+        mortar = mortar.along(if is_swapped { towards.map(|part| 0.0 - part) } else { towards });
+    }
+    let found = mortar.found().map_err(|error| match error {
+        Error::Mesh { message } => wrong(site.path.as_str(), message),
+        other => other,
+    })?;
+    let warnings = warnings(site, [slave, master], &found, fit);
+    let mut of_node: HashMap<usize, Facing> = HashMap::with_capacity(found.rows.len());
+    for row in found.rows {
+        // Displacements of nodes with coefficients are sums of these.
+        let mut ends = row.slave;
+        // The node of the row comes first.
+        ends.sort_by_key(|end| end.0 != row.node);
+        for (node, share) in row.master {
+            for (of, part) in basis.values(node) {
+                match ends.iter_mut().find(|end| end.0 == of) {
+                    Some(end) => end.1 -= share * part,
+                    None => ends.push((of, 0.0 - share * part)),
+                }
+            }
+        }
+        ends.retain(|end| end.1 != 0.0);
+        let distance = fit.unwrap_or(row.gap);
+        of_node.insert(row.node, Facing { ends, normal: row.normal, mean: row.mean, distance, area: Some(row.area) });
+    }
+    // In the order of the candidates of the boundary that carries the rows.
+    let rows = slave.nodes().into_iter().map(|node| of_node.remove(&node)).collect();
+    Ok(Between { rows, is_swapped, warnings })
+}
+
+/// Returns `true` if the second boundary carries the rows: that of the softer body, or, if both are as soft, the one with the smaller
+/// facets.
+fn carries_other(body: &ElasticBody, boundaries: [&Boundary; 2]) -> bool {
+    let [own, other] = boundaries.map(|boundary| modulus_behind(body, boundary));
+    if own > AS_SOFT * other || other > AS_SOFT * own {
+        return other < own;
+    }
+    let [own, other] = boundaries.map(|boundary| facet_size(body, boundary));
+    other < own
+}
+
+/// The mean of Young's modulus in the elements behind a boundary.
+fn modulus_behind(body: &ElasticBody, boundary: &Boundary) -> f64 {
+    let owners: Vec<usize> = body.mesh().faces_of(boundary).into_iter().flatten().map(|owner| owner.0).collect();
+    let sum: f64 = owners.iter().map(|&element| body.phase_of(element).material().young()[1]).sum();
+    sum / owners.len().max(1) as f64
+}
+
+/// The mean length or area of the facets.
+fn facet_size(body: &ElasticBody, boundary: &Boundary) -> f64 {
+    let sizes = facet_sizes(body, boundary);
+    sizes.iter().map(|(extent, _)| extent).sum::<f64>() / sizes.len().max(1) as f64
+}
+
+fn warnings(
+    site: &Site,
+    [slave, master]: [&Boundary; 2],
+    found: &crate::fem::mortar::Found,
+    fit: Option<f64>,
+) -> Vec<Warning> {
+    let obstacle = site.obstacle.to_string();
+    let [share, _] = found.covered;
+    if found.rows.is_empty() {
+        let (boundary, other) = (slave.name.clone(), master.name.clone());
+        return vec![Warning::NoFacingFacet { obstacle, boundary, other }];
+    }
+    let mut warnings = Vec::new();
+    // A surface that both ends of the other exceed is covered in full by what there is.
+    if share < COVERED && found.covered[1] < COVERED {
+        let (boundary, other) = (slave.name.clone(), master.name.clone());
+        warnings.push(Warning::PartlyCovered {
+            obstacle: obstacle.clone(),
+            boundary,
+            other,
+            share,
+            of_other: found.covered[1],
+        });
+    }
+    let dimension = site.body.dimension() as i32 - 1;
+    let ratio = (facet_size(site.body, master) / facet_size(site.body, slave)).powf(1.0 / f64::from(dimension));
+    if ratio > COARSE {
+        let (boundary, other) = (slave.name.clone(), master.name.clone());
+        warnings.push(Warning::CoarseMaster { obstacle: obstacle.clone(), boundary, other, ratio });
+    }
+    let gaps = || found.rows.iter().map(|row| row.gap);
+    let largest = gaps().fold(0.0, |largest: f64, gap| largest.max(gap.abs()));
+    match fit {
+        None if found.sag > SAG * largest && largest > 0.0 => {
+            warnings.push(Warning::Sag { obstacle, sag: found.sag, gap: largest });
+        }
+        Some(fit) => {
+            let differs = gaps().fold(0.0, |most: f64, gap| most.max((gap - fit).abs()));
+            if differs > 2.0 * found.sag + fit.abs() {
+                warnings.push(Warning::FitDiffers { obstacle, differs, fit });
+            }
+        }
+        None => {}
+    }
+    warnings
+}

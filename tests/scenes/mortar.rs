@@ -1,0 +1,376 @@
+//! GOAL: two bodies with their own meshes pass a uniform pressure without error, and answer like bodies whose meshes match.
+
+use serde_json::{Value, json};
+use signorini::{Model, Scene, Solution, solve_qp};
+
+/// Rounding of a solve with a few hundred unknowns, relative to the displacement.
+const PATCH: f64 = 1e-12;
+
+/// The same where surfaces end inside facets.
+const PARTLY_COVERED: f64 = 1e-9;
+
+fn solved(value: &Value) -> (Model, Solution) {
+    let model = Scene::from_json(&value.to_string(), "scene").unwrap().build().unwrap();
+    let solution = solve_qp(model.problem()).map_err(|error| model.explain(error)).unwrap();
+    let balance = model.force_balance(&solution.displacement, &solution.multiplier).unwrap();
+    assert!(balance < 1e-12, "{balance:e}");
+    (model, solution)
+}
+
+/// Lines of a mesh from 0 to `end`: `count` cells, of random size between `spread` of the mean and its opposite.
+fn lines(count: usize, end: f64, spread: f64, state: &mut u64) -> Value {
+    let mut random = || {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*state >> 40) as f64 / f64::from(1 << 24) - 0.5
+    };
+    let inner = |at: usize, random: f64| end * (at as f64 + spread * random) / count as f64;
+    let points: Vec<f64> =
+        (0..=count).map(|at| if at == 0 { 0.0 } else if at == count { end } else { inner(at, random()) }).collect();
+    json!({"points": points, "divisions": vec![1; count]})
+}
+
+fn cells(from: f64, to: f64, count: usize) -> Value {
+    json!({"points": [from, to], "divisions": [count]})
+}
+
+/// A block on a wider or narrower one in the plane, or as bodies of revolution, pressed by the pressure 1 on top.
+struct Blocks {
+    model: &'static str,
+    element: &'static str,
+    counts: [usize; 2],
+    widths: [f64; 2],
+    spread: f64,
+    side: &'static str,
+}
+
+const SOFT: [f64; 2] = [2.0, 0.3];
+const HARD: [f64; 2] = [5.0, 0.2];
+
+impl Blocks {
+    fn scene(&self, state: &mut u64) -> Value {
+        let block = |x: Value, y: Value| json!({"rectangle": {"x": x, "y": y, "element": self.element}});
+        let [upper, lower] =
+            [0, 1].map(|body| lines(self.counts[body], self.widths[body], self.spread, state));
+        json!({
+            "model": self.model,
+            "body": block(upper, cells(1.0, 2.0, 2)), "material": {"young": SOFT[0], "poisson": SOFT[1]},
+            "further-bodies": [{"name": "base", "body": block(lower, cells(0.0, 1.0, 2)),
+                                "material": {"young": HARD[0], "poisson": HARD[1]}}],
+            "supports": [{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "base.left"}, "x": 0},
+                         {"on": {"boundary": "base.bottom"}, "y": 0}],
+            "loads": [{"pressure": {"boundary": "top", "value": 1}}],
+            "obstacles": [{"boundary": "bottom", "approach": "-y",
+                           "shape": {"body": {"boundary": "base.top", "rows": "mortar", "side": self.side}}}],
+        })
+    }
+
+    /// Strains of a body under the pressure 1: along x and along y.
+    fn strains(&self, [young, nu]: [f64; 2]) -> [f64; 2] {
+        match self.model {
+            "plane-strain" => [nu * (1.0 + nu) / young, -(1.0 - nu * nu) / young],
+            _ => [nu / young, -1.0 / young],
+        }
+    }
+
+    /// The largest error of the displacement, relative to the largest displacement, and the largest error of the pressure.
+    fn errors(&self, state: &mut u64) -> [f64; 2] {
+        let (model, solution) = solved(&self.scene(state));
+        let nodal = model.nodal_displacement(&solution.displacement).unwrap();
+        let [upper, lower] = [SOFT, HARD].map(|material| self.strains(material));
+        let (nodes, first_of_base) = (model.mesh().nodes(), model.body().regions()[1].nodes().start);
+        let mut away: f64 = 0.0;
+        for (node, &[x, y, _]) in nodes.iter().enumerate() {
+            let exact = match node < first_of_base {
+                true => [upper[0] * x, lower[1] + upper[1] * (y - 1.0)],
+                false => [lower[0] * x, lower[1] * y],
+            };
+            (0..2).for_each(|axis| away = away.max((nodal[2 * node + axis] - exact[axis]).abs()));
+        }
+        let pressures = model.pressure(&solution.multiplier).unwrap();
+        let of_pressure = pressures.iter().fold(0.0_f64, |most, pressure| most.max((pressure - 1.0).abs()));
+        assert!(!pressures.is_empty() && solution.contact_set.count() == pressures.len());
+        [away / (lower[1] + upper[1]).abs(), of_pressure]
+    }
+}
+
+#[test]
+fn a_uniform_pressure_passes_between_any_two_meshes_in_the_plane_and_about_the_axis() {
+    let mut state = 11;
+    for model in ["plane-strain", "plane-stress", "axisymmetric"] {
+        for element in ["t3", "q4", "t6", "q8"] {
+            for counts in [[2, 3], [3, 2], [1, 4], [4, 1], [7, 5]] {
+                for (side, spread) in [("this", 0.0), ("other", 0.6)] {
+                    let blocks = Blocks { model, element, counts, widths: [1.0, 1.0], spread, side };
+                    let [of_displacement, of_pressure] = blocks.errors(&mut state);
+                    let name = format!("{model} {element} {counts:?} {side}");
+                    assert!(of_displacement < PATCH, "{name}: displacement {of_displacement:e}");
+                    assert!(of_pressure < PARTLY_COVERED, "{name}: pressure {of_pressure:e}");
+                }
+            }
+        }
+    }
+}
+
+/// Five Gauss points on [0, 1].
+fn gauss() -> [(f64, f64); 5] {
+    let (a, b) = ((5.0 - 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0, (5.0 + 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0);
+    let (v, w) = ((322.0 + 13.0 * 70.0_f64.sqrt()) / 900.0, (322.0 - 13.0 * 70.0_f64.sqrt()) / 900.0);
+    [(0.0, 128.0 / 225.0), (a, v), (-a, v), (b, w), (-b, w)].map(|(at, weight)| ((1.0 + at) / 2.0, weight / 2.0))
+}
+
+/// The forces of the pressure 1 against a horizontal edge from `from` to the right, node by node: of a boundary whose nodes are known.
+fn rest_of_pressure(model: &Model, boundary: &str, from: f64) -> Vec<(usize, f64)> {
+    let (mesh, mut forces) = (model.mesh(), Vec::new());
+    for facet in mesh.boundary(boundary).unwrap().facets() {
+        let x = |local: usize| mesh.nodes()[facet[local]][0];
+        let (left, right) = (x(0).min(x(1)), x(0).max(x(1)));
+        let low = left.max(from);
+        if low >= right {
+            continue;
+        }
+        for (at, weight) in gauss() {
+            let place = low + at * (right - low);
+            let xi = 2.0 * (place - x(0)) / (x(1) - x(0)) - 1.0;
+            let shape = match facet.len() {
+                2 => vec![(1.0 - xi) / 2.0, (1.0 + xi) / 2.0],
+                _ => vec![xi * (xi - 1.0) / 2.0, xi * (xi + 1.0) / 2.0, 1.0 - xi * xi],
+            };
+            forces.extend(facet.iter().zip(shape).map(|(&node, share)| (node, weight * (right - low) * share)));
+        }
+    }
+    forces
+}
+
+/// The wider surface ends inside an edge of the other, or a thousandth or a hundredth of an edge beyond a node. On the rest of the wider
+/// surface the pressure is a load.
+#[test]
+fn a_uniform_pressure_passes_where_surfaces_cover_each_other_in_part() {
+    let mut state = 13;
+    for element in ["t3", "q4", "t6", "q8"] {
+        for counts in [[4, 3], [4, 12]] {
+            for end in [3.4, 3.001, 3.01, 2.9999] {
+                for (widths, side) in [([4.0 / end, 1.0], "this"), ([4.0 / end, 1.0], "other")] {
+                    let blocks = Blocks { model: "plane-strain", element, counts, widths, spread: 0.0, side };
+                    let scene = blocks.scene(&mut state);
+                    let model = Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap();
+                    let mut load = model.problem().load().to_vec();
+                    for (node, force) in rest_of_pressure(&model, "bottom", 1.0) {
+                        load[model.dofs().number(2 * node + 1).unwrap()] += force;
+                    }
+                    let solution = solve_qp(&model.problem().with_load(load).unwrap()).unwrap();
+                    let nodal = model.nodal_displacement(&solution.displacement).unwrap();
+                    let strain = [SOFT, HARD].map(|material| blocks.strains(material)[1]);
+                    let first_of_base = model.body().regions()[1].nodes().start;
+                    let mut away: f64 = 0.0;
+                    for (node, &[_, y, _]) in model.mesh().nodes().iter().enumerate() {
+                        let exact = if node < first_of_base { strain[1] + strain[0] * (y - 1.0) } else { strain[1] * y };
+                        away = away.max((nodal[2 * node + 1] - exact).abs());
+                    }
+                    let name = format!("{element} {counts:?} {end} {side}: {away:e}");
+                    assert!(away < PARTLY_COVERED, "{name}");
+                    for pressure in model.pressure(&solution.multiplier).unwrap() {
+                        assert!((pressure - 1.0).abs() < 1e-6, "{name}: pressure {pressure}");
+                    }
+                    let largest = model.rows().iter().flat_map(|row| &row.ends).fold(0.0_f64, |most, end| most.max(end.1.abs()));
+                    assert!(largest < 3.0, "{name}: share {largest}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_uniform_pressure_passes_between_any_two_meshes_in_space() {
+    let mut state = 17;
+    for element in ["tet4", "hex8", "tet10", "hex20"] {
+        for (counts, side) in [([[2, 3], [3, 2]], "this"), ([[1, 2], [4, 3]], "other"), ([[3, 2], [2, 3]], "this")] {
+            let block = |counts: [usize; 2], z: Value, state: &mut u64| {
+                let [x, y] = counts.map(|count| lines(count, 1.0, 0.5, state));
+                json!({"box": {"x": x, "y": y, "z": z, "element": element}})
+            };
+            let scene = json!({
+                "model": "space", "body": block(counts[0], cells(1.0, 2.0, 1), &mut state), "material": {"young": SOFT[0], "poisson": SOFT[1]},
+                "further-bodies": [{"name": "base", "body": block(counts[1], cells(0.0, 1.0, 1), &mut state),
+                                    "material": {"young": HARD[0], "poisson": HARD[1]}}],
+                "supports": [{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "base.left"}, "x": 0},
+                             {"on": {"boundary": "front"}, "y": 0}, {"on": {"boundary": "base.front"}, "y": 0},
+                             {"on": {"boundary": "base.bottom"}, "z": 0}],
+                "loads": [{"pressure": {"boundary": "top", "value": 1}}],
+                "obstacles": [{"boundary": "bottom", "approach": "-z",
+                               "shape": {"body": {"boundary": "base.top", "rows": "mortar", "side": side}}}],
+            });
+            let (model, solution) = solved(&scene);
+            let nodal = model.nodal_displacement(&solution.displacement).unwrap();
+            let first_of_base = model.body().regions()[1].nodes().start;
+            let name = format!("{element} {counts:?} {side}");
+            for (node, &[x, y, z]) in model.mesh().nodes().iter().enumerate() {
+                let ([young, nu], from) = if node < first_of_base { (SOFT, 1.0) } else { (HARD, 0.0) };
+                let below = if node < first_of_base { -1.0 / HARD[0] } else { 0.0 };
+                let exact = [nu / young * x, nu / young * y, below - (z - from) / young];
+                for axis in 0..3 {
+                    let away = (nodal[3 * node + axis] - exact[axis]).abs();
+                    assert!(away < PATCH, "{name}: node {node} is {away:e} away");
+                }
+            }
+            for pressure in model.pressure(&solution.multiplier).unwrap() {
+                assert!((pressure - 1.0).abs() < PARTLY_COVERED, "{name}: pressure {pressure}");
+            }
+            let gaps = signorini::scene::Answer::new(std::sync::Arc::new(model), &solution.displacement, &solution.multiplier, &solution.contact_set).unwrap().remaining_gaps();
+            assert!(gaps.iter().all(|gap| gap.abs() < PATCH), "{name}: {gaps:?}");
+        }
+    }
+}
+
+/// Plane stress without Poisson's ratio under the pressure `1 + x/2`: `stress_yy = -(1 + x/2)` and nothing else, so that `u_y` is linear in
+/// x and y each, and `u_x` quadratic in y.
+#[test]
+fn quadratic_edges_pass_a_linear_pressure() {
+    let mut state = 19;
+    for element in ["t6", "q8"] {
+        for (counts, side) in [([2, 3], "this"), ([3, 2], "other"), ([4, 6], "this"), ([7, 5], "other")] {
+            let block = |x: Value, y: Value| json!({"rectangle": {"x": x, "y": y, "element": element}});
+            let [upper, lower] = counts.map(|count| lines(count, 1.0, 0.5, &mut state));
+            let (model, solution) = solved(&json!({
+                "model": "plane-stress",
+                "body": block(upper, cells(1.0, 2.0, 2)), "material": {"young": 1, "poisson": 0},
+                "further-bodies": [{"name": "base", "body": block(lower, cells(0.0, 1.0, 2)),
+                                    "material": {"young": 2, "poisson": 0}}],
+                "supports": [{"on": {"boundary": "base.bottom"}, "x": 0, "y": 0}, {"on": {"boundary": "bottom"}, "x": 0}],
+                "loads": [{"pressure": {"boundary": "top", "value": 1,
+                                        "profile": {"along": [1, 0], "places": [0, 1], "factors": [1, 1.5]}}}],
+                "obstacles": [{"boundary": "bottom", "approach": "-y",
+                               "shape": {"body": {"boundary": "base.top", "rows": "mortar", "side": side}}}],
+            }));
+            let nodal = model.nodal_displacement(&solution.displacement).unwrap();
+            let first_of_base = model.body().regions()[1].nodes().start;
+            let name = format!("{element} {counts:?} {side}");
+            for (node, &[x, y, _]) in model.mesh().nodes().iter().enumerate() {
+                let pressure = 1.0 + x / 2.0;
+                let exact = match node < first_of_base {
+                    true => [(y - 1.0) / 4.0 + (y - 1.0) * (y - 1.0) / 4.0, -pressure / 2.0 - pressure * (y - 1.0)],
+                    false => [y * y / 8.0, -pressure * y / 2.0],
+                };
+                for axis in 0..2 {
+                    let away = (nodal[2 * node + axis] - exact[axis]).abs();
+                    assert!(away < PATCH, "{name}: node {node} is {away:e} away");
+                }
+            }
+        }
+    }
+}
+
+/// Where the meshes match, means are pairs.
+#[test]
+fn matching_meshes_have_the_same_answer_as_pairs() {
+    for (element, rule) in [("q4", "approach"), ("t6", "approach"), ("q8", "approach")] {
+        let half = |half: &str| {
+            let centre = if half == "lower" { 1.0 } else { -1.0 };
+            let zone = json!({"width": 0.2, "divisions": 12, "growth": 1.4});
+            json!({"half-disc": {"half": half, "centre": [0, centre], "radius": 1, "zone": zone, "element": element}})
+        };
+        let scene = |rows: &str| {
+            json!({
+                "body": half("lower"), "material": {"young": 1, "poisson": 0.3},
+                "further-bodies": [{"name": "base", "body": half("upper"), "material": {"young": 3, "poisson": 0.2}}],
+                "supports": [{"on": {"boundary": "cut"}, "x": 0, "y": -0.02}, {"on": {"boundary": "base.cut"}, "x": 0, "y": 0}],
+                "obstacles": [{"boundary": "arc", "approach": "-y", "rule": rule,
+                               "shape": {"body": {"boundary": "base.arc", "rows": rows, "side": "this"}}}],
+            })
+        };
+        let [(pairs, of_pairs), (means, of_means), (auto, of_auto)] = ["pairs", "mortar", "auto"].map(|rows| solved(&scene(rows)));
+        assert!(pairs.rows().iter().all(|row| !row.is_mean) && means.rows().iter().all(|row| row.is_mean));
+        // Bit by bit.
+        assert_eq!((auto.rows(), &of_auto.multiplier), (pairs.rows(), &of_pairs.multiplier), "{element}");
+        let largest = of_pairs.multiplier.iter().fold(0.0_f64, |most, lambda| most.max(lambda.abs()));
+        let by_node = |model: &Model, solution: &Solution| -> std::collections::BTreeMap<usize, f64> {
+            model.rows().iter().zip(&solution.multiplier).map(|(row, &lambda)| (row.node, lambda)).collect()
+        };
+        let (first, second) = (by_node(&pairs, &of_pairs), by_node(&means, &of_means));
+        for (node, lambda) in first {
+            let other = second.get(&node).copied().unwrap_or(0.0);
+            println!("{element} {rule} node {node}: {lambda:e} {other:e} {:e}", (lambda - other).abs() / largest);
+        }
+    }
+}
+
+/// A shaft pressed into a hub, both full circles, plane strain: the meshes overlap by nothing, `fit` gives the interference.
+#[test]
+fn a_press_fit_has_the_pressure_of_lame() {
+    let interference = 1e-3;
+    for [shaft, hub] in [[1.0, 1.0], [1.0, 10.0], [10.0, 1.0]] {
+        for (counts, element) in [([48, 72], "q8"), ([72, 48], "q8"), ([48, 72], "q4")] {
+            for side in ["this", "other"] {
+                let ring = |radii: [f64; 2], count: usize| {
+                    json!({"ring": {"radius": {"points": radii, "divisions": [6]}, "element": element,
+                                    "angle": {"points": [0, 360], "divisions": [count]}}})
+                };
+                let (model, solution) = solved(&json!({
+                    "body": ring([0.5, 1.0], counts[0]), "material": {"young": shaft, "poisson": 0.3},
+                    "further-bodies": [{"name": "hub", "body": ring([1.0, 2.0], counts[1]),
+                                        "material": {"young": hub, "poisson": 0.25}}],
+                    "supports": [{"on": {"point": [0.5, 0]}, "y": 0}, {"on": {"point": [-0.5, 0]}, "y": 0},
+                                 {"on": {"point": [0, 0.5]}, "x": 0}, {"on": {"point": [2, 0]}, "y": 0},
+                                 {"on": {"point": [-2, 0]}, "y": 0}, {"on": {"point": [0, 2]}, "x": 0}],
+                    "obstacles": [{"boundary": "outer", "approach": "+x", "rule": "closest-point",
+                                   "shape": {"body": {"boundary": "hub.inner", "rows": "mortar", "side": side,
+                                                      "fit": {"interference": interference}}}}],
+                }));
+                // Radial compliance of both rings at the radius 1, in plane strain.
+                let compliance = |young: f64, nu: f64, inner: f64, outer: f64, is_shaft: bool| {
+                    let (modulus, ratio) = (young / (1.0 - nu * nu), nu / (1.0 - nu));
+                    let shape = (outer * outer + inner * inner) / (outer * outer - inner * inner);
+                    (shape + if is_shaft { -ratio } else { ratio }) / modulus
+                };
+                let exact = interference / (compliance(shaft, 0.3, 0.5, 1.0, true) + compliance(hub, 0.25, 1.0, 2.0, false));
+                let force: f64 = -solution.multiplier.iter().sum::<f64>() / std::f64::consts::TAU;
+                let pressures = model.pressure(&solution.multiplier).unwrap();
+                let (low, high) = pressures.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &p| (low.min(p), high.max(p)));
+                println!("E {shaft}:{hub} {element} {counts:?} {side}: F {:+.3} %, p {:.4}..{:.4}", 100.0 * (force / exact - 1.0), low / exact, high / exact);
+            }
+        }
+    }
+}
+
+#[test]
+fn discs_of_other_meshes_have_the_force_and_pressure_of_matching_ones() {
+    let solved_with = |counts: [usize; 2], side: &str, element: &str, moduli: [f64; 2]| {
+        let half = |half: &str, radius: f64, count: usize| {
+            let centre = if half == "lower" { radius } else { -radius };
+            let zone = json!({"width": 0.3, "divisions": count, "growth": 1.15});
+            json!({"half-disc": {"half": half, "centre": [0, centre], "radius": radius, "zone": zone, "element": element}})
+        };
+        solved(&json!({
+            "body": half("lower", 1.0, counts[0]), "material": {"young": moduli[0], "poisson": 0.3},
+            "further-bodies": [{"name": "base", "body": half("upper", 2.0, counts[1]),
+                                "material": {"young": moduli[1], "poisson": 0.3}}],
+            "supports": [{"on": {"boundary": "cut"}, "x": 0, "y": -0.005}, {"on": {"boundary": "base.cut"}, "x": 0, "y": 0}],
+            "obstacles": [{"boundary": "arc", "approach": "-y",
+                           "shape": {"body": {"boundary": "base.arc", "rows": "mortar", "side": side}}}],
+        }))
+    };
+    for element in ["q4", "q8"] {
+        for moduli in [[1.0, 3.0], [3.0, 1.0]] {
+            for counts in [[40, 40], [40, 60], [60, 40], [60, 60]] {
+                for side in ["this", "other"] {
+                    let (model, solution) = solved_with(counts, side, element, moduli);
+                    let force: f64 = -solution.multiplier.iter().sum::<f64>();
+                    let compliance: f64 = moduli.iter().map(|young| (1.0 - 0.09) / young).sum();
+                    let radius = 1.0 / (1.0 + 0.5);
+                    let half = (4.0 * force * radius * compliance / std::f64::consts::PI).sqrt();
+                    let peak = 2.0 * force / (std::f64::consts::PI * half);
+                    let pressures = model.pressure(&solution.multiplier).unwrap();
+                    let (mut sum, mut count) = (0.0, 0);
+                    for (row, pressure) in model.rows().iter().zip(&pressures) {
+                        let x = model.mesh().nodes()[row.node][0] / half;
+                        if x.abs() < 0.8 {
+                            sum += (pressure / peak - (1.0 - x * x).sqrt()).powi(2);
+                            count += 1;
+                        }
+                    }
+                    let rms = (sum / f64::from(count)).sqrt();
+                    println!("{element} E {moduli:?} {counts:?} {side}: F {force:.6e}, a {half:.4}, {count} nodes, rms {:.2} %, {} rows", 100.0 * rms, model.rows().len());
+                }
+            }
+        }
+    }
+}
