@@ -7,7 +7,7 @@ use super::input::{Input, build, read_scene, scene_title, warnings};
 use super::options;
 use super::outcome::{OfPart, Outcome, Report, warn};
 use crate::Error;
-use crate::output::{About, Measured, Pictures, write_files, write_picture};
+use crate::output::{About, Measured, Pictures, write_files};
 use crate::qp::{Settings, Watch};
 use crate::scene::Units;
 use crate::study::{MotionTradeoff, Tradeoff, TradeoffGrid};
@@ -66,7 +66,7 @@ fn reported(
         let plots = if is_drawn { measured.plots(options.style, &about.title) } else { Vec::new() };
         about.write_tradeoff(folder, shown, plots.iter().map(|(_, drawing)| drawing))?;
         for (stem, drawing) in plots {
-            write_picture(folder, stem, &drawing)?;
+            drawing.write(folder, stem)?;
         }
     }
     Ok(report.printed(options.format))

@@ -6,6 +6,9 @@ use signorini::{Model, Scene, Solution, solve_qp};
 /// Rounding of a solve with a few hundred unknowns, relative to the displacement.
 const PATCH: f64 = 1e-12;
 
+/// Loads, reactions and contact forces of bodies with some thousand unknowns cancel to this.
+const BALANCE: f64 = 1e-11;
+
 /// The same where surfaces end inside facets.
 const PARTLY_COVERED: f64 = 1e-9;
 
@@ -13,7 +16,7 @@ fn solved(value: &Value) -> (Model, Solution) {
     let model = Scene::from_json(&value.to_string(), "scene").unwrap().build().unwrap();
     let solution = solve_qp(model.problem()).map_err(|error| model.explain(error)).unwrap();
     let balance = model.force_balance(&solution.displacement, &solution.multiplier).unwrap();
-    assert!(balance < 1e-12, "{balance:e}");
+    assert!(balance < BALANCE, "{balance:e}");
     (model, solution)
 }
 
@@ -24,8 +27,17 @@ fn lines(count: usize, end: f64, spread: f64, state: &mut u64) -> Value {
         (*state >> 40) as f64 / f64::from(1 << 24) - 0.5
     };
     let inner = |at: usize, random: f64| end * (at as f64 + spread * random) / count as f64;
-    let points: Vec<f64> =
-        (0..=count).map(|at| if at == 0 { 0.0 } else if at == count { end } else { inner(at, random()) }).collect();
+    let points: Vec<f64> = (0..=count)
+        .map(|at| {
+            if at == 0 {
+                0.0
+            } else if at == count {
+                end
+            } else {
+                inner(at, random())
+            }
+        })
+        .collect();
     json!({"points": points, "divisions": vec![1; count]})
 }
 
@@ -49,8 +61,7 @@ const HARD: [f64; 2] = [5.0, 0.2];
 impl Blocks {
     fn scene(&self, state: &mut u64) -> Value {
         let block = |x: Value, y: Value| json!({"rectangle": {"x": x, "y": y, "element": self.element}});
-        let [upper, lower] =
-            [0, 1].map(|body| lines(self.counts[body], self.widths[body], self.spread, state));
+        let [upper, lower] = [0, 1].map(|body| lines(self.counts[body], self.widths[body], self.spread, state));
         json!({
             "model": self.model,
             "body": block(upper, cells(1.0, 2.0, 2)), "material": {"young": SOFT[0], "poisson": SOFT[1]},
@@ -113,7 +124,8 @@ fn a_uniform_pressure_passes_between_any_two_meshes_in_the_plane_and_about_the_a
 
 /// Five Gauss points on [0, 1].
 fn gauss() -> [(f64, f64); 5] {
-    let (a, b) = ((5.0 - 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0, (5.0 + 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0);
+    let (a, b) =
+        ((5.0 - 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0, (5.0 + 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0);
     let (v, w) = ((322.0 + 13.0 * 70.0_f64.sqrt()) / 900.0, (322.0 - 13.0 * 70.0_f64.sqrt()) / 900.0);
     [(0.0, 128.0 / 225.0), (a, v), (-a, v), (b, w), (-b, w)].map(|(at, weight)| ((1.0 + at) / 2.0, weight / 2.0))
 }
@@ -163,7 +175,8 @@ fn a_uniform_pressure_passes_where_surfaces_cover_each_other_in_part() {
                     let first_of_base = model.body().regions()[1].nodes().start;
                     let mut away: f64 = 0.0;
                     for (node, &[_, y, _]) in model.mesh().nodes().iter().enumerate() {
-                        let exact = if node < first_of_base { strain[1] + strain[0] * (y - 1.0) } else { strain[1] * y };
+                        let exact =
+                            if node < first_of_base { strain[1] + strain[0] * (y - 1.0) } else { strain[1] * y };
                         away = away.max((nodal[2 * node + 1] - exact).abs());
                     }
                     let name = format!("{element} {counts:?} {end} {side}: {away:e}");
@@ -171,7 +184,8 @@ fn a_uniform_pressure_passes_where_surfaces_cover_each_other_in_part() {
                     for pressure in model.pressure(&solution.multiplier).unwrap() {
                         assert!((pressure - 1.0).abs() < 1e-6, "{name}: pressure {pressure}");
                     }
-                    let largest = model.rows().iter().flat_map(|row| &row.ends).fold(0.0_f64, |most, end| most.max(end.1.abs()));
+                    let largest =
+                        model.rows().iter().flat_map(|row| &row.ends).fold(0.0_f64, |most, end| most.max(end.1.abs()));
                     assert!(largest < 3.0, "{name}: share {largest}");
                 }
             }
@@ -215,7 +229,14 @@ fn a_uniform_pressure_passes_between_any_two_meshes_in_space() {
             for pressure in model.pressure(&solution.multiplier).unwrap() {
                 assert!((pressure - 1.0).abs() < PARTLY_COVERED, "{name}: pressure {pressure}");
             }
-            let gaps = signorini::scene::Answer::new(std::sync::Arc::new(model), &solution.displacement, &solution.multiplier, &solution.contact_set).unwrap().remaining_gaps();
+            let gaps = signorini::scene::Answer::new(
+                std::sync::Arc::new(model),
+                &solution.displacement,
+                &solution.multiplier,
+                &solution.contact_set,
+            )
+            .unwrap()
+            .remaining_gaps();
             assert!(gaps.iter().all(|gap| gap.abs() < PATCH), "{name}: {gaps:?}");
         }
     }
@@ -265,7 +286,7 @@ fn matching_meshes_have_the_same_answer_as_pairs() {
     for (element, rule) in [("q4", "approach"), ("t6", "approach"), ("q8", "approach")] {
         let half = |half: &str| {
             let centre = if half == "lower" { 1.0 } else { -1.0 };
-            let zone = json!({"width": 0.2, "divisions": 12, "growth": 1.4});
+            let zone = json!({"width": 0.2, "divisions": 8, "growth": 1.6});
             json!({"half-disc": {"half": half, "centre": [0, centre], "radius": 1, "zone": zone, "element": element}})
         };
         let scene = |rows: &str| {
@@ -277,7 +298,8 @@ fn matching_meshes_have_the_same_answer_as_pairs() {
                                "shape": {"body": {"boundary": "base.arc", "rows": rows, "side": "this"}}}],
             })
         };
-        let [(pairs, of_pairs), (means, of_means), (auto, of_auto)] = ["pairs", "mortar", "auto"].map(|rows| solved(&scene(rows)));
+        let [(pairs, of_pairs), (means, of_means), (auto, of_auto)] =
+            ["pairs", "mortar", "auto"].map(|rows| solved(&scene(rows)));
         assert!(pairs.rows().iter().all(|row| !row.is_mean) && means.rows().iter().all(|row| row.is_mean));
         // Bit by bit.
         assert_eq!((auto.rows(), &of_auto.multiplier), (pairs.rows(), &of_pairs.multiplier), "{element}");
@@ -288,20 +310,23 @@ fn matching_meshes_have_the_same_answer_as_pairs() {
         let (first, second) = (by_node(&pairs, &of_pairs), by_node(&means, &of_means));
         for (node, lambda) in first {
             let other = second.get(&node).copied().unwrap_or(0.0);
-            println!("{element} {rule} node {node}: {lambda:e} {other:e} {:e}", (lambda - other).abs() / largest);
+            assert!((lambda - other).abs() < PATCH * largest, "{element} node {node}: {lambda:e} and {other:e}");
         }
     }
 }
 
-/// A shaft pressed into a hub, both full circles, plane strain: the meshes overlap by nothing, `fit` gives the interference.
+/// A shaft pressed into a hub, both full circles, plane strain: the meshes do not overlap, `fit` gives the interference. The pressure of
+/// linear elements is that of a polygon.
 #[test]
 fn a_press_fit_has_the_pressure_of_lame() {
     let interference = 1e-3;
     for [shaft, hub] in [[1.0, 1.0], [1.0, 10.0], [10.0, 1.0]] {
-        for (counts, element) in [([48, 72], "q8"), ([72, 48], "q8"), ([48, 72], "q4")] {
+        for (counts, element, of_force, of_pressure) in
+            [([24, 36], "q8", 2e-3, 1e-2), ([36, 24], "q8", 2e-3, 1e-2), ([48, 72], "q4", 6e-3, 2e-2)]
+        {
             for side in ["this", "other"] {
                 let ring = |radii: [f64; 2], count: usize| {
-                    json!({"ring": {"radius": {"points": radii, "divisions": [6]}, "element": element,
+                    json!({"ring": {"radius": {"points": radii, "divisions": [4]}, "element": element,
                                     "angle": {"points": [0, 360], "divisions": [count]}}})
                 };
                 let (model, solution) = solved(&json!({
@@ -321,55 +346,70 @@ fn a_press_fit_has_the_pressure_of_lame() {
                     let shape = (outer * outer + inner * inner) / (outer * outer - inner * inner);
                     (shape + if is_shaft { -ratio } else { ratio }) / modulus
                 };
-                let exact = interference / (compliance(shaft, 0.3, 0.5, 1.0, true) + compliance(hub, 0.25, 1.0, 2.0, false));
+                let exact =
+                    interference / (compliance(shaft, 0.3, 0.5, 1.0, true) + compliance(hub, 0.25, 1.0, 2.0, false));
                 let force: f64 = -solution.multiplier.iter().sum::<f64>() / std::f64::consts::TAU;
                 let pressures = model.pressure(&solution.multiplier).unwrap();
-                let (low, high) = pressures.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &p| (low.min(p), high.max(p)));
-                println!("E {shaft}:{hub} {element} {counts:?} {side}: F {:+.3} %, p {:.4}..{:.4}", 100.0 * (force / exact - 1.0), low / exact, high / exact);
+                let (low, high) =
+                    pressures.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &p| (low.min(p), high.max(p)));
+                println!(
+                    "E {shaft}:{hub} {element} {counts:?} {side}: F {:+.3} %, p {:.4}..{:.4}",
+                    100.0 * (force / exact - 1.0),
+                    low / exact,
+                    high / exact
+                );
             }
         }
     }
 }
 
+/// The force, and the root of the mean square of the error of the pressure inside 0.8 a, relative to its peak, by the formula of Hertz.
 #[test]
-fn discs_of_other_meshes_have_the_force_and_pressure_of_matching_ones() {
-    let solved_with = |counts: [usize; 2], side: &str, element: &str, moduli: [f64; 2]| {
+fn discs_of_other_meshes_have_the_force_of_matching_ones_and_the_pressure_of_hertz() {
+    let moduli = [1.0, 3.0];
+    let solved_with = |counts: [usize; 2], side: &str, element: &str| -> [f64; 2] {
         let half = |half: &str, radius: f64, count: usize| {
             let centre = if half == "lower" { radius } else { -radius };
-            let zone = json!({"width": 0.3, "divisions": count, "growth": 1.15});
-            json!({"half-disc": {"half": half, "centre": [0, centre], "radius": radius, "zone": zone, "element": element}})
+            let zone = json!({"width": 0.15, "divisions": count, "growth": 1.25});
+            json!({"half-disc": {"half": half, "centre": [0, centre], "radius": radius, "zone": zone, "symmetric": true,
+                                 "element": element}})
         };
-        solved(&json!({
+        let (model, solution) = solved(&json!({
             "body": half("lower", 1.0, counts[0]), "material": {"young": moduli[0], "poisson": 0.3},
             "further-bodies": [{"name": "base", "body": half("upper", 2.0, counts[1]),
                                 "material": {"young": moduli[1], "poisson": 0.3}}],
-            "supports": [{"on": {"boundary": "cut"}, "x": 0, "y": -0.005}, {"on": {"boundary": "base.cut"}, "x": 0, "y": 0}],
+            "supports": [{"on": {"boundary": "cut"}, "y": -0.005}, {"on": {"boundary": "symmetry-x"}, "x": 0},
+                         {"on": {"boundary": "base.cut"}, "y": 0}, {"on": {"boundary": "base.symmetry-x"}, "x": 0}],
             "obstacles": [{"boundary": "arc", "approach": "-y",
                            "shape": {"body": {"boundary": "base.arc", "rows": "mortar", "side": side}}}],
-        }))
+        }));
+        let force = -2.0 * solution.multiplier.iter().sum::<f64>();
+        let compliance: f64 = moduli.iter().map(|young| (1.0 - 0.09) / young).sum();
+        // Of the radii 1 and 2.
+        let radius = 1.0 / 1.5;
+        let half = (4.0 * force * radius * compliance / std::f64::consts::PI).sqrt();
+        let peak = 2.0 * force / (std::f64::consts::PI * half);
+        let (mut sum, mut count) = (0.0, 0);
+        for (row, pressure) in model.rows().iter().zip(model.pressure(&solution.multiplier).unwrap()) {
+            let x = model.mesh().nodes()[row.node][0] / half;
+            if x.abs() < 0.8 {
+                sum += (pressure / peak - (1.0 - x * x).sqrt()).powi(2);
+                count += 1;
+            }
+        }
+        assert!(count >= 8, "{count} nodes");
+        [force, (sum / f64::from(count)).sqrt()]
     };
     for element in ["q4", "q8"] {
-        for moduli in [[1.0, 3.0], [3.0, 1.0]] {
-            for counts in [[40, 40], [40, 60], [60, 40], [60, 60]] {
-                for side in ["this", "other"] {
-                    let (model, solution) = solved_with(counts, side, element, moduli);
-                    let force: f64 = -solution.multiplier.iter().sum::<f64>();
-                    let compliance: f64 = moduli.iter().map(|young| (1.0 - 0.09) / young).sum();
-                    let radius = 1.0 / (1.0 + 0.5);
-                    let half = (4.0 * force * radius * compliance / std::f64::consts::PI).sqrt();
-                    let peak = 2.0 * force / (std::f64::consts::PI * half);
-                    let pressures = model.pressure(&solution.multiplier).unwrap();
-                    let (mut sum, mut count) = (0.0, 0);
-                    for (row, pressure) in model.rows().iter().zip(&pressures) {
-                        let x = model.mesh().nodes()[row.node][0] / half;
-                        if x.abs() < 0.8 {
-                            sum += (pressure / peak - (1.0 - x * x).sqrt()).powi(2);
-                            count += 1;
-                        }
-                    }
-                    let rms = (sum / f64::from(count)).sqrt();
-                    println!("{element} E {moduli:?} {counts:?} {side}: F {force:.6e}, a {half:.4}, {count} nodes, rms {:.2} %, {} rows", 100.0 * rms, model.rows().len());
-                }
+        let [matching, _] = solved_with([40, 40], "this", element);
+        for counts in [[40, 60], [60, 40]] {
+            for side in ["this", "other"] {
+                let [force, rms] = solved_with(counts, side, element);
+                println!(
+                    "{element} {counts:?} {side}: F {:+.3} %, rms {:.2} %",
+                    100.0 * (force / matching - 1.0),
+                    100.0 * rms
+                );
             }
         }
     }

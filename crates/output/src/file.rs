@@ -67,20 +67,22 @@ fn write(folder: &Path, path: &Path, contents: impl Fn(&mut dyn Write) -> io::Re
     file.persist(path).map(drop).map_err(|error| error.error)
 }
 
-/// Writes a drawing as `stem.svg` and `stem.png` (for paper `stem.svg` and `stem.pdf`) into `folder`; returns both paths.
-///
-/// # Errors
-/// [`qp::Error::File`] if the system refuses, [`qp::Error::Numerical`] if the rasteriser fails (then neither file is
-/// written).
-pub fn write_picture(folder: &Path, stem: &str, drawing: &Drawing) -> Result<[PathBuf; 2], Error> {
-    let (other, bytes) = match drawing.is_for_paper() {
-        true => ("pdf", drawing.pdf()),
-        false => ("png", drawing.png(1.0)?),
-    };
-    let paths = ["svg", other].map(|extension| folder.join(format!("{stem}.{extension}")));
-    write_atomically(&paths[0], drawing.svg().as_bytes())?;
-    write_atomically(&paths[1], &bytes)?;
-    Ok(paths)
+impl Drawing {
+    /// Writes the drawing as `stem.svg` and `stem.png` (for paper `stem.svg` and `stem.pdf`) into `folder`; returns both paths.
+    ///
+    /// # Errors
+    /// [`qp::Error::File`] if the system refuses, [`qp::Error::Numerical`] if the rasteriser fails (then neither file is
+    /// written).
+    pub fn write(&self, folder: &Path, stem: &str) -> Result<[PathBuf; 2], Error> {
+        let (other, bytes) = match self.is_for_paper() {
+            true => ("pdf", self.pdf()),
+            false => ("png", self.png(1.0)?),
+        };
+        let paths = ["svg", other].map(|extension| folder.join(format!("{stem}.{extension}")));
+        write_atomically(&paths[0], self.svg().as_bytes())?;
+        write_atomically(&paths[1], &bytes)?;
+        Ok(paths)
+    }
 }
 
 /// Writes named texts into `folder`, one file each, from the first to the last.

@@ -29,13 +29,12 @@ mod text;
 mod view;
 
 pub use draw::drawing::Drawing;
-pub use file::{remove_files, write_atomically, write_files, write_picture, write_streamed};
+pub use file::{remove_files, write_atomically, write_files, write_streamed};
 pub use folder::gallery::{Pictures, Wanted};
 pub use folder::motion::MotionFolder;
 pub use folder::tables::of_model as tables_of_model;
 pub use folder::vtu::{Array, Unstructured};
 pub use page::About;
-pub use picture::set_up::set_up_picture;
 pub use plots::medium::Medium;
 pub use plots::plot::{Plot, Series, line_plots};
 pub use plots::ticks::{Quantity, Scale};

@@ -23,7 +23,7 @@ pub use formulation::Formulation;
 pub use material::Material;
 pub use mesh::gmsh::GmshFile;
 pub use mesh::{Axis, Boundary, Mesh, Zone};
-pub use mortar::{Mortar, MortarRows, SurfaceMesh};
+pub use mortar::{Mortar, MortarRows};
 pub use norms::{ErrorNorms, ExactState, error_norms, error_norms_by};
 pub use recovery::along::{PathPiece, PathPoint};
 pub use recovery::{Stress, StressField, discretisation_error, stress};

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::fields::fields;
 use super::tables;
-use crate::file::{write_atomically, write_files, write_picture, write_streamed};
+use crate::file::{write_atomically, write_files, write_streamed};
 use crate::picture::plane_scene::{PlaneScene, draw_series};
 use crate::picture::space_scene::{SpaceScene, draw_space_series};
 use crate::plots::medium::Medium;
@@ -128,7 +128,7 @@ impl Wanted {
         let plots = pressure_plots(answers, summaries);
         if !plots.is_empty() {
             let title = format!("{}, contact pressure of three methods", headline(model));
-            write_picture(folder, "pressure", &line_plots_for(self.medium, &title, &plots))?;
+            line_plots_for(self.medium, &title, &plots).write(folder, "pressure")?;
         }
         Ok(())
     }
@@ -169,6 +169,6 @@ impl Wanted {
         draw_answers(folder, shown, drawn.len(), medium)?;
         let Some(first) = points.first() else { return Ok(()) };
         let plots = sweep_plots(sweep);
-        write_picture(folder, "force-width", &line_plots_for(medium, first.answer.model().title(), &plots)).map(drop)
+        line_plots_for(medium, first.answer.model().title(), &plots).write(folder, "force-width").map(drop)
     }
 }

@@ -15,7 +15,7 @@ use signorini_qp as qp;
 use super::fields::fields;
 use super::motion_table::MotionTable;
 use crate::draw::animation::animate;
-use crate::file::{remove_files, write_atomically, write_picture};
+use crate::file::{remove_files, write_atomically};
 use crate::json::compact_json;
 use crate::page::{About, MotionFrames, write_motion_page};
 use crate::picture::body::{ContactPicture, FieldPanel, common_window};
@@ -260,7 +260,7 @@ impl MotionFolder {
     pub fn draw_for(&self, model: &Arc<Model>, medium: Medium) -> Result<(), Error> {
         let history = self.read_history()?;
         let plots = history_plots(model, &history);
-        write_picture(&self.folder, "history", &line_plots_for(medium, model.title(), &plots))?;
+        line_plots_for(medium, model.title(), &plots).write(&self.folder, "history")?;
         if model.mesh().dimension() != 2 {
             return Ok(());
         }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::gallery::{Pictures, Wanted};
-use crate::file::{write_files, write_picture};
+use crate::file::write_files;
 use crate::plots::plot::{Plot, Series, line_plots_for};
 use crate::plots::ticks::Quantity;
 use crate::reports::certificate::conditions;
@@ -62,7 +62,7 @@ impl Wanted {
             over_way("sum of multipliers", |point| point.summary.contact.force),
             over_way("closed rows", |point| point.summary.contact.count as f64),
         ];
-        write_picture(folder, "force", &line_plots_for(self.medium, title, &plots)).map(drop)
+        line_plots_for(self.medium, title, &plots).write(folder, "force").map(drop)
     }
 }
 

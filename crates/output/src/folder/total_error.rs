@@ -5,7 +5,7 @@ use std::path::Path;
 use super::gallery::{Pictures, Wanted};
 use super::msh::msh;
 use super::vtu::{Array, Unstructured};
-use crate::file::{write_files, write_picture};
+use crate::file::write_files;
 use crate::picture::mesh_series::meshes_picture;
 use crate::plots::plot::line_plots_for;
 use crate::reports::in_words::InWords;
@@ -300,9 +300,9 @@ impl Wanted {
         if self.pictures == Pictures::None {
             return Ok(());
         }
-        write_picture(folder, "total-error", &line_plots_for(self.medium, title, &[error_plot(found)]))?;
+        line_plots_for(self.medium, title, &[error_plot(found)]).write(folder, "total-error")?;
         match meshes_picture(title, found, units) {
-            Some(meshes) => write_picture(folder, "meshes", &meshes).map(drop),
+            Some(meshes) => meshes.write(folder, "meshes").map(drop),
             None => Ok(()),
         }
     }

@@ -7,7 +7,6 @@ use super::arrows::{Arrow, ArrowKind};
 use super::body::{ContactPicture, FieldPanel, common_window};
 use super::obstacle::ObstacleLine;
 use crate::draw::drawing::Drawing;
-use crate::file::write_picture;
 use crate::plots::medium::Medium;
 use crate::view::field::{Painted, SIGMA_2, VON_MISES};
 use crate::view::limits::common_limits;
@@ -231,7 +230,7 @@ fn arrows(answer: &Answer) -> Result<Vec<Arrow>, Error> {
 /// the colour bar mark values outside the colours.
 ///
 /// # Errors
-/// As [`ContactPicture::draw`] and [`write_picture`].
+/// As [`ContactPicture::draw`] and [`Drawing::write`](crate::Drawing::write).
 pub(crate) fn draw_series(
     folder: &Path,
     series: &[(String, PlaneScene)],
@@ -265,7 +264,7 @@ pub(crate) fn draw_series(
     let window = common_window(pictures.iter().take(leading).map(ContactPicture::window));
     for ((stem, _), mut picture) in series.iter().zip(pictures) {
         (picture.window, picture.medium) = (Some(window), medium);
-        write_picture(folder, stem, &picture.draw()?)?;
+        picture.draw()?.write(folder, stem)?;
     }
     Ok(())
 }

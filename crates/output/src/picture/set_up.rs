@@ -34,11 +34,17 @@ const SPRING: Colour = PALETTE[3];
 const FACE: Colour = PALETTE[5];
 const LOAD: Colour = PALETTE[1];
 
-/// Draws the scene of a model before it is solved.
-///
-/// # Errors
-/// [`Error::Scene`] for a bar, which has no such picture.
-pub fn set_up_picture(model: &Model) -> Result<Drawing, Error> {
+impl Drawing {
+    /// The picture of a scene before it is solved.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a bar, which has no such picture.
+    pub fn of_set_up(model: &Model) -> Result<Drawing, Error> {
+        set_up(model)
+    }
+}
+
+fn set_up(model: &Model) -> Result<Drawing, Error> {
     let title = title(model);
     match model.mesh().dimension() {
         1 => {

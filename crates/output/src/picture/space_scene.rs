@@ -7,7 +7,6 @@ use super::plan::Plan;
 use super::space::{Colouring, Face, Sheet, SpacePicture};
 use crate::draw::colour::Colour;
 use crate::draw::drawing::Drawing;
-use crate::file::write_picture;
 use crate::plots::medium::Medium;
 use crate::plots::ticks::brief;
 use crate::view::field::{Painted, VON_MISES};
@@ -91,7 +90,7 @@ struct Shared {
 /// first `leading` pictures.
 ///
 /// # Errors
-/// As [`write_picture`].
+/// As [`Drawing::write`](crate::Drawing::write).
 pub(crate) fn draw_space_series(
     folder: &Path,
     series: &[(String, SpaceScene)],
@@ -112,7 +111,7 @@ pub(crate) fn draw_space_series(
     let limits = common_limits(leading_plans().map(|plan| &plan.pressure[..]));
     plans.iter_mut().flatten().for_each(|plan| (plan.window, plan.limits) = (window, limits));
     for ((stem, scene), plan) in series.iter().zip(&plans) {
-        write_picture(folder, stem, &scene.draw(&shared, plan.as_ref(), medium))?;
+        scene.draw(&shared, plan.as_ref(), medium).write(folder, stem)?;
     }
     Ok(())
 }

@@ -8,7 +8,6 @@ use crate::Array;
 use crate::Drawing;
 use crate::Unstructured;
 use crate::write_atomically;
-use crate::write_picture;
 use resvg::usvg::roxmltree::Document;
 use signorini_mechanics::Error;
 use signorini_mechanics::fem::ElementKind;
@@ -90,11 +89,11 @@ fn a_picture_is_written_as_svg_and_png_into_a_new_folder_without_other_files() {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join("a/b");
     let drawing = Drawing::new(30.0, 20.0);
-    let [svg, png] = write_picture(&folder, "gap 1", &drawing).unwrap();
+    let [svg, png] = drawing.write(&folder, "gap 1").unwrap();
     assert_eq!(names(&folder), ["gap 1.png", "gap 1.svg"]);
     assert_eq!(std::fs::read_to_string(svg).unwrap(), drawing.svg());
     assert_eq!(std::fs::read(png).unwrap(), drawing.png(1.0).unwrap());
-    write_picture(&folder, "gap 1", &drawing).unwrap();
+    drawing.write(&folder, "gap 1").unwrap();
     assert_eq!(names(&folder).len(), 2);
 }
 
@@ -137,5 +136,5 @@ fn a_failed_write_is_reported_with_its_path_and_changes_nothing() {
     refused(folder.path(), format!("cannot write {}: ", folder.path().display()));
     assert_eq!(std::fs::read(&occupied).unwrap(), b"kept");
     assert_eq!(names(folder.path()), ["file"]);
-    assert!(write_picture(&occupied, "picture", &Drawing::new(3.0, 3.0)).is_err());
+    assert!(Drawing::new(3.0, 3.0).write(&occupied, "picture").is_err());
 }

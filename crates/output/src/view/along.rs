@@ -101,6 +101,9 @@ impl<'a> Contacts<'a> {
             let nodes = row.ends.iter().take(if row.is_mean { 1 } else { 2 });
             nodes.for_each(|(node, _)| *pressures[row.obstacle].entry(*node).or_insert(0.0) += pressure);
         }
+        for (row, [pressure, _]) in model.rows_across().iter().zip(answer.across()) {
+            *pressures[row.obstacle].entry(row.node).or_insert(0.0) += pressure;
+        }
         let mut facets: BTreeMap<usize, Vec<(usize, &[usize])>> = BTreeMap::new();
         for (obstacle, own) in pressures.iter().enumerate() {
             for facet in model.mesh().boundaries().iter().flat_map(Boundary::facets) {

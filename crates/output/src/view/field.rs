@@ -204,6 +204,15 @@ impl Source<'_> {
                 at.flag[node] = f64::from(self.answer.contact_set().contains(index)).max(at.flag[node]);
             }
         }
+        for (row, [pressure, left]) in model.rows_across().iter().zip(self.answer.across()) {
+            let node = row.node;
+            if at.flag[node] == NO_CANDIDATE || row.gap < at.gap[node] {
+                (at.gap[node], at.remaining[node]) = (row.gap, left);
+                (0..3).for_each(|axis| at.normal[3 * node + axis] = row.normal[axis]);
+            }
+            at.pressure[node] += pressure;
+            at.flag[node] = f64::from(pressure > 0.0).max(at.flag[node]);
+        }
         at
     }
 }

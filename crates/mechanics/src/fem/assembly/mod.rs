@@ -35,5 +35,5 @@ pub(crate) use positive_basis::PositiveBasis;
 pub use rigid_body_modes::rigid_body_modes;
 pub(crate) use springs::Springs;
 pub use stiffness::stiffness;
-pub(crate) use surface::{facet_centres, facet_sizes, outward_facets};
+pub(crate) use surface::{facet_centres, facet_sizes, outward};
 pub use surface::{node_normals, tributary_areas};

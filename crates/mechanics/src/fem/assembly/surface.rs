@@ -67,8 +67,8 @@ pub(super) fn for_each_point_of<'a>(
     }
 }
 
-/// The nodes of the facets of a boundary, each in an order from which its area vector points outwards.
-pub(crate) fn outward_facets(body: &ElasticBody, boundary: &Boundary) -> Vec<usize> {
+/// The boundary with the nodes of each facet in an order from which its area vector points outwards.
+pub(crate) fn outward(body: &ElasticBody, boundary: &Boundary) -> Boundary {
     let (mesh, mirrored) = (body.mesh(), boundary.kind.reference().mirrored());
     let faces = mesh.kind().reference().faces;
     let oriented = |(facet, owner): (&[usize], Option<(usize, usize)>)| -> Vec<usize> {
@@ -82,7 +82,8 @@ pub(crate) fn outward_facets(body: &ElasticBody, boundary: &Boundary) -> Vec<usi
             false => mirrored.iter().map(|&local| facet[local]).collect(),
         }
     };
-    boundary.facets().zip(mesh.faces_of(boundary)).flat_map(oriented).collect()
+    let connectivity = boundary.facets().zip(mesh.faces_of(boundary)).flat_map(oriented).collect();
+    Boundary { connectivity, ..boundary.clone() }
 }
 
 /// 1 if the nodes of a facet run as those of the element's face, whose area vector points outwards, else -1.

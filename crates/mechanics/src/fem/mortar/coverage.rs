@@ -102,8 +102,9 @@ impl<'a> Covered<'a> {
 /// The parts of the rows of all kept nodes of a surface, by node.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Part {
-    /// The area of the node.
+    /// The covered area of the node, with what dropped nodes hand over; its whole area.
     pub area: f64,
+    pub full: f64,
     /// The integral of its dual function with the function of a slave node, and with that of a master node.
     pub slave: Vec<(usize, f64)>,
     pub master: Vec<(usize, f64)>,
@@ -155,6 +156,7 @@ pub(super) fn parts(covered: &[Covered], kept: &[bool]) -> Vec<Option<Part>> {
         let weights = facet.dual(&is_kept);
         for j in (0..nodes.len()).filter(|&j| is_kept[j]) {
             let part = parts[nodes[j]].get_or_insert_default();
+            part.full += facet.full[j];
             for (k, &node) in nodes.iter().enumerate() {
                 // The dual functions see the own node, and what dropped nodes hand over.
                 let own = match (k == j, is_kept[k]) {

@@ -233,6 +233,11 @@ impl<'a> Projected<'a> {
         }
     }
 
+    /// The reference coordinates of the place that is seen behind a point.
+    pub fn foot(&self, at: [f64; 3]) -> Option<[f64; 3]> {
+        self.inverse.at(self.plane.point(at))
+    }
+
     /// Calls `visit` for every integration point of the part that `master` covers, if it is within `reach`.
     pub fn for_each_point(&self, master: &Facet, reach: f64, visit: &mut dyn FnMut(SharedPoint)) {
         let inverse = Inverse::of(master, &self.plane);

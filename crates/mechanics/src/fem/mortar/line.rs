@@ -42,10 +42,24 @@ impl Edge<'_> {
         sums
     }
 
+    /// The place from which the directions at the nodes lead through a point.
+    fn foot(&self, directions: &[[f64; 3]], to: [f64; 3]) -> Option<f64> {
+        zero(|xi| {
+            let ([place, tangent], [way, bend]) = (self.at(xi), self.sum(xi, |node| directions[node]));
+            [turned(minus(to, place), way), turned(minus(to, place), bend) - turned(tangent, way)]
+        })
+    }
+
     /// The place at `xi`, and the tangent.
     fn at(&self, xi: f64) -> [[f64; 3]; 2] {
         self.sum(xi, |node| minus(self.places[node], self.origin))
     }
+}
+
+/// The reference coordinates of the place on an edge from which its directions lead through a point.
+pub(super) fn foot(slave: &Facet, directions: &[[f64; 3]], at: [f64; 3]) -> Option<[f64; 3]> {
+    let xi = Edge::of(slave, slave.middle).foot(directions, minus(at, slave.middle))?;
+    Some([xi, 0.0, 0.0])
 }
 
 fn turned(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -89,13 +103,7 @@ pub(super) fn for_each_point(
             [turned(minus(place, from), way), turned(tangent, way)]
         })
     };
-    let on_slave = |eta: f64| {
-        let [to, _] = other.at(eta);
-        zero(|xi| {
-            let ([place, tangent], [way, bend]) = (own.at(xi), direction(xi));
-            [turned(minus(to, place), way), turned(minus(to, place), bend) - turned(tangent, way)]
-        })
-    };
+    let on_slave = |eta: f64| own.foot(directions, other.at(eta)[0]);
     let is_inside = |xi: &f64| xi.abs() <= 1.0 + SAME_END;
     let snapped = |xi: f64| if (xi.abs() - 1.0).abs() <= SAME_END { xi.signum() } else { xi };
     let own_ends = [-1.0, 1.0].into_iter().filter(|&end| on_master(end).is_some_and(|eta| is_inside(&eta)));

@@ -26,6 +26,8 @@ mod line;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeMap;
+
 use coverage::{Covered, Part, kept, parts};
 use face::Projected;
 use facet::Facet;
@@ -35,37 +37,37 @@ use crate::error::Error;
 use crate::fem::element::{FacetKind, PerNode, positive_coefficient, positive_functions};
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::{dot, length, minus, unit};
+use crate::fem::mesh::Boundary;
 use crate::fem::surface::Tree;
 
 /// A share below this is rounding of zero; one this close to 1 is 1.
 const ROUNDING: f64 = 1e-12;
 
+/// A place outside a facet by less than this, in reference coordinates, is on its edge.
+const SAME_PLACE: f64 = 1e-9;
+
 /// A facet whose covered area exceeds its area by more than this share lies behind several layers of the other surface.
 const TWICE: f64 = 1e-6;
 
-/// A surface of a body: facets of one kind.
+/// A surface of a body: its facets, and the nodes that these name.
 #[derive(Clone, Copy, Debug)]
-pub struct SurfaceMesh<'a> {
-    /// Coordinates [x, y, z] of the nodes, in length; z = 0 in the plane.
-    pub nodes: &'a [[f64; 3]],
-    /// The kind of all facets: edges in the plane, faces in space.
-    pub kind: FacetKind,
-    /// The nodes of facet 0, then of facet 1, ..., indices from 0. The body lies to the left of an edge; from outside, the corners of a
-    /// face run counterclockwise.
-    pub facets: &'a [usize],
+struct SurfaceMesh<'a> {
+    nodes: &'a [[f64; 3]],
+    kind: FacetKind,
+    facets: &'a [usize],
 }
 
 /// Two surfaces of different bodies that may touch, each with its own mesh.
 ///
 /// ```
-/// use signorini_mechanics::fem::{FacetKind, Formulation, Mortar, SurfaceMesh};
+/// use signorini_mechanics::fem::{Boundary, FacetKind, Formulation, Mortar};
 ///
 /// // The lower side of an upper body: one edge. The upper side of a lower body: two edges.
 /// let upper = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
 /// let lower = [[1.0, -0.1, 0.0], [0.5, -0.1, 0.0], [0.0, -0.1, 0.0]];
-/// let slave = SurfaceMesh { nodes: &upper, kind: FacetKind::Line2, facets: &[0, 1] };
-/// let master = SurfaceMesh { nodes: &lower, kind: FacetKind::Line2, facets: &[0, 1, 1, 2] };
-/// let rows = Mortar::new(slave, master, Formulation::PlaneStrain { thickness: 1.0 }).rows()?;
+/// let slave = Boundary::new("bottom", FacetKind::Line2, vec![0, 1]);
+/// let master = Boundary::new("top", FacetKind::Line2, vec![0, 1, 1, 2]);
+/// let rows = Mortar::new((&upper, &slave), (&lower, &master), Formulation::PlaneStrain { thickness: 1.0 }).rows()?;
 /// // Row 0 along -y: -u_y of node 0 of the upper body, and 3/4, 1/2, -1/4 of the lower nodes from left to right.
 /// let row: Vec<f64> = (0..10).map(|dof| rows.contact.column(dof).filter(|entry| entry.0 == 0).map(|entry| entry.1).sum()).collect();
 /// let expected = [0.0, -1.0, 0.0, 0.0, 0.0, -0.25, 0.0, 0.5, 0.0, 0.75];
@@ -112,6 +114,18 @@ pub(crate) struct MortarRow {
     pub mean: [f64; 3],
     pub gap: f64,
     pub area: f64,
+    /// The share of the whole area of the node that is covered.
+    pub covered: f64,
+}
+
+/// A master node and the place of the slave surface that it faces.
+#[derive(Clone, Debug)]
+pub(crate) struct Opposite {
+    pub node: usize,
+    /// The nodes of the slave facet with the values of their shape functions at that place.
+    pub slave: Vec<(usize, f64)>,
+    /// Unit vector from the slave body into the other.
+    pub normal: [f64; 3],
 }
 
 /// All rows with what the search for them found.
@@ -120,8 +134,8 @@ pub(crate) struct Found {
     pub rows: Vec<MortarRow>,
     /// Covered shares of the slave and the master surface.
     pub covered: [f64; 2],
-    /// Slave nodes that are partly covered and carry no row.
-    pub dropped: usize,
+    /// The master nodes that face the slave surface.
+    pub opposite: Vec<Opposite>,
     /// The largest distance of a straight facet from the curve for which it stands, in length, by the angles of the normals around it.
     pub sag: f64,
 }
@@ -134,9 +148,21 @@ impl std::fmt::Debug for Mortar<'_> {
 }
 
 impl<'a> Mortar<'a> {
-    /// Rows at the nodes of `slave`, against `master`. Better on the softer body, and on the finer mesh if both are as soft.
-    pub fn new(slave: SurfaceMesh<'a>, master: SurfaceMesh<'a>, formulation: Formulation) -> Self {
-        let reach = f64::INFINITY;
+    /// Rows at the nodes of `slave`, against `master`: better on the softer body, and on the finer mesh if both are as soft.
+    ///
+    /// Each surface is `(nodes, boundary)`: the coordinates [x, y, z] of its own nodes, in length, z = 0 in the plane, and facets that
+    /// name these nodes. The body lies to the left of an edge; from outside, the corners of a face run counterclockwise.
+    pub fn new(
+        slave: (&'a [[f64; 3]], &'a Boundary),
+        master: (&'a [[f64; 3]], &'a Boundary),
+        formulation: Formulation,
+    ) -> Self {
+        let surface = |(nodes, boundary): (&'a [[f64; 3]], &'a Boundary)| SurfaceMesh {
+            nodes,
+            kind: boundary.kind,
+            facets: &boundary.connectivity,
+        };
+        let (slave, master, reach) = (surface(slave), surface(master), f64::INFINITY);
         Mortar { slave, master, formulation, direction: None, reach, may_carry: None, has_coefficient: None }
     }
 
@@ -208,7 +234,7 @@ impl<'a> Mortar<'a> {
         let master = facets(&self.master);
         let [own, others] =
             [(&self.slave, &slave), (&self.master, &master)].map(|(surface, facets)| normals(surface, facets));
-        let covered = self.covered(&slave, &master, &own)?;
+        let (covered, opposite) = self.covered(&slave, &master, &own)?;
         let carries = |node: usize| self.may_carry.is_none_or(|may_carry| may_carry(node));
         let kept = kept(&covered, self.slave.nodes.len(), &carries);
         let ends = self.ends_of_middles();
@@ -218,18 +244,13 @@ impl<'a> Mortar<'a> {
             .enumerate()
             .filter_map(|(node, part)| self.row(node, part?, &own, &others, &ends))
             .collect();
-        let touched: std::collections::HashSet<usize> = covered
-            .iter()
-            .filter(|facet| facet.is_covered())
-            .flat_map(|facet| facet.facet.nodes.iter().copied())
-            .collect();
         let sum = |part: fn(&Covered) -> f64| covered.iter().map(part).sum::<f64>();
         let area = sum(|facet| facet.area);
         let of_master: f64 = master.iter().map(|facet| self.whole(facet)).sum();
         let share = |of: f64| if of > 0.0 { area / of } else { 0.0 };
         Ok(Found {
             covered: [share(sum(|facet| facet.whole)), share(of_master)],
-            dropped: touched.len() - touched.iter().filter(|&&node| kept[node]).count(),
+            opposite,
             sag: facet::sag(&slave, &own).max(facet::sag(&master, &others)),
             rows,
         })
@@ -308,7 +329,7 @@ impl<'a> Mortar<'a> {
         slave: &'f [Facet<'f>],
         master: &[Facet],
         normals: &[[f64; 3]],
-    ) -> Result<Vec<Covered<'f>>, Error> {
+    ) -> Result<(Vec<Covered<'f>>, Vec<Opposite>), Error> {
         let numbers: Vec<u32> = (0..master.len() as u32).collect();
         let tree = Tree::new(&numbers, |number| {
             let places = master[number as usize].places();
@@ -319,6 +340,7 @@ impl<'a> Mortar<'a> {
             [low.map(|at| at - radius / 4.0), high.map(|at| at + radius / 4.0)]
         });
         let mut all = Vec::with_capacity(slave.len());
+        let mut opposite: BTreeMap<usize, Opposite> = BTreeMap::new();
         for (index, facet) in slave.iter().enumerate() {
             let mut covered = Covered::new(facet);
             let is_edge = facet.reference().dimension == 1;
@@ -355,6 +377,29 @@ impl<'a> Mortar<'a> {
                     None => line::for_each_point(facet, &directions, other, self.reach, &mut add),
                     Some(face) => face.for_each_point(other, self.reach, &mut add),
                 }
+                for (&node, &place) in other.nodes.iter().zip(other.places()) {
+                    if opposite.contains_key(&node) {
+                        continue;
+                    }
+                    let found = match &projected {
+                        None => line::foot(facet, &directions, place),
+                        Some(face) => face.foot(place),
+                    };
+                    let Some(at) = found.filter(|&at| facet.reference().contains(at, SAME_PLACE)) else { continue };
+                    let shape = (facet.reference().shape)(at);
+                    let sum = |value: &dyn Fn(usize) -> [f64; 3]| {
+                        (0..facet.nodes.len()).fold([0.0; 3], |sum, local| {
+                            let value = value(local);
+                            [0, 1, 2].map(|axis| sum[axis] + shape[local] * value[axis])
+                        })
+                    };
+                    let normal = unit(sum(&|local| directions[local]));
+                    let way = minus(place, sum(&|local| facet.places()[local]));
+                    if dot(way, normal).abs() <= self.reach {
+                        let slave = facet.nodes.iter().copied().zip(shape).collect();
+                        opposite.insert(node, Opposite { node, slave, normal });
+                    }
+                }
             }
             if covered.area > (1.0 + TWICE) * covered.whole {
                 return Err(Error::Mesh {
@@ -368,7 +413,7 @@ impl<'a> Mortar<'a> {
             }
             all.push(covered);
         }
-        Ok(all)
+        Ok((all, opposite.into_values().collect()))
     }
 
     /// The row of a node; `None` if it has no area.
@@ -410,7 +455,8 @@ impl<'a> Mortar<'a> {
         let of_slave = slave.iter().map(|&(at, share)| share * dot(normal, place(at))).sum::<f64>();
         let of_master =
             master.iter().map(|&(at, share)| share * dot(normal, minus(self.master.nodes[at], origin))).sum::<f64>();
-        Some(MortarRow { node, slave, master, normal, mean, gap: of_master - of_slave, area })
+        let covered = area / part.full;
+        Some(MortarRow { node, slave, master, normal, mean, gap: of_master - of_slave, area, covered })
     }
 }
 

@@ -1,5 +1,6 @@
 //! An answer: a model with displacements and multipliers. The results that follow from them are computed once.
 
+use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
 use crate::error::Error;
@@ -115,6 +116,30 @@ impl Answer {
 
     /// The remaining gap at the node of each row, one entry per contact row, in length, `>= 0` up to rounding.
     pub fn remaining_gaps(&self) -> Vec<f64> {
+        self.gaps_of(self.model.rows())
+    }
+
+    /// The pressure and the remaining gap at the node of each entry of [`Model::rows_across`]: in force per area, `>= 0`, that of the
+    /// carrying side opposite to it, and in length, negative where the node went through.
+    pub fn across(&self) -> Vec<[f64; 2]> {
+        let rows = self.model.rows().iter().zip(&self.pressure);
+        let pressures: HashMap<(usize, usize), f64> =
+            rows.map(|(row, &pressure)| ((row.obstacle, row.node), pressure)).collect();
+        let seen = self.model.rows_across();
+        let pressure = |row: &ContactRow| {
+            // Nodes without a row share the pressure of their facet.
+            let (mut sum, mut shares) = (0.0, 0.0);
+            for &(node, share) in &row.ends[1..] {
+                if let Some(pressure) = pressures.get(&(row.obstacle, node)) {
+                    (sum, shares) = (sum - share * pressure, shares - share);
+                }
+            }
+            if shares > 0.0 { (sum / shares).max(0.0) } else { 0.0 }
+        };
+        seen.iter().zip(self.gaps_of(seen)).map(|(row, gap)| [pressure(row), gap]).collect()
+    }
+
+    fn gaps_of(&self, rows: &[ContactRow]) -> Vec<f64> {
         let dofs = self.model.dofs();
         let moved = |row: &ContactRow| -> f64 {
             let at = |node: usize| dot(self.model.at_node(&self.displacement, node), row.normal);
@@ -127,7 +152,7 @@ impl Answer {
             let approach = self.model.obstacles()[row.obstacle].approach();
             self.travel(row.obstacle).unwrap_or(0.0) * dot(row.normal, approach)
         };
-        self.model.rows().iter().map(|row| row.gap - moved(row) - travelled(row)).collect()
+        rows.iter().map(|row| row.gap - moved(row) - travelled(row)).collect()
     }
 
     /// The multiplier of each row, one entry per contact row, in force, `<= 0` in compression.

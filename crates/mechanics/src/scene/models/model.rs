@@ -47,6 +47,7 @@ pub struct Model {
     pub(crate) parts: Arc<Parts>,
     gap: f64,
     rows: Vec<ContactRow>,
+    across: Vec<ContactRow>,
     warnings: Vec<Warning>,
     problem: ContactProblem,
 }
@@ -88,7 +89,7 @@ impl Model {
         }
         let suspect = suspect_rows(&parts, &built.rows);
         let warnings = parts.warnings.iter().cloned().chain(built.warnings).chain(suspect).collect();
-        Ok(Model { parts, gap, rows: built.rows, warnings, problem })
+        Ok(Model { parts, gap, rows: built.rows, across: built.across, warnings, problem })
     }
 
     /// The same scene with another scene-wide gap: only the contact rows are built again.
@@ -260,6 +261,13 @@ impl Model {
     /// order of its boundary.
     pub fn rows(&self) -> &[ContactRow] {
         &self.rows
+    }
+
+    /// The contact seen from the nodes of the other side, where rows are means over meshes that do not match: each as a row from that
+    /// node to the place that it faces, with the tributary area 0. They are no rows of the problem, and may be violated between the nodes
+    /// of the carrying side by as much as the meshes differ.
+    pub fn rows_across(&self) -> &[ContactRow] {
+        &self.across
     }
 
     /// Warnings for the reader of the answer.

@@ -57,6 +57,8 @@ impl ContactRow {
 /// The rows of all obstacles, with their matrix B and vector g in the free dofs.
 pub(crate) struct Rows {
     pub rows: Vec<ContactRow>,
+    /// The same contact seen from nodes of the other bodies, where rows are means.
+    pub across: Vec<ContactRow>,
     pub contact: SparseMatrix,
     pub gap: Vec<f64>,
     pub warnings: Vec<Warning>,
@@ -110,7 +112,20 @@ pub(crate) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
         }
     }
     let contact = SparseMatrix::from_triplets(rows.len(), parts.unknowns.count(), &entries)?;
-    Ok(Rows { rows, contact, gap, warnings })
+    let across = (0..parts.obstacles.len()).flat_map(|index| across(parts, index, scene_gap)).collect();
+    Ok(Rows { rows, across, contact, gap, warnings })
+}
+
+/// The contact with an obstacle seen from the nodes of the other body.
+fn across(parts: &Parts, index: usize, scene_gap: f64) -> impl Iterator<Item = ContactRow> {
+    let obstacle = &parts.obstacles[index];
+    // Seen from there, the obstacle comes from the other side.
+    let (shift, approach) = (obstacle.shift(scene_gap), obstacle.approach().map(|part| 0.0 - part));
+    obstacle.across().iter().map(move |(node, facing)| {
+        let ObstacleRow { normal, gap } = facing.row(shift, approach);
+        let (node, ends, outward) = (*node, facing.ends.clone(), normal);
+        ContactRow { node, ends, obstacle: index, normal, gap, tributary_area: 0.0, is_mean: false, outward }
+    })
 }
 
 /// The rows of an obstacle, in the order of its candidates.

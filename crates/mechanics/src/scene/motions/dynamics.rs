@@ -78,6 +78,13 @@ impl Scene {
             );
             return Err(wrong("analysis", message));
         }
+        if let Some(row) = model.rows().iter().find(|row| row.is_mean) {
+            let message = "the meshes of the two bodies do not match: their rows hold means over several nodes, for which the schemes \
+                           cannot share out the mass of the contact; give both boundaries nodes that lie opposite each other for a \
+                           motion, or leave the analysis out"
+                .into();
+            return Err(refused("motion-of-means", format!("obstacles[{}].shape.body", row.obstacle), message));
+        }
         let scheme = spec.scheme();
         spec.check_parameters()?;
         scheme.check().map_err(in_place)?;

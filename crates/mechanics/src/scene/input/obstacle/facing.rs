@@ -131,7 +131,7 @@ impl ObstacleShape for FacingSpec {
             Some(Facing { ends, normal: pair.normal, mean: pair.mean, distance, area: None })
         };
         let rows = site.candidates.iter().zip(pairs).map(row).collect();
-        Ok(Geometry::Body(Between { rows, is_swapped: false, warnings: Vec::new() }))
+        Ok(Geometry::Body(Between { rows, across: Vec::new(), is_swapped: false, warnings: Vec::new() }))
     }
 
     fn other_boundary(&self) -> Option<&str> {

@@ -6,8 +6,10 @@ use super::facing::SideSpec;
 use super::pairs::{Between, Facing};
 use super::shape::Site;
 use crate::error::Error;
-use crate::fem::assembly::{facet_sizes, outward_facets};
-use crate::fem::{Boundary, ElasticBody, Mortar, SurfaceMesh};
+use crate::fem::assembly::{facet_sizes, outward};
+use crate::fem::geometry::{dot, minus};
+use crate::fem::mortar::{Found, Opposite};
+use crate::fem::{Boundary, ElasticBody, Mortar};
 use crate::scene::Warning;
 use crate::scene::input::entry::wrong;
 use crate::scene::input::schema::approach::Rule;
@@ -41,16 +43,14 @@ pub(super) fn between(
         SideSpec::Auto => carries_other(site.body, boundaries),
     };
     let [slave, master] = if is_swapped { [boundaries[1], boundaries[0]] } else { boundaries };
-    let [slave_facets, master_facets] = [slave, master].map(|boundary| outward_facets(site.body, boundary));
+    let [own, other] = [slave, master].map(|boundary| outward(site.body, boundary));
     let nodes = site.body.mesh().nodes();
-    let surface = |boundary: &Boundary, facets| SurfaceMesh { nodes, kind: boundary.kind, facets };
-    let (slave_mesh, master_mesh) = (surface(slave, &slave_facets[..]), surface(master, &master_facets[..]));
     let basis = &site.dofs.basis;
     let has_coefficient = |node: usize| basis.ends(node).is_some();
     let dimension = site.body.dimension();
     // A node that supports hold in all directions cannot make a row a bound: its function goes to its neighbours.
     let may_carry = |node: usize| (0..dimension).any(|axis| site.dofs.number(dimension * node + axis).is_some());
-    let mut mortar = Mortar::new(slave_mesh, master_mesh, *site.body.formulation())
+    let mut mortar = Mortar::new((nodes, &own), (nodes, &other), *site.body.formulation())
         .within(reach.unwrap_or(f64::INFINITY))
         .carried_by(&may_carry)
         .with_coefficients(&has_coefficient);
@@ -83,7 +83,18 @@ pub(super) fn between(
     }
     // In the order of the candidates of the boundary that carries the rows.
     let rows = slave.nodes().into_iter().map(|node| of_node.remove(&node)).collect();
-    Ok(Between { rows, is_swapped, warnings })
+    let across = found.opposite.into_iter().map(|seen| (seen.node, facing(nodes, seen))).collect();
+    Ok(Between { rows, across, is_swapped, warnings })
+}
+
+/// The contact seen from a node of the other body.
+fn facing(nodes: &[[f64; 3]], seen: Opposite) -> Facing {
+    let normal = seen.normal.map(|part| 0.0 - part);
+    let away = |&(node, share): &(usize, f64)| share * dot(normal, minus(nodes[node], nodes[seen.node]));
+    let distance = seen.slave.iter().map(away).sum();
+    let slave = seen.slave.into_iter().map(|(node, share)| (node, 0.0 - share));
+    let ends = std::iter::once((seen.node, 1.0)).chain(slave).collect();
+    Facing { ends, normal, mean: normal, distance, area: None }
 }
 
 /// Returns `true` if the second boundary carries the rows: that of the softer body, or, if both are as soft, the one with the smaller
@@ -110,12 +121,7 @@ fn facet_size(body: &ElasticBody, boundary: &Boundary) -> f64 {
     sizes.iter().map(|(extent, _)| extent).sum::<f64>() / sizes.len().max(1) as f64
 }
 
-fn warnings(
-    site: &Site,
-    [slave, master]: [&Boundary; 2],
-    found: &crate::fem::mortar::Found,
-    fit: Option<f64>,
-) -> Vec<Warning> {
+fn warnings(site: &Site, [slave, master]: [&Boundary; 2], found: &Found, fit: Option<f64>) -> Vec<Warning> {
     let obstacle = site.obstacle.to_string();
     let [share, _] = found.covered;
     if found.rows.is_empty() {
@@ -123,8 +129,10 @@ fn warnings(
         return vec![Warning::NoFacingFacet { obstacle, boundary, other }];
     }
     let mut warnings = Vec::new();
-    // A surface that both ends of the other exceed is covered in full by what there is.
-    if share < COVERED && found.covered[1] < COVERED {
+    // Surfaces that are as far apart as a facet is long where one ends need not meet there.
+    let near = facet_size(site.body, slave).powf(1.0 / (site.body.dimension() as f64 - 1.0));
+    let ends = found.rows.iter().any(|row| row.covered < COVERED && row.gap.abs() <= near);
+    if ends && share < COVERED && found.covered[1] < COVERED {
         let (boundary, other) = (slave.name.clone(), master.name.clone());
         warnings.push(Warning::PartlyCovered {
             obstacle: obstacle.clone(),

@@ -31,6 +31,9 @@ impl Facing {
 pub(crate) struct Between {
     /// The row of each candidate of the boundary that carries the rows; `None` where nothing faces it.
     pub rows: Vec<Option<Facing>>,
+    /// For nodes of the other body the place that they face, as a row against their own normal: not a row of the problem, but the
+    /// same contact seen from there.
+    pub across: Vec<(usize, Facing)>,
     /// The boundary of the other body carries the rows, so that they lead against the approach direction.
     pub is_swapped: bool,
     /// What the search for rows noticed.

@@ -159,6 +159,14 @@ impl PlacedObstacle {
         }
     }
 
+    /// The contact seen from nodes of the other body, if rows are means.
+    pub(crate) fn across(&self) -> &[(usize, Facing)] {
+        match &self.geometry {
+            Geometry::Body(between) => &between.across,
+            Geometry::Rigid(_) => &[],
+        }
+    }
+
     /// What the search for the rows against another body noticed.
     pub(crate) fn warnings(&self) -> &[Warning] {
         match &self.geometry {
