@@ -1,12 +1,13 @@
 //! The estimated error of the mesh, compared with exact solutions.
 
-use crate::exact_solutions::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
-use crate::solved_block::solve_block;
 use serde_json::json;
 use signorini::fem::ElementKind::{Q4, Q8, T3, T6};
 use signorini::fem::Integration;
 use signorini::scene::Answer;
-use signorini::{Scene, solve_qp};
+use signorini::solve_qp;
+use support::closed_forms::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
+use support::manufactured::solve_block;
+use support::scenes::built;
 
 /// Required effectivity of an estimate: between half and twice the error.
 const EFFECTIVITY: std::ops::Range<f64> = 0.5..2.0;
@@ -45,7 +46,7 @@ fn the_estimate_vanishes_if_the_mesh_is_exact_and_falls_on_finer_meshes() {
             "supports": [{"on": {"boundary": bottom}, up: 0}, {"on": {"boundary": "left"}, "x": 0}, side],
             "obstacles": [{"boundary": "top", "approach": format!("+{up}"), "shape": shape}], "gap": gap,
         });
-        let model = Scene::from_json(&value.to_string(), "scene").unwrap().build().unwrap();
+        let model = built(&value);
         let solution = solve_qp(model.problem()).unwrap();
         Answer::of(model.into(), &solution).unwrap().discretisation_error().unwrap()
     };

@@ -1,16 +1,16 @@
 //! The closed forms of bar and patch test, compared with linear solves in which the contact is a support; and all
 //! closed forms, compared with numbers that can be checked by hand.
 
-use crate::bodies::built;
-use crate::exact_solutions::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
-use crate::exact_solutions::{
-    Bar, BouncingBar, Cone, ContactPatch, DiscMembrane, FlatDisc, FlatStrip, ImpactingBar, LineContact, ObstacleString,
-    PointContact, Sides, Wedge,
-};
-use crate::solved_block::solve_block;
 use serde_json::{Value, json};
 use signorini::fem::{ElementKind, Integration};
 use signorini::qp::Cholesky;
+use support::closed_forms::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
+use support::closed_forms::{
+    Bar, BouncingBar, Cone, ContactPatch, DiscMembrane, FlatDisc, FlatStrip, ImpactingBar, LineContact, ObstacleString,
+    PointContact, Sides, Wedge,
+};
+use support::manufactured::solve_block;
+use support::scenes::built;
 
 /// Tolerance of the bar and of the patch test, relative to the largest value: the elements are exact, so only rounding
 /// remains.

@@ -4,11 +4,11 @@
 //! MESH: a bar of 5 cells, a 2 x 1 rectangle of 4 x 3 cells, a 2 x 1 x 1.5 box of 3 x 3 x 2 cells; inner nodes are
 //! moved by up to a fifth of a cell; E = 7, nu = 0.3.
 
-use crate::bodies::{difference, distort, distorted, largest, nodal_of, solve_held};
 use signorini::fem::{
     self, DofMap, ElasticBody, ElementKind, ExactState, Formulation, Integration, Material, Mesh, Stress, error_norms,
 };
 use signorini::scene::{bar, cuboid, rectangle};
+use support::bodies::{difference, distort, distorted, largest, nodal_of, solve_held};
 
 /// Rounding of a few thousand operations on numbers of order one.
 const ROUNDING: f64 = 1e-12;

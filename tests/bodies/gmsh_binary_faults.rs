@@ -5,8 +5,8 @@ use std::path::Path;
 
 use signorini::fem::{GmshFile, Mesh};
 
-use super::forms::{FORMS, Form};
 use super::gmsh_forms::{plane, space};
+use support::gmsh_forms::{FORMS, Form};
 
 fn read(content: &[u8]) -> Result<Mesh, Error> {
     GmshFile::parse(content, "body.msh").and_then(|file| file.mesh(None, 1.0))

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use signorini::fem::{GmshFile, Mesh};
 
-use super::forms::{Drawing, FORMS, Form, Part};
+use support::gmsh_forms::{Drawing, FORMS, Form, Part};
 
 /// Numbers in [0, 1) from a seed.
 fn random(mut state: u64) -> impl FnMut() -> f64 {

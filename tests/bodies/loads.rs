@@ -1,8 +1,8 @@
 //! Consistent loads: nodal shares, totals, tributary areas.
 
-use crate::bodies::{VARIANTS, distorted_body};
 use signorini::fem::{ElementKind, Formulation, Material, add_body_force, add_traction, tributary_areas};
 use signorini::scene::rectangle;
+use support::bodies::{VARIANTS, distorted_body};
 
 const ROUNDING: f64 = 1e-14;
 

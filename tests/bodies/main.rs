@@ -1,14 +1,5 @@
 //! Bodies without contact: elements, meshes, loads, mass, norms, and linear answers compared with exact ones.
 
-#[path = "../support/bodies.rs"]
-mod bodies;
-#[path = "../support/closed_forms/mod.rs"]
-mod exact_solutions;
-#[path = "../support/gmsh_forms.rs"]
-mod forms;
-#[path = "../support/manufactured.rs"]
-mod solved_block;
-
 mod accuracy;
 mod closed_forms;
 mod elements;

@@ -6,14 +6,11 @@
 //! PARAMETERS  E = 1, nu = 0.3, plane strain; smooth k = 3, x0 = 0.5, A = B = 1; edge x0 = 0.53, p0 = 1; Hertz a = 0.53, p0 = 1
 //! REFERENCE   errors of an independent implementation, with its quadrature; theoretical rates
 
-#[path = "../../tools/verification/reference_errors.rs"]
-mod reference_errors;
-
-use crate::exact_solutions::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
-use crate::solved_block::{SolvedBlock, solve_block, solve_plate};
-use reference_errors::{REFERENCE, reference_rule};
 use signorini::fem::ElementKind::{self, Hex20, Q4, Q8, T3, T6, Tet10};
 use signorini::fem::Integration;
+use support::closed_forms::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
+use support::manufactured::{SolvedBlock, solve_block, solve_plate};
+use support::verification::reference_errors::{REFERENCE, reference_rule};
 
 /// Half a unit of the last digit of the energy errors, with a tenth more for rounding, relative to the first digit.
 const FOUR_DIGITS: f64 = 0.55e-3;

@@ -3,13 +3,13 @@
 //! REFERENCE: volume and moments by the quadrature of body forces; the kinetic energy of a linear velocity, which the
 //! shape functions represent exactly.
 
-use crate::bodies::{distort, distorted, nodal_of};
 use signorini::fem::{
     DofMap, ElasticBody, ElementKind, Formulation, Frame, MassForm, Material, add_body_force_field, mass,
 };
 use signorini::qp::{Cholesky, dot};
 use signorini::scene::{bar, cuboid};
 use signorini::{Error, qp};
+use support::bodies::{distort, distorted, nodal_of};
 
 /// Rounding of sums over a mesh with two quadratures.
 const SAME: f64 = 1e-12;

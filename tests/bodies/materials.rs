@@ -1,9 +1,9 @@
 //! Orthotropic materials and bodies of several materials: closed forms along and off the axes, layers, refused input.
 
-use crate::bodies::{difference, distorted, largest, nodal, solve_held};
 use signorini::fem::{self, DofMap, ElasticBody, ElementKind, Formulation, MassForm, Material};
 use signorini::scene::{cuboid, rectangle};
 use signorini::{Error, qp};
+use support::bodies::{difference, distorted, largest, nodal, solve_held};
 
 const STRESS: Formulation = Formulation::PlaneStress { thickness: 0.5 };
 const STRAIN: Formulation = Formulation::PlaneStrain { thickness: 0.5 };

@@ -3,8 +3,8 @@
 //! MESH: a 2 x 1 rectangle of 4 x 3 cells; inner nodes are moved by up to a fifth of a cell; E = 7, nu = 0.3, thickness
 //! 0.5.
 
-use crate::bodies::{VARIANTS, difference, distorted_body, largest, nodal, solve_held};
 use signorini::fem::{self, Formulation, Stress};
+use support::bodies::{VARIANTS, difference, distorted_body, largest, nodal, solve_held};
 
 /// Rounding of a few hundred operations on numbers of order one.
 const ROUNDING: f64 = 1e-13;

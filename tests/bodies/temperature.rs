@@ -1,9 +1,9 @@
 //! Temperatures and initial stresses: the effects in free and in supported bodies.
 
-use crate::bodies::{difference, distorted, largest, nodal, nodal_of};
 use crate::elements::all;
 use signorini::fem::{self, DofMap, ElasticBody, ElementKind, Formulation, Material, Stress};
 use signorini::scene::rectangle;
+use support::bodies::{difference, distorted, largest, nodal, nodal_of};
 
 const ROUNDING: f64 = 1e-12;
 const EXPANSION: f64 = 1e-3;

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use crate::out_folder::layers;
-use crate::program::Desk;
 use serde_json::{Value, json};
+use support::program::Desk;
 
 /// Rounding of a small solve, relative.
 const ROUNDING: f64 = 1e-9;
@@ -264,7 +264,7 @@ fn the_pressure_is_that_of_the_obstacle_on_which_the_line_lies() {
 #[test]
 fn lines_that_do_not_fit_are_refused() {
     let desk = Desk::new();
-    desk.write("block.json", crate::program::scene().to_string());
+    desk.write("block.json", support::program::scene().to_string());
     let run = |line: &str| desk.run(&["solve", "block.json", "--out", "o", &format!("--along={line}")]);
     for (line, phrase) in [
         ("0,0", "it must be X1,Y1:X2,Y2"),

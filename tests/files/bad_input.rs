@@ -1,8 +1,8 @@
 //! Bad scenes and bad problem directories: each ends with its exit code and one sentence that names the place, the
 //! value, and what is allowed.
 
-use crate::program::{Desk, Problem, matrix, scene, vector};
 use serde_json::{Value, json};
+use support::program::{Desk, Problem, matrix, scene, vector};
 
 /// The small scene with the value at `pointer` replaced, or added to its object if there was none.
 fn with(pointer: &str, value: Value) -> Value {

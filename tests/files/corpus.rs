@@ -4,23 +4,15 @@
 //! consists of the name of the right file that was damaged and the code of its error; `problems` has a line for each
 //! contact problem, with its seed and its ending.
 
-#[path = "../../tools/fuzz/damage.rs"]
-mod damage;
-#[path = "../../tools/fuzz/draws.rs"]
-mod draws;
-#[path = "../support/oracles/exact/mod.rs"]
-mod oracle;
-#[path = "../../tools/fuzz/problem.rs"]
-mod problem;
-
 use signorini::{ContactProblem, InteriorPoint, Method, Penalty, Prepared, Settings, Solution, qp, solve};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use damage::{damaged, fault, faults, read};
-use draws::Draws;
 use signorini::qp::read_problem;
+use support::draws::Draws;
+use support::fuzz::damage::{damaged, fault, faults, read};
+use support::fuzz::problem;
 
 fn corpus() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus")

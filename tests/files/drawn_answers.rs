@@ -3,9 +3,9 @@
 
 use std::fs;
 
-use crate::program::{Desk, example};
 use resvg::usvg::roxmltree::Document;
 use serde_json::{Value, json};
+use support::program::{Desk, example};
 
 /// The words of a picture in a folder.
 fn words(desk: &Desk, picture: &str) -> Vec<String> {
@@ -217,7 +217,7 @@ fn the_history_of_a_motion_shows_the_unit_of_time() {
 #[test]
 fn a_tradeoff_is_drawn_with_at_most_six_curves() {
     let desk = Desk::new();
-    desk.write("block.json", crate::program::scene().to_string());
+    desk.write("block.json", support::program::scene().to_string());
     let run = ["tradeoff", "block.json", "--runs", "1", "--refinements", "0", "--out", "o"];
     desk.run(&run).ends_with(0);
     let words = words(&desk, "o/tradeoff.svg");

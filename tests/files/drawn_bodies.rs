@@ -3,9 +3,9 @@
 
 use std::fs;
 
-use crate::program::{Desk, example};
 use resvg::usvg::roxmltree::{Document, Node};
 use serde_json::{Value, json};
+use support::program::{Desk, example};
 
 fn drawn(desk: &Desk, scene: &Value) {
     desk.write("scene.json", scene.to_string());

@@ -1,10 +1,5 @@
 //! Files that are read, with their faults, and files that are written.
 
-#[path = "../support/oracles/mod.rs"]
-mod oracles;
-#[path = "../support/program.rs"]
-mod program;
-
 mod along;
 mod bad_input;
 mod corpus;

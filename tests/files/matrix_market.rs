@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use crate::oracles::{Draws, random};
 use signorini::{qp, solve_qp};
+use support::oracles::{Draws, random};
 
 fn write(folder: &Path, files: &[(&str, String)]) {
     files.iter().for_each(|(name, text)| fs::write(folder.join(name), text).unwrap());

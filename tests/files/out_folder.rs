@@ -5,11 +5,11 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use crate::program::{Desk, Problem, example, scene};
 use resvg::tiny_skia::Pixmap;
 use resvg::usvg::roxmltree::Document;
 use serde_json::{Value, json};
 use signorini::qp::{read_problem, read_vector};
+use support::program::{Desk, Problem, example, scene};
 
 /// Smallest share of the width or of the height inside the margins that a picture fills.
 const FILLED: f64 = 0.85;
@@ -273,7 +273,7 @@ fn sweep_writes_a_picture_for_each_gap_and_the_curves() {
 #[test]
 fn the_pictures_of_every_example_fill_their_page() {
     let desk = Desk::new();
-    for name in crate::program::examples() {
+    for name in support::program::examples() {
         desk.run(&["compare", &example(&name), "--out", &name]).ends_with(0);
         let files = checked(&desk.path(&name));
         assert!(files.contains("contact.svg") && files.contains("contact.png"), "{name}: {files:?}");

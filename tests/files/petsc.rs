@@ -6,10 +6,10 @@
 use std::fs;
 use std::path::Path;
 
-use crate::program::{Desk, scene};
 use serde_json::{Value, json};
 use signorini::Scene;
 use signorini::qp::read_problem;
+use support::program::{Desk, scene};
 
 /// A dome pressed onto a table; it slides along its axis and is guided by springs.
 fn of_revolution() -> Value {

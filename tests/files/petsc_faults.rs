@@ -11,9 +11,9 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-use crate::program::Desk;
 use serde_json::Value;
 use signorini::qp::read_problem;
+use support::program::Desk;
 
 /// Largest length of a sentence; a longer one says too much.
 const LONGEST: usize = 300;
@@ -97,7 +97,7 @@ fn every_damaged_file_is_refused_with_its_code_and_its_sentence() {
 #[test]
 fn the_program_names_the_byte_of_a_damaged_petsc_file() {
     let desk = Desk::new();
-    let scene: Value = crate::program::scene();
+    let scene: Value = support::program::scene();
     desk.write("scene.json", scene.to_string());
     desk.run(&["export", "scene.json", "p", "--format", "petsc"]).ends_with(0);
     let right = fs::read(desk.path("p/K.petsc")).unwrap();

@@ -9,10 +9,10 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use crate::oracles::Dense;
 use signorini::fem::{ClosedSurface, GmshFile};
 use signorini::qp::{self, read_problem};
 use signorini::study::Sweep;
+use support::oracles::Dense;
 
 /// A spring of this stiffness under a load of 2, with walls at these distances in the directions of `rows`.
 fn spring(stiffness: f64, rows: &[f64], gap: &[f64]) -> Result<ContactProblem, qp::Error> {

@@ -4,10 +4,10 @@
 //! contact is the sum of the impact wave and of the wave of a weight that is applied at once (K. F. Graff, *Wave Motion
 //! in Elastic Solids*, Oxford, 1975, section 2.4).
 
-use crate::exact_solutions::ImpactingBar;
 use serde_json::{Value, json};
 use signorini::motion::{Integrator, Observation};
 use signorini::{Scene, Settings};
+use support::closed_forms::ImpactingBar;
 
 /// Accuracy of the default scheme at its default step, a Courant number of 0.5, on 100 cells along the wave.
 const ENERGY: f64 = 1e-3;

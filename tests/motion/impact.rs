@@ -2,16 +2,10 @@
 //!
 //! REFERENCE: waves in bars (`exact_solutions::ImpactingBar`, `exact_solutions::BouncingBar`).
 
-#[path = "../../tools/impact/cases.rs"]
-pub mod cases;
-#[allow(dead_code)]
-#[path = "../../tools/impact/measure.rs"]
-pub mod measure;
-
-use cases::cases;
-use measure::run;
 use signorini::motion::{DynamicProblem, Integrator, Scheme, SchemeSpec, TimeFunction};
 use signorini::{ContactProblem, Error, Precision, Scene, Settings, SparseMatrix, SymmetricMatrix, qp};
+use support::impact::cases::cases;
+use support::impact::measure::run;
 
 /// Accuracy of the default scheme at its default step, a Courant number of 0.5, on 100 cells.
 const ENERGY: f64 = 1e-3;

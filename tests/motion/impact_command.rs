@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use crate::program::{Desk, scene};
 use serde_json::{Value, json};
+use support::program::{Desk, scene};
 
 /// Largest difference of memory between runs of which one has ten times as many steps: less than the 2 MB of 36,000
 /// more observations of seven numbers.

@@ -3,8 +3,8 @@
 //!
 //! REFERENCE: the constant force of a bar in impact (`exact_solutions::ImpactingBar`, `exact_solutions::BouncingBar`).
 
-use crate::impact::{cases::cases, measure::run};
 use signorini::motion::SchemeSpec;
+use support::impact::{cases::cases, measure::run};
 
 /// Number of cells; each mesh is twice as fine as the one before.
 const CELLS: [usize; 4] = [50, 100, 200, 400];

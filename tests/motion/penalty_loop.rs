@@ -3,8 +3,8 @@
 //!
 //! REFERENCE: `exact_solutions::ImpactingBar`, a bar whose contact force is constant.
 
-use crate::impact::{cases::cases, measure::Run, measure::with_value};
 use signorini::motion::{Observation, SchemeSpec};
+use support::impact::{cases::cases, measure::Run, measure::with_value};
 
 /// Largest displacement of the bar: it flies 5 to the wall, and returns with speed 10 during the time after the contact.
 const REACH: f64 = 8.4;

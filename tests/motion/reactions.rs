@@ -7,13 +7,14 @@
 
 use std::fs;
 use std::sync::Arc;
+use support::scenes::built;
 
-use crate::program::Desk;
 use serde_json::{Value, json};
 use signorini::fem::{DofMap, MassForm, add_body_force, add_traction, mass};
 use signorini::motion::{Integrator, Scheme, State};
 use signorini::scene::{Answer, Dynamics, Resultant};
 use signorini::{Model, Scene, Settings, SymmetricMatrix, solve_qp};
+use support::program::Desk;
 
 /// Rounding of a balance relative to its largest term: the solve of a step has an error below 1e-13 at each of 35
 /// nodes.
@@ -189,7 +190,7 @@ fn reactions_contact_forces_and_loads_sum_to_the_change_of_momentum_at_every_ste
 fn a_motion_from_the_static_answer_has_its_reactions() {
     let mut still = block();
     still.as_object_mut().unwrap().remove("analysis");
-    let still = Scene::from_json(&still.to_string(), "scene").unwrap().build().unwrap();
+    let still = built(&still);
     let answer = solve_qp(still.problem()).unwrap();
     let reactions = still.reactions(&answer.displacement, &answer.multiplier).unwrap();
     let total = sums(&still, &reactions);

@@ -3,8 +3,8 @@
 use std::fs;
 
 use crate::impact_command::with;
-use crate::program::Desk;
 use serde_json::{Value, json};
+use support::program::Desk;
 
 /// Largest growth of energy of a certified motion.
 const MOST_GROWTH: f64 = 0.01;

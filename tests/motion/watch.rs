@@ -4,8 +4,8 @@
 use std::fs;
 
 use crate::impact_command::{bar, with};
-use crate::program::Desk;
 use serde_json::{Value, json};
+use support::program::Desk;
 
 /// Rounding of a few operations.
 const ROUNDING: f64 = 1e-12;

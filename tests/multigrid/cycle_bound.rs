@@ -4,13 +4,14 @@
 //! random gaps; answers from a few cycles to the last digit; small random problems. The direct path gives the exact
 //! answer.
 
-use crate::bodies::{built, clamped_block, clamped_square};
-use crate::oracles::{Draws, random};
 use serde_json::{Value, json};
 use signorini::qp::{Cholesky, Error, Multigrid, NearNullSpace};
 use signorini::{
     ContactProblem, Method, Prepared, Settings, Solution, SparseMatrix, Start, SymmetricMatrix, Watch, solve,
 };
+use support::bodies::{clamped_block, clamped_square};
+use support::oracles::{Draws, random};
+use support::scenes::built;
 
 /// Rounding error of the reference answer, in the relative energy norm; the bound holds for the exact answer.
 const OF_REFERENCE: f64 = 1e-11;
@@ -101,7 +102,7 @@ fn on_springs() -> ContactProblem {
     scene["loads"] = json!([{"traction": {"boundary": "bottom", "value": [0, 0, 1e4]}}]);
     let problem = built(&scene).problem().clone();
     let lower = problem.stiffness().lower();
-    let spring = 0.01 * crate::bodies::largest(&problem.stiffness().diagonal());
+    let spring = 0.01 * support::bodies::largest(&problem.stiffness().diagonal());
     let entries: Vec<_> = (lower.triplets())
         .map(|(row, column, value)| (row, column, value + if row == column && row < 300 { spring } else { 0.0 }))
         .collect();

@@ -1,12 +1,5 @@
 //! Multigrid, MPRGP, the bound without a factor, and the choice between factor and multigrid.
 
-#[path = "../support/bodies.rs"]
-mod bodies;
-#[path = "../support/oracles/mod.rs"]
-mod oracles;
-#[path = "../support/program.rs"]
-mod program;
-
 mod cycle_bound;
 mod mprgp;
 mod multigrid;

@@ -5,13 +5,15 @@
 //! alone, rows on both sides, random problems compared with the enumeration of all sets; starts from other answers;
 //! problems without an answer.
 
-use std::path::Path;
+use support::endings::best;
+use support::scenes::built_example;
 
-use crate::bodies::{built, clamped_block, clamped_square, largest};
-use crate::oracles::{Dense, Draws, random};
 use serde_json::json;
 use signorini::qp::{Error, NearNullSpace};
-use signorini::{ContactProblem, ContactSet, Method, Prepared, Scene, Settings, Solution, Start, solve};
+use signorini::{ContactProblem, ContactSet, Method, Prepared, Settings, Solution, Start, solve};
+use support::bodies::{clamped_block, clamped_square, largest};
+use support::oracles::{Dense, Draws, random};
+use support::scenes::built;
 
 /// Both answers are certified to 1e-9; the condition numbers of these bodies are at most 1e3.
 const SAME: f64 = 1e-6;
@@ -42,8 +44,7 @@ fn agrees_with_the_direct_path(problem: &ContactProblem, what: &str) -> Solution
 }
 
 fn example(name: &str) -> ContactProblem {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/{name}.json"));
-    Scene::read(path).unwrap().build().unwrap().problem().clone()
+    built_example(name).problem().clone()
 }
 
 #[test]
@@ -274,11 +275,7 @@ fn too_few_cycles_return_the_best_answer_as_not_certified() {
     assert!(solution.contact_set.count() > 0);
     let settings = mprgp().with_tolerance(1e-15);
     // If only rounding is left, the loop ends by itself.
-    let solution = match solve(&problem, &settings) {
-        Ok(solution) => solution,
-        Err(Error::NotCertified { solution, .. }) => *solution,
-        Err(error) => panic!("{error}"),
-    };
+    let solution = best(solve(&problem, &settings));
     assert!(solution.iterations < 60 && solution.certificate.meets(1e-12), "{:?}", solution.certificate);
     let settings = settings.with_time(std::time::Duration::ZERO);
     let Err(Error::NotCertified { solution, .. }) = solve(&problem, &settings) else {

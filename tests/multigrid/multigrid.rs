@@ -3,11 +3,12 @@
 //! CONDITIONS: blocks in space clamped at the bottom, a plane body with rollers, a scalar problem, single and double
 //! precision, one thread and two; near-null spaces that do not match the problem.
 
-use crate::bodies::{built, clamped_block, clamped_square, largest};
-use crate::oracles::Draws;
 use serde_json::json;
 use signorini::qp::{Cholesky, Error, Multigrid, NearNullSpace, Width};
 use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
+use support::bodies::{clamped_block, clamped_square, largest};
+use support::oracles::Draws;
+use support::scenes::built;
 
 /// Relative residual at which the iteration ends.
 const TOLERANCE: f64 = 1e-10;

@@ -5,10 +5,11 @@
 use std::fs;
 use std::path::Path;
 
-use crate::bodies::{built, clamped_block, clamped_square};
-use crate::program::Desk;
 use serde_json::json;
 use signorini::{ContactProblem, Method, Settings, qp, solve};
+use support::bodies::{clamped_block, clamped_square};
+use support::program::Desk;
+use support::scenes::built;
 
 fn write(folder: &Path, problem: &ContactProblem) {
     // Without the near-null space.

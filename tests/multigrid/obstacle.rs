@@ -4,13 +4,11 @@
 //! plate of thirteen points over a bowl, whose stiffness is not an M-matrix; a block in space under a sphere. The
 //! proofs are compared with the contact set of the active set, for the answer itself and for perturbed answers.
 
-#[path = "../../tools/kinds/floors.rs"]
-mod floors;
-
-use crate::bodies::{built, clamped_block};
-use crate::oracles::Draws;
-use floors::{membrane, plate};
 use signorini::{ContactProblem, ContactSet, Method, ProvenSet, Settings, Start, solve};
+use support::bodies::clamped_block;
+use support::floors::{membrane, plate};
+use support::oracles::Draws;
+use support::scenes::built;
 
 /// Measured: 9 cycles on both meshes; from a start of zero 13 and 22.
 const CYCLES: usize = 12;

@@ -4,10 +4,11 @@
 //! all held, so that their rows bound the travel alone.
 //! REFERENCE: the method with a factor, and the force that a gap gives.
 
-use crate::bodies::{built, clamped_block};
 use serde_json::{Value, json};
 use signorini::qp::Estimate;
 use signorini::{Method, Settings, Solution, solve};
+use support::bodies::clamped_block;
+use support::scenes::built;
 
 /// Both methods are certified to 1e-9 in the energy norm; single values are less accurate.
 const AGREED: f64 = 1e-6;

@@ -3,11 +3,12 @@
 //! CONDITIONS: a block with memory for factor and multigrid, for one of the two, for neither; a requested accuracy, no
 //! near-null space, a fixed method.
 
-use crate::bodies::{built, clamped_block};
 use serde_json::{Value, json};
 use signorini::qp::{Error, Estimate};
 use signorini::study::{ModelSize, Summary};
 use signorini::{ContactProblem, Method, Prepared, Settings, solve};
+use support::bodies::clamped_block;
+use support::scenes::built;
 
 fn within(memory: f64) -> Settings {
     let mut settings = Settings::default();

@@ -1,9 +1,9 @@
 //! GOAL: the numbers of a certificate alone distinguish a wrong answer from a right one.
 //! CONDITIONS: the exact answer of a small problem, with one planted fault at a time.
 
-use crate::oracles::{Dense, Draws, random};
 use signorini::qp::Error;
 use signorini::{Certificate, ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp};
+use support::oracles::{Dense, Draws, random};
 
 const TOLERANCE: f64 = 1e-9;
 

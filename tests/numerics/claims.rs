@@ -5,6 +5,7 @@
 
 use signorini::qp::{Error, NearNullSpace};
 use signorini::{ContactProblem, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve};
+use support::endings::best;
 
 const ALL: [Method; 5] = [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
 
@@ -27,16 +28,6 @@ fn endings(problem: &ContactProblem) -> impl Iterator<Item = (&'static str, Resu
     ALL.into_iter().map(|method| (method.name(), solve(problem, &Settings::with_method(method))))
 }
 
-/// The answer of a problem that has one. The certificate decides whether there is a bound on its error; no claim about
-/// the problem is allowed.
-fn answer(method: &str, ending: Result<Solution, Error>) -> Solution {
-    match ending {
-        Ok(solution) => solution,
-        Err(Error::NotCertified { solution, .. }) => *solution,
-        Err(error) => panic!("{method}: {error}"),
-    }
-}
-
 /// Whether numbers of order one are those of the exact answer: the best penalty is 1e8 times the stiffness.
 fn is_near(values: &[f64], exact: &[f64]) -> bool {
     values.len() == exact.len() && values.iter().zip(exact).all(|(value, exact)| (value - exact).abs() < 1e-7)
@@ -54,7 +45,7 @@ fn a_stiffness_of_zero_without_load_is_under_held() {
 fn a_loaded_dof_held_by_a_row_alone_is_at_its_gap() {
     let problem = problem(&[(0, 0, 2.0)], &[2.0, 3.0], &[&[0.0, 1.0]], &[0.5]);
     for (method, ending) in endings(&problem) {
-        let solution = answer(method, ending);
+        let solution = best(ending);
         assert!(is_near(&solution.displacement, &[1.0, 0.5]), "{method}: {solution:?}");
         assert!(is_near(&solution.multiplier, &[-3.0]), "{method}: {solution:?}");
     }
@@ -106,7 +97,7 @@ fn rows_that_stop_a_motion_in_both_directions_without_play_support_it() {
     // The first mass is held at 1; the spring under its load of 1/4 is shorter by 1/4.
     let problem = problem(&SPRING, &[0.25, -0.25], &[&[1.0, 0.0], &[-1.0, 0.0]], &[1.0, -1.0]);
     for (method, ending) in endings(&problem) {
-        let solution = answer(method, ending);
+        let solution = best(ending);
         assert!(is_near(&solution.displacement, &[1.0, 0.75]), "{method}: {solution:?}");
         // Both rows together carry no force.
         let carried = solution.multiplier[0] - solution.multiplier[1];

@@ -9,10 +9,11 @@ use signorini::{
     solve,
 };
 use std::path::Path;
+use support::scenes::{built, built_example};
 
-use crate::oracles::{Draws, random};
 use serde_json::json;
 use signorini::qp::{Cholesky, Error};
+use support::oracles::{Draws, random};
 
 /// Condensed and full answers differ by rounding times the condition number of the stiffness.
 const SAME: f64 = 1e-11;
@@ -38,8 +39,7 @@ fn same(a: &[f64], b: &[f64], what: &str) {
 }
 
 fn example(name: &str) -> ContactProblem {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/{name}.json"));
-    Scene::read(path).unwrap().build().unwrap().problem().clone()
+    built_example(name).problem().clone()
 }
 
 /// Compares condensed and full answers and, for the active set, the sequence of contact sets.
@@ -101,7 +101,7 @@ fn cube(divisions: usize) -> ContactProblem {
         "obstacles": [{"boundary": "top", "approach": "+z", "shape": {"sphere": {"apex": [0.5, 0.5, 1], "radius": 1}}}],
         "gap": -0.01,
     });
-    Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap().problem().clone()
+    built(&scene).problem().clone()
 }
 
 #[test]
@@ -304,7 +304,7 @@ fn floating_body_is_solved_condensed_if_pressed_and_moves_as_a_whole_if_pulled()
                 [{"boundary": "bottom", "approach": "-y", "shape": {"plane": {"point": [0, 0], "normal": [0, -1]}}}],
             "gap": 0.01,
         });
-        Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap()
+        built(&scene)
     };
     for method in EXACT {
         let pressed = block(-100.0);
@@ -338,7 +338,7 @@ fn pressed_block(width: f64, height: f64) -> ContactProblem {
                        "shape": {"plane": {"point": [0, height], "normal": [0, 1]}}}],
         "gap": -0.01 * height
     });
-    Scene::from_json(&scene.to_string(), "block").unwrap().build().unwrap().problem().clone()
+    built(&scene).problem().clone()
 }
 
 #[test]

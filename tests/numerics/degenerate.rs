@@ -1,9 +1,9 @@
 //! A thousand problems of 300 rows, compared with the dual problem solved by exchanges of single rows. The contact set
 //! must be the same row by row if every row is clearly closed or clearly open.
 
-use crate::oracles::{Dense, Draws, Enumerated};
 use nalgebra::{DMatrix, DVector};
 use signorini::{Method, Settings, Solution, solve};
+use support::oracles::{Dense, Draws, Enumerated};
 
 const ROWS: usize = 300;
 

@@ -2,10 +2,10 @@
 //! nearly parallel in energy; answers are compared with the enumeration of all contact sets, with exact answers and
 //! with the conditions of the solution.
 
-use crate::oracles::{Dense, Draws, random};
 use nalgebra::{DMatrix, DVector};
 use signorini::qp::{Ending, Error, Outcome};
 use signorini::{ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, solve};
+use support::oracles::{Dense, Draws, random};
 
 /// `|u - u*|_K / |u*|_K`.
 fn energy_error(dense: &Dense, displacement: &[f64], exact: &DVector<f64>) -> f64 {

@@ -1,10 +1,12 @@
 //! Compares the bound of the certificate with the true error: for every method, it is never below the error, and close
 //! to it.
 
-use crate::program::examples;
-use crate::random::{springs, stacked};
-use signorini::qp::{Condense, Error, Method, Settings};
-use signorini::{ContactProblem, InteriorPoint, Penalty, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
+use signorini::qp::{Condense, Method, Settings};
+use signorini::{ContactProblem, InteriorPoint, Penalty, SparseMatrix, SymmetricMatrix, solve};
+use support::endings::best;
+use support::program::examples;
+use support::random::{springs, stacked};
+use support::scenes::built_example;
 
 /// Smaller errors may be errors of the reference, a solve in double precision on matrices of condition 1e4.
 const OF_THE_REFERENCE: f64 = 1e-12;
@@ -23,15 +25,6 @@ const MEDIAN: f64 = 3.0;
 
 fn energy(problem: &ContactProblem, u: &[f64]) -> f64 {
     u.iter().zip(problem.stiffness().mul(u)).map(|(u, force)| u * force).sum::<f64>().max(0.0).sqrt()
-}
-
-/// An answer, certified or not.
-fn answer(problem: &ContactProblem, settings: &Settings) -> Solution {
-    match solve(problem, settings) {
-        Ok(solution) => solution,
-        Err(Error::NotCertified { solution, .. }) => *solution,
-        Err(error) => panic!("{error}"),
-    }
 }
 
 /// Every method, at several accuracies.
@@ -67,7 +60,7 @@ fn ratios(name: &str, problem: &ContactProblem) -> Vec<(f64, String)> {
         return ratios;
     }
     for (way, settings) in ways() {
-        let found = answer(problem, &settings);
+        let found = best(solve(problem, &settings));
         let away: Vec<f64> = found.displacement.iter().zip(&exact.displacement).map(|(u, v)| u - v).collect();
         let error = energy(problem, &away) / energy(problem, &found.displacement);
         let bound = found.certificate.energy_error_bound;
@@ -94,8 +87,7 @@ fn check(mut ratios: Vec<(f64, String)>) {
 fn the_bound_is_near_the_error_on_every_example() {
     let mut all = Vec::new();
     for name in examples() {
-        let path = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
-        let model = Scene::read(path).unwrap().build().unwrap();
+        let model = built_example(&name);
         // On all dofs of the larger scenes the interior point takes long.
         if model.problem().dofs() < 5000 {
             all.extend(ratios(&name, model.problem()));

@@ -7,13 +7,14 @@
 
 use std::sync::LazyLock;
 
-use crate::draws::Draws;
-use crate::exact::case::Case;
-use crate::exact::dyadic::{Dyadic, dot, ratio};
-use crate::exact::judge::Sort;
-use crate::exact::solve::{Exact, Outcome};
-use crate::exact::table::Table;
-use crate::exact::trial::draw;
+use support::draws::Draws;
+use support::oracles::exact::case::Case;
+use support::oracles::exact::dyadic::{Dyadic, dot, ratio};
+use support::oracles::exact::judge::Sort;
+use support::oracles::exact::problem::Exact;
+use support::oracles::exact::solve::Outcome;
+use support::oracles::exact::table::Table;
+use support::oracles::exact::trial::draw;
 
 const SEEDS: [u64; 4] = [1, 20, 300, 4000];
 

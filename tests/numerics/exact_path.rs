@@ -2,16 +2,16 @@
 //!
 //! REFERENCE: independent solves at random gaps; enumeration of all contact sets for few rows.
 
-use crate::oracles::{Draws, random};
 use signorini::qp::Error;
-use signorini::{Condense, Prepared, Scene, Settings, SparseMatrix, SymmetricMatrix, solve_qp};
+use signorini::{Condense, Prepared, Settings, SparseMatrix, SymmetricMatrix, solve_qp};
+use support::oracles::{Draws, random};
+use support::scenes::built_example;
 
 /// The path and an independent solve differ by rounding times the condition number of the compliance.
 const SAME: f64 = 1e-10;
 
 fn indentation() -> signorini::Model {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/indentation.json");
-    Scene::read(path).unwrap().build().unwrap()
+    built_example("indentation")
 }
 
 #[test]

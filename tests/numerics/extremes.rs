@@ -3,15 +3,11 @@
 //!
 //! `BLESS=1 cargo test --test numerics extremes` writes `tests/extremes.txt` again.
 
-#[path = "../../tools/extremes/cases.rs"]
-mod cases;
-#[path = "../../tools/extremes/entry.rs"]
-mod entry;
-
 use std::fs;
 use std::path::Path;
 
-use entry::{COLUMNS, Cell};
+use support::extremes::cases;
+use support::extremes::entry::{COLUMNS, Cell};
 
 /// Larger bodies are left to the command, because they take half a minute.
 const MOST_DOFS: usize = 10_000;

@@ -9,14 +9,15 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::exact::case::Case;
-use crate::exact::judge::{Fault, Judge};
-use crate::exact::measure::Errors;
-use crate::exact::solve::{Answer, Exact, Outcome};
-use crate::program::{Desk, Run};
 use serde_json::{Value, json};
 use signorini::qp::{Error, read_problem, read_vector};
 use signorini::{ContactProblem, Method, Settings, Solution, solve};
+use support::oracles::exact::case::Case;
+use support::oracles::exact::judge::{Fault, Judge};
+use support::oracles::exact::measure::Errors;
+use support::oracles::exact::problem::Exact;
+use support::oracles::exact::solve::{Answer, Outcome};
+use support::program::{Desk, Run};
 
 const ALL: [Method; 5] = [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
 

@@ -1,10 +1,10 @@
 //! Hostile contact problems: each ends with a certified answer, which is checked here again by independent arithmetic,
 //! or with a typed error.
 
-use crate::oracles::{Dense, Draws, random};
 use nalgebra::{DMatrix, DVector};
 use signorini::qp::{Error, NearNullSpace};
 use signorini::{Condense, ContactSet, Method, Prepared, Settings, Solution, Start, solve};
+use support::oracles::{Dense, Draws, random};
 
 /// The expected ending.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,18 +1,5 @@
 //! The QP: methods, certificate, bound, proofs, condensation and precision, on raw problems and small scenes.
 
-#[path = "../../tools/fuzz/draws.rs"]
-mod draws;
-#[path = "../support/oracles/exact/mod.rs"]
-mod exact;
-#[path = "../support/closed_forms/mod.rs"]
-mod exact_solutions;
-#[path = "../support/oracles/mod.rs"]
-mod oracles;
-#[path = "../support/program.rs"]
-mod program;
-#[path = "../support/random.rs"]
-mod random;
-
 mod certificate;
 mod claims;
 mod condensation;

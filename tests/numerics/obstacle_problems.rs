@@ -5,9 +5,9 @@
 
 use std::f64::consts::PI;
 
-use crate::exact_solutions::{DiscMembrane, ObstacleString};
-use crate::oracles::Draws;
 use signorini::{ContactProblem, Method, Prepared, Settings, SparseMatrix, SymmetricMatrix, solve};
+use support::closed_forms::{DiscMembrane, ObstacleString};
+use support::oracles::Draws;
 
 const METHODS: [Method; 2] = [Method::qp(), Method::ActiveSet];
 

@@ -1,15 +1,15 @@
 //! The penalty ladder with a requested accuracy, and Richardson's extrapolation over the penalty.
 
 use signorini::qp::{Condense, Error, Method, Settings};
-use signorini::{ContactProblem, Penalty, Scene, Solution, solve};
+use signorini::{ContactProblem, Penalty, Solution, solve};
+use support::endings::best;
+use support::program::examples;
+use support::scenes::built_example;
 
 /// The scenes whose stiffness is positive definite without contact, and small enough for a solve on all dofs.
 fn problems() -> Vec<(String, ContactProblem)> {
-    let scene = |name: String| {
-        let path = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
-        (name, Scene::read(path).unwrap().build().unwrap().problem().clone())
-    };
-    let all = crate::program::examples().into_iter().map(scene);
+    let problem = |name: String| (built_example(&name).problem().clone(), name);
+    let all = examples().into_iter().map(problem).map(|(problem, name)| (name, problem));
     let definite = |problem: &ContactProblem| {
         problem.prove(&exact(problem).displacement, &exact(problem).multiplier).unwrap().is_some()
     };
@@ -23,11 +23,7 @@ fn exact(problem: &ContactProblem) -> Solution {
 fn penalty(problem: &ContactProblem, change: impl Fn(&mut Settings)) -> Solution {
     let mut settings = Settings::with_method(Method::penalty());
     change(&mut settings);
-    match solve(problem, &settings) {
-        Ok(solution) => solution,
-        Err(Error::NotCertified { solution, .. }) => *solution,
-        Err(error) => panic!("{error}"),
-    }
+    best(solve(problem, &settings))
 }
 
 fn error(problem: &ContactProblem, found: &Solution, exact: &Solution) -> f64 {

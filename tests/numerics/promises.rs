@@ -9,13 +9,9 @@ use std::sync::LazyLock;
 use rayon::prelude::*;
 use serde_json::json;
 
-use crate::{draws, exact};
-use judged::draw::chain;
-use judged::program::{Ending, Program, write};
-use judged::trial::{Class, Findings, Sort, Trial};
-
-#[path = "../support/oracles/promises/mod.rs"]
-mod judged;
+use support::oracles::promises::draw::chain;
+use support::oracles::promises::program::{Ending, Program, write};
+use support::oracles::promises::trial::{Class, Findings, Sort, Trial};
 
 const SEED: u64 = 1;
 

@@ -1,19 +1,17 @@
 //! The proven contact set: it is never wrong, at any accuracy, and it is complete if the answer is accurate.
 
-use crate::random::springs;
-use signorini::qp::{Condense, Error, Method, Settings};
-use signorini::{ContactProblem, InteriorPoint, Penalty, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
+use signorini::qp::{Condense, Method, Settings};
+use signorini::{ContactProblem, InteriorPoint, Penalty, Solution, SparseMatrix, SymmetricMatrix, solve};
+use support::endings::best;
+use support::random::springs;
+use support::scenes::built_example;
 
 /// Forces and distances below this share of the largest may be zero in the exact answer.
 const WEAK: f64 = 1e-9;
 
 fn answer(problem: &ContactProblem, mut settings: Settings) -> Solution {
     settings.prove = true;
-    match solve(problem, &settings) {
-        Ok(solution) => solution,
-        Err(Error::NotCertified { solution, .. }) => *solution,
-        Err(error) => panic!("{error}"),
-    }
+    best(solve(problem, &settings))
 }
 
 /// Methods with settings from rough to exact.
@@ -93,9 +91,8 @@ fn shares_its_dofs(problem: &ContactProblem, row: usize) -> bool {
 
 #[test]
 fn the_rows_of_the_examples_are_proven_at_default_settings() {
-    for name in crate::program::examples() {
-        let path = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
-        let model = Scene::read(path).unwrap().build().unwrap();
+    for name in support::program::examples() {
+        let model = built_example(&name);
         for condense in [Condense::Auto, Condense::Never] {
             let mut settings = Settings::default();
             settings.condense = condense;

@@ -4,9 +4,9 @@
 //! alternate, so that no part is a range of dofs. Together the strings are large enough to be solved in pieces.
 //! REFERENCE: the closed form, which is exact at the nodes; `certify`, which factorises the whole problem.
 
-use crate::exact_solutions::ObstacleString;
 use signorini::qp::Error;
 use signorini::{ContactProblem, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve};
+use support::closed_forms::ObstacleString;
 
 const STRINGS: usize = 44;
 const CELLS: usize = 100;

@@ -1,11 +1,13 @@
 //! A watch: if another thread asks to stop, every computation ends and returns what it has.
 
-use crate::program::scene;
 use serde_json::{Value, json};
 use signorini::motion::Integrator;
 use signorini::qp::Error;
 use signorini::study::{MotionTradeoff, Sweep, Tradeoff, TradeoffGrid, compare};
-use signorini::{Condense, InteriorPoint, Method, Prepared, Scene, Settings, Solution, Watch, solve};
+use signorini::{Condense, InteriorPoint, Method, Prepared, Scene, Settings, Watch, solve};
+use support::endings::best;
+use support::program::scene;
+use support::scenes::built;
 
 /// A block of `cells` x `cells` cells under a parabola.
 fn block(cells: usize) -> Value {
@@ -14,18 +16,6 @@ fn block(cells: usize) -> Value {
         block["body"]["rectangle"][axis]["divisions"] = json!([cells]);
     }
     block
-}
-
-fn build(scene: &Value) -> signorini::Model {
-    Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap()
-}
-
-/// An answer, certified or not.
-fn found(solved: Result<Solution, Error>) -> Solution {
-    solved.unwrap_or_else(|error| match error {
-        Error::NotCertified { solution, .. } => *solution,
-        error => panic!("{error}"),
-    })
 }
 
 /// A watch that stops the work when a given iteration or part of a step begins.
@@ -61,7 +51,7 @@ fn clones_share_the_request_and_the_activity_but_not_the_deadline() {
 
 #[test]
 fn work_that_is_stopped_before_it_begins_is_interrupted_by_every_method() {
-    let model = build(&block(8));
+    let model = built(&block(8));
     for method in [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp] {
         let settings = Settings::with_method(method);
         settings.watch.stop();
@@ -85,12 +75,12 @@ fn work_that_is_stopped_before_it_begins_is_interrupted_by_every_method() {
 
 #[test]
 fn a_stopped_loop_returns_its_iterations_so_far_with_a_bound() {
-    let model = build(&block(60));
+    let model = built(&block(60));
     // On all dofs every iteration needs a factorisation.
     let prepared = Prepared::new(model.problem(), &Settings::default().with_condensation(Condense::Never)).unwrap();
     let solved = |settings: &Settings| prepared.with_settings(settings).unwrap().solve(model.problem().gap());
     let mut settings = Settings::with_method(Method::penalty());
-    let whole = found(solved(&settings));
+    let whole = best(solved(&settings));
     settings.watch = stopping_at("penalty loop", 3);
     let Err(Error::NotCertified { solution, .. }) = solved(&settings) else { panic!("the loop was not stopped") };
     let iterations = solution.iterations;
@@ -110,12 +100,12 @@ fn a_stopped_loop_returns_its_iterations_so_far_with_a_bound() {
 
 #[test]
 fn interior_point_and_multigrid_end_early_on_request() {
-    let model = build(&block(40));
+    let model = built(&block(40));
     let prepared = Prepared::new(model.problem(), &Settings::default().with_condensation(Condense::Never)).unwrap();
     let solved = |settings: &Settings| prepared.with_settings(settings).unwrap().solve(model.problem().gap());
     let unpolished = InteriorPoint { polish: false, ..InteriorPoint::default() };
     let mut settings = Settings::with_method(Method::Qp(unpolished));
-    let whole = found(solved(&settings));
+    let whole = best(solved(&settings));
     settings.watch = stopping_at("interior point", 2);
     let Err(Error::NotCertified { solution, .. }) = solved(&settings) else { panic!("the solve was not stopped") };
     assert!(solution.iterations < whole.iterations, "{} of {}", solution.iterations, whole.iterations);
@@ -129,7 +119,7 @@ fn interior_point_and_multigrid_end_early_on_request() {
 
 #[test]
 fn a_stopped_sweep_returns_the_gaps_solved_so_far() {
-    let model = build(&block(20));
+    let model = built(&block(20));
     let gaps = Sweep::even_gaps(0.0, -0.05, 400);
     let whole = Sweep::over_gaps(&model, &gaps, &Settings::default()).unwrap();
     assert!(whole.points.len() == gaps.len() && !whole.events.is_empty());
@@ -214,7 +204,7 @@ fn a_stopped_motion_keeps_its_last_complete_step_and_resumes_bit_for_bit() {
 
 #[test]
 fn memory_that_does_not_suffice_is_refused_before_a_factorisation() {
-    let model = build(&block(20));
+    let model = built(&block(20));
     for (method, condense) in [
         (Method::ActiveSet, Condense::Auto),
         (Method::ActiveSet, Condense::Never),

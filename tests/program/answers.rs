@@ -1,8 +1,8 @@
 //! Output of solve, compare, sweep and export: text, JSON and files.
 
-use crate::program::{Desk, Problem, example, examples, scene};
 use crate::promised::{has, is_answer, vectors};
 use serde_json::{Value, json};
+use support::program::{Desk, Problem, example, examples, scene};
 
 #[test]
 fn solve_prints_one_object_of_the_promised_form_for_every_example() {

@@ -1,14 +1,15 @@
 //! The program chooses the method for a requested accuracy or time; the answer meets the request or states what it
 //! reached.
 
-use crate::program::{Desk, example, examples};
 use serde_json::json;
 use signorini::qp::{Condense, Method, Precision, Prepared, Settings};
-use signorini::{ContactProblem, Scene, Solution, qp, solve};
+use signorini::{ContactProblem, Solution, qp, solve};
 use std::time::Duration;
+use support::program::{Desk, example, examples};
+use support::scenes::built_example;
 
 fn problem(name: &str) -> ContactProblem {
-    Scene::read(example(name)).unwrap().build().unwrap().problem().clone()
+    built_example(name).problem().clone()
 }
 
 fn error(problem: &ContactProblem, found: &Solution, exact: &Solution) -> f64 {

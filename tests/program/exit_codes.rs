@@ -1,8 +1,8 @@
 //! The exit code of a command, and the message of a failure in text and JSON.
 
-use crate::program::{Desk, Problem, example, matrix, scene};
 use crate::promised::is_answer;
 use serde_json::json;
+use support::program::{Desk, Problem, example, matrix, scene};
 
 #[test]
 fn exit_code_1_means_bad_input() {

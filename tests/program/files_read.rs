@@ -6,8 +6,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::program::{Desk, Problem, scene};
 use serde_json::json;
+use support::program::{Desk, Problem, scene};
 
 #[test]
 fn a_named_pipe_is_refused_without_waiting() {

@@ -3,8 +3,8 @@
 
 use std::process::Command;
 
-use crate::program::{Desk, Problem, example, scene, vector};
 use serde_json::{Value, json};
+use support::program::{Desk, Problem, example, scene, vector};
 
 /// The names listed under `Commands:` in the help.
 fn commands(desk: &Desk) -> Vec<String> {
@@ -249,8 +249,8 @@ fn a_misspelt_group_is_answered_with_the_nearest_valid_group() {
 /// to 3; a wall at g carries the force 3 - g.
 fn springs(desk: &Desk) {
     let k = ["1 1 8", "2 1 -4", "2 2 8", "3 2 -4", "3 3 8", "4 3 -4", "4 4 4"];
-    let k = crate::program::matrix("symmetric", "4 4", &k);
-    let b = crate::program::matrix("general", "1 4", &["1 4 1"]);
+    let k = support::program::matrix("symmetric", "4 4", &k);
+    let b = support::program::matrix("general", "1 4", &["1 4 1"]);
     desk.problem("p", &Problem { k, f: vector(&["0", "0", "0", "3"]), b, g: vector(&["4"]) });
 }
 

@@ -4,10 +4,10 @@
 use std::fs;
 use std::process::Command;
 
-use crate::program::{Desk, Problem, Run, matrix, vector};
 use serde_json::{Value, json};
 use signorini::qp::Cholesky;
 use signorini::{Scene, SparseMatrix, SymmetricMatrix};
+use support::program::{Desk, Problem, Run, matrix, vector};
 
 /// The estimate and the measured peak may differ by this factor.
 const WITHIN: f64 = 2.0;
@@ -269,7 +269,7 @@ fn endless_files_are_read_up_to_a_cap() {
     fs::remove_file(desk.path("p/K.mtx")).unwrap();
     std::os::unix::fs::symlink("/dev/zero", desk.path("p/K.mtx")).unwrap();
     confined(&desk, FILE_KILOBYTES, "solve p").fails_with(1, &["p/K.mtx", "longer than 64 MB"]);
-    desk.write("scene.json", crate::program::scene().to_string());
+    desk.write("scene.json", support::program::scene().to_string());
     let body = json!({"gmsh": {"file": "/dev/zero"}});
     desk.write(
         "mesh.json",
@@ -287,7 +287,7 @@ fn endless_files_are_read_up_to_a_cap() {
 #[test]
 fn a_pipe_is_read_like_a_file() {
     let desk = Desk::new();
-    desk.write("scene.json", crate::program::scene().to_string());
+    desk.write("scene.json", support::program::scene().to_string());
     let script = format!("cat scene.json | '{}' solve /dev/stdin", env!("CARGO_BIN_EXE_signorini"));
     let output = Command::new("sh").args(["-c", &script]).current_dir(desk.path(".")).output().unwrap();
     assert!(output.status.success(), "{output:?}");

@@ -1,11 +1,5 @@
 //! The program: its command line, its limits, its process, and its decisions.
 
-#[path = "../support/program.rs"]
-mod program;
-
-#[path = "../support/plane_scenes.rs"]
-mod plane_scenes;
-
 mod answers;
 mod auto;
 mod blocks;

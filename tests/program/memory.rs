@@ -1,15 +1,16 @@
 //! A memory limit is kept: the peak stays below it, and a refusal names the smallest sufficient limit.
 #![cfg(target_os = "linux")]
 
-use signorini::{Method, Scene, Settings, qp, solve};
+use signorini::{Method, Settings, qp, solve};
 use std::fs;
 use std::process::{Command, Stdio};
 use std::time::Duration;
+use support::scenes::built;
 
 use crate::blocks::{block, cube, pressed, pressed_on_a_plane, stiff_in_volume, strip};
-use crate::program::Desk;
 use serde_json::{Value, json};
 use signorini::qp::{Condense, Estimate, Prepared};
+use support::program::Desk;
 
 /// Exit code, standard error, and the largest resident size in bytes of a run of the program.
 fn measured(desk: &Desk, arguments: &[&str]) -> (i32, String, f64) {
@@ -142,8 +143,7 @@ fn the_memory_limit_named_in_a_refusal_suffices() {
 
 #[test]
 fn a_limit_of_memory_tries_methods_that_fit_and_names_those_that_failed() {
-    let problem =
-        Scene::from_json(&stiff_in_volume(800).to_string(), "strip").unwrap().build().unwrap().problem().clone();
+    let problem = built(&stiff_in_volume(800)).problem().clone();
     let within = |memory: f64| {
         let mut settings = Settings::default();
         settings.memory = Some(memory);
@@ -176,7 +176,7 @@ fn a_limit_of_memory_tries_methods_that_fit_and_names_those_that_failed() {
 #[test]
 fn a_smaller_memory_than_the_named_one_is_refused() {
     for scene in [strip(300), block([60, 60], "q4"), block([40, 40], "q8")] {
-        let problem = Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap().problem().clone();
+        let problem = built(&scene).problem().clone();
         for condense in [Condense::Auto, Condense::Never] {
             let prepared = |memory: f64| {
                 // A named method is refused; with `auto` a hierarchy would be prepared instead.

@@ -4,8 +4,8 @@
 use std::fs;
 use std::process::{Command, Stdio};
 
-use crate::program::Desk;
 use serde_json::{Value, json};
+use support::program::Desk;
 
 /// A bar of 20 cells that flies against a wall, with 120 steps per unit of time.
 fn bar(duration: f64, frames: usize) -> Value {

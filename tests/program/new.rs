@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::program::Desk;
+use support::program::Desk;
 
 /// Mesh files from Gmsh: of every element, and of parts without an obvious side to hold or to press.
 fn meshes() -> Vec<String> {

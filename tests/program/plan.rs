@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use crate::blocks::{block, cube, pressed};
-use crate::program::Desk;
+use support::program::Desk;
 
 /// The plan of a scene, after a check that nothing was solved.
 fn plan(desk: &Desk, scene: &Value, options: &[&str]) -> String {

@@ -4,11 +4,11 @@
 //! work that is far from its end. If a run ends before the test can act, it is repeated.
 #![cfg(unix)]
 
-use crate::program::{Desk, Run, example, scene};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use support::program::{Desk, Run, example, scene};
 
 /// Start of the name of a file that is complete before it is renamed to its place.
 const WAITING: &str = ".signorini-";

@@ -1,8 +1,8 @@
 //! The documented form of JSON reports.
 
-use crate::program::Desk;
 use serde_json::Value;
 use signorini::qp::read_vector;
+use support::program::Desk;
 
 /// Asserts that `value` is an object with these fields, each of its kind: `number`, `count`, `string` or `bool`.
 #[track_caller]

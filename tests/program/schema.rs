@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-use crate::program::{Desk, example, examples, scene};
 use serde_json::{Value, json};
+use support::program::{Desk, example, examples, scene};
 
 /// Returns an error if `value` does not have the form of `schema`. Supports the keywords that the schema of a scene
 /// uses.

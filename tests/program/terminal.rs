@@ -4,8 +4,8 @@ use std::fs;
 use std::io::Read;
 use std::process::Stdio;
 
-use crate::program::{Desk, example, scene};
 use serde_json::json;
+use support::program::{Desk, example, scene};
 
 const COMMANDS: [&str; 9] = ["solve", "compare", "sweep", "draw", "export", "verify", "schema", "completions", "man"];
 

@@ -6,8 +6,8 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use crate::blocks::{block, cube, pressed, pressed_on_a_plane, strip};
-use crate::program::Desk;
 use serde_json::{Value, json};
+use support::program::Desk;
 
 #[test]
 fn time_of_failed_attempts_is_included_and_the_attempts_are_named() {

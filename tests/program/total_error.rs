@@ -1,8 +1,8 @@
 //! The guaranteed total error: its bounds, its cost, and the scenes that are refused.
 
-use crate::plane_scenes::{of_column, shown};
-use crate::program::Desk;
 use serde_json::{Value, json};
+use support::plane_scenes::{of_column, shown};
+use support::program::Desk;
 
 /// The classical scene: a block of 1 x 0.5, clamped below, pressed by a parabola 0.01 deep.
 pub fn classical(poisson: f64) -> Value {

@@ -1,11 +1,11 @@
 //! The trade-off of a small scene: errors that fall with the settings of the methods, the Pareto front, files.
 
-use crate::program::{Desk, scene};
 use serde_json::{Value, json};
 use signorini::output::InWords;
 use signorini::scene::Units;
 use signorini::study::{Tradeoff, TradeoffGrid, TradeoffPoint};
 use signorini::{Scene, Watch};
+use support::program::{Desk, scene};
 
 fn measured(value: &Value) -> Tradeoff {
     let scene = Scene::from_json(&value.to_string(), "scene").unwrap();

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::program::Desk;
+use support::program::Desk;
 
 /// A fenced block of a document.
 struct Block {

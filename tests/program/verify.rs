@@ -1,7 +1,7 @@
 //! `signorini verify` accepts the right answer of a problem directory and rejects every other.
 
-use crate::program::{Desk, Problem, Run, matrix, scene, vector};
 use crate::promised::{CERTIFICATE, has, vectors};
+use support::program::{Desk, Problem, Run, matrix, scene, vector};
 
 /// Verifies the answer in the problem directory `p`.
 pub fn verify(desk: &Desk, format: &str) -> Run {

@@ -1,9 +1,9 @@
 //! Scenes and problems that are probably mistakes: each is refused, or answered with a warning that has a code, numbers
 //! and a remedy.
 
-use crate::program::{Desk, Problem, Run, examples, scene, vector};
 use crate::verify::verify;
 use serde_json::{Value, json};
+use support::program::{Desk, Problem, Run, examples, scene, vector};
 
 /// The report of `solve` for a scene, which must end with exit code 0.
 fn solved(scene: &Value) -> (Value, String) {
@@ -260,7 +260,7 @@ fn multipliers_of_the_opposite_sign_are_named() {
     let lambda = crate::promised::vectors(&desk, "p").1;
     let write = |values: &[f64]| {
         let words: Vec<String> = values.iter().map(f64::to_string).collect();
-        desk.write("p/lambda.mtx", crate::program::vector(&words.iter().map(String::as_str).collect::<Vec<_>>()));
+        desk.write("p/lambda.mtx", support::program::vector(&words.iter().map(String::as_str).collect::<Vec<_>>()));
     };
     write(&lambda.iter().map(|value| -value).collect::<Vec<_>>());
     let (report, text) = (verify(&desk, "json").ends_with(4).json(), verify(&desk, "text").ends_with(4).stdout);
@@ -274,7 +274,7 @@ fn multipliers_of_the_opposite_sign_are_named() {
 fn the_examples_cause_no_warning() {
     let desk = Desk::new();
     for name in examples() {
-        let report = desk.run(&["solve", &crate::program::example(&name), "--format", "json"]).ends_with(0).json();
+        let report = desk.run(&["solve", &support::program::example(&name), "--format", "json"]).ends_with(0).json();
         assert_eq!(report.get("warnings"), None, "{name}");
     }
 }

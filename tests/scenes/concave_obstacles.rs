@@ -3,10 +3,12 @@
 //!
 //! BODY: a clamped unit square of 8 x 8 Q4, or a unit cube of 4 x 4 x 4 Hex8; candidates are the nodes of the top.
 
-use crate::bodies::{built, clamped_square};
-use crate::exact_solutions::PointContact;
 use serde_json::{Value, json};
 use signorini::{Model, Scene, solve_qp};
+use support::bodies::clamped_square;
+use support::bodies::cube_under;
+use support::closed_forms::PointContact;
+use support::scenes::built;
 
 /// Rounding of a few operations on distances of order one.
 const ROUNDING: f64 = 1e-14;
@@ -15,20 +17,8 @@ fn square(rule: &str, shape: Value, gap: f64) -> Model {
     built(&clamped_square(8, json!([{"boundary": "top", "approach": "+y", "rule": rule, "shape": shape}]), gap))
 }
 
-fn cube_scene(rule: &str, shape: Value, gap: f64) -> Value {
-    let axis = json!({"points": [0, 1], "divisions": [4]});
-    json!({
-        "model": "space",
-        "body": {"box": {"x": axis, "y": axis, "z": axis, "element": "hex8"}},
-        "material": {"young": 1000, "poisson": 0.3},
-        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0}],
-        "obstacles": [{"boundary": "top", "approach": "+z", "rule": rule, "shape": shape}],
-        "gap": gap
-    })
-}
-
 fn cube(rule: &str, shape: Value, gap: f64) -> Model {
-    built(&cube_scene(rule, shape, gap))
+    built(&cube_under(rule, shape, gap))
 }
 
 fn length(vector: [f64; 3]) -> f64 {
@@ -246,7 +236,7 @@ fn an_invalid_torus_and_an_invalid_side_are_refused_with_their_field() {
         ),
         (circle, "sphere.side", "outside"),
     ] {
-        let scene = Scene::from_json(&cube_scene("approach", shape, 0.0).to_string(), "scene");
+        let scene = Scene::from_json(&cube_under("approach", shape, 0.0).to_string(), "scene");
         let error = scene.and_then(|scene| scene.build()).map(drop).unwrap_err().to_string();
         assert!(error.contains(&format!("`obstacles[0].shape.{path}`")) && error.contains(phrase), "{error}");
     }

@@ -3,21 +3,20 @@
 //! REFERENCE: bar against a wall and contact patch in closed form; `reference/results.json` (cvxpy with Clarabel and
 //! OSQP, polished by sparse LU; versions in the file).
 
-use signorini::{Method, Model, Scene, Settings, Solution, qp, solve, solve_qp};
+use signorini::{Method, Model, Scene, Settings, solve, solve_qp};
 use std::path::PathBuf;
+use support::bodies::largest;
+use support::endings::answer_by;
+use support::scenes::built;
 
-use crate::exact_solutions::{Bar, ContactPatch, Sides};
 use serde_json::{Value, json};
 use signorini::study::compare;
+use support::closed_forms::{Bar, ContactPatch, Sides};
 
 const EXACT: [Method; 2] = [Method::qp(), Method::ActiveSet];
 
 /// Rounding times the condition number of the stiffness, below 1e4 here; both closed forms must agree to this.
 const CLOSED_FORM: f64 = 1e-11;
-
-fn model(scene: &Value) -> Model {
-    Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build()).unwrap_or_else(|e| panic!("{e}"))
-}
 
 fn file(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(name)
@@ -25,10 +24,6 @@ fn file(name: &str) -> PathBuf {
 
 fn indentation() -> Value {
     serde_json::from_str(&std::fs::read_to_string(file("examples/indentation.json")).unwrap()).unwrap()
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
 }
 
 #[track_caller]
@@ -66,7 +61,7 @@ fn bar_against_a_wall_is_exact_at_the_nodes() {
             // the nodes.
             let cases = [(end_force, true), (distributed, false)];
             for (loads, by_end) in cases.into_iter().filter(|case| case.1 || element == "q4") {
-                let model = model(&bar(element, loads, gap));
+                let model = built(&bar(element, loads, gap));
                 let closed = closed(gap);
                 let reaction =
                     if by_end { closed.reaction_to_end_force(4.0) } else { closed.reaction_to_distributed_load(4.0) };
@@ -114,7 +109,7 @@ fn uniform_pressure_on_a_plane_is_exact_on_every_mesh() {
             let closed = ContactPatch { young: 2e5, poisson: 0.3, sides };
             let (eps_xx, eps_yy) = closed.strains(p);
             let loads = json!([{"traction": {"boundary": "top", "value": [0, -p]}}]);
-            let model = model(&patch(element, state, loads, json!([{"on": {"boundary": "left"}, "x": 0}]), 0.0));
+            let model = built(&patch(element, state, loads, json!([{"on": {"boundary": "left"}, "x": 0}]), 0.0));
             for method in EXACT {
                 let solution = solve(model.problem(), &Settings::with_method(method)).unwrap();
                 let what = format!("{element}, {state}, {method:?}");
@@ -149,7 +144,7 @@ fn block_pressed_by_a_prescribed_displacement_has_the_pressure_of_the_closed_for
     ] {
         let closed = ContactPatch { young: 2e5, poisson: 0.3, sides };
         for gap in [0.004, 0.0, -0.002, 0.01, 0.02] {
-            let model = model(&patch("q4", "plane-strain", json!([]), supports.clone(), gap));
+            let model = built(&patch("q4", "plane-strain", json!([]), supports.clone(), gap));
             let p = closed.pressure(0.8, 0.01, gap);
             let solution = solve_qp(model.problem()).unwrap();
             for pressure in model.pressure(&solution.multiplier).unwrap() {
@@ -159,19 +154,11 @@ fn block_pressed_by_a_prescribed_displacement_has_the_pressure_of_the_closed_for
     }
 }
 
-fn answer(model: &Model, method: Method) -> Solution {
-    match solve(model.problem(), &Settings::with_method(method)) {
-        Ok(solution) => solution,
-        Err(qp::Error::NotCertified { solution, .. }) if method == Method::penalty() => *solution,
-        Err(error) => panic!("{error}"),
-    }
-}
-
 #[test]
 fn three_methods_agree_at_ten_gaps_and_with_the_stored_independent_answers() {
     let reference: Value =
         serde_json::from_str(&std::fs::read_to_string(file("reference/results.json")).unwrap()).unwrap();
-    let base = model(&indentation());
+    let base = built(&indentation());
     for step in 1..=10 {
         let gap = -0.01 * f64::from(step);
         let model = base.with_gap(gap).unwrap();
@@ -210,16 +197,16 @@ fn in_units(length: f64, young: f64) -> Model {
     scene["obstacles"][0]["shape"]["parabola"] = json!({"apex": [scaled(0.5), scaled(0.5)], "radius": scaled(1.0)});
     scene["material"]["young"] = json!(young);
     scene["gap"] = json!(scaled(-0.01));
-    model(&scene)
+    built(&scene)
 }
 
 #[test]
 fn the_same_scene_in_other_units_has_the_same_dimensionless_answer() {
     for method in [Method::qp(), Method::ActiveSet, Method::penalty()] {
-        let reference = answer(&in_units(1.0, 1e7), method);
+        let reference = answer_by(method, in_units(1.0, 1e7).problem());
         // m and Pa; mm and MPa; micrometres and N per square micrometre; steel; a metre of jelly; kilometres of rock.
         for (length, young) in [(1e3, 10.0), (1e6, 1e-5), (1.0, 2.1e11), (1.0, 1e-2), (1e3, 5e10), (1e-9, 1e12)] {
-            let solution = answer(&in_units(length, young), method);
+            let solution = answer_by(method, in_units(length, young).problem());
             assert_eq!(solution.contact_set, reference.contact_set, "{method:?}, {length:e}, {young:e}");
             let (u, lambda) = (largest(&reference.displacement), largest(&reference.multiplier));
             for (a, b) in solution.displacement.iter().zip(&reference.displacement) {
@@ -244,7 +231,7 @@ fn virtual_work_and_the_balance_of_forces_hold_in_every_example() {
     for name in ["indentation", "inclined", "between", "block", "bar", "circle"] {
         let model = Scene::read(file(&format!("examples/{name}.json"))).unwrap().build().unwrap();
         for method in EXACT {
-            let solution = answer(&model, method);
+            let solution = answer_by(method, model.problem());
             let (problem, u, lambda) = (model.problem(), &solution.displacement, &solution.multiplier);
             let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
             let (strain, load, gap) =
@@ -264,7 +251,7 @@ fn without_a_gap_the_answer_is_proportional_to_the_load() {
         scene["gap"] = json!(0.0);
         scene["obstacles"][0]["shape"] = json!({"plane": {"point": [0, 0.5], "normal": [0, 1]}});
         scene["loads"] = json!([{"body-force": [3.0 * force, force]}]);
-        model(&scene)
+        built(&scene)
     };
     let reference = solve_qp(scene(1e4).problem()).unwrap();
     assert!((1..41).contains(&reference.contact_set.count()), "{}", reference.contact_set.count());
@@ -282,7 +269,7 @@ fn an_obstacle_out_of_reach_has_no_contact_row_closed() {
     let mut scene = indentation();
     scene["gap"] = json!(0.5);
     scene["loads"] = json!([{"traction": {"boundary": "right", "value": [1e3, 0]}}]);
-    let model = model(&scene);
+    let model = built(&scene);
     for method in [Method::qp(), Method::ActiveSet, Method::penalty()] {
         let solution = solve(model.problem(), &Settings::with_method(method)).unwrap();
         assert!(solution.contact_set.count() == 0 && solution.multiplier.iter().all(|&lambda| lambda == 0.0));
@@ -293,7 +280,7 @@ fn an_obstacle_out_of_reach_has_no_contact_row_closed() {
 /// The first iteration uses C = 0, the last the set of the answer; each set differs from the one before.
 #[test]
 fn the_history_of_the_active_set_begins_with_the_empty_set_and_ends_with_the_answer() {
-    let solution = answer(&model(&indentation()), Method::ActiveSet);
+    let solution = answer_by(Method::ActiveSet, built(&indentation()).problem());
     let history: Vec<_> = solution.history.iter().map(|step| &step.contact_set).collect();
     assert_eq!(history[0].count(), 0);
     assert_eq!(*history[history.len() - 1], solution.contact_set);
@@ -334,7 +321,7 @@ fn bars_in_series_keep_their_digits_over_twelve_decades_of_stiffness() {
 #[test]
 fn pressure_on_the_axis_of_revolution_is_finite_and_near_the_largest() {
     let scene = |element: &str| {
-        model(&json!({
+        built(&json!({
             "model": "axisymmetric",
             "body": {"rectangle": {
                 "x": {"points": [0, 0.3, 2], "divisions": [12, 10], "ratios": [1, 10]},
@@ -349,7 +336,7 @@ fn pressure_on_the_axis_of_revolution_is_finite_and_near_the_largest() {
     };
     let peaks = ["q4", "q8", "t6"].map(|element| {
         let model = scene(element);
-        let solution = answer(&model, Method::qp());
+        let solution = answer_by(Method::qp(), model.problem());
         let pressure = model.pressure(&solution.multiplier).unwrap();
         let axis = model.rows().iter().position(|row| model.mesh().nodes()[row.node][0] == 0.0).unwrap();
         let peak = pressure.iter().copied().fold(0.0, f64::max);
@@ -366,14 +353,14 @@ fn pressure_on_the_axis_of_revolution_is_finite_and_near_the_largest() {
 #[test]
 fn a_half_cylinder_of_quadratic_elements_has_the_force_and_the_pressure_of_hertz() {
     for element in ["q8", "t6"] {
-        let model = model(&json!({
+        let model = built(&json!({
             "body": {"half-disc": {"radius": 1, "zone": {"width": 0.1, "divisions": 8}, "element": element}},
             "material": {"young": 1.0, "poisson": 0.3},
             "supports": [{"on": {"boundary": "cut"}, "y": -0.01}, {"on": {"point": [0, 0]}, "x": 0}],
             "obstacles":
                 [{"boundary": "arc", "approach": "-y", "shape": {"plane": {"point": [0, -1], "normal": [0, -1]}}}],
         }));
-        let solution = answer(&model, Method::qp());
+        let solution = answer_by(Method::qp(), model.problem());
         let peak = model.pressure(&solution.multiplier).unwrap().into_iter().fold(0.0, f64::max);
         // The theory assumes a half space and a small contact: 0.1 % in the force, 1 % in the pressure.
         close(solution.contact_force(), 4.983922e-3, 4.983922e-3, 1e-3, &format!("{element}: F"));

@@ -1,11 +1,12 @@
 //! GOAL: contact scenes on a line, about an axis and in space, compared with closed forms, and the scenes that are
 //! refused there.
 
-use crate::bodies::{built, largest};
-use crate::exact_solutions::Bar;
 use serde_json::{Value, json};
 use signorini::scene::Warning;
-use signorini::{Error, Model, Scene, qp, solve_qp};
+use signorini::{Error, Model, qp, solve_qp};
+use support::bodies::largest;
+use support::closed_forms::Bar;
+use support::scenes::{build, built};
 
 /// Rounding times the condition number of the stiffness, below 1e4 here; closed forms must agree to this.
 const CLOSED_FORM: f64 = 1e-11;
@@ -162,7 +163,7 @@ fn check_patch_of_disc(model: &Model, what: &str) {
 }
 
 fn refused(scene: &Value) -> Error {
-    match Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build()) {
+    match build(scene) {
         Err(error) => error,
         Ok(_) => panic!("accepted: {scene}"),
     }

@@ -5,9 +5,9 @@
 
 use std::path::Path;
 
-use crate::bodies::built;
 use serde_json::{Value, json};
 use signorini::{Model, Scene};
+use support::scenes::built;
 
 /// Rounding of a few operations on lengths of order one.
 const ROUNDING: f64 = 1e-12;

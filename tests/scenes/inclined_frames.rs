@@ -4,10 +4,11 @@
 use signorini::{Error, Scene, qp, solve_qp};
 use std::collections::BTreeMap;
 
-use crate::bodies::{built, difference};
-use crate::rollers::{ROUNDING, check, cube, dot, lines, square};
 use serde_json::{Value, json};
 use signorini::fem::{DofMap, Frame};
+use support::bodies::difference;
+use support::rollers::{ROUNDING, check, cube, dot, lines, square};
+use support::scenes::built;
 
 #[test]
 fn a_normal_along_an_axis_of_either_sign_equals_a_support_along_that_axis() {

@@ -4,9 +4,9 @@
 use signorini::{Error, qp, solve_qp};
 use std::collections::BTreeMap;
 
-use crate::bodies::built;
-use crate::rollers::{ROUNDING, check, cube, square};
 use serde_json::{Value, json};
+use support::rollers::{ROUNDING, check, cube, square};
+use support::scenes::built;
 
 #[test]
 fn rollers_in_the_plane_agree_with_lagrange_multipliers() {

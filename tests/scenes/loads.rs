@@ -1,20 +1,15 @@
 //! Distributed loads, tabulated loads, and inertia forces: resultants, closed forms, refused input.
 
-use std::sync::Arc;
+use support::scenes::answer;
 
-use crate::bodies::{built, largest};
 use serde_json::{Value, json};
-use signorini::scene::{Answer, Resultant};
-use signorini::{Error, Scene, solve_qp};
+use signorini::scene::Resultant;
+use signorini::{Error, Scene};
+use support::bodies::largest;
+use support::scenes::built;
 
 /// Rounding of sums of nodal forces.
 const ROUNDING: f64 = 1e-12;
-
-fn answer(scene: &Value) -> Answer {
-    let model = Arc::new(built(scene));
-    let solution = solve_qp(model.problem()).unwrap();
-    Answer::of(model, &solution).unwrap()
-}
 
 fn loads(scene: &Value) -> Resultant {
     answer(scene).resultants().unwrap().iter().find(|one| one.of == "loads").unwrap().clone()

@@ -1,20 +1,5 @@
 //! Scenes: accepted and refused input, the rows of obstacles, supports, and contact answers compared with closed forms.
 
-#[path = "../support/bodies.rs"]
-mod bodies;
-#[path = "../support/closed_forms/mod.rs"]
-mod exact_solutions;
-#[path = "../support/oracles/mod.rs"]
-mod oracles;
-#[path = "../support/program.rs"]
-mod program;
-#[path = "../support/rollers.rs"]
-mod rollers;
-#[path = "../support/scenes.rs"]
-mod solved_scene;
-#[path = "../support/triangles.rs"]
-mod triangles;
-
 mod concave_obstacles;
 mod contact_scenes;
 mod dimensions;

@@ -1,11 +1,11 @@
 //! Bodies of several materials in scenes: layers and strips compared with closed forms, groups of mesh files, refused
 //! input.
 
-use crate::bodies::built;
 use serde_json::{Value, json};
 use signorini::scene::Answer;
 use signorini::{Error, Scene, solve_qp};
 use std::sync::Arc;
+use support::scenes::built;
 
 const ROUNDING: f64 = 1e-10;
 

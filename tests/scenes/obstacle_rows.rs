@@ -3,9 +3,10 @@
 //!
 //! BODY: a clamped unit square of 8 x 8 Q4; candidates are the nodes of one side.
 
-use crate::bodies::{built, clamped_square};
 use serde_json::{Value, json};
 use signorini::Model;
+use support::bodies::clamped_square;
+use support::scenes::built;
 
 /// Rounding of a few operations on distances of order one.
 const ROUNDING: f64 = 1e-14;

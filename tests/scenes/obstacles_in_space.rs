@@ -3,9 +3,10 @@
 //!
 //! BODY: a clamped unit cube of 4 x 4 x 4 Hex8; candidates are the nodes of its top, z = 1.
 
-use crate::bodies::built;
 use serde_json::{Value, json};
 use signorini::{Model, Scene, solve_qp};
+use support::bodies::cube_under;
+use support::scenes::built;
 
 /// Rounding of a few operations on distances of order one.
 const ROUNDING: f64 = 1e-14;
@@ -13,20 +14,8 @@ const ROUNDING: f64 = 1e-14;
 /// A search finds the place of a minimum to the square root of rounding; the distance itself is then exact to rounding.
 const SEARCHED: f64 = 1e-12;
 
-fn scene(rule: &str, shape: Value, gap: f64) -> Value {
-    let axis = json!({"points": [0, 1], "divisions": [4]});
-    json!({
-        "model": "space",
-        "body": {"box": {"x": axis, "y": axis, "z": axis, "element": "hex8"}},
-        "material": {"young": 1000, "poisson": 0.3},
-        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0}],
-        "obstacles": [{"boundary": "top", "approach": "+z", "rule": rule, "shape": shape}],
-        "gap": gap
-    })
-}
-
 fn top(rule: &str, shape: Value, gap: f64) -> Model {
-    built(&scene(rule, shape, gap))
+    built(&cube_under(rule, shape, gap))
 }
 
 type Height = Box<dyn Fn(f64, f64) -> f64>;
@@ -215,7 +204,7 @@ fn the_rows_of_every_approach_direction_are_the_same_after_a_rotation() {
                 ("back", "+y", 1, 1.0),
                 ("bottom", "-z", 2, -1.0),
             ] {
-                let mut scene = scene(rule, shape(name, axis, sense), -0.02);
+                let mut scene = cube_under(rule, shape(name, axis, sense), -0.02);
                 scene["supports"] = json!([{"on": {"point": [0.5, 0.5, 0.5]}, "x": 0, "y": 0, "z": 0},
                     {"on": {"point": [0.75, 0.5, 0.5]}, "y": 0, "z": 0}, {"on": {"point": [0.5, 0.75, 0.5]}, "z": 0}]);
                 (scene["obstacles"][0]["boundary"], scene["obstacles"][0]["approach"]) =
@@ -305,7 +294,7 @@ fn shapes_of_wrong_dimension_and_invalid_height_maps_are_refused_at_their_path()
         (json!({"cylinder": {"apex": [0, 0, 1], "axis": [0, 1, 1], "radius": 1}}), "cylinder.axis", "perpendicular"),
         (json!({"cylinder": {"apex": [0, 0, 1], "axis": [0, 0, 0], "radius": 1}}), "cylinder.axis", "no direction"),
     ] {
-        let text = scene("approach", shape, 0.0).to_string();
+        let text = cube_under("approach", shape, 0.0).to_string();
         let error = Scene::from_json(&text, "scene").unwrap().build().unwrap_err().to_string();
         assert!(error.contains(path) && error.contains(words), "{error}");
     }

@@ -1,10 +1,10 @@
 //! Parts of boundaries: their facets, their use, refused input.
 
-use crate::bodies::built;
 use serde_json::{Value, json};
 use signorini::scene::Answer;
 use signorini::{Error, Model, Scene, solve_qp};
 use std::sync::Arc;
+use support::scenes::built;
 
 /// A square of 4 x 4 cells, clamped at the bottom, with parts.
 fn square(parts: Value) -> Value {

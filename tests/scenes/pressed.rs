@@ -1,14 +1,14 @@
 //! Obstacles that are pressed by a force: travel and force, compared with closed forms and with obstacles of prescribed
 //! travel.
 
-use crate::solved_scene::{answer, built};
 use serde_json::{Value, json};
 use signorini::scene::{Answer, Resultant};
 use signorini::study::Sweep;
 use signorini::{Error, Settings, qp};
+use support::scenes::{answer, build};
 
-use crate::exact_solutions::LineContact;
-use crate::program::Desk;
+use support::closed_forms::LineContact;
+use support::program::Desk;
 
 /// Difference of travel and force of two problems with the same answer: rounding times condition numbers of up to 1e5.
 const SAME: f64 = 1e-10;
@@ -169,14 +169,14 @@ fn invalid_forces_of_a_sweep_are_refused() {
     let circle = json!({"circle": {"apex": [0.5, 1], "radius": 1}});
     let mut scene = block(json!({"rectangle": {"x": axis(2), "y": axis(2)}}), false, "approach", circle);
     let refused = |scene: &Value, force: f64, phrase: &str| {
-        let error = Sweep::over_forces(&built(scene).unwrap(), &[1.0, force], &Settings::default()).unwrap_err();
+        let error = Sweep::over_forces(&build(scene).unwrap(), &[1.0, force], &Settings::default()).unwrap_err();
         assert!(error.to_string().contains(phrase), "{error}");
     };
     refused(&scene, 1.0, "no obstacle is pressed by a force");
     scene["obstacles"][0]["force"] = 1.into();
     refused(&scene, -2.0, "-2 would pull the obstacle away");
     refused(&scene, f64::NAN, "NaN is not finite");
-    let none = Sweep::over_forces(&built(&scene).unwrap(), &[], &Settings::default()).unwrap();
+    let none = Sweep::over_forces(&build(&scene).unwrap(), &[], &Settings::default()).unwrap();
     assert!(none.points.is_empty());
 }
 
@@ -193,7 +193,7 @@ fn obstacles_that_cannot_be_pressed_are_refused_at_their_path() {
     let refused = |change: &dyn Fn(&mut Value), phrases: &[&str]| {
         let mut scene = plain();
         change(&mut scene);
-        let error = built(&scene).unwrap_err();
+        let error = build(&scene).unwrap_err();
         assert!(matches!(error, Error::Scene { .. } | Error::Qp(qp::Error::UnderHeld { .. })), "{error:?}");
         phrases.iter().for_each(|phrase| assert!(error.to_string().contains(phrase), "{error}"));
     };

@@ -2,23 +2,18 @@
 //! uncertainty.
 
 use std::sync::Arc;
+use support::scenes::{answer, built};
 
-use crate::exact_solutions::{LineContact, PointContact};
-use crate::verification::round_bodies::{half_cylinder, quarter_ball};
 use serde_json::{Value, json};
 use signorini::output::InWords;
 use signorini::scene::{Answer, Resultant, Units};
 use signorini::study::Summary;
 use signorini::{Scene, solve_qp};
+use support::closed_forms::{LineContact, PointContact};
+use support::verification::round_bodies::{half_cylinder, quarter_ball};
 
 /// Rounding of the solves: forces balance to about 1e-12 of the largest.
 const BALANCED: f64 = 1e-9;
-
-fn answer(scene: &Value) -> Answer {
-    let model = Arc::new(Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap());
-    let solution = solve_qp(model.problem()).unwrap();
-    Answer::of(model, &solution).unwrap()
-}
 
 fn sum(all: &[Resultant], of: impl Fn(&Resultant) -> &[f64]) -> Vec<f64> {
     let mut sum = vec![0.0; of(&all[0]).len()];
@@ -150,7 +145,7 @@ fn the_basis_of_forces_names_thickness_and_modelled_part() {
     let basis = |change: &dyn Fn(&mut Value)| {
         let mut scene = block(json!([]), json!([]));
         change(&mut scene);
-        Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap().basis_of_forces()
+        built(&scene).basis_of_forces()
     };
     let clamp = json!([{"on": {"boundary": "bottom"}, "x": 0, "y": 0}]);
     assert_eq!(basis(&|scene| scene["supports"] = clamp.clone()), "per metre");
@@ -302,7 +297,7 @@ fn a_pressure_acts_on_the_area_projected_along_its_row() {
 #[test]
 fn missing_advice_on_tolerance_and_mesh_names_its_reason() {
     let plane = json!([{"boundary": "top", "approach": "+y", "shape": {"plane": {"point": [0, 1], "normal": [0, 1]}}}]);
-    let model = Arc::new(Scene::from_json(&block(plane, json!([])).to_string(), "scene").unwrap().build().unwrap());
+    let model = Arc::new(built(&block(plane, json!([]))));
     let solution = solve_qp(model.problem()).unwrap();
     let answer = Answer::of(model, &solution).unwrap();
     let mut summary = Summary::of_answer(&answer, solution, 1e-9, 0.0).unwrap();

@@ -2,9 +2,9 @@
 //! other body is refused. Rows that contradict each other are named with their Farkas weights, which are checked here
 //! by independent arithmetic.
 
-use crate::oracles::Dense;
 use serde_json::{Value, json};
 use signorini::{Error, Scene, qp, solve_qp};
+use support::oracles::Dense;
 
 /// Rounding of K d for a null vector d, relative to its terms.
 const NULL: f64 = 1e-9;

@@ -1,8 +1,8 @@
 //! Boundaries that move as rigid plates, compared with beams and with each other.
 
-use crate::solved_scene::{answer, built};
 use serde_json::{Value, json};
 use signorini::scene::{Answer, Resultant};
+use support::scenes::{answer, build};
 
 fn face(answer: &Answer) -> &Resultant {
     answer.resultants().unwrap().iter().find(|resultant| resultant.of == "rigid-faces[0]").unwrap()
@@ -118,7 +118,7 @@ fn invalid_motions_of_rigid_faces_are_refused_at_their_path() {
     let refused = |change: &dyn Fn(&mut Value), phrases: &[&str]| {
         let mut scene = bar(2.0, "q4", json!({"force": [1, 0]}));
         change(&mut scene);
-        let error = built(&scene).unwrap_err().to_string();
+        let error = build(&scene).unwrap_err().to_string();
         phrases.iter().for_each(|phrase| assert!(error.contains(phrase), "{error}"));
     };
     let face = |value: Value| {

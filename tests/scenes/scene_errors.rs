@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 use signorini::{Error, Scene, qp};
+use support::scenes::built;
 
 /// A valid scene; each entry of the tables below changes one field.
 fn right() -> Value {
@@ -46,7 +47,7 @@ fn shape(shape: Value) -> String {
 
 #[test]
 fn the_scene_that_the_tables_change_is_valid() {
-    Scene::from_json(&right().to_string(), "scene").unwrap().build().unwrap();
+    built(&right());
 }
 
 #[test]

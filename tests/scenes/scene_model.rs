@@ -1,10 +1,11 @@
 //! Models of scenes: supports, gaps, forces, balance, and motions in words.
 
-use crate::bodies::{built, clamped_square, difference, largest, solve_with_closed_rows};
 use serde_json::{Value, json};
 use signorini::qp::Cholesky;
 use signorini::scene::Warning;
 use signorini::{Error, Model, Scene, qp};
+use support::bodies::{clamped_square, difference, largest, solve_with_closed_rows};
+use support::scenes::built;
 
 const ROUNDING: f64 = 1e-14;
 

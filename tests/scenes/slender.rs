@@ -5,8 +5,9 @@
 //!
 //! REFERENCE: beam theory in closed form; the answers of four settings of the solver.
 
-use signorini::{Condense, Method, Scene, Settings, Solution, qp, solve};
+use signorini::{Condense, Method, Settings, Solution, qp, solve};
 use std::f64::consts::PI;
+use support::scenes::{build, built};
 
 use serde_json::{Value, json};
 use signorini::output::InWords;
@@ -44,7 +45,7 @@ fn ways() -> [Settings; 4] {
 }
 
 fn answer(scene: &Value, settings: &Settings) -> Result<Solution, qp::Error> {
-    let model = Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build()).unwrap();
+    let model = build(scene).unwrap();
     solve(model.problem(), settings)
 }
 
@@ -210,7 +211,7 @@ fn a_certified_answer_whose_stiffness_has_few_digits_has_a_warning() {
                            "shape": {"plane": {"point": [0, height], "normal": [0, 1]}}}],
             "gap": -0.01 * height
         });
-        let model = Scene::from_json(&scene.to_string(), "block").unwrap().build().unwrap();
+        let model = built(&scene);
         let solution = solve(model.problem(), &Settings::default()).unwrap_or_else(|e| panic!("{height:e}: {e}"));
         let error = (solution.contact_force() / (0.7 / (1.3 * 0.4) * 0.01) - 1.0).abs();
         let digits = solution.digits_of_stiffness();

@@ -1,8 +1,8 @@
 //! Springs and foundations, compared with closed forms.
 
-use crate::solved_scene::{answer, built};
 use serde_json::{Value, json};
 use signorini::scene::Answer;
+use support::scenes::{answer, build};
 
 fn resultant(answer: &Answer, of: &str) -> Vec<f64> {
     let all = answer.resultants().unwrap();
@@ -93,7 +93,7 @@ fn invalid_springs_are_refused_at_their_path() {
             "material": {"young": 1, "poisson": 0}, "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
             "springs": [spring],
         });
-        let error = built(&scene).unwrap_err().to_string();
+        let error = build(&scene).unwrap_err().to_string();
         phrases.iter().for_each(|phrase| assert!(error.contains(phrase), "{error}"));
     };
     refused(json!({"on": {"boundary": "top"}}), &["springs[0]", "holds nothing"]);

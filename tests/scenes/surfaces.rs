@@ -7,27 +7,16 @@
 
 use std::fs;
 use std::path::Path;
+use support::bodies::cube_under;
 
-use crate::triangles::Triangles;
 use serde_json::{Value, json};
 use signorini::scene::{ObstacleRow, PlacedObstacle};
 use signorini::{Error, Model, Scene, solve_qp};
+use support::triangles::Triangles;
 use tempfile::TempDir;
 
 /// Rounding of a few operations on distances of order one.
 const ROUNDING: f64 = 1e-14;
-
-fn scene(rule: &str, shape: Value, gap: f64) -> Value {
-    let axis = json!({"points": [0, 1], "divisions": [4]});
-    json!({
-        "model": "space",
-        "body": {"box": {"x": axis, "y": axis, "z": axis, "element": "hex8"}},
-        "material": {"young": 1000, "poisson": 0.3},
-        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0}],
-        "obstacles": [{"boundary": "top", "approach": "+z", "rule": rule, "shape": shape}],
-        "gap": gap
-    })
-}
 
 /// The model of a scene in a folder.
 fn model_in(folder: &Path, scene: &Value) -> Result<Model, Error> {
@@ -38,7 +27,7 @@ fn model_in(folder: &Path, scene: &Value) -> Result<Model, Error> {
 fn with_surface(rule: &str, surface: &Triangles, side: &str, gap: f64) -> Model {
     let desk = TempDir::new().unwrap();
     fs::write(desk.path().join("die.stl"), surface.binary_stl()).unwrap();
-    model_in(desk.path(), &scene(rule, json!({"surface": {"file": "die.stl", "side": side}}), gap)).unwrap()
+    model_in(desk.path(), &cube_under(rule, json!({"surface": {"file": "die.stl", "side": side}}), gap)).unwrap()
 }
 
 fn row(model: &Model, at: [f64; 3]) -> Option<ObstacleRow> {
@@ -264,7 +253,8 @@ fn rows_in_a_hole_end_at_its_far_side_along_the_approach_direction() {
 fn rows_and_force_of_a_sphere_of_triangles_converge_with_the_square_of_their_size() {
     let centre = [0.43, 0.37, 2.5];
     for rule in ["approach", "closest-point"] {
-        let exact = crate::bodies::built(&scene(rule, json!({"sphere": {"centre": centre, "radius": 1.5}}), -0.05));
+        let exact =
+            support::scenes::built(&cube_under(rule, json!({"sphere": {"centre": centre, "radius": 1.5}}), -0.05));
         let force = |model: &Model| solve_qp(model.problem()).unwrap().contact_force();
         let expected = force(&exact);
         let errors: Vec<[f64; 2]> = [3, 4, 5]
@@ -303,7 +293,7 @@ fn all_formats_scales_and_orientations_give_the_same_rows() {
     write("large.obj", thousandfold.obj().as_bytes());
     for rule in ["approach", "closest-point"] {
         let rows = |surface: Value| {
-            let model = model_in(desk.path(), &scene(rule, json!({"surface": surface}), -0.02)).unwrap();
+            let model = model_in(desk.path(), &cube_under(rule, json!({"surface": surface}), -0.02)).unwrap();
             model.rows().iter().map(|row| (row.node, row.normal, row.gap)).collect::<Vec<_>>()
         };
         let expected = rows(json!({"file": "die.stl"}));
@@ -345,7 +335,7 @@ fn triangles_without_area_do_not_change_the_rows() {
     }
     for rule in ["approach", "closest-point"] {
         let [whole, cut] = ["cube.obj", "split.obj"]
-            .map(|file| model_in(desk.path(), &scene(rule, json!({"surface": {"file": file}}), 0.0)).unwrap());
+            .map(|file| model_in(desk.path(), &cube_under(rule, json!({"surface": {"file": file}}), 0.0)).unwrap());
         let mut next = random(11);
         for _ in 0..200 {
             let at = [next() * 0.98 + 0.01, next() * 0.98 + 0.01, 0.5 + next()];
@@ -376,7 +366,7 @@ fn a_model_with_another_gap_has_the_rows_of_a_moved_surface() {
 fn refusal(name: &str, content: &[u8], surface: Value) -> String {
     let desk = TempDir::new().unwrap();
     fs::write(desk.path().join(name), content).unwrap();
-    let error = model_in(desk.path(), &scene("approach", json!({"surface": surface}), 0.0)).map(drop).unwrap_err();
+    let error = model_in(desk.path(), &cube_under("approach", json!({"surface": surface}), 0.0)).map(drop).unwrap_err();
     error.to_string().replace(desk.path().to_str().unwrap(), "")
 }
 
@@ -482,7 +472,7 @@ fn a_surface_outside_the_folder_of_the_scene_is_read_only_if_that_is_allowed() {
     fs::create_dir(desk.path().join("s")).unwrap();
     let die = Triangles::sphere(0.75, 2).moved(|[x, y, z]| [x + 0.5, y + 0.5, z + 1.75]);
     fs::write(desk.path().join("die.stl"), die.binary_stl()).unwrap();
-    let text = scene("approach", json!({"surface": {"file": "../die.stl"}}), 0.0);
+    let text = cube_under("approach", json!({"surface": {"file": "../die.stl"}}), 0.0);
     let error = model_in(&desk.path().join("s"), &text).map(drop).unwrap_err().to_string();
     assert!(error.contains("`obstacles[0].shape.surface.file`") && error.contains("outside the folder"), "{error}");
     let allowed = Scene {
@@ -514,7 +504,7 @@ fn a_damaged_file_is_read_or_refused() {
             }
             fs::write(desk.path().join(name), bytes).unwrap();
             for rule in ["approach", "closest-point"] {
-                match model_in(desk.path(), &scene(rule, json!({"surface": {"file": name}}), -0.1)) {
+                match model_in(desk.path(), &cube_under(rule, json!({"surface": {"file": name}}), -0.1)) {
                     Ok(_) => read += 1,
                     Err(error) => {
                         assert!(["file-syntax", "scene"].contains(&error.code()), "{name}: {error}");

@@ -1,9 +1,9 @@
 //! Planes of symmetry: a quarter, a half and the whole have the same answer.
 
-use crate::solved_scene::{answer, built};
 use serde_json::{Value, json};
+use support::scenes::{answer, build};
 
-use crate::program::Desk;
+use support::program::Desk;
 
 /// Difference of answers to the same problem on the same mesh: rounding times a condition number of 1e3.
 const SAME: f64 = 1e-10;
@@ -102,7 +102,7 @@ fn planes_of_symmetry_on_which_the_body_does_not_end_are_refused() {
     let refused = |change: &dyn Fn(&mut Value), phrases: &[&str]| {
         let mut scene = block("hex8", &["x"]);
         change(&mut scene);
-        let error = built(&scene).unwrap_err().to_string();
+        let error = build(&scene).unwrap_err().to_string();
         phrases.iter().for_each(|phrase| assert!(error.contains(phrase), "{error}"));
     };
     refused(
@@ -114,6 +114,6 @@ fn planes_of_symmetry_on_which_the_body_does_not_end_are_refused() {
         "body": {"disc": {"radius": 1, "zone": {"width": 0.2, "divisions": 2}}},
         "material": {"young": 1, "poisson": 0}, "symmetry": ["x"],
     });
-    let error = built(&disc).unwrap_err().to_string();
+    let error = build(&disc).unwrap_err().to_string();
     assert!(error.contains("symmetry[0]") && error.contains("does not end flat at x = -1"), "{error}");
 }

@@ -2,14 +2,15 @@
 //! compared with the original body and with closed forms; and the files that the program writes for it.
 
 use std::fmt::Write;
+use support::bodies::largest;
 
-use crate::exact_solutions::{Bar, ContactPatch, Sides};
-use crate::program::Desk;
 use serde_json::{Value, json};
 use signorini::fem::{ElementKind, Mesh};
 use signorini::qp::read_vector;
 use signorini::scene::{cuboid, rectangle};
 use signorini::{Model, Scene, Solution, solve_qp};
+use support::closed_forms::{Bar, ContactPatch, Sides};
+use support::program::Desk;
 
 /// Rounding times the condition number of the stiffness, below 1e4 here.
 const CLOSED_FORM: f64 = 1e-11;
@@ -123,10 +124,6 @@ impl Turned {
         assert!(balance < 1e-12, "balance {balance:e}");
         (model, solution)
     }
-}
-
-fn largest(a: &[f64]) -> f64 {
-    a.iter().fold(0.0, |m, x| m.max(x.abs()))
 }
 
 /// Compares nodal vectors of the rotated body with those of the original body.

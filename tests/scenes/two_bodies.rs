@@ -1,18 +1,15 @@
 //! Two elastic bodies in contact node to node, compared with the equivalent rigid obstacle, closed forms and Hertz.
 
-use crate::exact_solutions::LineContact;
 use serde_json::{Value, json};
 use signorini::{Error, Model, Scene, Solution, qp, solve_qp};
+use support::closed_forms::LineContact;
+use support::scenes::{build, built};
 
 /// Two solves of one problem in different unknowns differ by rounding times the condition number of these meshes.
 const ROUNDING: f64 = 1e-10;
 
-fn model(value: &Value) -> Model {
-    Scene::from_json(&value.to_string(), "scene").unwrap().build().unwrap()
-}
-
 fn solved(value: &Value) -> (Model, Solution) {
-    let model = model(value);
+    let model = built(value);
     let solution = solve_qp(model.problem()).map_err(|error| model.explain(error)).unwrap();
     let balance = model.force_balance(&solution.displacement, &solution.multiplier).unwrap();
     assert!(balance < 1e-12, "{balance:e}");
@@ -20,7 +17,7 @@ fn solved(value: &Value) -> (Model, Solution) {
 }
 
 fn refused(value: &Value, place: &str, phrases: &[&str]) {
-    let built = Scene::from_json(&value.to_string(), "scene").and_then(|scene| scene.build());
+    let built = build(value);
     match built.unwrap_err() {
         Error::Scene { path, message } | Error::Refused { path, message, .. } => {
             assert_eq!(path, place, "{message}");
@@ -256,7 +253,7 @@ fn an_under_held_body_is_named() {
     }
     // If the load pulls it away, it is unbounded.
     scene["loads"] = json!([{"traction": {"boundary": "top", "value": [0, 0.01]}}]);
-    let model = self::model(&scene);
+    let model = built(&scene);
     let error = model.explain(solve_qp(model.problem()).unwrap_err());
     let Error::Qp(qp::Error::Unbounded { mode, .. }) = &error else { panic!("{error:?}") };
     assert_eq!(mode, "translation along y of the first body");
@@ -299,7 +296,7 @@ fn surfaces_of_different_meshes_are_refused_for_either_finer_side() {
         solved(&blocks(model, 3, 3));
         for (cells, below) in [(2, 4), (4, 2), (3, 4)] {
             let scene = blocks(model, cells, below);
-            let built = Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build());
+            let built = build(&scene);
             let Error::Refused { code, message, .. } = built.unwrap_err() else { panic!("{scene}") };
             assert_eq!(code, "unpaired-nodes");
             assert!(

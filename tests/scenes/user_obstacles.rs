@@ -5,10 +5,10 @@
 
 use std::sync::Arc;
 
-use crate::bodies::clamped_square;
 use serde_json::{Value, json};
 use signorini::scene::{Obstacle, ObstacleRow, Warning};
 use signorini::{Error, Model, Scene, solve_qp};
+use support::bodies::clamped_square;
 
 /// Rounding: the built-in shapes subtract the shift from the height, while for this obstacle the node is moved.
 const ROUNDING: f64 = 4e-16;

@@ -3,24 +3,12 @@
 //! GOAL        classical contact problems, with the scenes of the command itself
 //! REFERENCE   closed forms of `tests/support/closed_forms`
 
-#[allow(dead_code)]
-#[path = "../../tools/verification/answer.rs"]
-mod answer;
-#[path = "../../tools/verification/closed_forms.rs"]
-mod closed_forms;
-#[allow(dead_code)]
-#[path = "../../tools/verification/contact_patch.rs"]
-mod contact_patch;
-#[path = "../../tools/verification/punches.rs"]
-mod punches;
-#[path = "../../tools/verification/round_bodies.rs"]
-pub mod round_bodies;
-
-use crate::exact_solutions::PointContact;
-use answer::{Answer, Solved};
-use contact_patch::{VARIANTS, contact_patch};
-use round_bodies::{half_ball_about_the_axis, quarter_ball};
 use serde_json::json;
+use support::closed_forms::PointContact;
+use support::verification::answer::{Answer, Solved};
+use support::verification::contact_patch::{VARIANTS, contact_patch};
+use support::verification::round_bodies::{self, half_ball_about_the_axis, quarter_ball};
+use support::verification::{closed_forms, punches};
 
 /// The elements are exact; rounding is multiplied by the condition number of the stiffness, below 1e4.
 const EXACT: f64 = 1e-12;

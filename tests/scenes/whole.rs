@@ -6,7 +6,7 @@
 
 use serde_json::{Value, json};
 
-use crate::program::Desk;
+use support::program::Desk;
 
 /// Difference of printed numbers of one answer on one mesh, relative: six to ten digits are printed, the last one rounded.
 const PRINTED: f64 = 2e-6;

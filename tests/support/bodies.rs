@@ -1,12 +1,11 @@
 //! Bodies that several tests share: distorted meshes, scenes from JSON, and linear solves on them.
-#![allow(dead_code)]
 
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
+use signorini::ContactProblem;
 use signorini::fem::{self, ElasticBody, ElementKind, Formulation, Material, Mesh};
 use signorini::qp::Cholesky;
 use signorini::scene::rectangle;
-use signorini::{ContactProblem, Model, Scene};
 
 const STRAIN: Formulation = Formulation::PlaneStrain { thickness: 0.5 };
 const STRESS: Formulation = Formulation::PlaneStress { thickness: 0.5 };
@@ -118,9 +117,17 @@ pub fn clamped_block(n: usize, gap: f64) -> Value {
     })
 }
 
-/// Builds the model of a valid scene; panics on an error.
-pub fn built(scene: &Value) -> Model {
-    Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap()
+/// A unit cube of 4 x 4 x 4 Hex8, clamped below, under an obstacle of this rule and shape.
+pub fn cube_under(rule: &str, shape: Value, gap: f64) -> Value {
+    let axis = json!({"points": [0, 1], "divisions": [4]});
+    json!({
+        "model": "space",
+        "body": {"box": {"x": axis, "y": axis, "z": axis, "element": "hex8"}},
+        "material": {"young": 1000, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0}],
+        "obstacles": [{"boundary": "top", "approach": "+z", "rule": rule, "shape": shape}],
+        "gap": gap
+    })
 }
 
 /// Displacement and multipliers if the given rows are closed and the others open, by one dense linear solve:

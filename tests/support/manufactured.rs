@@ -1,9 +1,8 @@
 //! Discretised blocks with an exact solution, and the error of their answers.
-#![allow(dead_code)]
 
 use std::time::Instant;
 
-use crate::exact_solutions::manufactured::{ContactSolution, PlaneElasticity};
+use crate::closed_forms::manufactured::{ContactSolution, PlaneElasticity};
 use signorini::fem::{
     DofMap, ElasticBody, ElementKind, ErrorNorms, ExactState, Formulation, Integration, Material, QuadraturePoint,
     add_body_force_field, discretisation_error, error_norms, error_norms_by, free_load, stiffness, stress,

@@ -1,9 +1,6 @@
 //! Random scenes in the plane that have a guaranteed bound, and the properties that the brackets on their meshes must
 //! have.
 
-// The study uses more of this module than the test.
-#![allow(dead_code)]
-
 use serde_json::{Value, json};
 use signorini::study::Examined;
 use signorini::{Error, Scene};

@@ -1,14 +1,23 @@
 //! Runs the built program in temporary folders, and provides its input.
-#![allow(dead_code)]
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{self, Receiver};
 
 use serde_json::Value;
 use tempfile::TempDir;
+
+/// The built program. Cargo tells its path only to the tests of its own package, and builds it for them into the folder
+/// above that of the tests.
+pub fn program() -> PathBuf {
+    let test = std::env::current_exe().unwrap();
+    let folder = test.ancestors().nth(2).unwrap();
+    let program = folder.join(format!("signorini{}", std::env::consts::EXE_SUFFIX));
+    assert!(program.exists(), "there is no program at {}", program.display());
+    program
+}
 
 /// Result of a run.
 pub struct Run {
@@ -51,9 +60,15 @@ impl Run {
 /// A temporary folder in which the program runs.
 pub struct Desk(TempDir);
 
+impl Default for Desk {
+    fn default() -> Self {
+        Desk(tempfile::tempdir().unwrap())
+    }
+}
+
 impl Desk {
     pub fn new() -> Self {
-        Desk(tempfile::tempdir().unwrap())
+        Desk::default()
     }
 
     pub fn path(&self, name: &str) -> PathBuf {
@@ -74,7 +89,7 @@ impl Desk {
     }
 
     pub fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_signorini"));
+        let mut command = Command::new(program());
         command.args(arguments).current_dir(self.0.path()).stdin(Stdio::null());
         command
     }
@@ -96,7 +111,7 @@ sys.exit(os.waitstatus_to_exitcode(status))";
     /// small: until the program is loaded, its size is counted as that of the program.
     pub fn by_python(&self, script: &str) -> Command {
         let mut python = Command::new("python3");
-        python.args(["-I", "-S", "-c", script, env!("CARGO_BIN_EXE_signorini")]).current_dir(self.0.path());
+        python.args(["-I", "-S", "-c", script]).arg(program()).current_dir(self.0.path());
         python
     }
 
@@ -219,13 +234,13 @@ impl Problem {
 
 /// The path of an example scene.
 pub fn example(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(format!("{name}.json"));
+    let path = crate::root().join("examples").join(format!("{name}.json"));
     path.to_str().unwrap().to_string()
 }
 
 /// The names of all example scenes.
 pub fn examples() -> Vec<String> {
-    let folder = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples")).unwrap();
+    let folder = fs::read_dir(crate::root().join("examples")).unwrap();
     let paths = folder.map(|entry| entry.unwrap().path());
     let scenes = paths.filter(|path| path.extension().is_some_and(|extension| extension == "json"));
     let mut names: Vec<String> = scenes.map(|path| path.file_stem().unwrap().to_str().unwrap().to_string()).collect();

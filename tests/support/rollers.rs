@@ -1,13 +1,13 @@
 //! Scenes on inclined supports, and a solver to compare them with: Lagrange multipliers in the coordinate axes, in a
 //! dense linear solve of `K u - N'r - B_c'lambda = f, N u = v, B_c u = g_c` over all dofs, without rotated frames.
-#![allow(dead_code)]
 
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
 use signorini::fem::{DofMap, stiffness};
 use signorini::{Model, solve_qp};
 
-use super::bodies::{built, difference, largest};
+use crate::bodies::{difference, largest};
+use crate::scenes::built;
 
 /// Rounding times the condition of the dense saddle-point system, below 1e5 here, with a margin.
 const DENSE: f64 = 1e-10;

@@ -1,5 +1,4 @@
 //! Closed surfaces of triangles, and the files that contain them.
-#![allow(dead_code)]
 
 use std::collections::HashMap;
 use std::fmt::Write;

@@ -6,11 +6,8 @@
 //! the task once.
 
 mod case;
-mod clock;
 mod linear;
 mod measure;
-#[path = "../process.rs"]
-mod process;
 mod table;
 
 use std::path::Path;
@@ -19,9 +16,9 @@ use std::process::ExitCode;
 use case::{CASES, Case};
 use linear::Ordering;
 use measure::{Bench, TASKS};
-use process::{Failure, child, ended, option, peak_bytes};
 use serde_json::{Map, Value, json};
 use signorini::output::write_files;
+use support::process::{Failure, child, ended, option, peak_bytes};
 
 /// Number of rounds of every case. The smallest time of each task counts.
 const ROUNDS: usize = 4;

@@ -5,8 +5,8 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use crate::case::{Case, FIRST_GAP};
-use crate::clock::processor_seconds;
 use crate::linear::{self, Ordering};
+use support::clock::processor_seconds;
 
 /// Number of gaps after the first one; each is a tenth of the first gap further.
 const NEXT_GAPS: usize = 9;

@@ -5,12 +5,10 @@
 //! with its defaults on the unscaled data; there, the digits are those of the answers that Clarabel calls solved. A
 //! `wrong` in any other column makes the command fail.
 
-mod cases;
-mod entry;
-
 use std::process::ExitCode;
 
-use entry::{COLUMNS, Cell};
+use support::extremes::cases;
+use support::extremes::entry::{COLUMNS, Cell};
 
 /// The results of all entries of one kind, column by column.
 struct Group {

@@ -4,8 +4,6 @@
 //! fits the constants of `crates/qp/src/cost/fitted.rs` to it. With `-- --fit` it fits to the times in the existing file; with `-- --check` it
 //! measures the other scenes.
 
-#[path = "../contact_cost/clock.rs"]
-mod clock;
 mod fit;
 mod measure;
 mod training;

@@ -1,7 +1,7 @@
 //! Measures the time of every method and setting ("way") that solves a problem.
 
-use super::clock::processor_seconds;
 use signorini::{ContactProblem, Error, InteriorPoint, Penalty, Solution, solve};
+use support::clock::processor_seconds;
 
 use signorini::qp::{Condense, Method, Precision, Prepared, Settings};
 

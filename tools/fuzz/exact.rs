@@ -8,13 +8,13 @@ use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use signorini::qp::read_problem;
 
-use super::oracle::case::Case;
-use super::oracle::judge::Fault;
-use super::oracle::solve::Exact;
-use super::oracle::stiffness::KINDS;
-use super::oracle::table::Table;
-use super::oracle::trial::{Trial, draw};
-use super::save;
+use super::desk::save;
+use support::oracles::exact::case::Case;
+use support::oracles::exact::judge::Fault;
+use support::oracles::exact::problem::Exact;
+use support::oracles::exact::stiffness::KINDS;
+use support::oracles::exact::table::Table;
+use support::oracles::exact::trial::{Trial, draw};
 
 /// The options of the command line.
 struct Options {

@@ -17,12 +17,8 @@
 //! With `--keep`, the first input of every ending that is new to `tests/faults` and `tests/corpus` is written into
 //! `tests/corpus`, which `tests/files/corpus.rs` replays.
 
-mod damage;
-mod draws;
+mod desk;
 mod exact;
-#[path = "../../tests/support/oracles/exact/mod.rs"]
-mod oracle;
-mod problem;
 mod promises;
 
 use std::collections::BTreeSet;
@@ -32,10 +28,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use damage::{damaged, fault, faults, read, wording};
-use draws::Draws;
-use signorini::ContactProblem;
-use signorini::qp::format_vector;
+use desk::desk;
+use support::draws::Draws;
+use support::fuzz::damage::{damaged, fault, faults, read, wording};
+use support::fuzz::problem;
 
 /// Seconds above which an input counts as taking too long.
 const LONG: f64 = 5.0;
@@ -49,28 +45,7 @@ const TARGETS: [(&str, &[&str]); 4] = [
 ];
 
 fn corpus() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus")
-}
-
-/// Makes a folder for the files of a problem, in memory if the system has such a place.
-fn desk() -> std::io::Result<tempfile::TempDir> {
-    let memory = Path::new("/dev/shm");
-    if memory.is_dir() { tempfile::tempdir_in(memory) } else { tempfile::tempdir() }
-}
-
-/// Writes a problem directory, with an answer if there is one, and a text about it.
-fn save(
-    folder: &Path,
-    problem: &ContactProblem,
-    answer: Option<&(Vec<f64>, Vec<f64>)>,
-    text: &str,
-) -> std::io::Result<()> {
-    promises::write(folder, problem)?;
-    if let Some((u, lambda)) = answer {
-        fs::write(folder.join("u.mtx"), format_vector(u))?;
-        fs::write(folder.join("lambda.mtx"), format_vector(lambda))?;
-    }
-    fs::write(folder.join("README.txt"), text)
+    support::root().join("tests/corpus")
 }
 
 /// The known endings, the number of files that were kept for them, and the number of new ones.

@@ -20,15 +20,11 @@ use std::time::{Instant, SystemTime, UNIX_EPOCH};
 use rayon::prelude::*;
 use signorini::ContactProblem;
 
-use super::{desk, draws, oracle as exact, save};
-use judged::draw::chain;
-use judged::program::Program;
-pub use judged::program::write;
-use judged::trial::{Fault, Findings, Trial};
+use super::desk::{desk, save};
+use support::oracles::promises::draw::chain;
+use support::oracles::promises::program::{Program, write};
+use support::oracles::promises::trial::{Fault, Findings, Trial};
 use table::Table;
-
-#[path = "../../tests/support/oracles/promises/mod.rs"]
-mod judged;
 
 /// Number of problems after which faults are printed.
 const AT_ONCE: u64 = 500;

@@ -5,10 +5,7 @@
 //! overlap, and the distance of each answer to the finest one must not exceed its bound. In addition, one column for every
 //! ten scenes is solved; its energy and force are known in closed form. The exit code is 1 if a guarantee is violated.
 
-#[path = "../../tests/support/plane_scenes.rs"]
-mod plane_scenes;
-
-use plane_scenes::{ELEMENTS, Shown, of_column, shown};
+use support::plane_scenes::{ELEMENTS, Shown, of_column, shown};
 
 fn main() -> std::process::ExitCode {
     let mut numbers = std::env::args().skip(1).map(|text| text.parse::<u64>());

@@ -3,19 +3,15 @@
 //! `cargo run --release --example impact [-- --out DIR]`; with a folder, the table and plots of pressure and energy
 //! over time are written into it.
 
-mod cases;
-#[path = "../../tests/support/closed_forms/mod.rs"]
-mod exact_solutions;
-mod measure;
 mod table;
 
 use std::path::Path;
 
-use cases::cases;
-use measure::{Run, run};
 use signorini::Error;
 use signorini::motion::SchemeSpec;
 use signorini::output::{write_files, write_picture};
+use support::impact::cases::cases;
+use support::impact::measure::{Run, run};
 
 /// Time steps as multiples of the time that a wave takes through a cell.
 const COURANT: [f64; 3] = [0.5, 1.0, 1.5];

@@ -2,7 +2,7 @@
 
 use signorini::output::{Drawing, Plot, Quantity, Series, line_plots};
 
-use crate::measure::{Case, Run};
+use support::impact::measure::{Case, Run};
 
 const HEADING: &str = "| scheme | CFL | displacement error | contact time | pressure | spread | largest force | on the mean | impulse | rebound | energy at the end | largest energy | penetration |\n\
                        | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";

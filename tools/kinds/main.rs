@@ -11,7 +11,6 @@
 //! the line also has the ratios to the fastest solver of PETSc and to one linear solve of PETSc.
 
 mod bodies;
-mod floors;
 mod growth;
 mod noise;
 mod peers;

@@ -1,9 +1,9 @@
 //! Problems from other fields as matrices: many rows, two-sided bounds, separate parts, rotations.
 
 use super::bodies::{block, blocks_apart, graded_block, slab};
-use super::floors::{bounds, membrane, plate, problem};
 use super::noise::noise;
 use signorini::{ContactProblem, Error};
+use support::floors::{bounds, membrane, plate, problem};
 
 /// A problem and its name.
 #[derive(Clone, Copy)]

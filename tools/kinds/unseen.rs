@@ -1,10 +1,10 @@
 //! Problems of kinds to which the cost model was not fitted.
 
 use super::bodies::{bar, jelly, soft_layer};
-use super::floors::{bounds, problem};
 use super::noise::noise;
 use super::problems::Kind;
 use signorini::{ContactProblem, Error};
+use support::floors::{bounds, problem};
 
 /// All kinds.
 pub const UNSEEN: [Kind; 10] = [

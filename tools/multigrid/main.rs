@@ -14,17 +14,15 @@ mod bodies;
 mod case;
 mod growth;
 mod measure;
-#[path = "../process.rs"]
-mod process;
 
 use std::path::Path;
 use std::process::ExitCode;
 
 use case::{CASES, Case};
-use process::{Failure, child, ended, option};
 use serde_json::json;
 use signorini::Scene;
 use signorini::output::{write_files, write_picture};
+use support::process::{Failure, child, ended, option};
 
 /// Largest number of dofs for which the factorisation is measured. Beyond it the factor would take tens of gigabytes.
 const MOST_DIRECT: usize = 120_000;

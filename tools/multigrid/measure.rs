@@ -3,9 +3,9 @@
 use signorini::{Error, Method, Model, Prepared, Settings, qp};
 use std::time::Instant;
 
-use crate::process::peak_bytes;
 use serde_json::{Value, json};
 use signorini::qp::Multigrid;
+use support::process::peak_bytes;
 
 /// Relative residual of the linear solve, and tolerance of the contact solve.
 const TOLERANCE: f64 = 1e-8;

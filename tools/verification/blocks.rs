@@ -1,13 +1,13 @@
 //! Blocks with a known displacement at every point: errors in norms, convergence rates, and plots over the cell size.
 
-use crate::exact_solutions::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
-use crate::solved_block::solve_block;
 use signorini::Error;
 use signorini::fem::{ElementKind, ErrorNorms, Integration};
 use signorini::output::{Drawing, Plot, Quantity, Scale, Series, line_plots};
+use support::closed_forms::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
+use support::manufactured::solve_block;
 
-use super::answer::Answer;
-use super::reference_errors::{REFERENCE, reference_rule};
+use support::verification::answer::Answer;
+use support::verification::reference_errors::{REFERENCE, reference_rule};
 
 /// Errors of one element on one block, from the coarsest mesh to the finest.
 pub struct Family {

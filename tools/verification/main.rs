@@ -5,29 +5,18 @@
 //! CSV and plots of the errors over the cell size are written into it. The short form leaves out fine meshes and only
 //! shows that the command runs; the tests compare the same answers with tolerances.
 
-mod answer;
 mod blocks;
-#[path = "../../tests/support/bodies.rs"]
-mod bodies;
-mod closed_forms;
-mod contact_patch;
-#[path = "../../tests/support/closed_forms/mod.rs"]
-mod exact_solutions;
-mod punches;
-mod reference_errors;
-mod round_bodies;
-#[path = "../../tests/support/manufactured.rs"]
-mod solved_block;
 
 use std::path::Path;
 use std::time::Instant;
 
-use answer::{Answer, csv, markdown};
 use blocks::{AGAINST_REFERENCE, BLOCKS, ERRORS, error_plots, error_rows, families, reference_rows};
-use contact_patch::{VARIANTS, contact_patch};
 use signorini::Error;
 use signorini::fem::Integration;
 use signorini::output::{write_files, write_picture};
+use support::verification::answer::{Answer, csv, markdown};
+use support::verification::contact_patch::{VARIANTS, contact_patch};
+use support::verification::{closed_forms, punches, round_bodies};
 
 /// Numbers of cells along a side of the manufactured blocks.
 const CELLS: [usize; 5] = [8, 16, 32, 64, 128];

@@ -1,6 +1,5 @@
 //! Closed-form contact solutions, with which answers are compared: bars and blocks, Hertz contacts, punches, obstacle
 //! problems, bars in impact, and bodies whose displacement is known at every point.
-#![allow(dead_code, unused_imports)]
 
 mod bar;
 mod hertz;

@@ -1,7 +1,8 @@
 //! Problems given as dense arrays, and a slow and simple solver that tries every contact set.
-#![allow(dead_code)]
 
 mod dual;
+pub mod exact;
+pub mod promises;
 
 use nalgebra::{DMatrix, DVector};
 use signorini::qp::Error;

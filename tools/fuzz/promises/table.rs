@@ -1,7 +1,7 @@
 //! Counts the broken promises of each program in each class.
 
-use super::judged::program::Program;
-use super::judged::trial::{Class, Findings, Sort};
+use support::oracles::promises::program::Program;
+use support::oracles::promises::trial::{Class, Findings, Sort};
 
 /// Problems of one class: certified ones, and those with a fault of each sort.
 #[derive(Clone, Copy, Default)]

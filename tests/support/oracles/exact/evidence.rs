@@ -3,7 +3,7 @@
 use signorini::qp::Error;
 
 use super::dyadic::Dyadic;
-use super::solve::Exact;
+use super::problem::Exact;
 
 /// Sums that vanish exactly may keep this share of their terms, because the evidence is given in doubles.
 const ROUNDING: f64 = 1e-9;

@@ -9,7 +9,8 @@ use super::case::Case;
 use super::dyadic::{Dyadic, dot, ratio};
 use super::evidence;
 use super::measure::{Errors, Relative};
-use super::solve::{Answer, Exact, Outcome};
+use super::problem::Exact;
+use super::solve::{Answer, Outcome};
 
 /// A contradiction, a drive or an eigenvalue below this share decides nothing: it may be within the tolerance of a
 /// certificate.

@@ -2,7 +2,8 @@
 
 use super::case::Case;
 use super::dyadic::{Dyadic, dot, ratio, root_of_ratio};
-use super::solve::{Answer, Exact};
+use super::problem::Exact;
+use super::solve::Answer;
 
 /// Couplings below this share of `sqrt(K_ii K_jj)` do not join two dofs into one part.
 const COUPLED: f64 = 1e-6;

@@ -2,7 +2,6 @@
 //!
 //! Doubles are taken as exact rational numbers. `solve` decides every problem: solved (and whether the displacement is
 //! unique), infeasible, unbounded, or not convex. Each verdict is verified in the original data before it is returned.
-#![allow(dead_code)]
 
 pub mod case;
 pub mod dyadic;
@@ -11,6 +10,7 @@ pub mod judge;
 mod lemke;
 mod loads;
 pub mod measure;
+pub mod problem;
 pub mod rows;
 pub mod solve;
 pub mod stiffness;
@@ -19,4 +19,4 @@ mod tableau;
 pub mod trial;
 mod units;
 
-use super::draws::Draws;
+use crate::draws::Draws;

@@ -9,8 +9,9 @@ use super::Draws;
 use super::case::{Case, is_length};
 use super::judge::{Fault, Judge, Sort};
 use super::loads::load;
+use super::problem::Exact;
 use super::rows::{ROWS, Rows};
-use super::solve::{Exact, Outcome};
+use super::solve::Outcome;
 use super::stiffness::KINDS;
 
 /// Longest time of a solve, in seconds: problems of this size take far less.

@@ -3,7 +3,7 @@
 use num_bigint::BigInt;
 
 use super::dyadic::Dyadic;
-use super::solve::Exact;
+use super::problem::Exact;
 
 /// The data in integers. With u = D v and z = R y, D and R powers of two:
 ///

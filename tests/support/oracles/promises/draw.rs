@@ -3,8 +3,8 @@
 use signorini::qp::Error;
 use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
 
-use super::draws::Draws;
 use super::exact::case::Case;
+use crate::draws::Draws;
 
 /// Units of stiffness, in powers of ten.
 const STIFFNESS: [i32; 6] = [0, 3, 3, 5, 9, 11];

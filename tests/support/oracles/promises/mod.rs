@@ -1,11 +1,8 @@
 //! What the program prints about random problems, compared with exact arithmetic: it runs as a user runs it, and its
 //! words, its displacement and its bounds are read from what it writes.
-//!
-//! The module above this one has the modules `draws` and `exact`.
-#![allow(dead_code)]
 
 pub mod draw;
 pub mod program;
 pub mod trial;
 
-use super::{draws, exact};
+use super::exact;

@@ -7,7 +7,8 @@ use super::draw::problem;
 use super::exact::case::Case;
 use super::exact::dyadic::{Dyadic, dot, ratio, root_of_ratio};
 use super::exact::measure::Errors;
-use super::exact::solve::{Answer, Exact, Outcome};
+use super::exact::problem::Exact;
+use super::exact::solve::{Answer, Outcome};
 use super::program::{Ending, Program, write};
 
 /// The tolerance that the program is asked for, which is its default.

@@ -3,8 +3,8 @@
 use signorini::qp::Error;
 use signorini::{ContactProblem, Solution, SparseMatrix, SymmetricMatrix, solve_qp};
 
-use super::draws::Draws;
-use super::oracle::dyadic::Dyadic;
+use crate::draws::Draws;
+use crate::oracles::exact::dyadic::Dyadic;
 
 /// Tolerance of the recomputed conditions of an answer that is certified to 1e-9.
 const HOLDS: f64 = 1e-7;

@@ -3,7 +3,7 @@
 //! The block extends 500 contact radii (of 0.1) in each direction. In the plane, pressures are compared for the
 //! computed force, because the approach depends on the size of the body.
 
-use crate::exact_solutions::{Cone, FlatDisc, FlatStrip, LineContact, PointContact, Wedge};
+use crate::closed_forms::{Cone, FlatDisc, FlatStrip, LineContact, PointContact, Wedge};
 use serde_json::{Value, json};
 use signorini::Error;
 

@@ -1,6 +1,6 @@
 //! The two bars with known motion.
 
-use crate::exact_solutions::{BouncingBar, ImpactingBar};
+use crate::closed_forms::{BouncingBar, ImpactingBar};
 
 use super::measure::Case;
 

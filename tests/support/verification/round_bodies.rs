@@ -1,7 +1,7 @@
 //! Elastic half cylinders and half balls on a rigid plane, compared with Hertz; the balls are axisymmetric and in
 //! space.
 
-use crate::exact_solutions::{LineContact, PointContact};
+use crate::closed_forms::{LineContact, PointContact};
 use serde_json::{Value, json};
 use signorini::Error;
 

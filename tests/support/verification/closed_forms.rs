@@ -1,9 +1,8 @@
 //! Bars, obstacle problems given as matrices, and the stored answers of cvxpy and OSQP.
 
-use std::path::Path;
 use std::time::Instant;
 
-use crate::exact_solutions::{Bar, DiscMembrane, ObstacleString};
+use crate::closed_forms::{Bar, DiscMembrane, ObstacleString};
 use serde_json::{Value, json};
 use signorini::{ContactProblem, Error, Scene, SparseMatrix, SymmetricMatrix, solve_qp};
 
@@ -81,7 +80,7 @@ fn pushed(stiffness: &[(usize, usize, f64)], load: Vec<f64>, gap: f64) -> Result
 
 /// Compares the indentation at three gaps with the stored answers of cvxpy, Clarabel and OSQP.
 pub fn stored_answers() -> Result<Vec<Answer>, Box<dyn std::error::Error>> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = crate::root();
     let stored: Value = serde_json::from_str(&std::fs::read_to_string(root.join("reference/results.json"))?)?;
     let base = Scene::read(root.join("examples/indentation.json"))?.build()?;
     let mut answers = Vec::new();

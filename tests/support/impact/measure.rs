@@ -63,7 +63,7 @@ pub fn with_value(
     courant: f64,
     cells: usize,
 ) -> Result<Run, Error> {
-    let path = format!("{}/tools/impact/{}.json", env!("CARGO_MANIFEST_DIR"), case.scene);
+    let path = crate::root().join(format!("tools/impact/{}.json", case.scene));
     let mut scene: Value = serde_json::from_str(&fs::read_to_string(path).expect("a scene")).expect("JSON");
     if let Some(bar) = scene["body"].get_mut("bar") {
         bar["x"]["divisions"] = json!([cells]);

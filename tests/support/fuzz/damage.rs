@@ -6,7 +6,7 @@ use signorini::fem::GmshFile;
 use signorini::qp::read_problem;
 use signorini::{Error, Scene, qp};
 
-use super::draws::Draws;
+use crate::draws::Draws;
 
 /// Words that are likely to reveal faults of a reader.
 const WORDS: [&str; 24] = [
@@ -64,7 +64,7 @@ pub fn damaged(draws: &mut Draws, text: &[u8]) -> Vec<u8> {
 
 /// Returns the path of a valid file that is to be damaged.
 pub fn faults(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults").join(name)
+    crate::root().join("tests/faults").join(name)
 }
 
 /// Reads a damaged file, and builds the mesh or model if it is small. A matrix is read with the other matrices in

@@ -1,0 +1,4 @@
+//! Random damage to files, and random contact problems.
+
+pub mod damage;
+pub mod problem;

@@ -1,0 +1,34 @@
+//! What the tests share with each other and with the programs that measure: scenes, closed forms, oracles, and the
+//! built program.
+#![forbid(unsafe_code)]
+
+pub mod bodies;
+pub mod clock;
+pub mod closed_forms;
+pub mod draws;
+pub mod endings;
+pub mod extremes;
+pub mod floors;
+pub mod fuzz;
+pub mod gmsh_forms;
+pub mod impact;
+pub mod manufactured;
+pub mod oracles;
+pub mod plane_scenes;
+pub mod process;
+pub mod program;
+pub mod random;
+pub mod rollers;
+pub mod scenes;
+pub mod triangles;
+pub mod verification;
+
+use std::path::Path;
+
+/// The folder of the workspace.
+///
+/// # Panics
+/// Never: this crate is two folders below it.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap()
+}
