@@ -409,7 +409,7 @@ fn a_body_that_touches_nothing_has_no_force() {
 fn a_body_that_an_obstacle_just_touches_has_nothing_to_refine() {
     let mut scene = classical(0.3);
     scene["obstacles"][0]["shape"] = json!({"circle": {"apex": [0.5, 0.5], "radius": 0.25}});
-    let (code, _, message) = solved(&scene, &["--total-error", "0.1", "--time-limit", "20"]);
+    let (code, _, message) = solved(&scene, &["--total-error", "0.1"]);
     assert_eq!(code, 1, "{message}");
     assert!(message.contains("nothing moves") && message.contains("a negative `gap` presses"), "{message}");
 }

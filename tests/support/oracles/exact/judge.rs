@@ -46,7 +46,7 @@ pub enum Sort {
     /// Certified, but with a larger error than certified.
     Certified,
     Panic,
-    /// The solve took too long.
+    /// The solve took too many iterations.
     Slow,
     /// Not certified, although the problem has a unique answer and an acceptable condition.
     Refused,

@@ -3,6 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
+use signorini::qp::Error;
 use signorini::{Condense, ContactProblem, Method, Precision, Settings, solve};
 
 use super::Draws;
@@ -14,8 +15,8 @@ use super::rows::{ROWS, Rows};
 use super::solve::Outcome;
 use super::stiffness::KINDS;
 
-/// Longest time of a solve, in seconds: problems of this size take far less.
-const LONG: f64 = 5.0;
+/// Most iterations of a solve: problems of this size take fewer than half.
+const LONG: usize = 400;
 
 /// Number of wrong answers of a problem that are verified.
 const VERIFIED: usize = 4;
@@ -171,10 +172,14 @@ impl Trial {
     fn ask(&self, judge: &Judge, problem: &ContactProblem, settings: &Settings, must_end: bool, report: &mut Report) {
         let (start, asked) = (Instant::now(), words(settings));
         let ending = catch_unwind(AssertUnwindSafe(|| solve(problem, settings)));
-        let seconds = start.elapsed().as_secs_f64();
-        report.longest = report.longest.max(seconds);
-        if seconds > LONG {
-            report.faults.push(Fault::new(Sort::Slow, format!("{asked}: {seconds:.1} s")));
+        report.longest = report.longest.max(start.elapsed().as_secs_f64());
+        let iterations = match &ending {
+            Ok(Ok(solution)) => solution.iterations,
+            Ok(Err(Error::NotCertified { solution, .. })) => solution.iterations,
+            _ => 0,
+        };
+        if iterations > LONG {
+            report.faults.push(Fault::new(Sort::Slow, format!("{asked}: {iterations} iterations")));
         }
         match ending {
             Ok(ending) => report.faults.extend(judge.ending(&asked, settings.goal(), &ending, must_end)),
