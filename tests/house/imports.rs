@@ -7,10 +7,13 @@ use std::path::{Path, PathBuf};
 
 /// A module by its names, as a user of `signorini` knows it: `qp::method::start`, `fem::mesh`, `output::page`, `cli`; `[]` is the crate
 /// of the mechanics, and `lib` what `signorini` re-exports.
-type Module = Vec<String>;
+pub type Module = Vec<String>;
 
-/// The sources of each crate, its name in code, and the names that come before those of its modules.
-pub const CRATES: [(&str, &str, &[&str]); 4] = [
+/// The sources of a crate, its name in code, and the names that come before those of its modules.
+type OfCrate = (&'static str, &'static str, &'static [&'static str]);
+
+/// Each crate that is published.
+pub const CRATES: [OfCrate; 4] = [
     ("crates/qp/src", "signorini_qp", &["qp"]),
     ("crates/mechanics/src", "signorini_mechanics", &[]),
     ("crates/output/src", "signorini_output", &["output"]),
@@ -69,6 +72,24 @@ impl House {
                 );
             }
         }
+        House::of(texts, &CRATES)
+    }
+
+    /// Reads the sources of one program, or of a crate that is not published; its root is `[]`.
+    pub fn of_folder(folder: &Path) -> Self {
+        let module = |path: &Path| match module_of(path, &[], "") {
+            module if module == ["main"] => Module::new(),
+            module => module,
+        };
+        let text = |path: PathBuf| {
+            let inside = path.strip_prefix(folder).unwrap();
+            (module(inside), (path.clone(), fs::read_to_string(&path).unwrap()))
+        };
+        House::of(rust_files(folder).into_iter().map(text).collect(), &[])
+    }
+
+    /// The files with these modules, paths and texts, which name each other's crates as `crates` says.
+    fn of(mut texts: BTreeMap<Module, (PathBuf, String)>, crates: &[OfCrate]) -> Self {
         let of_tests = |module: &Module| {
             (1..=module.len()).any(|length| {
                 let declared = format!("#[cfg(test)]\nmod {};", module[length - 1]);
@@ -83,7 +104,7 @@ impl House {
             let mut source =
                 Source { path, text, imports: BTreeSet::new(), names: BTreeMap::new(), exports: BTreeMap::new() };
             for (is_public, name, tree) in declarations {
-                let Some(import) = from_root(&tree, &module, &known) else { continue };
+                let Some(import) = from_root(&tree, &module, &known, crates) else { continue };
                 source.names.insert(name.clone(), import.clone());
                 if is_public {
                     source.exports.insert(name, import);
@@ -95,7 +116,7 @@ impl House {
                 // A declaration may have brought in the first name of a path.
                 let import = match source.names.get(&path[0]) {
                     Some(import) => Some([import.as_slice(), &path[1..]].concat()),
-                    None => from_root(&path, &module, &known),
+                    None => from_root(&path, &module, &known, crates),
                 };
                 source.imports.extend(import);
             }
@@ -110,6 +131,11 @@ impl House {
         let mut found: BTreeSet<Module> = source.imports.iter().map(|import| self.defining(import, 0)).collect();
         found.remove(module);
         found
+    }
+
+    /// The arrows that close a circle of imports.
+    pub fn circles(&self) -> BTreeSet<String> {
+        circles(&self.files.keys().map(|module| (module.clone(), self.taken_from(module))).collect())
     }
 
     /// The modules that a user sees, of all crates: their roots, and what is public in them.
@@ -153,6 +179,26 @@ impl House {
             _ => module,
         }
     }
+}
+
+/// The arrows that close a circle, of the files from which each file takes names.
+pub fn circles(taken: &BTreeMap<Module, BTreeSet<Module>>) -> BTreeSet<String> {
+    let mut circles = BTreeSet::new();
+    for start in taken.keys() {
+        // The files that this file reaches by imports; the file itself must not be among these.
+        let (mut reached, mut next) = (BTreeSet::new(), vec![start]);
+        while let Some(module) = next.pop() {
+            for other in &taken[module] {
+                if other == start {
+                    circles.insert(format!("{} <- {}", start.join("/"), module.join("/")));
+                }
+                if reached.insert(other) {
+                    next.push(other);
+                }
+            }
+        }
+    }
+    circles
 }
 
 /// The module of a file in a crate whose modules stand behind `before`; `root` is the name of the crate's own file.
@@ -282,20 +328,19 @@ fn taken_apart(tree: &[String]) -> Vec<(String, Module)> {
     items.iter().filter(|item| !item.is_empty()).flat_map(|item| taken_apart(item)).map(whole).collect()
 }
 
-/// The path as a user knows it, if it stays in the workspace.
-fn from_root(path: &Module, module: &Module, known: &BTreeSet<Module>) -> Option<Module> {
+/// The path as a user knows it, if it stays in these crates.
+fn from_root(path: &Module, module: &Module, known: &BTreeSet<Module>, crates: &[OfCrate]) -> Option<Module> {
     let mut here = module.clone();
     let mut rest = path.as_slice();
     match rest.first().map(String::as_str) {
         Some("crate") => {
             // The modules of the mechanics and of the program have no name before theirs.
-            let depth =
-                usize::from(["qp", "output"].iter().any(|name| module.first().is_some_and(|first| first == name)));
-            here.truncate(depth);
+            let has_one = |of_crate: &OfCrate| module.first().is_some_and(|first| of_crate.2 == [first]);
+            here.truncate(usize::from(crates.iter().any(has_one)));
             rest = &rest[1..];
         }
-        Some(name) if CRATES.iter().any(|of_crate| of_crate.1 == name) => {
-            let before = CRATES.iter().find(|of_crate| of_crate.1 == name).map_or(&[][..], |of_crate| of_crate.2);
+        Some(name) if crates.iter().any(|of_crate| of_crate.1 == name) => {
+            let before = crates.iter().find(|of_crate| of_crate.1 == name).map_or(&[][..], |of_crate| of_crate.2);
             here = before.iter().map(|name| (*name).to_string()).collect();
             rest = &rest[1..];
         }

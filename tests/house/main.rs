@@ -1,6 +1,7 @@
 //! The rules of the project: the floors of its modules, its one error type, its examples, its documents.
 
 mod architecture;
+mod circles;
 mod dependencies;
 mod documentation;
 mod documents;

@@ -10,16 +10,12 @@ import numpy as np
 
 if TYPE_CHECKING:
     from signorini._signorini import SceneSolution, Solution
-    from signorini._studies import Sweep, Tradeoff
 
 # The nodes around each plane element in order, and the numbers of the cell types in VTK.
 _RIMS = {"T3": [0, 1, 2], "T6": [0, 3, 1, 4, 2, 5], "Q4": [0, 1, 2, 3], "Q8": [0, 4, 1, 5, 2, 6, 3, 7]}
 _VTK = {
     "Line2": 3, "Line3": 21, "T3": 5, "T6": 22, "Q4": 9, "Q8": 23, "Tet4": 10, "Tet10": 24, "Hex8": 12, "Hex20": 25,
 }  # fmt: skip
-
-# An error of zero is drawn at this value, because the axis is logarithmic.
-_LEAST_ERROR = 1e-16
 
 
 def scene_text(scene: dict[str, Any]) -> str:
@@ -73,7 +69,7 @@ def scene_html(solution: SceneSolution) -> str:
     return _table(solution.scene.title or "Answer to a contact scene", lines)
 
 
-def _axes(ax: Any) -> Any:
+def axes(ax: Any) -> Any:
     if ax is not None:
         return ax
     try:
@@ -85,7 +81,7 @@ def _axes(ax: Any) -> Any:
 
 def solution_plot(solution: Solution, ax: Any = None) -> Any:
     """Draws the contact force of each row and returns the axes."""
-    ax = _axes(ax)
+    ax = axes(ax)
     forces = 0.0 - solution.multiplier
     closed = np.zeros(len(forces), dtype=bool)
     closed[solution.contact_set] = True
@@ -105,7 +101,7 @@ def scene_plot(solution: SceneSolution, ax: Any = None) -> Any:
     rim = _RIMS.get(scene.element_kind)
     if rim is None:
         return solution_plot(solution, ax)
-    ax = _axes(ax)
+    ax = axes(ax)
     from matplotlib.collections import PolyCollection
 
     moved = scene.nodes + solution.displacement
@@ -147,61 +143,3 @@ def scene_to_pyvista(solution: SceneSolution) -> Any:
     grid.point_data["stress"] = np.asarray(solution.stress)
     grid.point_data["von_mises"] = np.asarray(solution.von_mises)
     return grid
-
-
-def tradeoff_plot(tradeoff: Tradeoff, ax: Any = None) -> Any:
-    """Draws error over seconds and returns the axes: the total error of a scene, the algebraic error of a problem."""
-    ax = _axes(ax)
-    has_total = any(point.get("total_error") is not None for point in tradeoff.points)
-    name = "total_error" if has_total else "energy_error"
-    lines: dict[tuple[str, bool, int], list[tuple[float, float]]] = {}
-    for point in tradeoff.points:
-        error = point.get(name)
-        if error is not None:
-            key = (point["method"] + (", mixed" if point["mixed"] else ""), point["condensed"], point["mesh"])
-            lines.setdefault(key, []).append((point["seconds"], max(error, _LEAST_ERROR)))
-    colours = {method: f"C{i % 10}" for i, method in enumerate(sorted({key[0] for key in lines}))}
-    seen: set[str] = set()
-    for (method, condensed, _), points in sorted(lines.items()):
-        label = None if method in seen else method
-        seen.add(method)
-        style = "-" if condensed else ":"
-        ax.plot(*zip(*points, strict=True), style, marker="o", markersize=3, color=colours[method], label=label)
-    ax.set_xscale("log")
-    ax.set_yscale("log")
-    ax.set_xlabel("seconds")
-    ax.set_ylabel("total error, relative in energy" if has_total else "error of the algebra, relative in energy")
-    ax.legend(frameon=False, title="solid: condensed, dotted: all dofs", fontsize="small")
-    return ax
-
-
-def sweep_plot(sweep: Sweep, ax: Any = None) -> Any:
-    """Draws the results of a sweep and returns the axes.
-
-    A sweep over forces shows the travel of the obstacle over the force. All other sweeps show the contact force: over the gap of a
-    scene, over the path parameter t of a problem, or over the number of the gap.
-    """
-    ax = _axes(ax)
-    is_scene = bool(sweep.gaps) and np.ndim(sweep.gaps[0]) == 0
-    units = sweep.solutions[0].scene.units if is_scene else {"length": "", "force": ""}
-
-    def label(name: str, unit: str) -> str:
-        return f"{name} [{unit}]" if unit else name
-
-    if sweep.forces:
-        ax.plot(sweep.forces, [_travel(solution) for solution in sweep.solutions], "o-", markersize=4)
-        ax.set_xlabel(label("force", units["force"]))
-        ax.set_ylabel(label("travel", units["length"]))
-        return ax
-    if sweep.corners:
-        ax.plot([corner["gap"] for corner in sweep.corners], [corner["force"] for corner in sweep.corners], color="0.7")
-    places = sweep.gaps if is_scene else sweep.t or np.arange(len(sweep.gaps))
-    ax.plot(places, sweep.contact_force, "o", markersize=4)
-    ax.set_xlabel(label("gap", units["length"]) if is_scene else "way t" if sweep.t else "number of the gap")
-    ax.set_ylabel(label("contact force", units["force"]))
-    return ax
-
-
-def _travel(solution: SceneSolution) -> float:
-    """Returns the travel of the obstacle on which the force acts, in the unit of length."""
-    return next(float(of["travel"]) for of in solution.resultants if "travel" in of)

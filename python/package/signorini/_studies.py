@@ -12,7 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from signorini import _signorini
 from signorini._errors import BadInput, BadType, NotCertified
-from signorini._signorini import Prepared, Problem, Scene, Solution
+from signorini._signorini import Prepared, Problem, Scene, SceneSolution, Solution
+
+# An error of zero is drawn at this value, because the axis is logarithmic.
+_LEAST_ERROR = 1e-16
 
 
 @dataclass(frozen=True, repr=False)
@@ -31,9 +34,30 @@ class Tradeoff:
 
     def plot(self, ax: Any = None) -> Any:
         """Draws error over time with one line per method, and returns the axes. Needs matplotlib."""
-        from signorini._show import tradeoff_plot
+        from signorini._show import axes
 
-        return tradeoff_plot(self, ax)
+        ax = axes(ax)
+        has_total = any(point.get("total_error") is not None for point in self.points)
+        name = "total_error" if has_total else "energy_error"
+        lines: dict[tuple[str, bool, int], list[tuple[float, float]]] = {}
+        for point in self.points:
+            error = point.get(name)
+            if error is not None:
+                key = (point["method"] + (", mixed" if point["mixed"] else ""), point["condensed"], point["mesh"])
+                lines.setdefault(key, []).append((point["seconds"], max(error, _LEAST_ERROR)))
+        colours = {method: f"C{i % 10}" for i, method in enumerate(sorted({key[0] for key in lines}))}
+        seen: set[str] = set()
+        for (method, condensed, _), points in sorted(lines.items()):
+            label = None if method in seen else method
+            seen.add(method)
+            style = "-" if condensed else ":"
+            ax.plot(*zip(*points, strict=True), style, marker="o", markersize=3, color=colours[method], label=label)
+        ax.set_xscale("log")
+        ax.set_yscale("log")
+        ax.set_xlabel("seconds")
+        ax.set_ylabel("total error, relative in energy" if has_total else "error of the algebra, relative in energy")
+        ax.legend(frameon=False, title="solid: condensed, dotted: all dofs", fontsize="small")
+        return ax
 
 
 @dataclass(frozen=True, repr=False)
@@ -64,9 +88,27 @@ class Sweep:
 
     def plot(self, ax: Any = None) -> Any:
         """Draws the contact force over the gaps or over t, or the travel over the forces; returns the axes. Needs matplotlib."""
-        from signorini._show import sweep_plot
+        from signorini._show import axes
 
-        return sweep_plot(self, ax)
+        ax = axes(ax)
+        is_scene = bool(self.gaps) and np.ndim(self.gaps[0]) == 0
+        units = self.solutions[0].scene.units if is_scene else {"length": "", "force": ""}
+
+        def label(name: str, unit: str) -> str:
+            return f"{name} [{unit}]" if unit else name
+
+        if self.forces:
+            ax.plot(self.forces, [_travel(solution) for solution in self.solutions], "o-", markersize=4)
+            ax.set_xlabel(label("force", units["force"]))
+            ax.set_ylabel(label("travel", units["length"]))
+            return ax
+        if self.corners:
+            ax.plot([corner["gap"] for corner in self.corners], [corner["force"] for corner in self.corners], color="0.7")
+        places = self.gaps if is_scene else self.t or np.arange(len(self.gaps))
+        ax.plot(places, self.contact_force, "o", markersize=4)
+        ax.set_xlabel(label("gap", units["length"]) if is_scene else "way t" if self.t else "number of the gap")
+        ax.set_ylabel(label("contact force", units["force"]))
+        return ax
 
 
 def tradeoff(
@@ -221,3 +263,8 @@ def _solved_anew(problem: Problem, threads: int | None) -> Solution:
 def _check_kind(problem: object) -> None:
     if not isinstance(problem, (Problem, Scene)):
         raise BadType(f"the argument is of the type {type(problem).__name__}; it must be a Problem or a Scene")
+
+
+def _travel(solution: SceneSolution) -> float:
+    """Returns the travel of the obstacle on which the force acts, in the unit of length."""
+    return next(float(of["travel"]) for of in solution.resultants if "travel" in of)
