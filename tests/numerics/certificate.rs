@@ -4,6 +4,7 @@
 use signorini::qp::Error;
 use signorini::{Certificate, ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp};
 use support::oracles::{Dense, Draws, random};
+use support::problems::of_entries;
 
 const TOLERANCE: f64 = 1e-9;
 
@@ -284,9 +285,7 @@ fn a_string_held_by_its_walls_alone_has_a_bound() {
     let springs: Vec<_> =
         (0..NODES).map(|node| (node, node, end(node))).chain((1..NODES).map(|j| (j, j - 1, -1.0))).collect();
     let rows: Vec<_> = (0..NODES).map(|node| (node, node, 1.0)).collect();
-    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(NODES, NODES, &springs).unwrap()).unwrap();
-    let contact = SparseMatrix::from_triplets(NODES, NODES, &rows).unwrap();
-    let problem = ContactProblem::new(stiffness, vec![3.0; NODES], contact, vec![1.0; NODES]).unwrap();
+    let problem = of_entries(&springs, vec![3.0; NODES], &rows, vec![1.0; NODES]);
     let certificate = problem.certify(&[1.0; NODES], &[-3.0; NODES]).unwrap();
     assert!(certificate.meets(TOLERANCE), "{certificate:?}");
 }

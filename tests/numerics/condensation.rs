@@ -9,6 +9,7 @@ use signorini::{
     solve,
 };
 use std::path::Path;
+use support::problems::of_entries;
 use support::scenes::{built, built_example};
 
 use serde_json::json;
@@ -283,10 +284,8 @@ fn rows_on_most_dofs_are_not_condensed() {
     let n = 300;
     let entries: Vec<_> =
         (0..n).flat_map(|i| [(i, i, 2.0), ((i + 1).min(n - 1), i, if i + 1 < n { -1.0 } else { 0.0 })]).collect();
-    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(n, n, &entries).unwrap()).unwrap();
     let rows: Vec<_> = (0..n).map(|i| (i, i, -1.0)).collect();
-    let contact = SparseMatrix::from_triplets(n, n, &rows).unwrap();
-    let problem = ContactProblem::new(stiffness, vec![-1e-4; n], contact, vec![0.5; n]).unwrap();
+    let problem = of_entries(&entries, vec![-1e-4; n], &rows, vec![0.5; n]);
     assert_eq!(answer(&problem, &Settings::default()).condensed_dofs, n);
 }
 

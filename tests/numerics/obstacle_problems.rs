@@ -4,24 +4,13 @@
 //! REFERENCE: closed forms of the free boundary and of the force on the obstacle.
 
 use std::f64::consts::PI;
+use support::problems::of_entries;
 
-use signorini::{ContactProblem, Method, Prepared, Settings, SparseMatrix, SymmetricMatrix, solve};
+use signorini::{ContactProblem, Method, Prepared, Settings, solve};
 use support::closed_forms::{DiscMembrane, ObstacleString};
 use support::oracles::Draws;
 
 const METHODS: [Method; 2] = [Method::qp(), Method::ActiveSet];
-
-fn problem(
-    stiffness: &[(usize, usize, f64)],
-    load: Vec<f64>,
-    contact: &[(usize, usize, f64)],
-    gap: Vec<f64>,
-) -> ContactProblem {
-    let n = load.len();
-    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(n, n, stiffness).unwrap()).unwrap();
-    let contact = SparseMatrix::from_triplets(gap.len(), n, contact).unwrap();
-    ContactProblem::new(stiffness, load, contact, gap).unwrap()
-}
 
 /// -u'' = -q on (0, 1), u(0) = u(1) = 0, u >= -g, with `cells` linear elements: rows -u <= g.
 fn string(cells: usize, q: f64, g: f64) -> ContactProblem {
@@ -34,7 +23,7 @@ fn string(cells: usize, q: f64, g: f64) -> ContactProblem {
         }
     }
     let contact: Vec<_> = (0..n).map(|i| (i, i, -1.0)).collect();
-    problem(&stiffness, vec![-q * h; n], &contact, vec![g; n])
+    of_entries(&stiffness, vec![-q * h; n], &contact, vec![g; n])
 }
 
 /// With linear elements the string is exact at the nodes if the edge of the contact, b = sqrt(2 g / q), is a node.
@@ -92,7 +81,7 @@ fn membrane_over_a_disc_has_the_force_of_the_closed_form() {
             }
         }
         let contact: Vec<_> = (0..cells).map(|i| (i, i, -1.0)).collect();
-        let membrane = problem(&stiffness, load, &contact, vec![g; cells]);
+        let membrane = of_entries(&stiffness, load, &contact, vec![g; cells]);
         let found = solve(&membrane, &Settings::default()).unwrap();
         let other = solve(&membrane, &Settings::with_method(Method::ActiveSet)).unwrap();
         assert!((found.contact_force() / other.contact_force() - 1.0).abs() < 1e-11);
@@ -131,7 +120,7 @@ fn membrane_between_two_obstacles_is_certified() {
         }
     }
     let contact: Vec<_> = (0..n).flat_map(|i| [(i, i, 1.0), (n + i, i, -1.0)]).collect();
-    let membrane = problem(&stiffness, load, &contact, [vec![0.3; n], vec![0.2; n]].concat());
+    let membrane = of_entries(&stiffness, load, &contact, [vec![0.3; n], vec![0.2; n]].concat());
     let answers = METHODS.map(|method| solve(&membrane, &Settings::with_method(method)).unwrap());
     let count = |low, high| answers[0].contact_set.iter().filter(|row| (low..high).contains(row)).count();
     assert!(count(0, n) > 20 && count(n, 2 * n) > 20, "both obstacles are touched");
@@ -154,7 +143,7 @@ fn the_direct_path_takes_few_sets_if_every_dof_is_a_candidate() {
         }
     }
     let contact: Vec<_> = (0..n).map(|i| (i, i, -1.0)).collect();
-    let membrane = problem(&stiffness, vec![-2e-4; n], &contact, gap);
+    let membrane = of_entries(&stiffness, vec![-2e-4; n], &contact, gap);
     let exact = solve(&membrane, &Settings::with_method(Method::ActiveSet)).unwrap();
     assert!(exact.contact_set.count() > n / 20 && exact.iterations <= 4, "{} sets", exact.iterations);
     // Starting from the empty set, each set moves the front by one row of nodes.
@@ -183,7 +172,7 @@ fn random_box_constrained_problems_are_certified_by_every_exact_method() {
         let load = (0..n).map(|_| draws.signed()).collect();
         let contact: Vec<_> = (0..n).flat_map(|i| [(i, i, 1.0), (n + i, i, -1.0)]).collect();
         let gap = (0..2 * n).map(|_| draws.uniform()).collect();
-        let boxed = problem(&stiffness, load, &contact, gap);
+        let boxed = of_entries(&stiffness, load, &contact, gap);
         let answers = METHODS.map(|method| {
             solve(&boxed, &Settings::with_method(method)).unwrap_or_else(|error| panic!("case {case}: {error}"))
         });

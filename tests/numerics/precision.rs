@@ -2,8 +2,9 @@
 //! is not accurate enough.
 
 use signorini::qp::{Condense, Error, Method, Precision, Prepared, Settings};
-use signorini::{ContactProblem, Solution, SparseMatrix, SymmetricMatrix, solve};
+use signorini::{ContactProblem, Solution, solve};
 use support::endings::best;
+use support::problems::of_entries;
 use support::random::springs;
 use support::scenes::built_example;
 
@@ -107,11 +108,9 @@ fn chain(dofs: usize, soft: f64) -> ContactProblem {
             entries.push((dof, dof - 1, -soft));
         }
     }
-    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap()).unwrap();
     let mut load = vec![0.0; dofs];
     load[dofs - 1] = 1.0;
-    let rows = SparseMatrix::from_triplets(1, dofs, &[(0, dofs - 1, 1.0)]).unwrap();
-    ContactProblem::new(stiffness, load, rows, vec![0.5]).unwrap()
+    of_entries(&entries, load, &[(0, dofs - 1, 1.0)], vec![0.5])
 }
 
 #[test]

@@ -5,8 +5,9 @@
 //! REFERENCE: the closed form, which is exact at the nodes; `certify`, which factorises the whole problem.
 
 use signorini::qp::Error;
-use signorini::{ContactProblem, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve};
+use signorini::{ContactProblem, Method, Settings, Solution, solve};
 use support::closed_forms::ObstacleString;
+use support::problems::of_entries;
 
 const STRINGS: usize = 44;
 const CELLS: usize = 100;
@@ -48,9 +49,7 @@ fn strings(change: impl FnOnce(&mut Parts)) -> ContactProblem {
     }
     change(&mut parts);
     let (entries, load, contact, gap) = parts;
-    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap()).unwrap();
-    let contact = SparseMatrix::from_triplets(gap.len(), dofs, &contact).unwrap();
-    ContactProblem::new(stiffness, load, contact, gap).unwrap()
+    of_entries(&entries, load, &contact, gap)
 }
 
 fn check(problem: &ContactProblem, solution: &Solution) {

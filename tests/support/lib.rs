@@ -15,6 +15,7 @@ pub mod impact;
 pub mod manufactured;
 pub mod oracles;
 pub mod plane_scenes;
+pub mod problems;
 pub mod process;
 pub mod program;
 pub mod random;

@@ -1,6 +1,8 @@
 //! Random contact problems from a seed.
 
-use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
+use signorini::ContactProblem;
+
+use crate::problems::of_entries;
 
 /// A chain of springs with springs to the ground, of random stiffness, and contact rows, some inclined, on random
 /// nodes.
@@ -32,13 +34,7 @@ pub fn springs(seed: u64) -> ContactProblem {
         }
         gap.push(random() - 0.3);
     }
-    ContactProblem::new(
-        SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap()).unwrap(),
-        load,
-        SparseMatrix::from_triplets(rows, dofs, &contact).unwrap(),
-        gap,
-    )
-    .unwrap()
+    of_entries(&entries, load, &contact, gap)
 }
 
 /// A chain of 30 to 250 springs with springs to the ground, and rows that keep dofs apart: most of them neighbours.
@@ -66,11 +62,5 @@ pub fn stacked(seed: u64) -> ContactProblem {
         contact.extend([(dof - 1, other, 1.0), (dof - 1, dof, -1.0)]);
         gap.push(if random() < 0.3 { 0.0 } else { 0.1 * random() });
     }
-    ContactProblem::new(
-        SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap()).unwrap(),
-        load,
-        SparseMatrix::from_triplets(dofs - 1, dofs, &contact).unwrap(),
-        gap,
-    )
-    .unwrap()
+    of_entries(&entries, load, &contact, gap)
 }
