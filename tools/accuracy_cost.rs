@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use serde_json::json;
-use signorini::output::{InWords, Measured, Medium, write_files, write_picture};
+use signorini::output::{InWords, Measured, Medium, write_files};
 use signorini::scene::Units;
 use signorini::study::{Tradeoff, TradeoffGrid, TradeoffPoint};
 
@@ -68,7 +68,7 @@ fn run() -> Result<(), Error> {
             let files: Vec<(&str, String)> = files.iter().map(|(name, text)| (name.as_str(), text.clone())).collect();
             write_files(folder, &files)?;
             for (_, plot) in measured.plots(Medium::Screen, title).iter().take(1) {
-                write_picture(folder, name, plot)?;
+                plot.write(folder, name)?;
             }
         }
     }

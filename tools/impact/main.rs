@@ -9,7 +9,7 @@ use std::path::Path;
 
 use signorini::Error;
 use signorini::motion::SchemeSpec;
-use signorini::output::{write_files, write_picture};
+use signorini::output::write_files;
 use support::impact::cases::cases;
 use support::impact::measure::{Run, run};
 
@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             text += &table::of_meshes(case, courant, &REFINED, &refined.collect::<Result<Vec<Run>, Error>>()?);
         }
         if let Some(folder) = &folder {
-            write_picture(Path::new(folder), case.scene, &table::plots(case, &runs))?;
+            table::plots(case, &runs).write(Path::new(folder), case.scene)?;
         }
     }
     print!("{text}");

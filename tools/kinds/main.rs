@@ -25,7 +25,6 @@ use std::time::{Duration, Instant};
 use growth::Times;
 use peers::{Interpreter, Peer};
 use problems::{KINDS, Kind};
-use signorini::output::write_picture;
 use signorini::{ContactProblem, ContactSet, Error, Method, Scene, Settings, Solution, SparseMatrix, qp, solve};
 use unseen::UNSEEN;
 
@@ -70,7 +69,7 @@ fn main() -> ExitCode {
     let folder = option("--plot", "");
     match folder.as_str() {
         "" => ExitCode::SUCCESS,
-        folder => match write_picture(Path::new(folder), "membrane", &growth::plot("membrane", &times)) {
+        folder => match growth::plot("membrane", &times).write(Path::new(folder), "membrane") {
             Ok(_) => ExitCode::SUCCESS,
             Err(error) => {
                 eprintln!("{error}");

@@ -21,7 +21,7 @@ use std::process::ExitCode;
 use case::{CASES, Case};
 use serde_json::json;
 use signorini::Scene;
-use signorini::output::{write_files, write_picture};
+use signorini::output::write_files;
 use support::process::{Failure, child, ended, option};
 
 /// Largest number of dofs for which the factorisation is measured. Beyond it the factor would take tens of gigabytes.
@@ -82,7 +82,7 @@ fn measure_all(out: Option<&str>, most_dofs: usize) -> Result<(), Failure> {
     if let Some(folder) = out.map(Path::new) {
         let json = format!("{:#}\n", json!({ "cases": measured }));
         write_files(folder, &[("multigrid.md", text), ("multigrid.json", json)])?;
-        write_picture(folder, "multigrid", &growth::plot(&measured))?;
+        growth::plot(&measured).write(folder, "multigrid")?;
     }
     Ok(())
 }

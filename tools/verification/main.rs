@@ -13,7 +13,7 @@ use std::time::Instant;
 use blocks::{AGAINST_REFERENCE, BLOCKS, ERRORS, error_plots, error_rows, families, reference_rows};
 use signorini::Error;
 use signorini::fem::Integration;
-use signorini::output::{write_files, write_picture};
+use signorini::output::write_files;
 use support::verification::answer::{Answer, csv, markdown};
 use support::verification::contact_patch::{VARIANTS, contact_patch};
 use support::verification::{closed_forms, punches, round_bodies};
@@ -61,7 +61,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         write_files(folder, &[("verification.md", text)])?;
         write_files(folder, &named)?;
         for block in BLOCKS {
-            write_picture(folder, &block.to_lowercase().replace(' ', "-"), &error_plots(block, &families))?;
+            error_plots(block, &families).write(folder, &block.to_lowercase().replace(' ', "-"))?;
         }
     }
     Ok(())
