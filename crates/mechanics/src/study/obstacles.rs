@@ -1,7 +1,7 @@
 //! The contact of each obstacle and pair of bodies, in the whole body.
 
 use super::Summary;
-use super::summary::ObstacleContact;
+use super::summary::{BetweenBodies, ObstacleContact};
 use crate::fem::geometry::length;
 use crate::scene::{Answer, ContactExtent, Resultant, Segment};
 
@@ -13,6 +13,23 @@ pub(super) fn contact_on_obstacles(answer: &Answer, segments: &[Segment], summar
     let resultants = summary.resultants.iter().take(answer.model().obstacles().len()).enumerate();
     let found = resultants.map(|(index, resultant)| of_obstacle(answer, index, resultant, segments)).collect();
     summary.contact.obstacles = found;
+}
+
+/// The two surfaces of an obstacle that is another body.
+fn between(answer: &Answer, index: usize) -> Option<BetweenBodies> {
+    let model = answer.model();
+    let obstacle = &model.obstacles()[index];
+    let (other, covered) = obstacle.other_body()?;
+    let seen = model.rows_across().iter().zip(answer.across()).filter(|(row, _)| row.obstacle == index);
+    let deepest = seen.fold(0.0, |deepest: f64, (_, [_, gap])| deepest.max(-gap));
+    Some(BetweenBodies {
+        boundary: obstacle.boundary().into(),
+        other: other.into(),
+        rows: if covered.is_some() { "mortar" } else { "pairs" },
+        covered,
+        moment_on_other: model.moment_on_other(index, answer.multiplier()),
+        penetration: covered.map(|_| deepest),
+    })
 }
 
 fn of_obstacle(answer: &Answer, index: usize, resultant: &Resultant, segments: &[Segment]) -> ObstacleContact {
@@ -29,6 +46,7 @@ fn of_obstacle(answer: &Answer, index: usize, resultant: &Resultant, segments: &
     ObstacleContact {
         of: resultant.of.clone(),
         on: resultant.on.clone(),
+        between: between(answer, index),
         copies: copies as usize,
         count: rows().filter(|&row| answer.contact_set().contains(row)).count(),
         force: if length(force) > CANCELS * sum_of_multipliers { length(force) } else { 0.0 },

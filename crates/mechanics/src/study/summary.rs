@@ -157,6 +157,28 @@ impl ContactSummary {
     }
 }
 
+/// The two surfaces of a contact between bodies.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BetweenBodies {
+    /// Name of the boundary that carries the rows.
+    pub boundary: String,
+    /// Name of the boundary of the other body.
+    pub other: String,
+    /// `pairs` of nodes, or `mortar`: means over the areas of the nodes of the carrying boundary.
+    pub rows: &'static str,
+    /// Covered shares of both boundaries, from 0 to 1; `None` for pairs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub covered: Option<[f64; 2]>,
+    /// The moment about the origin of the contact forces on the other body, in force times length, as [`Resultant::moment`]: beside the
+    /// opposite moment on this body, it differs by the moment of the forces over the gap.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub moment_on_other: Vec<f64>,
+    /// The deepest place at which a node of the other boundary lies inside this body, in length, `>= 0`: means are kept apart, single nodes
+    /// may be not. `None` for pairs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub penetration: Option<f64>,
+}
+
 /// The contact of one obstacle or pair of bodies, in the whole body. A plane of symmetry normal to its approach direction gives an obstacle
 /// a mirror image, which does not count here; in all other planes the contact is of the whole.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -166,6 +188,9 @@ pub struct ObstacleContact {
     /// The body on which it presses, if there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on: Option<String>,
+    /// The two surfaces, if it is a contact between bodies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub between: Option<BetweenBodies>,
     /// Number of mirror images with the same numbers, itself included.
     pub copies: usize,
     /// Number of closed rows, in the meshed part.

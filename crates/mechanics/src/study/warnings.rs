@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::geometry::{along_axis, dot};
+use crate::scene::models::contacts::Overlap;
 use crate::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, refused};
 use signorini_qp::{Certificate, ContactProblem, Solution};
 
@@ -103,8 +104,28 @@ pub(super) fn of_scene(answer: &Answer, solution: &Solution, segments: &[Segment
         across_approach(answer),
         mesh_dependent(model, segments),
         between_nodes(answer),
+        overlap(answer),
     ];
     of_model.chain(of_answer.into_iter().flatten()).collect()
+}
+
+/// Warns that two displaced bodies go through each other where no row keeps them apart.
+fn overlap(answer: &Answer) -> Option<AnswerWarning> {
+    let model = answer.model();
+    let Overlap { node, depth, bodies } = model.overlap(answer.displacement()).ok()??;
+    let name = |body: usize| match model.body().regions()[body].name() {
+        "" => "body",
+        name => name,
+    };
+    let message = format!(
+        "`{}` and `{}` go through each other, by {depth:.3e} {} at {}, where the scene names no contact; add the two boundaries as an \
+         obstacle, or set `\"contact\": \"auto\"`",
+        name(bodies[0]),
+        name(bodies[1]),
+        model.units().length,
+        model.node_in_words(node)
+    );
+    Some(AnswerWarning { code: "bodies-overlap", message: message.replace("  ", " ") })
 }
 
 /// The warnings about an answer on a first mesh that is refined further.

@@ -82,6 +82,7 @@ pub(crate) fn solve_text(title: &str, summary: &Summary, units: &Units) -> Strin
         false => extent_lines(contact, units),
         true => obstacle_lines(contact, units),
     });
+    of_contact.extend(contact.obstacles.iter().flat_map(|one| between_lines(one, units)));
     lines("contact", of_contact);
     if let Some(proven) = &solution.proven {
         let part = if of_part.is_empty() { String::new() } else { format!(",{of_part}") };
@@ -145,6 +146,22 @@ fn extent_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
 /// The words that name the meshed part behind numbers of it; empty without planes of symmetry.
 pub(crate) fn of_part(summary: &Summary) -> &'static str {
     if summary.parts_of_whole.is_some() { " of the meshed part" } else { "" }
+}
+
+/// The two surfaces of a contact between bodies whose meshes do not match.
+fn between_lines(one: &ObstacleContact, units: &Units) -> Vec<String> {
+    let Some(between) = &one.between else { return Vec::new() };
+    let Some([share, of_other]) = between.covered else { return Vec::new() };
+    let percent = |share: f64| format!("{:.4} %", 100.0 * share);
+    let depth = quantity(between.penetration.unwrap_or(0.0), &units.length);
+    wrapped(&format!(
+        "{}: rows are means over the nodes of `{}`, of which {} face `{}`, and {} of that; between them a node goes up to {depth} through",
+        one.of,
+        printable(&between.boundary),
+        percent(share),
+        printable(&between.other),
+        percent(of_other)
+    ))
 }
 
 /// The table of obstacles and pairs of bodies, a line for each.

@@ -234,7 +234,16 @@ impl<'a> Mortar<'a> {
         let master = facets(&self.master);
         let [own, others] =
             [(&self.slave, &slave), (&self.master, &master)].map(|(surface, facets)| normals(surface, facets));
-        let (covered, opposite) = self.covered(&slave, &master, &own)?;
+        let (covered, opposite) = self.covered(&slave, &master, &own);
+        if let Some((index, one)) = covered.iter().enumerate().find(|(_, one)| one.area > (1.0 + TWICE) * one.whole) {
+            return Err(Error::Mesh {
+                message: format!(
+                    "facet {index} at {:?} faces several layers of the other surface, {:.3} times its area; give a reach that leaves one",
+                    one.facet.middle,
+                    one.area / one.whole
+                ),
+            });
+        }
         let carries = |node: usize| self.may_carry.is_none_or(|may_carry| may_carry(node));
         let kept = kept(&covered, self.slave.nodes.len(), &carries);
         let ends = self.ends_of_middles();
@@ -254,6 +263,20 @@ impl<'a> Mortar<'a> {
             sag: facet::sag(&slave, &own).max(facet::sag(&master, &others)),
             rows,
         })
+    }
+
+    /// The slave facets that face the master surface within reach, by their numbers, the master nodes that face the slave surface, and
+    /// the sag of both.
+    ///
+    /// # Errors
+    /// As [`Mortar::rows`], except for layers.
+    pub(crate) fn seen(&self) -> Result<(Vec<bool>, Vec<Opposite>, f64), Error> {
+        self.check()?;
+        let [slave, master] = [&self.slave, &self.master].map(facets);
+        let [own, others] = [normals(&self.slave, &slave), normals(&self.master, &master)];
+        let (covered, opposite) = self.covered(&slave, &master, &own);
+        let sag = facet::sag(&slave, &own).max(facet::sag(&master, &others));
+        Ok((covered.iter().map(Covered::is_covered).collect(), opposite, sag))
     }
 
     /// Checks that facets and formulation fit.
@@ -329,7 +352,7 @@ impl<'a> Mortar<'a> {
         slave: &'f [Facet<'f>],
         master: &[Facet],
         normals: &[[f64; 3]],
-    ) -> Result<(Vec<Covered<'f>>, Vec<Opposite>), Error> {
+    ) -> (Vec<Covered<'f>>, Vec<Opposite>) {
         let numbers: Vec<u32> = (0..master.len() as u32).collect();
         let tree = Tree::new(&numbers, |number| {
             let places = master[number as usize].places();
@@ -341,7 +364,7 @@ impl<'a> Mortar<'a> {
         });
         let mut all = Vec::with_capacity(slave.len());
         let mut opposite: BTreeMap<usize, Opposite> = BTreeMap::new();
-        for (index, facet) in slave.iter().enumerate() {
+        for facet in slave {
             let mut covered = Covered::new(facet);
             let is_edge = facet.reference().dimension == 1;
             let direction = self.direction.unwrap_or(facet.normal);
@@ -401,19 +424,9 @@ impl<'a> Mortar<'a> {
                     }
                 }
             }
-            if covered.area > (1.0 + TWICE) * covered.whole {
-                return Err(Error::Mesh {
-                    message: format!(
-                        "facet {index} at {:?} faces several layers of the other surface, {:.3} times its area; give a reach that \
-                         leaves one",
-                        facet.middle,
-                        covered.area / covered.whole
-                    ),
-                });
-            }
             all.push(covered);
         }
-        Ok((all, opposite.into_values().collect()))
+        (all, opposite.into_values().collect())
     }
 
     /// The row of a node; `None` if it has no area.

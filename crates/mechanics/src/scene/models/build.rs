@@ -12,7 +12,7 @@ use crate::fem::{DofMap, ElasticBody};
 use crate::scene::input::entry::wrong;
 use crate::scene::input::files::Files;
 use crate::scene::input::obstacle::{Obstacle, PlacedObstacle};
-use crate::scene::input::schema::Scene;
+use crate::scene::input::schema::{ContactSpec, Scene};
 
 impl Scene {
     /// Discretises the scene and sets up its contact problem.
@@ -55,6 +55,17 @@ impl Scene {
         further: &[(&str, Arc<dyn Obstacle>)],
     ) -> Result<Model, Error> {
         let body = self.with_parts(self.joined(bodies)?)?;
+        match self.contact {
+            Some(ContactSpec::Auto) => {
+                let (scene, body) = self.with_contacts(body)?;
+                scene.build_joined(body, further)
+            }
+            None => self.build_joined(body, further),
+        }
+    }
+
+    /// The model of all bodies in one.
+    fn build_joined(&self, body: ElasticBody, further: &[(&str, Arc<dyn Obstacle>)]) -> Result<Model, Error> {
         let (symmetry, springs) = (self.planes_of_symmetry(&body)?, self.springs(&body)?);
         let mut held = self.held(&body)?;
         symmetry.hold(&body, &mut held);

@@ -2,6 +2,7 @@
 
 mod build;
 pub(crate) mod condition;
+pub(crate) mod contacts;
 pub(crate) mod continuum;
 mod elastic;
 mod explain;

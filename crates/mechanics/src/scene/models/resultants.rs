@@ -162,6 +162,21 @@ impl Model {
         Ok(sums.iter().enumerate().map(resultant).collect())
     }
 
+    /// The moment about the origin of the contact forces on the other body of an obstacle, as [`Resultant::moment`], from the multipliers of
+    /// all rows.
+    pub(crate) fn moment_on_other(&self, obstacle: usize, multiplier: &[f64]) -> Vec<f64> {
+        let mut sum = Sum::default();
+        for (row, &lambda) in self.rows().iter().zip(multiplier).filter(|(row, _)| row.obstacle == obstacle) {
+            let own = self.body().regions().iter().find(|region| region.nodes().contains(&row.node));
+            for &(node, share) in &row.ends {
+                if own.is_some_and(|own| !own.nodes().contains(&node)) {
+                    sum.add(self.place(node), row.normal.map(|component| 0.0 + share * lambda * component));
+                }
+            }
+        }
+        sum.resultant(self, String::new()).moment
+    }
+
     /// The names of the obstacles in reports: `obstacles[i]`, and `pair[k]` for the k-th obstacle that is another body.
     pub fn obstacle_names(&self) -> Vec<String> {
         let mut pairs = 0..;

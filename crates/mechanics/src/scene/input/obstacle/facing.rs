@@ -81,6 +81,13 @@ pub enum FitSpec {
     Clearance(f64),
 }
 
+impl FacingSpec {
+    /// The surface `boundary` of another body with the rows that suit it.
+    pub(crate) fn of(boundary: String) -> Self {
+        FacingSpec { boundary, rows: RowsSpec::Auto, side: SideSpec::Auto, reach: None, fit: None }
+    }
+}
+
 impl RowsSpec {
     fn is_auto(&self) -> bool {
         *self == RowsSpec::Auto
@@ -131,7 +138,14 @@ impl ObstacleShape for FacingSpec {
             Some(Facing { ends, normal: pair.normal, mean: pair.mean, distance, area: None })
         };
         let rows = site.candidates.iter().zip(pairs).map(row).collect();
-        Ok(Geometry::Body(Between { rows, across: Vec::new(), is_swapped: false, warnings: Vec::new() }))
+        Ok(Geometry::Body(Between {
+            rows,
+            across: Vec::new(),
+            other: other.name.clone(),
+            covered: None,
+            is_swapped: false,
+            warnings: Vec::new(),
+        }))
     }
 
     fn other_boundary(&self) -> Option<&str> {

@@ -84,7 +84,7 @@ pub(super) fn between(
     // In the order of the candidates of the boundary that carries the rows.
     let rows = slave.nodes().into_iter().map(|node| of_node.remove(&node)).collect();
     let across = found.opposite.into_iter().map(|seen| (seen.node, facing(nodes, seen))).collect();
-    Ok(Between { rows, across, is_swapped, warnings })
+    Ok(Between { rows, across, other: master.name.clone(), covered: Some(found.covered), is_swapped, warnings })
 }
 
 /// The contact seen from a node of the other body.

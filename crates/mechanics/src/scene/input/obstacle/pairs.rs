@@ -34,6 +34,10 @@ pub(crate) struct Between {
     /// For nodes of the other body the place that they face, as a row against their own normal: not a row of the problem, but the
     /// same contact seen from there.
     pub across: Vec<(usize, Facing)>,
+    /// Name of the boundary that the rows lead to.
+    pub other: String,
+    /// Covered shares of the carrying and of the other boundary, if rows are means.
+    pub covered: Option<[f64; 2]>,
     /// The boundary of the other body carries the rows, so that they lead against the approach direction.
     pub is_swapped: bool,
     /// What the search for rows noticed.

@@ -8,15 +8,18 @@ use super::shape::{Geometry, Site};
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, node_normals, tributary_areas};
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::length;
+use crate::fem::geometry::{length, unit};
 use crate::scene::Warning;
 use crate::scene::input::entry::{boundary, finite, number, wrong};
 use crate::scene::input::files::Files;
-use crate::scene::input::schema::approach::Rule;
+use crate::scene::input::schema::approach::{Approach, Rule};
 use crate::scene::input::schema::obstacle::ObstacleSpec;
 
 /// A component of a unit normal below this is rounding of the geometry, not a direction.
 const NO_COMPONENT: f64 = 1e-14;
+
+/// A component of the mean of many unit normals below this is no direction: the normals cancel.
+const NO_DIRECTION: f64 = 1e-6;
 
 /// A given normal is of unit length to within this rounding.
 const UNIT: f64 = 1e-9;
@@ -51,11 +54,27 @@ impl PlacedObstacle {
         let (mut candidates, mut outward) = candidates(body, &spec.boundary, &format!("{path}.boundary"))?;
         let (gap, force) = pressing(spec, path)?;
         let dimension = body.dimension();
-        let (axis, _) = spec.approach.axis();
+        let needs_none = spec.shape.shape().other_boundary().is_some() && spec.rule == Rule::ClosestPoint;
+        let named = match spec.approach {
+            Some(approach) => approach,
+            // Not used: no row lies along it.
+            None if needs_none => Approach::PlusX,
+            None => {
+                let message = "is missing: the direction from the body to the obstacle, one of `+x`, `-x`, `+y`, `-y`, `+z`, `-z`; only \
+                               another body with `\"rule\": \"closest-point\"` needs none";
+                return Err(wrong(format!("{path}.approach"), message));
+            }
+        };
+        let (axis, _) = named.axis();
         if axis >= dimension {
             let names = ["x", "x and y", "x, y and z"][dimension - 1];
-            let message = format!("`{}` is no direction of this model, which has {names}", spec.approach.name());
+            let message = format!("`{}` is no direction of this model, which has {names}", named.name());
             return Err(wrong(format!("{path}.approach"), message));
+        }
+        if spec.approach.is_none() && spec.gap.is_some() {
+            let message =
+                "shifts the other body along the approach direction, which is missing; give `approach`, or a `fit`";
+            return Err(wrong(format!("{path}.gap"), message));
         }
         if let Some(misfit) = spec.shape.misfit(dimension) {
             return Err(wrong(format!("{path}.shape"), misfit));
@@ -65,7 +84,7 @@ impl PlacedObstacle {
             obstacle: path,
             path: format!("{path}.shape.{}", spec.shape.about().name),
             boundary: &spec.boundary,
-            approach: spec.approach,
+            approach: named,
             rule: spec.rule,
             body,
             dofs,
@@ -83,6 +102,9 @@ impl PlacedObstacle {
         {
             (candidates, outward) = self::candidates(body, other, path)?;
             (boundary, approach) = (other.into(), approach.map(|part| 0.0 - part));
+        }
+        if spec.approach.is_none() {
+            approach = mean_direction(&outward);
         }
         Ok(PlacedObstacle { boundary, candidates, outward, approach, dimension, geometry, rule, gap, force })
     }
@@ -167,6 +189,15 @@ impl PlacedObstacle {
         }
     }
 
+    /// The boundary of the other body, if the obstacle is one, with the covered shares of the boundary that carries the rows and of the
+    /// other if the rows are means.
+    pub fn other_body(&self) -> Option<(&str, Option<[f64; 2]>)> {
+        match &self.geometry {
+            Geometry::Body(between) => Some((&between.other, between.covered)),
+            Geometry::Rigid(_) => None,
+        }
+    }
+
     /// What the search for the rows against another body noticed.
     pub(crate) fn warnings(&self) -> &[Warning] {
         match &self.geometry {
@@ -208,6 +239,14 @@ impl PlacedObstacle {
         check_direction(row.normal, self.dimension).map_err(|reason| format!("has a row whose normal {reason}"))?;
         Ok(Some(ObstacleRow { normal: row.normal.map(|c| if c.abs() < NO_COMPONENT { 0.0 } else { c }), ..row }))
     }
+}
+
+/// The mean of outward normals; the x axis if they cancel, as around a shaft.
+fn mean_direction(outward: &[[f64; 3]]) -> [f64; 3] {
+    let sum = outward.iter().fold([0.0; 3], |sum, normal| [0, 1, 2].map(|axis| sum[axis] + normal[axis]));
+    let mean = sum.map(|part| part / outward.len().max(1) as f64);
+    let mean = unit(mean.map(|part| if part.abs() < NO_DIRECTION { 0.0 } else { part }));
+    if mean == [0.0; 3] { [1.0, 0.0, 0.0] } else { mean }
 }
 
 /// The shift of an obstacle in addition to the gap of the scene, and the force that presses it.

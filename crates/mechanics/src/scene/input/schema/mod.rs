@@ -24,7 +24,7 @@ pub use body::{FurtherBodySpec, InitialStressSpec, MaterialPartSpec, MaterialSpe
 pub use condition::{Place, SupportSpec};
 pub use load::LoadSpec;
 pub use model::ModelSpec;
-pub use obstacle::ObstacleSpec;
+pub use obstacle::{ContactSpec, ObstacleSpec};
 pub use part::PartSpec;
 pub use rigid_face::RigidFaceSpec;
 pub use spring::SpringSpec;
@@ -104,6 +104,9 @@ pub struct Scene {
     /// Frictionless obstacles: rigid ones, or the surfaces of other bodies.
     #[serde(default)]
     pub obstacles: Vec<ObstacleSpec>,
+    /// The contacts between bodies besides those in `obstacles`: none, or all that are found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ContactSpec>,
     /// Shift of every obstacle along its own approach direction; a negative shift moves it towards, and into, the body.
     #[serde(default)]
     pub gap: f64,

@@ -6,14 +6,23 @@ use serde::{Deserialize, Serialize};
 use super::approach::{Approach, Rule};
 use crate::scene::input::obstacle::ShapeSpec;
 
+/// How the contacts between bodies are given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ContactSpec {
+    /// All surfaces of different bodies that face each other within reach are found; those that an obstacle names stay as they are.
+    Auto,
+}
+
 /// A frictionless obstacle and the boundary that may touch it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObstacleSpec {
     /// The boundary that contains the candidate nodes.
     pub boundary: String,
-    /// The direction from the body to the obstacle.
-    pub approach: Approach,
+    /// The direction from the body to the obstacle. Another body with the rule `closest-point` needs none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub approach: Option<Approach>,
     /// The rule for the contact row of a node.
     #[serde(default)]
     pub rule: Rule,

@@ -1,0 +1,166 @@
+//! All contacts between the bodies of a scene: surfaces that face each other, and overlaps of displaced bodies.
+
+use std::collections::HashSet;
+
+use crate::error::Error;
+use crate::fem::geometry::{distance, dot, length, minus};
+use crate::fem::mortar::Opposite;
+use crate::fem::{Boundary, ElasticBody, Mortar, Region};
+use crate::scene::Model;
+use crate::scene::input::obstacle::{FacingSpec, ShapeSpec};
+use crate::scene::input::schema::{ObstacleSpec, Rule, Scene};
+
+/// The reach of the search for contacts, in sizes of the largest facet.
+const REACH: f64 = 1.0;
+
+/// The depth down to which overlaps are looked for, in sizes of the smaller body.
+const DEEPEST: f64 = 0.25;
+
+/// Overlaps below this share of the size of the mesh are rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// A node of one body inside another, where no row keeps them apart.
+#[derive(Clone, Debug)]
+pub(crate) struct Overlap {
+    pub node: usize,
+    /// In length, positive.
+    pub depth: f64,
+    /// The body of the node, and the other, by their numbers.
+    pub bodies: [usize; 2],
+}
+
+impl Scene {
+    /// The scene with an obstacle for each pair of bodies that face each other and that no obstacle names, and the body with the boundaries
+    /// of these obstacles.
+    ///
+    /// # Errors
+    /// None for bodies of one model.
+    pub(crate) fn with_contacts(&self, mut body: ElasticBody) -> Result<(Scene, ElasticBody), Error> {
+        let (mut scene, nodes) = (self.clone(), body.mesh().nodes().to_vec());
+        let regions = body.regions().to_vec();
+        let named: Vec<[Option<usize>; 2]> = self.named_pairs(&body);
+        let surfaces: Vec<Boundary> = regions.iter().map(|region| body.mesh().surface(region.elements())).collect();
+        for second in 1..regions.len() {
+            for first in 0..second {
+                let pair = [Some(first), Some(second)];
+                if named.iter().any(|one| *one == pair || [one[1], one[0]] == pair) {
+                    continue;
+                }
+                let sides = [&surfaces[first], &surfaces[second]];
+                let largest = sides.iter().map(|side| largest_facet(&nodes, side)).fold(0.0, f64::max);
+                let reach = REACH * largest + self.largest_travel();
+                let mut found = Vec::new();
+                for [own, other] in [[0, 1], [1, 0]] {
+                    let mortar = Mortar::new((&nodes, sides[own]), (&nodes, sides[other]), *body.formulation());
+                    let (faces, ..) = mortar.within(reach).seen()?;
+                    let [of, at] =
+                        [[first, second][own], [first, second][other]].map(|region| name_of(&regions[region]));
+                    let name = free_name(&body, &format!("{of}-at-{at}"));
+                    found.push(sides[own].part(&name, |facet| faces[facet]));
+                }
+                if found.iter().any(|side| side.connectivity.is_empty()) {
+                    continue;
+                }
+                scene.obstacles.push(ObstacleSpec {
+                    boundary: found[0].name.clone(),
+                    approach: None,
+                    rule: Rule::ClosestPoint,
+                    gap: None,
+                    force: None,
+                    shape: ShapeSpec::Body(FacingSpec::of(found[1].name.clone())),
+                });
+                for side in found {
+                    body = body.with_boundary(side)?;
+                }
+            }
+        }
+        Ok((scene, body))
+    }
+
+    /// The bodies of the obstacles that are other bodies.
+    fn named_pairs(&self, body: &ElasticBody) -> Vec<[Option<usize>; 2]> {
+        let region = |name: &str| {
+            let first = *body.mesh().boundary(name)?.connectivity.first()?;
+            body.regions().iter().position(|region| region.nodes().contains(&first))
+        };
+        let of_obstacle =
+            |spec: &ObstacleSpec| Some([region(&spec.boundary), region(spec.shape.shape().other_boundary()?)]);
+        self.obstacles.iter().filter_map(of_obstacle).collect()
+    }
+
+    /// The largest prescribed displacement, in length.
+    fn largest_travel(&self) -> f64 {
+        let parts = self.supports.iter().flat_map(|support| [support.x, support.y, support.z, support.value]);
+        parts.flatten().fold(0.0, |largest: f64, part| largest.max(part.abs()))
+    }
+}
+
+impl Model {
+    /// The deepest overlap of two displaced bodies at a node that no contact row of the two holds; `None` without one.
+    ///
+    /// # Errors
+    /// None for a displacement of this model.
+    pub(crate) fn overlap(&self, displacement: &[f64]) -> Result<Option<Overlap>, Error> {
+        let (mesh, regions, dimension) = (self.mesh(), self.body().regions(), self.body().dimension());
+        let moved = |(node, at): (usize, &[f64; 3])| {
+            let mut at = *at;
+            (0..dimension).for_each(|axis| at[axis] += displacement[dimension * node + axis]);
+            at
+        };
+        if regions.len() < 2 || dimension < 2 {
+            return Ok(None);
+        }
+        let nodes: Vec<[f64; 3]> = mesh.nodes().iter().enumerate().map(moved).collect();
+        let surfaces: Vec<Boundary> = regions.iter().map(|region| mesh.surface(region.elements())).collect();
+        let size = |region: &Region| {
+            let (low, high) = mesh.extent_of(region.nodes());
+            length(minus(high, low))
+        };
+        let mut deepest: Option<Overlap> = None;
+        for own in 0..regions.len() {
+            for other in (0..regions.len()).filter(|&other| other != own) {
+                let reach = DEEPEST * size(&regions[own]).min(size(&regions[other]));
+                let mortar =
+                    Mortar::new((&nodes, &surfaces[own]), (&nodes, &surfaces[other]), *self.body().formulation());
+                let (_, opposite, sag) = mortar.within(reach).seen()?;
+                let rows = self.rows().iter().chain(self.rows_across());
+                // Whatever rows hold apart may miss by as much as the meshes differ.
+                let held: HashSet<usize> = rows.flat_map(|row| row.ends.iter().map(|end| end.0)).collect();
+                for seen in opposite.iter().filter(|seen| !held.contains(&seen.node)) {
+                    let depth = -gap(&nodes, seen);
+                    let counts = depth > ROUNDING * mesh.size() + sag;
+                    if counts && deepest.as_ref().is_none_or(|deepest| depth > deepest.depth) {
+                        deepest = Some(Overlap { node: seen.node, depth, bodies: [other, own] });
+                    }
+                }
+            }
+        }
+        Ok(deepest)
+    }
+}
+
+/// The distance of a node to the place of the other surface that it faces.
+fn gap(nodes: &[[f64; 3]], seen: &Opposite) -> f64 {
+    let away = |&(node, share): &(usize, f64)| share * dot(seen.normal, minus(nodes[seen.node], nodes[node]));
+    seen.slave.iter().map(away).sum()
+}
+
+/// The largest distance of two nodes of a facet.
+fn largest_facet(nodes: &[[f64; 3]], surface: &Boundary) -> f64 {
+    let extent = |facet: &[usize]| {
+        let pairs = facet.iter().flat_map(|&a| facet.iter().map(move |&b| distance(nodes[a], nodes[b])));
+        pairs.fold(0.0, f64::max)
+    };
+    surface.facets().map(extent).fold(0.0, f64::max)
+}
+
+/// The name of a body in the names of its boundaries.
+fn name_of(region: &Region) -> &str {
+    if region.name().is_empty() { "body" } else { region.name() }
+}
+
+/// The name, or one with a number behind it, that no boundary has.
+fn free_name(body: &ElasticBody, name: &str) -> String {
+    let mut names = std::iter::once(name.to_string()).chain((2..).map(|number| format!("{name}-{number}")));
+    names.find(|name| body.mesh().boundary(name).is_none()).unwrap_or_default()
+}
