@@ -97,6 +97,12 @@ impl Ladder {
         Some(ladder)
     }
 
+    /// The same for a problem that the question of existence gives rise to: it does not raise that question again.
+    pub fn without_existence(mut self) -> Self {
+        self.attempts.retain(|attempt| attempt.steps[0].step != OF_EXISTENCE[0].step);
+        self
+    }
+
     /// The attempts of a choice between factor and multigrid.
     fn by_choice(&mut self, choice: &Choice, start: From) {
         let after = |ladder: &Self, method| {

@@ -19,10 +19,20 @@ use crate::solution::{Certificate, Seconds, Solution, Why};
 /// # Errors
 /// As [`solve`](crate::solve()); [`Error::Length`] and [`Error::NotFinite`] for a start that does not fit.
 pub fn solved(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<Solution, Error> {
+    by(problem, start, settings, |ladder| ladder)
+}
+
+/// The same, by a part of the ladder.
+fn by(
+    problem: &ContactProblem,
+    start: &Start,
+    settings: &Settings,
+    part: impl Fn(Ladder) -> Ladder,
+) -> Result<Solution, Error> {
     let settings = &settings.started()?;
     start.check(problem.dofs(), problem.rows())?;
     problem.check_rows()?;
-    let ladder = Ladder::of(problem, Known { gaps: 1, is_whole: !start.is_unknown() }, settings)?;
+    let ladder = part(Ladder::of(problem, Known { gaps: 1, is_whole: !start.is_unknown() }, settings)?);
     Run::new(problem, &ladder, start, settings).solved()
 }
 
@@ -300,9 +310,9 @@ pub(super) fn without_certificate(outcome: Outcome, name: &str) -> Solution {
     }
 }
 
-/// An answer for another problem that this one gives rise to.
+/// An answer for another problem, with a regular stiffness, that the question of existence gives rise to.
 pub(crate) fn solve_any(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-    solved(problem, &Start::default(), settings)
+    by(problem, &Start::default(), settings, Ladder::without_existence)
 }
 
 #[cfg(test)]
