@@ -4,6 +4,8 @@ mod cycle_bound;
 mod mprgp;
 mod multigrid;
 mod near_null_files;
+mod oblique;
 mod obstacle;
 mod pressed;
 mod room;
+mod stiffness;

@@ -125,24 +125,11 @@ fn a_body_held_by_contact_alone_is_solved() {
 #[test]
 fn random_problems_agree_with_the_enumeration_of_all_sets() {
     let mut draws = Draws::new(11);
-    let (mut solved, mut refused) = (0, 0);
     for _ in 0..60 {
         let dense = random(&mut draws, 6, 3);
-        match solve(&dense.problem().unwrap(), &mprgp()) {
-            Ok(found) => {
-                let exact = dense.enumerate();
-                same(&found.displacement, exact.displacement.as_slice(), "random");
-                solved += 1;
-            }
-            // Rows that share a dof and are neither parallel nor orthogonal.
-            Err(Error::Numerical { reason, .. }) => {
-                assert!(reason.contains("right angles"), "{reason}");
-                refused += 1;
-            }
-            Err(error) => panic!("{error}"),
-        }
+        let found = solve(&dense.problem().unwrap(), &mprgp()).unwrap();
+        same(&found.displacement, dense.enumerate().displacement.as_slice(), "random");
     }
-    assert!(solved > 10 && refused > 0, "{solved} solved, {refused} refused");
 }
 
 #[test]

@@ -20,8 +20,8 @@ const NEAR: f64 = 1e-4;
 
 /// A contact problem with the multigrid hierarchy of its stiffness: built once, for all gaps, loads and starts.
 ///
-/// Nothing is scaled: the hierarchy scales itself to order one, and MPRGP compares only relative quantities. The bound on the energy
-/// error takes a few more cycles; it rests on a measured eigenvalue, as its certificates say.
+/// Nothing is scaled here: the hierarchy gives each node a unit, in which MPRGP compares relative quantities. The bound on the energy error
+/// takes a few more cycles; it rests on a measured eigenvalue, as its certificates say.
 #[derive(Debug)]
 pub(crate) struct Hierarchical {
     problem: ContactProblem,

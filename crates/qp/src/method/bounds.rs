@@ -1,17 +1,31 @@
-//! Rows as bounds: reflections that turn every row onto one unknown of its own.
+//! Rows as bounds: reflections and shears that turn every row into one unknown of its own.
 //!
-//! Rows may share a *travel*, a dof t without stiffness: `n'u + c t <= g`. The unknown of such a row is `w = n'u + c t`, scaled, so that
-//! its bound does not move with t. Forces along t then add up those of all its rows.
+//! A reflection turns what a row has beyond the rows before it onto a coordinate v of its own; a shear adds the rest, the coordinates of
+//! those rows: `w = v + sum of s_j v_j`. This is a QR factorisation of the rows, so that independent rows of a node become bounds
+//! whatever their angles are. Rows that depend on others, or nearly so, are *left out*: the caller must look whether the answer meets
+//! them, and prefer those that it violates the next time.
+//!
+//! Rows may share a *travel*, a dof t without stiffness: `n'u + c t <= g`. It is a coordinate of its own, and a shear adds it in the same
+//! way. Forces along t then add up those of all its rows.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use crate::error::Error;
-use crate::linear::SparseMatrix;
 use crate::linear::multigrid::Direction;
+use crate::linear::{SparseMatrix, ldexp};
 use crate::solution::ContactSet;
 
 /// Entries of a unit vector below this are rounding of the reflections.
 const TURNING_ROUNDING: f64 = 1e-12;
+
+/// A row is left out if less than this share of its length is beyond the span of other rows: 3 degrees.
+const LEAST_BEYOND: f64 = 0.05;
+
+/// The same for a row that is needed. The bounds of rows with a small angle between them take more steps.
+const LEAST_BEYOND_IF_NEEDED: f64 = 1e-4;
+
+/// Rows that share coordinates with others have at most this many beyond them; a long chain of rows would fill up.
+const MOST_BEYOND: usize = 24;
 
 /// A row on one side of its unknown: `coefficient * v <= gap`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +38,7 @@ struct Side {
 /// The bounds of one unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
-    /// The unknown, after the reflections.
+    /// The unknown, after reflections and shears.
     pub unknown: usize,
     /// The least value, `-inf` without a lower bound.
     pub lower: f64,
@@ -32,7 +46,25 @@ pub struct Bound {
     pub upper: f64,
     /// The travel t that the unknown contains, and its share s: `w = v + s t`.
     pub travel: Option<(usize, f64)>,
+    /// The same for the coordinates of bounds before it.
+    shears: Direction,
     sides: [Option<Side>; 2],
+}
+
+/// All rows in the order in which they become bounds.
+#[derive(Clone, Debug)]
+pub struct Preferred {
+    pub rows: Vec<usize>,
+    /// Number of rows that are needed; they come first.
+    pub needed: usize,
+}
+
+/// A row that is no bound, because it depends on bounds, at least nearly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeftOut {
+    pub row: usize,
+    /// The bounds on which it depends, with the shares of their unknowns in it.
+    pub shares: Vec<(usize, f64)>,
 }
 
 /// Reflects v at a unit vector w, in place: `v -= 2 w (w'v)`.
@@ -41,10 +73,12 @@ fn reflect(w: &Direction, v: &mut [f64]) {
     w.iter().for_each(|&(place, w)| v[place] -= 2.0 * along * w);
 }
 
-/// Rows B u <= g as bounds on unknowns w = S H u, with H orthogonal: a product of one reflection for each row that has more
-/// than one entry beside a travel. S adds the travels.
+/// Rows B u <= g as bounds on unknowns w = S H U^-1 u. U are the units of the dofs, powers of two. H is orthogonal: a product of one
+/// reflection for each row that has more than one entry beyond the rows before it and travels. S are the shears.
 #[derive(Clone, Debug)]
 pub struct Bounds {
+    /// The exponent of the unit of each dof.
+    units: Vec<i32>,
     /// The unit vector of each reflection.
     reflections: Vec<Direction>,
     /// The reflections that touch each place.
@@ -53,6 +87,8 @@ pub struct Bounds {
     pub bounds: Vec<Bound>,
     /// The travels, the dofs without stiffness.
     pub travels: Vec<usize>,
+    /// The rows that are no bounds.
+    pub left_out: Vec<LeftOut>,
     rows: usize,
 }
 
@@ -66,21 +102,27 @@ enum Order {
 }
 
 impl Bounds {
-    /// The bounds that rows B (m x n) and gaps g give if the dofs `travels` have no stiffness. Rows without entries or with an
-    /// infinite gap give none.
+    /// The bounds that rows B (m x n) and gaps g give if the dofs have these `units` and `travels` have no stiffness. The rows are taken
+    /// in the order that is preferred. Those without entries or with an infinite gap give no bounds.
     ///
     /// # Errors
-    /// [`Error::Numerical`] for two rows that share an unknown and are neither parallel nor orthogonal, because no rotation makes them
-    /// bounds; for a row of several travels, and for an unknown whose rows have different travels.
-    pub fn of(contact: &SparseMatrix, gap: &[f64], travels: Vec<usize>) -> Result<Self, Error> {
+    /// [`Error::Numerical`] for rows that share dofs with too many others; for a row of several travels, and for an unknown whose rows
+    /// have different travels.
+    pub fn of(
+        (contact, gap): (&SparseMatrix, &[f64]),
+        order: &Preferred,
+        units: Vec<i32>,
+        travels: Vec<usize>,
+    ) -> Result<Self, Error> {
         let by_row = contact.transposed();
-        let (reflections, touching, bounds) = (Vec::new(), HashMap::new(), Vec::new());
-        let mut all = Bounds { reflections, touching, bounds, travels, rows: gap.len() };
+        let (reflections, touching, bounds, left_out) = (Vec::new(), HashMap::new(), Vec::new(), Vec::new());
+        let mut all = Bounds { units, reflections, touching, bounds, travels, left_out, rows: gap.len() };
         let mut bound_of: Vec<Option<usize>> = vec![None; contact.columns()];
-        for row in (0..gap.len()).filter(|&row| gap[row].is_finite()) {
+        for (place, &row) in order.rows.iter().enumerate().filter(|entry| gap[*entry.1].is_finite()) {
             let is_travel = |entry: &(usize, f64)| all.travels.binary_search(&entry.0).is_ok();
+            let entries = by_row.column(row).filter(|entry| entry.1 != 0.0);
             let (mut moving, mut entries): (Direction, Direction) =
-                by_row.column(row).filter(|entry| entry.1 != 0.0).partition(is_travel);
+                entries.map(|(dof, b)| (dof, ldexp(b, all.units[dof]))).partition(is_travel);
             if moving.len() > 1 {
                 return Err(no_bound(format!("contact row {row} (index from 0) has several dofs without stiffness")));
             }
@@ -88,23 +130,39 @@ impl Bounds {
                 // The row of a node that is held: a bound on the travel itself.
                 std::mem::swap(&mut moving, &mut entries);
             }
-            let length = entries.iter().fold(0.0, |length: f64, entry| length.hypot(entry.1));
+            let length = self::length(&entries);
             let turned = all.reflected(entries.iter().map(|&(place, b)| (place, b / length)).collect(), Order::Forward);
-            let Some(&(first, _)) = turned.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) else { continue };
-            let taken = turned.iter().find_map(|entry| bound_of[entry.0]);
-            if let Some(index) = taken.filter(|_| turned.len() > 1) {
-                let other = all.bounds[index].sides.iter().flatten().next().map_or(0, |side| side.row);
-                return Err(no_bound(format!(
-                    "contact rows {other} and {row} (indices from 0) share an unknown and are neither parallel nor at right angles"
-                )));
+            let (shared, mut own): (Direction, Direction) =
+                turned.into_iter().partition(|entry| bound_of[entry.0].is_some());
+            if !shared.is_empty() && own.len() > MOST_BEYOND {
+                return Err(no_bound(format!("contact row {row} (index from 0) shares dofs with too many others")));
             }
-            let sign = if turned.len() == 1 { turned[0].1.signum() } else { all.reflect(turned, first) };
-            let coefficient = sign * length;
+            let beyond = self::length(&own);
+            let is_new = beyond > if place < order.needed { LEAST_BEYOND_IF_NEEDED } else { LEAST_BEYOND };
+            // A row beyond others has a coordinate of its own; otherwise it may be parallel to the last of them.
+            let (unknown, share) = if is_new {
+                own.iter_mut().for_each(|entry| entry.1 /= beyond);
+                let Some(&(first, value)) = own.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) else { continue };
+                let sign = if own.len() == 1 { value.signum() } else { all.reflect(own, first) };
+                (first, sign * beyond)
+            } else if own.is_empty() {
+                let Some(&last) = shared.iter().max_by_key(|entry| bound_of[entry.0]) else { continue };
+                last
+            } else {
+                all.leave_out(row, length, &shared, &bound_of);
+                continue;
+            };
+            let shears: Direction =
+                shared.iter().filter(|entry| entry.0 != unknown).map(|&(place, c)| (place, c / share)).collect();
+            let coefficient = share * length;
             let travel = moving.first().map(|&(travel, c)| (travel, c / coefficient));
-            let index = *bound_of[first].get_or_insert(all.bounds.len());
+            let index = *bound_of[unknown].get_or_insert(all.bounds.len());
             if index == all.bounds.len() {
                 let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
-                all.bounds.push(Bound { unknown: first, lower, upper, travel, sides: [None; 2] });
+                all.bounds.push(Bound { unknown, lower, upper, travel, shears, sides: [None; 2] });
+            } else if !are_equal(&all.bounds[index].shears, &shears) {
+                all.leave_out(row, length, &shared, &bound_of);
+                continue;
             }
             let bound = &mut all.bounds[index];
             if !bound.travels_as(travel) {
@@ -115,6 +173,42 @@ impl Bounds {
             bound.take(Side { row, coefficient, value: gap[row] / coefficient });
         }
         Ok(all)
+    }
+
+    /// Leaves a row out, `length` times a vector with entries on the coordinates of bounds, `shared`.
+    fn leave_out(&mut self, row: usize, length: f64, shared: &Direction, bound_of: &[Option<usize>]) {
+        let of_place = |&(place, c): &(usize, f64)| bound_of[place].map(|index| (index, c * length));
+        let mut rest: BTreeMap<usize, f64> = shared.iter().filter_map(of_place).collect();
+        let mut shares = Vec::new();
+        while let Some((index, share)) = rest.pop_last() {
+            shares.push((index, share));
+            for (before, c) in self.bounds[index].shears.iter().filter_map(of_place) {
+                *rest.entry(before).or_insert(0.0) -= share * c / length;
+            }
+        }
+        self.left_out.push(LeftOut { row, shares });
+    }
+
+    /// The rows that contradict a row of those left out, which is violated, with weights; `None` if one of the bounds on which it
+    /// depends is open.
+    pub fn contradicting(&self, left: &LeftOut, multiplier: &[f64]) -> Option<Vec<(usize, f64)>> {
+        let of_share = |&(index, share): &(usize, f64)| {
+            let pressed = self.bounds[index].sides.iter().flatten().find(|side| multiplier[side.row] < 0.0)?;
+            Some((pressed.row, -share / pressed.coefficient))
+        };
+        let others: Option<Vec<(usize, f64)>> =
+            left.shares.iter().filter(|entry| entry.1 != 0.0).map(of_share).collect();
+        let mut all = [others?, vec![(left.row, 1.0)]].concat();
+        all.sort_unstable_by_key(|entry| entry.0);
+        Some(all)
+    }
+
+    /// The rows under pressure that a row takes force from if it presses itself, with the force of it that leaves them none.
+    pub fn relieved<'a>(&'a self, by: &'a LeftOut, multiplier: &'a [f64]) -> impl Iterator<Item = (usize, f64)> + 'a {
+        by.shares.iter().flat_map(move |&(index, share)| {
+            let of_side = move |side: &Side| (side.row, multiplier[side.row] * side.coefficient / share);
+            self.bounds[index].sides.iter().flatten().map(of_side).filter(|entry| entry.1 < 0.0)
+        })
     }
 
     /// A unit vector after the reflections that touch it.
@@ -160,37 +254,89 @@ impl Bounds {
         -own.signum()
     }
 
-    /// Returns `true` if all rows are bounds without a reflection and without a travel.
+    /// Returns `true` if all rows are bounds on single dofs, and nothing travels.
     pub fn is_plain(&self) -> bool {
-        self.reflections.is_empty() && self.travels.is_empty()
+        let is_own = |bound: &Bound| bound.shears().next().is_none();
+        self.reflections.is_empty() && self.travels.is_empty() && self.bounds.iter().all(is_own)
     }
 
-    /// The unknowns w = S H u of a displacement u, in place.
+    /// The unknowns w = S H U^-1 u of a displacement u, in place.
     pub fn turn(&self, v: &mut [f64]) {
+        self.scale(v, -1);
         self.reflections.iter().for_each(|reflection| reflect(reflection, v));
-        self.shears().for_each(|(unknown, travel, share)| v[unknown] += share * v[travel]);
+        for bound in self.bounds.iter().rev() {
+            bound.shears().for_each(|(place, share)| v[bound.unknown] += share * v[place]);
+        }
     }
 
-    /// The displacement H' S^-1 w of unknowns w, in place.
+    /// The displacement U H' S^-1 w of unknowns w, in place.
     pub fn turn_back(&self, v: &mut [f64]) {
-        self.shears().for_each(|(unknown, travel, share)| v[unknown] -= share * v[travel]);
+        for bound in &self.bounds {
+            bound.shears().for_each(|(place, share)| v[bound.unknown] -= share * v[place]);
+        }
         self.reflections.iter().rev().for_each(|reflection| reflect(reflection, v));
+        self.scale(v, 1);
     }
 
-    /// The forces S^-T H f along the unknowns of forces f along the dofs, in place.
+    /// The forces S^-T H U f along the unknowns of forces f along the dofs, in place.
     pub fn turn_forces(&self, f: &mut [f64]) {
+        self.scale(f, 1);
         self.reflections.iter().for_each(|reflection| reflect(reflection, f));
-        self.shears().for_each(|(unknown, travel, share)| f[travel] -= share * f[unknown]);
+        for bound in self.bounds.iter().rev() {
+            bound.shears().for_each(|(place, share)| f[place] -= share * f[bound.unknown]);
+        }
     }
 
-    /// Each unknown with a travel, that travel, and its share.
-    fn shears(&self) -> impl Iterator<Item = (usize, usize, f64)> {
-        self.bounds.iter().filter_map(|bound| bound.travel.map(|(travel, share)| (bound.unknown, travel, share)))
+    /// The forces U^-1 H' S' h along the dofs of forces h along the unknowns, in place; none along travels.
+    pub fn turn_forces_back(&self, h: &mut [f64]) {
+        for bound in &self.bounds {
+            bound.shears().for_each(|(place, share)| h[place] += share * h[bound.unknown]);
+        }
+        self.travels.iter().for_each(|&travel| h[travel] = 0.0);
+        self.reflections.iter().rev().for_each(|reflection| reflect(reflection, h));
+        self.scale(h, -1);
     }
 
-    /// The unit vector along which the unknown of a bound moves if nothing travels: its column of H'.
-    pub fn direction(&self, bound: &Bound) -> Direction {
-        self.reflected(vec![(bound.unknown, 1.0)], Order::Backward)
+    /// Multiplies values of the dofs by their units to a power, 1 or -1.
+    pub fn scale(&self, values: &mut [f64], power: i32) {
+        values.iter_mut().zip(&self.units).for_each(|(value, &unit)| *value = ldexp(*value, power * unit));
+    }
+
+    /// The diagonal of a matrix (n x n) in the unknowns, from its own: only the reflections are ignored.
+    pub fn turned_diagonal(&self, mut diagonal: Vec<f64>) -> Vec<f64> {
+        self.scale(&mut diagonal, 1);
+        self.scale(&mut diagonal, 1);
+        for bound in self.bounds.iter().rev() {
+            bound.shears().for_each(|(place, share)| diagonal[place] += share * share * diagonal[bound.unknown]);
+        }
+        diagonal
+    }
+
+    /// Largest number of unknowns beside a travel that a shear joins.
+    pub fn most_joined(&self) -> usize {
+        self.bounds.iter().map(|bound| 1 + bound.shears.len()).max().unwrap_or(1)
+    }
+
+    /// Orthonormal vectors H' q, in the units of the dofs, that span the rows of some bounds, in the order of all bounds, without their
+    /// travels.
+    pub fn directions<'a>(&self, of_bounds: impl Iterator<Item = &'a Bound>) -> Vec<Direction> {
+        let (mut basis, mut touching) = (Vec::<Direction>::new(), HashMap::<usize, Vec<usize>>::new());
+        for bound in of_bounds {
+            let mut rest: HashMap<usize, f64> = bound.shears.iter().copied().chain([(bound.unknown, 1.0)]).collect();
+            let before: BTreeSet<usize> =
+                rest.keys().filter_map(|place| touching.get(place)).flatten().copied().collect();
+            for other in before {
+                let along: f64 = basis[other].iter().map(|&(p, q)| q * rest.get(&p).copied().unwrap_or(0.0)).sum();
+                basis[other].iter().for_each(|&(place, q)| *rest.entry(place).or_insert(0.0) -= along * q);
+            }
+            let mut unit: Direction = rest.into_iter().collect();
+            unit.sort_unstable_by_key(|entry| entry.0);
+            let length = length(&unit);
+            unit.iter_mut().for_each(|entry| entry.1 /= length);
+            unit.iter().for_each(|entry| touching.entry(entry.0).or_default().push(basis.len()));
+            basis.push(unit);
+        }
+        basis.into_iter().map(|unit| self.reflected(unit, Order::Backward)).collect()
     }
 
     /// The multipliers of the rows if the forces on the unknowns with bounds are `force` (those out of balance there), and the
@@ -213,6 +359,16 @@ impl Bounds {
 /// Two shares of a travel are equal if they differ by no more than this share.
 const EQUAL_SHARES: f64 = 1e-12;
 
+/// Returns `true` if two shears are equal.
+fn are_equal(a: &Direction, b: &Direction) -> bool {
+    let is_near = |((p, a), (q, b)): (&(usize, f64), &(usize, f64))| p == q && (a - b).abs() <= EQUAL_SHARES * a.abs();
+    a.len() == b.len() && a.iter().zip(b).all(is_near)
+}
+
+fn length(vector: &Direction) -> f64 {
+    vector.iter().fold(0.0, |length: f64, entry| length.hypot(entry.1))
+}
+
 /// The error of rows that are no bounds.
 fn no_bound(what: String) -> Error {
     Error::Numerical {
@@ -222,6 +378,11 @@ fn no_bound(what: String) -> Error {
 }
 
 impl Bound {
+    /// The coordinates that the unknown contains beside its own, with their shares.
+    fn shears(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.shears.iter().copied().chain(self.travel)
+    }
+
     /// Returns `true` if a row with this travel may join those of the bound.
     fn travels_as(&self, travel: Option<(usize, f64)>) -> bool {
         match (self.travel, travel) {
@@ -269,14 +430,19 @@ mod tests {
     const PRESSED: [(usize, usize, f64); 7] =
         [(0, 0, 0.6), (0, 1, 0.8), (0, 4, 0.8), (1, 2, 3.0), (1, 4, 1.5), (2, 4, 2.0), (2, 3, 0.0)];
 
+    /// The bounds in other units, because every test is independent of them.
+    fn of(contact: &SparseMatrix, gap: &[f64], travels: Vec<usize>) -> Result<Bounds, Error> {
+        Bounds::of((contact, gap), &Preferred { rows: vec![0, 1, 2], needed: 0 }, vec![1, 1, 3, 0, 0], travels)
+    }
+
     #[test]
     fn the_unknown_of_a_row_is_its_displacement_and_its_share_of_the_travel() {
         let contact = rows(&PRESSED);
-        let bounds = Bounds::of(&contact, &[1.0, 6.0, 8.0], vec![4]).unwrap();
+        let bounds = of(&contact, &[1.0, 6.0, 8.0], vec![4]).unwrap();
         let u = [0.3, -0.7, 0.2, 9.0, 0.5];
         let mut w = u.to_vec();
         bounds.turn(&mut w);
-        for (bound, (moved, length)) in bounds.bounds.iter().zip(contact.mul(&u).into_iter().zip([1.0, 3.0, 2.0])) {
+        for (bound, (moved, length)) in bounds.bounds.iter().zip(contact.mul(&u).into_iter().zip([2.0, 24.0, 2.0])) {
             let sign = if bound.upper.is_finite() { 1.0 } else { -1.0 };
             assert!((sign * w[bound.unknown] - moved / length).abs() < ROUNDING, "{bound:?}");
         }
@@ -292,8 +458,58 @@ mod tests {
     }
 
     #[test]
+    fn oblique_rows_of_a_node_are_bounds_and_a_row_that_depends_on_them_is_left_out() {
+        let entries = [(0, 0, 3.0), (1, 0, 0.6), (1, 1, 0.8), (2, 0, 1.0), (2, 1, -1.0), (2, 2, 0.5), (2, 4, 2.0)];
+        let (contact, gap) = (rows(&entries), [1.0, 2.0, -3.0]);
+        let bounds = of(&contact, &gap, vec![4]).unwrap();
+        assert_eq!((bounds.bounds.len(), bounds.most_joined()), (3, 3));
+        let u = [0.3, -0.7, 0.2, 9.0, 0.5];
+        let mut w = u.to_vec();
+        bounds.turn(&mut w);
+        for ((bound, moved), gap) in bounds.bounds.iter().zip(contact.mul(&u)).zip(gap) {
+            let coefficient = bound.sides.iter().flatten().next().unwrap().coefficient;
+            assert!((coefficient * w[bound.unknown] - moved).abs() < ROUNDING, "{bound:?}");
+            assert!((coefficient * bound.sides.iter().flatten().next().unwrap().value - gap).abs() < ROUNDING);
+        }
+        // Forces there and back, if none travel.
+        let f = [2.0, -1.0, 0.5, 0.25, 0.0];
+        let mut h = f.to_vec();
+        bounds.turn_forces(&mut h);
+        let work = |f: &[f64], u: &[f64]| f.iter().zip(u).map(|(f, u)| f * u).sum::<f64>();
+        assert!((work(&f, &u) - work(&h, &w)).abs() < ROUNDING);
+        bounds.turn_forces_back(&mut h);
+        assert!(h.iter().zip(&f).all(|(back, f)| (back - f).abs() < ROUNDING));
+        bounds.turn_back(&mut w);
+        assert!(w.iter().zip(&u).all(|(back, u)| (back - u).abs() < ROUNDING));
+        // The directions of two rows are orthonormal and span both rows, in the units of the dofs.
+        let directions = bounds.directions(bounds.bounds[1..].iter());
+        let dot = |a: &Direction, b: &Direction| -> f64 {
+            a.iter().map(|&(p, a)| a * b.iter().find(|entry| entry.0 == p).map_or(0.0, |entry| entry.1)).sum()
+        };
+        for (i, j) in (0..2).flat_map(|i| (0..2).map(move |j| (i, j))) {
+            assert!((dot(&directions[i], &directions[j]) - f64::from(u8::from(i == j))).abs() < ROUNDING);
+        }
+        for row in [vec![(0, 1.2), (1, 1.6)], vec![(0, 2.0), (1, -2.0), (2, 4.0)]] {
+            let beyond = directions.iter().fold(dot(&row, &row), |rest, direction| rest - dot(&row, direction).powi(2));
+            assert!(beyond.abs() < 100.0 * ROUNDING, "{beyond:e}");
+        }
+        let dependent = [(0, 0, 3.0), (1, 0, 0.6), (1, 1, 0.8), (2, 0, 1.0), (2, 1, -1.0)];
+        let bounds = of(&rows(&dependent), &gap, Vec::new()).unwrap();
+        assert_eq!((bounds.bounds.len(), bounds.left_out.len()), (2, 1));
+        let mut w = u.to_vec();
+        bounds.turn(&mut w);
+        let value: f64 = bounds.left_out[0].shares.iter().map(|&(i, share)| share * w[bounds.bounds[i].unknown]).sum();
+        assert!((value - rows(&dependent).mul(&u)[2]).abs() < ROUNDING);
+        // Row 2 is 7/12 of row 0 less 5/4 of row 1: only row 0 is relieved.
+        let relieved: Vec<_> = bounds.relieved(&bounds.left_out[0], &[-3.0, -5.0, 0.0]).collect();
+        assert!(relieved.len() == 1 && relieved[0].0 == 0 && (relieved[0].1 + 36.0 / 7.0).abs() < ROUNDING);
+        let nearly_parallel = [(0, 0, 1.0), (1, 0, 1.0), (1, 1, 1e-3), (2, 1, 1.0)];
+        assert_eq!(of(&rows(&nearly_parallel), &gap, Vec::new()).unwrap().left_out[0].row, 1);
+    }
+
+    #[test]
     fn rows_of_several_travels_and_of_different_ones_at_a_dof_are_no_bounds() {
-        let of = |entries: &[(usize, usize, f64)], travels| Bounds::of(&rows(entries), &[1.0; 3], travels);
+        let of = |entries: &[(usize, usize, f64)], travels| of(&rows(entries), &[1.0; 3], travels);
         assert!(of(&[(0, 0, 1.0), (0, 3, 1.0), (0, 4, 1.0)], vec![3, 4]).is_err());
         assert!(of(&[(0, 0, 1.0), (0, 4, 1.0), (1, 0, -1.0), (1, 4, 1.0)], vec![4]).is_err());
         assert!(of(&[(0, 0, 1.0), (0, 4, 1.0), (1, 0, -1.0)], vec![4]).is_err());

@@ -66,7 +66,7 @@ fn coarser_of<T: Real>(hierarchy: &Hierarchy<T>, levels: fn(Hierarchy<T>) -> Lev
 }
 
 impl Coarser {
-    /// The load of the second level, `P' f`.
+    /// The load of the second level, `P' f`; here and below, the values of the first are in the units of the nodes.
     pub fn load(&self, load: &[f64]) -> Vec<f64> {
         let mut coarse = vec![0.0; self.near_null.len()];
         for (&place, &value) in self.place.iter().zip(load) {

@@ -6,9 +6,9 @@ use super::operator::Operator;
 use crate::linear::factor::Real;
 
 impl<T: Real> Hierarchy<T> {
-    /// Approximately `A^-1 r`, by one V-cycle, in the given face; r is `force` times `2^exponent`.
-    pub fn cycle(&self, force: &[f64], exponent: i32, face: Option<&FaceLevels<T>>) -> Vec<f64> {
-        let mut rest = self.nodes.gather::<T>(force, exponent);
+    /// Approximately `A^-1` of a force, by one V-cycle, in the given face.
+    pub fn cycle(&self, force: &[f64], face: Option<&FaceLevels<T>>) -> Vec<f64> {
+        let (mut rest, exponent) = self.nodes.gather::<T>(force);
         if let Some(face) = face {
             face.held.subtract_from(&mut rest);
         }

@@ -21,7 +21,7 @@ use super::hierarchy::Hierarchy;
 use crate::linear::FactorError;
 use crate::linear::factor::Real;
 
-/// A unit vector along which nothing moves: dofs and coefficients. The directions of one face are orthogonal.
+/// A unit vector along which nothing moves: dofs and coefficients, in the units of the nodes. The directions of one face are orthogonal.
 pub type Direction = Vec<(usize, f64)>;
 
 /// The data of a face on the levels of a hierarchy.

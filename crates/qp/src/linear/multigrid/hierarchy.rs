@@ -11,7 +11,7 @@ use super::near_null::NearNullSpace;
 use super::nodes::{Nodes, fill_empty_diagonal};
 use super::prolongator::{Candidates, smoothed, tentative};
 use crate::linear::factor::Real;
-use crate::linear::{FactorError, SymmetricMatrix};
+use crate::linear::{FactorError, SymmetricMatrix, ldexp};
 
 /// Strength of connection on the finest level; it is halved from level to level, as in the source.
 const THRESHOLD: f64 = 0.02;
@@ -32,7 +32,7 @@ const LEAST_COARSENING: f64 = 0.4;
 #[derive(Debug)]
 pub struct Hierarchy<T> {
     pub(super) nodes: Nodes,
-    /// The matrix times `2^shift` has a diagonal of order one.
+    /// The matrix in the units of the nodes, times `2^shift`, has a diagonal of order one.
     pub(super) shift: i32,
     pub(super) levels: Vec<Arc<Level<T>>>,
     /// The matrix of the coarsest level, and its factor.
@@ -76,7 +76,7 @@ impl<T: Real> Hierarchy<T> {
         let mut candidates = Candidates { count, values: vec![0.0; nodes.size * nodes.count * count] };
         for (index, vector) in near_null.vectors().iter().enumerate() {
             for (&place, &value) in nodes.place.iter().zip(vector) {
-                candidates.values[place as usize * count + index] = value;
+                candidates.values[place as usize * count + index] = ldexp(value, -nodes.exponent(place));
             }
         }
         let mut levels = Vec::new();

@@ -31,10 +31,11 @@ pub use face::Direction;
 pub use near_null::NearNullSpace;
 
 pub use super::Width;
-use super::{FactorError, SymmetricMatrix, exponent, largest};
+use super::{FactorError, SymmetricMatrix};
 use crate::error::Error;
 use face::FaceLevels;
 use hierarchy::Hierarchy;
+use nodes::Nodes;
 
 /// The hierarchy of a symmetric positive (semi)definite matrix: one cycle approximates its inverse.
 #[derive(Debug)]
@@ -97,11 +98,21 @@ impl Multigrid {
 
     /// One cycle: approximately the solution x of A x = b, linear in b and symmetric.
     pub fn cycle(&self, b: &[f64]) -> Vec<f64> {
-        by_precision!(self.levels, hierarchy => hierarchy.cycle(b, to_order_one(b), None))
+        by_precision!(self.levels, hierarchy => hierarchy.cycle(b, None))
     }
 
-    /// The hierarchy if nothing moves along `directions`, orthonormal vectors of few dofs each; `last` is a face of the same
-    /// hierarchy that may be close.
+    /// The exponent of the unit of each dof: `u = 2^exponent v`. All dofs of a node have the same one.
+    ///
+    /// In the unknowns v, nodes of stiff and of soft bodies have diagonal entries of the same order. A projection that is orthogonal
+    /// in v then moves soft and stiff nodes of a row by what their stiffness allows; one that is orthogonal in u does not, and the
+    /// smoother diverges.
+    pub fn units(&self) -> Vec<i32> {
+        let of = |nodes: &Nodes| nodes.place.iter().map(|&place| nodes.exponent(place)).collect();
+        by_precision!(self.levels, hierarchy => of(&hierarchy.nodes))
+    }
+
+    /// The hierarchy if nothing moves along `directions`, orthonormal vectors of few dofs each, in the unknowns v of
+    /// [`Multigrid::units`]; `last` is a face of the same hierarchy that may be close.
     ///
     /// # Errors
     /// As [`Multigrid::new`].
@@ -158,8 +169,8 @@ impl Face<'_> {
     /// One cycle: approximately the x in the face with A x - b orthogonal to it.
     pub fn cycle(&self, b: &[f64]) -> Vec<f64> {
         match &self.levels {
-            LevelsInFace::Single(hierarchy, face) => hierarchy.cycle(b, to_order_one(b), Some(face)),
-            LevelsInFace::Double(hierarchy, face) => hierarchy.cycle(b, to_order_one(b), Some(face)),
+            LevelsInFace::Single(hierarchy, face) => hierarchy.cycle(b, Some(face)),
+            LevelsInFace::Double(hierarchy, face) => hierarchy.cycle(b, Some(face)),
         }
     }
 
@@ -191,11 +202,6 @@ fn check_diagonal(matrix: &SymmetricMatrix) -> Result<(), Error> {
         }
         None => Ok(()),
     }
-}
-
-/// The exponent that makes b of order one, because single precision has a small range.
-fn to_order_one(b: &[f64]) -> i32 {
-    -exponent(largest(b))
 }
 
 fn located(error: FactorError) -> Error {

@@ -18,11 +18,14 @@ pub struct Nodes {
     pub count: usize,
     /// The place `size * node + component` of each dof.
     pub place: Vec<u32>,
+    /// The exponent of the unit of each node, `>= 0`: its displacement is `2^exponent` times the unknown of the hierarchy. With these
+    /// units, nodes of stiff and of soft bodies have diagonal entries of the same order. Those of the stiffest nodes are zero.
+    exponents: Vec<i32>,
 }
 
 impl Nodes {
-    /// Groups dofs with the same neighbours, and writes the matrix in blocks of these groups, times `2^exponent` so that its
-    /// diagonal is of order one.
+    /// Groups dofs with the same neighbours, and writes the matrix in blocks of these groups, in the unit of each node, times
+    /// `2^exponent` so that its diagonal is of order one.
     pub fn of<T: Real>(matrix: &SymmetricMatrix) -> (Self, BlockMatrix<T>, i32) {
         let graph = Quotient::of(matrix.lower());
         let groups = graph.count() as u32;
@@ -58,8 +61,8 @@ impl Nodes {
         drop(graph);
         let values = vec![T::default(); indices.len() * size * size];
         let mut blocks = BlockMatrix { height: size, width: size, columns: count, starts, indices, values };
-        let nodes = Nodes { size, count, place };
-        let shift = -exponent(matrix.diagonal().into_iter().fold(0.0, f64::max));
+        let (exponents, shift) = units(&matrix.diagonal(), |dof| place[dof] as usize / size, count);
+        let nodes = Nodes { size, count, place, exponents };
         nodes.fill(matrix, shift, &mut blocks);
         fill_empty_diagonal(&mut blocks);
         (nodes, blocks, shift)
@@ -67,7 +70,7 @@ impl Nodes {
 
     /// `count` nodes of `size` dofs each, one after another.
     pub fn in_order(size: usize, count: usize) -> Self {
-        Nodes { size, count, place: (0..(size * count) as u32).collect() }
+        Nodes { size, count, place: (0..(size * count) as u32).collect(), exponents: vec![0; count] }
     }
 
     /// Number of dofs of a node, and the component of each dof.
@@ -88,6 +91,7 @@ impl Nodes {
         let diagonal: Vec<usize> =
             (0..self.count).map(|node| blocks.diagonal_place(node).unwrap_or(blocks.starts[node])).collect();
         for dof in 0..matrix.dim() {
+            let shift = shift + self.exponent(self.place[dof]);
             let (node, j) = (self.place[dof] as usize / size, self.place[dof] as usize % size);
             let mut cursor = diagonal[node];
             for (row, value) in matrix.lower().column(dof) {
@@ -101,7 +105,7 @@ impl Nodes {
                 let place = cursor + ahead.iter().take_while(|&&column| (column as usize) < second).count();
                 if place < end && blocks.indices[place] as usize == second {
                     let block = &mut blocks.values[place * size * size..(place + 1) * size * size];
-                    block[a * size + b] = T::of(ldexp(value, shift));
+                    block[a * size + b] = T::of(ldexp(value, shift + self.exponents[other]));
                     if first == second {
                         block[b * size + a] = block[a * size + b];
                     }
@@ -127,19 +131,39 @@ impl Nodes {
         }
     }
 
-    /// The entries of `values`, one per dof, times `2^exponent`, in their places.
-    pub fn gather<T: Real>(&self, values: &[f64], exponent: i32) -> Vec<T> {
-        let mut gathered = vec![T::default(); self.size * self.count];
-        for (&place, &value) in self.place.iter().zip(values) {
-            gathered[place as usize] = T::of(ldexp(value, exponent));
-        }
-        gathered
+    /// The exponent of the unit at a place.
+    pub fn exponent(&self, place: u32) -> i32 {
+        self.exponents[place as usize / self.size]
     }
 
-    /// The entries of the dofs, times `2^exponent`.
-    pub fn scatter<T: Real>(&self, gathered: &[T], exponent: i32) -> Vec<f64> {
-        self.place.iter().map(|&place| ldexp(gathered[place as usize].double(), exponent)).collect()
+    /// The forces on the dofs in the units of the nodes, times `2^exponent`, and that exponent: they are then of order one, because
+    /// single precision has a small range.
+    pub fn gather<T: Real>(&self, forces: &[f64]) -> (Vec<T>, i32) {
+        let exponents = || self.place.iter().map(|&place| self.exponent(place)).zip(forces);
+        let largest = exponents().filter(|entry| *entry.1 != 0.0).map(|(unit, &force)| exponent(force) + unit).max();
+        let scale = -largest.unwrap_or(0);
+        let mut gathered = vec![T::default(); self.size * self.count];
+        for (&place, (unit, &force)) in self.place.iter().zip(exponents()) {
+            gathered[place as usize] = T::of(ldexp(force, scale + unit));
+        }
+        (gathered, scale)
     }
+
+    /// The displacements of the dofs, of unknowns in the units of the nodes, times `2^exponent`.
+    pub fn scatter<T: Real>(&self, gathered: &[T], exponent: i32) -> Vec<f64> {
+        let of_place = |&place: &u32| ldexp(gathered[place as usize].double(), exponent + self.exponent(place));
+        self.place.iter().map(of_place).collect()
+    }
+}
+
+/// The exponent of the unit of each of `count` nodes, from the largest diagonal entry there, and the exponent that then makes all
+/// diagonal entries of order one. A node without stiffness has the unit of the stiffest.
+fn units(diagonal: &[f64], node_of: impl Fn(usize) -> usize, count: usize) -> (Vec<i32>, i32) {
+    let mut of_node = vec![0.0_f64; count];
+    diagonal.iter().enumerate().for_each(|(dof, &own)| of_node[node_of(dof)] = of_node[node_of(dof)].max(own));
+    let largest = exponent(of_node.iter().copied().fold(0.0, f64::max));
+    let unit = |&own: &f64| if own > 0.0 { -(exponent(own) - largest).div_euclid(2) } else { 0 };
+    (of_node.iter().map(unit).collect(), -largest)
 }
 
 /// Dofs of the nodes of a graph: the number in most groups. Nodes inside an element may share a group.

@@ -26,7 +26,7 @@ pub enum At {
     Fixed,
 }
 
-/// The unknowns after the reflections, their gradient, and the bounds that they are at.
+/// The unknowns after reflections and shears, their gradient, and the bounds that they are at.
 pub struct Iterate<'a> {
     pub problem: &'a ContactProblem,
     pub bounds: &'a Bounds,
@@ -79,12 +79,7 @@ impl<'a> Iterate<'a> {
         let is_unknown = start.displacement.is_none();
         let mut x = start.displacement.unwrap_or_else(|| vec![0.0; problem.dofs()]);
         bounds.turn(&mut x);
-        let mut diagonal = problem.stiffness().diagonal();
-        for bound in &bounds.bounds {
-            if let Some((travel, share)) = bound.travel {
-                diagonal[travel] += share * share * diagonal[bound.unknown];
-            }
-        }
+        let diagonal = bounds.turned_diagonal(problem.stiffness().diagonal());
         let at = vec![At::Free; bounds.bounds.len()];
         let mut iterate = Iterate { problem, bounds, load, diagonal, x, gradient: Vec::new(), at, threads };
         if is_unknown {
@@ -146,9 +141,6 @@ impl<'a> Iterate<'a> {
     }
 
     pub fn product(&self, v: &[f64]) -> Vec<f64> {
-        if self.bounds.is_plain() {
-            return self.problem.stiffness().mul_on(self.threads, v);
-        }
         let mut u = v.to_vec();
         self.bounds.turn_back(&mut u);
         let mut moved = self.problem.stiffness().mul_on(self.threads, &u);
@@ -353,24 +345,25 @@ impl<'a> Iterate<'a> {
         })
     }
 
-    /// An upper bound on the eigenvalues of `D^-1 K`, by Gershgorin's circles.
+    /// An upper bound on the eigenvalues of `D^-1 K`, by Gershgorin's circles; shears multiply it at most by the unknowns that they join.
     fn largest_eigenvalue(&self) -> f64 {
-        let weights: Vec<f64> = self.diagonal.iter().map(|d| 1.0 / d.sqrt()).collect();
+        let mut weights: Vec<f64> = self.diagonal.iter().map(|d| 1.0 / d.sqrt()).collect();
+        self.bounds.scale(&mut weights, 1);
         let sums = self.problem.stiffness().mul_abs(&weights);
-        sums.iter().zip(&weights).map(|(sum, weight)| sum * weight).fold(1.0, f64::max)
+        let circles = sums.iter().zip(&weights).map(|(sum, weight)| sum * weight).fold(1.0, f64::max);
+        circles * self.bounds.most_joined() as f64
     }
 
-    /// The held directions, in the dofs of the problem.
+    /// The held directions, in the units of the dofs.
     pub fn held(&self) -> Vec<Direction> {
         let closed = self.bounds.bounds.iter().zip(&self.at).filter(|entry| *entry.1 != At::Free);
-        closed.map(|(bound, _)| self.bounds.direction(bound)).collect()
+        self.bounds.directions(closed.map(|entry| entry.0))
     }
 
     /// One cycle in a face, in which nothing travels and no bound opens.
     pub fn preconditioned(&self, face: &Face, gradient: &[f64]) -> Vec<f64> {
         let mut force = gradient.to_vec();
-        self.bounds.travels.iter().for_each(|&travel| force[travel] = 0.0);
-        self.bounds.turn_back(&mut force);
+        self.bounds.turn_forces_back(&mut force);
         let mut step = face.cycle(&force);
         self.bounds.turn(&mut step);
         self.keep_free(&mut step);

@@ -1,6 +1,6 @@
 //! MPRGP: modified proportioning with reduced gradient projections, preconditioned in the free face.
 //!
-//! Rows are turned into bounds by reflections. The gradient g = K u - f is split into the free gradient, of unknowns that may
+//! Rows are turned into bounds by reflections and shears. The gradient g = K u - f is split into the free gradient, of unknowns that may
 //! move, and the chopped gradient, of those that want to leave their bound. An iteration is one of
 //!
 //! ```text
@@ -11,11 +11,13 @@
 //!                 fixed length
 //! ```
 //!
-//! Each of these steps lowers the energy. The hierarchy is built once, for K; a face is a small change of the hierarchy.
+//! Each of these steps lowers the energy. Rows that depend on others, such as those of far obstacles at a node, are left out; those that
+//! the answer violates are exchanged for others, and the loop goes on from there. The hierarchy is built once, for K; a face is a small change of the hierarchy.
 //!
 //! # Source
 //! Z. Dostál, *Optimal Quadratic Programming Algorithms*, Springer (2009), algorithm 5.8 and section 5.10.
 
+mod exchange;
 mod iterate;
 mod nested;
 mod travel;
@@ -26,6 +28,7 @@ use crate::error::Error;
 use crate::linear::multigrid::{Face, Multigrid};
 use crate::problem::ContactProblem;
 use crate::watch::Watch;
+use exchange::{Exchange, order};
 use iterate::{Conjugate, Iterate};
 use nested::nested_start;
 use travel::Travels;
@@ -41,6 +44,12 @@ const TRIAL: (usize, f64) = (16, 1.2);
 /// At least the worth divided by this number is spent first: conjugate gradients begin slowly on a stretched mesh, and little
 /// is lost by waiting for the other way. If no more cycles than that are left to go, the answer is near.
 const SHARE: usize = 8;
+
+/// The variant of a loop that came no further.
+const STAGNATED: &str = "-stagnated";
+
+/// Exchanges of rows that are left out, at most.
+const MOST_EXCHANGES: usize = 30;
 
 /// A displacement with a residual up to this is near the answer: nothing else is tried as a start.
 const NEAR: f64 = 1e-3;
@@ -80,12 +89,40 @@ impl Solver for Mprgp<'_> {
     /// not halve the residual; those that change the face count only beyond one for each row.
     ///
     /// # Errors
-    /// [`Error::Numerical`] for rows that no reflections make bounds, [`Error::NotConvex`] for a coarsest matrix of a face with a
-    /// negative eigenvalue.
+    /// [`Error::Numerical`] for rows that cannot be bounds, [`Error::NotConvex`] for a coarsest matrix of a face with a negative
+    /// eigenvalue.
     fn solve(&self, start: Start) -> Result<Outcome, Error> {
+        let Mprgp { problem, multigrid, limits, .. } = *self;
+        let (rows, mut start) = ((problem.contact(), problem.gap()), start);
+        let mut before: Option<Outcome> = None;
+        let mut exchanges = Vec::new();
+        loop {
+            let order = order(problem, &start, exchanges.last());
+            let bounds = Bounds::of(rows, &order, multigrid.units(), problem.without_stiffness())?;
+            let used = before.as_ref().map_or(0, |before| before.iterations);
+            let limits = Limits { most_cycles: limits.most_cycles.saturating_sub(used), ..limits };
+            let next = Mprgp { limits, ..*self }.within(&bounds, start)?;
+            let next = if let Some(before) = before { next.after(before) } else { next };
+            let exchange = next.is_settled().then(|| Exchange::of(problem, &bounds, &next, limits.tolerance)).flatten();
+            let Some(exchange) = exchange else { return Ok(next) };
+            if let Some(ending) = exchange.ending() {
+                return Ok(Outcome { ending, ..next });
+            }
+            if exchanges.len() == MOST_EXCHANGES {
+                return Ok(Outcome { ending: Ending::Unsettled, variant: STAGNATED, ..next });
+            }
+            start = exchange.start(&next);
+            exchanges.push(exchange);
+            before = Some(next);
+        }
+    }
+}
+
+impl Mprgp<'_> {
+    /// The answer with some rows as bounds.
+    fn within(&self, bounds: &Bounds, start: Start) -> Result<Outcome, Error> {
         let Mprgp { problem, multigrid, limits, watch } = *self;
-        let bounds = Bounds::of(problem.contact(), problem.gap(), problem.without_stiffness())?;
-        let mut iterate = started(self, &bounds, start);
+        let mut iterate = started(self, bounds, start);
         let mut history = vec![iterate.step()];
         let mut steps =
             Steps { multigrid, watch, face: None, travels: Travels::default(), is_old: false, last: None, cycles: 0 };
@@ -131,7 +168,7 @@ impl Solver for Mprgp<'_> {
             {
                 "-unsettled"
             }
-            _ => "-stagnated",
+            _ => STAGNATED,
         };
         Ok(Outcome { displacement, multiplier, contact_set, iterations: steps.cycles, history, ending, variant })
     }

@@ -36,9 +36,13 @@ pub fn nested_start(
     bounds.bounds.iter().for_each(|bound| intervals[bound.unknown] = [bound.lower, bound.upper]);
     let coarse = coarser.bounds(&intervals);
     let (contact, gap) = rows_of(&coarse)?;
-    let below = ContactProblem::new(coarser.matrix.clone(), coarser.load(problem.load()), contact, gap).ok()?;
+    let mut load = problem.load().to_vec();
+    bounds.turn_forces(&mut load);
+    let below = ContactProblem::new(coarser.matrix.clone(), coarser.load(&load), contact, gap).ok()?;
     let found = solve(&below, &coarser.multigrid, TOLERANCE, MOST_CYCLES).ok()?;
-    Some(coarser.interpolated(&found.displacement, &coarse, &intervals))
+    let mut displacement = coarser.interpolated(&found.displacement, &coarse, &intervals);
+    bounds.turn_back(&mut displacement);
+    Some(displacement)
 }
 
 /// Rows and gaps of bounds, one row for each side.

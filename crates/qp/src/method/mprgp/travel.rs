@@ -13,19 +13,20 @@
 use super::iterate::Iterate;
 use crate::linear::dot;
 use crate::linear::multigrid::Face;
-use crate::method::bounds::Bounds;
+use crate::method::bounds::{Bounds, Preferred};
 use crate::problem::ContactProblem;
 
 /// Returns `true` if every dof without stiffness is a travel: the stiffness holds all others, and each row becomes a bound with at
 /// most one travel.
 pub fn takes_travels(problem: &ContactProblem) -> bool {
     let travels = problem.without_stiffness();
+    let all = Preferred { rows: (0..problem.rows()).collect(), needed: 0 };
     let has_row = |&travel: &usize| problem.contact().column(travel).any(|(_, share)| share != 0.0);
     travels.is_empty()
         || (problem.near_null().is_some()
             && travels.iter().all(has_row)
             && !problem.has_free_mode()
-            && Bounds::of(problem.contact(), problem.gap(), travels).is_ok())
+            && Bounds::of((problem.contact(), problem.gap()), &all, vec![0; problem.dofs()], travels).is_ok())
 }
 
 /// The displacements of all travels in a face, orthogonal in energy.
