@@ -7,7 +7,7 @@ use signorini::{Method, Settings, solve};
 
 use crate::bodies::built;
 
-/// Cycles of an answer, for every ratio. Measured 9 to 12.
+/// Cycles of an answer, for every ratio. Measured 11.
 const MOST_CYCLES: usize = 16;
 
 /// A slab on a block, `n` cells along each side; its left end is pushed down by 0.01 while its right end is lifted by as much.

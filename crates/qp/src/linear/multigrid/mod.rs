@@ -106,7 +106,7 @@ impl Multigrid {
     /// In the unknowns v, nodes of stiff and of soft bodies have diagonal entries of the same order. A projection that is orthogonal
     /// in v then moves soft and stiff nodes of a row by what their stiffness allows; one that is orthogonal in u does not, and the
     /// smoother diverges.
-    pub fn units(&self) -> Vec<i32> {
+    pub(crate) fn units(&self) -> Vec<i32> {
         let of = |nodes: &Nodes| nodes.place.iter().map(|&place| nodes.exponent(place)).collect();
         by_precision!(self.levels, hierarchy => of(&hierarchy.nodes))
     }

@@ -11,8 +11,9 @@
 //!                 fixed length
 //! ```
 //!
-//! Each of these steps lowers the energy. Rows that depend on others, such as those of far obstacles at a node, are left out; those that
-//! the answer violates are exchanged for others, and the loop goes on from there. The hierarchy is built once, for K; a face is a small change of the hierarchy.
+//! Each of these steps lowers the energy. The hierarchy is built once, for K; a face is a small change of the hierarchy. Rows that depend
+//! on others, such as those of far obstacles at a node, are left out; those that the answer violates are exchanged for others, and the loop
+//! goes on from there.
 //!
 //! # Source
 //! Z. Dostál, *Optimal Quadratic Programming Algorithms*, Springer (2009), algorithm 5.8 and section 5.10.
