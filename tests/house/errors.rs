@@ -39,9 +39,11 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
     let not_square = SparseMatrix::from_triplets(1, 2, &[]);
     let nowhere = Path::new("nowhere");
     let unprepared = Prepared::new(&spring_and_wall, &Settings::default().with_condensation(Condense::Never))?;
-    // Rows that share a dof at an oblique angle cannot be turned into bounds.
-    let oblique =
-        Dense::new(&[&[1.0, 0.0], &[0.0, 1.0]], &[2.0, 0.0], &[&[1.0, 0.0], &[1.0, 1.0]], &[0.5; 2]).problem()?;
+    // Oblique rows that share many dofs are not turned into bounds.
+    let unit: Vec<Vec<f64>> = (0..30).map(|i| (0..30).map(|j| f64::from(u8::from(i == j))).collect()).collect();
+    let unit: Vec<&[f64]> = unit.iter().map(|row| &row[..]).collect();
+    let numbers: Vec<f64> = (1..=30).map(f64::from).collect();
+    let oblique = Dense::new(&unit, &[2.0; 30], &[&[1.0; 30], &numbers], &[0.5; 2]).problem()?;
     // The last bit of one entry holds a motion that the load drives.
     let soft: [&[f64]; 2] = [&[1.0, -1.0], &[-1.0, 1.0 + f64::EPSILON]];
     let held_within_rounding = Dense::new(&soft, &[1.0, 1.0], &[&[0.0, -1.0]], &[0.5]).problem()?;

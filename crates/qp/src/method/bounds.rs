@@ -458,7 +458,7 @@ mod tests {
     }
 
     #[test]
-    fn oblique_rows_of_a_node_are_bounds_and_a_row_that_depends_on_them_is_left_out() {
+    fn oblique_rows_are_bounds_and_a_row_that_depends_on_them_is_left_out() {
         let entries = [(0, 0, 3.0), (1, 0, 0.6), (1, 1, 0.8), (2, 0, 1.0), (2, 1, -1.0), (2, 2, 0.5), (2, 4, 2.0)];
         let (contact, gap) = (rows(&entries), [1.0, 2.0, -3.0]);
         let bounds = of(&contact, &gap, vec![4]).unwrap();
