@@ -7,8 +7,9 @@ use std::f64::consts::TAU;
 
 use signorini::{ContactProblem, Method, Settings, Solution, SparseMatrix, solve};
 
-use crate::bodies::{built, clamped_block, difference, largest};
-use crate::oracles::{Dense, Draws, random};
+use support::bodies::{clamped_block, difference, largest};
+use support::oracles::{Dense, Draws, random};
+use support::scenes::built;
 
 /// Both answers are certified to 1e-9; the condition numbers of these bodies are at most 1e3.
 const SAME: f64 = 1e-6;

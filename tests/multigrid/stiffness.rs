@@ -5,7 +5,7 @@
 use serde_json::{Value, json};
 use signorini::{Method, Settings, solve};
 
-use crate::bodies::built;
+use support::scenes::built;
 
 /// Cycles of an answer, for every ratio. Measured 11.
 const MOST_CYCLES: usize = 16;
