@@ -2,6 +2,7 @@
 
 mod concave_obstacles;
 mod contact_scenes;
+mod contacts_found;
 mod dimensions;
 mod every_shape;
 mod inclined_frames;

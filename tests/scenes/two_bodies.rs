@@ -295,12 +295,15 @@ fn surfaces_of_different_meshes_are_refused_for_either_finer_side() {
     for model in ["plane-strain", "space"] {
         solved(&blocks(model, 3, 3));
         for (cells, below) in [(2, 4), (4, 2), (3, 4)] {
-            let scene = blocks(model, cells, below);
+            assert!(built(&blocks(model, cells, below)).rows().iter().all(|row| row.is_mean));
+            let mut scene = blocks(model, cells, below);
+            scene["obstacles"][0]["shape"]["body"]["rows"] = json!("pairs");
             let built = build(&scene);
             let Error::Refused { code, message, .. } = built.unwrap_err() else { panic!("{scene}") };
             assert_eq!(code, "unpaired-nodes");
             assert!(
-                message.contains("node ") && message.contains("must pair up, as docs/assemblies.md shows"),
+                message.contains("node ")
+                    && message.contains("must pair up, as docs/assemblies.md shows; `mortar` takes any meshes"),
                 "{message}"
             );
         }
@@ -337,7 +340,10 @@ fn pairs_with_coordinates_of_seven_digits_have_the_answer_of_exact_pairs() {
                 let off = (force(&rounded(third, far)) / exact - 1.0).abs();
                 assert!(off < SEVEN_DIGITS * (1.0 + far), "{model} {rule}: {off:e}");
             }
-            let built = Scene::from_json(&rounded(0.332, 0.0).to_string(), "scene").unwrap().build();
+            let mut aside = rounded(0.332, 0.0);
+            assert!(built(&aside).rows().iter().all(|row| row.is_mean));
+            aside["obstacles"][0]["shape"]["body"]["rows"] = json!("pairs");
+            let built = build(&aside);
             assert!(matches!(built, Err(Error::Refused { code: "unpaired-nodes", .. })), "{model} {rule}");
         }
     }
@@ -348,6 +354,7 @@ fn further_bodies_that_do_not_match_are_refused() {
     let discs = || pair_of_discs([1.0, 1.0], [0.3, 0.3], 0.01, "q4");
     let change = |pointer: &str, value: Value| {
         let mut scene = discs();
+        scene["obstacles"][0]["shape"]["body"]["rows"] = json!("pairs");
         *scene.pointer_mut(pointer).unwrap() = value;
         scene
     };

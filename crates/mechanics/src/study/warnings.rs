@@ -118,7 +118,7 @@ fn overlap(answer: &Answer) -> Option<AnswerWarning> {
         name => name,
     };
     let message = format!(
-        "`{}` and `{}` go through each other, by {depth:.3e} {} at {}, where the scene names no contact; add the two boundaries as an \
+        "`{}` and `{}` go through each other, by {depth:.3e} {} at {}, where no contact row keeps them apart; name both boundaries in an \
          obstacle, or set `\"contact\": \"auto\"`",
         name(bodies[0]),
         name(bodies[1]),

@@ -152,7 +152,7 @@ pub(crate) fn of_part(summary: &Summary) -> &'static str {
 fn between_lines(one: &ObstacleContact, units: &Units) -> Vec<String> {
     let Some(between) = &one.between else { return Vec::new() };
     let Some([share, of_other]) = between.covered else { return Vec::new() };
-    let percent = |share: f64| format!("{:.4} %", 100.0 * share);
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     let depth = quantity(between.penetration.unwrap_or(0.0), &units.length);
     wrapped(&format!(
         "{}: rows are means over the nodes of `{}`, of which {} face `{}`, and {} of that; between them a node goes up to {depth} through",

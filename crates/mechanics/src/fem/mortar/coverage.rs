@@ -156,7 +156,6 @@ pub(super) fn parts(covered: &[Covered], kept: &[bool]) -> Vec<Option<Part>> {
         let weights = facet.dual(&is_kept);
         for j in (0..nodes.len()).filter(|&j| is_kept[j]) {
             let part = parts[nodes[j]].get_or_insert_default();
-            part.full += facet.full[j];
             for (k, &node) in nodes.iter().enumerate() {
                 // The dual functions see the own node, and what dropped nodes hand over.
                 let own = match (k == j, is_kept[k]) {
@@ -171,6 +170,11 @@ pub(super) fn parts(covered: &[Covered], kept: &[bool]) -> Vec<Option<Part>> {
                 let sum = (0..nodes.len()).map(|k| weights[(j, k)] * with[k]).sum();
                 add(&mut part.master, *node, sum);
             }
+        }
+    }
+    for facet in covered {
+        for (local, &node) in facet.facet.nodes.iter().enumerate() {
+            parts[node].iter_mut().for_each(|part| part.full += facet.full[local]);
         }
     }
     parts

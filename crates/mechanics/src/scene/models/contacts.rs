@@ -1,20 +1,22 @@
 //! All contacts between the bodies of a scene: surfaces that face each other, and overlaps of displaced bodies.
 
+use std::cell::OnceCell;
 use std::collections::HashSet;
 
 use crate::error::Error;
 use crate::fem::geometry::{distance, dot, length, minus};
+use crate::fem::mesh::extent;
 use crate::fem::mortar::Opposite;
 use crate::fem::{Boundary, ElasticBody, Mortar, Region};
 use crate::scene::Model;
 use crate::scene::input::obstacle::{FacingSpec, ShapeSpec};
 use crate::scene::input::schema::{ObstacleSpec, Rule, Scene};
 
-/// The reach of the search for contacts, in sizes of the largest facet.
-const REACH: f64 = 1.0;
+/// How far contacts and overlaps are looked for, in sizes of the smaller body.
+const REACH: f64 = 0.25;
 
-/// The depth down to which overlaps are looked for, in sizes of the smaller body.
-const DEEPEST: f64 = 0.25;
+/// Halvings of the reach until the surfaces lie in one layer before each other.
+const HALVINGS: usize = 12;
 
 /// Overlaps below this share of the size of the mesh are rounding.
 const ROUNDING: f64 = 1e-9;
@@ -47,12 +49,19 @@ impl Scene {
                     continue;
                 }
                 let sides = [&surfaces[first], &surfaces[second]];
-                let largest = sides.iter().map(|side| largest_facet(&nodes, side)).fold(0.0, f64::max);
-                let reach = REACH * largest + self.largest_travel();
+                let between = |[own, other]: [usize; 2]| {
+                    Mortar::new((&nodes, sides[own]), (&nodes, sides[other]), *body.formulation())
+                };
+                let size = size_of(&body, &regions[first]).min(size_of(&body, &regions[second]));
+                let least = sides.iter().map(|side| largest_facet(&nodes, side)).fold(0.0, f64::max);
+                let widest = (REACH * size).max(least + self.largest_travel());
+                let is_one_layer =
+                    |reach: &f64| [[0, 1], [1, 0]].map(between).iter().all(|one| one.within(*reach).found().is_ok());
+                let reaches = (0..HALVINGS as i32).map(|halvings| widest / 2.0_f64.powi(halvings));
+                let reach = reaches.take_while(|reach| *reach >= least / 2.0).find(is_one_layer).unwrap_or(least);
                 let mut found = Vec::new();
                 for [own, other] in [[0, 1], [1, 0]] {
-                    let mortar = Mortar::new((&nodes, sides[own]), (&nodes, sides[other]), *body.formulation());
-                    let (faces, ..) = mortar.within(reach).seen()?;
+                    let (faces, ..) = between([own, other]).within(reach).seen()?;
                     let [of, at] =
                         [[first, second][own], [first, second][other]].map(|region| name_of(&regions[region]));
                     let name = free_name(&body, &format!("{of}-at-{at}"));
@@ -67,7 +76,7 @@ impl Scene {
                     rule: Rule::ClosestPoint,
                     gap: None,
                     force: None,
-                    shape: ShapeSpec::Body(FacingSpec::of(found[1].name.clone())),
+                    shape: ShapeSpec::Body(FacingSpec::of(found[1].name.clone(), reach)),
                 });
                 for side in found {
                     body = body.with_boundary(side)?;
@@ -111,21 +120,28 @@ impl Model {
             return Ok(None);
         }
         let nodes: Vec<[f64; 3]> = mesh.nodes().iter().enumerate().map(moved).collect();
-        let surfaces: Vec<Boundary> = regions.iter().map(|region| mesh.surface(region.elements())).collect();
-        let size = |region: &Region| {
-            let (low, high) = mesh.extent_of(region.nodes());
-            length(minus(high, low))
-        };
+        let surfaces: Vec<OnceCell<Boundary>> = vec![OnceCell::new(); regions.len()];
+        let surface = |region: usize| surfaces[region].get_or_init(|| mesh.surface(regions[region].elements()));
+        // Whatever rows hold apart may miss by as much as the meshes differ.
+        let rows = self.rows().iter().chain(self.rows_across());
+        let held: HashSet<usize> = rows.flat_map(|row| row.ends.iter().map(|end| end.0)).collect();
         let mut deepest: Option<Overlap> = None;
         for own in 0..regions.len() {
             for other in (0..regions.len()).filter(|&other| other != own) {
-                let reach = DEEPEST * size(&regions[own]).min(size(&regions[other]));
-                let mortar =
-                    Mortar::new((&nodes, &surfaces[own]), (&nodes, &surfaces[other]), *self.body().formulation());
+                // Only a node in the box of a body can be inside it.
+                let (low, high) = extent(&nodes[regions[own].nodes()]);
+                let may_be_inside = |node: &usize| {
+                    (0..dimension).all(|axis| (low[axis]..=high[axis]).contains(&nodes[*node][axis]))
+                        && !held.contains(node)
+                };
+                if !regions[other].nodes().any(|node| may_be_inside(&node)) {
+                    continue;
+                }
+                let inside: Vec<bool> = surface(other).facets().map(|facet| facet.iter().any(may_be_inside)).collect();
+                let near = surface(other).part("near", |facet| inside[facet]);
+                let reach = REACH * size_of(self.body(), &regions[own]).min(size_of(self.body(), &regions[other]));
+                let mortar = Mortar::new((&nodes, surface(own)), (&nodes, &near), *self.body().formulation());
                 let (_, opposite, sag) = mortar.within(reach).seen()?;
-                let rows = self.rows().iter().chain(self.rows_across());
-                // Whatever rows hold apart may miss by as much as the meshes differ.
-                let held: HashSet<usize> = rows.flat_map(|row| row.ends.iter().map(|end| end.0)).collect();
                 for seen in opposite.iter().filter(|seen| !held.contains(&seen.node)) {
                     let depth = -gap(&nodes, seen);
                     let counts = depth > ROUNDING * mesh.size() + sag;
@@ -143,6 +159,12 @@ impl Model {
 fn gap(nodes: &[[f64; 3]], seen: &Opposite) -> f64 {
     let away = |&(node, share): &(usize, f64)| share * dot(seen.normal, minus(nodes[seen.node], nodes[node]));
     seen.slave.iter().map(away).sum()
+}
+
+/// The diagonal of the box around a body.
+fn size_of(body: &ElasticBody, region: &Region) -> f64 {
+    let (low, high) = body.mesh().extent_of(region.nodes());
+    length(minus(high, low))
 }
 
 /// The largest distance of two nodes of a facet.

@@ -82,9 +82,9 @@ pub enum FitSpec {
 }
 
 impl FacingSpec {
-    /// The surface `boundary` of another body with the rows that suit it.
-    pub(crate) fn of(boundary: String) -> Self {
-        FacingSpec { boundary, rows: RowsSpec::Auto, side: SideSpec::Auto, reach: None, fit: None }
+    /// The surface `boundary` of another body within reach, with the rows that suit it.
+    pub(crate) fn of(boundary: String, reach: f64) -> Self {
+        FacingSpec { boundary, rows: RowsSpec::Auto, side: SideSpec::Auto, reach: Some(reach), fit: None }
     }
 }
 

@@ -92,7 +92,7 @@ fn facing(nodes: &[[f64; 3]], seen: Opposite) -> Facing {
     let normal = seen.normal.map(|part| 0.0 - part);
     let away = |&(node, share): &(usize, f64)| share * dot(normal, minus(nodes[node], nodes[seen.node]));
     let distance = seen.slave.iter().map(away).sum();
-    let slave = seen.slave.into_iter().map(|(node, share)| (node, 0.0 - share));
+    let slave = seen.slave.into_iter().filter(|end| end.1 != 0.0).map(|(node, share)| (node, 0.0 - share));
     let ends = std::iter::once((seen.node, 1.0)).chain(slave).collect();
     Facing { ends, normal, mean: normal, distance, area: None }
 }
