@@ -148,6 +148,19 @@ pub fn columns(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<f64>>>
     })
 }
 
+/// Copies a two-dimensional array of indices, row by row, with its shape. A negative index becomes `usize::MAX`.
+pub fn index_table(name: &str, object: &Bound<'_, PyAny>) -> PyResult<(Vec<usize>, [usize; 2])> {
+    let py = object.py();
+    let array = array_of(name, object, "iu", "an array of whole numbers in two dimensions")?;
+    let shape: Vec<usize> = array.getattr("shape")?.extract()?;
+    let &[rows, columns] = shape.as_slice() else {
+        let shape = array.getattr("shape")?;
+        return Err(bad_input(py, format!("{name} have the shape {shape}; they must have two dimensions")));
+    };
+    let indices = Indices::of(name, &array.call_method1("reshape", (-1,))?)?.to_usize(py)?;
+    Ok((indices, [rows, columns]))
+}
+
 /// Index arrays of scipy. They are read in place if they have 32 or 64 bits.
 pub enum Indices {
     Short(PyBuffer<i32>),

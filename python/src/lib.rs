@@ -9,6 +9,7 @@ mod arrays;
 mod errors;
 mod exceptions;
 mod matrices;
+mod mortar;
 mod options;
 mod prepared;
 mod problem;
@@ -44,5 +45,6 @@ fn _signorini(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(study::measured, module)?)?;
     module.add_function(wrap_pyfunction!(study::swept, module)?)?;
     module.add_function(wrap_pyfunction!(total_error::total_error, module)?)?;
+    module.add_function(wrap_pyfunction!(mortar::mortar_rows, module)?)?;
     Ok(())
 }

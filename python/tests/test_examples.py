@@ -34,6 +34,13 @@ def test_a_block_of_scikit_fem_has_the_force_of_the_scene() -> None:
     assert abs(by_skfem - by_scene) < 1e-9 * by_scene
 
 
+def test_two_blocks_of_scikit_fem_pass_a_pressure_without_error() -> None:
+    for cells in [(5, 3), (3, 5), (1, 4), (8, 8)]:
+        of_displacement, of_pressure = example("skfem_two_blocks").main(cells)
+        # Rounding of a solve.
+        assert of_displacement < 1e-11 and of_pressure < 1e-9
+
+
 def test_signorini_is_a_solver_of_qpsolvers_and_agrees_with_cvxpy() -> None:
     pytest.importorskip("qpsolvers")
     pytest.importorskip("cvxpy")

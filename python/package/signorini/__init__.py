@@ -34,6 +34,7 @@ from signorini._errors import (
     Undecided,
     UnderHeld,
 )
+from signorini._mortar import MortarRows, mortar_rows
 from signorini._signorini import (
     Certificate,
     Comparison,
@@ -66,6 +67,7 @@ __all__ = [
     "Infeasible",
     "InternalError",
     "Interrupted",
+    "MortarRows",
     "NotCertified",
     "NotConvex",
     "NumericalError",
@@ -88,6 +90,7 @@ __all__ = [
     "UnderHeld",
     "__version__",
     "compare",
+    "mortar_rows",
     "prepare",
     "qp",
     "solve",

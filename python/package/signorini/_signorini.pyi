@@ -21,6 +21,7 @@ __all__ = [
     "TotalError",
     "__version__",
     "_measured",
+    "_mortar_rows",
     "_swept",
     "compare",
     "prepare",
@@ -575,6 +576,14 @@ def total_error(
 
 def _measured(
     problem: Problem | Scene, refinements: int, runs: int, most_full_dofs: int, time: float | None
+) -> dict[str, Any]: ...
+def _mortar_rows(
+    slave: tuple[ArrayLike, ArrayLike, str | None],
+    master: tuple[ArrayLike, ArrayLike, str | None],
+    model: str,
+    thickness: float,
+    direction: ArrayLike | None,
+    reach: float | None,
 ) -> dict[str, Any]: ...
 def _swept(
     scene: Scene, over: str, values: ArrayLike, method: str | None, threads: int | None
