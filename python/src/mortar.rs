@@ -133,6 +133,9 @@ fn surface<'py>(
     let py = nodes.py();
     let nodes = places(name, nodes, formulation)?;
     let (connectivity, [count, columns]) = index_table(&format!("facets of {name}"), facets)?;
+    if count == 0 {
+        return Err(bad_input(py, format!("facets of {name} are 0 x {columns}; a surface has one facet at least")));
+    }
     let kind = match kind {
         Some(kind) => word(&format!("kind of {name}"), kind, &FACETS)?,
         None => by_columns(py, name, columns, formulation)?,

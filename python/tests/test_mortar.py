@@ -170,6 +170,7 @@ REFUSED: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "radius": (rows_of(master=with_node(-0.5), model="axisymmetric"), sg.BadInput, "radius -0.5 in row 1"),
     "real facets": (rows_of((NODES, EDGES.astype(float))), sg.BadType, "facets of slave .*whole numbers"),
     "flat facets": (rows_of((NODES, EDGES.ravel())), sg.BadInput, "facets of slave have the shape"),
+    "no facets": (rows_of(master=(NODES, np.zeros((0, 2), int))), sg.BadInput, "facets of master are 0 x 2; a surface has one facet"),
     "five columns": (rows_of((NODES, np.zeros((1, 5), int))), sg.BadInput, r"have 5 columns; in plane strain they have 2 \(Line2\)"),
     "unknown kind": (rows_of((*UPPER, "Q5")), sg.BadInput, 'kind of slave is "Q5"; it must be one of Line2'),
     "kind by number": (rows_of((*UPPER, 2)), sg.BadType, "kind of slave is of the type int"),
