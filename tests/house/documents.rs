@@ -247,6 +247,17 @@ fn the_page_on_assemblies_shows_lines_of_its_script_and_keys_of_its_scenes() {
     }
 }
 
+/// The script has made the meshes beside it here too.
+#[test]
+fn the_page_on_two_parts_shows_lines_of_its_script_and_its_scene() {
+    let (page, script) = (read("docs/two-parts.md"), read("examples/two-parts/parts.py"));
+    let code: Vec<&str> = page.lines().filter_map(|line| line.strip_prefix("    ")).collect();
+    let meshes: Vec<&&str> = code.iter().filter(|line| line.starts_with("mesh(")).collect();
+    assert_eq!(meshes.len(), 2, "{code:?}");
+    meshes.iter().for_each(|line| assert!(script.contains(**line), "{line:?} is no line of the script"));
+    assert!(page.contains(&format!("```json\n{}```", read("examples/two-parts/press.json"))), "the scene differs");
+}
+
 #[test]
 fn every_key_of_a_scene_has_an_example_that_builds() {
     let page = read("docs/scenes.md");
