@@ -471,3 +471,64 @@ fn a_modulus_in_pascals_beside_millimetres_is_asked_about() {
         assert!(meant.is_none_or(|words| said.starts_with("warning: ") && said.contains(words)), "{said}");
     }
 }
+
+/// A block of 0.5 x 1 on another one whose mesh does not match. `below` are the ends of the lower block along x, `cells` the
+/// numbers of cells of both, and `gap` their distance.
+fn blocks(below: [f64; 2], cells: [usize; 2], gap: f64, body: &Value) -> Value {
+    let block = |x: [f64; 2], cells: usize, y: [f64; 2]| json!({"rectangle": {"x": {"points": x, "divisions": [cells]}, "y": {"points": y, "divisions": [2]}}});
+    let mut shape = json!({"boundary": "base.top"});
+    body.as_object().unwrap().iter().for_each(|(key, value)| shape[key] = value.clone());
+    json!({
+        "body": block([0.0, 0.5], cells[0], [gap, 1.0 + gap]), "material": {"young": 1e4, "poisson": 0.3, "density": 1},
+        "further-bodies": [{"name": "base", "body": block(below, cells[1], [-1.0, 0.0]), "material": {"young": 1e4, "poisson": 0.3, "density": 1}}],
+        "supports": [{"on": {"boundary": "top"}, "x": 0, "y": -0.01}, {"on": {"boundary": "base.bottom"}, "x": 0, "y": 0}],
+        "obstacles": [{"boundary": "bottom", "approach": "-y", "shape": {"body": shape}}]
+    })
+}
+
+#[test]
+fn two_bodies_whose_surfaces_do_not_fit_are_warned_of() {
+    let wide = [-0.5, 1.0];
+    let fine = solved(&blocks(wide, [3, 7], 0.0, &json!({}))).0;
+    assert!(fine["warnings"].as_array().unwrap().iter().all(|warning| warning["code"] == "mesh-dependent"), "{fine}");
+
+    let none = warned(&solved(&blocks(wide, [3, 7], 0.5, &json!({"reach": 0.1}))), "no-facing-facet");
+    assert!(none.contains("no facet of `bottom` faces `base.top` within reach"), "{none}");
+    let partly = warned(&solved(&blocks([0.3, 0.8], [3, 7], 0.0, &json!({"side": "this"}))), "partly-covered");
+    assert!(partly.contains("of `bottom` 40.0 % face `base.top`, and of `base.top` 40.0 % face `bottom`"), "{partly}");
+    let coarse = warned(&solved(&blocks(wide, [8, 2], 0.0, &json!({"side": "this"}))), "coarse-master");
+    assert!(coarse.contains("the facets of `base.top` are 12.0 times as long as those of `bottom`"), "{coarse}");
+    let differs = warned(&solved(&blocks(wide, [3, 7], 0.5, &json!({"fit": {"interference": 0.02}}))), "fit-differs");
+    assert!(differs.contains("the meshes lie 5.20e-1 away from the fit -2.00e-2"), "{differs}");
+}
+
+/// A shaft in a hub of the same radius: straight edges of 15 and 10 degrees miss the circle by `h angle / 8`.
+#[test]
+fn straight_edges_of_a_shaft_in_a_hub_are_warned_of_with_their_sag() {
+    let ring = |radii: [f64; 2], count: usize| json!({"ring": {"radius": {"points": radii, "divisions": [2]}, "angle": {"points": [0, 360], "divisions": [count]}}});
+    let press = |body: Value| {
+        json!({
+            "body": ring([0.5, 1.0], 24), "material": {"young": 1e4, "poisson": 0.3},
+            "further-bodies": [{"name": "hub", "body": ring([1.0, 2.0], 36), "material": {"young": 1e4, "poisson": 0.3}}],
+            "supports": [{"on": {"boundary": "inner"}, "x": 0, "y": 0}, {"on": {"boundary": "hub.outer"}, "x": 0, "y": 0}],
+            "obstacles": [{"boundary": "outer", "approach": "+x", "rule": "closest-point", "gap": 0, "shape": {"body": body}}]
+        })
+    };
+    let angle = 15_f64.to_radians();
+    let sag = 2.0 * (angle / 2.0).sin() * angle / 8.0;
+    let message = warned(&solved(&press(json!({"boundary": "hub.inner"}))), "sag");
+    assert!(message.contains(&format!("miss them by up to {sag:.2e}")), "{message}");
+    let fitted = solved(&press(json!({"boundary": "hub.inner", "fit": {"interference": 0.001}}))).0;
+    assert!(!fitted.to_string().contains("\"sag\""), "{fitted}");
+}
+
+#[test]
+fn a_motion_of_bodies_whose_nodes_do_not_pair_up_is_refused() {
+    let mut scene = blocks([0.0, 0.5], [2, 3], 0.5, &json!({}));
+    scene["supports"] = json!([{"on": {"boundary": "base.bottom"}, "x": 0, "y": 0}]);
+    scene["analysis"] =
+        json!({"dynamic": {"duration": 0.01, "step": 0.001, "initial": [{"velocity": {"value": [0, -1]}}]}});
+    let (run, code) = refused(&scene, &[]);
+    assert_eq!(code, "\"motion-of-means\"");
+    run.fails_with(1, &["obstacles[0].shape.body", "hold means over several nodes", "lie opposite each other"]);
+}
