@@ -15,7 +15,7 @@ use crate::work::{End, Place, run};
 /// Surfaces with fewer facets are done in milliseconds.
 const FEW_FACETS: usize = 1000;
 
-/// The names of facets in the plane and in space, with their columns.
+/// The names of facets, first those of the plane.
 const FACETS: [(&str, FacetKind); 6] = [
     ("Line2", FacetKind::Line2),
     ("Line3", FacetKind::Line3),
@@ -25,7 +25,7 @@ const FACETS: [(&str, FacetKind); 6] = [
     ("Q8", FacetKind::Q8),
 ];
 
-/// The model that `thickness` may complete.
+/// A model by its name; a thickness completes those of the plane.
 #[derive(Clone, Copy)]
 enum Model {
     PlaneStrain,
