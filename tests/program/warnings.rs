@@ -495,7 +495,7 @@ fn two_bodies_whose_surfaces_do_not_fit_are_warned_of() {
     let none = warned(&solved(&blocks(wide, [3, 7], 0.5, &json!({"reach": 0.1}))), "no-facing-facet");
     assert!(none.contains("no facet of `bottom` faces `base.top` within reach"), "{none}");
     let partly = warned(&solved(&blocks([0.3, 0.8], [3, 7], 0.0, &json!({"side": "this"}))), "partly-covered");
-    assert!(partly.contains("of `bottom` 40.0 % face `base.top`, and of `base.top` 40.0 % face `bottom`"), "{partly}");
+    assert!(partly.contains("40.0 % of the area of `bottom` face `base.top`"), "{partly}");
     let coarse = warned(&solved(&blocks(wide, [8, 2], 0.0, &json!({"side": "this"}))), "coarse-master");
     assert!(coarse.contains("the facets of `base.top` are 12.0 times as long as those of `bottom`"), "{coarse}");
     let differs = warned(&solved(&blocks(wide, [3, 7], 0.5, &json!({"fit": {"interference": 0.02}}))), "fit-differs");

@@ -166,7 +166,7 @@ pub struct BetweenBodies {
     pub other: String,
     /// `pairs` of nodes, or `mortar`: means over the areas of the nodes of the carrying boundary.
     pub rows: &'static str,
-    /// Covered shares of both boundaries, from 0 to 1; `None` for pairs.
+    /// The covered share of the area of `boundary`, and the share of the nodes of `other` that face it, from 0 to 1; `None` for pairs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub covered: Option<[f64; 2]>,
     /// The moment about the origin of the contact forces on the other body, in force times length, as [`Resultant::moment`]: beside the

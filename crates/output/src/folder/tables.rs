@@ -32,12 +32,12 @@ fn dofs(model: &Model, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// A line for each contact row: `normal . (u - u_partner) <= gap`, or, with several nodes of another body as `node:share`,
+/// A line for each contact row: `normal . (u - u_partner) <= gap`, or, with all its nodes as `node:share`,
 /// `normal . sum(share * u) <= gap`.
 fn rows(model: &Model, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "row,obstacle,node,partner,x,y,z,normal_x,normal_y,normal_z,gap,tributary_area")?;
     for (index, row) in model.rows().iter().enumerate() {
-        let ends = || row.ends[1..].iter().map(|(node, share)| format!("{node}:{share}")).collect::<Vec<_>>().join(" ");
+        let ends = || row.ends.iter().map(|(node, share)| format!("{node}:{share}")).collect::<Vec<_>>().join(" ");
         let partner = row.partner().map_or_else(ends, |partner| partner.to_string());
         let at = vector(model.mesh().nodes().get(row.node).copied());
         let (normal, gap, area) = (vector(Some(row.normal)), row.gap, row.tributary_area);

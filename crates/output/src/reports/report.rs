@@ -155,12 +155,13 @@ fn between_lines(one: &ObstacleContact, units: &Units) -> Vec<String> {
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     let depth = quantity(between.penetration.unwrap_or(0.0), &units.length);
     wrapped(&format!(
-        "{}: rows are means over the nodes of `{}`, of which {} face `{}`, and {} of that; between them a node goes up to {depth} through",
+        "{}: rows are means over the nodes of `{}`; {} of its area and {} of the nodes of `{}` face each other; single nodes go up to \
+         {depth} through",
         one.of,
         printable(&between.boundary),
         percent(share),
-        printable(&between.other),
-        percent(of_other)
+        percent(of_other),
+        printable(&between.other)
     ))
 }
 

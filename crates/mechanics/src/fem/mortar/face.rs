@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use super::facet::{Facet, STRAIGHT, SharedPoint, area_vector};
-use crate::fem::element::{FacetKind, ReferenceElement, Shape, gauss_legendre};
+use crate::fem::element::{Cell, FacetKind, ReferenceElement, Shape, gauss_legendre};
 use crate::fem::geometry::{cross, dot, length, minus, unit};
 
 /// A corner this close to a line, in squares of the length of the line, lies on it.
@@ -25,6 +25,9 @@ const STEPS: usize = 30;
 const FOUND: f64 = 1e-15;
 
 type Point = [f64; 2];
+
+/// Points of a triangle, each with the area that it stands for.
+type Rule = Vec<(Point, f64)>;
 
 /// The plane across a direction, with two axes.
 struct Plane {
@@ -158,8 +161,8 @@ impl Inverse {
 }
 
 /// A rule on the triangle (0,0), (1,0), (0,1): points with weights that add up to 1/2.
-fn rule(points: Option<usize>) -> &'static [([f64; 2], f64)] {
-    static RULES: [OnceLock<Vec<([f64; 2], f64)>>; 3] = [const { OnceLock::new() }; 3];
+fn rule(points: Option<usize>) -> &'static [(Point, f64)] {
+    static RULES: [OnceLock<Rule>; 3] = [const { OnceLock::new() }; 3];
     let place = match points {
         None => 0,
         Some(FINE) => 1,
@@ -178,7 +181,7 @@ fn rule(points: Option<usize>) -> &'static [([f64; 2], f64)] {
 }
 
 /// Calls `visit` for the points of a rule on a convex polygon, with the area that each stands for.
-fn for_each_of_polygon(polygon: &[Point], rule: &[([f64; 2], f64)], mut visit: impl FnMut(Point, f64)) {
+fn for_each_of_polygon(polygon: &[Point], rule: &[(Point, f64)], mut visit: impl FnMut(Point, f64)) {
     let count = polygon.len() as f64;
     let centre = [0, 1].map(|axis| polygon.iter().map(|point| point[axis]).sum::<f64>() / count);
     // A triangle is its own fan.
@@ -201,8 +204,8 @@ pub(super) struct Projected<'a> {
     direction: [f64; 3],
     plane: Plane,
     inverse: Inverse,
-    /// Its straight pieces, counterclockwise, each with the ratio of area in place to area in the plane.
-    pieces: Vec<(Vec<Point>, f64)>,
+    /// Its straight pieces, counterclockwise.
+    pieces: Vec<Vec<Point>>,
     /// Its area in the plane.
     area: f64,
 }
@@ -214,23 +217,30 @@ impl<'a> Projected<'a> {
         let piece = |corners: &Vec<[f64; 3]>| {
             let vector = area_vector(corners);
             let facing = dot(vector, direction);
-            (facing > 0.0).then(|| (plane.polygon(corners), length(vector) / facing, facing))
+            (facing > 0.0).then(|| (plane.polygon(corners), facing))
         };
         let found: Vec<_> = facet.pieces().iter().filter_map(piece).collect();
-        let area = found.iter().map(|(.., area)| area).sum();
-        let pieces = found.into_iter().map(|(polygon, ratio, _)| (polygon, ratio)).collect();
+        let area = found.iter().map(|(_, area)| area).sum();
+        let pieces = found.into_iter().map(|(polygon, _)| polygon).collect();
         Projected { facet, direction, inverse: Inverse::of(facet, &plane), plane, pieces, area }
     }
 
     /// Calls `visit` for the integration points of the whole face: reference coordinates and area.
     pub fn for_each_of_whole(&self, visit: &mut dyn FnMut([f64; 3], f64)) {
-        for (polygon, ratio) in &self.pieces {
+        for polygon in &self.pieces {
             for_each_of_polygon(polygon, rule(self.inverse.points()), |point, area| {
                 if let Some(at) = self.inverse.at(point) {
-                    visit(at, area * ratio);
+                    visit(at, area * self.ratio(at));
                 }
             });
         }
+    }
+
+    /// The ratio of area in place to area in the plane.
+    fn ratio(&self, at: [f64; 3]) -> f64 {
+        let cell = Cell::new(self.facet.reference(), &self.facet.corners);
+        let vector = cell.area_vector(&(self.facet.reference().derivative)(at));
+        length(vector) / dot(vector, self.direction)
     }
 
     /// The reference coordinates of the place that is seen behind a point.
@@ -250,7 +260,7 @@ impl<'a> Projected<'a> {
             // Seen along the direction, the other face runs clockwise.
             let mut other = self.plane.polygon(&piece);
             other.reverse();
-            for (own, ratio) in &self.pieces {
+            for own in &self.pieces {
                 let shared = clipped(&other, own);
                 let area: f64 =
                     (2..shared.len()).map(|at| twice_area(shared[0], shared[at - 1], shared[at])).sum::<f64>() / 2.0;
@@ -259,7 +269,7 @@ impl<'a> Projected<'a> {
                 }
                 for_each_of_polygon(&shared, rule, |point, area| {
                     if let (Some(slave), Some(master)) = (self.inverse.at(point), inverse.at(point)) {
-                        visit(SharedPoint { slave, master, weight: area * ratio });
+                        visit(SharedPoint { slave, master, weight: area * self.ratio(slave) });
                     }
                 });
             }

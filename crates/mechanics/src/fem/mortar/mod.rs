@@ -26,7 +26,7 @@ mod line;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use coverage::{Covered, Part, kept, parts};
 use face::Projected;
@@ -46,8 +46,9 @@ const ROUNDING: f64 = 1e-12;
 /// A place outside a facet by less than this, in reference coordinates, is on its edge.
 const SAME_PLACE: f64 = 1e-9;
 
-/// A facet whose covered area exceeds its area by more than this share lies behind several layers of the other surface.
-const TWICE: f64 = 1e-6;
+/// A facet whose covered area exceeds its area by more than this share lies behind several layers of the other surface; curved facets
+/// exceed it by rounding of the curve, two layers by a half at least.
+const TWICE: f64 = 0.1;
 
 /// A surface of a body: its facets, and the nodes that these name.
 #[derive(Clone, Copy, Debug)]
@@ -132,7 +133,7 @@ pub(crate) struct Opposite {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Found {
     pub rows: Vec<MortarRow>,
-    /// Covered shares of the slave and the master surface.
+    /// The covered share of the area of the slave surface, and the share of the master nodes, each counted with its facets, that face it.
     pub covered: [f64; 2],
     /// The master nodes that face the slave surface.
     pub opposite: Vec<Opposite>,
@@ -255,10 +256,14 @@ impl<'a> Mortar<'a> {
             .collect();
         let sum = |part: fn(&Covered) -> f64| covered.iter().map(part).sum::<f64>();
         let area = sum(|facet| facet.area);
-        let of_master: f64 = master.iter().map(|facet| self.whole(facet)).sum();
-        let share = |of: f64| if of > 0.0 { area / of } else { 0.0 };
+        // The other surface counts by its nodes: its area differs from that of what it covers.
+        let seen: BTreeSet<usize> = opposite.iter().map(|seen| seen.node).collect();
+        let of_facet = |facet: &Facet| facet.nodes.iter().filter(|node| seen.contains(node)).count() as f64;
+        let seen_of_master: f64 = master.iter().map(of_facet).sum();
+        let of_master = (master.len() * self.master.kind.nodes()) as f64;
+        let share = |part: f64, of: f64| if of > 0.0 { part / of } else { 0.0 };
         Ok(Found {
-            covered: [share(sum(|facet| facet.whole)), share(of_master)],
+            covered: [share(area, sum(|facet| facet.whole)), share(seen_of_master, of_master)],
             opposite,
             sag: facet::sag(&slave, &own).max(facet::sag(&master, &others)),
             rows,
@@ -333,17 +338,6 @@ impl<'a> Mortar<'a> {
     fn measure(&self, facet: &Facet, shape: &PerNode<f64>) -> f64 {
         let radius = facet.places().iter().zip(shape).map(|(place, share)| share * place[0]).sum();
         self.formulation.measure(radius)
-    }
-
-    /// The area of a facet.
-    fn whole(&self, facet: &Facet) -> f64 {
-        let mut sum = 0.0;
-        let mut add = |at: [f64; 3], size: f64| sum += size * self.measure(facet, &(facet.reference().shape)(at));
-        match facet.reference().dimension {
-            1 => line::for_each_of_whole(facet, &mut add),
-            _ => Projected::new(facet, facet.normal).for_each_of_whole(&mut add),
-        }
-        sum
     }
 
     /// The integrals over the covered part of every slave facet.

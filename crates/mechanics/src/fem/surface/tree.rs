@@ -138,9 +138,10 @@ impl Tree {
         [radius, spread, reach]: [f64; 3],
         mut visit: impl FnMut(u32),
     ) {
-        let mut open = vec![0];
+        // A tree without items has a branch without halves.
+        let mut open = if self.order.is_empty() { Vec::new() } else { vec![0] };
         while let Some(place) = open.pop() {
-            let Some(&branch) = self.branches.get(place) else { continue };
+            let branch = self.branches[place];
             let middle = [0, 1, 2].map(|axis| (branch.low[axis] + branch.high[axis]) / 2.0);
             let half = distance(branch.high, middle);
             let away = minus(middle, point);

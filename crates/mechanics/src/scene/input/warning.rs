@@ -79,7 +79,7 @@ pub enum Warning {
     },
     /// Two boundaries cover each other only in part.
     #[error(
-        "{obstacle}: of `{boundary}` {:.1} % face `{other}`, and of `{other}` {:.1} % face `{boundary}`: where nothing faces them, the \
+        "{obstacle}: {:.1} % of the area of `{boundary}` face `{other}`, and {:.1} % of the nodes of `{other}` face `{boundary}`: where nothing faces them, the \
          bodies can go through each other; name boundaries that contain the whole contact",
         100.0 * share, 100.0 * of_other
     )]
@@ -92,7 +92,7 @@ pub enum Warning {
         other: String,
         /// Covered share of the area of the carrying boundary.
         share: f64,
-        /// Covered share of the area of the other boundary.
+        /// Share of the nodes of the other boundary that face the carrying one.
         of_other: f64,
     },
     /// Facets that cut the corner of a curve are off by a large part of the gap.

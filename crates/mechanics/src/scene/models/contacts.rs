@@ -9,7 +9,7 @@ use crate::fem::mesh::extent;
 use crate::fem::mortar::Opposite;
 use crate::fem::{Boundary, ElasticBody, Mortar, Region};
 use crate::scene::Model;
-use crate::scene::input::obstacle::{FacingSpec, ShapeSpec};
+use crate::scene::input::obstacle::ShapeSpec;
 use crate::scene::input::schema::{ObstacleSpec, Rule, Scene};
 
 /// How far contacts and overlaps are looked for, in sizes of the smaller body.
@@ -76,7 +76,7 @@ impl Scene {
                     rule: Rule::ClosestPoint,
                     gap: None,
                     force: None,
-                    shape: ShapeSpec::Body(FacingSpec::of(found[1].name.clone(), reach)),
+                    shape: ShapeSpec::other_body(found[1].name.clone(), reach),
                 });
                 for side in found {
                     body = body.with_boundary(side)?;

@@ -95,6 +95,15 @@ impl RowsSpec {
 }
 
 impl SideSpec {
+    /// `true` for the other boundary, `None` for the better one.
+    fn is_other(self) -> Option<bool> {
+        match self {
+            SideSpec::Auto => None,
+            SideSpec::This => Some(false),
+            SideSpec::Other => Some(true),
+        }
+    }
+
     fn is_auto(&self) -> bool {
         *self == SideSpec::Auto
     }
@@ -130,7 +139,7 @@ impl ObstacleShape for FacingSpec {
             },
         };
         let Some(pairs) = pairs else {
-            return Ok(Geometry::Body(mortar::between(site, [own, other], self.side, reach, fit)?));
+            return Ok(Geometry::Body(mortar::between(site, [own, other], self.side.is_other(), reach, fit)?));
         };
         let row = |(&(node, _), pair): (&(usize, f64), Pair)| {
             let distance = fit.unwrap_or(pair.distance);

@@ -90,6 +90,11 @@ const ALL: [About; 12] = [
 ];
 
 impl ShapeSpec {
+    /// The surface `boundary` of another body within reach, with the rows that suit it.
+    pub(crate) fn other_body(boundary: String, reach: f64) -> Self {
+        ShapeSpec::Body(FacingSpec::of(boundary, reach))
+    }
+
     /// The name of the shape and the models that allow it.
     fn about(&self) -> About {
         self.described().0

@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 
-use super::facing::SideSpec;
 use super::pairs::{Between, Facing};
 use super::shape::Site;
 use crate::error::Error;
@@ -26,22 +25,19 @@ const COVERED: f64 = 1.0 - 1e-6;
 /// The sag of curved facets that counts, as a share of the gap.
 const SAG: f64 = 0.1;
 
-/// The rows between the boundary of an obstacle and that of another body.
+/// The rows between the boundary of an obstacle and that of another body; `side` is `true` if the other boundary is to carry them, and
+/// `None` to choose.
 ///
 /// # Errors
 /// [`Error::Scene`] if the approach direction does not lead from one into the other, or the surfaces lie in several layers.
 pub(super) fn between(
     site: &Site,
     boundaries: [&Boundary; 2],
-    side: SideSpec,
+    side: Option<bool>,
     reach: Option<f64>,
     fit: Option<f64>,
 ) -> Result<Between, Error> {
-    let is_swapped = match side {
-        SideSpec::This => false,
-        SideSpec::Other => true,
-        SideSpec::Auto => carries_other(site.body, boundaries),
-    };
+    let is_swapped = side.unwrap_or_else(|| carries_other(site.body, boundaries));
     let [slave, master] = if is_swapped { [boundaries[1], boundaries[0]] } else { boundaries };
     let [own, other] = [slave, master].map(|boundary| outward(site.body, boundary));
     let nodes = site.body.mesh().nodes();

@@ -189,8 +189,8 @@ impl PlacedObstacle {
         }
     }
 
-    /// The boundary of the other body, if the obstacle is one, with the covered shares of the boundary that carries the rows and of the
-    /// other if the rows are means.
+    /// The name of the boundary of the other body, if the obstacle is one, and, if the rows are means, the covered shares `[own, other]`,
+    /// dimensionless, from 0 to 1: of the area of [`boundary`](Self::boundary), and of the nodes of the other boundary.
     pub fn other_body(&self) -> Option<(&str, Option<[f64; 2]>)> {
         match &self.geometry {
             Geometry::Body(between) => Some((&between.other, between.covered)),
