@@ -112,7 +112,7 @@ impl Multigrid {
     }
 
     /// The hierarchy if nothing moves along `directions`, orthonormal vectors of few dofs each, in the unknowns v of
-    /// [`Multigrid::units`]; `last` is a face of the same hierarchy that may be close.
+    /// `Multigrid::units`; `last` is a face of the same hierarchy that may be close.
     ///
     /// # Errors
     /// As [`Multigrid::new`].
