@@ -179,7 +179,7 @@ fn files_that_are_not_scenes_are_refused() {
         (format!("{{\"title\":{}", "[".repeat(10_000)).into_bytes(), &["at `title`", "lie inside each other"]),
         (format!("{{\"$schema\":{}", "[".repeat(10_000)).into_bytes(), &["at `$schema`", "lie inside each other"]),
         (format!("{{\"gap\":\"{}\"}}", "x".repeat(1_000_000)).into_bytes(), &["at `gap`", "must be a number"]),
-        (format!("{{\"{}\":1}}", "x".repeat(100_000)).into_bytes(), &["xxx ... ", "`obstacles`, `gap`"]),
+        (format!("{{\"{}\":1}}", "x".repeat(100_000)).into_bytes(), &["xxx ... ", "`obstacles`, `contact`, `gap`"]),
         (change("\"title\"", "\"a\\nb\""), &["unknown key `a\\nb`"]),
         (change("\"gap\":-0.01", "\"gap\":NaN"), &["at `gap`", "expected a value of JSON"]),
         (change("\"gap\":-0.01", "\"gap\":-Infinity"), &["at `gap`", "a number must have the form of JSON"]),

@@ -177,7 +177,10 @@ fn a_missing_approach_and_a_motion_are_refused_with_the_remedy() {
     let mut scene = stack();
     scene["obstacles"] = json!([{"boundary": "bottom", "shape": {"plane": {"point": [0, 0], "normal": [0, 1]}}}]);
     let refused = build(&scene).unwrap_err().to_string();
-    assert!(refused.contains("obstacles[0].approach") && refused.contains("closest-point"), "{refused}");
+    assert!(
+        refused.contains("`obstacles[0]`: the key `approach` is missing") && refused.contains("closest-point"),
+        "{refused}"
+    );
     let mut moving = stack();
     moving["material"]["density"] = json!(1);
     for body in 0..2 {

@@ -60,9 +60,9 @@ impl PlacedObstacle {
             // Not used: no row lies along it.
             None if needs_none => Approach::PlusX,
             None => {
-                let message = "is missing: the direction from the body to the obstacle, one of `+x`, `-x`, `+y`, `-y`, `+z`, `-z`; only \
+                let message = "the key `approach` is missing: one of `+x`, `-x`, `+y`, `-y`, `+z`, `-z`, from the body to the obstacle; only \
                                another body with `\"rule\": \"closest-point\"` needs none";
-                return Err(wrong(format!("{path}.approach"), message));
+                return Err(wrong(path, message));
             }
         };
         let (axis, _) = named.axis();
