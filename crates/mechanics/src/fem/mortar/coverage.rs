@@ -120,15 +120,16 @@ fn add(list: &mut Vec<(usize, f64)>, node: usize, value: f64) {
 /// The nodes that carry rows, from all facets of the surface: of those that `may_carry` one, the nodes of which enough is covered, and
 /// the best covered node of each covered facet that would have none.
 pub(super) fn kept(covered: &[Covered], nodes: usize, may_carry: &dyn Fn(usize) -> bool) -> Vec<bool> {
-    let (mut area, mut full) = (vec![0.0; nodes], vec![0.0; nodes]);
+    let (mut area, mut full, mut around) = (vec![0.0; nodes], vec![0.0; nodes], vec![0.0; nodes]);
     for facet in covered {
         for (local, &node) in facet.facet.nodes.iter().enumerate() {
             area[node] += facet.functions[local];
             full[node] += facet.full[local];
+            around[node] += facet.whole;
         }
     }
-    let largest = full.iter().fold(0.0, |largest: f64, full| largest.max(*full));
-    let share = |node: usize| if full[node] > NO_COVER * largest { area[node] / full[node] } else { 0.0 };
+    // The end of a quadratic edge on an axis of revolution has no area among the facets around it.
+    let share = |node: usize| if full[node] > NO_COVER * around[node] { area[node] / full[node] } else { 0.0 };
     let mut kept: Vec<bool> = (0..nodes).map(|node| may_carry(node) && share(node) > LEAST_COVERED).collect();
     for facet in covered.iter().filter(|facet| facet.is_covered()) {
         let nodes = facet.facet.nodes;

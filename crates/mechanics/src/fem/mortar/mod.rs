@@ -127,6 +127,8 @@ pub(crate) struct Opposite {
     pub slave: Vec<(usize, f64)>,
     /// Unit vector from the slave body into the other.
     pub normal: [f64; 3],
+    /// Distance of the node from that place along the normal, in length; negative inside the slave body.
+    pub gap: f64,
 }
 
 /// All rows with what the search for them found.
@@ -412,9 +414,10 @@ impl<'a> Mortar<'a> {
                     };
                     let normal = unit(sum(&|local| directions[local]));
                     let way = minus(place, sum(&|local| facet.places()[local]));
-                    if dot(way, normal).abs() <= self.reach {
+                    let gap = dot(way, normal);
+                    if gap.abs() <= self.reach {
                         let slave = facet.nodes.iter().copied().zip(shape).collect();
-                        opposite.insert(node, Opposite { node, slave, normal });
+                        opposite.insert(node, Opposite { node, slave, normal, gap });
                     }
                 }
             }

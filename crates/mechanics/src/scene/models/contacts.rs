@@ -4,9 +4,8 @@ use std::cell::OnceCell;
 use std::collections::HashSet;
 
 use crate::error::Error;
-use crate::fem::geometry::{distance, dot, length, minus};
+use crate::fem::geometry::{distance, length, minus};
 use crate::fem::mesh::extent;
-use crate::fem::mortar::Opposite;
 use crate::fem::{Boundary, ElasticBody, Mortar, Region};
 use crate::scene::Model;
 use crate::scene::input::obstacle::ShapeSpec;
@@ -143,7 +142,7 @@ impl Model {
                 let mortar = Mortar::new((&nodes, surface(own)), (&nodes, &near), *self.body().formulation());
                 let (_, opposite, sag) = mortar.within(reach).seen()?;
                 for seen in opposite.iter().filter(|seen| !held.contains(&seen.node)) {
-                    let depth = -gap(&nodes, seen);
+                    let depth = -seen.gap;
                     let counts = depth > ROUNDING * mesh.size() + sag;
                     if counts && deepest.as_ref().is_none_or(|deepest| depth > deepest.depth) {
                         deepest = Some(Overlap { node: seen.node, depth, bodies: [other, own] });
@@ -153,12 +152,6 @@ impl Model {
         }
         Ok(deepest)
     }
-}
-
-/// The distance of a node to the place of the other surface that it faces.
-fn gap(nodes: &[[f64; 3]], seen: &Opposite) -> f64 {
-    let away = |&(node, share): &(usize, f64)| share * dot(seen.normal, minus(nodes[seen.node], nodes[node]));
-    seen.slave.iter().map(away).sum()
 }
 
 /// The diagonal of the box around a body.

@@ -6,7 +6,6 @@ use super::pairs::{Between, Facing};
 use super::shape::Site;
 use crate::error::Error;
 use crate::fem::assembly::{facet_sizes, outward};
-use crate::fem::geometry::{dot, minus};
 use crate::fem::mortar::{Found, Opposite};
 use crate::fem::{Boundary, ElasticBody, Mortar};
 use crate::scene::Warning;
@@ -29,7 +28,7 @@ const SAG: f64 = 0.1;
 /// `None` to choose.
 ///
 /// # Errors
-/// [`Error::Scene`] if the approach direction does not lead from one into the other, or the surfaces lie in several layers.
+/// [`Error::Scene`] if a surface lies in several layers before the other within reach.
 pub(super) fn between(
     site: &Site,
     boundaries: [&Boundary; 2],
@@ -79,18 +78,16 @@ pub(super) fn between(
     }
     // In the order of the candidates of the boundary that carries the rows.
     let rows = slave.nodes().into_iter().map(|node| of_node.remove(&node)).collect();
-    let across = found.opposite.into_iter().map(|seen| (seen.node, facing(nodes, seen))).collect();
+    let across = found.opposite.into_iter().map(|seen| (seen.node, facing(seen))).collect();
     Ok(Between { rows, across, other: master.name.clone(), covered: Some(found.covered), is_swapped, warnings })
 }
 
 /// The contact seen from a node of the other body.
-fn facing(nodes: &[[f64; 3]], seen: Opposite) -> Facing {
+fn facing(seen: Opposite) -> Facing {
     let normal = seen.normal.map(|part| 0.0 - part);
-    let away = |&(node, share): &(usize, f64)| share * dot(normal, minus(nodes[node], nodes[seen.node]));
-    let distance = seen.slave.iter().map(away).sum();
     let slave = seen.slave.into_iter().filter(|end| end.1 != 0.0).map(|(node, share)| (node, 0.0 - share));
     let ends = std::iter::once((seen.node, 1.0)).chain(slave).collect();
-    Facing { ends, normal, mean: normal, distance, area: None }
+    Facing { ends, normal, mean: normal, distance: seen.gap, area: None }
 }
 
 /// Returns `true` if the second boundary carries the rows: that of the softer body, or, if both are as soft, the one with the smaller
