@@ -79,7 +79,18 @@ fn a_named_contact_is_not_found_again() {
     assert_eq!(boundaries, ["bottom", "middle-at-base"]);
 }
 
-/// A ring of three discs, each of which touches both others: six discs of contact in all directions.
+/// Without a gap the forces on both sides have opposite moments.
+#[test]
+fn the_moment_on_the_other_body_is_opposite() {
+    let report = report(&stack());
+    for index in 0..2 {
+        let own = report["resultants"][index]["moment"][0].as_f64().unwrap();
+        let other = report["contact"]["obstacles"][index]["between"]["moment_on_other"][0].as_f64().unwrap();
+        assert!(own > 1e-3 && (own + other).abs() < SAME * own, "{own:e} {other:e}");
+    }
+}
+
+/// A ring of three discs, each of which touches both others, in three directions.
 #[test]
 fn three_discs_that_touch_each_other_are_in_equilibrium() {
     let disc = |x: f64, y: f64, count: usize| {
@@ -101,7 +112,13 @@ fn three_discs_that_touch_each_other_are_in_equilibrium() {
     assert_eq!(forces.len(), 3);
     assert!(forces.iter().all(|&force| force > 1e-4), "{forces:?}");
     assert!(answer.forces().unwrap().balance < 1e-10);
-    // The upper disc presses on both others alike, but for the travel of one of them.
+    // Means are kept apart: some nodes between them go through, by far less than the travel of 0.01.
+    let deepest = answer.across().iter().fold(0.0_f64, |deepest, [_, gap]| deepest.max(-gap));
+    assert!(deepest > 1e-8 && deepest < 1e-4, "{deepest:e}");
+    let report = report(&scene);
+    let obstacles = report["contact"]["obstacles"].as_array().unwrap();
+    let reported = obstacles.iter().filter_map(|one| one["between"]["penetration"].as_f64()).fold(0.0, f64::max);
+    assert_eq!(reported, deepest);
     assert!(answer.model().warnings().is_empty(), "{:?}", answer.model().warnings());
 }
 
