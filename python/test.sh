@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the wheel of the Python package into target/wheels with the profile of the tests, installs it into environments
-# below target/, and runs all checks. Needs cargo and python3 >= 3.11 with venv.
+# Puts the package with the library that the tests of the workspace build into target/python, and runs all checks on it.
+# Needs cargo and python3 >= 3.11 with venv. `.ci/run` builds and installs the wheel as a user does.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -15,19 +15,18 @@ if ! cmp -s requirements.txt "$stamp"; then
     cp requirements.txt "$stamp"
 fi
 
-wheels=$CARGO_TARGET_DIR/wheels
-rm -rf "$wheels"
-"$environment/bin/maturin" build --quiet --locked --profile dev --features as-tests --out "$wheels"
-install() { "$1/bin/python" -m pip install --quiet --disable-pip-version-check --force-reinstall "${@:2}" "$wheels"/*.whl; }
-install "$environment" --no-deps
+# An example is asked for because dependencies then have the features that the tests give them: nothing is compiled twice.
+cargo build --quiet --locked --workspace --all-features --lib --example two_springs
+package=$CARGO_TARGET_DIR/python
+rm -rf "$package"
+mkdir -p "$package"
+cp -r package/signorini "$package/"
+cp "$CARGO_TARGET_DIR/debug/lib_signorini.so" "$package/signorini/_signorini.abi3.so"
+echo "$package" > "$("$environment/bin/python" -c 'import site; print(site.getsitepackages()[0])')/signorini.pth"
 
 "$environment/bin/python" -m pytest --quiet -p no:cacheprovider tests
 "$environment/bin/python" -m mypy.stubtest --concise --mypy-config-file pyproject.toml signorini
 "$environment/bin/python" -m mypy --no-error-summary --cache-dir "$CARGO_TARGET_DIR/mypy" -p signorini
-
-# The Python lines of the README, in an environment with only the wheel and numpy.
-empty=$CARGO_TARGET_DIR/empty-venv
-python3 -m venv --clear "$empty"
-install "$empty"
-sed -n '/^```python$/,/^```$/{/^```/!p}' "$root/README.md" | (cd / && "$empty/bin/python" -)
+# The Python lines of the README.
+sed -n '/^```python$/,/^```$/{/^```/!p}' "$root/README.md" | (cd / && "$environment/bin/python" -)
 echo "the Python package: all checks passed"
