@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use signorini::fem::ElementKind;
 use signorini::scene::Answer;
 use signorini::study::Summary;
 use signorini::{Error, Goal, Model, Settings, Watch};
@@ -132,20 +133,25 @@ impl Scene {
         of_table(py, &values, dimension)
     }
 
-    /// Node numbers of the elements, one row per element, counted from 0, in the order of VTK.
+    /// Node numbers of the elements, one row per element, counted from 0, in the order of VTK; -1 after the last node of an element with
+    /// fewer nodes than others have.
     #[getter]
     fn elements<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let model = self.model(py)?;
-        let count = model.mesh().element_count();
-        let nodes = of_indices(py, model.mesh().elements().flatten().copied())?;
-        let of_each = nodes.len()?.checked_div(count).unwrap_or(0);
-        nodes.call_method1("reshape", (count, of_each))
+        let mesh = model.mesh();
+        let most = mesh.kinds().map(ElementKind::nodes).max().unwrap_or(0);
+        // In 64 bits this is -1.
+        let none = || std::iter::repeat(usize::MAX);
+        let padded = mesh.elements().flat_map(|nodes| nodes.iter().copied().chain(none()).take(most));
+        of_indices(py, padded)?.call_method1("reshape", (mesh.element_count(), most))
     }
 
-    /// Name of the element type, for example Q4.
+    /// Names of the kinds of the elements, one per element, for example Q4.
     #[getter]
-    fn element_kind(&self, py: Python<'_>) -> PyResult<&'static str> {
-        Ok(self.model(py)?.mesh().kind().name())
+    fn element_kinds(&self, py: Python<'_>) -> PyResult<Vec<&'static str>> {
+        let model = self.model(py)?;
+        let mesh = model.mesh();
+        Ok((0..mesh.element_count()).map(|element| mesh.kind_of(element).name()).collect())
     }
 
     /// Node, obstacle, normal, gap and tributary area of each contact row, as a dictionary of arrays.

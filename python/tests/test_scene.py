@@ -148,7 +148,7 @@ def test_forces_pressures_and_stresses_of_an_answer_are_consistent() -> None:
     scene = sg.Scene(block())
     answer = scene.solve()
     nodes, rows = scene.nodes, scene.rows
-    assert nodes.shape == (25, 2) and scene.elements.shape == (16, 4) and scene.element_kind == "Q4"
+    assert nodes.shape == (25, 2) and scene.elements.shape == (16, 4) and scene.element_kinds == ["Q4"] * 16
     assert answer.displacement.shape == nodes.shape and answer.stress.shape == (25, 6) and answer.element_stress.shape == (16, 6)
     assert rows["node"].shape == answer.pressure.shape == (5,) and rows["normal"].shape == (5, 2)
     # All five nodes of the top are in contact and are displaced by the gap.

@@ -90,7 +90,7 @@ fn summed(
             (Goal { accuracy: Some(found.algebra()), ..goal }, Some(*discretisation_error))
         }
         _ => {
-            let last = found.guarantee.as_ref().and_then(|guarantee| guarantee.last_mesh);
+            let last = found.guarantee.as_ref().and_then(|guarantee| guarantee.last_mesh.as_ref());
             (goal, last.map(|last| last.estimated))
         }
     };

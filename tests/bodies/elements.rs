@@ -246,6 +246,35 @@ fn assembled_stiffness_and_internal_force_agree() {
 }
 
 #[test]
+fn bodies_of_any_two_elements_and_integrations_side_by_side_keep_their_forces_and_stresses() {
+    let all = all();
+    let pairs = (1..all.len()).flat_map(|second| (0..second).map(move |first| (first, second)));
+    let mut count = 0;
+    for ((name, own), (of_other, other)) in pairs.map(|(first, second)| (&all[first], &all[second])) {
+        if own.formulation() != other.formulation() {
+            continue;
+        }
+        count += 1;
+        let both = own.clone().beside(other, "other").unwrap();
+        let field = |[x, y, z]: [f64; 3]| [(3.0 * x + y).sin(), (x - 2.0 * y + z).cos(), (x + y * z).sin()];
+        let [of_own, of_other_body, of_both] = [own, other, &both].map(|body| {
+            let displacement = nodal_of(body.mesh(), field);
+            let dofs = DofMap::new(vec![None; displacement.len()]).unwrap();
+            let product = fem::stiffness(body, &dofs).unwrap().mul(&displacement);
+            let stress = fem::stress(body, &displacement).unwrap();
+            (fem::internal_force(body, &displacement).unwrap(), product, stress.elements, stress.nodes)
+        });
+        // Bit by bit.
+        let name = format!("{name} and {of_other}");
+        assert_eq!(of_both.0, [of_own.0, of_other_body.0].concat(), "{name}");
+        assert_eq!(of_both.1, [of_own.1, of_other_body.1].concat(), "{name}");
+        assert_eq!(of_both.2, [of_own.2, of_other_body.2].concat(), "{name}");
+        assert_eq!(of_both.3, [of_own.3, of_other_body.3].concat(), "{name}");
+    }
+    assert!(count > 100, "{count}");
+}
+
+#[test]
 fn stiffness_with_supports_is_the_submatrix_of_the_free_dofs() {
     for (name, body) in all() {
         let count = body.nodal_dofs();

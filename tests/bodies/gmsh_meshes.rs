@@ -46,7 +46,7 @@ fn unordered_tags_are_resolved_and_unused_nodes_are_removed() {
 #[test]
 fn an_unstructured_block_has_its_four_sides() {
     let block = mesh("block-t3.msh");
-    assert_eq!(block.kind(), ElementKind::T3);
+    assert_eq!(block.kind_of(0), ElementKind::T3);
     assert_eq!(block.extent(), ([0.0; 3], [2.0, 1.0, 0.0]));
     lies(&block, "bottom", |[_, y, _]| y);
     lies(&block, "top", |[_, y, _]| y - 1.0);
@@ -58,7 +58,7 @@ fn an_unstructured_block_has_its_four_sides() {
 fn one_of_two_groups_of_elements_can_be_read_as_a_body() {
     let file = GmshFile::read(path("two-parts-q8.msh")).unwrap();
     let (both, second) = (file.mesh(None, 1.0).unwrap(), file.mesh(Some("second"), 1.0).unwrap());
-    assert_eq!(both.kind(), ElementKind::Q8);
+    assert_eq!(both.kind_of(0), ElementKind::Q8);
     assert_eq!(both.extent(), ([0.0; 3], [2.0, 1.0, 0.0]));
     lies(&both, "interface", |[x, ..]| x - 1.0);
     assert_eq!(second.extent(), ([1.0, 0.0, 0.0], [2.0, 1.0, 0.0]));
@@ -72,7 +72,7 @@ fn one_of_two_groups_of_elements_can_be_read_as_a_body() {
 #[test]
 fn mid_side_nodes_of_a_half_disc_are_on_the_arc_in_their_order() {
     let disc = mesh("half-disc-t6.msh");
-    assert_eq!(disc.kind(), ElementKind::T6);
+    assert_eq!(disc.kind_of(0), ElementKind::T6);
     lies(&disc, "cut", |[_, y, _]| y - 1.0);
     lies(&disc, "arc", |[x, y, _]| x.hypot(y - 1.0) - 1.0);
     let arc = disc.boundary("arc").unwrap().nodes();
@@ -93,7 +93,7 @@ fn mid_side_nodes_of_a_half_disc_are_on_the_arc_in_their_order() {
 fn mid_side_nodes_of_solids_are_between_their_corners() {
     for name in ["box-tet10.msh", "box-hex20.msh"] {
         let solid = mesh(name);
-        let element = solid.kind().reference();
+        let element = solid.kind_of(0).reference();
         for nodes in solid.elements() {
             for (&middle, &[a, b]) in nodes[element.corners..].iter().zip(element.mid_sides) {
                 let [at, one, two] = [middle, nodes[a], nodes[b]].map(|node| solid.nodes()[node]);
@@ -106,7 +106,7 @@ fn mid_side_nodes_of_solids_are_between_their_corners() {
 #[test]
 fn nodes_and_area_of_a_half_ball_of_quadratic_tetrahedra_are_those_of_a_sphere() {
     let ball = mesh("half-ball-tet10.msh");
-    assert_eq!(ball.kind(), ElementKind::Tet10);
+    assert_eq!(ball.kind_of(0), ElementKind::Tet10);
     lies(&ball, "round", |[x, y, z]| x.hypot(y).hypot(z - 1.0) - 1.0);
     lies(&ball, "cut", |[_, _, z]| z - 1.0);
     let body = ElasticBody::new(ball, Material::new(1.0, 0.3).unwrap(), Formulation::Space).unwrap();
@@ -122,7 +122,7 @@ fn boxes_have_six_sides_with_outward_facets() {
     let boxes = [("box-tet4.msh", Tet4), ("box-hex8.msh", Hex8), ("box-tet10.msh", Tet10), ("box-hex20.msh", Hex20)];
     for (name, kind) in boxes {
         let solid = mesh(name);
-        assert_eq!((solid.kind(), solid.boundaries().len()), (kind, 6));
+        assert_eq!((solid.kind_of(0), solid.boundaries().len()), (kind, 6));
         for (side, axis, at) in [
             ("left", 0, 0.0),
             ("right", 0, 1.0),

@@ -55,12 +55,12 @@ fn every_form_of_the_mass_matrix_has_the_mass_and_centre_of_the_body() {
     for (body, side) in bodies() {
         for form in [MassForm::Consistent, MassForm::Lumped, MassForm::Redistributed] {
             let matrix = mass(&body, &all_free(&body), form, &contact_nodes(&body, side)).unwrap();
-            let what = format!("{form:?}, {}, {}", body.mesh().kind().name(), body.formulation().name());
+            let what = format!("{form:?}, {}, {}", body.mesh().kind_of(0).name(), body.formulation().name());
             let along = nodal_of(body.mesh(), |_| [1.0, 0.0, 0.0]);
             let (size, total) = (body.mesh().size(), integral(&body, |_| 1.0));
             assert!((dot(&along, &matrix.mul(&along)) - total).abs() <= SAME * total, "{what}: mass");
             // The diagonally scaled mass of quadratic elements has the right centre only if the elements are straight.
-            if form == MassForm::Lumped && body.mesh().kind().is_quadratic() {
+            if form == MassForm::Lumped && body.mesh().kind_of(0).is_quadratic() {
                 continue;
             }
             for axis in 0..body.dimension() {
@@ -79,7 +79,7 @@ fn the_consistent_mass_has_the_kinetic_energy_of_a_linear_velocity() {
         let velocity = nodal_of(body.mesh(), |at| [1.0 + at[0] - 2.0 * at[1] + at[2], 0.0, 0.0]);
         let exact = integral(&body, |at| (1.0 + at[0] - 2.0 * at[1] + at[2]).powi(2));
         let energy = dot(&velocity, &matrix.mul(&velocity));
-        assert!((energy - exact).abs() <= SAME * exact, "{}: {energy} and {exact}", body.mesh().kind().name());
+        assert!((energy - exact).abs() <= SAME * exact, "{}: {energy} and {exact}", body.mesh().kind_of(0).name());
     }
 }
 
@@ -118,7 +118,7 @@ fn redistributed_mass_is_zero_at_contact_nodes_and_definite_at_the_others() {
         let prescribed = (0..body.nodal_dofs()).map(|dof| nodes.contains(&(dof / dimension)).then_some(0.0));
         let others = DofMap::new(prescribed.collect()).unwrap();
         let inside = mass(&body, &others, MassForm::Redistributed, &nodes).unwrap();
-        assert!(Cholesky::of(&inside).is_ok(), "{}", body.mesh().kind().name());
+        assert!(Cholesky::of(&inside).is_ok(), "{}", body.mesh().kind_of(0).name());
     }
 }
 
@@ -126,7 +126,7 @@ fn redistributed_mass_is_zero_at_contact_nodes_and_definite_at_the_others() {
 fn lumped_mass_is_diagonal_and_positive() {
     for (body, _) in bodies() {
         let matrix = mass(&body, &all_free(&body), MassForm::Lumped, &[]).unwrap();
-        assert!(matrix.diagonal().iter().all(|&value| value > 0.0), "{}", body.mesh().kind().name());
+        assert!(matrix.diagonal().iter().all(|&value| value > 0.0), "{}", body.mesh().kind_of(0).name());
         assert!(matrix.lower().triplets().all(|(row, column, _)| row == column));
     }
 }

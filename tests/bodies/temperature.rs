@@ -59,7 +59,7 @@ fn a_linear_temperature_bends_a_thin_sheet_without_stress() {
     let straight = rectangle(&[0.0, 0.3, 2.0], &[0.0, 0.6, 1.0], ElementKind::Q8).unwrap();
     for mesh in [distorted(ElementKind::T6), straight] {
         let material = Material::new(7.0, 0.3).unwrap().with_expansion([EXPANSION; 3]).unwrap();
-        let (kind, body) = (mesh.kind(), ElasticBody::new(mesh, material, STRESS).unwrap());
+        let (kind, body) = (mesh.kind_of(0), ElasticBody::new(mesh, material, STRESS).unwrap());
         let elements = everywhere(&body);
         let body = body.with_temperature(&elements, 5.0, [3.0, -2.0, 0.0]).unwrap();
         let field = nodal(body.mesh(), |[x, y]| {

@@ -27,7 +27,7 @@ fn every_example_builds_without_a_warning() {
 fn the_indentation_has_one_row_per_top_node_with_a_parabolic_gap() {
     let model = scene("indentation").build().unwrap();
     assert_eq!((model.problem().dofs(), model.problem().rows()), (1640, 41));
-    assert_eq!((model.mesh().element_count(), model.mesh().kind()), (800, ElementKind::Q4));
+    assert_eq!((model.mesh().element_count(), model.mesh().kind_of(0)), (800, ElementKind::Q4));
     for (row, gap) in model.rows().iter().zip(model.problem().gap()) {
         let [x, y, _] = model.mesh().nodes()[row.node];
         assert_eq!((y, row.normal), (0.5, [0.0, 1.0, 0.0]));

@@ -44,7 +44,7 @@ fn apply(turn: &Turn, vector: &[f64]) -> [f64; 3] {
 
 /// The rotated mesh as a Gmsh file of version 2.2, with its boundaries as physical groups.
 fn gmsh(mesh: &Mesh, turn: &Turn) -> String {
-    let (body, side) = match mesh.kind() {
+    let (body, side) = match mesh.kind_of(0) {
         ElementKind::T3 => (2, 1),
         ElementKind::Q4 => (3, 1),
         ElementKind::Q8 => (16, 8),

@@ -40,7 +40,7 @@ pub fn distort(regular: &Mesh, reach: [f64; 3]) -> Mesh {
         if inner { [0, 1, 2].map(|axis| at[axis] + reach[axis] * shift[axis]) } else { at }
     };
     let mut nodes: Vec<[f64; 3]> = regular.nodes().iter().enumerate().map(move_inner).collect();
-    let kind = regular.kind();
+    let kind = regular.kind_of(0);
     if kind.is_quadratic() && dimension == 2 {
         for element in regular.elements() {
             for side in 0..kind.corners() {

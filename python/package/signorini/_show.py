@@ -18,6 +18,7 @@ _VTK = {
 }  # fmt: skip
 
 
+
 def scene_text(scene: dict[str, Any]) -> str:
     """Returns the JSON text of a scene, whose numbers may be numbers or arrays of numpy."""
 
@@ -98,15 +99,16 @@ def solution_plot(solution: Solution, ax: Any = None) -> Any:
 def scene_plot(solution: SceneSolution, ax: Any = None) -> Any:
     """Draws a deformed plane mesh with its von Mises stress, or the contact forces of a body in space or a bar; returns the axes."""
     scene = solution.scene
-    rim = _RIMS.get(scene.element_kind)
-    if rim is None:
+    kinds = scene.element_kinds
+    if not set(kinds) <= set(_RIMS):
         return solution_plot(solution, ax)
     ax = axes(ax)
     from matplotlib.collections import PolyCollection
 
     moved = scene.nodes + solution.displacement
-    of_elements = solution.von_mises[scene.elements].mean(axis=1)
-    outlines = list(moved[scene.elements[:, rim]])
+    elements = [nodes[nodes >= 0] for nodes in scene.elements]
+    of_elements = np.array([solution.von_mises[nodes].mean() for nodes in elements])
+    outlines = [moved[nodes[_RIMS[kind]]] for nodes, kind in zip(elements, kinds)]
     cells = PolyCollection(outlines, array=of_elements, cmap="viridis", edgecolors="face", linewidths=0.2)
     ax.add_collection(cells)
     nodes = np.asarray(scene.rows["node"])[solution.contact_set]
@@ -137,7 +139,9 @@ def scene_to_pyvista(solution: SceneSolution) -> Any:
         return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))
 
     # The nodes of an element are already in the order of VTK.
-    cells = {_VTK[scene.element_kind]: np.asarray(scene.elements)}
+    kinds = np.array(scene.element_kinds)
+    alike = {kind: scene.elements[kinds == kind] for kind in dict.fromkeys(kinds.tolist())}
+    cells = {_VTK[kind]: nodes[:, nodes[0] >= 0] for kind, nodes in alike.items()}
     grid = pyvista.UnstructuredGrid(cells, in_space(scene.nodes))
     grid.point_data["displacement"] = in_space(solution.displacement)
     grid.point_data["stress"] = np.asarray(solution.stress)

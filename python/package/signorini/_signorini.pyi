@@ -329,10 +329,11 @@ class Scene:
         """Coordinates of the nodes, one row per node, in the unit of length."""
     @property
     def elements(self) -> NDArray[np.int64]:
-        """Node numbers of the elements, one row per element, counted from 0, in the order of VTK."""
+        """Node numbers of the elements, one row per element, counted from 0, in the order of VTK; -1 after the last node of an
+        element with fewer nodes than others have."""
     @property
-    def element_kind(self) -> str:
-        """Name of the element type, for example `Q4`."""
+    def element_kinds(self) -> list[str]:
+        """Names of the kinds of the elements, one per element, for example `Q4`."""
     @property
     def rows(self) -> dict[str, Any]:
         """Node, obstacle, normal, gap and tributary area of each contact row.

@@ -85,7 +85,7 @@ impl Solved {
     pub fn answer(&self, case: &str, quantity: impl Into<String>, ours: f64, exact: f64) -> Answer {
         Answer {
             case: case.into(),
-            element: self.model.mesh().kind().name(),
+            element: self.model.mesh().kind_of(0).name(),
             unknowns: self.model.problem().dofs(),
             quantity: quantity.into(),
             ours,

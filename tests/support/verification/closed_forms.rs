@@ -90,7 +90,7 @@ pub fn stored_answers() -> Result<Vec<Answer>, Box<dyn std::error::Error>> {
         let ours = solve_qp(model.problem())?.contact_force();
         answers.push(Answer {
             case: format!("indentation, gap {gap}, against cvxpy and OSQP"),
-            element: model.mesh().kind().name(),
+            element: model.mesh().kind_of(0).name(),
             unknowns: model.problem().dofs(),
             quantity: "force".into(),
             ours,

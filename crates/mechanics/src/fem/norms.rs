@@ -69,19 +69,19 @@ pub fn error_norms(
 ) -> Result<ErrorNorms, Error> {
     body.check_nodal("nodal displacement", displacement.len())?;
     let squares = Squares { body, exact };
-    let reference = body.mesh().kind().reference();
-    let table = Tabulated::fine(reference);
+    let tables = body.finely_tabulated();
     let elements = || body.elements().map(|element| (body.gather(displacement, element.nodes), element));
-    let coarse: Vec<Sums> = elements().map(|(local, element)| squares.over(&element, &local, &table)).collect();
+    let coarse: Vec<Sums> =
+        elements().map(|(local, element)| squares.over(&element, &local, tables.at(element.kind))).collect();
     let allowed = Sums::total(&coarse).allowed();
-    let halves = Halves::of(reference, Part::WHOLE, HALVINGS);
+    let halves = body.per_kind(|reference| Halves::of(reference, Part::WHOLE, HALVINGS));
     let fine: Vec<Sums> = (elements().zip(&coarse))
-        .map(|((local, element), sums)| squares.refined(&element, &local, *sums, &halves, allowed))
+        .map(|((local, element), sums)| squares.refined(&element, &local, *sums, halves.at(element.kind), allowed))
         .collect();
     Ok(Sums::total(&fine).norms())
 }
 
-/// The same with one fixed quadrature rule per element, whose integration error is not corrected; the displacement has an entry per
+/// The same with one fixed quadrature rule for elements of one kind, whose integration error is not corrected; the displacement has an entry per
 /// nodal dof, in length.
 ///
 /// # Errors
@@ -94,7 +94,7 @@ pub fn error_norms_by(
 ) -> Result<ErrorNorms, Error> {
     body.check_nodal("nodal displacement", displacement.len())?;
     let squares = Squares { body, exact };
-    let table = Tabulated::with_rule(body.mesh().kind().reference(), rule.to_vec());
+    let table = Tabulated::with_rule(body.mesh().kind_of(0).reference(), rule.to_vec());
     let of_element = |element: BodyElement| squares.over(&element, &body.gather(displacement, element.nodes), &table);
     Ok(Sums::total(&body.elements().map(of_element).collect::<Vec<_>>()).norms())
 }
@@ -195,8 +195,8 @@ impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
             return total;
         }
         let further = |(&half, &sums): (&Part, &Sums)| {
-            let reference = self.body.mesh().kind().reference();
-            self.refined(element, local, sums, &Halves::of(reference, half, halves.left - 1), allowed)
+            let halves = Halves::of(element.kind.reference(), half, halves.left - 1);
+            self.refined(element, local, sums, &halves, allowed)
         };
         Sums::total(&halves.parts.iter().zip(&parts).map(further).collect::<Vec<_>>())
     }

@@ -412,9 +412,10 @@ fn large_strain(answer: &Answer) -> Option<AnswerWarning> {
 
 /// The largest component of a strain at the centre of an element, by magnitude, and that element.
 fn largest_strain(body: &ElasticBody, displacement: &[f64]) -> Option<(usize, f64)> {
-    let table = body.tabulated();
-    let of_element = |BodyElement { nodes, cell, .. }: BodyElement| {
-        let strain = body.point(&cell, &table.centroid).strain(&body.gather(displacement, nodes), cell.unit());
+    let tables = body.tabulated();
+    let of_element = |BodyElement { nodes, kind, cell, .. }: BodyElement| {
+        let strain =
+            body.point(&cell, &tables.at(kind).centroid).strain(&body.gather(displacement, nodes), cell.unit());
         strain.iter().fold(0.0, |largest: f64, component| largest.max(component.abs()))
     };
     body.elements().map(of_element).enumerate().max_by(|a, b| a.1.total_cmp(&b.1))

@@ -23,7 +23,7 @@ pub(crate) fn fields(source: &Source) -> Result<String, Error> {
     };
     Unstructured {
         nodes: mesh.nodes(),
-        cell_types: &vec![mesh.kind(); elements.len()],
+        cell_types: &(0..elements.len()).map(|element| mesh.kind_of(element)).collect::<Vec<_>>(),
         elements: &elements,
         point_data: &arrays(|values| &values.at_nodes),
         cell_data: &arrays(|values| &values.in_elements),

@@ -34,10 +34,9 @@ pub(crate) fn msh(mesh: &Mesh, bodies: &[(&str, Range<usize>)]) -> String {
         let kind = boundary.kind.reference().gmsh;
         boundary.facets().for_each(|facet| line(kind, index + 1, facet));
     }
-    let kind = mesh.kind().reference().gmsh;
     for (element, nodes) in mesh.elements().enumerate() {
         let body = bodies.iter().position(|(_, elements)| elements.contains(&element)).unwrap_or(0);
-        line(kind, mesh.boundaries().len() + 1 + body, nodes);
+        line(mesh.kind_of(element).reference().gmsh, mesh.boundaries().len() + 1 + body, nodes);
     }
     text += "$EndElements\n";
     text

@@ -16,7 +16,7 @@ use crate::reports::report::{
 use crate::text::printable;
 use crate::view::curves::error_plot;
 use signorini_mechanics::Error;
-use signorini_mechanics::fem::{ElasticBody, Mesh};
+use signorini_mechanics::fem::{ElasticBody, ElementKind, Mesh};
 use signorini_mechanics::scene::Units;
 use signorini_mechanics::study::{Domain, Ended, Guarantee, Level, LevelKind, PlaneAnswer, Summary, TotalError};
 
@@ -79,12 +79,12 @@ fn total_error_text(title: &str, found: &TotalError, answer: Option<&Summary>, u
 /// What is proven on the scene's own mesh and on the last, with the check and the body for which it holds.
 fn of_meshes(guarantee: &Guarantee, no_answer: Option<&String>) -> String {
     let mut text = String::new();
-    if let Some(own) = guarantee.own_mesh {
+    if let Some(own) = &guarantee.own_mesh {
         let bound = percent(own.total_error.bound);
         text += &entry("own mesh", &format!("{} of {} unknowns: guaranteed at most {bound}", own.element, own.dofs));
         text += &entry("", &format!("(estimated {})", percent(own.estimated)));
     }
-    match (guarantee.last_mesh, no_answer) {
+    match (&guarantee.last_mesh, no_answer) {
         (Some(last), _) => {
             let bound = percent(last.total_error.bound);
             text += &entry(
@@ -261,7 +261,7 @@ fn bodies(body: &ElasticBody) -> String {
 /// The fields for ParaView: the displacement at the nodes, mean stress and share of the bound on triangles.
 fn fields(mesh: &Mesh, answer: &PlaneAnswer) -> Result<String, Error> {
     let elements: Vec<Vec<usize>> = mesh.elements().map(<[usize]>::to_vec).collect();
-    let kinds = vec![mesh.kind(); elements.len()];
+    let kinds: Vec<ElementKind> = (0..elements.len()).map(|element| mesh.kind_of(element)).collect();
     let moved: Vec<f64> = answer.displacement.iter().flat_map(|&[x, y]| [x, y, 0.0]).collect();
     let entry = |place: usize| -> Vec<f64> { answer.stress.iter().map(|stress| stress[place]).collect() };
     let [xx, yy, xy] = [0, 1, 2].map(entry);

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::packed::{Packed, Packer};
 use crate::view::limits::singular;
+use signorini_mechanics::fem::{Boundary, ElementKind, FacetKind};
 use signorini_mechanics::scene::Model;
 
 /// Half of the height of the strip that stands for a bar, over its length.
@@ -21,15 +22,28 @@ pub(super) struct Shape {
     pub nodes: Vec<usize>,
     /// The place of each vertex.
     pub places: Vec<[f64; 3]>,
-    /// The vertices of each cell, corners first.
-    cells: Vec<usize>,
-    corners: usize,
-    /// The corners between which the other vertices of a cell lie.
-    mids: Vec<[usize; 2]>,
+    cells: Vec<Cells>,
     /// A vertex of each node; none inside a body in space.
     pub vertex_of: Vec<Option<usize>>,
     /// The vertices of tetrahedra that fill the body, for sections; empty if they are not known.
     solids: Vec<usize>,
+}
+
+/// Cells of one kind.
+struct Cells {
+    /// The vertices of each cell, corners first.
+    vertices: Vec<usize>,
+    corners: usize,
+    /// The corners between which the other vertices of a cell lie.
+    mids: Vec<[usize; 2]>,
+}
+
+/// The same as they stand in a page.
+#[derive(Debug, Serialize)]
+struct PackedCells {
+    vertices: Packed,
+    corners: usize,
+    mids: Vec<[usize; 2]>,
 }
 
 /// The same as it stands in a page.
@@ -41,9 +55,7 @@ pub(super) struct Body {
     axisymmetric: bool,
     nodes: Packed,
     places: Packed,
-    cells: Packed,
-    corners: usize,
-    mids: Vec<[usize; 2]>,
+    cells: Vec<PackedCells>,
     /// Number of vertices on the surface; those inside follow.
     surface: usize,
     solids: Packed,
@@ -61,10 +73,14 @@ impl Shape {
             1 => strip(model),
             2 => {
                 let nodes: Vec<usize> = (0..mesh.nodes().len()).collect();
-                let (corners, mids) = (mesh.kind().corners(), mesh.kind().reference().mid_sides.to_vec());
-                let cells = mesh.elements().flatten().copied().collect();
+                let of_kind = |kind: ElementKind| {
+                    let elements = mesh.elements().enumerate().filter(|entry| mesh.kind_of(entry.0) == kind);
+                    let vertices = elements.flat_map(|entry| entry.1).copied().collect();
+                    Cells { vertices, corners: kind.corners(), mids: kind.reference().mid_sides.to_vec() }
+                };
+                let cells = mesh.kinds().map(of_kind).collect();
                 let vertex_of = nodes.iter().copied().map(Some).collect();
-                Shape { places: mesh.nodes().to_vec(), nodes, cells, corners, mids, vertex_of, solids: Vec::new() }
+                Shape { places: mesh.nodes().to_vec(), nodes, cells, vertex_of, solids: Vec::new() }
             }
             _ => surface(model),
         }
@@ -82,9 +98,10 @@ impl Shape {
             shape.nodes.push(node);
             shape.places.push(mesh.nodes()[node]);
         }
-        let corners: &[[usize; 4]] = if mesh.kind().corners() == 8 { &BRICK } else { &[[0, 1, 2, 3]] };
-        let filling = mesh.elements().flat_map(|nodes| corners.iter().flatten().map(|&corner| nodes[corner]));
-        shape.solids = filling.filter_map(|node| vertices[node]).collect();
+        for (element, nodes) in mesh.elements().enumerate() {
+            let corners: &[[usize; 4]] = if mesh.kind_of(element).corners() == 8 { &BRICK } else { &[[0, 1, 2, 3]] };
+            shape.solids.extend(corners.iter().flatten().filter_map(|&corner| vertices[nodes[corner]]));
+        }
         shape
     }
 
@@ -106,9 +123,7 @@ impl Shape {
             axisymmetric: model.body().formulation().is_axisymmetric(),
             nodes: packer.whole(&self.nodes, 1),
             places: packer.quantised(&places, shown),
-            cells: packer.whole(&self.cells, self.corners + self.mids.len()),
-            corners: self.corners,
-            mids: self.mids.clone(),
+            cells: self.cells.iter().map(|cells| cells.packed(packer)).collect(),
             surface: self.vertex_of.iter().flatten().max().map_or(0, |last| last + 1),
             solids: packer.whole(&self.solids, 4),
             regions: regions.iter().map(|region| region.name().to_string()).collect(),
@@ -118,31 +133,44 @@ impl Shape {
     }
 }
 
+impl Cells {
+    fn packed(&self, packer: &mut Packer) -> PackedCells {
+        let vertices = packer.whole(&self.vertices, self.corners + self.mids.len());
+        PackedCells { vertices, corners: self.corners, mids: self.mids.clone() }
+    }
+}
+
 /// A bar as a strip along x: two vertices for each node, the lower one first.
 fn strip(model: &Model) -> Shape {
     let mesh = model.mesh();
     let half = HALF_STRIP * mesh.size();
     let nodes: Vec<usize> = (0..mesh.nodes().len()).flat_map(|node| [node, node]).collect();
     let places = mesh.nodes().iter().flat_map(|at| [[at[0], -half, 0.0], [at[0], half, 0.0]]).collect();
-    let cells = mesh.elements().flat_map(|ends| [2 * ends[0], 2 * ends[1], 2 * ends[1] + 1, 2 * ends[0] + 1]).collect();
+    let vertices =
+        mesh.elements().flat_map(|ends| [2 * ends[0], 2 * ends[1], 2 * ends[1] + 1, 2 * ends[0] + 1]).collect();
+    let cells = vec![Cells { vertices, corners: 4, mids: Vec::new() }];
     let vertex_of = (0..mesh.nodes().len()).map(|node| Some(2 * node)).collect();
-    Shape { nodes, places, cells, corners: 4, mids: Vec::new(), vertex_of, solids: Vec::new() }
+    Shape { nodes, places, cells, vertex_of, solids: Vec::new() }
 }
 
 /// The surface of bodies in space.
 fn surface(model: &Model) -> Shape {
     let mesh = model.mesh();
-    let surface = mesh.surface(0..mesh.element_count());
+    let surfaces: Vec<Boundary> = model.body().regions().iter().map(|region| mesh.surface(region.elements())).collect();
     let mut vertex_of = vec![None; mesh.nodes().len()];
-    surface.connectivity.iter().for_each(|&node| vertex_of[node] = Some(0));
+    surfaces.iter().flat_map(|surface| &surface.connectivity).for_each(|&node| vertex_of[node] = Some(0));
     let nodes: Vec<usize> = (0..vertex_of.len()).filter(|&node| vertex_of[node].is_some()).collect();
     nodes.iter().enumerate().for_each(|(vertex, &node)| vertex_of[node] = Some(vertex));
-    let reference = surface.kind.reference();
+    let of_kind = |kind: FacetKind| {
+        let alike = surfaces.iter().filter(|surface| surface.kind == kind);
+        let vertices = alike.flat_map(|surface| &surface.connectivity).filter_map(|&node| vertex_of[node]).collect();
+        Cells { vertices, corners: kind.reference().corners, mids: kind.reference().mid_sides.to_vec() }
+    };
+    let mut kinds: Vec<FacetKind> = mesh.kinds().map(ElementKind::facet).collect();
+    kinds.dedup();
     Shape {
         places: nodes.iter().map(|&node| mesh.nodes()[node]).collect(),
-        cells: surface.connectivity.iter().filter_map(|&node| vertex_of[node]).collect(),
-        corners: reference.corners,
-        mids: reference.mid_sides.to_vec(),
+        cells: kinds.into_iter().map(of_kind).collect(),
         nodes,
         vertex_of,
         solids: Vec::new(),

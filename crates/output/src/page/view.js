@@ -17,15 +17,27 @@ function shapeOf(body) {
   const places = new Float32Array(3 * count);
   for (let i = 0; i < count; i++) for (let k = 0; k < width; k++) places[3 * i + k] = body.places[width * i + k];
   const { dimension, nodes, regions, surface, solids, singular, region_of: regionOf } = body,
-    { faces, edges } = cutCells(body, count);
+    cut = body.cells.map(cells => cutCells(cells, count)),
+    faces = joined(Uint32Array, cut.map(part => part.faces)),
+    edges = joined(Float64Array, cut.map(part => part.edges));
   const own = { dimension, nodes, regions, surface, solids, singular, regionOf };
   return { flat, count, places, faces, ...own, ...linesOf(edges, count), ...boxOf(places) };
 }
 
+/** One array from several. */
+function joined(Type, parts) {
+  const whole = new Type(parts.reduce((length, part) => length + part.length, 0));
+  parts.reduce((place, part) => {
+    whole.set(part, place);
+    return place + part.length;
+  }, 0);
+  return whole;
+}
+
 /** Triangles, and the key of every edge of every cell. */
-function cutCells({ cells, corners, mids }, count) {
+function cutCells({ vertices, corners, mids }, count) {
   const each = corners + mids.length,
-    number = cells.length / each;
+    number = vertices.length / each;
   // The vertices around a cell, and those of its triangles: around each corner between two middles, and inside.
   const isBetween = (pair, a, b) => pair.includes(a) && pair.includes(b),
     middle = k => corners + mids.findIndex(pair => isBetween(pair, k, (k + 1) % corners));
@@ -37,7 +49,7 @@ function cutCells({ cells, corners, mids }, count) {
   const faces = new Uint32Array(triangles.length * number),
     edges = new Float64Array(ring.length * number);
   for (let cell = 0; cell < number; cell++) {
-    const vertex = k => cells[each * cell + k];
+    const vertex = k => vertices[each * cell + k];
     triangles.forEach((k, i) => {
       faces[triangles.length * cell + i] = vertex(k);
     });

@@ -100,14 +100,15 @@ impl PlaneScene {
     /// The outlines of the elements as polygons. The edges of quadratic elements are curves: each is divided at its mid-side node and
     /// halfway to that node. The added nodes have the values of the shape functions there.
     fn polygons(&mut self, mesh: &Mesh) -> Vec<Vec<usize>> {
-        let kind = mesh.kind();
-        if !kind.is_quadratic() {
-            return mesh.elements().map(<[usize]>::to_vec).collect();
-        }
-        let mid_sides = kind.reference().mid_sides;
         let mut quarters: HashMap<[usize; 2], usize> = HashMap::new();
         let mut polygons = Vec::with_capacity(mesh.element_count());
-        for nodes in mesh.elements() {
+        for (element, nodes) in mesh.elements().enumerate() {
+            let kind = mesh.kind_of(element);
+            if !kind.is_quadratic() {
+                polygons.push(nodes.to_vec());
+                continue;
+            }
+            let mid_sides = kind.reference().mid_sides;
             let mut polygon = Vec::with_capacity(4 * mid_sides.len());
             for (place, &[from, to]) in mid_sides.iter().enumerate() {
                 let [from, middle, to] = [nodes[from], nodes[kind.corners() + place], nodes[to]];

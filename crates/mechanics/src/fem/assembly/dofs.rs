@@ -103,7 +103,7 @@ impl DofMap {
     pub fn with_contact_faces<'a>(mut self, body: &ElasticBody, boundaries: impl IntoIterator<Item = &'a str>) -> Self {
         let dimension = body.dimension();
         let boundaries = boundaries.into_iter().filter_map(|name| body.mesh().boundary(name));
-        let mut basis = PositiveBasis::on(body, boundaries);
+        let mut basis = PositiveBasis::on(boundaries);
         if basis.is_nodal() {
             return self;
         }

@@ -4,13 +4,13 @@
 use super::element_blocks::{Block, ElementStiffness, pair};
 use super::general_stiffness::general_stiffness;
 use crate::fem::body::{BodyElement, ElasticBody, Integration, LocalPoint};
-use crate::fem::element::{Cell, Tabulated};
+use crate::fem::element::Tabulated;
 use crate::fem::material::{Lame, Stiffness};
 
-/// The stiffness of an element of `body`; `table` is the body's [`tabulated`](ElasticBody::tabulated) element.
+/// The stiffness of an element of `body`; `table` has its shape functions at the quadrature points of the formulation.
 pub fn element_stiffness(body: &ElasticBody, element: &BodyElement, table: &Tabulated) -> ElementStiffness {
     let blocks = match &element.phase.law.stiffness {
-        &Stiffness::Isotropic(lame) => isotropic_stiffness(body, lame, table, &element.cell),
+        &Stiffness::Isotropic(lame) => isotropic_stiffness(body, lame, table, element),
         Stiffness::General(matrices) => general_stiffness(body, &matrices.stiffness, table, &element.cell),
     };
     ElementStiffness::of(blocks)
@@ -20,9 +20,10 @@ pub fn element_stiffness(body: &ElasticBody, element: &BodyElement, table: &Tabu
 ///
 /// In a body of revolution d_a has the hoop part N_a/r along r, which adds the term `2 mu h_a h_b`, h = N/r. With mean dilatation d is
 /// replaced by its mean over the element.
-fn isotropic_stiffness(body: &ElasticBody, lame: Lame, table: &Tabulated, cell: &Cell) -> Vec<Block> {
+fn isotropic_stiffness(body: &ElasticBody, lame: Lame, table: &Tabulated, element: &BodyElement) -> Vec<Block> {
+    let cell = &element.cell;
     let nodes = table.reference.nodes.len();
-    let dilatation = match body.integration() {
+    let dilatation = match element.phase.integration {
         Integration::MeanDilatation => Dilatation::Mean,
         Integration::Standard if body.formulation().is_axisymmetric() => Dilatation::Revolved,
         Integration::Standard => Dilatation::Trace,

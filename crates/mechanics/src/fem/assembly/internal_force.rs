@@ -14,13 +14,13 @@ use crate::fem::body::ElasticBody;
 pub fn internal_force(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<f64>, Error> {
     body.check_nodal("nodal displacement", displacement.len())?;
     let dimension = body.dimension();
-    let table = body.tabulated();
+    let tables = body.tabulated();
     let mut force = vec![0.0; displacement.len()];
     for element in body.elements() {
         let (nodes, cell) = (element.nodes, &element.cell);
-        let strained = body.strained(&table, displacement, &element);
+        let strained = body.strained(&tables, displacement, &element);
         let scale = cell.unit().powi(dimension as i32 - 1);
-        for at in &table.points {
+        for at in &tables.at(element.kind).points {
             let (point, stress) = strained.at(at);
             let weight = point.weight * scale;
             let [xx, yy, zz, xy, yz, zx] = stress.map(|component| component * weight);

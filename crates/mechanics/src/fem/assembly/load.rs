@@ -8,7 +8,7 @@ use super::surface::{FacetPoint, for_each_point, for_each_point_of};
 use super::{DofMap, internal_force};
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
-use crate::fem::element::{Tabulated, between_levels};
+use crate::fem::element::{PerKind, Tabulated, between_levels};
 use crate::fem::geometry::{cross, dot, minus};
 use crate::fem::mesh::Boundary;
 
@@ -128,7 +128,7 @@ pub fn add_body_force(body: &ElasticBody, force: [f64; 3], load: &mut [f64]) {
 /// Adds to the nodal load (length `dim * n_nodes`) the body force `field(point)` (force per volume), by five quadrature
 /// points in each direction of an element.
 pub fn add_body_force_field(body: &ElasticBody, field: impl Fn([f64; 3]) -> [f64; 3], load: &mut [f64]) {
-    add_force_at(body, &Tabulated::fine(body.mesh().kind().reference()), |_, at| field(at), load);
+    add_force_at(body, &body.finely_tabulated(), |_, at| field(at), load);
 }
 
 /// Adds to the nodal load (length `dim * n_nodes`) the densities of the materials times a constant acceleration (length per time
@@ -160,15 +160,20 @@ pub(crate) fn add_centrifugal(
         let along = dot(away, axis);
         [0, 1, 2].map(|k| densities[element] * omega * omega * (away[k] - along * axis[k]))
     };
-    add_force_at(body, &Tabulated::fine(body.mesh().kind().reference()), force, load);
+    add_force_at(body, &body.finely_tabulated(), force, load);
     Ok(())
 }
 
 /// Adds the body force `field(element, point)`.
-fn add_force_at(body: &ElasticBody, table: &Tabulated, field: impl Fn(usize, [f64; 3]) -> [f64; 3], load: &mut [f64]) {
-    for (element, BodyElement { nodes, cell, .. }) in body.elements().enumerate() {
+fn add_force_at(
+    body: &ElasticBody,
+    tables: &PerKind<Tabulated>,
+    field: impl Fn(usize, [f64; 3]) -> [f64; 3],
+    load: &mut [f64],
+) {
+    for (element, BodyElement { nodes, kind, cell, .. }) in body.elements().enumerate() {
         let scale = cell.unit().powi(body.dimension() as i32);
-        for at in &table.points {
+        for at in &tables.at(kind).points {
             let volume = body.point(&cell, at).weight * scale;
             let force = field(element, cell.place(&at.shape));
             for (&node, share) in nodes.iter().zip(at.shape) {

@@ -7,7 +7,6 @@ use super::DofMap;
 use super::redistribution::{ElementMass, Redistribution};
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
-use crate::fem::element::Tabulated;
 use crate::fem::geometry::dot;
 use signorini_qp::{SparseMatrix, SymmetricMatrix};
 
@@ -100,11 +99,11 @@ pub(crate) fn nodal_mass(body: &ElasticBody, form: MassForm, contact_nodes: &[us
 
 /// The consistent mass of every element, in the order of the elements.
 fn element_masses(body: &ElasticBody) -> Result<Vec<ElementMass>, Error> {
-    let table = Tabulated::fine(body.mesh().kind().reference());
-    let of_element = |(BodyElement { nodes, cell, .. }, density): (BodyElement<'_>, f64)| {
+    let tables = body.finely_tabulated();
+    let of_element = |(BodyElement { nodes, kind, cell, .. }, density): (BodyElement<'_>, f64)| {
         let mut mass = ElementMass::zeros(nodes.len(), nodes.len());
         let scale = density * cell.unit().powi(body.dimension() as i32);
-        for at in &table.points {
+        for at in &tables.at(kind).points {
             let weight = body.point(&cell, at).weight * scale;
             for (mut column, share) in mass.column_iter_mut().zip(at.shape) {
                 column.iter_mut().zip(at.shape).for_each(|(mass, other)| *mass += weight * share * other);

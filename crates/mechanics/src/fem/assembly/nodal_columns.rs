@@ -16,14 +16,14 @@ const OTHER: usize = usize::MAX;
 pub(crate) fn stiffness_columns(body: &ElasticBody, nodes: &[usize]) -> Result<SparseMatrix, Error> {
     let dimension = body.dimension();
     let place = places(body, nodes);
-    let table = body.tabulated();
+    let tables = body.tabulated();
     let mut entries = Vec::new();
     for placed in body.elements() {
         let around = placed.nodes;
         if around.iter().all(|&node| place[node] == OTHER) {
             continue;
         }
-        let element = element_stiffness(body, &placed, &table);
+        let element = element_stiffness(body, &placed, tables.at(placed.kind));
         for (b, &column) in around.iter().enumerate().filter(|(_, column)| place[**column] != OTHER) {
             for (a, &row) in around.iter().enumerate() {
                 let block = element.block(a.max(b), a.min(b));

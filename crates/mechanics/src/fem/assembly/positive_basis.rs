@@ -6,9 +6,14 @@
 use std::collections::BTreeMap;
 
 use super::element_blocks::ElementStiffness;
-use crate::fem::body::ElasticBody;
-use crate::fem::element::{POSITIVE_SHARE as WEIGHT, positive_coefficient};
+use crate::fem::element::{POSITIVE_SHARE as WEIGHT, ReferenceElement, positive_coefficient};
 use crate::fem::mesh::Boundary;
+
+/// The facets of a boundary in space, each with its reference cell; none if it has edges or points.
+fn of_boundary(boundary: &Boundary) -> impl Iterator<Item = (&'static ReferenceElement, &[usize])> {
+    let facet = boundary.kind.reference();
+    boundary.facets().filter(|_| facet.dimension == 2).map(move |nodes| (facet, nodes))
+}
 
 /// The change from nodal values to coefficients at mid-side nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,14 +23,10 @@ pub(crate) struct PositiveBasis {
 }
 
 impl PositiveBasis {
-    /// The basis of the mid-side nodes on `boundaries` of a body in space with quadratic faces; for all other bodies nothing changes.
-    pub fn on<'a>(body: &ElasticBody, boundaries: impl IntoIterator<Item = &'a Boundary>) -> Self {
-        let facet = body.mesh().kind().facet().reference();
+    /// The basis of the mid-side nodes of quadratic faces in space; for all other boundaries nothing changes.
+    pub fn on<'a>(boundaries: impl IntoIterator<Item = &'a Boundary>) -> Self {
         let mut basis = PositiveBasis::default();
-        if facet.dimension < 2 || facet.mid_sides.is_empty() {
-            return basis;
-        }
-        for nodes in boundaries.into_iter().flat_map(Boundary::facets) {
+        for (facet, nodes) in boundaries.into_iter().flat_map(of_boundary) {
             for (&middle, ends) in nodes[facet.corners..].iter().zip(facet.mid_sides) {
                 basis.ends.insert(middle, ends.map(|corner| nodes[corner]));
             }

@@ -43,10 +43,10 @@ pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, E
     let dimension = body.dimension();
     let (starts, rows) = lower_pattern(body.mesh(), dofs);
     let mut values = vec![0.0; rows.len()];
-    let table = body.tabulated();
+    let tables = body.tabulated();
     for placed in body.elements() {
         let nodes = placed.nodes;
-        let mut element = element_stiffness(body, &placed, &table);
+        let mut element = element_stiffness(body, &placed, tables.at(placed.kind));
         dofs.basis.change(nodes, &mut element);
         let mut free = [FreeAxes::default(); MAX_NODES];
         for (of_node, &node) in free.iter_mut().zip(nodes) {

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use crate::fem::body::ElasticBody;
 use crate::fem::element::{Cell, PerNode, QuadraturePoint, Tabulated};
 use crate::fem::geometry::{length, unit};
-use crate::fem::mesh::{Boundary, FacetKind};
+use crate::fem::mesh::{Boundary, FacetKind, Mesh};
 
 /// A quadrature point of a facet.
 pub(super) struct FacetPoint<'a> {
@@ -39,17 +39,12 @@ pub(super) fn for_each_point_of<'a>(
     let mesh = body.mesh();
     let reference = boundary.kind.reference();
     let owners = mesh.faces_of(boundary);
-    let faces = mesh.kind().reference().faces;
     for (facet, owner) in boundary.facets().zip(owners) {
         if facet.iter().any(|&node| node >= mesh.nodes().len()) {
             continue;
         }
         let cell = Cell::new(reference, &body.coordinates(facet));
-        let sense = owner.map_or(1.0, |(element, face)| {
-            let nodes = mesh.element(element);
-            let of_face: Vec<usize> = faces[face].iter().map(|&local| nodes[local]).collect();
-            sense(boundary.kind, facet, &of_face, face)
-        });
+        let sense = owner.map_or(1.0, |owner| sense(mesh, facet, owner));
         for at in &table_of(facet).points {
             let vector = cell.area_vector(&at.derivative);
             let size = length(vector);
@@ -70,13 +65,8 @@ pub(super) fn for_each_point_of<'a>(
 /// The boundary with the nodes of each facet in an order from which its area vector points outwards.
 pub(crate) fn outward(body: &ElasticBody, boundary: &Boundary) -> Boundary {
     let (mesh, mirrored) = (body.mesh(), boundary.kind.reference().mirrored());
-    let faces = mesh.kind().reference().faces;
     let oriented = |(facet, owner): (&[usize], Option<(usize, usize)>)| -> Vec<usize> {
-        let sense = owner.map_or(1.0, |(element, face)| {
-            let nodes = mesh.element(element);
-            let of_face: Vec<usize> = faces[face].iter().map(|&local| nodes[local]).collect();
-            sense(boundary.kind, facet, &of_face, face)
-        });
+        let sense = owner.map_or(1.0, |owner| sense(mesh, facet, owner));
         match sense > 0.0 {
             true => facet.to_vec(),
             false => mirrored.iter().map(|&local| facet[local]).collect(),
@@ -86,14 +76,16 @@ pub(crate) fn outward(body: &ElasticBody, boundary: &Boundary) -> Boundary {
     Boundary { connectivity, ..boundary.clone() }
 }
 
-/// 1 if the nodes of a facet run as those of the element's face, whose area vector points outwards, else -1.
-fn sense(kind: FacetKind, facet: &[usize], face: &[usize], number: usize) -> f64 {
-    let alike = match kind {
+/// 1 if the nodes of a facet run as those of the face of the element, whose area vector points outwards, else -1.
+fn sense(mesh: &Mesh, facet: &[usize], (element, number): (usize, usize)) -> f64 {
+    let (kind, nodes) = (mesh.kind_of(element), mesh.element(element));
+    let face: Vec<usize> = kind.reference().faces[number].iter().map(|&local| nodes[local]).collect();
+    let alike = match kind.facet() {
         // The end of a bar has no order: the normal of its first face is -x.
         FacetKind::Point1 => number > 0,
         FacetKind::Line2 | FacetKind::Line3 => facet.first() == face.first(),
         FacetKind::T3 | FacetKind::Q4 | FacetKind::T6 | FacetKind::Q8 => {
-            let corners = kind.reference().corners;
+            let corners = kind.facet().reference().corners;
             let place = face[..corners].iter().position(|node| Some(node) == facet.first()).unwrap_or(0);
             facet.get(1) == face.get((place + 1) % corners)
         }

@@ -1,20 +1,23 @@
 //! The elastic body: a mesh, its elements, their materials, a formulation; strains and stresses in it.
 
+mod integration;
 mod phase;
 mod phases;
 mod point;
 mod region;
 
+pub use integration::Integration;
 pub use phase::{Phase, Temperature};
 pub(crate) use point::LocalPoint;
 pub use region::Region;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use nalgebra::DMatrix;
 use signorini_qp as qp;
 
 use crate::error::Error;
-use crate::fem::element::{Cell, ElementKind, MAX_NODES, PerNode, Rule, Tabulated, TabulatedPoint};
+use crate::fem::element::{
+    Cell, ElementKind, MAX_NODES, PerKind, PerNode, ReferenceElement, Rule, Tabulated, TabulatedPoint,
+};
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::{Symmetric, trace};
 use crate::fem::material::{Material, Stiffness};
@@ -23,25 +26,11 @@ use crate::fem::mesh::{Boundary, Mesh, fail};
 /// Radii of a body of revolution that are negative by less than this times its size are rounding of zero.
 const ON_THE_AXIS: f64 = 1e-12;
 
-/// The integration of the stiffness of an element: in full, or with a dilatation that cannot lock.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[schemars(rename = "IntegrationSpec")]
-#[serde(rename_all = "kebab-case")]
-pub enum Integration {
-    /// The full strain at all quadrature points.
-    #[default]
-    Standard,
-    /// The dilatation is replaced by its mean over the element: for `q4` and `hex8`, which then do not lock if Poisson's ratio is near
-    /// 0.5.
-    MeanDilatation,
-}
-
 /// An elastic body of one material or several, or several bodies that only contact couples; checked once, when it is built.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElasticBody {
     mesh: Mesh,
     formulation: Formulation,
-    integration: Integration,
     /// In the order of their nodes and elements; one region for one body.
     regions: Vec<Region>,
     /// The phases of a region are consecutive; each has an element.
@@ -55,6 +44,8 @@ pub struct ElasticBody {
 pub struct BodyElement<'a> {
     /// Its nodes, in the order of its kind.
     pub nodes: &'a [usize],
+    /// Its kind.
+    pub kind: ElementKind,
     /// The cell with its coordinates.
     pub cell: Cell,
     /// Its material and its stress without strain.
@@ -74,7 +65,7 @@ impl ElasticBody {
         formulation.check()?;
         let phase = Phase::new(material, &formulation)?;
         if mesh.dimension() != formulation.dimension() {
-            let (element, name) = (mesh.kind().name(), formulation.name());
+            let (element, name) = (mesh.kind_of(0).name(), formulation.name());
             return fail(format!("a mesh of {element} does not fit {name}"));
         }
         if formulation.is_axisymmetric() {
@@ -85,11 +76,10 @@ impl ElasticBody {
             }
         }
         let (regions, of_elements) = (vec![Region::whole(&mesh)], vec![0; mesh.element_count()]);
-        let integration = Integration::Standard;
-        let body = ElasticBody { mesh, formulation, integration, regions, phases: vec![phase], of_elements };
-        let table = body.tabulated();
-        for (index, BodyElement { nodes, cell, .. }) in body.elements().enumerate() {
-            if let Err(reason) = cell.check(&table) {
+        let body = ElasticBody { mesh, formulation, regions, phases: vec![phase], of_elements };
+        let tables = body.tabulated();
+        for (index, BodyElement { nodes, kind, cell, .. }) in body.elements().enumerate() {
+            if let Err(reason) = cell.check(tables.at(kind)) {
                 return fail(format!("element {index} (nodes {nodes:?}, from 0): {reason}"));
             }
         }
@@ -103,8 +93,7 @@ impl ElasticBody {
     /// stress.
     pub fn with_integration(mut self, integration: Integration) -> Result<Self, Error> {
         if integration == Integration::MeanDilatation {
-            let element = self.mesh.kind();
-            if !element.takes_mean_dilatation() {
+            if let Some(element) = self.mesh.kinds().find(|kind| !kind.takes_mean_dilatation()) {
                 let (those, name) = (ElementKind::of_mean_dilatation("and"), element.name());
                 return fail(format!("mean dilatation is for {those} elements, not for {name}"));
             }
@@ -114,15 +103,17 @@ impl ElasticBody {
                 );
             }
         }
-        self.integration = integration;
+        self.phases.iter_mut().for_each(|phase| phase.integration = integration);
         self.check_integration()?;
         Ok(self)
     }
 
     /// Mean dilatation is defined for the isotropic law only.
     fn check_integration(&self) -> Result<(), Error> {
-        let is_general = |phase: &Phase| matches!(phase.law.stiffness, Stiffness::General(_));
-        match self.integration == Integration::MeanDilatation && self.phases.iter().any(is_general) {
+        let is_wrong = |phase: &Phase| {
+            phase.integration == Integration::MeanDilatation && matches!(phase.law.stiffness, Stiffness::General(_))
+        };
+        match self.phases.iter().any(is_wrong) {
             true => fail("mean dilatation is for isotropic materials only".into()),
             false => Ok(()),
         }
@@ -133,7 +124,7 @@ impl ElasticBody {
     /// Nodes and elements of `other` follow those of this body; its boundaries are called `name.boundary`.
     ///
     /// # Errors
-    /// [`Error::Mesh`] if formulation, element or integration of the two differ, or a boundary of that name exists.
+    /// [`Error::Mesh`] if the formulations of the two differ, or a boundary of that name exists.
     pub fn beside(mut self, other: &ElasticBody, name: &str) -> Result<Self, Error> {
         if self.formulation != other.formulation {
             let (one, two) = (self.formulation.name(), other.formulation.name());
@@ -141,16 +132,6 @@ impl ElasticBody {
                 "all bodies of a model must have the same formulation and cross-section; here they have {one} and \
                  {two}"
             ));
-        }
-        let (kind, other_kind) = (self.mesh.kind(), other.mesh.kind());
-        if kind != other_kind {
-            let (one, two) = (kind.name(), other_kind.name());
-            return fail(format!(
-                "all bodies of a model must have the same kind of element; here they have {one} and {two}"
-            ));
-        }
-        if self.integration != other.integration {
-            return fail("all bodies of a model must have the same integration".into());
         }
         let (nodes, elements) = (self.mesh.nodes().len(), self.mesh.element_count());
         self.mesh = self.mesh.beside(&other.mesh, name)?;
@@ -169,7 +150,8 @@ impl ElasticBody {
     pub(crate) fn on(&self, mesh: Mesh, parents: &[usize]) -> Result<Self, Error> {
         let body = Self::new(mesh, *self.phases[0].material(), self.formulation)?;
         let of_elements = parents.iter().map(|&parent| self.of_elements[parent]).collect();
-        ElasticBody { phases: self.phases.clone(), of_elements, ..body }.with_integration(self.integration)
+        let integration = self.phases[0].integration;
+        ElasticBody { phases: self.phases.clone(), of_elements, ..body }.with_integration(integration)
     }
 
     /// The same body with another named boundary.
@@ -197,11 +179,6 @@ impl ElasticBody {
         &self.formulation
     }
 
-    /// The rule by which the stiffness is integrated over an element.
-    pub fn integration(&self) -> Integration {
-        self.integration
-    }
-
     /// Number of coordinates, and of dofs per node.
     pub fn dimension(&self) -> usize {
         self.formulation.dimension()
@@ -212,9 +189,24 @@ impl ElasticBody {
         self.dimension() * self.mesh.nodes().len()
     }
 
-    /// The shape functions of the element, tabulated at the quadrature points of the formulation.
-    pub fn tabulated(&self) -> Tabulated {
-        Tabulated::new(self.mesh.kind().reference(), self.rule())
+    /// The shape functions of each kind of element, tabulated at the quadrature points of the formulation.
+    pub(crate) fn tabulated(&self) -> PerKind<Tabulated> {
+        self.per_kind(|reference| Tabulated::new(reference, self.rule()))
+    }
+
+    /// The same at five points in each direction.
+    pub(crate) fn finely_tabulated(&self) -> PerKind<Tabulated> {
+        self.per_kind(Tabulated::fine)
+    }
+
+    /// The [weights](Tabulated::extrapolation) that carry values at these points to the nodes.
+    pub(crate) fn extrapolations(&self) -> PerKind<DMatrix<f64>> {
+        self.per_kind(|reference| Tabulated::new(reference, self.rule()).extrapolation())
+    }
+
+    /// A value for each kind of its elements.
+    pub(crate) fn per_kind<T>(&self, make: impl Fn(&'static ReferenceElement) -> T) -> PerKind<T> {
+        PerKind::of(self.mesh.kinds(), |kind| make(kind.reference()))
     }
 
     /// The quadrature of the formulation.
@@ -224,10 +216,10 @@ impl ElasticBody {
 
     /// Every element with its coordinates, region by region.
     pub fn elements(&self) -> impl Iterator<Item = BodyElement<'_>> + '_ {
-        let reference = self.mesh.kind().reference();
-        self.mesh.elements().zip(&self.of_elements).map(move |(nodes, &phase_number)| {
-            let cell = Cell::new(reference, &self.coordinates(nodes));
-            BodyElement { nodes, cell, phase: &self.phases[phase_number as usize], phase_number }
+        self.mesh.elements().zip(&self.of_elements).enumerate().map(|(element, (nodes, &phase_number))| {
+            let kind = self.mesh.kind_of(element);
+            let cell = Cell::new(kind.reference(), &self.coordinates(nodes));
+            BodyElement { nodes, kind, cell, phase: &self.phases[phase_number as usize], phase_number }
         })
     }
 
@@ -276,7 +268,7 @@ impl ElasticBody {
 
     /// The strain of a nodal displacement in an element, at points given in coordinates; not for a body of revolution.
     pub(crate) fn strain_in(&self, displacement: &[f64], element: usize) -> impl Fn([f64; 3]) -> Symmetric {
-        let (reference, nodes) = (self.mesh.kind().reference(), self.mesh.element(element));
+        let (reference, nodes) = (self.mesh.kind_of(element).reference(), self.mesh.element(element));
         let cell = Cell::new(reference, &self.coordinates(nodes));
         let own = self.gather(displacement, nodes);
         move |at| {
@@ -286,26 +278,32 @@ impl ElasticBody {
         }
     }
 
-    /// An element under the nodal displacement of the body; `table` is the body's [`tabulated`](Self::tabulated) element.
+    /// An element under the nodal displacement of the body; `tables` are the body's [`tabulated`](Self::tabulated) elements.
     pub(crate) fn strained<'a>(
         &'a self,
-        table: &Tabulated,
+        tables: &PerKind<Tabulated>,
         displacement: &[f64],
         element: &'a BodyElement<'a>,
     ) -> Strained<'a> {
         let local = self.gather(displacement, element.nodes);
-        Strained { body: self, element, local, mean_dilatation: self.mean_dilatation(&element.cell, table, &local) }
+        let mean_dilatation = self.mean_dilatation(element, tables.at(element.kind), &local);
+        Strained { body: self, element, local, mean_dilatation }
     }
 
     /// The mean dilatation of an element, per length, if its integration needs it; `None` otherwise.
-    fn mean_dilatation(&self, cell: &Cell, table: &Tabulated, displacement: &PerNode<[f64; 3]>) -> Option<f64> {
-        if self.integration() != Integration::MeanDilatation {
+    fn mean_dilatation(
+        &self,
+        element: &BodyElement,
+        table: &Tabulated,
+        displacement: &PerNode<[f64; 3]>,
+    ) -> Option<f64> {
+        if element.phase.integration != Integration::MeanDilatation {
             return None;
         }
         let (mut integral, mut volume) = (0.0, 0.0);
         for at in &table.points {
-            let point = self.point(cell, at);
-            integral += point.weight * trace(&point.strain(displacement, cell.unit()));
+            let point = self.point(&element.cell, at);
+            integral += point.weight * trace(&point.strain(displacement, element.cell.unit()));
             volume += point.weight;
         }
         Some(integral / volume)

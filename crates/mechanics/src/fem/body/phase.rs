@@ -1,5 +1,6 @@
 //! A phase: the material and the stress without strain that a set of elements shares.
 
+use super::integration::Integration;
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::{Symmetric, dot};
@@ -12,6 +13,8 @@ pub struct Phase {
     material: Material,
     /// The law of the material.
     pub law: Law,
+    /// The integration of the stiffness.
+    pub integration: Integration,
     /// The stress without strain, if there is one.
     pub own: Option<OwnStress>,
 }
@@ -54,12 +57,12 @@ impl Phase {
     /// # Errors
     /// As [`Material::law`].
     pub(super) fn new(material: Material, formulation: &Formulation) -> Result<Self, Error> {
-        Ok(Phase { material, law: material.law(formulation)?, own: None })
+        Ok(Phase { material, law: material.law(formulation)?, integration: Integration::Standard, own: None })
     }
 
     /// The same state of another material.
     pub(super) fn of(&self, material: Material, formulation: &Formulation) -> Result<Self, Error> {
-        let phase = Self::new(material, formulation)?;
+        let phase = Phase { integration: self.integration, ..Self::new(material, formulation)? };
         let Some(own) = self.own else { return Ok(phase) };
         let phase = Phase { own: Some(OwnStress { initial: own.initial, ..OwnStress::NONE }), ..phase };
         match own.temperature == OwnStress::NONE.temperature {

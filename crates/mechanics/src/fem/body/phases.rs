@@ -125,10 +125,10 @@ mod tests {
 
     /// The volume of each phase.
     fn volumes(body: &ElasticBody) -> Vec<f64> {
-        let (table, mut volumes) = (body.tabulated(), vec![0.0; body.phases().len()]);
+        let (tables, mut volumes) = (body.tabulated(), vec![0.0; body.phases().len()]);
         for element in body.elements() {
             let scale = element.cell.unit().powi(3);
-            let parts = table.points.iter().map(|at| scale * body.point(&element.cell, at).weight);
+            let parts = tables.at(element.kind).points.iter().map(|at| scale * body.point(&element.cell, at).weight);
             volumes[element.phase_number as usize] += parts.sum::<f64>();
         }
         volumes

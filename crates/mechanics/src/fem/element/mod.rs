@@ -159,6 +159,23 @@ impl ElementKind {
     }
 }
 
+/// A value for each kind of element of a mesh.
+#[derive(Clone, Debug)]
+pub(crate) struct PerKind<T>(Vec<(ElementKind, T)>);
+
+impl<T> PerKind<T> {
+    /// The values that `make` gives for the kinds of a mesh, of which there is at least one.
+    pub fn of(kinds: impl Iterator<Item = ElementKind>, make: impl Fn(ElementKind) -> T) -> Self {
+        PerKind(kinds.map(|kind| (kind, make(kind))).collect())
+    }
+
+    /// The value of one of the kinds.
+    #[inline]
+    pub fn at(&self, kind: ElementKind) -> &T {
+        &self.0[self.0.iter().position(|entry| entry.0 == kind).unwrap_or(0)].1
+    }
+}
+
 impl FacetKind {
     /// The straight cells of a facet with these nodes, in the order of its reference cell: the nodes around each cell.
     pub fn straight_cells(self, facet: &[usize]) -> Vec<Vec<usize>> {

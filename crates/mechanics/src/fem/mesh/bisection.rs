@@ -38,9 +38,9 @@ struct Marked {
 }
 
 impl Tetrahedra {
-    /// From a mesh, with the longest edge of each face marked; `None` for another kind of mesh.
+    /// From a mesh, with the longest edge of each face marked; `None` for other elements.
     pub fn of(mesh: &Mesh) -> Option<Self> {
-        if mesh.kind() != ElementKind::LINEAR_TETRAHEDRON {
+        if !mesh.kinds().eq([ElementKind::LINEAR_TETRAHEDRON]) {
             return None;
         }
         let nodes = mesh.nodes().to_vec();

@@ -13,7 +13,7 @@ impl Mesh {
     /// # Errors
     /// [`Error::Mesh`] for a kind with other corners, or more than `MAX_NODES` nodes.
     pub(crate) fn elevated(&self, kind: ElementKind) -> Result<Mesh, Error> {
-        let own = self.kind();
+        let own = self.kind_of(0);
         if (own.nodes(), own.dimension()) != (kind.corners(), kind.dimension()) {
             return fail(format!("a mesh of {} cannot become one of {}", own.name(), kind.name()));
         }

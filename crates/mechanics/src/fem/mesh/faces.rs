@@ -37,13 +37,12 @@ impl Mesh {
             }
         }
         let mut found = vec![None; boundary.facet_count()];
-        let faces = self.kind().reference().faces;
         for (element, nodes) in self.elements().enumerate() {
             // Most elements do not touch the boundary.
             if !nodes.iter().any(|&node| marked[node]) {
                 continue;
             }
-            for (face, local) in faces.iter().enumerate() {
+            for (face, local) in self.kind_of(element).reference().faces.iter().enumerate() {
                 if !local.iter().all(|&place| marked[nodes[place]]) {
                     continue;
                 }
@@ -55,29 +54,29 @@ impl Mesh {
         found
     }
 
-    /// All faces that belong to one of these elements only, seen from outside; edges in the order in which they follow each other.
+    /// All faces that belong to one of these elements of one kind only, seen from outside; edges in the order in which they follow each
+    /// other.
     pub fn surface(&self, elements: Range<usize>) -> Boundary {
-        let faces = self.kind().reference().faces;
+        let reference = self.kind_of(elements.start).reference();
         let of_element = |element: usize| {
             let nodes = self.element(element);
-            faces.iter().map(move |face| face.iter().map(move |&local| nodes[local]))
+            reference.faces.iter().map(move |face| face.iter().map(move |&local| nodes[local]))
         };
         let mut count: HashMap<Key, usize> = HashMap::new();
         for face in elements.clone().flat_map(of_element) {
             *count.entry(key(face)).or_default() += 1;
         }
         let outer = elements.flat_map(of_element).filter(|face| count.get(&key(face.clone())) == Some(&1));
-        let kind = self.kind().facet();
+        let kind = reference.facet;
         Boundary::new("surface", kind, chained(kind, outer.flatten().collect()))
     }
 
     /// The number of the piece of each element: elements of one piece are joined by common faces.
     pub(crate) fn pieces(&self) -> Vec<usize> {
-        let faces = self.kind().reference().faces;
         let mut first_at: HashMap<Key, usize> = HashMap::new();
         let mut forest = signorini_qp::Forest::new(self.element_count());
         for (element, nodes) in self.elements().enumerate() {
-            for face in faces {
+            for face in self.kind_of(element).reference().faces {
                 forest.join(*first_at.entry(key(face.iter().map(|&local| nodes[local]))).or_insert(element), element);
             }
         }

@@ -1,4 +1,4 @@
-//! Meshes of one kind of element, in one, two or three dimensions: nodes, elements, named boundaries.
+//! Meshes in one, two or three dimensions: nodes, elements, named boundaries.
 
 mod axis;
 pub(crate) mod bisection;
@@ -27,14 +27,24 @@ use std::ops::Range;
 /// fit in memory.
 pub const MAX_NODES: usize = 5_000_000;
 
-/// A mesh of one kind of element, checked once, when it is built.
+/// A mesh, checked once, when it is built: elements of one kind, or blocks of them after [`Mesh::beside`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     nodes: Vec<[f64; 3]>,
-    kind: ElementKind,
+    /// In the order of their elements; neighbours differ in kind.
+    blocks: Vec<Block>,
     connectivity: Vec<usize>,
     boundaries: Vec<Boundary>,
     groups: Vec<ElementGroup>,
+}
+
+/// Consecutive elements of one kind.
+#[derive(Clone, Debug, PartialEq)]
+struct Block {
+    kind: ElementKind,
+    elements: Range<usize>,
+    /// The place of its first node in the connectivity.
+    first: usize,
 }
 
 impl Mesh {
@@ -54,10 +64,21 @@ impl Mesh {
         connectivity: Vec<usize>,
         boundaries: Vec<Boundary>,
     ) -> Result<Self, Error> {
-        let mesh = Mesh { nodes, kind, connectivity, boundaries, groups: Vec::new() };
-        mesh.check_nodes()?;
-        mesh.check_boundaries()?;
-        Ok(mesh)
+        let each = kind.nodes();
+        if !connectivity.len().is_multiple_of(each) {
+            let length = connectivity.len();
+            return fail(format!(
+                "the connectivity has length {length}, which is not a multiple of the {each} nodes of an element"
+            ));
+        }
+        let blocks = vec![Block { kind, elements: 0..connectivity.len() / each, first: 0 }];
+        Mesh { nodes, blocks, connectivity, boundaries, groups: Vec::new() }.checked()
+    }
+
+    fn checked(self) -> Result<Self, Error> {
+        self.check_nodes()?;
+        self.check_boundaries()?;
+        Ok(self)
     }
 
     fn check_nodes(&self) -> Result<(), Error> {
@@ -71,16 +92,9 @@ impl Mesh {
             }
             if at[dimension..].iter().any(|&value| value != 0.0) {
                 let unused = ["y and z", "z"][dimension - 1];
-                let name = self.kind.name();
+                let name = self.kind_of(0).name();
                 return fail(format!("node {node} lies at {at:?}; in a mesh of {name}, {unused} must be 0"));
             }
-        }
-        let each = self.kind.nodes();
-        if !self.connectivity.len().is_multiple_of(each) {
-            let length = self.connectivity.len();
-            return fail(format!(
-                "the connectivity has length {length}, which is not a multiple of the {each} nodes of an element"
-            ));
         }
         let of_facets = self.boundaries.iter().flat_map(|boundary| &boundary.connectivity);
         if let Some(node) = self.connectivity.iter().chain(of_facets).find(|&&node| node >= nodes.len()) {
@@ -98,17 +112,18 @@ impl Mesh {
     }
 
     fn check_boundaries(&self) -> Result<(), Error> {
-        let expected = self.kind.facet();
         for (index, boundary) in self.boundaries.iter().enumerate() {
             let name = &boundary.name;
             if self.boundaries[..index].iter().any(|other| other.name == *name) {
                 return fail(format!("two boundaries are called `{name}`"));
             }
-            if boundary.kind != expected || !boundary.connectivity.len().is_multiple_of(expected.nodes()) {
-                let (found, element) = (boundary.kind, self.kind.name());
+            let (found, count) = (boundary.kind, boundary.connectivity.len());
+            if !self.kinds().any(|kind| kind.facet() == found) || !count.is_multiple_of(found.nodes()) {
+                let expected: Vec<String> =
+                    self.kinds().map(|kind| format!("faces of {} are {:?}", kind.name(), kind.facet())).collect();
                 return fail(format!(
-                    "boundary `{name}` has facets {found:?} and {} node numbers; faces of {element} are {expected:?}",
-                    boundary.connectivity.len()
+                    "boundary `{name}` has facets {found:?} and {count} node numbers; {}",
+                    expected.join(", ")
                 ));
             }
         }
@@ -120,24 +135,43 @@ impl Mesh {
         &self.nodes
     }
 
-    /// The one kind that all elements have.
-    pub fn kind(&self) -> ElementKind {
-        self.kind
+    /// The kinds of its elements, each once, in the order of their first element.
+    pub fn kinds(&self) -> impl Iterator<Item = ElementKind> + '_ {
+        let is_first = |place: usize| self.blocks[..place].iter().all(|block| block.kind != self.blocks[place].kind);
+        (0..self.blocks.len()).filter(move |&place| is_first(place)).map(|place| self.blocks[place].kind)
+    }
+
+    /// The kind of an element, numbered from 0.
+    ///
+    /// # Panics
+    /// If there is no such element.
+    #[inline]
+    pub fn kind_of(&self, element: usize) -> ElementKind {
+        self.block_of(element).kind
+    }
+
+    #[inline]
+    fn block_of(&self, element: usize) -> &Block {
+        // There are as many blocks as bodies at most.
+        &self.blocks[self.blocks.iter().take_while(|block| block.elements.end <= element).count()]
     }
 
     /// Number of coordinates: 1, 2 or 3.
     pub fn dimension(&self) -> usize {
-        self.kind.dimension()
+        self.blocks[0].kind.dimension()
     }
 
     /// Number of elements, of all bodies in the mesh.
     pub fn element_count(&self) -> usize {
-        self.connectivity.len() / self.kind.nodes()
+        self.blocks.last().map_or(0, |block| block.elements.end)
     }
 
     /// The node indices of each element, from 0, in the order of [`ElementKind`].
     pub fn elements(&self) -> impl Iterator<Item = &[usize]> + '_ {
-        self.connectivity.chunks_exact(self.kind.nodes())
+        self.blocks.iter().flat_map(|block| {
+            let each = block.kind.nodes();
+            self.connectivity[block.first..block.first + each * block.elements.len()].chunks_exact(each)
+        })
     }
 
     /// The nodes of one element, from 0, in the order of its reference cell.
@@ -146,8 +180,10 @@ impl Mesh {
     /// If there is no such element.
     #[inline]
     pub fn element(&self, element: usize) -> &[usize] {
-        let each = self.kind.nodes();
-        &self.connectivity[element * each..(element + 1) * each]
+        let block = self.block_of(element);
+        let each = block.kind.nodes();
+        let start = block.first + (element - block.elements.start) * each;
+        &self.connectivity[start..start + each]
     }
 
     /// All named boundaries, in the order in which they were given.
@@ -174,23 +210,34 @@ impl Mesh {
     /// their names.
     pub fn mirrored(mut self, axis: usize, plane: f64) -> Self {
         self.nodes.iter_mut().filter_map(|at| at.get_mut(axis)).for_each(|value| *value = 2.0 * plane - *value);
-        let order = self.kind.reference().mirrored();
-        for element in self.connectivity.chunks_exact_mut(order.len()) {
-            let nodes: Vec<usize> = order.iter().map(|&local| element[local]).collect();
-            element.copy_from_slice(&nodes);
+        let mut connectivity = Vec::with_capacity(self.connectivity.len());
+        for (element, nodes) in self.elements().enumerate() {
+            connectivity.extend(self.kind_of(element).reference().mirrored().iter().map(|&local| nodes[local]));
         }
-        self
+        Mesh { connectivity, ..self }
     }
 
     /// This mesh and `other` in one, sharing no node: nodes and elements of `other` follow those of this mesh; its boundaries are called
     /// `name.boundary`, and its groups of elements `name.group`.
     ///
     /// # Errors
-    /// [`Error::Mesh`] for meshes of two kinds, or a boundary name that exists.
+    /// [`Error::Mesh`] for meshes of two dimensions, or a boundary name that exists.
     pub fn beside(mut self, other: &Mesh, name: &str) -> Result<Self, Error> {
-        if self.kind != other.kind {
-            let (one, two) = (self.kind.name(), other.kind.name());
-            return fail(format!("a mesh has one kind of element; here {one} and {two}"));
+        if self.dimension() != other.dimension() {
+            let [one, two] = [&self, other].map(|mesh| mesh.kind_of(0).name());
+            return fail(format!("a mesh has elements of one dimension; here {one} and {two}"));
+        }
+        let (elements, entries) = (self.element_count(), self.connectivity.len());
+        for block in &other.blocks {
+            let Range { start, end } = block.elements;
+            match self.blocks.last_mut().filter(|last| last.kind == block.kind) {
+                Some(last) => last.elements.end = elements + end,
+                None => self.blocks.push(Block {
+                    kind: block.kind,
+                    elements: elements + start..elements + end,
+                    first: entries + block.first,
+                }),
+            }
         }
         let first = self.nodes.len();
         let behind = |nodes: &[usize]| nodes.iter().map(|node| first + node).collect::<Vec<usize>>();
@@ -199,12 +246,11 @@ impl Mesh {
         self.boundaries.extend(other.boundaries.iter().map(|boundary| {
             Boundary::new(format!("{name}.{}", boundary.name), boundary.kind, behind(&boundary.connectivity))
         }));
-        let first = self.connectivity.len() / self.kind.nodes() - other.element_count();
         self.groups.extend(other.groups.iter().map(|group| ElementGroup {
             name: format!("{name}.{}", group.name),
-            elements: group.elements.iter().map(|element| first + element).collect(),
+            elements: group.elements.iter().map(|element| elements + element).collect(),
         }));
-        Ok(Self::new(self.nodes, self.kind, self.connectivity, self.boundaries)?.with_groups(self.groups))
+        self.checked()
     }
 
     /// The same mesh with one more boundary, after the others.

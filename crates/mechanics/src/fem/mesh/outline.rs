@@ -11,17 +11,17 @@ impl Mesh {
         self
     }
 
-    /// The boundary of all faces that have only marked nodes, seen from outside; edges in the order in which they follow each other.
-    /// `None` if there is no such face.
+    /// The boundary of all faces that have only marked nodes, in a mesh of one kind, seen from outside; edges in the order in which they
+    /// follow each other. `None` if there is no such face.
     fn boundary_where(&self, name: &str, marked: impl Fn(usize) -> bool) -> Option<Boundary> {
-        let faces = self.kind().reference().faces;
+        let reference = self.kind_of(0).reference();
         let mut connectivity = Vec::new();
         for nodes in self.elements() {
-            for face in faces.iter().filter(|face| face.iter().all(|&local| marked(nodes[local]))) {
+            for face in reference.faces.iter().filter(|face| face.iter().all(|&local| marked(nodes[local]))) {
                 connectivity.extend(face.iter().map(|&local| nodes[local]));
             }
         }
-        let kind = self.kind().facet();
+        let kind = reference.facet;
         (!connectivity.is_empty()).then(|| Boundary::new(name, kind, chained(kind, connectivity)))
     }
 }

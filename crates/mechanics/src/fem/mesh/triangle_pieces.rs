@@ -28,8 +28,8 @@ impl TrianglePieces {
     pub fn of(mesh: &Mesh) -> Result<Self, Error> {
         let straight = is_straight(mesh);
         let mut used = vec![!straight; mesh.nodes().len()];
-        for element in mesh.elements() {
-            element[..mesh.kind().corners()].iter().for_each(|&node| used[node] = true);
+        for element in 0..mesh.element_count() {
+            parts(mesh, element).0.iter().for_each(|&node| used[node] = true);
         }
         let mut nodes = Vec::new();
         let number = |(used, at): (bool, &[f64; 3])| {
@@ -40,8 +40,8 @@ impl TrianglePieces {
         };
         let numbers: Vec<Option<usize>> = used.into_iter().zip(mesh.nodes()).map(number).collect();
         let (mut triangles, mut elements) = (Vec::new(), Vec::new());
-        for (index, element) in mesh.elements().enumerate() {
-            for piece in cut(mesh, element, straight) {
+        for index in 0..mesh.element_count() {
+            for piece in cut(mesh, index, straight) {
                 let [Some(a), Some(b), Some(c)] = piece.map(|node| numbers[node]) else { continue };
                 let [[ax, ay], [bx, by], [cx, cy]] = [a, b, c].map(|node: usize| nodes[node]);
                 if (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) <= 0.0 {
@@ -71,9 +71,14 @@ impl TrianglePieces {
     }
 }
 
+/// The corners of an element, and the nodes in the middle of its edges.
+fn parts(mesh: &Mesh, element: usize) -> (&[usize], &[usize]) {
+    mesh.element(element).split_at(mesh.kind_of(element).corners())
+}
+
 /// The triangles of an element, by nodes of the mesh.
-fn cut(mesh: &Mesh, element: &[usize], straight: bool) -> Vec<[usize; 3]> {
-    let (corners, middles) = element.split_at(mesh.kind().corners());
+fn cut(mesh: &Mesh, element: usize, straight: bool) -> Vec<[usize; 3]> {
+    let (corners, middles) = parts(mesh, element);
     let (mut pieces, mut inner) = (Vec::new(), corners);
     if !straight && !middles.is_empty() {
         let before = |k: usize| middles[(k + corners.len() - 1) % corners.len()];
@@ -95,8 +100,8 @@ fn cut(mesh: &Mesh, element: &[usize], straight: bool) -> Vec<[usize; 3]> {
 /// Returns `true` if all mid-edge nodes lie in the middle of their chords.
 fn is_straight(mesh: &Mesh) -> bool {
     let nodes = mesh.nodes();
-    mesh.elements().all(|element| {
-        let (corners, middles) = element.split_at(mesh.kind().corners());
+    (0..mesh.element_count()).all(|element| {
+        let (corners, middles) = parts(mesh, element);
         middles.iter().enumerate().all(|(side, &middle)| {
             let [from, to] = [corners[side], corners[(side + 1) % corners.len()]].map(|node| nodes[node]);
             let half = [0, 1, 2].map(|axis| (from[axis] + to[axis]) / 2.0);

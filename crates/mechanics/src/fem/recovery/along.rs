@@ -3,7 +3,7 @@
 use super::{Stress, finished};
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
-use crate::fem::element::{Cell, ElementKind, PerNode, ReferenceElement, TabulatedPoint};
+use crate::fem::element::{Cell, PerNode, ReferenceElement, TabulatedPoint};
 use crate::fem::geometry::{cross, dot, length, minus};
 
 /// Points of a piece in an element whose stress is not constant.
@@ -68,11 +68,8 @@ impl ElasticBody {
     pub fn along(&self, displacement: &[f64], ends: [[f64; 3]; 2]) -> Result<Vec<PathPiece>, Error> {
         self.check_nodal("nodal displacement", displacement.len())?;
         let Some(line) = Line::within(ends, self.mesh().extent(), self.mesh().size()) else { return Ok(Vec::new()) };
-        let (table, reference) = (self.tabulated(), self.mesh().kind().reference());
+        let tables = self.tabulated();
         let is_about_axis = self.formulation().is_axisymmetric();
-        // The stress of such an element is constant.
-        let is_constant = reference.nodes.len() == reference.dimension + 1 && !is_about_axis && !self.has_own_stress();
-        let points = if is_constant { 2 } else { POINTS };
         let mut elements = self.elements().enumerate();
         let mut all = Vec::new();
         for region in self.regions() {
@@ -81,7 +78,12 @@ impl ElasticBody {
                 if !line.is_near(element.nodes.iter().map(|&node| self.mesh().nodes()[node])) {
                     continue;
                 }
-                let strained = self.strained(&table, displacement, &element);
+                let reference = element.kind.reference();
+                // The stress of such an element is constant.
+                let is_constant =
+                    reference.nodes.len() == reference.dimension + 1 && !is_about_axis && !self.has_own_stress();
+                let points = if is_constant { 2 } else { POINTS };
+                let strained = self.strained(&tables, displacement, &element);
                 let at = |from_start: f64| {
                     let place = line.at(from_start);
                     let at = element.cell.reference_coordinates(place);
@@ -91,7 +93,7 @@ impl ElasticBody {
                     let stress = finished(self, strained.at(&TabulatedPoint::new(reference, inside, 0.0)).1);
                     PathPoint { distance: line.offset + from_start, place, weights: (reference.shape)(at), stress }
                 };
-                for [start, end] in line.inside(self.mesh().kind(), self, &element) {
+                for [start, end] in line.inside(self, &element) {
                     let share = |point: usize| point as f64 / (points - 1) as f64;
                     let points = (0..points).map(|point| at(start + (end - start) * share(point))).collect();
                     pieces.push(PathPiece { element: index, points });
@@ -177,7 +179,8 @@ impl Line {
     }
 
     /// The parts of the line in an element.
-    fn inside(&self, kind: ElementKind, body: &ElasticBody, element: &BodyElement) -> Vec<[f64; 2]> {
+    fn inside(&self, body: &ElasticBody, element: &BodyElement) -> Vec<[f64; 2]> {
+        let kind = element.kind;
         let smallest = SAME * element.cell.unit().min(self.length);
         // Places relative to a point of the line beside the element are as exact as its own coordinates.
         let near = self.distance(body.mesh().nodes()[element.nodes[0]]);

@@ -45,7 +45,7 @@ impl EstimatedError {
         body.check_nodal("nodal displacement", displacement.len())?;
         qp::Error::check_length("nodal stress", field.nodes.len(), body.mesh().nodes().len(), "nodes")?;
         // The rule for bodies of revolution also integrates the squares of linear differences.
-        let table = Tabulated::new(body.mesh().kind().reference(), Rule::Revolved);
+        let tables = body.per_kind(|reference| Tabulated::new(reference, Rule::Revolved));
         let standard = body.tabulated();
 
         let mut of_elements = Vec::with_capacity(body.mesh().element_count());
@@ -59,7 +59,7 @@ impl EstimatedError {
             }
             let volume = cell.unit().powi(body.dimension() as i32);
             let mut difference = 0.0;
-            for at in &table.points {
+            for at in &tables.at(element.kind).points {
                 let (point, stress) = strained.at(at);
                 let mut away = stress;
                 for (share, of_node) in at.shape.iter().zip(&recovered) {

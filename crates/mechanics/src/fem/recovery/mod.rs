@@ -143,14 +143,14 @@ fn interfaces(body: &ElasticBody) -> BTreeSet<usize> {
 pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, Error> {
     body.check_nodal("nodal displacement", displacement.len())?;
     let node_count = body.mesh().nodes().len();
-    let table = body.tabulated();
-    let extrapolation = table.extrapolation();
+    let tables = body.tabulated();
+    let extrapolations = body.extrapolations();
     let mut elements = Vec::with_capacity(body.mesh().element_count());
     let mut sums: Vec<(Symmetric, usize)> = vec![([0.0; 6], 0); node_count];
     let (interfaces, mut sides) = (interfaces(body), BTreeMap::<(usize, u32), (Symmetric, usize)>::new());
     for element in body.elements() {
-        let nodes = element.nodes;
-        let strained = body.strained(&table, displacement, &element);
+        let (nodes, table, extrapolation) = (element.nodes, tables.at(element.kind), extrapolations.at(element.kind));
+        let strained = body.strained(&tables, displacement, &element);
         elements.push(finished(body, strained.at(&table.centroid).1));
         for (index, at) in table.points.iter().enumerate() {
             let at_point = strained.at(at).1;
@@ -177,15 +177,15 @@ pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, E
 /// Quadratic elements are extrapolated, as in [`StressField::nodes`]. Linear ones give the stress at their centroid, where it is most
 /// accurate: on a boundary without friction the normal stress does not change with the depth to first order.
 pub(crate) fn stress_at(body: &ElasticBody, displacement: &[f64], nodes: &BTreeSet<usize>) -> BTreeMap<usize, Stress> {
-    let table = body.tabulated();
-    let extrapolation = table.extrapolation();
-    let is_quadratic = body.mesh().kind().is_quadratic();
-    let weight = |local: usize, point: usize| if is_quadratic { extrapolation[(local, point)] } else { 1.0 };
+    let (tables, extrapolations) = (body.tabulated(), body.extrapolations());
     let mut sums: BTreeMap<usize, (Symmetric, usize)> = BTreeMap::new();
     let mut is_wanted = vec![false; body.mesh().nodes().len()];
     nodes.iter().for_each(|&node| is_wanted[node] = true);
     for element in body.elements().filter(|element| element.nodes.iter().any(|&node| is_wanted[node])) {
-        let strained = body.strained(&table, displacement, &element);
+        let (table, is_quadratic) = (tables.at(element.kind), element.kind.is_quadratic());
+        let extrapolation = extrapolations.at(element.kind);
+        let weight = |local: usize, point: usize| if is_quadratic { extrapolation[(local, point)] } else { 1.0 };
+        let strained = body.strained(&tables, displacement, &element);
         let at_points: Vec<Symmetric> = if is_quadratic {
             table.points.iter().map(|at| strained.at(at).1).collect()
         } else {

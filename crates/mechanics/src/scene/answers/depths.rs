@@ -31,11 +31,11 @@ impl Answer {
     pub(crate) fn depths_between_nodes(&self) -> Result<Depths, Error> {
         let (model, mesh) = (self.model(), self.model().mesh());
         let mut depths = Depths { of_elements: vec![0.0; mesh.element_count()], pushed: 0.0 };
-        let table = Tabulated::fine(mesh.kind().facet().reference());
         for (index, obstacle) in model.obstacles().iter().enumerate() {
             let (Some(rigid), Some(boundary)) = (obstacle.rigid(), mesh.boundary(obstacle.boundary())) else {
                 continue;
             };
+            let table = Tabulated::fine(boundary.kind.reference());
             for (facet, owner) in boundary.facets().zip(mesh.faces_of(boundary)) {
                 let Some((element, _)) = owner else { continue };
                 for at in &table.points {

@@ -108,9 +108,9 @@ impl Scene {
         let (mut dofs, mut stiffness_entries, mut bytes) = (0.0, 0.0, Estimate::START);
         for mesh in bodies.iter().map(ElasticBody::mesh) {
             let (nodes, dimension) = (mesh.nodes().len() as f64, mesh.dimension() as f64);
-            let reference = mesh.kind().reference();
-            let entries = nodes * reference.counts.neighbours * dimension * dimension;
-            let connections = (mesh.element_count() * reference.nodes.len()) as f64;
+            let neighbours = mesh.kinds().map(|kind| kind.reference().counts.neighbours).fold(0.0, f64::max);
+            let entries = nodes * neighbours * dimension * dimension;
+            let connections = mesh.elements().map(<[usize]>::len).sum::<usize>() as f64;
             dofs += nodes * dimension;
             stiffness_entries += entries;
             bytes += bytes::of_mesh(nodes, connections) + bytes::of_model(nodes * dimension, entries);

@@ -156,12 +156,15 @@ impl DescribedBody<'_> {
 
 /// The warning for a body with elements that lock.
 pub(crate) fn locking(body: &ElasticBody) -> Option<Warning> {
-    let kind = body.mesh().kind();
-    let ratios = body.phases().iter().filter_map(|phase| phase.material().poisson());
-    let poisson = ratios.fold(f64::NEG_INFINITY, f64::max);
-    let limit = LOCKING_POISSON[usize::from(kind.is_quadratic())];
-    let locks = body.formulation().can_lock() && body.integration() == Integration::Standard && poisson > limit;
-    locks.then(|| Warning::NearlyIncompressible { poisson, element: kind.name() })
+    let of_region = |region: &Region| {
+        let kind = body.mesh().kind_of(region.elements().start);
+        let standard = body.phases_of(region).iter().filter(|phase| phase.integration == Integration::Standard);
+        let poisson = standard.filter_map(|phase| phase.material().poisson()).reduce(f64::max)?;
+        let locks = poisson > LOCKING_POISSON[usize::from(kind.is_quadratic())];
+        locks.then(|| (poisson, Warning::NearlyIncompressible { poisson, element: kind.name() }))
+    };
+    let locking = body.regions().iter().filter(|_| body.formulation().can_lock()).filter_map(of_region);
+    locking.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, warning)| warning)
 }
 
 /// The warnings for bodies with materials of very different stiffness.

@@ -316,10 +316,15 @@ impl Model {
         self.check_multiplier(multiplier)?;
         let largest = self.rows.iter().fold(0.0, |largest: f64, row| largest.max(row.tributary_area));
         let (mesh, nodes) = (self.mesh(), self.mesh().nodes());
-        let ends_on_axis = self.body().formulation().is_axisymmetric() && mesh.kind().is_quadratic();
+        let is_axisymmetric = self.body().formulation().is_axisymmetric();
+        let is_quadratic = |row: &ContactRow| {
+            let boundary = mesh.boundary(self.obstacles()[row.obstacle].boundary());
+            boundary.is_some_and(|boundary| !boundary.kind.reference().mid_sides.is_empty())
+        };
         let reach = NO_AREA * mesh.size();
         let has_area = |row: &ContactRow| {
-            row.tributary_area > NO_AREA * largest && !(ends_on_axis && nodes[row.node][0].abs() <= reach)
+            let is_on_axis = || is_axisymmetric && nodes[row.node][0].abs() <= reach;
+            row.tributary_area > NO_AREA * largest && !(is_on_axis() && is_quadratic(row))
         };
         let of_row = |index: usize| -multiplier[index] / self.rows[index].projected_area();
         let pressure = |(index, row): (usize, &ContactRow)| {

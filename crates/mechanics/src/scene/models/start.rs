@@ -82,7 +82,7 @@ fn head(named: &str, body: &ElasticBody, groups: &[String], millimetres: bool) -
         "// A first scene for {named}: {} nodes, {} elements {}, size {}.\n// Lines that begin with // are comments.\n",
         mesh.nodes().len(),
         mesh.element_count(),
-        mesh.kind().name(),
+        mesh.kind_of(0).name(),
         shown(&size)
     );
     let unit = if millimetres { "millimetres: moduli are in N/mm2" } else { "metres" };

@@ -69,8 +69,8 @@ impl Scene {
     /// [`Error::Scene`] for a value that describes no motion, an initial penetration, a step beyond the stable one.
     pub fn dynamics(&self, model: &Model) -> Result<Option<Dynamics>, Error> {
         let Some(spec) = self.dynamic() else { return Ok(None) };
-        if !model.dofs().basis.is_nodal() {
-            let kind = model.mesh().kind();
+        let quadratic = model.mesh().kinds().find(|kind| kind.is_quadratic());
+        if let Some(kind) = quadratic.filter(|_| !model.dofs().basis.is_nodal()) {
             let message = format!(
                 "contact of {} elements is for equilibria only; take {} for a motion",
                 kind.name(),

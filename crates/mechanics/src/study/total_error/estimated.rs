@@ -85,10 +85,9 @@ pub(super) fn total_error(given: &Given, reason: String) -> Result<TotalError, E
 fn cells(model: &Model) -> Vec<Vec<[f64; 2]>> {
     let (mesh, nodes) = (model.mesh(), model.mesh().nodes());
     if mesh.dimension() == 2 {
-        let corners = mesh.kind().corners();
-        let cell =
-            |element: &[usize]| element[..corners].iter().map(|&node| [nodes[node][0], nodes[node][1]]).collect();
-        return mesh.elements().map(cell).collect();
+        let corners = |element: usize| &mesh.element(element)[..mesh.kind_of(element).corners()];
+        let cell = |element| corners(element).iter().map(|&node| [nodes[node][0], nodes[node][1]]).collect();
+        return (0..mesh.element_count()).map(cell).collect();
     }
     let mut facets = Vec::new();
     for obstacle in model.obstacles().iter().filter(|_| mesh.dimension() == 3) {

@@ -9,6 +9,7 @@ use signorini_qp::{Settings, Solution};
 use super::goal::{Ended, TotalErrorGoal};
 use crate::continuum::PlaneAnswer;
 use crate::error::Error;
+use crate::fem::ElementKind;
 use crate::scene::{Answer, Model, Scene};
 use crate::study::{AnswerWarning, ModelSize, Status};
 
@@ -169,10 +170,10 @@ pub struct Guarantee {
 }
 
 /// The size of the problem on one mesh, and how far its answer is from the continuum at most.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct JudgedMesh {
-    /// The kind of its elements by name, as `Q4`.
-    pub element: &'static str,
+    /// The kinds of its elements by name, as `Q4` or `T3 and Q8`.
+    pub element: String,
     /// Number of unknowns of its displacement.
     pub dofs: usize,
     /// The bound on |u - w| / |w|, w its displacement.
@@ -187,7 +188,7 @@ impl JudgedMesh {
         let model = answer.model();
         let bound = if distance == 0.0 { 0.0 } else { distance / norm };
         Ok(JudgedMesh {
-            element: model.mesh().kind().name(),
+            element: model.mesh().kinds().map(ElementKind::name).collect::<Vec<_>>().join(" and "),
             dofs: model.problem().dofs(),
             total_error: Bound { bound, guaranteed: true },
             estimated: answer.discretisation_error()?,

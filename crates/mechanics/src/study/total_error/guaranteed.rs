@@ -34,7 +34,9 @@ pub(super) fn total_error(given: &Given, problem: &PlaneProblem, mesh: Triangula
         Some(Ok((last, judged))) => {
             found.model = ModelSize::of(last.0.model().problem());
             found.last = Ok(Box::new(last));
-            found.guarantee.iter_mut().for_each(|guarantee| guarantee.last_mesh = Some(judged));
+            if let Some(guarantee) = found.guarantee.as_mut() {
+                guarantee.last_mesh = Some(judged);
+            }
         }
         Some(Err(error)) => found.last = Err(error.to_string()),
         None => {}

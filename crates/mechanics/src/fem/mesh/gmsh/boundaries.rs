@@ -17,7 +17,7 @@ pub(super) fn of(file: &GmshFile, mesh: &Mesh, numbers: &Numbers, is_part: bool)
         let mut connectivity = Vec::new();
         let mut known = HashSet::new();
         let facets = facets(file, dimension, &name);
-        let placed = Boundary::new(name.as_str(), mesh.kind().facet(), in_mesh(file, mesh, &facets, numbers)?);
+        let placed = Boundary::new(name.as_str(), mesh.kind_of(0).facet(), in_mesh(file, mesh, &facets, numbers)?);
         let faces = mesh.faces_of(&placed);
         for (facet, face) in facets.iter().zip(faces) {
             match face {
@@ -32,7 +32,7 @@ pub(super) fn of(file: &GmshFile, mesh: &Mesh, numbers: &Numbers, is_part: bool)
             }
         }
         if !connectivity.is_empty() {
-            let kind = mesh.kind().facet();
+            let kind = mesh.kind_of(0).facet();
             boundaries.push(Boundary::new(name, kind, chained(kind, connectivity)));
         }
     }
@@ -48,7 +48,7 @@ fn facets<'a>(file: &'a GmshFile, dimension: usize, name: &str) -> Vec<Element<'
 
 /// The nodes of facets in the numbers of the mesh; a node outside the body gets a number larger than the last.
 fn in_mesh(file: &GmshFile, mesh: &Mesh, facets: &[Element], numbers: &Numbers) -> Result<Vec<usize>, Error> {
-    let wanted = mesh.kind().facet().nodes();
+    let wanted = mesh.kind_of(0).facet().nodes();
     let mut nodes = Vec::with_capacity(facets.len() * wanted);
     for facet in facets {
         if facet.nodes.len() != wanted {
@@ -56,7 +56,7 @@ fn in_mesh(file: &GmshFile, mesh: &Mesh, facets: &[Element], numbers: &Numbers) 
                 "element {} is one of {}, but the faces of {} have {wanted} nodes",
                 facet.tag,
                 facet.cell.plural,
-                mesh.kind().name()
+                mesh.kind_of(0).name()
             );
             return Err(file.fault(facet.line, message));
         }
@@ -68,5 +68,5 @@ fn in_mesh(file: &GmshFile, mesh: &Mesh, facets: &[Element], numbers: &Numbers) 
 /// The nodes of a face in the order of its element: the outside is on the right of an edge.
 fn nodes_of(mesh: &Mesh, (element, face): (usize, usize)) -> Vec<usize> {
     let nodes = mesh.elements().nth(element).unwrap_or_default();
-    mesh.kind().reference().faces[face].iter().map(|&local| nodes[local]).collect()
+    mesh.kind_of(0).reference().faces[face].iter().map(|&local| nodes[local]).collect()
 }

@@ -14,7 +14,7 @@ const PLANE: [ElementKind; 4] = [ElementKind::T3, ElementKind::T6, ElementKind::
 /// Area or volume, and the smallest ratio of the least to the largest Jacobian determinant within an element, at nodes
 /// and quadrature points.
 fn measure(mesh: &Mesh) -> (f64, f64) {
-    let reference = mesh.kind().reference();
+    let reference = mesh.kind_of(0).reference();
     let table = Tabulated::new(reference, Rule::Straight);
     let (mut total, mut worst) = (0.0, f64::INFINITY);
     for element in mesh.elements() {
@@ -161,7 +161,7 @@ fn nodes_on_the_boundaries_of_half_balls_are_on_sphere_and_planes() {
     // element.
     let mut faces = std::collections::HashMap::new();
     for element in mesh.elements() {
-        for face in mesh.kind().reference().faces {
+        for face in mesh.kind_of(0).reference().faces {
             let mut key: Vec<usize> = face.iter().map(|&local| element[local]).collect();
             key.sort_unstable();
             *faces.entry(key).or_insert(0) += 1;

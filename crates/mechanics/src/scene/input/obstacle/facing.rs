@@ -1,6 +1,6 @@
 //! The surface of another body: n . (u - u_partner) <= gap for nodes that lie opposite each other, or means over segments.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -194,7 +194,7 @@ fn pairs(site: &Site, own: &Boundary, other: &Boundary) -> Result<Vec<Pair>, Err
         .collect();
     let pairs = pairs?;
     search.check_others(&pairs)?;
-    search.check_mid_sides(&pairs)?;
+    search.check_facets(&pairs)?;
     Ok(pairs)
 }
 
@@ -307,24 +307,21 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Checks that the node opposite to a mid-side node with a coefficient is one too, between the nodes opposite to the ends of its edge.
-    fn check_mid_sides(&self, pairs: &[Pair]) -> Result<(), Error> {
-        let basis = &self.site.dofs.basis;
-        if basis.is_nodal() {
-            return Ok(());
-        }
-        let partners: HashMap<usize, usize> =
+    /// Checks that the nodes opposite to those of a facet are the nodes of a facet: otherwise the areas of a pair would differ, and a
+    /// uniform pressure would not pass.
+    fn check_facets(&self, pairs: &[Pair]) -> Result<(), Error> {
+        let sorted = |mut nodes: Vec<usize>| {
+            nodes.sort_unstable();
+            nodes
+        };
+        let across: HashMap<usize, usize> =
             self.site.candidates.iter().zip(pairs).map(|(&(node, _), pair)| (node, pair.partner)).collect();
-        for (&(node, _), &Pair { partner, .. }) in self.site.candidates.iter().zip(pairs) {
-            let across = |end: usize| partners.get(&end).copied();
-            let fits = match (basis.ends(node), basis.ends(partner)) {
-                (None, None) => true,
-                (Some(own), Some([a, b])) => [[Some(a), Some(b)], [Some(b), Some(a)]].contains(&own.map(across)),
-                _ => false,
-            };
-            if !fits {
+        let others: HashSet<Vec<usize>> = self.other.facets().map(|facet| sorted(facet.to_vec())).collect();
+        for (index, facet) in self.own.facets().enumerate() {
+            if !others.contains(&sorted(facet.iter().filter_map(|node| across.get(node)).copied().collect())) {
+                let (own, other) = (&self.own.name, &self.other.name);
                 let message = format!(
-                    "nodes {node} and {partner} lie across each other, but do not both lie in the middle of edges that do; {PAIR_UP}"
+                    "the nodes of facet {index} of `{own}` lie opposite nodes of `{other}` that do not form a facet; {PAIR_UP}"
                 );
                 return Err(unpaired(self.site, message));
             }
