@@ -210,3 +210,46 @@ fn a_missing_approach_and_a_motion_are_refused_with_the_remedy() {
     assert!(refused.contains("meshes of the two bodies do not match"), "{refused}");
     assert!(solve_qp(model.problem()).is_ok());
 }
+
+/// Three blocks, each of which touches both others. By pairs, the first would carry rows against the third, which is 2.9 times as stiff, the
+/// third against the second, and the second against the first, whose facets are larger.
+fn three_blocks(sides: [&str; 3]) -> Value {
+    let between = |boundary: &str, other: &str, side: &str| json!({"boundary": boundary, "rule": "closest-point", "shape": {"body": {"boundary": other, "rows": "mortar", "side": side, "reach": 0.1}}});
+    let further = |name: &str, body: Value, young: f64| json!({"name": name, "body": body, "material": {"young": young, "poisson": 0.3}});
+    json!({
+        "body": block([0.0, 1.0], [0.0, 1.0], [2, 2]), "material": {"young": 1, "poisson": 0.3},
+        "further-bodies": [further("second", block([1.0, 2.0], [0.0, 1.0], [3, 3]), 1.5),
+                           further("third", block([0.0, 2.0], [1.0, 2.0], [10, 4]), 2.9)],
+        "supports": [{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "bottom"}, "y": 0}, {"on": {"boundary": "second.bottom"}, "y": 0},
+                     {"on": {"boundary": "third.left"}, "x": 0}],
+        "loads": [{"pressure": {"boundary": "third.top", "value": 0.01}}, {"pressure": {"boundary": "second.right", "value": 0.01}}],
+        "obstacles": [between("right", "second.left", sides[0]), between("second.top", "third.bottom", sides[1]),
+                      between("third.bottom", "top", sides[2])],
+    })
+}
+
+#[test]
+fn all_bodies_have_one_order_in_which_they_carry_rows() {
+    let carrying = |sides| -> Vec<String> {
+        built(&three_blocks(sides)).obstacles().iter().map(|one| one.boundary().to_string()).collect()
+    };
+    assert_eq!(carrying(["auto"; 3]), ["second.left", "second.top", "top"]);
+    // Against the order, but in no circle: the nodes at which all meet carry rows of one obstacle alone.
+    assert_eq!(carrying(["auto", "auto", "this"]), ["second.left", "second.top", "third.bottom"]);
+    let pressed = answer(&three_blocks(["auto"; 3]));
+    assert!(pressed.forces().unwrap().balance < 1e-10);
+    assert!(pressed.model().obstacle_forces(pressed.multiplier()).iter().all(|&force| force > 1e-4));
+}
+
+#[test]
+fn rows_that_lead_in_a_circle_are_refused() {
+    let mut scene = three_blocks(["auto"; 3]);
+    let shape = |boundary: &str, side: &str| json!({"body": {"boundary": boundary, "rows": "mortar", "side": side, "reach": 0.1}});
+    scene["obstacles"][2]["shape"] = shape("top", "other");
+    scene["obstacles"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({"boundary": "third.bottom", "rule": "closest-point", "shape": shape("top", "this")}));
+    let error = build(&scene).unwrap_err().to_string();
+    assert!(error.contains("obstacles[3].shape.body.side") && error.contains("lead back"), "{error}");
+}

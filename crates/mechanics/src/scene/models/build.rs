@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::fem::{DofMap, ElasticBody};
 use crate::scene::input::entry::wrong;
 use crate::scene::input::files::Files;
-use crate::scene::input::obstacle::{Obstacle, PlacedObstacle};
+use crate::scene::input::obstacle::{Obstacle, PlacedObstacle, SideOrder};
 use crate::scene::input::schema::{ContactSpec, Scene};
 
 impl Scene {
@@ -73,15 +73,7 @@ impl Scene {
         let dofs = self.with_contact_faces(held.dofs(body.mesh())?, &body, further);
         let (supports, is_part) = (self.supports.len(), self.may_be_part(&body)?);
         let load = self.load(&body)?;
-        let path = |index: usize| format!("obstacles[{index}]");
-        let mut obstacles = Vec::with_capacity(self.obstacles.len() + further.len());
-        for (index, spec) in self.obstacles.iter().enumerate() {
-            obstacles.push(PlacedObstacle::of_scene(spec, &path(index), &body, &dofs, self.files())?);
-        }
-        for (boundary, obstacle) in further {
-            let path = path(obstacles.len());
-            obstacles.push(PlacedObstacle::of_user(boundary, obstacle.clone(), &path, &body)?);
-        }
+        let obstacles = self.placed_obstacles(&body, &dofs, further)?;
         let mut warnings: Vec<_> = locking(&body).into_iter().collect();
         warnings.extend(stiffness_jumps(&body));
         warnings.extend(unit_of_young(&body, &self.units));
@@ -92,7 +84,7 @@ impl Scene {
         let unknowns = Unknowns::of(nodes, &dofs, body.dimension(), &rigid_faces, &obstacles)?;
         if let Some(index) = unknowns.pressed.first().filter(|_| moves) {
             let message = "an obstacle without mass has no motion of its own; let it stand still, or load the body";
-            return Err(wrong(format!("{}.force", path(*index)), message));
+            return Err(wrong(format!("obstacles[{index}].force"), message));
         }
         Model::new(
             Parts {
@@ -114,6 +106,40 @@ impl Scene {
             },
             self.gap,
         )
+    }
+
+    /// The obstacles of the scene, then those of the user.
+    fn placed_obstacles(
+        &self,
+        body: &ElasticBody,
+        dofs: &DofMap,
+        further: &[(&str, Arc<dyn Obstacle>)],
+    ) -> Result<Vec<PlacedObstacle>, Error> {
+        let path = |index: usize| format!("obstacles[{index}]");
+        let mut obstacles = Vec::with_capacity(self.obstacles.len() + further.len());
+        let bodies =
+            self.obstacles.iter().filter_map(|spec| Some([&*spec.boundary, spec.shape.shape().other_boundary()?]));
+        let order = SideOrder::of(body, bodies.flatten().filter_map(|name| body.mesh().boundary(name)));
+        for (index, spec) in self.obstacles.iter().enumerate() {
+            obstacles.push(PlacedObstacle::of_scene(spec, &path(index), (body, dofs, &order), self.files())?);
+        }
+        let rows = obstacles
+            .iter()
+            .enumerate()
+            .flat_map(|(index, obstacle)| obstacle.all_facing().map(move |row| (index, row)));
+        if let Some(index) = order.circle(body, rows) {
+            let (own, other) = (obstacles[index].boundary(), obstacles[index].other_body().map_or("", |other| other.0));
+            let message = format!(
+                "the rows of `{own}` lead to nodes of `{other}` that carry rows which lead back, so that a contact would count twice; \
+                 leave out `side`, or one of the obstacles"
+            );
+            return Err(wrong(format!("{}.shape.body.side", path(index)), message));
+        }
+        for (boundary, obstacle) in further {
+            let path = path(obstacles.len());
+            obstacles.push(PlacedObstacle::of_user(boundary, obstacle.clone(), &path, body)?);
+        }
+        Ok(obstacles)
     }
 
     /// The dofs with coefficients on the quadratic faces that may touch an obstacle.

@@ -6,12 +6,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::mortar;
+use super::order::region;
 use super::pairs::{Between, Facing};
 use super::shape::{About, Geometry, ObstacleShape, Site};
 use crate::error::Error;
 use crate::fem::assembly::node_normals;
 use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
-use crate::fem::{Boundary, ElasticBody, FacetKind};
+use crate::fem::{Boundary, FacetKind};
 use crate::scene::input::entry::{PLACE_TOLERANCE, boundary, number, point, refused, wrong};
 use crate::scene::input::schema::approach::Rule;
 
@@ -62,7 +63,8 @@ pub enum RowsSpec {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SideSpec {
-    /// That of the softer body, if Young's moduli differ by more than a factor of 2; else the one with the smaller facets.
+    /// That of the softer body, if Young's moduli differ by more than a factor of 2; else the one with the smaller facets. All bodies have
+    /// one order.
     #[default]
     Auto,
     /// The boundary of the obstacle in the scene.
@@ -212,12 +214,6 @@ struct Pair {
     mean: [f64; 3],
     /// Distance along the normal from the candidate to its partner, in length.
     distance: f64,
-}
-
-/// The body to which a boundary belongs.
-fn region(body: &ElasticBody, of: &Boundary) -> Option<usize> {
-    let first = of.connectivity.first().copied().unwrap_or(0);
-    body.regions().iter().position(|region| region.nodes().contains(&first))
 }
 
 /// The search for partners on another boundary.

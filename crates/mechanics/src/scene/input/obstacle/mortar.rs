@@ -2,18 +2,16 @@
 
 use std::collections::HashMap;
 
+use super::order::facet_size;
 use super::pairs::{Between, Facing};
 use super::shape::Site;
 use crate::error::Error;
-use crate::fem::assembly::{facet_sizes, outward};
+use crate::fem::assembly::outward;
 use crate::fem::mortar::{Found, Opposite};
-use crate::fem::{Boundary, ElasticBody, Mortar};
+use crate::fem::{Boundary, Mortar};
 use crate::scene::Warning;
 use crate::scene::input::entry::wrong;
 use crate::scene::input::schema::approach::Rule;
-
-/// Bodies whose Young's moduli differ by less than this factor count as equally soft.
-const AS_SOFT: f64 = 2.0;
 
 /// Facets of the other boundary larger than this many facets of the carrying one leave waves in the pressure.
 const COARSE: f64 = 4.0;
@@ -36,7 +34,7 @@ pub(super) fn between(
     reach: Option<f64>,
     fit: Option<f64>,
 ) -> Result<Between, Error> {
-    let is_swapped = side.unwrap_or_else(|| carries_other(site.body, boundaries));
+    let is_swapped = side.unwrap_or_else(|| site.order.carries_other(site.body, boundaries));
     let [slave, master] = if is_swapped { [boundaries[1], boundaries[0]] } else { boundaries };
     let [own, other] = [slave, master].map(|boundary| outward(site.body, boundary));
     let nodes = site.body.mesh().nodes();
@@ -90,30 +88,6 @@ fn facing(seen: Opposite) -> Facing {
     Facing { ends, normal, mean: normal, distance: seen.gap, area: None }
 }
 
-/// Returns `true` if the second boundary carries the rows: that of the softer body, or, if both are as soft, the one with the smaller
-/// facets.
-fn carries_other(body: &ElasticBody, boundaries: [&Boundary; 2]) -> bool {
-    let [own, other] = boundaries.map(|boundary| modulus_behind(body, boundary));
-    if own > AS_SOFT * other || other > AS_SOFT * own {
-        return other < own;
-    }
-    let [own, other] = boundaries.map(|boundary| facet_size(body, boundary));
-    other < own
-}
-
-/// The mean of Young's modulus in the elements behind a boundary.
-fn modulus_behind(body: &ElasticBody, boundary: &Boundary) -> f64 {
-    let owners: Vec<usize> = body.mesh().faces_of(boundary).into_iter().flatten().map(|owner| owner.0).collect();
-    let sum: f64 = owners.iter().map(|&element| body.phase_of(element).material().young()[1]).sum();
-    sum / owners.len().max(1) as f64
-}
-
-/// The mean length or area of the facets.
-fn facet_size(body: &ElasticBody, boundary: &Boundary) -> f64 {
-    let sizes = facet_sizes(body, boundary);
-    sizes.iter().map(|(extent, _)| extent).sum::<f64>() / sizes.len().max(1) as f64
-}
-
 fn warnings(site: &Site, [slave, master]: [&Boundary; 2], found: &Found, fit: Option<f64>) -> Vec<Warning> {
     let obstacle = site.obstacle.to_string();
     let [share, _] = found.covered;
@@ -123,7 +97,7 @@ fn warnings(site: &Site, [slave, master]: [&Boundary; 2], found: &Found, fit: Op
     }
     let mut warnings = Vec::new();
     // Surfaces that are as far apart as a facet is long where one ends need not meet there.
-    let near = facet_size(site.body, slave).powf(1.0 / (site.body.dimension() as f64 - 1.0));
+    let near = facet_size(site.body, &[slave]).powf(1.0 / (site.body.dimension() as f64 - 1.0));
     let ends = found.rows.iter().any(|row| row.covered < COVERED && row.gap.abs() <= near);
     if ends && share < COVERED && found.covered[1] < COVERED {
         let (boundary, other) = (slave.name.clone(), master.name.clone());
@@ -136,7 +110,7 @@ fn warnings(site: &Site, [slave, master]: [&Boundary; 2], found: &Found, fit: Op
         });
     }
     let dimension = site.body.dimension() as i32 - 1;
-    let ratio = (facet_size(site.body, master) / facet_size(site.body, slave)).powf(1.0 / f64::from(dimension));
+    let ratio = (facet_size(site.body, &[master]) / facet_size(site.body, &[slave])).powf(1.0 / f64::from(dimension));
     if ratio > COARSE {
         let (boundary, other) = (slave.name.clone(), master.name.clone());
         warnings.push(Warning::CoarseMaster { obstacle: obstacle.clone(), boundary, other, ratio });

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::order::SideOrder;
 use super::pairs::Facing;
 use super::row::{Obstacle, ObstacleRow};
 use super::shape::{Geometry, Site};
@@ -47,8 +48,7 @@ impl PlacedObstacle {
     pub(crate) fn of_scene(
         spec: &ObstacleSpec,
         path: &str,
-        body: &ElasticBody,
-        dofs: &DofMap,
+        (body, dofs, order): (&ElasticBody, &DofMap, &SideOrder),
         files: Files,
     ) -> Result<Self, Error> {
         let (mut candidates, mut outward) = candidates(body, &spec.boundary, &format!("{path}.boundary"))?;
@@ -89,6 +89,7 @@ impl PlacedObstacle {
             body,
             dofs,
             candidates: &candidates,
+            order,
             files,
         };
         let (mut approach, geometry) = (site.direction(), shape.place(&site)?);
@@ -179,6 +180,11 @@ impl PlacedObstacle {
             Geometry::Body(between) => between.rows.get(candidate)?.as_ref(),
             Geometry::Rigid(_) => None,
         }
+    }
+
+    /// The rows of all candidates against another body; none if the obstacle is rigid.
+    pub(crate) fn all_facing(&self) -> impl Iterator<Item = &Facing> {
+        (0..self.candidates.len()).filter_map(|candidate| self.facing(candidate))
     }
 
     /// The contact seen from nodes of the other body, if rows are means.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::order::SideOrder;
 use super::pairs::Between;
 use super::row::Obstacle;
 use super::ruled::{RigidSurface, Ruled};
@@ -77,6 +78,8 @@ pub(crate) struct Site<'a> {
     pub dofs: &'a DofMap,
     /// The candidate nodes with their tributary areas.
     pub candidates: &'a [(usize, f64)],
+    /// The order in which bodies carry rows against each other.
+    pub order: &'a SideOrder,
     pub files: Files<'a>,
 }
 

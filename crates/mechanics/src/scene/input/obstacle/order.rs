@@ -1,0 +1,90 @@
+//! Which of two bodies carries rows of means: one order of all bodies of a scene.
+
+use std::collections::HashSet;
+
+use super::pairs::Facing;
+use crate::fem::assembly::facet_sizes;
+use crate::fem::{Boundary, ElasticBody};
+
+/// A body whose Young's modulus exceeds that of the softest one of a class by more than this factor begins the next class.
+const AS_SOFT: f64 = 2.0;
+
+/// The places of all bodies in one order: soft before stiff, then small facets before large ones, then as in the scene. The body that comes
+/// first carries the rows of a pair, so that rows never lead in a circle.
+#[derive(Clone, Debug)]
+pub(crate) struct SideOrder {
+    places: Vec<usize>,
+}
+
+impl SideOrder {
+    /// The order by the surfaces with which the bodies may touch each other.
+    pub fn of<'a>(body: &ElasticBody, surfaces: impl Iterator<Item = &'a Boundary>) -> Self {
+        let mut touching: Vec<Vec<&Boundary>> = vec![Vec::new(); body.regions().len()];
+        surfaces.for_each(|surface| touching[region(body, surface)].push(surface));
+        let moduli: Vec<f64> = touching.iter().map(|surfaces| modulus_behind(body, surfaces)).collect();
+        let sizes: Vec<f64> = touching.iter().map(|surfaces| facet_size(body, surfaces)).collect();
+        let mut order: Vec<usize> = (0..touching.len()).collect();
+        order.sort_by(|&a, &b| moduli[a].total_cmp(&moduli[b]));
+        let (mut class, mut softest) = (0, moduli[order[0]]);
+        let mut classes = vec![0; order.len()];
+        for &one in &order {
+            if moduli[one] > AS_SOFT * softest {
+                (class, softest) = (class + 1, moduli[one]);
+            }
+            classes[one] = class;
+        }
+        order.sort_by(|&a, &b| classes[a].cmp(&classes[b]).then(sizes[a].total_cmp(&sizes[b])).then(a.cmp(&b)));
+        let mut places = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(place, &one)| places[one] = place);
+        SideOrder { places }
+    }
+
+    /// Returns `true` if the second of two boundaries carries the rows.
+    pub fn carries_other(&self, body: &ElasticBody, boundaries: [&Boundary; 2]) -> bool {
+        let [own, other] = boundaries.map(|boundary| self.places[region(body, boundary)]);
+        other < own
+    }
+
+    /// The first obstacle whose side is against the order, and whose rows lead to nodes that carry rows which lead back: a contact would
+    /// count twice. Rows are given with the numbers of their obstacles. Without sides against the order there is none.
+    pub fn circle<'a>(&self, body: &ElasticBody, rows: impl Iterator<Item = (usize, &'a Facing)>) -> Option<usize> {
+        let region_at = |node: usize| body.regions().iter().position(|region| region.nodes().contains(&node));
+        let mut steps: Vec<(usize, usize, usize)> = Vec::new();
+        for (obstacle, row) in rows.filter(|(_, row)| row.area.is_some()) {
+            let own = row.ends[0].0;
+            let others = row.ends.iter().filter(|end| region_at(end.0) != region_at(own));
+            steps.extend(others.map(|end| (own, end.0, obstacle)));
+        }
+        // Steps that no other one precedes, or follows, are on no circle.
+        loop {
+            let (before, starts): (_, HashSet<usize>) = (steps.len(), steps.iter().map(|step| step.0).collect());
+            let ends: HashSet<usize> = steps.iter().map(|step| step.1).collect();
+            steps.retain(|step| starts.contains(&step.1) && ends.contains(&step.0));
+            if steps.len() == before {
+                break;
+            }
+        }
+        let place = |node: usize| region_at(node).map(|region| self.places[region]);
+        steps.iter().filter(|step| place(step.0) > place(step.1)).map(|step| step.2).min()
+    }
+}
+
+/// The number of the body to which a boundary belongs.
+pub(super) fn region(body: &ElasticBody, of: &Boundary) -> usize {
+    let first = of.connectivity.first().copied().unwrap_or(0);
+    body.regions().iter().position(|region| region.nodes().contains(&first)).unwrap_or(0)
+}
+
+/// The mean of Young's modulus in the elements behind boundaries.
+fn modulus_behind(body: &ElasticBody, boundaries: &[&Boundary]) -> f64 {
+    let owners = boundaries.iter().flat_map(|boundary| body.mesh().faces_of(boundary)).flatten();
+    let young: Vec<f64> = owners.map(|owner| body.phase_of(owner.0).material().young()[1]).collect();
+    young.iter().sum::<f64>() / young.len().max(1) as f64
+}
+
+/// The mean length or area of the facets of boundaries.
+pub(super) fn facet_size(body: &ElasticBody, boundaries: &[&Boundary]) -> f64 {
+    let sizes: Vec<f64> =
+        boundaries.iter().flat_map(|boundary| facet_sizes(body, boundary)).map(|(extent, _)| extent).collect();
+    sizes.iter().sum::<f64>() / sizes.len().max(1) as f64
+}
