@@ -403,6 +403,34 @@ fn a_scene_is_drawn_before_it_is_solved() {
 }
 
 #[test]
+fn the_picture_of_a_set_up_names_the_surfaces_that_candidates_face() {
+    let desk = Desk::new();
+    let block = |x: Value, y: Value| json!({"rectangle": {"x": {"points": x, "divisions": [3]}, "y": {"points": y, "divisions": [2]}}});
+    let scene = json!({
+        "contact": "auto",
+        "body": block(json!([0, 1]), json!([1, 2])), "material": {"young": 1, "poisson": 0.3},
+        "further-bodies": [{"name": "base", "body": block(json!([-0.5, 2]), json!([0, 1])), "material": {"young": 1, "poisson": 0.3}}],
+        "supports": [{"on": {"boundary": "base.bottom"}, "x": 0, "y": 0}, {"on": {"boundary": "top"}, "x": 0, "y": -0.01}],
+    });
+    desk.write("pair.json", scene.to_string());
+    desk.run(&["draw", "pair.json", "--out", "pair.svg"]).ends_with(0);
+    let svg = std::fs::read_to_string(desk.path("pair.svg")).unwrap();
+    assert!(svg.contains("candidates for contact (4)") && svg.contains("opposite surface: base-at-body"));
+    let mut in_space = scene;
+    in_space["model"] = json!("space");
+    for pointer in ["/body", "/further-bodies/0/body"] {
+        let body = in_space.pointer_mut(pointer).unwrap();
+        let [x, y] = ["x", "y"].map(|axis| body["rectangle"][axis].clone());
+        *body = json!({"box": {"x": x, "y": {"points": [0, 1], "divisions": [2]}, "z": y}});
+    }
+    in_space["supports"] = json!([{"on": {"boundary": "base.bottom"}, "x": 0, "y": 0, "z": 0}, {"on": {"boundary": "top"}, "x": 0, "y": 0, "z": -0.01}]);
+    desk.write("space.json", in_space.to_string());
+    desk.run(&["draw", "space.json", "--out", "space.svg"]).ends_with(0);
+    let svg = std::fs::read_to_string(desk.path("space.svg")).unwrap();
+    assert!(svg.contains("opposite to them"));
+}
+
+#[test]
 fn a_picture_of_another_kind_or_of_a_bar_is_refused() {
     let desk = Desk::new();
     desk.run(&["draw", &example("indentation"), "--out", "set-up.jpg"]).ends_with(2);

@@ -12,6 +12,7 @@ use crate::plots::legend::{self, Entry};
 use crate::plots::ticks::{Quantity, amount, brief};
 use crate::view::words::{headline, pressing_amounts, state};
 use signorini_mechanics::Error;
+use signorini_mechanics::fem::Boundary;
 use signorini_mechanics::scene::{HeldNode, Hold, Model};
 
 /// Largest width and height of the panel in pixels.
@@ -33,6 +34,10 @@ const SUPPORT: Colour = PALETTE[2];
 const SPRING: Colour = PALETTE[3];
 const FACE: Colour = PALETTE[5];
 const LOAD: Colour = PALETTE[1];
+/// The width of the line along a surface that candidates of another body face, and its colour.
+const OPPOSITE: (f64, Colour) = (4.0, Colour(0xc9, 0x9a, 0xd9));
+/// As many opposite surfaces are named in the legend.
+const MOST_NAMED: usize = 3;
 
 impl Drawing {
     /// The picture of a scene before it is solved.
@@ -73,6 +78,7 @@ fn set_up(model: &Model) -> Result<Drawing, Error> {
     draw_heading(&mut drawing, &title, 0.5 * width, MARGIN);
     picture.draw_moved(&mut drawing, &frame, &scene.nodes);
     drawing.clipped(frame.corner, frame.size, |drawing| {
+        draw_opposite(drawing, model, &body, &frame);
         symbols.iter().for_each(|symbol| symbol.draw(drawing));
         arrows.iter().for_each(|[from, to]| draw_arrow(drawing, *from, *to));
     });
@@ -297,6 +303,28 @@ impl Symbol {
     }
 }
 
+/// The surfaces of other bodies that candidates face.
+fn opposite(model: &Model) -> impl Iterator<Item = &Boundary> {
+    model.obstacles().iter().filter_map(|obstacle| model.mesh().boundary(obstacle.other_body()?.0))
+}
+
+/// Draws lines along the surfaces that candidates face, inside their bodies.
+fn draw_opposite(drawing: &mut Drawing, model: &Model, body: &Outwards, frame: &Frame) {
+    let (width, colour) = OPPOSITE;
+    let inside = |node: usize| {
+        // Pixels count downwards.
+        let ([x, y], [out_x, out_y]) = (frame.place(body.nodes[node]), body.out[node]);
+        let share = width / out_x.hypot(out_y).max(f64::MIN_POSITIVE);
+        [x - share * out_x, y + share * out_y]
+    };
+    for boundary in opposite(model) {
+        for edge in boundary.facets().flat_map(|facet| boundary.kind.straight_cells(facet)) {
+            let ends: Vec<[f64; 2]> = edge.into_iter().map(inside).collect();
+            drawing.polyline(&ends, &Paint::stroke(colour, width));
+        }
+    }
+}
+
 /// The entries of the legend, with their numbers.
 fn entries<'a>(
     model: &Model,
@@ -326,6 +354,17 @@ fn entries<'a>(
     if candidates > 0 {
         let key = Box::new(|drawing: &mut Drawing, centre| Candidate::Open.draw(drawing, centre, 5.0));
         entries.push(Entry { name: format!("candidates for contact ({candidates})"), key, key_width: 12.0 });
+    }
+    let names: Vec<&str> = opposite(model).map(|boundary| &*boundary.name).collect();
+    if !names.is_empty() {
+        let shown = names[..names.len().min(MOST_NAMED)].join(", ");
+        let more = names.len().saturating_sub(MOST_NAMED);
+        let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let key = Box::new(|drawing: &mut Drawing, [x, y]: [f64; 2]| {
+            let (width, colour) = OPPOSITE;
+            drawing.polyline(&[[x - 14.0, y], [x + 14.0, y]], &Paint::stroke(colour, width));
+        });
+        entries.push(Entry { name: format!("opposite surface: {shown}{rest}"), key, key_width: 30.0 });
     }
     if !lines.is_empty() {
         let unit = &model.units().length;

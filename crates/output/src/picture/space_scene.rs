@@ -129,17 +129,20 @@ fn faces(model: &Model) -> Vec<Face> {
 pub(crate) fn space_set_up(model: &Model, title: &str) -> Drawing {
     let nodes = model.mesh().nodes();
     let faces = faces(model);
-    let [mut held, mut candidate, mut loaded] = [(); 3].map(|()| vec![false; nodes.len()]);
+    let [mut held, mut candidate, mut opposite, mut loaded] = [(); 4].map(|()| vec![false; nodes.len()]);
     model.held_nodes().iter().for_each(|at| held[at.node] = true);
     model.rows().iter().for_each(|row| candidate[row.node] = true);
+    let surfaces = model.obstacles().iter().filter_map(|placed| model.mesh().boundary(placed.other_body()?.0));
+    surfaces.flat_map(|boundary| &boundary.connectivity).for_each(|&node| opposite[node] = true);
     model.loaded_nodes().for_each(|(node, _)| loaded[node] = true);
     // A volume force loads every node; loaded faces are marked only if some nodes have no load.
     let is_on_faces = loaded.iter().any(|&is_loaded| !is_loaded);
     let all = |flags: &[bool], face: &Face| face.outline.iter().all(|&node| flags[node]);
     let kind = |face: &Face| match () {
         () if all(&candidate, face) => 1,
-        () if all(&held, face) => 2,
-        () if is_on_faces && all(&loaded, face) => 3,
+        () if all(&opposite, face) => 2,
+        () if all(&held, face) => 3,
+        () if is_on_faces && all(&loaded, face) => 4,
         () => 0,
     };
     let kinds: Vec<usize> = faces.iter().map(kind).collect();
@@ -164,9 +167,10 @@ pub(crate) fn space_set_up(model: &Model, title: &str) -> Drawing {
 }
 
 /// The kinds of faces in the picture of a set-up, with their colours.
-const KINDS: [(&str, Colour); 4] = [
+const KINDS: [(&str, Colour); 5] = [
     ("body", Colour(214, 220, 230)),
     ("candidates for contact", Colour(240, 190, 110)),
+    ("opposite to them", Colour(201, 154, 217)),
     ("held", Colour(110, 175, 145)),
     ("loaded", Colour(225, 130, 120)),
 ];

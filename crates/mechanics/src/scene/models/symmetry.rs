@@ -4,6 +4,7 @@ use super::held::{Component, Held, Holder};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{COORDINATES, unit};
+use crate::fem::mesh::Boundary;
 use crate::scene::input::entry::{COORDINATE_ROUNDING, number, wrong};
 use crate::scene::input::schema::{ModelSpec, Scene, SymmetryPlane};
 
@@ -48,10 +49,11 @@ impl Scene {
 /// The coordinate of the flat end of the body along an axis: the plane of symmetry.
 fn flat_end(body: &ElasticBody, axis: usize, rounding: f64) -> Result<f64, String> {
     let (mesh, name) = (body.mesh(), ["x", "y", "z"][axis]);
-    let surface = mesh.surface(0..mesh.element_count());
+    let surfaces: Vec<Boundary> = body.regions().iter().map(|region| mesh.surface(region.elements())).collect();
     let (low, high) = mesh.extent();
     let lies = |at: f64| {
-        surface.facets().any(|facet| facet.iter().all(|&node| (mesh.nodes()[node][axis] - at).abs() <= rounding))
+        let is_flat = |facet: &[usize]| facet.iter().all(|&node| (mesh.nodes()[node][axis] - at).abs() <= rounding);
+        surfaces.iter().flat_map(Boundary::facets).any(is_flat)
     };
     let ends: Vec<f64> = [low[axis], high[axis]].into_iter().filter(|&end| lies(end)).collect();
     match ends[..] {
