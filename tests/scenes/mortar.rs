@@ -261,6 +261,81 @@ fn a_uniform_pressure_passes_between_any_two_meshes_in_space() {
     }
 }
 
+/// A body on two others, whose joint lies inside facets of the upper body, or a thousandth of a facet beyond its nodes: its nodes near the
+/// joint carry a row against each of them.
+#[test]
+fn a_uniform_pressure_passes_to_two_bodies_whose_joint_lies_inside_facets() {
+    let mut state = 23;
+    for (space, kinds) in [(false, ["t3", "q4", "t6", "q8"]), (true, ["tet4", "hex8", "tet10", "hex20"])] {
+        for elements in all_pairs(kinds) {
+            for joint in [0.37, 0.5005] {
+                let block = |body: usize, from: f64, to: f64, up: [f64; 2], count: usize, state: &mut u64| {
+                    let mut x = lines(count, to - from, 0.5, state);
+                    x["points"]
+                        .as_array_mut()
+                        .unwrap()
+                        .iter_mut()
+                        .for_each(|at| *at = json!(from + at.as_f64().unwrap()));
+                    let up = cells(up[0], up[1], 1);
+                    match space {
+                        true => {
+                            json!({"box": {"x": x, "y": lines(2 + body, 1.0, 0.5, state), "z": up, "element": elements[body]}})
+                        }
+                        false => json!({"rectangle": {"x": x, "y": up, "element": elements[body]}}),
+                    }
+                };
+                let upper = block(0, 0.0, 1.0, [1.0, 2.0], if joint == 0.37 { 3 } else { 2 }, &mut state);
+                let left = block(1, 0.0, joint, [0.0, 1.0], 2, &mut state);
+                let right = block(1, joint, 1.0, [0.0, 1.0], 3, &mut state);
+                let [soft, hard] = [SOFT, HARD].map(|[young, poisson]| json!({"young": young, "poisson": poisson}));
+                let (up, down) = if space { ("z", "-z") } else { ("y", "-y") };
+                let mut supports = vec![
+                    json!({"on": {"boundary": "left"}, "x": 0}),
+                    json!({"on": {"boundary": "first.left"}, "x": 0}),
+                    json!({"on": {"boundary": "second.left"}, "x": HARD[1] / HARD[0] * joint}),
+                ];
+                for name in ["first", "second"] {
+                    supports.push(json!({"on": {"boundary": format!("{name}.bottom")}, up: 0}));
+                }
+                for name in ["front", "first.front", "second.front"].into_iter().filter(|_| space) {
+                    supports.push(json!({"on": {"boundary": name}, "y": 0}));
+                }
+                let below = |name: &str| {
+                    json!({"boundary": "bottom", "approach": down,
+                    "shape": {"body": {"boundary": format!("{name}.top"), "rows": "mortar", "side": "this"}}})
+                };
+                let (model, solution) = solved(&json!({
+                    "model": if space { "space" } else { "plane-stress" },
+                    "body": upper, "material": soft,
+                    "further-bodies": [{"name": "first", "body": left, "material": hard}, {"name": "second", "body": right, "material": hard}],
+                    "supports": supports, "loads": [{"pressure": {"boundary": "top", "value": 1}}],
+                    "obstacles": [below("first"), below("second")],
+                }));
+                let nodal = model.nodal_displacement(&solution.displacement).unwrap();
+                let (dimension, first_below) = (model.mesh().dimension(), model.body().regions()[1].nodes().start);
+                let name = format!("{elements:?} {joint}");
+                for (node, at) in model.mesh().nodes().iter().enumerate() {
+                    let ([young, nu], from) = if node < first_below { (SOFT, 1.0) } else { (HARD, 0.0) };
+                    let below = if node < first_below { -1.0 / HARD[0] } else { 0.0 };
+                    let height = at[dimension - 1];
+                    for axis in 0..dimension {
+                        let exact =
+                            if axis == dimension - 1 { below - (height - from) / young } else { nu / young * at[axis] };
+                        let away = (nodal[dimension * node + axis] - exact).abs();
+                        assert!(away < PARTLY_COVERED, "{name}: node {node} is {away:e} away");
+                    }
+                }
+                for pressure in model.pressure(&solution.multiplier).unwrap() {
+                    assert!((pressure - 1.0).abs() < 1e-6, "{name}: pressure {pressure}");
+                }
+                let largest =
+                    model.rows().iter().flat_map(|row| &row.ends).fold(0.0_f64, |most, end| most.max(end.1.abs()));
+                assert!(largest < 3.0, "{name}: share {largest}");
+            }
+        }
+    }
+}
+
 /// Plane stress without Poisson's ratio under the pressure `1 + x/2`: `stress_yy = -(1 + x/2)` and nothing else, so that `u_y` is linear in
 /// x and y each, and `u_x` quadratic in y.
 #[test]
