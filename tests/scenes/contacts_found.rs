@@ -253,3 +253,22 @@ fn rows_that_lead_in_a_circle_are_refused() {
     let error = build(&scene).unwrap_err().to_string();
     assert!(error.contains("obstacles[3].shape.body.side") && error.contains("lead back"), "{error}");
 }
+
+/// The contact forces around a shaft have no resultant, and supports that fix its position carry none.
+#[test]
+fn a_press_fit_has_no_force_at_its_supports() {
+    let ring = |radii: [f64; 2], count: usize| json!({"ring": {"radius": {"points": radii, "divisions": [2]}, "angle": {"points": [0, 360], "divisions": [count]}, "element": "q8"}});
+    let material = json!({"young": 1, "poisson": 0.3});
+    let mut scene = json!({
+        "body": ring([0.5, 1.0], 24), "material": material,
+        "further-bodies": [{"name": "hub", "body": ring([1.0, 2.0], 36), "material": material}],
+        "supports": [{"on": {"point": [0.5, 0]}, "y": 0}, {"on": {"point": [-0.5, 0]}, "y": 0}, {"on": {"point": [0, 0.5]}, "x": 0},
+                     {"on": {"point": [2, 0]}, "y": 0}, {"on": {"point": [-2, 0]}, "y": 0}, {"on": {"point": [0, 2]}, "x": 0}],
+        "obstacles": [{"boundary": "outer", "rule": "closest-point",
+                       "shape": {"body": {"boundary": "hub.inner", "fit": {"interference": 1e-3}}}}],
+    });
+    let warned = |scene: &Value| report(scene).to_string().contains("point-support");
+    assert!(!warned(&scene));
+    scene["loads"] = json!([{"traction": {"boundary": "hub.outer", "value": [1e-4, 0]}}]);
+    assert!(warned(&scene));
+}

@@ -79,7 +79,7 @@ impl Summary {
         if parts > 1.0 {
             (summary.parts_of_whole, summary.of_meshed_part) = (Some(parts as usize), &OF_MESHED_PART);
         }
-        summary.warnings.extend(point_support(mesh.dimension(), &summary.resultants));
+        summary.warnings.extend(point_support(answer, &summary.resultants));
         summary.force_basis = model.basis_of_forces();
         summary.initial_overlap = initial_overlap(model);
         summary.segments = segments;

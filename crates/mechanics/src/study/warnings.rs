@@ -156,11 +156,13 @@ pub(super) fn check_motion(model: &Model, largest: f64) -> Result<(), Error> {
 }
 
 /// Warns that a support on a single node carries a force.
-pub(super) fn point_support(dimension: usize, resultants: &[Resultant]) -> Option<AnswerWarning> {
+pub(super) fn point_support(answer: &Answer, resultants: &[Resultant]) -> Option<AnswerWarning> {
     let size = |one: &Resultant| one.force.iter().fold(0.0, |size: f64, part| size.hypot(*part));
-    let largest = resultants.iter().map(size).fold(0.0, f64::max);
+    // The contact forces all around a shaft have no resultant.
+    let of_contact: f64 = answer.multiplier().iter().map(|lambda| lambda.abs()).sum();
+    let largest = resultants.iter().map(size).fold(of_contact, f64::max);
     let is_point = |one: &&Resultant| one.of.starts_with("supports") && one.nodes == 1 && size(one) > FELT * largest;
-    let found = resultants.iter().find(is_point).filter(|_| dimension > 1)?;
+    let found = resultants.iter().find(is_point).filter(|_| answer.model().mesh().dimension() > 1)?;
     let message = format!(
         "{} holds a single node with a force of {:.3e}: displacement and stress there grow with every refinement; hold a boundary",
         found.of,
