@@ -164,6 +164,20 @@ impl<T: Real> BlockMatrix<T> {
         kept
     }
 
+    /// The entries between rows in which `other` has entries.
+    pub fn within(&self, other: &Self) -> Self {
+        let is_filled = |row: usize| other.starts[row] < other.starts[row + 1];
+        let mut part = Self::empty(0, self.columns, (self.height, self.width));
+        for row in 0..self.rows() {
+            for (column, block) in self.row(row).filter(|entry| is_filled(row) && is_filled(entry.0)) {
+                part.indices.push(column as u32);
+                part.values.extend_from_slice(block);
+            }
+            part.starts.push(part.indices.len());
+        }
+        part
+    }
+
     /// The transposed matrix.
     pub fn transposed(&self) -> Self {
         let starts = group_starts(self.columns, self.indices.iter().map(|&column| column as usize));

@@ -106,6 +106,13 @@ impl<T: Real> Chebyshev<T> {
         smoother
     }
 
+    /// The same smoother with the largest eigenvalue measured where `change` has changed the matrix, if that is larger.
+    pub fn measured(mut self, matrix: &BlockMatrix<T>, change: &BlockMatrix<T>, threads: usize) -> Self {
+        let near = matrix.within(change).plus(-1.0, change);
+        self.largest = self.largest.max(SAFETY * self.largest_eigenvalue(&Operator::whole(&near, threads)));
+        self
+    }
+
     fn largest_eigenvalue(&self, operator: &Operator<T>) -> f64 {
         let product = |x: &[T], y: &[T]| x.iter().zip(y).map(|(x, y)| x.double() * y.double()).sum::<f64>();
         let mut moved = vec![T::default(); operator.dim()];

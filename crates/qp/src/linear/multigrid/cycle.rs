@@ -10,7 +10,7 @@ impl<T: Real> Hierarchy<T> {
     pub fn cycle(&self, force: &[f64], face: Option<&FaceLevels<T>>) -> Vec<f64> {
         let (mut rest, exponent) = self.nodes.gather::<T>(force);
         if let Some(face) = face {
-            face.held.subtract_from(&mut rest);
+            face.held.project_force(&mut rest);
         }
         let moved = self.descend(0, rest, face);
         self.nodes.scatter(&moved, self.shift - exponent)
@@ -22,7 +22,7 @@ impl<T: Real> Hierarchy<T> {
             let coarsest = face.map_or(&*self.coarsest, |face| &face.coarsest);
             let mut x: Vec<T> = coarsest.solve(&force).into_iter().map(T::of).collect();
             if let Some(held) = face.filter(|_| depth == 0).map(|face| &face.held) {
-                held.subtract_from(&mut x);
+                held.project(&mut x);
             }
             return x;
         };
@@ -32,7 +32,7 @@ impl<T: Real> Hierarchy<T> {
             change: face.and_then(|face| face.changes.get(depth.wrapping_sub(1))),
             threads: self.threads,
         };
-        let smoother = face.and_then(|face| face.smoothers.get(depth.wrapping_sub(1))).unwrap_or(&level.smoother);
+        let smoother = face.and_then(|face| face.smoother(depth)).unwrap_or(&level.smoother);
         let mut x = vec![T::default(); rest.len()];
         let force = rest.clone();
         operator.subtract_product(&smoother.smooth(&operator, &mut x, &mut rest), &mut rest);

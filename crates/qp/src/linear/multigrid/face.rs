@@ -1,34 +1,88 @@
 //! The hierarchy in a face: the subspace in which single displacements are held, such as those of closed contact rows.
 //!
-//! With Q the projection onto the held directions, the first prolongator becomes (I - Q) P. Every coarse matrix A changes by a
-//! matrix C, only near the held dofs: nothing else is built again.
+//! With a projection N that takes what is held away, `E = I - N`, the first prolongator becomes E P. Where the held displacements are
+//! orthonormal N is a symmetric matrix Q; where a pivot gives way instead, `N = sum of d r'` with the ways d and the rows r, `r'd = 1`, and
+//! the pivot follows the other dofs of its row. Every coarse matrix A changes by a matrix C, only near the held dofs: nothing else is built
+//! again.
 //!
 //! ```text
-//! A_1 - C_1 = P' (I - Q) A (I - Q) P,     C_1 = S + S' - P' (Q A Q) P  with S = P' (Q A) P,     C_k+1 = P' C_k P
+//! A_1 - C_1 = P' E' A E P,     C_1 = S + S' - P' (N' A N) P  with S = P' (N' A) P,     C_k+1 = P' C_k P
 //! ```
 //!
-//! From the face of Q to that of Q + D, C_1 grows by `S + S' - P' (D A D) P` with `S = P' D A (I - Q) P`: the work depends on
-//! the change, not on the number of held directions.
+//! From the face of N to that of N + D, C_1 grows by `S + S' - P' (D' A D) P` with `S = P' D' A (I - N) P`: the work depends on
+//! the change, not on the number of held displacements.
 //!
 //! # Source
 //! R. Kornhuber, *Monotone multigrid methods for elliptic variational inequalities I*, Numer. Math. 69 (1994) 167-184:
-//! truncated basis functions.
+//! truncated basis functions. B. I. Wohlmuth, R. H. Krause, *Monotone multigrid methods on nonmatching grids for nonlinear multibody contact
+//! problems*, SIAM J. Sci. Comput. 25 (2003) 324-347: pivots that follow the other body.
 
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
 use super::coarsest::Coarsest;
-use super::hierarchy::Hierarchy;
+use super::hierarchy::{Hierarchy, Level};
 use crate::linear::FactorError;
 use crate::linear::factor::Real;
 
-/// A unit vector along which nothing moves: dofs and coefficients, in the units of the nodes. The directions of one face are orthogonal.
+/// A vector of few dofs: dofs and coefficients, in the units of the nodes.
 pub type Direction = Vec<(usize, f64)>;
+
+/// A held displacement: `row'v = 0`, because v gives way along `way`, with `row'way = 1`. The row has nothing along the ways of the other
+/// holds of a face. For an orthonormal system both are the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hold {
+    /// The displacement that gives way, a unit vector.
+    pub way: Direction,
+    /// What is held.
+    pub row: Direction,
+}
+
+/// The projection N of a face.
+#[derive(Debug)]
+pub struct Held<T> {
+    /// N.
+    pub matrix: BlockMatrix<T>,
+    /// N'.
+    pub transposed: BlockMatrix<T>,
+}
+
+impl<T: Real> Held<T> {
+    /// `x = E x` for displacements.
+    pub fn project(&self, x: &mut [T]) {
+        self.matrix.subtract_from(x);
+    }
+
+    /// `f = E' f` for forces.
+    pub fn project_force(&self, f: &mut [T]) {
+        self.transposed.subtract_from(f);
+    }
+
+    /// What is held beyond `last`.
+    fn beyond(&self, last: &Self) -> Self {
+        let minus = |own: &BlockMatrix<T>, last: &BlockMatrix<T>| own.plus(-1.0, last).without_zeros();
+        Held { matrix: minus(&self.matrix, &last.matrix), transposed: minus(&self.transposed, &last.transposed) }
+    }
+
+    /// `A - E' A E`.
+    fn change(&self, matrix: &BlockMatrix<T>) -> BlockMatrix<T> {
+        let rows = self.transposed.product(matrix, 1);
+        rows.plus(1.0, &rows.transposed()).plus(-1.0, &rows.product(&self.matrix, 1))
+    }
+
+    /// `E' A E + W`, for a hierarchy of one level; W is the sum of `d d'` over the ways.
+    fn held_matrix(&self, matrix: &BlockMatrix<T>, ways: &BlockMatrix<T>) -> BlockMatrix<T> {
+        let rows = self.transposed.product(matrix, 1);
+        let both = rows.product(&self.matrix, 1);
+        matrix.plus(-1.0, &rows).plus(-1.0, &rows.transposed()).plus(1.0, &both).plus(1.0, ways)
+    }
+}
 
 /// The data of a face on the levels of a hierarchy.
 #[derive(Debug)]
 pub struct FaceLevels<T> {
-    /// Q.
-    pub held: BlockMatrix<T>,
+    pub held: Held<T>,
+    /// The smoother of the finest level, if a pivot gives way.
+    pub finest: Option<Chebyshev<T>>,
     /// C of each level except the finest.
     pub changes: Vec<BlockMatrix<T>>,
     /// Smoothers of each level except the finest and the coarsest.
@@ -38,38 +92,52 @@ pub struct FaceLevels<T> {
 }
 
 impl<T: Real> FaceLevels<T> {
-    /// The hierarchy if nothing moves along `directions`: built from the `last` face if less changes from there.
+    /// The hierarchy if the displacements of `holds` are held: built from the `last` face if less changes from there.
     ///
     /// # Errors
     /// As [`Hierarchy::new`].
-    pub fn new(
-        hierarchy: &Hierarchy<T>,
-        directions: &[Direction],
-        last: Option<&FaceLevels<T>>,
-    ) -> Result<Self, FactorError> {
-        let held = projection(hierarchy, directions);
-        let from_last = last.map(|last| (last, held.plus(-1.0, &last.held).without_zeros()));
-        let near = from_last.filter(|(_, change)| change.indices.len() < held.indices.len());
+    pub fn new(hierarchy: &Hierarchy<T>, holds: &[Hold], last: Option<&FaceLevels<T>>) -> Result<Self, FactorError> {
+        let sum = |products: fn(&Hold) -> (&Direction, &Direction)| sum(hierarchy, holds.iter().map(products));
+        let held = Held { matrix: sum(|hold| (&hold.way, &hold.row)), transposed: sum(|hold| (&hold.row, &hold.way)) };
+        let from_last = last.map(|last| (last, held.beyond(&last.held)));
+        let near = from_last.filter(|(_, newly)| newly.matrix.indices.len() < held.matrix.indices.len());
         let changes = match &near {
             Some((last, newly_held)) => changes(hierarchy, newly_held, Some(last)),
             None => changes(hierarchy, &held, None),
         };
+        // What is only cut hardly changes the eigenvalues of a smoother.
+        let gives_way = holds.iter().any(|hold| hold.way != hold.row);
+        let smoother = |level: &Level<T>, change: &BlockMatrix<T>| {
+            let smoother = level.smoother.changed(&level.matrix, change);
+            if gives_way { smoother.measured(&level.matrix, change, hierarchy.threads) } else { smoother }
+        };
+        let finest = hierarchy.levels.first().filter(|_| gives_way);
+        let finest = finest.map(|level| smoother(level, &held.change(&level.matrix)));
         let matrices = || hierarchy.matrices().skip(1).zip(&changes);
-        let smoothers = (hierarchy.levels.iter().skip(1).zip(matrices()))
-            .map(|(level, (matrix, change))| level.smoother.changed(matrix, change))
-            .collect();
+        let smoothers =
+            hierarchy.levels.iter().skip(1).zip(&changes).map(|(level, change)| smoother(level, change)).collect();
         let coarsest = match matrices().last() {
             Some((matrix, change)) => Coarsest::in_face(matrix, change)?,
-            None => Coarsest::of(&held_matrix(&hierarchy.coarsest_matrix, &held))?,
+            None => Coarsest::of(&held.held_matrix(&hierarchy.coarsest_matrix, &sum(|hold| (&hold.way, &hold.way))))?,
         };
-        Ok(FaceLevels { held, changes, smoothers, coarsest })
+        Ok(FaceLevels { held, finest, changes, smoothers, coarsest })
     }
 }
 
-/// C of each level except the finest; D is `newly_held`, beyond Q, which the face `last` holds.
+impl<T> FaceLevels<T> {
+    /// The smoother of a level, the finest first; `None` if the face does not change it.
+    pub fn smoother(&self, depth: usize) -> Option<&Chebyshev<T>> {
+        match depth.checked_sub(1) {
+            Some(place) => self.smoothers.get(place),
+            None => self.finest.as_ref(),
+        }
+    }
+}
+
+/// C of each level except the finest; D is `newly_held`, beyond N, which the face `last` holds.
 fn changes<T: Real>(
     hierarchy: &Hierarchy<T>,
-    newly_held: &BlockMatrix<T>,
+    newly_held: &Held<T>,
     last: Option<&FaceLevels<T>>,
 ) -> Vec<BlockMatrix<T>> {
     let threads = hierarchy.threads;
@@ -79,12 +147,12 @@ fn changes<T: Real>(
             |inner: &BlockMatrix<T>| level.restriction.product(&inner.product(&level.prolongator, 1), threads);
         let step = match steps.last() {
             None => {
-                let rows = newly_held.product(&level.matrix, 1);
+                let rows = newly_held.transposed.product(&level.matrix, 1);
                 let one_side = match last {
-                    Some(last) => through(&rows.plus(-1.0, &rows.product(&last.held, 1))),
+                    Some(last) => through(&rows.plus(-1.0, &rows.product(&last.held.matrix, 1))),
                     None => through(&rows),
                 };
-                one_side.plus(1.0, &one_side.transposed()).plus(-1.0, &through(&rows.product(newly_held, 1)))
+                one_side.plus(1.0, &one_side.transposed()).plus(-1.0, &through(&rows.product(&newly_held.matrix, 1)))
             }
             Some(above) => through(above),
         };
@@ -95,20 +163,16 @@ fn changes<T: Real>(
     of_levels
 }
 
-/// `(I - Q) A (I - Q) + Q`, for a hierarchy of one level.
-fn held_matrix<T: Real>(matrix: &BlockMatrix<T>, held: &BlockMatrix<T>) -> BlockMatrix<T> {
-    let rows = held.product(matrix, 1);
-    let both = rows.product(held, 1);
-    matrix.plus(-1.0, &rows).plus(-1.0, &rows.transposed()).plus(1.0, &both).plus(1.0, held)
-}
-
-/// Q = sum of q q' over the directions.
-fn projection<T: Real>(hierarchy: &Hierarchy<T>, directions: &[Direction]) -> BlockMatrix<T> {
+/// The sum of the products a b' of directions.
+fn sum<'a, T: Real>(
+    hierarchy: &Hierarchy<T>,
+    products: impl Iterator<Item = (&'a Direction, &'a Direction)>,
+) -> BlockMatrix<T> {
     let (size, count) = (hierarchy.nodes.size, hierarchy.nodes.count);
     let mut entries: Vec<(u32, u32, f64)> = Vec::new();
-    for direction in directions {
-        for &(first, a) in direction {
-            for &(second, b) in direction {
+    for (one, other) in products {
+        for &(first, a) in one {
+            for &(second, b) in other {
                 entries.push((hierarchy.nodes.place[first], hierarchy.nodes.place[second], a * b));
             }
         }

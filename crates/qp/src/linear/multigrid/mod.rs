@@ -27,15 +27,15 @@ mod prolongator;
 
 pub use coarser::Interval;
 pub use conjugate_gradients::Preconditioned;
-pub use face::Direction;
+pub use face::{Direction, Hold};
 pub use near_null::NearNullSpace;
+pub use nodes::Units;
 
 pub use super::Width;
 use super::{FactorError, SymmetricMatrix};
 use crate::error::Error;
 use face::FaceLevels;
 use hierarchy::Hierarchy;
-use nodes::Nodes;
 
 /// The hierarchy of a symmetric positive (semi)definite matrix: one cycle approximates its inverse.
 #[derive(Debug)]
@@ -101,32 +101,26 @@ impl Multigrid {
         by_precision!(self.levels, hierarchy => hierarchy.cycle(b, None))
     }
 
-    /// The exponent of the unit of each dof: `u = 2^exponent v`. All dofs of a node have the same one.
-    ///
-    /// In the unknowns v, nodes of stiff and of soft bodies have diagonal entries of the same order. A projection that is orthogonal
-    /// in v then moves soft and stiff nodes of a row by what their stiffness allows; one that is orthogonal in u does not, and the
-    /// smoother diverges.
-    pub(crate) fn units(&self) -> Vec<i32> {
-        let of = |nodes: &Nodes| nodes.place.iter().map(|&place| nodes.exponent(place)).collect();
-        by_precision!(self.levels, hierarchy => of(&hierarchy.nodes))
+    /// The node and the unit of each dof.
+    pub(crate) fn units(&self) -> Units {
+        by_precision!(self.levels, hierarchy => hierarchy.nodes.units())
     }
 
-    /// The hierarchy if nothing moves along `directions`, orthonormal vectors of few dofs each, in the unknowns v of
-    /// `Multigrid::units`; `last` is a face of the same hierarchy that may be close.
+    /// The hierarchy in the face of `holds`, in the unknowns v of [`Units`]; `last` is a face of the same hierarchy that may be close.
     ///
     /// # Errors
     /// As [`Multigrid::new`].
-    pub fn face(&self, directions: &[Direction], last: Option<&Face>) -> Result<Face<'_>, Error> {
+    pub fn face(&self, holds: &[Hold], last: Option<&Face>) -> Result<Face<'_>, Error> {
         let levels = match &self.levels {
             Levels::Single(hierarchy) => {
                 let last = last
                     .and_then(|face| if let LevelsInFace::Single(_, last) = &face.levels { Some(last) } else { None });
-                FaceLevels::new(hierarchy, directions, last).map(|face| LevelsInFace::Single(hierarchy, face))
+                FaceLevels::new(hierarchy, holds, last).map(|face| LevelsInFace::Single(hierarchy, face))
             }
             Levels::Double(hierarchy) => {
                 let last = last
                     .and_then(|face| if let LevelsInFace::Double(_, last) = &face.levels { Some(last) } else { None });
-                FaceLevels::new(hierarchy, directions, last).map(|face| LevelsInFace::Double(hierarchy, face))
+                FaceLevels::new(hierarchy, holds, last).map(|face| LevelsInFace::Double(hierarchy, face))
             }
         };
         Ok(Face { levels: levels.map_err(located)? })

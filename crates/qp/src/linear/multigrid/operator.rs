@@ -3,15 +3,16 @@
 use std::ops::Range;
 
 use super::blocks::BlockMatrix;
+use super::face::Held;
 use crate::linear::factor::Real;
 
-/// A matrix A minus the change by a face: on the finest level the face is the range of I - Q, on coarser ones A becomes A - C.
+/// A matrix A minus the change by a face: on the finest level the face is the range of E = I - N, on coarser ones A becomes A - C.
 #[derive(Clone, Copy, Debug)]
 pub struct Operator<'a, T> {
     /// A.
     pub matrix: &'a BlockMatrix<T>,
-    /// Q, the projection onto the held directions.
-    pub held: Option<&'a BlockMatrix<T>>,
+    /// N.
+    pub held: Option<&'a Held<T>>,
     /// C.
     pub change: Option<&'a BlockMatrix<T>>,
     /// Threads of a product.
@@ -29,13 +30,15 @@ impl<'a, T: Real> Operator<'a, T> {
         self.matrix.rows() * self.matrix.height
     }
 
-    /// The product with an `x` in the face.
+    /// The force of an `x` in the face.
     pub fn mul_into(&self, x: &[T], y: &mut [T]) {
         self.matrix.mul_into(x, y, self.threads);
         if let Some(change) = self.change {
             change.subtract_product(x, y);
         }
-        self.project(y);
+        if let Some(held) = self.held {
+            held.project_force(y);
+        }
     }
 
     /// `y -= A x` with an `x` in the face.
@@ -45,10 +48,10 @@ impl<'a, T: Real> Operator<'a, T> {
         self.subtract(&product, y);
     }
 
-    /// Removes the held components.
-    pub fn project(&self, y: &mut [T]) {
+    /// Brings a displacement into the face.
+    pub fn project(&self, x: &mut [T]) {
         if let Some(held) = self.held {
-            held.subtract_from(y);
+            held.project(x);
         }
     }
 

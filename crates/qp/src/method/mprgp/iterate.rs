@@ -1,6 +1,6 @@
 //! The state of MPRGP, and the steps that it takes.
 
-use crate::linear::multigrid::{Direction, Face};
+use crate::linear::multigrid::{Face, Hold};
 use crate::linear::{dot, largest};
 use crate::method::Start;
 use crate::method::bounds::{Bound, Bounds};
@@ -354,10 +354,10 @@ impl<'a> Iterate<'a> {
         circles * self.bounds.most_joined() as f64
     }
 
-    /// The held directions, in the units of the dofs.
-    pub fn held(&self) -> Vec<Direction> {
+    /// What the closed bounds hold, in the units of the dofs.
+    pub fn held(&self) -> Vec<Hold> {
         let closed = self.bounds.bounds.iter().zip(&self.at).filter(|entry| *entry.1 != At::Free);
-        self.bounds.directions(closed.map(|entry| entry.0))
+        self.bounds.holds(closed.map(|entry| entry.0))
     }
 
     /// One cycle in a face, in which nothing travels and no bound opens.

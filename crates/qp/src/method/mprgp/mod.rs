@@ -94,12 +94,12 @@ impl Solver for Mprgp<'_> {
     /// eigenvalue.
     fn solve(&self, start: Start) -> Result<Outcome, Error> {
         let Mprgp { problem, multigrid, limits, .. } = *self;
-        let (rows, mut start) = ((problem.contact(), problem.gap()), start);
+        let (rows, units, mut start) = ((problem.contact(), problem.gap()), multigrid.units(), start);
         let mut before: Option<Outcome> = None;
         let mut exchanges = Vec::new();
         loop {
             let order = order(problem, &start, exchanges.last());
-            let bounds = Bounds::of(rows, &order, multigrid.units(), problem.without_stiffness())?;
+            let bounds = Bounds::of(rows, &order, &units, problem.without_stiffness())?;
             let used = before.as_ref().map_or(0, |before| before.iterations);
             let limits = Limits { most_cycles: limits.most_cycles.saturating_sub(used), ..limits };
             let next = Mprgp { limits, ..*self }.within(&bounds, start)?;

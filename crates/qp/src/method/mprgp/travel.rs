@@ -12,7 +12,7 @@
 
 use super::iterate::Iterate;
 use crate::linear::dot;
-use crate::linear::multigrid::Face;
+use crate::linear::multigrid::{Face, Units};
 use crate::method::bounds::{Bounds, Preferred};
 use crate::problem::ContactProblem;
 
@@ -26,7 +26,8 @@ pub fn takes_travels(problem: &ContactProblem) -> bool {
         || (problem.near_null().is_some()
             && travels.iter().all(has_row)
             && !problem.has_free_mode()
-            && Bounds::of((problem.contact(), problem.gap()), &all, vec![0; problem.dofs()], travels).is_ok())
+            && Bounds::of((problem.contact(), problem.gap()), &all, &Units::by_pattern(problem.stiffness()), travels)
+                .is_ok())
 }
 
 /// The displacements of all travels in a face, orthogonal in energy.

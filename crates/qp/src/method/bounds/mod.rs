@@ -5,27 +5,21 @@
 //! whatever their angles are. Rows that depend on others, or nearly so, are *left out*: the caller must look whether the answer meets
 //! them, and prefer those that it violates the next time.
 //!
+//! The rows between two meshes that do not match are *means*: each joins one node of its own with many that it shares with others. There a
+//! reflection would fill up. A mean becomes the unknown of a *pivot*, the direction in which it moves its own node, and a shear adds all the
+//! rest: `w = v_pivot + sum of s_k v_k`. No pivot stands in the shear of a mean before it.
+//!
 //! Rows may share a *travel*, a dof t without stiffness: `n'u + c t <= g`. It is a coordinate of its own, and a shear adds it in the same
 //! way. Forces along t then add up those of all its rows.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+mod making;
+
+use std::collections::{BTreeSet, HashMap};
 
 use crate::error::Error;
-use crate::linear::multigrid::Direction;
-use crate::linear::{SparseMatrix, ldexp};
+use crate::linear::ldexp;
+use crate::linear::multigrid::{Direction, Hold};
 use crate::solution::ContactSet;
-
-/// Entries of a unit vector below this are rounding of the reflections.
-const TURNING_ROUNDING: f64 = 1e-12;
-
-/// A row is left out if less than this share of its length is beyond the span of other rows: 3 degrees.
-const LEAST_BEYOND: f64 = 0.05;
-
-/// The same for a row that is needed. The bounds of rows with a small angle between them take more steps.
-const LEAST_BEYOND_IF_NEEDED: f64 = 1e-4;
-
-/// Rows that share coordinates with others have at most this many beyond them; a long chain of rows would fill up.
-const MOST_BEYOND: usize = 24;
 
 /// A row on one side of its unknown: `coefficient * v <= gap`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,8 +40,9 @@ pub struct Bound {
     pub upper: f64,
     /// The travel t that the unknown contains, and its share s: `w = v + s t`.
     pub travel: Option<(usize, f64)>,
-    /// The same for the coordinates of bounds before it.
+    /// The same for the coordinates of bounds before it; of a mean for all coordinates beside its pivot.
     shears: Direction,
+    is_mean: bool,
     sides: [Option<Side>; 2],
 }
 
@@ -102,93 +97,6 @@ enum Order {
 }
 
 impl Bounds {
-    /// The bounds that rows B (m x n) and gaps g give if the dofs have these `units` and `travels` have no stiffness. The rows are taken
-    /// in the order that is preferred. Those without entries or with an infinite gap give no bounds.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for rows that share dofs with too many others; for a row of several travels, and for an unknown whose rows
-    /// have different travels.
-    pub fn of(
-        (contact, gap): (&SparseMatrix, &[f64]),
-        order: &Preferred,
-        units: Vec<i32>,
-        travels: Vec<usize>,
-    ) -> Result<Self, Error> {
-        let by_row = contact.transposed();
-        let (reflections, touching, bounds, left_out) = (Vec::new(), HashMap::new(), Vec::new(), Vec::new());
-        let mut all = Bounds { units, reflections, touching, bounds, travels, left_out, rows: gap.len() };
-        let mut bound_of: Vec<Option<usize>> = vec![None; contact.columns()];
-        for (place, &row) in order.rows.iter().enumerate().filter(|entry| gap[*entry.1].is_finite()) {
-            let is_travel = |entry: &(usize, f64)| all.travels.binary_search(&entry.0).is_ok();
-            let entries = by_row.column(row).filter(|entry| entry.1 != 0.0);
-            let (mut moving, mut entries): (Direction, Direction) =
-                entries.map(|(dof, b)| (dof, ldexp(b, all.units[dof]))).partition(is_travel);
-            if moving.len() > 1 {
-                return Err(no_bound(format!("contact row {row} (index from 0) has several dofs without stiffness")));
-            }
-            if entries.is_empty() {
-                // The row of a node that is held: a bound on the travel itself.
-                std::mem::swap(&mut moving, &mut entries);
-            }
-            let length = self::length(&entries);
-            let turned = all.reflected(entries.iter().map(|&(place, b)| (place, b / length)).collect(), Order::Forward);
-            let (shared, mut own): (Direction, Direction) =
-                turned.into_iter().partition(|entry| bound_of[entry.0].is_some());
-            if !shared.is_empty() && own.len() > MOST_BEYOND {
-                return Err(no_bound(format!("contact row {row} (index from 0) shares dofs with too many others")));
-            }
-            let beyond = self::length(&own);
-            let is_new = beyond > if place < order.needed { LEAST_BEYOND_IF_NEEDED } else { LEAST_BEYOND };
-            // A row beyond others has a coordinate of its own; otherwise it may be parallel to the last of them.
-            let (unknown, share) = if is_new {
-                own.iter_mut().for_each(|entry| entry.1 /= beyond);
-                let Some(&(first, value)) = own.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) else { continue };
-                let sign = if own.len() == 1 { value.signum() } else { all.reflect(own, first) };
-                (first, sign * beyond)
-            } else if own.is_empty() {
-                let Some(&last) = shared.iter().max_by_key(|entry| bound_of[entry.0]) else { continue };
-                last
-            } else {
-                all.leave_out(row, length, &shared, &bound_of);
-                continue;
-            };
-            let shears: Direction =
-                shared.iter().filter(|entry| entry.0 != unknown).map(|&(place, c)| (place, c / share)).collect();
-            let coefficient = share * length;
-            let travel = moving.first().map(|&(travel, c)| (travel, c / coefficient));
-            let index = *bound_of[unknown].get_or_insert(all.bounds.len());
-            if index == all.bounds.len() {
-                let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
-                all.bounds.push(Bound { unknown, lower, upper, travel, shears, sides: [None; 2] });
-            } else if !are_equal(&all.bounds[index].shears, &shears) {
-                all.leave_out(row, length, &shared, &bound_of);
-                continue;
-            }
-            let bound = &mut all.bounds[index];
-            if !bound.travels_as(travel) {
-                return Err(no_bound(format!(
-                    "contact row {row} (index from 0) shares an unknown with one of another travel"
-                )));
-            }
-            bound.take(Side { row, coefficient, value: gap[row] / coefficient });
-        }
-        Ok(all)
-    }
-
-    /// Leaves a row out, `length` times a vector with entries on the coordinates of bounds, `shared`.
-    fn leave_out(&mut self, row: usize, length: f64, shared: &Direction, bound_of: &[Option<usize>]) {
-        let of_place = |&(place, c): &(usize, f64)| bound_of[place].map(|index| (index, c * length));
-        let mut rest: BTreeMap<usize, f64> = shared.iter().filter_map(of_place).collect();
-        let mut shares = Vec::new();
-        while let Some((index, share)) = rest.pop_last() {
-            shares.push((index, share));
-            for (before, c) in self.bounds[index].shears.iter().filter_map(of_place) {
-                *rest.entry(before).or_insert(0.0) -= share * c / length;
-            }
-        }
-        self.left_out.push(LeftOut { row, shares });
-    }
-
     /// The rows that contradict a row of those left out, which is violated, with weights; `None` if one of the bounds on which it
     /// depends is open.
     pub fn contradicting(&self, left: &LeftOut, multiplier: &[f64]) -> Option<Vec<(usize, f64)>> {
@@ -209,49 +117,6 @@ impl Bounds {
             let of_side = move |side: &Side| (side.row, multiplier[side.row] * side.coefficient / share);
             self.bounds[index].sides.iter().flatten().map(of_side).filter(|entry| entry.1 < 0.0)
         })
-    }
-
-    /// A unit vector after the reflections that touch it.
-    fn reflected(&self, vector: Direction, order: Order) -> Direction {
-        if vector.len() == 1 && vector.iter().all(|entry| !self.touching.contains_key(&entry.0)) {
-            return vector;
-        }
-        let mut entries: HashMap<usize, f64> = vector.into_iter().collect();
-        let of_place = |place: &usize| self.touching.get(place).into_iter().flatten().copied();
-        let mut waiting: BTreeSet<usize> = entries.keys().flat_map(of_place).collect();
-        loop {
-            let next = match order {
-                Order::Forward => waiting.pop_first(),
-                Order::Backward => waiting.pop_last(),
-            };
-            let Some(next) = next else { break };
-            let follows = |other: &usize| (*other > next) == (order == Order::Forward) && *other != next;
-            let reflection = &self.reflections[next];
-            let along: f64 = reflection.iter().map(|&(p, w)| w * entries.get(&p).copied().unwrap_or(0.0)).sum();
-            for &(place, w) in reflection {
-                *entries.entry(place).or_insert(0.0) -= 2.0 * along * w;
-                waiting.extend(of_place(&place).filter(follows));
-            }
-        }
-        let mut reflected: Direction = entries.into_iter().filter(|entry| entry.1.abs() > TURNING_ROUNDING).collect();
-        reflected.sort_unstable_by_key(|entry| entry.0);
-        reflected
-    }
-
-    /// Adds the reflection that turns a unit vector onto `place`, up to the sign that is returned.
-    fn reflect(&mut self, mut unit: Direction, place: usize) -> f64 {
-        let own = unit.iter().find(|entry| entry.0 == place).map_or(1.0, |entry| entry.1);
-        // |u + sign e|^2 = 2 + 2 |u_place|.
-        let length = (2.0 + 2.0 * own.abs()).sqrt();
-        for entry in &mut unit {
-            if entry.0 == place {
-                entry.1 += own.signum();
-            }
-            entry.1 /= length;
-            self.touching.entry(entry.0).or_default().push(self.reflections.len());
-        }
-        self.reflections.push(unit);
-        -own.signum()
     }
 
     /// Returns `true` if all rows are bounds on single dofs, and nothing travels.
@@ -317,26 +182,33 @@ impl Bounds {
         self.bounds.iter().map(|bound| 1 + bound.shears.len()).max().unwrap_or(1)
     }
 
-    /// Orthonormal vectors H' q, in the units of the dofs, that span the rows of some bounds, in the order of all bounds, without their
-    /// travels.
-    pub fn directions<'a>(&self, of_bounds: impl Iterator<Item = &'a Bound>) -> Vec<Direction> {
-        let (mut basis, mut touching) = (Vec::<Direction>::new(), HashMap::<usize, Vec<usize>>::new());
+    /// What some bounds hold, in the order of all bounds, without their travels, in the units of the dofs: orthonormal vectors H' q that
+    /// span the rows; of a mean its pivot, which gives way, and the row without what the holds before it hold.
+    pub fn holds<'a>(&self, of_bounds: impl Iterator<Item = &'a Bound>) -> Vec<Hold> {
+        let (mut holds, mut touching) = (Vec::<Hold>::new(), HashMap::<usize, Vec<usize>>::new());
         for bound in of_bounds {
             let mut rest: HashMap<usize, f64> = bound.shears.iter().copied().chain([(bound.unknown, 1.0)]).collect();
             let before: BTreeSet<usize> =
                 rest.keys().filter_map(|place| touching.get(place)).flatten().copied().collect();
             for other in before {
-                let along: f64 = basis[other].iter().map(|&(p, q)| q * rest.get(&p).copied().unwrap_or(0.0)).sum();
-                basis[other].iter().for_each(|&(place, q)| *rest.entry(place).or_insert(0.0) -= along * q);
+                let Hold { way, row } = &holds[other];
+                let along: f64 = way.iter().map(|&(p, q)| q * rest.get(&p).copied().unwrap_or(0.0)).sum();
+                row.iter().for_each(|&(place, q)| *rest.entry(place).or_insert(0.0) -= along * q);
             }
-            let mut unit: Direction = rest.into_iter().collect();
-            unit.sort_unstable_by_key(|entry| entry.0);
-            let length = length(&unit);
-            unit.iter_mut().for_each(|entry| entry.1 /= length);
-            unit.iter().for_each(|entry| touching.entry(entry.0).or_default().push(basis.len()));
-            basis.push(unit);
+            let mut row: Direction = rest.into_iter().collect();
+            row.sort_unstable_by_key(|entry| entry.0);
+            let way = if bound.is_mean {
+                vec![(bound.unknown, 1.0)]
+            } else {
+                let length = length(&row);
+                row.iter_mut().for_each(|entry| entry.1 /= length);
+                row.clone()
+            };
+            way.iter().for_each(|entry| touching.entry(entry.0).or_default().push(holds.len()));
+            holds.push(Hold { way, row });
         }
-        basis.into_iter().map(|unit| self.reflected(unit, Order::Backward)).collect()
+        let back = |unit| self.reflected(unit, Order::Backward);
+        holds.into_iter().map(|Hold { way, row }| Hold { way: back(way), row: back(row) }).collect()
     }
 
     /// The multipliers of the rows if the forces on the unknowns with bounds are `force` (those out of balance there), and the
@@ -378,6 +250,12 @@ fn no_bound(what: String) -> Error {
 }
 
 impl Bound {
+    /// An unknown without bounds yet, of rows that are no mean.
+    fn new(unknown: usize, shears: Direction, travel: Option<(usize, f64)>) -> Self {
+        let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
+        Bound { unknown, lower, upper, travel, shears, is_mean: false, sides: [None; 2] }
+    }
+
     /// The coordinates that the unknown contains beside its own, with their shares.
     fn shears(&self) -> impl Iterator<Item = (usize, f64)> {
         self.shears.iter().copied().chain(self.travel)
@@ -418,9 +296,14 @@ impl Bound {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear::SparseMatrix;
+    use crate::linear::multigrid::Units;
 
     /// Rounding of a reflection.
     const ROUNDING: f64 = 1e-14;
+
+    /// Rounding of shears with shares up to 10.
+    const OF_SHEARS: f64 = 1e-12;
 
     fn rows(entries: &[(usize, usize, f64)]) -> SparseMatrix {
         SparseMatrix::from_triplets(3, 5, entries).unwrap()
@@ -432,7 +315,8 @@ mod tests {
 
     /// The bounds in other units, because every test is independent of them.
     fn of(contact: &SparseMatrix, gap: &[f64], travels: Vec<usize>) -> Result<Bounds, Error> {
-        Bounds::of((contact, gap), &Preferred { rows: vec![0, 1, 2], needed: 0 }, vec![1, 1, 3, 0, 0], travels)
+        let units = Units { nodes: vec![0, 0, 1, 2, 3], exponents: vec![1, 1, 3, 0, 0] };
+        Bounds::of((contact, gap), &Preferred { rows: vec![0, 1, 2], needed: 0 }, &units, travels)
     }
 
     #[test]
@@ -482,7 +366,8 @@ mod tests {
         bounds.turn_back(&mut w);
         assert!(w.iter().zip(&u).all(|(back, u)| (back - u).abs() < ROUNDING));
         // The directions of two rows are orthonormal and span both rows, in the units of the dofs.
-        let directions = bounds.directions(bounds.bounds[1..].iter());
+        let directions: Vec<Direction> =
+            bounds.holds(bounds.bounds[1..].iter()).into_iter().map(|hold| hold.row).collect();
         let dot = |a: &Direction, b: &Direction| -> f64 {
             a.iter().map(|&(p, a)| a * b.iter().find(|entry| entry.0 == p).map_or(0.0, |entry| entry.1)).sum()
         };
@@ -505,6 +390,71 @@ mod tests {
         assert!(relieved.len() == 1 && relieved[0].0 == 0 && (relieved[0].1 + 36.0 / 7.0).abs() < ROUNDING);
         let nearly_parallel = [(0, 0, 1.0), (1, 0, 1.0), (1, 1, 1e-3), (2, 1, 1.0)];
         assert_eq!(of(&rows(&nearly_parallel), &gap, Vec::new()).unwrap().left_out[0].row, 1);
+    }
+
+    /// Two means of the node with the dofs 0 and 1, and a row of the node with dof 2.
+    const MEANS: [(usize, usize, f64); 9] = [
+        (0, 0, 0.6),
+        (0, 1, 0.8),
+        (0, 2, -0.4),
+        (0, 3, -0.6),
+        (1, 0, 1.0),
+        (1, 2, -0.9),
+        (1, 3, -0.3),
+        (1, 4, 0.2),
+        (2, 2, -2.0),
+    ];
+
+    /// Checks that the unknowns are the rows, that forces and displacements turn there and back, and that every hold gives way to itself
+    /// alone, so that what the ways leave of a displacement moves no row.
+    #[track_caller]
+    fn check(contact: &SparseMatrix, bounds: &Bounds) {
+        let (u, f) = ([0.3, -0.7, 0.2, 9.0, 0.5], [2.0, -1.0, 0.5, 0.25, 3.0]);
+        let (mut w, mut h) = (u.to_vec(), f.to_vec());
+        bounds.turn(&mut w);
+        bounds.turn_forces(&mut h);
+        for bound in &bounds.bounds {
+            let Side { row, coefficient, .. } = *bound.sides.iter().flatten().next().unwrap();
+            assert!((coefficient * w[bound.unknown] - contact.mul(&u)[row]).abs() < OF_SHEARS, "{bound:?}");
+        }
+        let work = |f: &[f64], u: &[f64]| f.iter().zip(u).map(|(f, u)| f * u).sum::<f64>();
+        assert!((work(&f, &u) - work(&h, &w)).abs() < OF_SHEARS);
+        bounds.turn_back(&mut w);
+        bounds.turn_forces_back(&mut h);
+        assert!(w.iter().zip(&u).chain(h.iter().zip(&f)).all(|(back, before)| (back - before).abs() < OF_SHEARS));
+        let holds = bounds.holds(bounds.bounds.iter());
+        let mut moved = u.to_vec();
+        bounds.scale(&mut moved, -1);
+        let before = moved.clone();
+        for (index, hold) in holds.iter().enumerate() {
+            let along = |v: &[f64]| hold.row.iter().map(|&(place, c)| c * v[place]).sum::<f64>();
+            for (other, Hold { way, .. }) in holds.iter().enumerate() {
+                let mut dense = [0.0; 5];
+                way.iter().for_each(|&(place, c)| dense[place] = c);
+                assert!((along(&dense) - f64::from(u8::from(index == other))).abs() < OF_SHEARS, "{index} {other}");
+            }
+            hold.way.iter().for_each(|&(place, c)| moved[place] -= c * along(&before));
+        }
+        bounds.scale(&mut moved, 1);
+        assert!(contact.mul(&moved).iter().all(|moved| moved.abs() < 10.0 * OF_SHEARS), "{:?}", contact.mul(&moved));
+    }
+
+    #[test]
+    fn means_are_bounds_on_pivots_beside_other_rows() {
+        let contact = rows(&MEANS);
+        let bounds = of(&contact, &[1.0, 2.0, 3.0], Vec::new()).unwrap();
+        assert!(bounds.bounds.len() == 3 && bounds.bounds.iter().all(|bound| bound.unknown < 3), "{bounds:?}");
+        assert_eq!(bounds.bounds.iter().filter(|bound| bound.is_mean).count(), 2);
+        check(&contact, &bounds);
+    }
+
+    #[test]
+    fn a_mean_without_a_pivot_is_turned_as_other_rows() {
+        // The heaviest node of both is 2, and the second has no node beside those of the first.
+        let contact = rows(&[(0, 2, 0.5), (0, 3, 1.0), (0, 4, 0.5), (1, 2, 0.5), (1, 3, 1.0), (1, 4, -0.5)]);
+        let bounds = of(&contact, &[1.0; 3], Vec::new()).unwrap();
+        assert_eq!(bounds.bounds.iter().map(|bound| bound.is_mean).collect::<Vec<_>>(), [false, true]);
+        check(&contact, &bounds);
     }
 
     #[test]
