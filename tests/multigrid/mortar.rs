@@ -6,6 +6,7 @@
 //! on two.
 
 use serde_json::{Value, json};
+use signorini::qp::Estimate;
 use signorini::{Method, Settings, Solution, solve};
 
 use support::scenes::built;
@@ -115,4 +116,13 @@ fn a_block_may_stand_on_the_joint_of_two() {
     scene["obstacles"].as_array_mut().unwrap().push(json!({"boundary": "bottom", "approach": "-z",
         "shape": {"body": {"boundary": "other.top", "rows": "mortar", "side": "auto"}}}));
     answer(&scene, "two bases");
+}
+
+#[test]
+fn multigrid_is_chosen_where_it_is_the_faster_way() {
+    let prefers = |cells| {
+        Estimate::of(built(&stacked(cells, 1.0, [1.0, 10.0], "auto")).problem()).prefers_multigrid(f64::INFINITY)
+    };
+    assert!(prefers([14, 20]) && prefers([20, 14]));
+    assert!(!prefers([2, 3]));
 }

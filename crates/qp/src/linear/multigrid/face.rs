@@ -37,6 +37,13 @@ pub struct Hold {
     pub row: Direction,
 }
 
+impl Hold {
+    /// A unit vector that is held, and that itself gives way.
+    pub fn of(unit: Direction) -> Self {
+        Hold { way: unit.clone(), row: unit }
+    }
+}
+
 /// The projection N of a face.
 #[derive(Debug)]
 pub struct Held<T> {

@@ -47,6 +47,11 @@ impl Units {
         }
         Units { nodes, exponents: vec![0; matrix.dim()] }
     }
+
+    /// One unit for all dofs, as if they were those of one node.
+    pub fn alone(dofs: usize) -> Self {
+        Units { nodes: vec![0; dofs], exponents: vec![0; dofs] }
+    }
 }
 
 impl Nodes {

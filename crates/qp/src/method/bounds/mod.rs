@@ -197,18 +197,21 @@ impl Bounds {
             }
             let mut row: Direction = rest.into_iter().collect();
             row.sort_unstable_by_key(|entry| entry.0);
-            let way = if bound.is_mean {
-                vec![(bound.unknown, 1.0)]
+            let hold = if bound.is_mean {
+                Hold { way: vec![(bound.unknown, 1.0)], row }
             } else {
                 let length = length(&row);
                 row.iter_mut().for_each(|entry| entry.1 /= length);
-                row.clone()
+                Hold::of(row)
             };
-            way.iter().for_each(|entry| touching.entry(entry.0).or_default().push(holds.len()));
-            holds.push(Hold { way, row });
+            hold.way.iter().for_each(|entry| touching.entry(entry.0).or_default().push(holds.len()));
+            holds.push(hold);
         }
-        let back = |unit| self.reflected(unit, Order::Backward);
-        holds.into_iter().map(|Hold { way, row }| Hold { way: back(way), row: back(row) }).collect()
+        let back = |Hold { way, row }: Hold| match way == row {
+            true => Hold::of(self.reflected(row, Order::Backward)),
+            false => Hold { way: self.reflected(way, Order::Backward), row: self.reflected(row, Order::Backward) },
+        };
+        holds.into_iter().map(back).collect()
     }
 
     /// The multipliers of the rows if the forces on the unknowns with bounds are `force` (those out of balance there), and the

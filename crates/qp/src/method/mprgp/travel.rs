@@ -16,6 +16,9 @@ use crate::linear::multigrid::{Face, Units};
 use crate::method::bounds::{Bounds, Preferred};
 use crate::problem::ContactProblem;
 
+/// Rows of at most so many dofs, a travel among them, become bounds whatever their nodes are.
+const FEW_DOFS: usize = 7;
+
 /// Returns `true` if every dof without stiffness is a travel: the stiffness holds all others, and each row becomes a bound with at
 /// most one travel.
 pub fn takes_travels(problem: &ContactProblem) -> bool {
@@ -26,8 +29,16 @@ pub fn takes_travels(problem: &ContactProblem) -> bool {
         || (problem.near_null().is_some()
             && travels.iter().all(has_row)
             && !problem.has_free_mode()
-            && Bounds::of((problem.contact(), problem.gap()), &all, &Units::by_pattern(problem.stiffness()), travels)
-                .is_ok())
+            && Bounds::of((problem.contact(), problem.gap()), &all, &units(problem), travels).is_ok())
+}
+
+/// The nodes, if a row has so many dofs that they matter.
+fn units(problem: &ContactProblem) -> Units {
+    let by_row = problem.contact().transposed();
+    match (0..problem.rows()).any(|row| by_row.column(row).count() > FEW_DOFS) {
+        true => Units::by_pattern(problem.stiffness()),
+        false => Units::alone(problem.dofs()),
+    }
 }
 
 /// The displacements of all travels in a face, orthogonal in energy.
