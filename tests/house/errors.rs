@@ -43,7 +43,8 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
     let unit: Vec<Vec<f64>> = (0..30).map(|i| (0..30).map(|j| f64::from(u8::from(i == j))).collect()).collect();
     let unit: Vec<&[f64]> = unit.iter().map(|row| &row[..]).collect();
     let numbers: Vec<f64> = (1..=30).map(f64::from).collect();
-    let oblique = Dense::new(&unit, &[2.0; 30], &[&[1.0; 30], &numbers], &[0.5; 2]).problem()?;
+    let squares: Vec<f64> = numbers.iter().map(|number| number * number).collect();
+    let oblique = Dense::new(&unit, &[2.0; 30], &[&[1.0; 30], &numbers, &squares], &[0.5; 3]).problem()?;
     // The last bit of one entry holds a motion that the load drives.
     let soft: [&[f64]; 2] = [&[1.0, -1.0], &[-1.0, 1.0 + f64::EPSILON]];
     let held_within_rounding = Dense::new(&soft, &[1.0, 1.0], &[&[0.0, -1.0]], &[0.5]).problem()?;

@@ -2,8 +2,8 @@
 //! method.
 //!
 //! CONDITIONS: two blocks with faces that do not match, pressed together so that they part at one side; the upper one with the finer or the
-//! coarser mesh, as wide as the lower one or wider; rows on the softer or on the stiffer body; beside rigid and pressed obstacles; one block
-//! on two.
+//! coarser mesh, as wide as the lower one or wider; rows on the softer or on the stiffer body; beside rigid and pressed obstacles; one
+//! block on two.
 
 use serde_json::{Value, json};
 use signorini::qp::Estimate;

@@ -14,75 +14,16 @@
 //!
 //! # Source
 //! R. Kornhuber, *Monotone multigrid methods for elliptic variational inequalities I*, Numer. Math. 69 (1994) 167-184:
-//! truncated basis functions. B. I. Wohlmuth, R. H. Krause, *Monotone multigrid methods on nonmatching grids for nonlinear multibody contact
-//! problems*, SIAM J. Sci. Comput. 25 (2003) 324-347: pivots that follow the other body.
+//! truncated basis functions. B. I. Wohlmuth, R. H. Krause, *Monotone multigrid methods on nonmatching grids for nonlinear multibody
+//! contact problems*, SIAM J. Sci. Comput. 25 (2003) 324-347: pivots that follow the other body.
 
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
 use super::coarsest::Coarsest;
+use super::held::{Held, Hold};
 use super::hierarchy::{Hierarchy, Level};
 use crate::linear::FactorError;
 use crate::linear::factor::Real;
-
-/// A vector of few dofs: dofs and coefficients, in the units of the nodes.
-pub type Direction = Vec<(usize, f64)>;
-
-/// A held displacement: `row'v = 0`, because v gives way along `way`, with `row'way = 1`. The row has nothing along the ways of the other
-/// holds of a face. For an orthonormal system both are the same.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Hold {
-    /// The displacement that gives way, a unit vector.
-    pub way: Direction,
-    /// What is held.
-    pub row: Direction,
-}
-
-impl Hold {
-    /// A unit vector that is held, and that itself gives way.
-    pub fn of(unit: Direction) -> Self {
-        Hold { way: unit.clone(), row: unit }
-    }
-}
-
-/// The projection N of a face.
-#[derive(Debug)]
-pub struct Held<T> {
-    /// N.
-    pub matrix: BlockMatrix<T>,
-    /// N'.
-    pub transposed: BlockMatrix<T>,
-}
-
-impl<T: Real> Held<T> {
-    /// `x = E x` for displacements.
-    pub fn project(&self, x: &mut [T]) {
-        self.matrix.subtract_from(x);
-    }
-
-    /// `f = E' f` for forces.
-    pub fn project_force(&self, f: &mut [T]) {
-        self.transposed.subtract_from(f);
-    }
-
-    /// What is held beyond `last`.
-    fn beyond(&self, last: &Self) -> Self {
-        let minus = |own: &BlockMatrix<T>, last: &BlockMatrix<T>| own.plus(-1.0, last).without_zeros();
-        Held { matrix: minus(&self.matrix, &last.matrix), transposed: minus(&self.transposed, &last.transposed) }
-    }
-
-    /// `A - E' A E`.
-    fn change(&self, matrix: &BlockMatrix<T>) -> BlockMatrix<T> {
-        let rows = self.transposed.product(matrix, 1);
-        rows.plus(1.0, &rows.transposed()).plus(-1.0, &rows.product(&self.matrix, 1))
-    }
-
-    /// `E' A E + W`, for a hierarchy of one level; W is the sum of `d d'` over the ways.
-    fn held_matrix(&self, matrix: &BlockMatrix<T>, ways: &BlockMatrix<T>) -> BlockMatrix<T> {
-        let rows = self.transposed.product(matrix, 1);
-        let both = rows.product(&self.matrix, 1);
-        matrix.plus(-1.0, &rows).plus(-1.0, &rows.transposed()).plus(1.0, &both).plus(1.0, ways)
-    }
-}
 
 /// The data of a face on the levels of a hierarchy.
 #[derive(Debug)]
@@ -104,8 +45,7 @@ impl<T: Real> FaceLevels<T> {
     /// # Errors
     /// As [`Hierarchy::new`].
     pub fn new(hierarchy: &Hierarchy<T>, holds: &[Hold], last: Option<&FaceLevels<T>>) -> Result<Self, FactorError> {
-        let sum = |products: fn(&Hold) -> (&Direction, &Direction)| sum(hierarchy, holds.iter().map(products));
-        let held = Held { matrix: sum(|hold| (&hold.way, &hold.row)), transposed: sum(|hold| (&hold.row, &hold.way)) };
+        let held = Held::of(&hierarchy.nodes, holds);
         let from_last = last.map(|last| (last, held.beyond(&last.held)));
         let near = from_last.filter(|(_, newly)| newly.matrix.indices.len() < held.matrix.indices.len());
         let changes = match &near {
@@ -125,7 +65,7 @@ impl<T: Real> FaceLevels<T> {
             hierarchy.levels.iter().skip(1).zip(&changes).map(|(level, change)| smoother(level, change)).collect();
         let coarsest = match matrices().last() {
             Some((matrix, change)) => Coarsest::in_face(matrix, change)?,
-            None => Coarsest::of(&held.held_matrix(&hierarchy.coarsest_matrix, &sum(|hold| (&hold.way, &hold.way))))?,
+            None => Coarsest::of(&held.held_matrix(&hierarchy.coarsest_matrix, &hierarchy.nodes, holds))?,
         };
         Ok(FaceLevels { held, finest, changes, smoothers, coarsest })
     }
@@ -168,34 +108,4 @@ fn changes<T: Real>(
         steps.push(step);
     }
     of_levels
-}
-
-/// The sum of the products a b' of directions.
-fn sum<'a, T: Real>(
-    hierarchy: &Hierarchy<T>,
-    products: impl Iterator<Item = (&'a Direction, &'a Direction)>,
-) -> BlockMatrix<T> {
-    let (size, count) = (hierarchy.nodes.size, hierarchy.nodes.count);
-    let mut entries: Vec<(u32, u32, f64)> = Vec::new();
-    for (one, other) in products {
-        for &(first, a) in one {
-            for &(second, b) in other {
-                entries.push((hierarchy.nodes.place[first], hierarchy.nodes.place[second], a * b));
-            }
-        }
-    }
-    let node = |place: u32| place as usize / size;
-    entries.sort_unstable_by_key(|&(row, column, _)| (node(row), node(column)));
-    let mut held = BlockMatrix::empty(0, count, (size, size));
-    for block in entries.chunk_by(|a, b| (node(a.0), node(a.1)) == (node(b.0), node(b.1))) {
-        held.starts.resize(node(block[0].0) + 1, held.indices.len());
-        held.indices.push(node(block[0].1) as u32);
-        let start = held.values.len();
-        held.values.resize(start + size * size, T::default());
-        for &(row, column, value) in block {
-            held.values[start + row as usize % size * size + column as usize % size] += T::of(value);
-        }
-    }
-    held.starts.resize(count + 1, held.indices.len());
-    held
 }

@@ -18,6 +18,7 @@ mod conjugate_gradients;
 mod cycle;
 mod dual_norm;
 mod face;
+mod held;
 mod hierarchy;
 mod lines;
 mod near_null;
@@ -27,7 +28,7 @@ mod prolongator;
 
 pub use coarser::Interval;
 pub use conjugate_gradients::Preconditioned;
-pub use face::{Direction, Hold};
+pub use held::{Direction, Hold};
 pub use near_null::NearNullSpace;
 pub use nodes::Units;
 

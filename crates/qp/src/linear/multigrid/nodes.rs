@@ -23,14 +23,14 @@ pub struct Nodes {
     exponents: Vec<i32>,
 }
 
-/// The node of each dof, and the exponent of its unit: `u = 2^exponent v`. All dofs of a node have the same one.
+/// The group of each dof, which is its node, and the exponent of its unit: `u = 2^exponent v`. All dofs of a node have the same one.
 ///
 /// In the unknowns v, nodes of stiff and of soft bodies have diagonal entries of the same order. A projection that is orthogonal
 /// in v then moves soft and stiff nodes of a row by what their stiffness allows; one that is orthogonal in u does not, and the
 /// smoother diverges.
 #[derive(Clone, Debug)]
 pub struct Units {
-    pub nodes: Vec<u32>,
+    pub groups: Vec<u32>,
     pub exponents: Vec<i32>,
 }
 
@@ -38,19 +38,19 @@ impl Units {
     /// The nodes by the pattern of `matrix` alone, all with one unit.
     pub fn by_pattern(matrix: &SymmetricMatrix) -> Self {
         let graph = Quotient::of(matrix.lower());
-        let (size, mut nodes, mut count) = (usual_dofs(&graph), vec![0; matrix.dim()], 0);
+        let (size, mut groups, mut count) = (usual_dofs(&graph), vec![0; matrix.dim()], 0);
         for group in 0..graph.count() as u32 {
             for part in graph.members(group).chunks(size) {
-                part.iter().for_each(|&dof| nodes[dof] = count);
+                part.iter().for_each(|&dof| groups[dof] = count);
                 count += 1;
             }
         }
-        Units { nodes, exponents: vec![0; matrix.dim()] }
+        Units { groups, exponents: vec![0; matrix.dim()] }
     }
 
     /// One unit for all dofs, as if they were those of one node.
     pub fn alone(dofs: usize) -> Self {
-        Units { nodes: vec![0; dofs], exponents: vec![0; dofs] }
+        Units { groups: vec![0; dofs], exponents: vec![0; dofs] }
     }
 }
 
@@ -164,8 +164,8 @@ impl Nodes {
 
     /// The node and the unit of each dof.
     pub fn units(&self) -> Units {
-        let nodes = self.place.iter().map(|&place| place / self.size as u32).collect();
-        Units { nodes, exponents: self.place.iter().map(|&place| self.exponent(place)).collect() }
+        let groups = self.place.iter().map(|&place| place / self.size as u32).collect();
+        Units { groups, exponents: self.place.iter().map(|&place| self.exponent(place)).collect() }
     }
 
     /// The exponent of the unit at a place.

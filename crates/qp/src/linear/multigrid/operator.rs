@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::blocks::BlockMatrix;
-use super::face::Held;
+use super::held::Held;
 use crate::linear::factor::Real;
 
 /// A matrix A minus the change by a face: on the finest level the face is the range of E = I - N, on coarser ones A becomes A - C.

@@ -21,13 +21,14 @@ const LEAST_BEYOND_IF_NEEDED: f64 = 1e-4;
 const MOST_BEYOND: usize = 24;
 
 /// A row of more nodes is a mean.
-const NODES_OF_A_PAIR: usize = 2;
+const GROUPS_OF_A_PAIR: usize = 2;
 
 /// Rows by rows, with their gaps.
 struct Rows<'a> {
     by_row: SparseMatrix,
     gap: &'a [f64],
-    nodes: &'a [u32],
+    /// The node of each dof.
+    groups: &'a [u32],
 }
 
 /// Bounds that are being made.
@@ -53,7 +54,7 @@ impl Bounds {
         units: &Units,
         travels: Vec<usize>,
     ) -> Result<Self, Error> {
-        let rows = Rows { by_row: contact.transposed(), gap, nodes: &units.nodes };
+        let rows = Rows { by_row: contact.transposed(), gap, groups: &units.groups };
         let mut means = rows.means(&travels);
         loop {
             let (bounds, without_pivot) = Making::of(&rows, order, &means, units, travels.clone())?;
@@ -76,18 +77,18 @@ impl Rows<'_> {
     fn means(&self, travels: &[usize]) -> Vec<usize> {
         let (mut heaviest, mut touched) = (Vec::new(), HashMap::<u32, usize>::new());
         for row in (0..self.gap.len()).filter(|&row| self.gap[row].is_finite()) {
-            let mut of_node = BTreeMap::<u32, f64>::new();
+            let mut of_group = BTreeMap::<u32, f64>::new();
             for (dof, b) in self.entries(row).filter(|entry| travels.binary_search(&entry.0).is_err()) {
-                let length = of_node.entry(self.nodes[dof]).or_default();
+                let length = of_group.entry(self.groups[dof]).or_default();
                 *length = length.hypot(b);
             }
-            let Some((&first, _)) = of_node.iter().max_by(|a, b| a.1.total_cmp(b.1)) else { continue };
-            if of_node.len() > NODES_OF_A_PAIR {
+            let Some((&first, _)) = of_group.iter().max_by(|a, b| a.1.total_cmp(b.1)) else { continue };
+            if of_group.len() > GROUPS_OF_A_PAIR {
                 heaviest.push((row, first));
-                of_node.keys().for_each(|&node| *touched.entry(node).or_default() += 1);
+                of_group.keys().for_each(|&group| *touched.entry(group).or_default() += 1);
             }
         }
-        heaviest.sort_by_key(|(_, node)| std::cmp::Reverse(touched.get(node)));
+        heaviest.sort_by_key(|(_, group)| std::cmp::Reverse(touched.get(group)));
         heaviest.into_iter().map(|(row, _)| row).collect()
     }
 }
@@ -183,9 +184,9 @@ impl Making<'_> {
     /// Makes a mean a bound on its pivot: the direction at one node of what no other row has. Returns `false` if there is none.
     fn pivot(&mut self, row: usize) -> Result<bool, Error> {
         let (length, turned, moving) = self.turned(row)?;
-        let Some(node) = self.node_of_pivot(&turned) else { return Ok(false) };
+        let Some(group) = self.group_of_pivot(&turned) else { return Ok(false) };
         let (mut own, mut shears): (Direction, Direction) =
-            turned.into_iter().partition(|entry| self.rows.nodes[entry.0] == node && self.may_be_pivot(entry.0));
+            turned.into_iter().partition(|entry| self.rows.groups[entry.0] == group && self.may_be_pivot(entry.0));
         let beyond = self::length(&own);
         own.iter_mut().for_each(|entry| entry.1 /= beyond);
         let Some((unknown, sign)) = self.all.onto_one(own) else { return Ok(false) };
@@ -206,17 +207,17 @@ impl Making<'_> {
     }
 
     /// The node with most of what may be a pivot, in displacements, so that a soft node does not count more than a stiff one.
-    fn node_of_pivot(&self, turned: &Direction) -> Option<u32> {
-        let (mut of_node, mut whole) = (BTreeMap::<u32, f64>::new(), 0.0_f64);
+    fn group_of_pivot(&self, turned: &Direction) -> Option<u32> {
+        let (mut of_group, mut whole) = (BTreeMap::<u32, f64>::new(), 0.0_f64);
         for &(place, c) in turned {
             let c = ldexp(c, -self.all.units[place]);
             whole = whole.hypot(c);
             if self.may_be_pivot(place) {
-                let length = of_node.entry(self.rows.nodes[place]).or_default();
+                let length = of_group.entry(self.rows.groups[place]).or_default();
                 *length = length.hypot(c);
             }
         }
-        let heaviest = of_node.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let heaviest = of_group.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
         (heaviest.1 > LEAST_BEYOND * whole).then_some(heaviest.0)
     }
 

@@ -6,8 +6,8 @@
 //! them, and prefer those that it violates the next time.
 //!
 //! The rows between two meshes that do not match are *means*: each joins one node of its own with many that it shares with others. There a
-//! reflection would fill up. A mean becomes the unknown of a *pivot*, the direction in which it moves its own node, and a shear adds all the
-//! rest: `w = v_pivot + sum of s_k v_k`. No pivot stands in the shear of a mean before it.
+//! reflection would fill up. A mean becomes the unknown of a *pivot*, the direction in which it moves its own node, and a shear adds all
+//! the rest: `w = v_pivot + sum of s_k v_k`. No pivot stands in the shear of a mean before it.
 //!
 //! Rows may share a *travel*, a dof t without stiffness: `n'u + c t <= g`. It is a coordinate of its own, and a shear adds it in the same
 //! way. Forces along t then add up those of all its rows.
@@ -318,7 +318,7 @@ mod tests {
 
     /// The bounds in other units, because every test is independent of them.
     fn of(contact: &SparseMatrix, gap: &[f64], travels: Vec<usize>) -> Result<Bounds, Error> {
-        let units = Units { nodes: vec![0, 0, 1, 2, 3], exponents: vec![1, 1, 3, 0, 0] };
+        let units = Units { groups: vec![0, 0, 1, 2, 3], exponents: vec![1, 1, 3, 0, 0] };
         Bounds::of((contact, gap), &Preferred { rows: vec![0, 1, 2], needed: 0 }, &units, travels)
     }
 

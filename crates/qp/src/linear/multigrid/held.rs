@@ -1,0 +1,99 @@
+//! What a face holds: its projection N, of vectors with few dofs.
+
+use super::blocks::BlockMatrix;
+use super::nodes::Nodes;
+use crate::linear::factor::Real;
+
+/// A vector of few dofs: dofs and coefficients, in the units of the nodes.
+pub type Direction = Vec<(usize, f64)>;
+
+/// A held displacement: `row'v = 0`, because v gives way along `way`, with `row'way = 1`. The row has nothing along the ways of the other
+/// holds of a face. For an orthonormal system both are the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hold {
+    /// The displacement that gives way, a unit vector.
+    pub way: Direction,
+    /// What is held.
+    pub row: Direction,
+}
+
+impl Hold {
+    /// A unit vector that is held, and that itself gives way.
+    pub fn of(unit: Direction) -> Self {
+        Hold { way: unit.clone(), row: unit }
+    }
+}
+
+/// The projection N of a face.
+#[derive(Debug)]
+pub struct Held<T> {
+    /// N.
+    pub matrix: BlockMatrix<T>,
+    /// N'.
+    pub transposed: BlockMatrix<T>,
+}
+
+impl<T: Real> Held<T> {
+    /// The projection of `holds`.
+    pub fn of(nodes: &Nodes, holds: &[Hold]) -> Self {
+        let matrix = sum(nodes, holds.iter().map(|hold| (&hold.way, &hold.row)));
+        Held { matrix, transposed: sum(nodes, holds.iter().map(|hold| (&hold.row, &hold.way))) }
+    }
+
+    /// `x = E x` for displacements.
+    pub fn project(&self, x: &mut [T]) {
+        self.matrix.subtract_from(x);
+    }
+
+    /// `f = E' f` for forces.
+    pub fn project_force(&self, f: &mut [T]) {
+        self.transposed.subtract_from(f);
+    }
+
+    /// What is held beyond `last`.
+    pub fn beyond(&self, last: &Self) -> Self {
+        let minus = |own: &BlockMatrix<T>, last: &BlockMatrix<T>| own.plus(-1.0, last).without_zeros();
+        Held { matrix: minus(&self.matrix, &last.matrix), transposed: minus(&self.transposed, &last.transposed) }
+    }
+
+    /// `A - E' A E`.
+    pub fn change(&self, matrix: &BlockMatrix<T>) -> BlockMatrix<T> {
+        let rows = self.transposed.product(matrix, 1);
+        rows.plus(1.0, &rows.transposed()).plus(-1.0, &rows.product(&self.matrix, 1))
+    }
+
+    /// `E' A E + W`, for a hierarchy of one level; W is the sum of `d d'` over the ways d of `holds`.
+    pub fn held_matrix(&self, matrix: &BlockMatrix<T>, nodes: &Nodes, holds: &[Hold]) -> BlockMatrix<T> {
+        let ways = sum(nodes, holds.iter().map(|hold| (&hold.way, &hold.way)));
+        let rows = self.transposed.product(matrix, 1);
+        let both = rows.product(&self.matrix, 1);
+        matrix.plus(-1.0, &rows).plus(-1.0, &rows.transposed()).plus(1.0, &both).plus(1.0, &ways)
+    }
+}
+
+/// The sum of the products a b' of directions.
+fn sum<'a, T: Real>(nodes: &Nodes, products: impl Iterator<Item = (&'a Direction, &'a Direction)>) -> BlockMatrix<T> {
+    let (size, count) = (nodes.size, nodes.count);
+    let mut entries: Vec<(u32, u32, f64)> = Vec::new();
+    for (one, other) in products {
+        for &(first, a) in one {
+            for &(second, b) in other {
+                entries.push((nodes.place[first], nodes.place[second], a * b));
+            }
+        }
+    }
+    let node = |place: u32| place as usize / size;
+    entries.sort_unstable_by_key(|&(row, column, _)| (node(row), node(column)));
+    let mut held = BlockMatrix::empty(0, count, (size, size));
+    for block in entries.chunk_by(|a, b| (node(a.0), node(a.1)) == (node(b.0), node(b.1))) {
+        held.starts.resize(node(block[0].0) + 1, held.indices.len());
+        held.indices.push(node(block[0].1) as u32);
+        let start = held.values.len();
+        held.values.resize(start + size * size, T::default());
+        for &(row, column, value) in block {
+            held.values[start + row as usize % size * size + column as usize % size] += T::of(value);
+        }
+    }
+    held.starts.resize(count + 1, held.indices.len());
+    held
+}
