@@ -2,7 +2,8 @@
 
 use nalgebra::DMatrix;
 
-use super::facet::{Facet, SharedPoint};
+use super::facet::Facet;
+use super::shared::{MOST, Shared, keep_nearest};
 use crate::fem::element::PerNode;
 
 /// A node with less than this share of its area covered carries no row.
@@ -11,15 +12,17 @@ const LEAST_COVERED: f64 = 0.1;
 /// A facet covered by less than this share of its area counts as not covered.
 const NO_COVER: f64 = 1e-10;
 
-/// Most nodes of a facet.
-const MOST: usize = 8;
+/// A facet whose covered area exceeds its area by more than this share lies behind several layers of the other surface; curved facets
+/// exceed it by rounding of the curve, two layers by a half at least.
+const TWICE: f64 = 0.1;
 
 /// The integrals over the covered part of one slave facet.
 pub(super) struct Covered<'a> {
     pub facet: &'a Facet<'a>,
-    /// Its covered area, and its whole area.
+    /// Its covered area, its whole area, and the area of all that it faces.
     pub area: f64,
     pub whole: f64,
+    pub facing: f64,
     /// Integrals of the functions of its nodes over the covered part, and over all of it.
     functions: [f64; MOST],
     full: [f64; MOST],
@@ -35,6 +38,7 @@ impl<'a> Covered<'a> {
             facet,
             area: 0.0,
             whole: 0.0,
+            facing: 0.0,
             functions: [0.0; MOST],
             full: [0.0; MOST],
             products: [[0.0; MOST]; MOST],
@@ -48,27 +52,27 @@ impl<'a> Covered<'a> {
         self.full.iter_mut().zip(shape).for_each(|(sum, value)| *sum += area * value);
     }
 
-    /// Adds a shared point.
-    pub fn add(&mut self, point: &SharedPoint, area: f64, shape: &PerNode<f64>, master: &Facet) {
-        let count = self.facet.nodes.len();
-        self.area += area;
-        for j in 0..count {
-            self.functions[j] += area * shape[j];
-            for k in 0..count {
-                self.products[j][k] += area * shape[j] * shape[k];
+    /// Adds what it shares with the facets of the other surface, of which only the nearest count where the surface has a step.
+    pub fn add(&mut self, mut shared: Vec<Shared>) {
+        self.facing = shared.iter().map(|one| one.area).sum();
+        keep_nearest(&mut shared, self.facet.radius);
+        for one in shared {
+            self.area += one.area;
+            self.functions.iter_mut().zip(one.functions).for_each(|(sum, part)| *sum += part);
+            let products = self.products.iter_mut().flatten().zip(one.products.iter().flatten());
+            products.for_each(|(sum, part)| *sum += part);
+            for (&node, sums) in one.other.nodes.iter().zip(&one.with) {
+                match self.with_master.iter_mut().find(|entry| entry.0 == node) {
+                    Some(entry) => entry.1.iter_mut().zip(sums).for_each(|(sum, part)| *sum += part),
+                    None => self.with_master.push((node, *sums)),
+                }
             }
         }
-        let other = (master.reference().shape)(point.master);
-        for (&node, value) in master.nodes.iter().zip(other) {
-            let place = match self.with_master.iter().position(|entry| entry.0 == node) {
-                Some(place) => place,
-                None => {
-                    self.with_master.push((node, [0.0; MOST]));
-                    self.with_master.len() - 1
-                }
-            };
-            self.with_master[place].1.iter_mut().zip(shape).for_each(|(sum, own)| *sum += area * own * value);
-        }
+    }
+
+    /// Returns `true` if several layers of the other surface face it.
+    pub fn has_layers(&self) -> bool {
+        self.facing > (1.0 + TWICE) * self.whole
     }
 
     pub fn is_covered(&self) -> bool {

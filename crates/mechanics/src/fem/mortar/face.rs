@@ -21,8 +21,8 @@ const DISTORTED: f64 = 0.5;
 /// Steps of Newton's method to the reference coordinates of a point.
 const STEPS: usize = 30;
 
-/// Newton's method ends when the reference coordinates move by less.
-const FOUND: f64 = 1e-15;
+/// Newton's method ends when the reference coordinates move by less: the next step is of the order of the square.
+const FOUND: f64 = 1e-9;
 
 type Point = [f64; 2];
 
@@ -70,15 +70,15 @@ fn twice_area(a: Point, b: Point, c: Point) -> f64 {
 
 /// The part of a polygon inside a convex one that runs counterclockwise, by the method of Sutherland and Hodgman.
 fn clipped(polygon: &[Point], by: &[Point]) -> Vec<Point> {
-    let mut left = polygon.to_vec();
+    let (mut left, mut kept) = (polygon.to_vec(), Vec::with_capacity(polygon.len() + by.len()));
     for (corner, &a) in by.iter().enumerate() {
         let edge = from(a, by[(corner + 1) % by.len()]);
         let rounding = ON_LINE * (edge[0] * edge[0] + edge[1] * edge[1]);
         let side = |point: Point| turned(edge, from(a, point));
-        let mut kept = Vec::with_capacity(left.len() + 1);
-        for (place, &point) in left.iter().enumerate() {
-            let before = left[(place + left.len() - 1) % left.len()];
-            let (here, there) = (side(point), side(before));
+        let Some(&last) = left.last() else { break };
+        let (mut before, mut there) = (last, side(last));
+        for &point in &left {
+            let here = side(point);
             if here * there < 0.0 && here.abs() > rounding && there.abs() > rounding {
                 let share = there / (there - here);
                 let way = from(before, point);
@@ -87,18 +87,34 @@ fn clipped(polygon: &[Point], by: &[Point]) -> Vec<Point> {
             if here >= -rounding {
                 kept.push(point);
             }
+            (before, there) = (point, here);
         }
-        left = kept;
+        std::mem::swap(&mut left, &mut kept);
+        kept.clear();
     }
     left
+}
+
+/// Lowest and highest coordinates of a polygon.
+fn limits(polygon: &[Point]) -> [Point; 2] {
+    [f64::min, f64::max]
+        .map(|pick| [0, 1].map(|axis| polygon.iter().map(|point| point[axis]).fold(polygon[0][axis], pick)))
+}
+
+/// A map from reference coordinates to the plane.
+enum Map {
+    /// Origin and both tangents.
+    Linear([Point; 3]),
+    /// The coefficients of 1, xi, eta and xi eta.
+    Bilinear([Point; 4]),
+    Curved,
 }
 
 /// The map from the plane to the reference coordinates of a face.
 struct Inverse {
     reference: &'static ReferenceElement,
     places: Vec<Point>,
-    /// Origin and the two tangents of a linear map.
-    linear: Option<[Point; 3]>,
+    map: Map,
     /// The distance of a quadrilateral from a parallelogram, relative to its edges.
     distortion: f64,
 }
@@ -106,58 +122,96 @@ struct Inverse {
 impl Inverse {
     fn of(facet: &Facet, plane: &Plane) -> Self {
         let (reference, places) = (facet.reference(), plane.polygon(facet.places()));
+        let quarter = |signs: [f64; 4]| {
+            [0, 1].map(|axis| (0..4).map(|corner| signs[corner] * places[corner][axis]).sum::<f64>() / 4.0)
+        };
         let (skew, [origin, first, second]) = match reference.form {
             Shape::Simplex => ([0.0; 2], [places[0], from(places[0], places[1]), from(places[0], places[2])]),
             Shape::Product => {
-                let middle = [0, 1].map(|axis| places[..4].iter().map(|place| place[axis]).sum::<f64>() / 4.0);
                 let half = |way: Point| way.map(|part| part / 2.0);
                 let (first, second) = (half(from(places[0], places[1])), half(from(places[0], places[3])));
                 let (below, above) = (from(places[0], places[1]), from(places[3], places[2]));
-                (from(below, above), [middle, first, second])
+                (from(below, above), [quarter([1.0; 4]), first, second])
             }
         };
         let distortion = skew[0].hypot(skew[1]) / facet.radius;
-        let linear = (distortion <= STRAIGHT && facet.is_straight()).then_some([origin, first, second]);
-        Inverse { reference, places, linear, distortion }
+        let map = match (facet.is_straight, reference.form) {
+            (false, _) => Map::Curved,
+            (true, Shape::Product) if distortion > STRAIGHT => Map::Bilinear([
+                quarter([1.0; 4]),
+                quarter([-1.0, 1.0, 1.0, -1.0]),
+                quarter([-1.0, -1.0, 1.0, 1.0]),
+                quarter([1.0, -1.0, 1.0, -1.0]),
+            ]),
+            _ => Map::Linear([origin, first, second]),
+        };
+        Inverse { reference, places, map, distortion }
     }
 
     /// The reference coordinates of a point; `None` where the face folds.
     fn at(&self, point: Point) -> Option<[f64; 3]> {
-        if let Some([origin, first, second]) = self.linear {
-            let (whole, way) = (turned(first, second), from(origin, point));
-            return Some([turned(way, second) / whole, turned(first, way) / whole, 0.0]);
-        }
-        let mut at = self.reference.centroid();
-        for _ in 0..STEPS {
-            let (shape, slope) = ((self.reference.shape)(at), (self.reference.derivative)(at));
-            let (mut away, mut tangents) = (point, [[0.0; 2]; 2]);
-            for (node, place) in self.places.iter().enumerate() {
-                for axis in 0..2 {
-                    away[axis] -= shape[node] * place[axis];
-                    tangents[0][axis] += slope[node][0] * place[axis];
-                    tangents[1][axis] += slope[node][1] * place[axis];
-                }
+        match self.map {
+            Map::Linear([origin, first, second]) => {
+                let (whole, way) = (turned(first, second), from(origin, point));
+                Some([turned(way, second) / whole, turned(first, way) / whole, 0.0])
             }
-            let whole = turned(tangents[0], tangents[1]);
-            let step = [turned(away, tangents[1]) / whole, turned(tangents[0], away) / whole];
-            at = [at[0] + step[0], at[1] + step[1], 0.0];
-            if !(at[0].abs() < 10.0 && at[1].abs() < 10.0) {
-                return None;
+            Map::Bilinear([middle, first, second, skew]) => {
+                let to = from(middle, point);
+                newton([0.0; 2], |[xi, eta]| {
+                    let place = |axis: usize| xi * first[axis] + eta * (second[axis] + xi * skew[axis]);
+                    let tangents = [
+                        [0, 1].map(|axis| first[axis] + eta * skew[axis]),
+                        [0, 1].map(|axis| second[axis] + xi * skew[axis]),
+                    ];
+                    ([0, 1].map(|axis| to[axis] - place(axis)), tangents)
+                })
             }
-            if step[0].abs().max(step[1].abs()) <= FOUND {
-                break;
+            Map::Curved => {
+                let [xi, eta, _] = self.reference.centroid();
+                newton([xi, eta], |[xi, eta]| self.away(point, [xi, eta, 0.0]))
             }
         }
-        Some(at)
+    }
+
+    /// The way to a point from the place at some reference coordinates, and the tangents there.
+    fn away(&self, point: Point, at: [f64; 3]) -> (Point, [Point; 2]) {
+        let (shape, slope) = ((self.reference.shape)(at), (self.reference.derivative)(at));
+        let (mut away, mut tangents) = (point, [[0.0; 2]; 2]);
+        for (node, place) in self.places.iter().enumerate() {
+            for axis in 0..2 {
+                away[axis] -= shape[node] * place[axis];
+                tangents[0][axis] += slope[node][0] * place[axis];
+                tangents[1][axis] += slope[node][1] * place[axis];
+            }
+        }
+        (away, tangents)
     }
 
     /// Points in each direction of a triangle that integrate its functions well enough; `None` for a linear map.
     fn points(&self) -> Option<usize> {
-        match self.linear {
-            Some(_) => None,
-            None => Some(if self.distortion > DISTORTED { FINEST } else { FINE }),
+        match self.map {
+            Map::Linear(_) => None,
+            _ => Some(if self.distortion > DISTORTED { FINEST } else { FINE }),
         }
     }
+}
+
+/// The zero of the way to a point by Newton's method, from the way and the tangents at reference coordinates.
+fn newton(start: Point, away: impl Fn(Point) -> (Point, [Point; 2])) -> Option<[f64; 3]> {
+    let mut at = start;
+    for _ in 0..STEPS {
+        let (way, [first, second]) = away(at);
+        let whole = turned(first, second);
+        let step = [turned(way, second) / whole, turned(first, way) / whole];
+        at = [at[0] + step[0], at[1] + step[1]];
+        if !(at[0].abs() < 10.0 && at[1].abs() < 10.0) {
+            return None;
+        }
+        if step[0].abs().max(step[1].abs()) <= FOUND {
+            break;
+        }
+    }
+    Some([at[0], at[1], 0.0])
 }
 
 /// A rule on the triangle (0,0), (1,0), (0,1): points with weights that add up to 1/2.
@@ -182,15 +236,9 @@ fn rule(points: Option<usize>) -> &'static [(Point, f64)] {
 
 /// Calls `visit` for the points of a rule on a convex polygon, with the area that each stands for.
 fn for_each_of_polygon(polygon: &[Point], rule: &[(Point, f64)], mut visit: impl FnMut(Point, f64)) {
-    let count = polygon.len() as f64;
-    let centre = [0, 1].map(|axis| polygon.iter().map(|point| point[axis]).sum::<f64>() / count);
-    // A triangle is its own fan.
-    let fan: Vec<[Point; 3]> = match *polygon {
-        [a, b, c] => vec![[a, b, c]],
-        _ => (0..polygon.len()).map(|at| [centre, polygon[at], polygon[(at + 1) % polygon.len()]]).collect(),
-    };
-    for [a, b, c] in fan {
-        let (first, second) = (from(a, b), from(a, c));
+    for at in 2..polygon.len() {
+        let a = polygon[0];
+        let (first, second) = (from(a, polygon[at - 1]), from(a, polygon[at]));
         let twice = turned(first, second);
         for &([s, t], weight) in rule {
             visit([0, 1].map(|axis| a[axis] + s * first[axis] + t * second[axis]), weight * twice);
@@ -208,6 +256,9 @@ pub(super) struct Projected<'a> {
     pieces: Vec<Vec<Point>>,
     /// Its area in the plane.
     area: f64,
+    cell: Cell,
+    /// The ratio of area in place to area in the plane, if it is the same everywhere.
+    ratio: Option<f64>,
 }
 
 impl<'a> Projected<'a> {
@@ -219,10 +270,12 @@ impl<'a> Projected<'a> {
             let facing = dot(vector, direction);
             (facing > 0.0).then(|| (plane.polygon(corners), facing))
         };
-        let found: Vec<_> = facet.pieces().iter().filter_map(piece).collect();
+        let found: Vec<_> = facet.pieces.iter().filter_map(piece).collect();
         let area = found.iter().map(|(_, area)| area).sum();
         let pieces = found.into_iter().map(|(polygon, _)| polygon).collect();
-        Projected { facet, direction, inverse: Inverse::of(facet, &plane), plane, pieces, area }
+        let cell = Cell::new(facet.reference(), &facet.corners);
+        let ratio = facet.is_flat().then(|| 1.0 / dot(facet.normal, direction));
+        Projected { facet, direction, inverse: Inverse::of(facet, &plane), plane, pieces, area, cell, ratio }
     }
 
     /// Calls `visit` for the integration points of the whole face: reference coordinates and area.
@@ -238,9 +291,10 @@ impl<'a> Projected<'a> {
 
     /// The ratio of area in place to area in the plane.
     fn ratio(&self, at: [f64; 3]) -> f64 {
-        let cell = Cell::new(self.facet.reference(), &self.facet.corners);
-        let vector = cell.area_vector(&(self.facet.reference().derivative)(at));
-        length(vector) / dot(vector, self.direction)
+        self.ratio.unwrap_or_else(|| {
+            let vector = self.cell.area_vector(&(self.facet.reference().derivative)(at));
+            length(vector) / dot(vector, self.direction)
+        })
     }
 
     /// The reference coordinates of the place that is seen behind a point.
@@ -252,15 +306,20 @@ impl<'a> Projected<'a> {
     pub fn for_each_point(&self, master: &Facet, reach: f64, visit: &mut dyn FnMut(SharedPoint)) {
         let inverse = Inverse::of(master, &self.plane);
         let rule = rule(self.inverse.points().max(inverse.points()));
-        for piece in master.pieces() {
-            let vector = area_vector(&piece);
+        for piece in &master.pieces {
+            let vector = area_vector(piece);
             if dot(vector, self.direction) >= 0.0 {
                 continue;
             }
             // Seen along the direction, the other face runs clockwise.
-            let mut other = self.plane.polygon(&piece);
+            let mut other = self.plane.polygon(piece);
             other.reverse();
+            let [low, high] = limits(&other);
             for own in &self.pieces {
+                let [first, last] = limits(own);
+                if (0..2).any(|axis| low[axis] > last[axis] || high[axis] < first[axis]) {
+                    continue;
+                }
                 let shared = clipped(&other, own);
                 let area: f64 =
                     (2..shared.len()).map(|at| twice_area(shared[0], shared[at - 1], shared[at])).sum::<f64>() / 2.0;

@@ -1,7 +1,7 @@
 //! The facets of two surfaces, and the points at which the integrals over what both share are taken.
 
-use crate::fem::element::{Cell, FacetKind, MAX_NODES, PerNode, ReferenceElement, TabulatedPoint};
-use crate::fem::geometry::{cross, distance, dot, minus, unit};
+use crate::fem::element::{Cell, FacetKind, MAX_NODES, PerNode, ReferenceElement};
+use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
 
 use super::SurfaceMesh;
 
@@ -22,6 +22,10 @@ pub(super) struct Facet<'a> {
     /// The ball around it.
     pub middle: [f64; 3],
     pub radius: f64,
+    /// All mid-side nodes lie in the middle of straight edges.
+    pub is_straight: bool,
+    /// The straight pieces of which it consists: its corners, or more pieces if it is curved.
+    pub pieces: Vec<Vec<[f64; 3]>>,
 }
 
 /// A point that both surfaces share, in the reference coordinates of both facets.
@@ -40,8 +44,12 @@ impl<'a> Facet<'a> {
         let own = &places[..nodes.len()];
         let middle = [0, 1, 2].map(|axis| own.iter().map(|place| place[axis]).sum::<f64>() / own.len() as f64);
         let radius = own.iter().fold(0.0, |radius: f64, &place| radius.max(distance(place, middle)));
-        let mut facet = Facet { kind: surface.kind, nodes, corners: places, normal: [0.0; 3], middle, radius };
-        facet.normal = unit(facet.pieces().iter().fold([0.0; 3], |sum, piece| {
+        let (kind, normal) = (surface.kind, [0.0; 3]);
+        let mut facet =
+            Facet { kind, nodes, corners: places, normal, middle, radius, is_straight: false, pieces: Vec::new() };
+        facet.is_straight = facet.is_straight();
+        facet.pieces = facet.pieces();
+        facet.normal = unit(facet.pieces.iter().fold([0.0; 3], |sum, piece| {
             let vector = area_vector(piece);
             [0, 1, 2].map(|axis| sum[axis] + vector[axis])
         }));
@@ -57,8 +65,13 @@ impl<'a> Facet<'a> {
         &self.corners[..self.nodes.len()]
     }
 
-    /// Returns `true` if all mid-side nodes lie in the middle of straight edges.
-    pub fn is_straight(&self) -> bool {
+    /// Returns `true` if all its points lie in one plane, and all mid-side nodes in the middle of straight edges.
+    pub fn is_flat(&self) -> bool {
+        let from_middle = |place: &[f64; 3]| dot(minus(*place, self.middle), self.normal).abs();
+        self.is_straight && self.places().iter().all(|place| from_middle(place) <= STRAIGHT * self.radius)
+    }
+
+    fn is_straight(&self) -> bool {
         let (reference, places) = (self.reference(), self.places());
         reference.mid_sides.iter().zip(&places[reference.corners..]).all(|(&[a, b], &place)| {
             let middle = [0, 1, 2].map(|axis| (places[a][axis] + places[b][axis]) / 2.0);
@@ -66,10 +79,9 @@ impl<'a> Facet<'a> {
         })
     }
 
-    /// The straight pieces of which the facet consists: its corners, or more pieces if it is curved.
-    pub fn pieces(&self) -> Vec<Vec<[f64; 3]>> {
+    fn pieces(&self) -> Vec<Vec<[f64; 3]>> {
         let places = self.places();
-        if self.is_straight() {
+        if self.is_straight {
             return vec![places[..self.reference().corners].to_vec()];
         }
         let locals: Vec<usize> = (0..places.len()).collect();
@@ -82,17 +94,30 @@ impl<'a> Facet<'a> {
         dot(self.normal, other.normal) < -FACING
     }
 
-    /// Adds its part to the normals of its nodes: as [`node_normals`](crate::fem::assembly::node_normals).
+    /// Adds its part to the normals of its nodes, with weights that leave no error on circles and spheres, however much the facets
+    /// around a node differ: `|a x b| / (a.a b.b)` at a corner with the edges a and b.
     pub fn add_normals(&self, sums: &mut [[f64; 3]]) {
         let (reference, cell) = (self.reference(), Cell::new(self.reference(), &self.corners));
-        for point in reference.quadrature {
-            let at = TabulatedPoint::new(reference, point.at, point.weight);
-            let vector = cell.area_vector(&at.derivative);
-            let size = cell.unit().powi(reference.dimension as i32) * point.weight;
-            for (&node, share) in self.nodes.iter().zip(at.shape) {
-                sums[node].iter_mut().zip(vector).for_each(|(sum, part)| *sum += share * share * size * part);
-            }
+        for (local, &node) in self.nodes.iter().enumerate() {
+            let normal = unit(cell.area_vector(&(reference.derivative)(reference.nodes[local])));
+            let weight = self.weight(local);
+            sums[node].iter_mut().zip(normal).for_each(|(sum, part)| *sum += weight * part);
         }
+    }
+
+    /// The weight of its normal at a node.
+    fn weight(&self, local: usize) -> f64 {
+        let (places, corners) = (self.places(), self.reference().corners);
+        let edge = |step: usize| minus(places[(local + step) % corners], places[local]);
+        let (turn, size) = match corners {
+            _ if local >= corners => (1.0, 1.0),
+            2 => (1.0, length(edge(1))),
+            _ => {
+                let (a, b) = (edge(1), edge(corners - 1));
+                (length(cross(unit(a), unit(b))), length(a) * length(b))
+            }
+        };
+        if size > 0.0 { turn / size } else { 0.0 }
     }
 }
 

@@ -16,39 +16,34 @@
 //! # Source
 //! B. I. Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989-1012 (dual functions); M. A. Puso, T. A. Laursen, J. Solberg, Comput. Methods Appl.
 //! Mech. Engrg. 197 (2008) 555-566 (segments of quadratic faces); T. Cichosz, M. Bischoff, Comput. Methods Appl. Mech. Engrg. 200 (2011)
-//! 1317-1332 (functions over the covered part); A. Popp, A. Seitz, M. W. Gee, W. A. Wall, Comput. Methods Appl. Mech. Engrg. 264 (2013)
+//! 1317-1332 (functions over the covered part); N. Max, J. Graphics Tools 4 (1999) 1-6 (weights of normals); A. Popp, A. Seitz, M. W. Gee,
+//! W. A. Wall, Comput. Methods Appl. Mech. Engrg. 264 (2013)
 //! 67-80 (nodes that are dropped).
 
 mod coverage;
 mod face;
 mod facet;
 mod line;
+mod search;
+mod shared;
 #[cfg(test)]
 mod tests;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use coverage::{Covered, Part, kept, parts};
-use face::Projected;
 use facet::Facet;
+use search::Sides;
 use signorini_qp::SparseMatrix;
 
 use crate::error::Error;
-use crate::fem::element::{FacetKind, PerNode, positive_coefficient, positive_functions};
+use crate::fem::element::{FacetKind, positive_coefficient};
 use crate::fem::formulation::Formulation;
-use crate::fem::geometry::{dot, length, minus, unit};
+use crate::fem::geometry::{dot, minus, unit};
 use crate::fem::mesh::Boundary;
-use crate::fem::surface::Tree;
 
 /// A share below this is rounding of zero; one this close to 1 is 1.
 const ROUNDING: f64 = 1e-12;
-
-/// A place outside a facet by less than this, in reference coordinates, is on its edge.
-const SAME_PLACE: f64 = 1e-9;
-
-/// A facet whose covered area exceeds its area by more than this share lies behind several layers of the other surface; curved facets
-/// exceed it by rounding of the curve, two layers by a half at least.
-const TWICE: f64 = 0.1;
 
 /// A surface of a body: its facets, and the nodes that these name.
 #[derive(Clone, Copy, Debug)]
@@ -143,6 +138,18 @@ pub(crate) struct Found {
     pub sag: f64,
 }
 
+/// What a search finds.
+#[derive(Clone, Debug)]
+pub(crate) struct Seen {
+    /// Which slave facets face the master surface within reach.
+    pub faces: Vec<bool>,
+    /// A slave facet faces several layers of the master surface.
+    pub has_layers: bool,
+    /// As in [`Found`].
+    pub opposite: Vec<Opposite>,
+    pub sag: f64,
+}
+
 impl std::fmt::Debug for Mortar<'_> {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (slave, master) = (self.slave.facets.len(), self.master.facets.len());
@@ -233,17 +240,14 @@ impl<'a> Mortar<'a> {
     /// As [`Mortar::rows`].
     pub(crate) fn found(&self) -> Result<Found, Error> {
         self.check()?;
-        let slave = facets(&self.slave);
-        let master = facets(&self.master);
-        let [own, others] =
-            [(&self.slave, &slave), (&self.master, &master)].map(|(surface, facets)| normals(surface, facets));
-        let (covered, opposite) = self.covered(&slave, &master, &own);
-        if let Some((index, one)) = covered.iter().enumerate().find(|(_, one)| one.area > (1.0 + TWICE) * one.whole) {
+        let sides = Sides::of(self);
+        let (covered, opposite) = self.covered(&sides);
+        if let Some((index, one)) = covered.iter().enumerate().find(|(_, one)| one.has_layers()) {
             return Err(Error::Mesh {
                 message: format!(
                     "facet {index} at {:?} faces several layers of the other surface, {:.3} times its area; give a reach that leaves one",
                     one.facet.middle,
-                    one.area / one.whole
+                    one.facing / one.whole
                 ),
             });
         }
@@ -254,36 +258,34 @@ impl<'a> Mortar<'a> {
         let rows: Vec<MortarRow> = parts
             .into_iter()
             .enumerate()
-            .filter_map(|(node, part)| self.row(node, part?, &own, &others, &ends))
+            .filter_map(|(node, part)| self.row(node, part?, &sides.normals, &ends))
             .collect();
         let sum = |part: fn(&Covered) -> f64| covered.iter().map(part).sum::<f64>();
         let area = sum(|facet| facet.area);
         // The other surface counts by its nodes: its area differs from that of what it covers.
         let seen: BTreeSet<usize> = opposite.iter().map(|seen| seen.node).collect();
         let of_facet = |facet: &Facet| facet.nodes.iter().filter(|node| seen.contains(node)).count() as f64;
-        let seen_of_master: f64 = master.iter().map(of_facet).sum();
-        let of_master = (master.len() * self.master.kind.nodes()) as f64;
+        let seen_of_master: f64 = sides.master.iter().map(of_facet).sum();
+        let of_master = (sides.master.len() * self.master.kind.nodes()) as f64;
         let share = |part: f64, of: f64| if of > 0.0 { part / of } else { 0.0 };
         Ok(Found {
             covered: [share(area, sum(|facet| facet.whole)), share(seen_of_master, of_master)],
             opposite,
-            sag: facet::sag(&slave, &own).max(facet::sag(&master, &others)),
+            sag: sides.sag(),
             rows,
         })
     }
 
-    /// The slave facets that face the master surface within reach, by their numbers, the master nodes that face the slave surface, and
-    /// the sag of both.
+    /// What the search finds, without rows; surfaces may lie in several layers before each other.
     ///
     /// # Errors
     /// As [`Mortar::rows`], except for layers.
-    pub(crate) fn seen(&self) -> Result<(Vec<bool>, Vec<Opposite>, f64), Error> {
+    pub(crate) fn seen(&self) -> Result<Seen, Error> {
         self.check()?;
-        let [slave, master] = [&self.slave, &self.master].map(facets);
-        let [own, others] = [normals(&self.slave, &slave), normals(&self.master, &master)];
-        let (covered, opposite) = self.covered(&slave, &master, &own);
-        let sag = facet::sag(&slave, &own).max(facet::sag(&master, &others));
-        Ok((covered.iter().map(Covered::is_covered).collect(), opposite, sag))
+        let sides = Sides::of(self);
+        let (covered, opposite) = self.covered(&sides);
+        let has_layers = covered.iter().any(Covered::has_layers);
+        Ok(Seen { faces: covered.iter().map(Covered::is_covered).collect(), has_layers, opposite, sag: sides.sag() })
     }
 
     /// Checks that facets and formulation fit.
@@ -326,113 +328,12 @@ impl<'a> Mortar<'a> {
         ends
     }
 
-    /// The values of the functions of a slave facet.
-    fn functions(&self, facet: &Facet, at: [f64; 3]) -> PerNode<f64> {
-        let mut values = (facet.reference().shape)(at);
-        if facet.reference().dimension == 2 {
-            let has = |local: usize| self.has_coefficient.is_none_or(|has| has(facet.nodes[local]));
-            positive_functions(facet.reference(), has, &mut values);
-        }
-        values
-    }
-
-    /// The factor from length or area to area at a point of a facet.
-    fn measure(&self, facet: &Facet, shape: &PerNode<f64>) -> f64 {
-        let radius = facet.places().iter().zip(shape).map(|(place, share)| share * place[0]).sum();
-        self.formulation.measure(radius)
-    }
-
-    /// The integrals over the covered part of every slave facet.
-    fn covered<'f>(
-        &self,
-        slave: &'f [Facet<'f>],
-        master: &[Facet],
-        normals: &[[f64; 3]],
-    ) -> (Vec<Covered<'f>>, Vec<Opposite>) {
-        let numbers: Vec<u32> = (0..master.len() as u32).collect();
-        let tree = Tree::new(&numbers, |number| {
-            let places = master[number as usize].places();
-            let [low, high] = [f64::min, f64::max]
-                .map(|pick| [0, 1, 2].map(|axis| places.iter().map(|place| place[axis]).reduce(pick).unwrap_or(0.0)));
-            // A curved edge leaves the box of its nodes.
-            let radius = master[number as usize].radius;
-            [low.map(|at| at - radius / 4.0), high.map(|at| at + radius / 4.0)]
-        });
-        let mut all = Vec::with_capacity(slave.len());
-        let mut opposite: BTreeMap<usize, Opposite> = BTreeMap::new();
-        for facet in slave {
-            let mut covered = Covered::new(facet);
-            let is_edge = facet.reference().dimension == 1;
-            let direction = self.direction.unwrap_or(facet.normal);
-            let projected = (!is_edge).then(|| Projected::new(facet, direction));
-            let mut whole = |at: [f64; 3], size: f64| {
-                let area = size * self.measure(facet, &(facet.reference().shape)(at));
-                covered.add_whole(&self.functions(facet, at), area);
-            };
-            match &projected {
-                None => line::for_each_of_whole(facet, &mut whole),
-                Some(face) => face.for_each_of_whole(&mut whole),
-            }
-            if dot(direction, facet.normal) <= 0.0 {
-                all.push(covered);
-                continue;
-            }
-            let directions: Vec<[f64; 3]> =
-                facet.nodes.iter().map(|&node| self.direction.unwrap_or(normals[node])).collect();
-            let spread = directions.iter().fold(0.0, |spread: f64, &way| {
-                let along = dot(way, direction);
-                spread.max(length(minus(way, direction.map(|part| along * part))) / along.max(0.1))
-            });
-            let mut near = Vec::new();
-            tree.around_line(facet.middle, direction, [facet.radius, spread, self.reach], |number| near.push(number));
-            near.sort_unstable();
-            for other in near.into_iter().map(|number| &master[number as usize]).filter(|other| facet.faces(other)) {
-                let mut add = |point| {
-                    let facet::SharedPoint { slave: at, weight, .. } = point;
-                    let area = weight * self.measure(facet, &(facet.reference().shape)(at));
-                    covered.add(&point, area, &self.functions(facet, at), other);
-                };
-                match &projected {
-                    None => line::for_each_point(facet, &directions, other, self.reach, &mut add),
-                    Some(face) => face.for_each_point(other, self.reach, &mut add),
-                }
-                for (&node, &place) in other.nodes.iter().zip(other.places()) {
-                    if opposite.contains_key(&node) {
-                        continue;
-                    }
-                    let found = match &projected {
-                        None => line::foot(facet, &directions, place),
-                        Some(face) => face.foot(place),
-                    };
-                    let Some(at) = found.filter(|&at| facet.reference().contains(at, SAME_PLACE)) else { continue };
-                    let shape = (facet.reference().shape)(at);
-                    let sum = |value: &dyn Fn(usize) -> [f64; 3]| {
-                        (0..facet.nodes.len()).fold([0.0; 3], |sum, local| {
-                            let value = value(local);
-                            [0, 1, 2].map(|axis| sum[axis] + shape[local] * value[axis])
-                        })
-                    };
-                    let normal = unit(sum(&|local| directions[local]));
-                    let way = minus(place, sum(&|local| facet.places()[local]));
-                    let gap = dot(way, normal);
-                    if gap.abs() <= self.reach {
-                        let slave = facet.nodes.iter().copied().zip(shape).collect();
-                        opposite.insert(node, Opposite { node, slave, normal, gap });
-                    }
-                }
-            }
-            all.push(covered);
-        }
-        (all, opposite.into_values().collect())
-    }
-
     /// The row of a node; `None` if it has no area.
     fn row(
         &self,
         node: usize,
         part: Part,
-        own: &[[f64; 3]],
-        others: &[[f64; 3]],
+        [own, others]: &[Vec<[f64; 3]>; 2],
         ends: &[Option<[usize; 2]>],
     ) -> Option<MortarRow> {
         let area = part.area;
@@ -448,9 +349,10 @@ impl<'a> Mortar<'a> {
         };
         let (slave, mut master) = (shares(part.slave), shares(part.master));
         master.sort_unstable_by_key(|entry| entry.0);
-        let outward = master.iter().fold([0.0; 3], |sum, &(other, share)| {
-            [0, 1, 2].map(|axis| sum[axis] + share.max(0.0) * others[other][axis])
-        });
+        // Negative shares count: only all of them together are as exact as the rows where the normals turn.
+        let outward = master
+            .iter()
+            .fold([0.0; 3], |sum, &(other, share)| [0, 1, 2].map(|axis| sum[axis] + share * others[other][axis]));
         let mean = unit(minus(own[node], unit(outward)));
         let normal = self.direction.unwrap_or(mean);
         // Relative to the node, so that surfaces far from the origin lose no digits.
@@ -468,15 +370,4 @@ impl<'a> Mortar<'a> {
         let covered = area / part.full;
         Some(MortarRow { node, slave, master, normal, mean, gap: of_master - of_slave, area, covered })
     }
-}
-
-fn facets<'a>(surface: &SurfaceMesh<'a>) -> Vec<Facet<'a>> {
-    surface.facets.chunks_exact(surface.kind.nodes()).map(|nodes| Facet::new(surface, nodes)).collect()
-}
-
-/// The mean outward unit normal at each node.
-fn normals(surface: &SurfaceMesh, facets: &[Facet]) -> Vec<[f64; 3]> {
-    let mut sums = vec![[0.0; 3]; surface.nodes.len()];
-    facets.iter().for_each(|facet| facet.add_normals(&mut sums));
-    sums.into_iter().map(unit).collect()
 }

@@ -1,5 +1,6 @@
 //! Exact rows as fractions, and what every row must hold: shares, rigid motions, areas.
 
+use super::face::Projected;
 use super::*;
 use crate::fem::element::FacetKind::{self, Line2, Line3, Q4, Q8, T3, T6};
 
@@ -241,7 +242,8 @@ fn rows_of_any_two_sheets_carry_a_uniform_pressure_and_no_rigid_motion() {
 /// The integral of each shape function, by the quadrature of the facets.
 fn whole_areas(surface: &SurfaceMesh) -> Vec<f64> {
     let mut areas = vec![0.0; surface.nodes.len()];
-    for facet in facets(surface) {
+    for nodes in surface.facets.chunks_exact(surface.kind.nodes()) {
+        let facet = Facet::new(surface, nodes);
         Projected::new(&facet, facet.normal).for_each_of_whole(&mut |at, area| {
             let shape = (facet.reference().shape)(at);
             facet.nodes.iter().zip(shape).for_each(|(&node, share)| areas[node] += share * area);
@@ -317,6 +319,39 @@ fn edges_of_all_kinds_carry_a_uniform_pressure_in_the_plane_and_about_the_axis()
                     assert!((force - area).abs() < 1e-12, "{name}: node {node} takes {force:e} for {area:e}");
                 }
             }
+        }
+    }
+}
+
+/// The right half of the edge lies over a floor: a mean over both would have the gaps -0.05 and 0.25 for a step of 0.2.
+#[test]
+fn a_facet_over_a_step_touches_the_near_part_alone() {
+    let slave = [[0.0; 3], [1.0, 0.0, 0.0]];
+    let master = [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.5, -0.2, 0.0], [1.0, -0.2, 0.0]];
+    let (slave, with_wall) = (surface(&slave, Line2, &[0, 1]), surface(&master, Line2, &[1, 0, 2, 1, 3, 2]));
+    let found = between(slave, with_wall, PLANE).found().unwrap();
+    assert_equal(&found.rows.iter().map(|row| row.gap).collect::<Vec<_>>(), &[0.0, 0.0]);
+    assert_equal(&found.covered[..1], &[0.5]);
+}
+
+/// Nodes of a circle at uneven angles, and of a sphere: straight facets have the normals of the curve there.
+#[test]
+fn normals_at_nodes_are_those_of_circles_and_spheres() {
+    let angles = [0.0, 0.3, 0.35, 0.6, 0.62, 1.0];
+    let on_circle = angles.map(|angle: f64| [angle.cos(), angle.sin(), 0.0]);
+    let edges: Vec<usize> = (0..5).flat_map(|at| [at, at + 1]).collect();
+    // A fan around the pole.
+    let mut on_sphere = vec![[0.0, 0.0, 1.0]];
+    let around = [(0.2, 0.0), (0.1, 1.0), (0.3, 1.9), (0.15, 3.2), (0.25, 4.5)];
+    on_sphere
+        .extend(around.map(|(tilt, turn): (f64, f64)| [tilt.sin() * turn.cos(), tilt.sin() * turn.sin(), tilt.cos()]));
+    let fan: Vec<usize> = (0..5).flat_map(|at| [0, 1 + at, 1 + (at + 1) % 5]).collect();
+    for (sheet, formulation, inner) in
+        [(surface(&on_circle, Line2, &edges), PLANE, 1..5), (surface(&on_sphere, T3, &fan), SPACE, 0..1)]
+    {
+        let sides = Sides::of(&between(sheet, sheet, formulation));
+        for node in inner {
+            assert_equal(&sides.normals[0][node], &sheet.0[node]);
         }
     }
 }

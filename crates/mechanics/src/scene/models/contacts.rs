@@ -6,6 +6,7 @@ use std::collections::HashSet;
 use crate::error::Error;
 use crate::fem::geometry::{distance, length, minus};
 use crate::fem::mesh::extent;
+use crate::fem::mortar::Seen;
 use crate::fem::{Boundary, ElasticBody, Mortar, Region};
 use crate::scene::Model;
 use crate::scene::input::obstacle::ShapeSpec;
@@ -54,13 +55,19 @@ impl Scene {
                 let size = size_of(&body, &regions[first]).min(size_of(&body, &regions[second]));
                 let least = sides.iter().map(|side| largest_facet(&nodes, side)).fold(0.0, f64::max);
                 let widest = (REACH * size).max(least + self.largest_travel());
-                let is_one_layer =
-                    |reach: &f64| [[0, 1], [1, 0]].map(between).iter().all(|one| one.within(*reach).found().is_ok());
-                let reaches = (0..HALVINGS as i32).map(|halvings| widest / 2.0_f64.powi(halvings));
-                let reach = reaches.take_while(|reach| *reach >= least / 2.0).find(is_one_layer).unwrap_or(least);
+                let both = |reach: f64| -> Result<[Seen; 2], Error> {
+                    Ok([between([0, 1]).within(reach).seen()?, between([1, 0]).within(reach).seen()?])
+                };
+                let mut reach = widest;
+                let mut seen = both(reach)?;
+                let mut halvings = 1;
+                while reach != least && seen.iter().any(|seen| seen.has_layers) {
+                    let half = reach / 2.0;
+                    reach = if halvings < HALVINGS && half >= least / 2.0 { half } else { least };
+                    (seen, halvings) = (both(reach)?, halvings + 1);
+                }
                 let mut found = Vec::new();
-                for [own, other] in [[0, 1], [1, 0]] {
-                    let (faces, ..) = between([own, other]).within(reach).seen()?;
+                for ([own, other], Seen { faces, .. }) in [[0, 1], [1, 0]].into_iter().zip(seen) {
                     let [of, at] =
                         [[first, second][own], [first, second][other]].map(|region| name_of(&regions[region]));
                     let name = free_name(&body, &format!("{of}-at-{at}"));
@@ -140,7 +147,7 @@ impl Model {
                 let near = surface(other).part("near", |facet| inside[facet]);
                 let reach = REACH * size_of(self.body(), &regions[own]).min(size_of(self.body(), &regions[other]));
                 let mortar = Mortar::new((&nodes, surface(own)), (&nodes, &near), *self.body().formulation());
-                let (_, opposite, sag) = mortar.within(reach).seen()?;
+                let Seen { opposite, sag, .. } = mortar.within(reach).seen()?;
                 for seen in opposite.iter().filter(|seen| !held.contains(&seen.node)) {
                     let depth = -seen.gap;
                     let counts = depth > ROUNDING * mesh.size() + sag;

@@ -1,0 +1,197 @@
+//! The search: what each facet of the slave surface shares with the master surface, and the master nodes that face the slave surface.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::coverage::Covered;
+use super::face::Projected;
+use super::facet::{self, Facet, SharedPoint};
+use super::shared::{MOST, Shared};
+use super::{Mortar, Opposite, SurfaceMesh, line};
+use crate::fem::element::{MAX_NODES, PerNode, positive_functions};
+use crate::fem::geometry::{dot, length, minus, unit};
+use crate::fem::surface::Tree;
+
+/// A place outside a facet by less than this, in reference coordinates, is on its edge.
+const SAME_PLACE: f64 = 1e-9;
+
+/// The facets of both surfaces, and the mean outward unit normals at the nodes of each.
+pub(super) struct Sides<'a> {
+    pub slave: Vec<Facet<'a>>,
+    pub master: Vec<Facet<'a>>,
+    pub normals: [Vec<[f64; 3]>; 2],
+}
+
+impl<'a> Sides<'a> {
+    pub fn of(mortar: &Mortar<'a>) -> Self {
+        let [slave, master] = [mortar.slave, mortar.master].map(|surface| {
+            let facets = surface.facets.chunks_exact(surface.kind.nodes());
+            facets.map(|nodes| Facet::new(&surface, nodes)).collect::<Vec<_>>()
+        });
+        let normals = [normals(&mortar.slave, &slave), normals(&mortar.master, &master)];
+        Sides { slave, master, normals }
+    }
+
+    /// The larger sag of both.
+    pub fn sag(&self) -> f64 {
+        let [own, others] = &self.normals;
+        facet::sag(&self.slave, own).max(facet::sag(&self.master, others))
+    }
+
+    /// The boxes around the master facets.
+    fn tree(&self) -> Tree {
+        let numbers: Vec<u32> = (0..self.master.len() as u32).collect();
+        Tree::new(&numbers, |number| {
+            let facet = &self.master[number as usize];
+            let [low, high] = [f64::min, f64::max].map(|pick| {
+                [0, 1, 2].map(|axis| facet.places().iter().map(|place| place[axis]).reduce(pick).unwrap_or(0.0))
+            });
+            // A curved edge leaves the box of its nodes.
+            [low.map(|at| at - facet.radius / 4.0), high.map(|at| at + facet.radius / 4.0)]
+        })
+    }
+}
+
+/// A slave facet as the other surface is seen from it.
+struct Site<'f> {
+    facet: &'f Facet<'f>,
+    /// Unit vectors out of the body, of the facet and at its nodes.
+    direction: [f64; 3],
+    directions: Vec<[f64; 3]>,
+    /// A face in space with its plane.
+    projected: Option<Projected<'f>>,
+}
+
+impl<'f> Site<'f> {
+    fn new(facet: &'f Facet<'f>, given: Option<[f64; 3]>, normals: &[[f64; 3]]) -> Self {
+        let direction = given.unwrap_or(facet.normal);
+        let directions = facet.nodes.iter().map(|&node| given.unwrap_or(normals[node])).collect();
+        let is_edge = facet.reference().dimension == 1;
+        Site { facet, direction, directions, projected: (!is_edge).then(|| Projected::new(facet, direction)) }
+    }
+
+    /// The numbers of the master facets that may face it within reach.
+    fn near(&self, tree: &Tree, reach: f64) -> Vec<u32> {
+        let mut near = Vec::new();
+        if dot(self.direction, self.facet.normal) > 0.0 {
+            let spread = self.directions.iter().fold(0.0, |spread: f64, &way| {
+                let along = dot(way, self.direction);
+                spread.max(length(minus(way, self.direction.map(|part| along * part))) / along.max(0.1))
+            });
+            let cone = [self.facet.radius, spread, reach];
+            tree.around_line(self.facet.middle, self.direction, cone, |number| near.push(number));
+            near.sort_unstable();
+        }
+        near
+    }
+
+    /// The place of the facet that a point faces, if it faces it within reach.
+    fn opposite(&self, node: usize, place: [f64; 3], reach: f64) -> Option<Opposite> {
+        let (facet, directions) = (self.facet, &self.directions);
+        let found = match &self.projected {
+            None => line::foot(facet, directions, place),
+            Some(face) => face.foot(place),
+        };
+        let at = found.filter(|&at| facet.reference().contains(at, SAME_PLACE))?;
+        let shape = (facet.reference().shape)(at);
+        let sum = |value: &dyn Fn(usize) -> [f64; 3]| {
+            (0..facet.nodes.len()).fold([0.0; 3], |sum, local| {
+                let value = value(local);
+                [0, 1, 2].map(|axis| sum[axis] + shape[local] * value[axis])
+            })
+        };
+        let normal = unit(sum(&|local| directions[local]));
+        let gap = dot(minus(place, sum(&|local| facet.places()[local])), normal);
+        let slave = facet.nodes.iter().copied().zip(shape).collect();
+        (gap.abs() <= reach).then_some(Opposite { node, slave, normal, gap })
+    }
+}
+
+impl Mortar<'_> {
+    /// The integrals over the covered part of every slave facet, and the nearest place of the slave surface for each master node.
+    pub(super) fn covered<'f>(&self, sides: &'f Sides<'f>) -> (Vec<Covered<'f>>, Vec<Opposite>) {
+        let tree = sides.tree();
+        let mut nearest: BTreeMap<usize, Opposite> = BTreeMap::new();
+        let mut all = Vec::with_capacity(sides.slave.len());
+        for facet in &sides.slave {
+            let site = Site::new(facet, self.direction, &sides.normals[0]);
+            let mut covered = self.whole(&site);
+            let (mut met, mut shared) = (BTreeSet::new(), Vec::new());
+            let near = site.near(&tree, self.reach).into_iter().map(|number| &sides.master[number as usize]);
+            for other in near.filter(|other| facet.faces(other)) {
+                shared.extend(self.shared(&site, other));
+                for (&node, &place) in other.nodes.iter().zip(other.places()) {
+                    let found = met.insert(node).then(|| site.opposite(node, place, self.reach)).flatten();
+                    let Some(found) = found else { continue };
+                    if nearest.get(&node).is_none_or(|nearest| found.gap.abs() < nearest.gap.abs()) {
+                        nearest.insert(node, found);
+                    }
+                }
+            }
+            covered.add(shared);
+            all.push(covered);
+        }
+        (all, nearest.into_values().collect())
+    }
+
+    /// The integrals over the whole facet.
+    fn whole<'f>(&self, site: &Site<'f>) -> Covered<'f> {
+        let (facet, mut covered) = (site.facet, Covered::new(site.facet));
+        let mut add = |at: [f64; 3], size: f64| {
+            let area = size * self.measure(facet, &(facet.reference().shape)(at));
+            covered.add_whole(&self.functions(facet, at), area);
+        };
+        match &site.projected {
+            None => line::for_each_of_whole(facet, &mut add),
+            Some(face) => face.for_each_of_whole(&mut add),
+        }
+        covered
+    }
+
+    /// The integrals over what a slave facet shares with a facet of the other surface; `None` if it is nothing.
+    fn shared<'f>(&self, site: &Site, other: &'f Facet<'f>) -> Option<Shared<'f>> {
+        let (facet, mut shared) = (site.facet, Shared::new(other));
+        let heights = [facet, other].map(|one| {
+            let mut heights: PerNode<f64> = [0.0; MAX_NODES];
+            let places = one.places().iter().map(|&place| dot(minus(place, facet.middle), site.direction));
+            heights.iter_mut().zip(places).for_each(|(height, place)| *height = place);
+            heights
+        });
+        let sum = |values: &PerNode<f64>, shape: &PerNode<f64>| -> f64 {
+            values.iter().zip(shape).take(MOST).map(|(value, share)| value * share).sum()
+        };
+        let mut add = |SharedPoint { slave, master, weight }| {
+            let [own, opposite] = [(facet.reference().shape)(slave), (other.reference().shape)(master)];
+            let gap = sum(&heights[1], &opposite) - sum(&heights[0], &own);
+            let area = weight * self.measure(facet, &own);
+            shared.add(facet.nodes.len(), area, gap, [&self.functions(facet, slave), &opposite]);
+        };
+        match &site.projected {
+            None => line::for_each_point(facet, &site.directions, other, self.reach, &mut add),
+            Some(face) => face.for_each_point(other, self.reach, &mut add),
+        }
+        (shared.area > 0.0).then_some(shared)
+    }
+
+    /// The values of the functions of a slave facet.
+    fn functions(&self, facet: &Facet, at: [f64; 3]) -> PerNode<f64> {
+        let mut values = (facet.reference().shape)(at);
+        if facet.reference().dimension == 2 {
+            let has = |local: usize| self.has_coefficient.is_none_or(|has| has(facet.nodes[local]));
+            positive_functions(facet.reference(), has, &mut values);
+        }
+        values
+    }
+
+    /// The factor from length or area to area at a point of a facet.
+    fn measure(&self, facet: &Facet, shape: &PerNode<f64>) -> f64 {
+        let radius = facet.places().iter().zip(shape).map(|(place, share)| share * place[0]).sum();
+        self.formulation.measure(radius)
+    }
+}
+
+/// The mean outward unit normal at each node.
+fn normals(surface: &SurfaceMesh, facets: &[Facet]) -> Vec<[f64; 3]> {
+    let mut sums = vec![[0.0; 3]; surface.nodes.len()];
+    facets.iter().for_each(|facet| facet.add_normals(&mut sums));
+    sums.into_iter().map(unit).collect()
+}
