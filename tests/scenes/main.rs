@@ -18,6 +18,7 @@ mod pressed;
 mod resultants;
 mod rigid_body_modes;
 mod rigid_faces;
+mod rings;
 mod scene_errors;
 mod scene_model;
 mod slender;
