@@ -26,6 +26,7 @@ mod facet;
 mod line;
 mod search;
 mod shared;
+mod smooth;
 #[cfg(test)]
 mod tests;
 
@@ -33,7 +34,7 @@ use std::collections::BTreeSet;
 
 use coverage::{Covered, Part, kept, parts};
 use facet::Facet;
-use search::Sides;
+use search::{Distances, Sides};
 use signorini_qp::SparseMatrix;
 
 use crate::error::Error;
@@ -255,11 +256,13 @@ impl<'a> Mortar<'a> {
         let kept = kept(&covered, self.slave.nodes.len(), &carries);
         let ends = self.ends_of_middles();
         let parts = parts(&covered, &kept);
-        let rows: Vec<MortarRow> = parts
-            .into_iter()
-            .enumerate()
-            .filter_map(|(node, part)| self.row(node, part?, &sides.normals, &ends))
-            .collect();
+        let distances = sides.has_curves().then(|| Distances::of(self, &sides));
+        let of_node = |(node, part): (usize, Option<Part>)| {
+            let row = self.row(node, part?, &sides.normals, &ends)?;
+            let gap = distances.as_ref().and_then(|distances| distances.of_row(&row, &ends)).unwrap_or(row.gap);
+            Some(MortarRow { gap, ..row })
+        };
+        let rows: Vec<MortarRow> = parts.into_iter().enumerate().filter_map(of_node).collect();
         let sum = |part: fn(&Covered) -> f64| covered.iter().map(part).sum::<f64>();
         let area = sum(|facet| facet.area);
         // The other surface counts by its nodes: its area differs from that of what it covers.

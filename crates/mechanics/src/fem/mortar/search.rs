@@ -6,8 +6,9 @@ use super::coverage::Covered;
 use super::face::Projected;
 use super::facet::{self, Facet, SharedPoint};
 use super::shared::{MOST, Shared};
-use super::{Mortar, Opposite, SurfaceMesh, line};
-use crate::fem::element::{MAX_NODES, PerNode, positive_functions};
+use super::smooth::Curve;
+use super::{Mortar, MortarRow, Opposite, SurfaceMesh, line};
+use crate::fem::element::{MAX_NODES, PerNode, positive_coefficient, positive_functions};
 use crate::fem::geometry::{dot, length, minus, unit};
 use crate::fem::surface::Tree;
 
@@ -35,6 +36,11 @@ impl<'a> Sides<'a> {
     pub fn sag(&self) -> f64 {
         let [own, others] = &self.normals;
         facet::sag(&self.slave, own).max(facet::sag(&self.master, others))
+    }
+
+    /// Returns `true` if straight facets stand for curves.
+    pub fn has_curves(&self) -> bool {
+        self.sag() > 0.0
     }
 
     /// The boxes around the master facets.
@@ -103,6 +109,58 @@ impl<'f> Site<'f> {
         let gap = dot(minus(place, sum(&|local| facet.places()[local])), normal);
         let slave = facet.nodes.iter().copied().zip(shape).collect();
         (gap.abs() <= reach).then_some(Opposite { node, slave, normal, gap })
+    }
+}
+
+/// The distances of slave nodes from the curve for which the master facets stand.
+pub(super) struct Distances<'a> {
+    slave: &'a [[f64; 3]],
+    sides: &'a Sides<'a>,
+    tree: Tree,
+    curve: Curve<'a>,
+    reach: f64,
+}
+
+impl<'a> Distances<'a> {
+    pub fn of(mortar: &Mortar<'a>, sides: &'a Sides<'a>) -> Self {
+        let curve = Curve::of(&mortar.master, &sides.master, &sides.normals[1]);
+        Distances { slave: mortar.slave.nodes, sides, tree: sides.tree(), curve, reach: mortar.reach }
+    }
+
+    /// The gap of a row by the distances of its slave nodes, which lie on their curve; `None` if the curve ends before one of them.
+    /// `ends` are those of the edges of nodes that have coefficients.
+    pub fn of_row(&self, row: &MortarRow, ends: &[Option<[usize; 2]>]) -> Option<f64> {
+        let distance = |node: usize| self.along(self.slave[node], row.normal);
+        let mut gap = 0.0;
+        for &(node, share) in &row.slave {
+            let own = distance(node)?;
+            gap += share
+                * match ends[node] {
+                    Some([a, b]) => positive_coefficient(own, [distance(a)?, distance(b)?]),
+                    None => own,
+                };
+        }
+        Some(gap)
+    }
+
+    /// The distance of a point from the curve along a direction.
+    fn along(&self, from: [f64; 3], way: [f64; 3]) -> Option<f64> {
+        let back = way.map(|part| 0.0 - part);
+        let mut near = Vec::new();
+        self.tree.around_line(from, way, [0.0, 0.0, self.reach], |number| near.push(number));
+        near.sort_unstable();
+        let distance = |number: u32| {
+            let facet = &self.sides.master[number as usize];
+            let turned = dot(facet.normal, back);
+            if turned <= 0.0 {
+                return None;
+            }
+            let found = Site::new(facet, Some(back), &self.sides.normals[1]).opposite(0, from, self.reach)?;
+            let mut shape: PerNode<f64> = [0.0; MAX_NODES];
+            shape.iter_mut().zip(&found.slave).for_each(|(value, entry)| *value = entry.1);
+            Some(found.gap - self.curve.beyond(facet, &shape) / turned)
+        };
+        near.into_iter().filter_map(distance).min_by(|a, b| a.abs().total_cmp(&b.abs()))
     }
 }
 

@@ -370,3 +370,80 @@ fn a_surface_in_several_layers_and_facets_that_do_not_fit_are_refused() {
     let refused = between(missing, master, PLANE).rows().unwrap_err().to_string();
     assert!(refused.contains("node 5"), "{refused}");
 }
+
+/// The errors of the gaps of rows between two surfaces at a distance, of those rows for which `counts` holds.
+fn errors_of_gaps(pair: &Mortar, distance: f64, counts: impl Fn([f64; 3]) -> bool) -> Vec<f64> {
+    let found = pair.found().unwrap();
+    let rows = found.rows.iter().filter(|row| counts(pair.slave.nodes[row.node]));
+    rows.map(|row| (row.gap - distance).abs()).collect()
+}
+
+fn largest(errors: &[f64]) -> f64 {
+    errors.iter().fold(0.0, |largest: f64, error| largest.max(*error))
+}
+
+/// A shaft in a hub with a play as large as the sag of its facets: the facets alone would have gaps from -2e-3 to 4e-3.
+#[test]
+fn gaps_are_those_of_the_circles_for_which_edges_stand() {
+    let play = 2e-3;
+    for (counts, spread, allowed) in [([48, 72], 0.0, 0.005), ([72, 48], 0.0, 0.005), ([48, 72], 0.4, 0.01)] {
+        let circle = |radius: f64, count: usize| -> Vec<[f64; 3]> {
+            let angle = |at: usize| (at as f64 + spread * (7.3 * at as f64).sin()) * std::f64::consts::TAU / count as f64;
+            (0..count).map(|at| [radius * angle(at).cos(), radius * angle(at).sin(), 0.0]).collect()
+        };
+        let [shaft, hub] = [circle(1.0, counts[0]), circle(1.0 + play, counts[1])];
+        let outer: Vec<usize> = (0..counts[0]).flat_map(|at| [at, (at + 1) % counts[0]]).collect();
+        let inner: Vec<usize> = (0..counts[1]).flat_map(|at| [(at + 1) % counts[1], at]).collect();
+        let sheets = [surface(&shaft, Line2, &outer), surface(&hub, Line2, &inner)];
+        for [own, other] in [sheets, [sheets[1], sheets[0]]] {
+            let pair = between(own, other, PLANE).within(0.1);
+            let errors = errors_of_gaps(&pair, play, |_| true);
+            let sag = pair.found().unwrap().sag;
+            assert!(errors.len() == own.0.len() && largest(&errors) < allowed * sag, "{counts:?}: {:e}", largest(&errors));
+        }
+    }
+}
+
+/// Two patches of spheres, away from their rims.
+#[test]
+fn gaps_are_those_of_the_spheres_for_which_faces_stand() {
+    let play = 2e-3;
+    for kind in [T3, Q4] {
+        let patch = |radius: f64, half: f64, count: usize, is_inside_out: bool| -> (Vec<[f64; 3]>, Vec<usize>) {
+            let angle = |at: usize| half * (2.0 * at as f64 / count as f64 - 1.0);
+            let nodes = (0..=count).flat_map(|j| (0..=count).map(move |i| [angle(i), angle(j)]));
+            let place = |[a, b]: [f64; 2]| [radius * b.cos() * a.sin(), radius * b.sin(), radius * b.cos() * a.cos()];
+            let node = |i: usize, j: usize| j * (count + 1) + i;
+            let cells = (0..count).flat_map(|j| (0..count).map(move |i| (i, j)));
+            let corners = cells.map(|(i, j)| [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)]);
+            let facets = corners.flat_map(|[a, b, c, d]| match (kind, is_inside_out) {
+                (T3, false) => vec![a, b, c, a, c, d],
+                (T3, true) => vec![a, c, b, a, d, c],
+                (_, false) => vec![a, b, c, d],
+                (_, true) => vec![a, d, c, b],
+            });
+            (nodes.map(place).collect(), facets.collect())
+        };
+        let (ball, cup) = (patch(1.0, 0.4, 7, false), patch(1.0 + play, 0.5, 10, true));
+        let sheets = [surface(&ball.0, kind, &ball.1), surface(&cup.0, kind, &cup.1)];
+        for [own, other] in [sheets, [sheets[1], sheets[0]]] {
+            let pair = between(own, other, SPACE).within(0.1);
+            let errors = errors_of_gaps(&pair, play, |[x, y, _]| x.abs().max(y.abs()) < 0.2);
+            let sag = pair.found().unwrap().sag;
+            assert!(errors.len() > 8 && largest(&errors) < 0.02 * sag, "{kind:?}: {:e}", largest(&errors));
+        }
+    }
+}
+
+/// A square in a square hole: its corners are no curve.
+#[test]
+fn corners_are_not_rounded() {
+    let square = |half: f64| [[-half, -half, 0.0], [half, -half, 0.0], [half, half, 0.0], [-half, half, 0.0]];
+    let [pin, hole] = [square(1.0), square(1.1)];
+    let pair = between(surface(&pin, Line2, &[0, 1, 1, 2, 2, 3, 3, 0]), surface(&hole, Line2, &[1, 0, 2, 1, 3, 2, 0, 3]), PLANE);
+    assert_eq!(pair.found().unwrap().sag, 0.0);
+    let sides = Sides::of(&pair);
+    let curve = smooth::Curve::of(&pair.slave, &sides.slave, &sides.normals[0]);
+    let middle = (Line2.reference().shape)([0.0; 3]);
+    assert!(sides.slave.iter().all(|facet| curve.beyond(facet, &middle) == 0.0));
+}
