@@ -272,3 +272,20 @@ fn a_press_fit_has_no_force_at_its_supports() {
     scene["loads"] = json!([{"traction": {"boundary": "hub.outer", "value": [1e-4, 0]}}]);
     assert!(warned(&scene));
 }
+
+/// Deeper than any contact is looked for.
+#[test]
+fn a_body_deep_inside_another_is_named() {
+    let scene = json!({
+        "contact": "auto",
+        "body": block([-0.2, 0.2], [-0.4, 0.5], [4, 9]), "material": {"young": 1, "poisson": 0.3},
+        "further-bodies": [{"name": "base", "body": block([-0.5, 0.5], [-0.5, 0.0], [7, 4]), "material": {"young": 1, "poisson": 0.3}}],
+        "supports": [{"on": {"boundary": "top"}, "x": 0, "y": 0}, {"on": {"boundary": "base.bottom"}, "x": 0, "y": 0}],
+        "loads": [{"traction": {"boundary": "left", "value": [1e-6, 0]}}],
+    });
+    let warnings = report(&scene)["warnings"].to_string();
+    assert!(
+        warnings.contains("bodies-overlap") && warnings.contains("go through each other, by 2.000e-1"),
+        "{warnings}"
+    );
+}

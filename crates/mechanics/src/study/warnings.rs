@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::geometry::{along_axis, dot};
-use crate::scene::models::contacts::Overlap;
+use crate::scene::models::overlap::Overlap;
 use crate::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, refused};
 use signorini_qp::{Certificate, ContactProblem, Solution};
 
@@ -112,7 +112,7 @@ pub(super) fn of_scene(answer: &Answer, solution: &Solution, segments: &[Segment
 /// Warns that two displaced bodies go through each other where no row keeps them apart.
 fn overlap(answer: &Answer) -> Option<AnswerWarning> {
     let model = answer.model();
-    let Overlap { node, depth, bodies } = model.overlap(answer.displacement()).ok()??;
+    let Overlap { node, depth, bodies } = model.overlap(answer.displacement())?;
     let name = |body: usize| match model.body().regions()[body].name() {
         "" => "body",
         name => name,

@@ -146,9 +146,6 @@ pub(crate) struct Seen {
     pub faces: Vec<bool>,
     /// A slave facet faces several layers of the master surface.
     pub has_layers: bool,
-    /// As in [`Found`].
-    pub opposite: Vec<Opposite>,
-    pub sag: f64,
 }
 
 impl std::fmt::Debug for Mortar<'_> {
@@ -286,9 +283,14 @@ impl<'a> Mortar<'a> {
     pub(crate) fn seen(&self) -> Result<Seen, Error> {
         self.check()?;
         let sides = Sides::of(self);
-        let (covered, opposite) = self.covered(&sides);
+        let (covered, _) = self.covered(&sides);
         let has_layers = covered.iter().any(Covered::has_layers);
-        Ok(Seen { faces: covered.iter().map(Covered::is_covered).collect(), has_layers, opposite, sag: sides.sag() })
+        Ok(Seen { faces: covered.iter().map(Covered::is_covered).collect(), has_layers })
+    }
+
+    /// The larger sag of both surfaces, in length.
+    pub(crate) fn sag(&self) -> f64 {
+        Sides::of(self).sag()
     }
 
     /// Checks that facets and formulation fit.

@@ -15,6 +15,9 @@ use crate::fem::surface::Tree;
 /// A place outside a facet by less than this, in reference coordinates, is on its edge.
 const SAME_PLACE: f64 = 1e-9;
 
+/// Steps to the point at which a line meets a curve.
+const MEETING_STEPS: usize = 3;
+
 /// The facets of both surfaces, and the mean outward unit normals at the nodes of each.
 pub(super) struct Sides<'a> {
     pub slave: Vec<Facet<'a>>,
@@ -155,10 +158,18 @@ impl<'a> Distances<'a> {
             if turned <= 0.0 {
                 return None;
             }
-            let found = Site::new(facet, Some(back), &self.sides.normals[1]).opposite(0, from, self.reach)?;
-            let mut shape: PerNode<f64> = [0.0; MAX_NODES];
-            shape.iter_mut().zip(&found.slave).for_each(|(value, entry)| *value = entry.1);
-            Some(found.gap - self.curve.beyond(facet, &shape) / turned)
+            let met = Site::new(facet, Some(back), &self.sides.normals[1]).opposite(0, from, self.reach)?;
+            let across = Site::new(facet, Some(facet.normal), &self.sides.normals[1]);
+            // The line meets the curve above another point of the facet than the facet itself.
+            let mut gap = met.gap;
+            for _ in 0..MEETING_STEPS {
+                let at = [0, 1, 2].map(|axis| from[axis] + gap * way[axis]);
+                let below = across.opposite(0, at, f64::INFINITY).unwrap_or_else(|| met.clone());
+                let mut shape: PerNode<f64> = [0.0; MAX_NODES];
+                shape.iter_mut().zip(&below.slave).for_each(|(value, entry)| *value = entry.1);
+                gap = met.gap - self.curve.beyond(facet, &shape) / turned;
+            }
+            Some(gap)
         };
         near.into_iter().filter_map(distance).min_by(|a, b| a.abs().total_cmp(&b.abs()))
     }

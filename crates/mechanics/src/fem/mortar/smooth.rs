@@ -1,8 +1,8 @@
 //! The curves for which straight facets stand: cubic, through the nodes, along the normals there.
 //!
 //! # Source
-//! A. Vlachos, J. Peters, C. Boyd, J. L. Mitchell, *Curved PN triangles*, Symposium on Interactive 3D Graphics (2001) 159-166. On a circle
-//! with equal edges the distance from the curve falls with the third power of the edge.
+//! A. Vlachos, J. Peters, C. Boyd, J. L. Mitchell, *Curved PN triangles*, Symposium on Interactive 3D Graphics (2001) 159-166; here the
+//! control points are those with which an edge between two points of a circle meets the circle in its middle.
 
 use std::collections::HashMap;
 
@@ -47,13 +47,16 @@ impl<'a> Curve<'a> {
             return 0.0;
         }
         let count = facet.nodes.len();
-        let along = |i: usize, j: usize, [a, b]: [f64; 2]| a * a * b * self.control(facet, i, j) + b * b * a * self.control(facet, j, i);
+        let along = |i: usize, j: usize, [a, b]: [f64; 2]| {
+            a * a * b * self.control(facet, i, j) + b * b * a * self.control(facet, j, i)
+        };
         let next = |at: usize| (at + 1) % count;
         match count {
             2 => 3.0 * along(0, 1, [shape[0], shape[1]]),
             3 => {
                 let edges = (0..3).map(|i| along(i, next(i), [shape[i], shape[next(i)]])).sum::<f64>();
-                let all = (0..3).map(|i| self.control(facet, i, next(i)) + self.control(facet, next(i), i)).sum::<f64>();
+                let all =
+                    (0..3).map(|i| self.control(facet, i, next(i)) + self.control(facet, next(i), i)).sum::<f64>();
                 3.0 * edges + 1.5 * shape[0] * shape[1] * shape[2] * all
             }
             _ => {
@@ -80,6 +83,7 @@ impl<'a> Curve<'a> {
         };
         let normal = self.normals[facet.nodes[from]];
         let way = minus(facet.places()[to], facet.places()[from]);
-        -dot(way, normal) * dot(normal, facet.normal) / 3.0
+        // The arc of a circle with this tangent lies as far beyond the middle of the edge.
+        -dot(way, normal) * 2.0 / (3.0 * (1.0 + dot(normal, facet.normal)))
     }
 }

@@ -17,6 +17,7 @@ use std::path::Path;
 pub use closed::ClosedSurface;
 pub(crate) use crossings::Crossing;
 pub(crate) use tree::Tree;
+pub(crate) use triangle::distance_from;
 
 use crate::error::Error;
 use crate::fem::formulation::positive;

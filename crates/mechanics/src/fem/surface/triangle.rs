@@ -17,6 +17,14 @@ pub(super) enum Part {
     Corner(usize),
 }
 
+/// The distance of a point from an edge of two corners, or from a face of three or four, cut into triangles, all in length.
+pub(crate) fn distance_from(corners: &[[f64; 3]], point: [f64; 3]) -> f64 {
+    let last = corners.len() - 1;
+    // An edge is a triangle without height.
+    let triangles = (1..last.max(2)).map(|at| Triangle([corners[0], corners[at], corners[(at + 1).min(last)]]));
+    triangles.map(|triangle| distance(triangle.closest(point).0, point)).fold(f64::INFINITY, f64::min)
+}
+
 /// The corners of a triangle, counterclockwise seen from outside.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Triangle(pub [[f64; 3]; 3]);

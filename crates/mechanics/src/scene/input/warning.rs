@@ -97,8 +97,8 @@ pub enum Warning {
     },
     /// Facets that cut the corner of a curve are off by a large part of the gap.
     #[error(
-        "{obstacle}: facets stand for curves and miss them by up to {sag:.2e}, the largest gap is {gap:.2e}: gaps are wrong by as much; \
-         give the known distance as `fit`, take quadratic elements, or a finer mesh"
+        "{obstacle}: facets stand for curves and miss them by up to {sag:.2e}, while the largest gap is {gap:.2e}: gaps are those of curves \
+         through the nodes, which are not known so well; give the distance as `fit`, take quadratic elements, or a finer mesh"
     )]
     Sag {
         /// Its place in the scene, as `obstacles[0]`.

@@ -1,35 +1,17 @@
-//! All contacts between the bodies of a scene: surfaces that face each other, and overlaps of displaced bodies.
-
-use std::cell::OnceCell;
-use std::collections::HashSet;
+//! All contacts between the bodies of a scene: surfaces that face each other.
 
 use crate::error::Error;
 use crate::fem::geometry::{distance, length, minus};
-use crate::fem::mesh::extent;
 use crate::fem::mortar::Seen;
 use crate::fem::{Boundary, ElasticBody, Mortar, Region};
-use crate::scene::Model;
 use crate::scene::input::obstacle::ShapeSpec;
 use crate::scene::input::schema::{ObstacleSpec, Rule, Scene};
 
-/// How far contacts and overlaps are looked for, in sizes of the smaller body.
+/// How far contacts are looked for, in sizes of the smaller body.
 const REACH: f64 = 0.25;
 
 /// Halvings of the reach until the surfaces lie in one layer before each other.
 const HALVINGS: usize = 12;
-
-/// Overlaps below this share of the size of the mesh are rounding.
-const ROUNDING: f64 = 1e-9;
-
-/// A node of one body inside another, where no row keeps them apart.
-#[derive(Clone, Debug)]
-pub(crate) struct Overlap {
-    pub node: usize,
-    /// In length, positive.
-    pub depth: f64,
-    /// The body of the node, and the other, by their numbers.
-    pub bodies: [usize; 2],
-}
 
 impl Scene {
     /// The scene with an obstacle for each pair of bodies that face each other and that no obstacle names, and the body with the boundaries
@@ -107,57 +89,6 @@ impl Scene {
     fn largest_travel(&self) -> f64 {
         let parts = self.supports.iter().flat_map(|support| [support.x, support.y, support.z, support.value]);
         parts.flatten().fold(0.0, |largest: f64, part| largest.max(part.abs()))
-    }
-}
-
-impl Model {
-    /// The deepest overlap of two displaced bodies at a node that no contact row of the two holds; `None` without one.
-    ///
-    /// # Errors
-    /// None for a displacement of this model.
-    pub(crate) fn overlap(&self, displacement: &[f64]) -> Result<Option<Overlap>, Error> {
-        let (mesh, regions, dimension) = (self.mesh(), self.body().regions(), self.body().dimension());
-        let moved = |(node, at): (usize, &[f64; 3])| {
-            let mut at = *at;
-            (0..dimension).for_each(|axis| at[axis] += displacement[dimension * node + axis]);
-            at
-        };
-        if regions.len() < 2 || dimension < 2 {
-            return Ok(None);
-        }
-        let nodes: Vec<[f64; 3]> = mesh.nodes().iter().enumerate().map(moved).collect();
-        let surfaces: Vec<OnceCell<Boundary>> = vec![OnceCell::new(); regions.len()];
-        let surface = |region: usize| surfaces[region].get_or_init(|| mesh.surface(regions[region].elements()));
-        // Whatever rows hold apart may miss by as much as the meshes differ.
-        let rows = self.rows().iter().chain(self.rows_across());
-        let held: HashSet<usize> = rows.flat_map(|row| row.ends.iter().map(|end| end.0)).collect();
-        let mut deepest: Option<Overlap> = None;
-        for own in 0..regions.len() {
-            for other in (0..regions.len()).filter(|&other| other != own) {
-                // Only a node in the box of a body can be inside it.
-                let (low, high) = extent(&nodes[regions[own].nodes()]);
-                let may_be_inside = |node: &usize| {
-                    (0..dimension).all(|axis| (low[axis]..=high[axis]).contains(&nodes[*node][axis]))
-                        && !held.contains(node)
-                };
-                if !regions[other].nodes().any(|node| may_be_inside(&node)) {
-                    continue;
-                }
-                let inside: Vec<bool> = surface(other).facets().map(|facet| facet.iter().any(may_be_inside)).collect();
-                let near = surface(other).part("near", |facet| inside[facet]);
-                let reach = REACH * size_of(self.body(), &regions[own]).min(size_of(self.body(), &regions[other]));
-                let mortar = Mortar::new((&nodes, surface(own)), (&nodes, &near), *self.body().formulation());
-                let Seen { opposite, sag, .. } = mortar.within(reach).seen()?;
-                for seen in opposite.iter().filter(|seen| !held.contains(&seen.node)) {
-                    let depth = -seen.gap;
-                    let counts = depth > ROUNDING * mesh.size() + sag;
-                    if counts && deepest.as_ref().is_none_or(|deepest| depth > deepest.depth) {
-                        deepest = Some(Overlap { node: seen.node, depth, bodies: [other, own] });
-                    }
-                }
-            }
-        }
-        Ok(deepest)
     }
 }
 

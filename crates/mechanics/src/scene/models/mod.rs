@@ -2,7 +2,7 @@
 
 mod build;
 pub(crate) mod condition;
-pub(crate) mod contacts;
+mod contacts;
 pub(crate) mod continuum;
 mod elastic;
 mod explain;
@@ -10,6 +10,7 @@ pub(crate) mod held;
 pub(crate) mod load;
 mod materials;
 pub(crate) mod model;
+pub(crate) mod overlap;
 mod part;
 mod parts;
 pub(crate) mod resultants;

@@ -1,0 +1,149 @@
+//! Overlaps of displaced bodies where no contact row keeps them apart.
+
+use std::cell::OnceCell;
+use std::collections::HashSet;
+
+use crate::fem::element::Cell;
+use crate::fem::mesh::extent;
+use crate::fem::surface::{Tree, distance_from};
+use crate::fem::{Boundary, Mesh, Mortar};
+use crate::scene::{ContactRow, Model};
+
+/// Overlaps below this share of the size of the mesh are rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// A node that only takes part in the means of other nodes may lie this share of a facet inside.
+const TAKING_PART: f64 = 0.01;
+
+/// A point outside an element by less than this, in reference coordinates, is inside.
+const SAME_PLACE: f64 = 1e-9;
+
+/// A node of one body inside another, where no row keeps them apart.
+#[derive(Clone, Debug)]
+pub(crate) struct Overlap {
+    pub node: usize,
+    /// The distance from the surface of the other body, in length, positive.
+    pub depth: f64,
+    /// The body of the node, and the other, by their numbers.
+    pub bodies: [usize; 2],
+}
+
+/// A displaced body.
+struct Solid {
+    surface: Boundary,
+    /// Boxes around its elements.
+    tree: Tree,
+    first: usize,
+    /// The largest facet.
+    facet: f64,
+}
+
+impl Solid {
+    fn of(model: &Model, region: usize, nodes: &[[f64; 3]]) -> Self {
+        let (mesh, elements) = (model.mesh(), model.body().regions()[region].elements());
+        let surface = mesh.surface(elements.clone());
+        let numbers: Vec<u32> = (0..elements.len() as u32).collect();
+        let size = |nodes_of: &[usize]| extent_of(nodes, nodes_of);
+        let tree = Tree::new(&numbers, |number| {
+            let [low, high] = size(mesh.element(elements.start + number as usize));
+            // A curved side leaves the box of its nodes.
+            let room = (0..3).fold(0.0, |room: f64, axis| room.max(high[axis] - low[axis])) / 4.0;
+            [low.map(|at| at - room), high.map(|at| at + room)]
+        });
+        let largest = |[low, high]: [[f64; 3]; 2]| (0..3).fold(0.0, |most: f64, axis| most.max(high[axis] - low[axis]));
+        let facet = surface.facets().map(|facet| largest(size(facet))).fold(0.0, f64::max);
+        Solid { surface, tree, first: elements.start, facet }
+    }
+
+    /// Returns `true` if a point lies in one of its elements.
+    fn contains(&self, mesh: &Mesh, nodes: &[[f64; 3]], at: [f64; 3]) -> bool {
+        let mut near = Vec::new();
+        self.tree.around_line(at, [1.0, 0.0, 0.0], [0.0; 3], |number| near.push(self.first + number as usize));
+        near.into_iter().any(|element| {
+            let mut places = [[0.0; 3]; crate::fem::element::MAX_NODES];
+            places.iter_mut().zip(mesh.element(element)).for_each(|(place, &node)| *place = nodes[node]);
+            Cell::new(mesh.kind_of(element).reference(), &places).weights_at(at, SAME_PLACE).is_some()
+        })
+    }
+
+    /// The distance of a point from the surface, straight pieces of curved facets for these.
+    fn depth(&self, nodes: &[[f64; 3]], at: [f64; 3]) -> f64 {
+        let pieces = self.surface.facets().flat_map(|facet| self.surface.kind.straight_cells(facet));
+        let far = |piece: Vec<usize>| distance_from(&piece.into_iter().map(|node| nodes[node]).collect::<Vec<_>>(), at);
+        pieces.map(far).fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl Model {
+    /// The deepest overlap of two displaced bodies at a node of a surface that no contact row between the two keeps apart; `None` without
+    /// one. `displacement` has `dim` entries a node.
+    pub(crate) fn overlap(&self, displacement: &[f64]) -> Option<Overlap> {
+        let (mesh, regions, dimension) = (self.mesh(), self.body().regions(), self.body().dimension());
+        if regions.len() < 2 || dimension < 2 {
+            return None;
+        }
+        let moved = |(node, at): (usize, &[f64; 3])| {
+            let mut at = *at;
+            (0..dimension).for_each(|axis| at[axis] += displacement[dimension * node + axis]);
+            at
+        };
+        let nodes: Vec<[f64; 3]> = mesh.nodes().iter().enumerate().map(moved).collect();
+        let [kept_apart, taking_part] = self.facing_bodies();
+        let solids: Vec<OnceCell<Solid>> = (0..regions.len()).map(|_| OnceCell::new()).collect();
+        let solid = |region: usize| solids[region].get_or_init(|| Solid::of(self, region, &nodes));
+        let mut deepest: Option<Overlap> = None;
+        for (own, other) in (0..regions.len()).flat_map(|own| (0..regions.len()).map(move |other| (own, other))) {
+            // Only a node in the box of a body can be inside it.
+            let (low, high) = extent(&nodes[regions[own].nodes()]);
+            let may_be_inside = |node: &usize| {
+                (0..dimension).all(|axis| (low[axis]..=high[axis]).contains(&nodes[*node][axis]))
+                    && !kept_apart.contains(&(*node, own))
+            };
+            if own == other || !regions[other].nodes().any(|node| may_be_inside(&node)) {
+                continue;
+            }
+            let (body, of_nodes) = (solid(own), solid(other));
+            let sides = [body, of_nodes].map(|solid| (&nodes[..], &solid.surface));
+            let least = ROUNDING * mesh.size() + Mortar::new(sides[0], sides[1], *self.body().formulation()).sag();
+            let outer = of_nodes.surface.nodes().into_iter().filter(may_be_inside);
+            for node in outer.filter(|&node| body.contains(mesh, &nodes, nodes[node])) {
+                let depth = body.depth(&nodes, nodes[node]);
+                let allowed = if taking_part.contains(&(node, own)) { TAKING_PART * body.facet } else { 0.0 };
+                if depth > least + allowed && deepest.as_ref().is_none_or(|deepest| depth > deepest.depth) {
+                    deepest = Some(Overlap { node, depth, bodies: [other, own] });
+                }
+            }
+        }
+        deepest
+    }
+
+    /// Nodes with the bodies from which contact rows keep them apart: nodes that carry a row, or lie opposite to one; and nodes that take
+    /// part in rows.
+    fn facing_bodies(&self) -> [HashSet<(usize, usize)>; 2] {
+        let regions = self.body().regions();
+        let region_of = |node: usize| regions.iter().position(|region| region.nodes().contains(&node)).unwrap_or(0);
+        let [mut kept_apart, mut taking_part] = [HashSet::new(), HashSet::new()];
+        let rows = self.rows().iter().chain(self.rows_across());
+        for ContactRow { node, ends, .. } in rows {
+            let own = region_of(*node);
+            let Some(other) = ends.iter().map(|end| region_of(end.0)).find(|&region| region != own) else { continue };
+            kept_apart.insert((*node, other));
+            taking_part.extend(ends.iter().map(|end| (end.0, if region_of(end.0) == own { other } else { own })));
+        }
+        // The other node of a pair is held by the same row.
+        let pairs = self.rows().iter().filter_map(|row| Some((row.partner()?, region_of(row.node))));
+        kept_apart.extend(pairs);
+        [kept_apart, taking_part]
+    }
+}
+
+/// The smallest and the largest coordinates of some nodes.
+fn extent_of(nodes: &[[f64; 3]], of: &[usize]) -> [[f64; 3]; 2] {
+    let ends = [f64::INFINITY, f64::NEG_INFINITY].map(|end| [end; 3]);
+    of.iter().fold(ends, |[low, high], &node| {
+        [
+            [0, 1, 2].map(|axis| low[axis].min(nodes[node][axis])),
+            [0, 1, 2].map(|axis| high[axis].max(nodes[node][axis])),
+        ]
+    })
+}
