@@ -9,7 +9,7 @@ use super::gmsh_forms::{plane, space};
 use support::gmsh_forms::{FORMS, Form};
 
 fn read(content: &[u8]) -> Result<Mesh, Error> {
-    GmshFile::parse(content, "body.msh").and_then(|file| file.mesh(None, 1.0))
+    GmshFile::parse(content, "body.msh").and_then(|file| file.mesh(&[], 1.0))
 }
 
 /// A kept file in binary form: the unit square of `gmsh_faults.rs`.

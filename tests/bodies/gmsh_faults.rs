@@ -83,7 +83,7 @@ fn with(lines: &[&str], line: usize, replacement: &str) -> String {
 }
 
 fn read(text: &str) -> Result<signorini::fem::Mesh, Error> {
-    GmshFile::parse(text, "folder/body.msh").and_then(|file| file.mesh(None, 1.0))
+    GmshFile::parse(text, "folder/body.msh").and_then(|file| file.mesh(&[], 1.0))
 }
 
 fn check(text: &str, expected_line: usize, phrase: &str) {
@@ -242,10 +242,10 @@ fn a_mesh_whose_elements_are_all_clockwise_is_reoriented() {
 fn a_plane_mesh_may_have_any_height_and_is_scaled() {
     let high = text(&V2).replace(" 0 0 0\n", " 0 0 7\n").replace("0 1 0\n2", "0 1 7\n2");
     let high = high.replace("20 1 0 0", "20 1 0 7").replace("30 1 1 0", "30 1 1 7");
-    let mesh = GmshFile::parse(&high, "high.msh").unwrap().mesh(None, 1e-3).unwrap();
+    let mesh = GmshFile::parse(&high, "high.msh").unwrap().mesh(&[], 1e-3).unwrap();
     assert_eq!(mesh.nodes()[3], [1e-3, 1e-3, 0.0]);
     for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let error = GmshFile::parse(text(&V2).as_str(), "x").unwrap().mesh(None, scale).unwrap_err();
+        let error = GmshFile::parse(text(&V2).as_str(), "x").unwrap().mesh(&[], scale).unwrap_err();
         assert!(matches!(error, Error::Qp(qp::Error::Setting { name: "scale", .. })), "{error}");
     }
 }
@@ -253,9 +253,9 @@ fn a_plane_mesh_may_have_any_height_and_is_scaled() {
 #[test]
 fn an_unknown_group_is_refused_with_the_names_of_the_existing_ones() {
     let file = GmshFile::parse(text(&V2), "x").unwrap();
-    let message = file.mesh(Some("bulk"), 1.0).unwrap_err().to_string();
+    let message = file.mesh(&["bulk"], 1.0).unwrap_err().to_string();
     assert!(message.contains("no physical group `bulk`") && message.contains("floor, body"), "{message}");
-    assert_eq!(file.mesh(Some("body"), 1.0).unwrap(), file.mesh(None, 1.0).unwrap());
+    assert_eq!(file.mesh(&["body"], 1.0).unwrap(), file.mesh(&[], 1.0).unwrap());
 }
 
 #[test]

@@ -82,7 +82,7 @@ struct Said {
 
 fn said(content: &[u8], name: &str) -> Said {
     let file = GmshFile::parse(content, name).unwrap_or_else(|error| panic!("{error}"));
-    let mesh = file.mesh(None, 1.0).unwrap_or_else(|error| panic!("{error}"));
+    let mesh = file.mesh(&[], 1.0).unwrap_or_else(|error| panic!("{error}"));
     let bits = mesh.nodes().iter().map(|at| at.map(f64::to_bits)).collect();
     let groups = file.groups().iter().map(|group| (group.dimension, group.tag, group.name.clone())).collect();
     Said { mesh, bits, groups, bodies: file.bodies() }

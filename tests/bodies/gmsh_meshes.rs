@@ -9,7 +9,7 @@ fn path(name: &str) -> PathBuf {
 }
 
 fn mesh(name: &str) -> Mesh {
-    GmshFile::read(path(name)).unwrap().mesh(None, 1.0).unwrap()
+    GmshFile::read(path(name)).unwrap().mesh(&[], 1.0).unwrap()
 }
 
 /// Asserts that the nodes of a boundary are exactly those at which `off` is zero.
@@ -57,7 +57,7 @@ fn an_unstructured_block_has_its_four_sides() {
 #[test]
 fn one_of_two_groups_of_elements_can_be_read_as_a_body() {
     let file = GmshFile::read(path("two-parts-q8.msh")).unwrap();
-    let (both, second) = (file.mesh(None, 1.0).unwrap(), file.mesh(Some("second"), 1.0).unwrap());
+    let (both, second) = (file.mesh(&[], 1.0).unwrap(), file.mesh(&["second"], 1.0).unwrap());
     assert_eq!(both.kind_of(0), ElementKind::Q8);
     assert_eq!(both.extent(), ([0.0; 3], [2.0, 1.0, 0.0]));
     lies(&both, "interface", |[x, ..]| x - 1.0);

@@ -104,7 +104,7 @@ fn empty_surface() -> Error {
 /// The error of a mesh file without the requested group.
 fn gmsh_of_another_body() -> Error {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults/square4.msh");
-    GmshFile::read(&file).and_then(|file| file.mesh(Some("another"), 1.0)).map(drop).unwrap_err()
+    GmshFile::read(&file).and_then(|file| file.mesh(&["another"], 1.0)).map(drop).unwrap_err()
 }
 
 /// The variants with their codes, as the table of `Error::code` lists them.

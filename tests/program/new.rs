@@ -1,9 +1,12 @@
 //! The command `new` writes a first scene for a mesh, which runs without changes.
 
+use std::collections::BTreeMap;
+use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use serde_json::{Value, json};
 use support::program::Desk;
 
 /// Mesh files from Gmsh: of every element, and of parts without an obvious side to hold or to press.
@@ -102,4 +105,91 @@ fn comment_lines_do_not_change_the_line_numbers_of_errors() {
     let desk = Desk::new();
     desk.write("scene.json", "// a comment\n{\n  // another\n  \"Gap\": 1\n}\n");
     desk.run(&["solve", "scene.json"]).fails_with(1, &["scene.json:4:", "unknown key `Gap`"]);
+}
+
+/// A block of bricks, or of tetrahedra; blocks of one `glue` share the nodes of the places that they share.
+#[derive(Clone, Copy)]
+struct Block {
+    group: &'static str,
+    glue: usize,
+    corners: [[f64; 3]; 2],
+    cells: usize,
+    tetrahedra: bool,
+}
+
+fn block(group: &'static str, glue: usize, low: [f64; 3], high: [f64; 3]) -> Block {
+    Block { group, glue, corners: [low, high], cells: 2, tetrahedra: false }
+}
+
+/// The cells of a block: each with its eight places, in the order of a brick of Gmsh.
+fn cells(block: &Block) -> Vec<[[f64; 3]; 8]> {
+    const CORNERS: [[usize; 3]; 8] =
+        [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+    let [low, high] = block.corners;
+    let at = |axis: usize, line: usize| low[axis] + (high[axis] - low[axis]) * line as f64 / block.cells as f64;
+    let cell = |number: usize| {
+        let first = [number % block.cells, number / block.cells % block.cells, number / block.cells.pow(2)];
+        CORNERS.map(|corner| [0, 1, 2].map(|axis| at(axis, first[axis] + corner[axis])))
+    };
+    (0..block.cells.pow(3)).map(cell).collect()
+}
+
+/// A mesh file of version 2.2 with a group for each block and, as the group `base`, the faces of all blocks at z = 0.
+fn mesh_of(blocks: &[Block], has_base: bool) -> String {
+    // The six tetrahedra of a brick around its diagonal from 0 to 6.
+    const PATHS: [[usize; 4]; 6] = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
+    let mut numbers: BTreeMap<(usize, [u64; 3]), usize> = BTreeMap::new();
+    let (mut nodes, mut elements) = (String::new(), Vec::new());
+    for (group, block) in blocks.iter().enumerate() {
+        for cell in cells(block) {
+            let brick = cell.map(|at| {
+                let next = numbers.len() + 1;
+                let number = *numbers.entry((block.glue, at.map(f64::to_bits))).or_insert(next);
+                if number == next {
+                    writeln!(nodes, "{number} {} {} {}", at[0], at[1], at[2]).unwrap();
+                }
+                number
+            });
+            let mut push = |kind: usize, tag: usize, places: &[usize]| {
+                let places: Vec<String> = places.iter().map(|&place| brick[place].to_string()).collect();
+                elements.push(format!("{kind} 2 {tag} 1 {}", places.join(" ")));
+            };
+            match block.tetrahedra {
+                true => PATHS.iter().for_each(|path| push(4, group + 1, path)),
+                false => push(5, group + 1, &[0, 1, 2, 3, 4, 5, 6, 7]),
+            }
+            if has_base && cell[0][2] == 0.0 {
+                match block.tetrahedra {
+                    true => [[0, 2, 1], [0, 3, 2]].iter().for_each(|face| push(2, 90, face)),
+                    false => push(3, 90, &[0, 3, 2, 1]),
+                }
+            }
+        }
+    }
+    let mut names: Vec<String> =
+        blocks.iter().enumerate().map(|(group, block)| format!("3 {} \"{}\"", group + 1, block.group)).collect();
+    names.extend(has_base.then(|| "2 90 \"base\"".to_string()));
+    let elements: Vec<String> =
+        elements.iter().enumerate().map(|(number, element)| format!("{} {element}\n", number + 1)).collect();
+    format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n{}\n{}\n$EndPhysicalNames\n$Nodes\n{}\n{nodes}$EndNodes\n\
+         $Elements\n{}\n{}$EndElements\n",
+        names.len(),
+        names.join("\n"),
+        numbers.len(),
+        elements.len(),
+        elements.concat()
+    )
+}
+
+/// The first scene of these blocks as text and as JSON, and the report of its solution.
+fn started(blocks: &[Block], has_base: bool) -> (String, Value, Value) {
+    let desk = Desk::new();
+    desk.write("blocks.msh", mesh_of(blocks, has_base));
+    desk.run(&["new", "blocks.msh", "--out", "blocks.json"]).ends_with(0);
+    let text = fs::read_to_string(desk.path("blocks.json")).unwrap();
+    let plain: Vec<&str> = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+    let run = desk.run(&["solve", "blocks.json", "--format", "json"]);
+    assert_eq!(run.code, 0, "{}{text}", run.stderr);
+    (text.clone(), serde_json::from_str(&plain.join("\n")).unwrap(), run.json())
 }

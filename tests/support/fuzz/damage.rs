@@ -78,7 +78,7 @@ pub fn read(name: &str, bytes: &[u8], desk: &Path) -> Result<(), Error> {
             let scene = Scene::from_json(&text, name)?;
             if scene.size().nodes < FEW_NODES { scene.build().map(drop) } else { Ok(()) }
         }
-        Some("msh") => GmshFile::parse(bytes, name)?.mesh(None, 1.0).map(drop),
+        Some("msh") => GmshFile::parse(bytes, name)?.mesh(&[], 1.0).map(drop),
         _ => {
             let io = |source| qp::Error::File { action: "write", path: desk.into(), source };
             std::fs::write(desk.join(name), bytes).map_err(io)?;

@@ -138,7 +138,7 @@ mod tests {
     fn bisection_leaves_every_place_its_material() {
         let mesh = GmshFile::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/meshes/box-tet4.msh"))
             .unwrap()
-            .mesh(None, 1.0)
+            .mesh(&[], 1.0)
             .unwrap();
         let [soft, stiff] = [1.0, 2.0].map(|young| Material::new(young, 0.3).unwrap());
         let near: Vec<usize> = (0..mesh.element_count())

@@ -200,7 +200,7 @@ mod tests {
 
     fn file(name: &str) -> Mesh {
         let path = format!("{}/../../tests/meshes/{name}", env!("CARGO_MANIFEST_DIR"));
-        GmshFile::read(path).unwrap().mesh(None, 1.0).unwrap()
+        GmshFile::read(path).unwrap().mesh(&[], 1.0).unwrap()
     }
 
     /// Every inner face lies between two tetrahedra, and every other face on the surface.

@@ -7,6 +7,7 @@ pub(crate) mod files;
 mod json;
 mod json_schema;
 mod locate;
+pub(crate) mod names;
 pub(crate) mod obstacle;
 mod parse;
 pub(crate) mod profile;

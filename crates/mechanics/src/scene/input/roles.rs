@@ -1,4 +1,4 @@
-//! The boundaries of a mesh that a first scene holds and presses: chosen by name and by the direction that they face.
+//! The boundaries of the bodies that a first scene holds and presses: chosen by name and by the direction that they face.
 
 use std::collections::HashSet;
 
@@ -7,7 +7,7 @@ use super::schema::part::PartNormalSpec;
 use crate::fem::assembly::{node_normals, tributary_areas};
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{along_axis, dot, length};
-use crate::fem::mesh::{Boundary, Mesh, extent};
+use crate::fem::mesh::{Boundary, extent};
 
 /// Words in the name of a boundary that is held, and of a boundary that is pressed.
 const HELD: [&str; 9] = ["fix", "clamp", "support", "held", "base", "bottom", "root", "cut", "ground"];
@@ -53,10 +53,14 @@ impl Chosen {
     }
 }
 
-/// The boundaries that are held and pressed.
+/// What is held and what is pressed.
 #[derive(Clone, Debug)]
 pub(crate) struct Roles {
     pub held: Chosen,
+    /// The boundaries of the same name on other bodies, which are held too.
+    pub also_held: Vec<String>,
+    /// The bodies without a held boundary, by their numbers.
+    pub loose: Vec<usize>,
     pub pressed: Chosen,
     /// The axis and the sense of the way of the plate.
     pub way: Way,
@@ -72,34 +76,163 @@ struct Pressed {
     first: Vec<usize>,
 }
 
-/// The roles that fit, the best first: those of two named boundaries, then those of the sides that face down and up.
+/// How well a held and a pressed side go together, the best first: the force goes from body to body, or at least from one to another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Fit {
+    Stacked,
+    Apart,
+    SameBody,
+}
+
+/// The sides of the bodies that may be held or pressed.
+struct Sides<'a> {
+    body: &'a ElasticBody,
+    /// The surface of each body.
+    surfaces: Vec<Boundary>,
+    /// The piece of the mesh of each element.
+    pieces: Vec<usize>,
+    /// The boundaries on the outside.
+    named: Vec<&'a Boundary>,
+}
+
+/// The roles that fit, the best first: among those as good, those of two named boundaries, then those of the sides that face an axis.
 pub(crate) fn roles(body: &ElasticBody) -> Vec<Roles> {
     let mesh = body.mesh();
-    let (surface, pieces) = (mesh.surface(0..mesh.element_count()), mesh.pieces());
-    let named: Vec<&Boundary> = mesh.boundaries().iter().filter(|boundary| is_outside(boundary, &surface)).collect();
-    let held_by_word = named.iter().find(|boundary| has(&HELD, &boundary.name)).copied();
-    let is_held = |boundary: &Boundary| held_by_word.is_some_and(|held| held.name == boundary.name);
-    let mut pressed: Vec<(usize, &Boundary)> =
-        named.iter().copied().enumerate().filter(|(_, boundary)| !is_held(boundary)).collect();
-    // Boundaries with a word first, then those that face one direction, then the last ones of the file.
-    pressed.sort_by_key(|(place, boundary)| {
-        let faces_all = length(mean_normal(body, boundary)) < FACING;
-        (!has(&PRESSED, &boundary.name), faces_all, std::cmp::Reverse(*place))
-    });
-    let of_names = pressed.iter().find_map(|(_, boundary)| {
-        let pressed = Pressed::of(body, boundary)?;
-        let others = held_by_word.into_iter().chain(named.iter().copied()).filter(|other| other.name != boundary.name);
-        let held = others.into_iter().find(|other| pressed.is_free_of(other) && holds_all(mesh, &pieces, other))?;
-        Some(pressed.held_at(Chosen::Boundary(held.name.clone())))
-    });
-    let up = mesh.dimension() - 1;
-    let of_sides = || {
-        let [lower, upper] = [-1.0, 1.0].map(|sense| part(body, &surface, (up, sense)));
-        let (lower, pressed) = (lower?, Pressed::new(body, &upper?, Chosen::Facing((up, 1.0), None), (up, 1.0))?);
-        let is_fit = pressed.is_free_of(&lower) && holds_all(mesh, &pieces, &lower);
-        is_fit.then(|| pressed.held_at(Chosen::Facing((up, -1.0), None)))
+    let surface = mesh.surface(0..mesh.element_count());
+    let sides = Sides {
+        body,
+        surfaces: body.regions().iter().map(|region| mesh.surface(region.elements())).collect(),
+        pieces: mesh.pieces(),
+        named: mesh.boundaries().iter().filter(|boundary| is_outside(boundary, &surface)).collect(),
     };
-    of_names.into_iter().chain(of_sides()).collect()
+    let mut found: Vec<(Fit, Roles)> = sides.of_names().into_iter().chain(sides.of_axes()).collect();
+    found.sort_by_key(|(fit, _)| *fit);
+    found.into_iter().map(|(_, roles)| roles).collect()
+}
+
+impl Sides<'_> {
+    /// The best roles of two named boundaries.
+    fn of_names(&self) -> Option<(Fit, Roles)> {
+        let held_by_word = self.named.iter().filter(|boundary| has(&HELD, &boundary.name));
+        let is_held = |boundary: &Boundary| has(&HELD, &boundary.name) && self.is_first_held(boundary);
+        let mut pressed: Vec<(usize, &Boundary)> =
+            self.named.iter().copied().enumerate().filter(|(_, boundary)| !is_held(boundary)).collect();
+        // Boundaries with a word first, then those that face one direction, then the last ones of the file.
+        pressed.sort_by_key(|(place, boundary)| {
+            let faces_all = length(mean_normal(self.body, boundary)) < FACING;
+            (!has(&PRESSED, &boundary.name), faces_all, std::cmp::Reverse(*place))
+        });
+        let held: Vec<&Boundary> = held_by_word.chain(&self.named).copied().collect();
+        let mut best: Option<(Fit, Pressed, &Boundary)> = None;
+        for (_, boundary) in pressed {
+            let Some(pressed) = Pressed::of(self.body, boundary) else { continue };
+            let others = held.iter().filter(|other| other.name != boundary.name);
+            let fits = others.filter_map(|other| Some((self.fit(&pressed, boundary, other)?, *other)));
+            let Some((fit, other)) = fits.min_by_key(|(fit, _)| *fit) else { continue };
+            if best.as_ref().is_none_or(|(least, ..)| fit < *least) {
+                best = Some((fit, pressed, other));
+            }
+            if fit == Fit::Stacked {
+                break;
+            }
+        }
+        let (fit, pressed, held) = best?;
+        Some((fit, self.roles(pressed, Chosen::Boundary(held.name.clone()), held)))
+    }
+
+    /// Returns `true` for the first boundary with a word of what is held.
+    fn is_first_held(&self, boundary: &Boundary) -> bool {
+        self.named.iter().find(|other| has(&HELD, &other.name)).is_some_and(|first| first.name == boundary.name)
+    }
+
+    /// The roles of sides that face an axis: up and down alone for a single body.
+    fn of_axes(&self) -> Vec<(Fit, Roles)> {
+        let (up, count) = (self.body.dimension() - 1, self.surfaces.len());
+        let senses: &[f64] = if count > 1 { &[1.0, -1.0] } else { &[1.0] };
+        let axes = (0..=up).rev().filter(|&axis| axis == up || count > 1);
+        let mut found = Vec::new();
+        for (axis, &sense) in axes.flat_map(|axis| senses.iter().map(move |sense| (axis, sense))) {
+            let (way, back) = ((axis, sense), (axis, -sense));
+            let of = |region: usize| (region > 0).then(|| self.body.regions()[region].name().to_string());
+            let side = |region: usize, way: Way| part(self.body, &self.surfaces[region], way);
+            let held: Vec<_> = (0..count).filter_map(|region| Some((region, side(region, back)?))).collect();
+            for upper in 0..count {
+                let Some(top) = side(upper, way) else { continue };
+                for (lower, held) in &held {
+                    let chosen = Chosen::Facing(way, of(upper));
+                    let Some(pressed) = Pressed::new(self.body, &top, chosen, way) else { break };
+                    if let Some(fit) = self.fit(&pressed, &top, held) {
+                        found.push((fit, self.roles(pressed, Chosen::Facing(back, of(*lower)), held)));
+                    }
+                }
+            }
+        }
+        found
+    }
+
+    /// How well a pressed and a held side go together; `None` if they do not.
+    fn fit(&self, pressed: &Pressed, facets: &Boundary, held: &Boundary) -> Option<Fit> {
+        if !pressed.is_free_of(held) || !self.holds_all(held) {
+            return None;
+        }
+        let (upper, lower) = (self.region_of(facets)?, self.region_of(held)?);
+        let (axis, sense) = pressed.way;
+        let along = |nodes: std::ops::Range<usize>| {
+            let (low, high) = self.body.mesh().extent_of(nodes);
+            if sense > 0.0 { (low[axis], high[axis]) } else { (-high[axis], -low[axis]) }
+        };
+        let regions = self.body.regions();
+        let tolerance = AS_HIGH * self.body.mesh().size();
+        let whole = along(0..self.body.mesh().nodes().len());
+        let (above, below) = (along(regions[upper].nodes()), along(regions[lower].nodes()));
+        let is_at_ends = above.1 > whole.1 - tolerance && below.0 < whole.0 + tolerance;
+        match (upper == lower, is_at_ends) {
+            (true, _) if regions.len() == 1 => Some(Fit::Stacked),
+            (_, false) => None,
+            (true, true) => Some(Fit::SameBody),
+            (false, true) => Some(if above.0 > below.1 - tolerance { Fit::Stacked } else { Fit::Apart }),
+        }
+    }
+
+    fn roles(&self, pressed: Pressed, chosen: Chosen, held: &Boundary) -> Roles {
+        let own_name = |boundary: &Boundary| {
+            let region = self.region_of(boundary).map_or("", |region| self.body.regions()[region].name());
+            let own = boundary.name.strip_prefix(region).and_then(|rest| rest.strip_prefix('.'));
+            own.filter(|_| !region.is_empty()).unwrap_or(&boundary.name).to_string()
+        };
+        let is_alike = |other: &&&Boundary| {
+            has(&HELD, &held.name)
+                && other.name != held.name
+                && own_name(other) == own_name(held)
+                && pressed.is_free_of(other)
+                && self.holds_all(other)
+        };
+        let alike: Vec<&Boundary> = self.named.iter().filter(is_alike).copied().collect();
+        let fixed: Vec<usize> = alike.iter().copied().chain([held]).filter_map(|one| self.region_of(one)).collect();
+        Roles {
+            held: chosen,
+            also_held: alike.iter().map(|boundary| boundary.name.clone()).collect(),
+            loose: (0..self.surfaces.len()).filter(|region| !fixed.contains(region)).collect(),
+            pressed: pressed.chosen,
+            way: pressed.way,
+            extent: pressed.extent,
+        }
+    }
+
+    /// The body of a boundary, by its number.
+    fn region_of(&self, boundary: &Boundary) -> Option<usize> {
+        let first = boundary.connectivity.first()?;
+        self.body.regions().iter().position(|region| region.nodes().contains(first))
+    }
+
+    /// Returns `true` if a boundary has a facet of every piece of its body.
+    fn holds_all(&self, boundary: &Boundary) -> bool {
+        let Some(region) = self.region_of(boundary) else { return false };
+        let all: HashSet<usize> = self.pieces[self.body.regions()[region].elements()].iter().copied().collect();
+        let held: HashSet<usize> =
+            self.body.mesh().faces_of(boundary).into_iter().flatten().map(|(element, _)| self.pieces[element]).collect();
+        held == all
+    }
 }
 
 impl Pressed {
@@ -131,18 +264,6 @@ impl Pressed {
         let held: HashSet<usize> = held.nodes().into_iter().collect();
         self.first.iter().all(|node| !held.contains(node))
     }
-
-    fn held_at(self, held: Chosen) -> Roles {
-        Roles { held, pressed: self.chosen, way: self.way, extent: self.extent }
-    }
-}
-
-/// Returns `true` if a boundary has a facet of every piece of the mesh.
-fn holds_all(mesh: &Mesh, pieces: &[usize], boundary: &Boundary) -> bool {
-    let all: HashSet<usize> = pieces.iter().copied().collect();
-    let held: HashSet<usize> =
-        mesh.faces_of(boundary).into_iter().flatten().map(|(element, _)| pieces[element]).collect();
-    held == all
 }
 
 fn has(words: &[&str], name: &str) -> bool {

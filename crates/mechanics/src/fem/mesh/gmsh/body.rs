@@ -24,34 +24,11 @@ pub(super) struct Body<'a> {
 }
 
 impl<'a> Body<'a> {
-    /// The elements of the group called `domain`, or of the highest dimension.
-    pub fn select(file: &'a GmshFile, domain: Option<&str>) -> Result<Self, Error> {
-        let names = file.names_in_use();
-        let dimension = match domain {
-            Some(name) => names.iter().rev().find(|(_, other)| other == name).map(|(dimension, _)| *dimension),
-            None => file.blocks.iter().map(|block| block.cell.dimension).max(),
-        };
-        let Some(dimension) = dimension.filter(|&dimension| dimension > 0) else {
-            let Some(name) = domain else {
-                return Err(
-                    file.fault(file.last_line, "there are no elements beyond points; a body needs at least one")
-                );
-            };
-            let names: Vec<String> =
-                names.into_iter().filter(|(dimension, _)| *dimension > 0).map(|(_, n)| n).collect();
-            return fail(match names.is_empty() {
-                true => format!("there is no physical group `{name}`; the file has none"),
-                false => {
-                    let meant = nearly(name, names.iter().map(String::as_str));
-                    let there = names.join(", ");
-                    format!("there is no physical group `{name}` of elements; there are {there}{meant}")
-                }
-            });
-        };
-        let chosen = |groups: &[u64]| match domain {
-            Some(name) => groups.iter().any(|&tag| file.name_of(dimension, tag) == name),
-            None => true,
-        };
+    /// The elements of the groups of these names, or, without a name, of the highest dimension.
+    pub fn select(file: &'a GmshFile, domain: &[&str]) -> Result<Self, Error> {
+        let dimension = dimension(file, domain)?;
+        let is_named = |tag: &u64| domain.contains(&file.name_of(dimension, *tag).as_str());
+        let chosen = |groups: &[u64]| domain.is_empty() || groups.iter().any(is_named);
         let mut elements = Vec::new();
         // Version 2.2 writes an element once for each of its groups.
         let mut known: HashMap<&[usize], usize> = HashMap::new();
@@ -138,6 +115,34 @@ impl<'a> Body<'a> {
         }
         Ok(())
     }
+}
+
+/// The one dimension of the groups of these names, or, without a name, the highest of the file.
+fn dimension(file: &GmshFile, domain: &[&str]) -> Result<usize, Error> {
+    let Some(first) = domain.first() else {
+        let highest = file.blocks.iter().map(|block| block.cell.dimension).max();
+        let missing = || file.fault(file.last_line, "there are no elements beyond points; a body needs at least one");
+        return highest.filter(|&dimension| dimension > 0).ok_or_else(missing);
+    };
+    let names: Vec<(usize, String)> = file.names_in_use().into_iter().filter(|(own, _)| *own > 0).collect();
+    let of = |name: &str| names.iter().rev().find(|(_, other)| other == name).map(|(dimension, _)| *dimension);
+    for name in domain {
+        match (of(name), of(first)) {
+            (None, _) if names.is_empty() => {
+                return fail(format!("there is no physical group `{name}`; the file has none"));
+            }
+            (None, _) => {
+                let names: Vec<&str> = names.iter().map(|(_, name)| name.as_str()).collect();
+                let (there, meant) = (names.join(", "), nearly(name, names.iter().copied()));
+                return fail(format!("there is no physical group `{name}` of elements; there are {there}{meant}"));
+            }
+            (own, first_own) if own != first_own => {
+                return fail(format!("the elements of `{first}` and `{name}` have different dimensions"));
+            }
+            _ => {}
+        }
+    }
+    Ok(of(first).unwrap_or_default())
 }
 
 /// The one kind of all elements.

@@ -16,7 +16,11 @@ pub(super) fn of(file: &GmshFile, mesh: &Mesh, numbers: &Numbers, is_part: bool)
     for (_, name) in file.names_in_use().into_iter().filter(|(other, _)| *other == dimension) {
         let mut connectivity = Vec::new();
         let mut known = HashSet::new();
-        let facets = facets(file, dimension, &name);
+        let mut facets = facets(file, dimension, &name);
+        if is_part {
+            // Bodies of one file may have faces of different kinds.
+            facets.retain(|facet| facet.nodes.iter().all(|&node| numbers[node].is_some()));
+        }
         let placed = Boundary::new(name.as_str(), mesh.kind_of(0).facet(), in_mesh(file, mesh, &facets, numbers)?);
         let faces = mesh.faces_of(&placed);
         for (facet, face) in facets.iter().zip(faces) {

@@ -25,7 +25,7 @@
 //! 2 2 2 0 1 10 20 30
 //! $EndElements
 //! "#;
-//! let mesh = GmshFile::parse(text, "triangle.msh")?.mesh(None, 0.5)?;
+//! let mesh = GmshFile::parse(text, "triangle.msh")?.mesh(&[], 0.5)?;
 //! assert_eq!(mesh.nodes()[2], [1.0, 0.0, 0.0]);
 //! assert_eq!(mesh.boundary("floor").map(|floor| floor.nodes()), Some(vec![0, 2]));
 //! # Ok::<(), signorini_mechanics::Error>(())
@@ -40,6 +40,7 @@ mod cells;
 mod content;
 mod file;
 mod form;
+mod glued;
 mod groups;
 mod record;
 mod sections;
@@ -50,6 +51,7 @@ mod version4;
 use std::path::Path;
 
 pub use file::{GmshFile, PhysicalGroup};
+pub(crate) use glued::Glued;
 
 use super::Mesh;
 use crate::error::Error;
@@ -92,23 +94,23 @@ impl GmshFile {
         names.into_iter().filter(|(dimension, _)| Some(*dimension) == highest).map(|(_, name)| name).collect()
     }
 
-    /// The mesh of the body: of the elements in the physical group called `domain`, or else of all elements of the
-    /// highest dimension. Coordinates are multiplied by `scale`.
+    /// The mesh of the body: of the elements in the physical groups of these names, or, without a name, of all elements of the highest
+    /// dimension. Groups that share nodes are glued. Coordinates are multiplied by `scale`.
     ///
     /// Nodes that no element of the body uses are left out; the others keep the order of the file. A plane mesh lies in any plane z =
     /// const, a bar along x. Elements that run clockwise are turned, if all elements do. Facets of a boundary have one orientation: the
-    /// body is on the left of edges; in space facets are counterclockwise seen from outside. With a `domain`, groups elsewhere are left
-    /// out.
+    /// body is on the left of edges; in space facets are counterclockwise seen from outside. With names, facets of boundaries that
+    /// are not on the body are left out.
     ///
     /// # Errors
     /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line: for elements of more than one kind, or of a kind without contact, a node outside the plane,
-    /// an element that is inverted or has no volume, a group with facets that are not faces of the body. [`Error::Mesh`] for a `domain`
-    /// that does not exist, [`qp::Error::Setting`](signorini_qp::Error::Setting) for a scale that is not positive and finite.
-    pub fn mesh(&self, domain: Option<&str>, scale: f64) -> Result<Mesh, Error> {
+    /// an element that is inverted or has no volume, a group with facets that are not faces of the body. [`Error::Mesh`] for a
+    /// group that does not exist, and for groups of different dimensions, [`qp::Error::Setting`](signorini_qp::Error::Setting) for a scale that is not positive and finite.
+    pub fn mesh(&self, groups: &[&str], scale: f64) -> Result<Mesh, Error> {
         positive("scale", scale)?;
-        let body = body::Body::select(self, domain)?;
+        let body = body::Body::select(self, groups)?;
         let (mut mesh, numbers) = body.mesh(self, scale)?;
-        mesh.boundaries = boundaries::of(self, &mesh, &numbers, domain.is_some())?;
+        mesh.boundaries = boundaries::of(self, &mesh, &numbers, !groups.is_empty())?;
         Ok(mesh)
     }
 }

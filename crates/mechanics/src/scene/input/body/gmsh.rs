@@ -8,6 +8,7 @@ use crate::error::Error;
 use crate::fem::{ElementKind, GmshFile, Integration, Mesh};
 use crate::scene::input::entry::{refused, wrong};
 use crate::scene::input::files::Files;
+use crate::scene::input::names;
 
 /// Approximate bytes of a mesh file for one node and its elements: files of Gmsh of either version, ASCII or binary, have 87 to 237.
 const OF_MESH_FILE: f64 = 150.0;
@@ -22,10 +23,11 @@ pub struct GmshSpec {
     #[serde(default = "crate::scene::input::schema::cells::one")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub scale: f64,
-    /// The physical group of the body; may be left out if at most one group has elements of the highest dimension, or if `materials` name
-    /// the groups.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub group: Option<String>,
+    /// The physical group of the body, or a list of groups, which are glued where they share nodes. May be left out if at most one group has
+    /// elements of the highest dimension, or if `materials` name the groups.
+    #[serde(default, with = "names", skip_serializing_if = "Vec::is_empty")]
+    #[schemars(schema_with = "names::schema")]
+    pub group: Vec<String>,
     /// The integration of the stiffness.
     #[serde(default)]
     pub integration: Integration,
@@ -41,16 +43,17 @@ impl BodyShape for GmshSpec {
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
         let file = GmshFile::read(site.files.named(&self.file, format!("{}.file", site.path))?)?;
         let bodies = file.bodies();
-        if self.group.is_none() && bodies.len() > 1 && !site.names_groups {
+        if self.group.is_empty() && bodies.len() > 1 && !site.names_groups {
             let names = bodies.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
             let message = format!(
                 "the mesh has {} groups of elements, {names}; without `group` they would be one body of one \
-                 material; choose one by `group`, or give `materials`",
+                 material; name one or a list by `group`, or give `materials`",
                 bodies.len()
             );
             return Err(refused("several-groups", format!("{}.group", site.path), message));
         }
-        let mesh = file.mesh(self.group.as_deref(), self.scale)?;
+        let groups: Vec<&str> = self.group.iter().map(String::as_str).collect();
+        let mesh = file.mesh(&groups, self.scale)?;
         let (found, model) = (mesh.dimension(), site.model.name());
         if found != site.model.dimension() {
             let body = ["a bar", "plane", "in space"][found - 1];

@@ -7,7 +7,7 @@ use jsonc_parser::ast::{NullKeyword, ObjectProp, Value};
 use jsonc_parser::common::{Range, Ranged};
 use serde::de::value::BorrowedStrDeserializer;
 use serde::de::{
-    DeserializeSeed, Deserializer, EnumAccess, Error, MapAccess, SeqAccess, Unexpected, VariantAccess, Visitor,
+    DeserializeSeed, Deserializer, EnumAccess, Expected, MapAccess, SeqAccess, VariantAccess, Visitor,
 };
 use serde::forward_to_deserialize_any;
 
@@ -49,9 +49,13 @@ impl<'a> Typed<'a> {
 impl<'de> Deserializer<'de> for Typed<'de> {
     type Error = Fault;
 
-    /// No type of a scene accepts any value.
+    /// A string or an array; no type of a scene accepts any value.
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        Err(Error::invalid_type(Unexpected::Other("a value of JSON"), &visitor))
+        match self.0 {
+            Value::StringLit(text) => visitor.visit_str(&text.value),
+            Value::Array(_) => self.deserialize_seq(visitor),
+            _ => self.not(&(&visitor as &dyn Expected).to_string()),
+        }
     }
 
     fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {

@@ -1,0 +1,171 @@
+//! The text of a first scene: bodies, supports, and a plate that a force presses.
+
+use std::fmt::Write;
+
+use super::bodies::Bodies;
+use crate::fem::geometry::along_axis;
+use crate::fem::mesh::Mesh;
+use crate::scene::input::entry::number;
+use crate::scene::input::roles::{Chosen, Roles};
+use crate::scene::input::schema::PartSpec;
+
+/// The approximate strain under the force: far from large, far above rounding.
+const STRAIN: f64 = 1e-4;
+
+/// The stiffness of the springs of a body over that of a cube of its material: they take next to nothing of the force.
+const WEAK: f64 = 1e-5;
+
+pub(super) fn quoted(name: &str) -> String {
+    serde_json::Value::from(name).to_string()
+}
+
+/// A vector as it is written in a scene: with all digits, because a plane must touch the body.
+fn vector(values: &[f64]) -> String {
+    let values: Vec<String> = values.iter().map(|&value| number(value + 0.0)).collect();
+    format!("[{}]", values.join(", "))
+}
+
+/// A vector for the reader, in six digits.
+pub(super) fn shown(values: &[f64]) -> String {
+    vector(&values.iter().map(|value| format!("{value:.5e}").parse().unwrap_or(*value)).collect::<Vec<f64>>())
+}
+
+/// A number with one significant digit, which is enough for forces and springs.
+fn one_digit(value: f64) -> String {
+    number(format!("{value:.0e}").parse().unwrap_or(1.0))
+}
+
+/// A direction of the model for each of its coordinates, with the same value.
+fn along_all(dimension: usize, value: &str) -> String {
+    let entries: Vec<String> = ["x", "y", "z"][..dimension].iter().map(|name| format!("\"{name}\": {value}")).collect();
+    entries.join(", ")
+}
+
+/// The scene without comments on the file.
+pub(super) fn scene(named: &str, bodies: &Bodies, roles: &Roles) -> String {
+    let mut text = described(named, bodies);
+    let mesh = bodies.joined.mesh();
+    let mut parts = Vec::new();
+    let held = named_side(&roles.held, "held", mesh, &mut parts);
+    let pressed = named_side(&roles.pressed, "pressed", mesh, &mut parts);
+    let loose: Vec<String> = roles.loose.iter().map(|&body| surface(body, bodies, &mut parts)).collect();
+    if !parts.is_empty() {
+        let _ = write!(text, "  \"parts\": [\n{}\n  ],\n", parts.iter().map(written).collect::<Vec<_>>().join(",\n"));
+    }
+    let support = |name: &String| {
+        format!("{{\"on\": {{\"boundary\": {}}}, {}}}", quoted(name), along_all(mesh.dimension(), "0"))
+    };
+    let supports: Vec<String> = [&held].into_iter().chain(&roles.also_held).map(support).collect();
+    let _ = writeln!(text, "  \"supports\": [{}],", supports.join(",\n    "));
+    if !loose.is_empty() {
+        text += &springs(&loose, mesh, bodies.young);
+    }
+    text += &plate(&pressed, roles, mesh, bodies.young);
+    text
+}
+
+/// Units, model, bodies, material.
+fn described(named: &str, bodies: &Bodies) -> String {
+    let model = ["bar", "plane-strain", "space"][bodies.joined.dimension() - 1];
+    let unit = if bodies.are_in_millimetres { "mm" } else { "m" };
+    let material = format!("\"material\": {{\"young\": {}, \"poisson\": 0.3}}", number(bodies.young));
+    let body = |groups: &[String]| {
+        let names: Vec<String> = groups.iter().map(|name| quoted(name)).collect();
+        let group = match &names[..] {
+            [] => String::new(),
+            [name] => format!(", \"group\": {name}"),
+            _ => format!(", \"group\": [{}]", names.join(", ")),
+        };
+        format!("\"body\": {{\"gmsh\": {{\"file\": {}, \"scale\": 1{group}}}}}", quoted(named))
+    };
+    let mut text = format!(
+        "{{\n  \"format\": 1,\n  \"title\": {},\n  \"units\": {{\"length\": \"{unit}\", \"force\": \"N\"}},\n  \"model\": \"{model}\",\n",
+        quoted(&format!("{named}, pressed")),
+    );
+    let further = bodies.sets.iter().skip(1).map(|set| {
+        format!("    {{\"name\": {}, {},\n     {material}}}", quoted(set.name()), body(&set.groups))
+    });
+    let further: Vec<String> = further.collect();
+    let first = bodies.sets.first().map_or(&[][..], |set| &set.groups);
+    let _ = write!(text, "  {},\n  // Steel.\n  {material},\n", body(first));
+    if !further.is_empty() {
+        let _ = write!(text, "  \"further-bodies\": [\n{}\n  ],\n  \"contact\": \"auto\",\n", further.join(",\n"));
+    }
+    text
+}
+
+/// The name of what is held or pressed. Facets that face a direction are added to `parts`, with a name that no boundary has.
+fn named_side(chosen: &Chosen, name: &str, mesh: &Mesh, parts: &mut Vec<PartSpec>) -> String {
+    let (way, of) = match chosen {
+        Chosen::Boundary(name) => return name.clone(),
+        Chosen::Facing(way, of) => (*way, of.clone()),
+    };
+    let name = free_name(name, mesh);
+    parts.push(PartSpec { name: name.clone(), ..Chosen::spec(way, of, mesh.dimension()) });
+    name
+}
+
+/// The name of the whole surface of a body, which is added to `parts`.
+fn surface(body: usize, bodies: &Bodies, parts: &mut Vec<PartSpec>) -> String {
+    let of = (body > 0).then(|| bodies.sets[body].name().to_string());
+    let name = free_name(&format!("surface of {}", of.as_deref().unwrap_or("body")), bodies.joined.mesh());
+    parts.push(PartSpec { name: name.clone(), of, cuboid: None, sphere: None, normal: None });
+    name
+}
+
+/// The name, or a longer one that no boundary has.
+fn free_name(name: &str, mesh: &Mesh) -> String {
+    let mut name = name.to_string();
+    while mesh.boundary(&name).is_some() {
+        name += "-part";
+    }
+    name
+}
+
+/// A part as it is written in a scene.
+fn written(part: &PartSpec) -> String {
+    let of = part.of.as_ref().map_or_else(String::new, |of| format!(", \"of\": {}", quoted(of)));
+    let normal = part.normal.as_ref().map_or_else(String::new, |normal| {
+        let direction = vector(&normal.direction);
+        format!(", \"normal\": {{\"direction\": {direction}, \"within\": {}}}", number(normal.within))
+    });
+    format!("    {{\"name\": {}{of}{normal}}}", quoted(&part.name))
+}
+
+/// Weak springs on the bodies that nothing else holds.
+fn springs(surfaces: &[String], mesh: &Mesh, young: f64) -> String {
+    let dimension = mesh.dimension();
+    let stiffness = one_digit(WEAK * young * mesh.size().powi(dimension as i32 - 2));
+    let spring = |name: &String| {
+        format!("    {{\"on\": {{\"boundary\": {}}}, {}}}", quoted(name), along_all(dimension, &stiffness))
+    };
+    let springs: Vec<String> = surfaces.iter().map(spring).collect();
+    format!(
+        "  // No support holds these bodies, and contact holds them only where it presses: weak springs, which take next to nothing of the \
+         force,\n  // keep them from drifting away. Put supports in their place where the real bodies have some.\n  \
+         \"springs\": [\n{}\n  ],\n",
+        springs.join(",\n")
+    )
+}
+
+/// An obstacle that a force presses.
+fn plate(pressed: &str, roles: &Roles, mesh: &Mesh, young: f64) -> String {
+    let (dimension, (axis, sense), (low, high)) = (mesh.dimension(), roles.way, roles.extent);
+    let size = mesh.size();
+    // The position of the point within the plane is free: six digits of the size of the body are enough.
+    let rounded = |value: f64| (value / size * 1e6).round() / 1e6 * size;
+    let mut point = [0, 1, 2].map(|other| rounded((low[other] + high[other]) / 2.0));
+    point[axis] = if sense > 0.0 { high[axis] } else { low[axis] };
+    let across = (0..dimension).filter(|&other| other != axis);
+    let area: f64 = across.map(|other| high[other] - low[other]).product();
+    let approach = format!("{}{}", if sense > 0.0 { "+" } else { "-" }, ["x", "y", "z"][axis]);
+    format!(
+        "  // A plate comes along its approach direction, and presses with a force; `gap` instead moves it.\n  \"obstacles\": [\n    \
+         {{\"boundary\": {}, \"approach\": \"{approach}\", \"force\": {},\n     \"shape\": {{\"plane\": {{\"point\": {}, \"normal\": \
+         {}}}}}}}\n  ]\n}}\n",
+        quoted(pressed),
+        one_digit(STRAIN * young * area),
+        vector(&point[..dimension]),
+        vector(&along_axis(axis, sense)[..dimension])
+    )
+}
