@@ -91,7 +91,9 @@ fn a_first_scene_lists_the_groups_of_the_file_and_guesses_its_unit() {
     let desk = Desk::new();
     copied(&desk, "two-parts-q8.msh");
     let metres = desk.run(&["new", "two-parts-q8.msh"]).ends_with(0).stdout;
-    for phrase in ["first, second", "boundary \"interface\"", "in metres", "\"length\": \"m\"", "\"young\": 2.1e11"] {
+    for phrase in
+        ["\"first\", \"second\"", "boundary \"interface\"", "in metres", "\"length\": \"m\"", "\"young\": 2.1e11"]
+    {
         assert!(metres.contains(phrase), "{phrase}: {metres}");
     }
     desk.write("empty.msh", "");
@@ -192,4 +194,140 @@ fn started(blocks: &[Block], has_base: bool) -> (String, Value, Value) {
     let run = desk.run(&["solve", "blocks.json", "--format", "json"]);
     assert_eq!(run.code, 0, "{}{text}", run.stderr);
     (text.clone(), serde_json::from_str(&plain.join("\n")).unwrap(), run.json())
+}
+
+/// The forces between bodies, in the order of the pairs.
+fn between(report: &Value) -> Vec<f64> {
+    let of_pairs = report["contact"]["obstacles"].as_array().unwrap().iter().filter(|one| !one["between"].is_null());
+    of_pairs.map(|one| one["force"].as_f64().unwrap()).collect()
+}
+
+/// Rounding, and the springs: they take less of the force than this share.
+const SPRINGS: f64 = 1e-3;
+
+/// The lower block consists of bricks, the upper one of tetrahedra.
+#[test]
+fn volumes_that_share_no_node_are_bodies_that_touch() {
+    let upper = Block { tetrahedra: true, cells: 3, ..block("cap", 1, [0.0, 0.0, 1.0], [1.0, 1.0, 2.0]) };
+    let (text, scene, report) = started(&[block("foot", 0, [0.0; 3], [1.0; 3]), upper], true);
+    assert_eq!(scene["body"]["gmsh"]["group"], "foot");
+    assert_eq!(scene["further-bodies"][0]["name"], "cap");
+    assert_eq!(scene["further-bodies"][0]["body"]["gmsh"]["group"], "cap");
+    assert_eq!(scene["contact"], "auto");
+    for line in [
+        "in 2 bodies",
+        "// `body`: the group \"foot\", 8 elements Hex8.",
+        "// further body \"cap\": the group \"cap\", 162 elements Tet4.",
+        "// The bodies share no node: only contact joins them.",
+    ] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+    // The whole force goes from one body to the other.
+    let force = scene["obstacles"][0]["force"].as_f64().unwrap();
+    let [between] = between(&report)[..] else { panic!("{report}") };
+    assert!((between / force - 1.0).abs() < SPRINGS, "{between} of {force}");
+}
+
+#[test]
+fn volumes_that_share_nodes_are_one_body() {
+    let core = block("core", 0, [0.0; 3], [1.0; 3]);
+    let shell = block("shell", 0, [0.0, 0.0, 1.0], [1.0, 1.0, 2.0]);
+    let (text, scene, report) = started(&[core, shell], false);
+    assert_eq!(scene["body"]["gmsh"]["group"], json!(["core", "shell"]));
+    assert!(text.contains("16 elements Hex8; glued: \"core\" and \"shell\" share 9 nodes."), "{text}");
+    assert!(!text.contains("only contact joins"), "{text}");
+    assert_eq!((&scene["further-bodies"], &scene["springs"]), (&Value::Null, &Value::Null));
+    // All nodes of both, those of the interface once.
+    assert_eq!(report["model"]["nodes"], 45);
+    assert!(between(&report).is_empty(), "{report}");
+}
+
+/// Bodies side by side along x, of which the middle one is glued from two groups.
+#[test]
+fn three_bodies_in_a_row_are_pressed_along_the_row() {
+    let at = |group, glue, from: f64, to: f64| block(group, glue, [from, 0.0, 0.0], [to, 1.0, 1.0]);
+    let blocks = [at("one", 0, 0.0, 1.0), at("two", 1, 1.0, 2.0), at("more", 1, 2.0, 3.0), at("three", 2, 3.0, 4.0)];
+    let (text, scene, report) = started(&blocks, false);
+    let names: Vec<&Value> = scene["further-bodies"].as_array().unwrap().iter().map(|body| &body["name"]).collect();
+    assert_eq!(names, ["two", "three"]);
+    assert_eq!(scene["further-bodies"][0]["body"]["gmsh"]["group"], json!(["two", "more"]));
+    assert!(text.contains("further body \"two\": the groups \"two\", \"more\", 16 elements Hex8; glued:"), "{text}");
+    assert_eq!(scene["obstacles"][0]["approach"], "+x");
+    let force = scene["obstacles"][0]["force"].as_f64().unwrap();
+    let between = between(&report);
+    assert!(
+        between.len() == 2 && between.iter().all(|one| (one / force - 1.0).abs() < SPRINGS),
+        "{between:?} of {force}"
+    );
+}
+
+/// A core in a ring stands on the same plane: both are held there, and no spring is needed.
+#[test]
+fn bodies_that_stand_on_one_plane_are_both_held() {
+    let around = (0..9).filter(|&place| place != 4).map(|place| [(place % 3) as f64, (place / 3) as f64]);
+    let mut blocks: Vec<Block> = around.map(|[x, y]| block("ring", 0, [x, y, 0.0], [x + 1.0, y + 1.0, 1.0])).collect();
+    blocks.push(block("core", 1, [1.0, 1.0, 0.0], [2.0, 2.0, 1.5]));
+    let (_, scene, report) = started(&blocks, false);
+    let held: Vec<&Value> = scene["supports"].as_array().unwrap().iter().map(|support| &support["on"]).collect();
+    assert_eq!(held, [&json!({"boundary": "held"}), &json!({"boundary": "held of core"})]);
+    assert_eq!(scene["springs"], Value::Null);
+    assert!(between(&report).len() == 1, "{report}");
+}
+
+/// Without its springs the cap is loose; the supports that the refusal gives hold it.
+#[test]
+fn a_refusal_of_a_loose_body_names_it_with_supports_that_hold_it() {
+    let blocks = [block("foot", 0, [0.0; 3], [1.0; 3]), block("cap", 1, [0.0, 0.0, 1.0], [1.0, 1.0, 2.0])];
+    let (_, mut scene, _) = started(&blocks, true);
+    scene.as_object_mut().unwrap().remove("springs");
+    let desk = Desk::new();
+    desk.write("blocks.msh", mesh_of(&blocks, true));
+    desk.write("loose.json", scene.to_string());
+    let run = desk.run(&["solve", "loose.json"]).ends_with(3);
+    let (motions, advice) = run.stderr.split_once(": contact without friction does not hold it").unwrap();
+    for motion in ["along x of `cap`", "along y of `cap`", "about z through (0.5, 0.5, 1.5) of `cap`"] {
+        assert!(motions.contains(motion), "{motion}: {motions}");
+    }
+    assert!(!motions.contains("first body"), "{motions}");
+    let given = advice.split_once("such as ").unwrap().1.split_once(" in `supports`").unwrap().0;
+    let given: Vec<Value> = serde_json::from_str(&format!("[{given}]")).unwrap();
+    scene["supports"].as_array_mut().unwrap().extend(given);
+    desk.write("held.json", scene.to_string());
+    let force = scene["obstacles"][0]["force"].as_f64().unwrap();
+    let report = desk.run(&["solve", "held.json", "--format", "json"]).ends_with(0).json();
+    assert!((between(&report)[0] / force - 1.0).abs() < SPRINGS, "{report}");
+}
+
+#[test]
+fn a_group_of_a_mesh_is_a_name_or_a_list_of_names() {
+    let desk = Desk::new();
+    let blocks = [block("core", 0, [0.0; 3], [1.0; 3]), block("shell", 0, [0.0, 0.0, 1.0], [1.0, 1.0, 2.0])];
+    desk.write("blocks.msh", mesh_of(&blocks, true));
+    let scene = |group: Value| {
+        let body = json!({"gmsh": {"file": "blocks.msh", "group": group}});
+        json!({"model": "space", "body": body, "material": {"young": 1, "poisson": 0.3},
+               "supports": [{"on": {"boundary": "base"}, "x": 0, "y": 0, "z": 0}],
+               "loads": [{"body-force": [0, 0, -0.1]}]})
+    };
+    for (group, nodes) in [(json!("core"), 27), (json!(["core"]), 27), (json!(["shell", "core"]), 45)] {
+        desk.write("part.json", scene(group).to_string());
+        let report = desk.run(&["solve", "part.json", "--format", "json"]).ends_with(0).json();
+        assert_eq!(report["model"]["nodes"], nodes);
+    }
+    for (group, words) in [
+        (json!([]), "at `body.gmsh.group`: the list has no name"),
+        (json!(3), "must be a name, or a list of names, but is the number 3"),
+        (json!(["core", 3]), "at `body.gmsh.group[1]`: must be a string, but is the number 3"),
+        (json!(["core", "shel"]), "did you mean `shell`?"),
+        (json!(["core", "base"]), "the elements of `core` and `base` have different dimensions"),
+    ] {
+        desk.write("part.json", scene(group).to_string());
+        desk.run(&["solve", "part.json"]).fails_with(1, &[words]);
+    }
+    let schema: Value = serde_json::from_str(&desk.run(&["schema"]).ends_with(0).stdout).unwrap();
+    let group = &schema["$defs"]["GmshSpec"]["properties"]["group"];
+    assert_eq!(group["anyOf"][0]["type"], "string", "{group}");
+    assert_eq!(group["anyOf"][1]["items"]["type"], "string", "{group}");
+    let is_required = schema["$defs"]["GmshSpec"]["required"].as_array().unwrap().contains(&json!("group"));
+    assert!(!is_required, "{schema}");
 }

@@ -1,6 +1,7 @@
 //! The boundaries of the bodies that a first scene holds and presses: chosen by name and by the direction that they face.
 
 use std::collections::HashSet;
+use std::ops::Range;
 
 use super::schema::PartSpec;
 use super::schema::part::PartNormalSpec;
@@ -45,6 +46,14 @@ pub(crate) enum Chosen {
 }
 
 impl Chosen {
+    /// The further body, or the boundary, of which it has the facets that face a direction.
+    pub fn of(&self) -> Option<&str> {
+        match self {
+            Chosen::Boundary(_) => None,
+            Chosen::Facing(_, of) => of.as_deref(),
+        }
+    }
+
     /// The part of a scene that has the facets which face a direction.
     pub fn spec((axis, sense): Way, of: Option<String>, dimension: usize) -> PartSpec {
         let direction = along_axis(axis, sense)[..dimension].to_vec();
@@ -57,8 +66,8 @@ impl Chosen {
 #[derive(Clone, Debug)]
 pub(crate) struct Roles {
     pub held: Chosen,
-    /// The boundaries of the same name on other bodies, which are held too.
-    pub also_held: Vec<String>,
+    /// What is held too: the boundaries of the same name on other bodies, or the sides of other bodies that lie as low.
+    pub also_held: Vec<Chosen>,
     /// The bodies without a held boundary, by their numbers.
     pub loose: Vec<usize>,
     pub pressed: Chosen,
@@ -98,13 +107,9 @@ struct Sides<'a> {
 /// The roles that fit, the best first: among those as good, those of two named boundaries, then those of the sides that face an axis.
 pub(crate) fn roles(body: &ElasticBody) -> Vec<Roles> {
     let mesh = body.mesh();
-    let surface = mesh.surface(0..mesh.element_count());
-    let sides = Sides {
-        body,
-        surfaces: body.regions().iter().map(|region| mesh.surface(region.elements())).collect(),
-        pieces: mesh.pieces(),
-        named: mesh.boundaries().iter().filter(|boundary| is_outside(boundary, &surface)).collect(),
-    };
+    let surfaces: Vec<Boundary> = body.regions().iter().map(|region| mesh.surface(region.elements())).collect();
+    let named = mesh.boundaries().iter().filter(|boundary| is_outside(boundary, &surfaces)).collect();
+    let sides = Sides { body, surfaces, pieces: mesh.pieces(), named };
     let mut found: Vec<(Fit, Roles)> = sides.of_names().into_iter().chain(sides.of_axes()).collect();
     found.sort_by_key(|(fit, _)| *fit);
     found.into_iter().map(|(_, roles)| roles).collect()
@@ -137,7 +142,9 @@ impl Sides<'_> {
             }
         }
         let (fit, pressed, held) = best?;
-        Some((fit, self.roles(pressed, Chosen::Boundary(held.name.clone()), held)))
+        let alike = self.named.iter().copied().filter(|other| self.is_alike(other, held));
+        let also = alike.map(|other| (Chosen::Boundary(other.name.clone()), other)).collect();
+        Some((fit, self.roles(pressed, (Chosen::Boundary(held.name.clone()), held), also)))
     }
 
     /// Returns `true` for the first boundary with a word of what is held.
@@ -155,15 +162,18 @@ impl Sides<'_> {
             let (way, back) = ((axis, sense), (axis, -sense));
             let of = |region: usize| (region > 0).then(|| self.body.regions()[region].name().to_string());
             let side = |region: usize, way: Way| part(self.body, &self.surfaces[region], way);
-            let held: Vec<_> = (0..count).filter_map(|region| Some((region, side(region, back)?))).collect();
+            let lowest = |region: &usize| self.is_last(self.body.regions()[*region].nodes(), back);
+            let lows: Vec<(usize, Boundary)> =
+                (0..count).filter(lowest).filter_map(|region| Some((region, side(region, back)?))).collect();
             for upper in 0..count {
                 let Some(top) = side(upper, way) else { continue };
-                for (lower, held) in &held {
+                for (lower, held) in &lows {
                     let chosen = Chosen::Facing(way, of(upper));
                     let Some(pressed) = Pressed::new(self.body, &top, chosen, way) else { break };
-                    if let Some(fit) = self.fit(&pressed, &top, held) {
-                        found.push((fit, self.roles(pressed, Chosen::Facing(back, of(*lower)), held)));
-                    }
+                    let Some(fit) = self.fit(&pressed, &top, held) else { continue };
+                    let as_low = lows.iter().filter(|(other, _)| other != lower);
+                    let also = as_low.map(|(other, side)| (Chosen::Facing(back, of(*other)), side)).collect();
+                    found.push((fit, self.roles(pressed, (Chosen::Facing(back, of(*lower)), held), also)));
                 }
             }
         }
@@ -177,42 +187,56 @@ impl Sides<'_> {
         }
         let (upper, lower) = (self.region_of(facets)?, self.region_of(held)?);
         let (axis, sense) = pressed.way;
-        let along = |nodes: std::ops::Range<usize>| {
-            let (low, high) = self.body.mesh().extent_of(nodes);
-            if sense > 0.0 { (low[axis], high[axis]) } else { (-high[axis], -low[axis]) }
-        };
         let regions = self.body.regions();
-        let tolerance = AS_HIGH * self.body.mesh().size();
-        let whole = along(0..self.body.mesh().nodes().len());
-        let (above, below) = (along(regions[upper].nodes()), along(regions[lower].nodes()));
-        let is_at_ends = above.1 > whole.1 - tolerance && below.0 < whole.0 + tolerance;
-        match (upper == lower, is_at_ends) {
-            (true, _) if regions.len() == 1 => Some(Fit::Stacked),
-            (_, false) => None,
-            (true, true) => Some(Fit::SameBody),
-            (false, true) => Some(if above.0 > below.1 - tolerance { Fit::Stacked } else { Fit::Apart }),
+        if regions.len() == 1 {
+            return Some(Fit::Stacked);
         }
+        let [above, below] = [upper, lower].map(|region| regions[region].nodes());
+        if !self.is_last(above.clone(), (axis, sense)) || !self.is_last(below.clone(), (axis, -sense)) {
+            return None;
+        }
+        let lies_above = self.reach(above, (axis, -sense)) + self.reach(below, (axis, sense)) < self.tolerance();
+        Some(match (upper == lower, lies_above) {
+            (true, _) => Fit::SameBody,
+            (false, true) => Fit::Stacked,
+            (false, false) => Fit::Apart,
+        })
     }
 
-    fn roles(&self, pressed: Pressed, chosen: Chosen, held: &Boundary) -> Roles {
+    /// The largest coordinate of some nodes along a way, positive along it.
+    fn reach(&self, nodes: Range<usize>, (axis, sense): Way) -> f64 {
+        let (low, high) = self.body.mesh().extent_of(nodes);
+        if sense > 0.0 { high[axis] } else { -low[axis] }
+    }
+
+    /// Returns `true` if no node lies farther along a way than the last of these.
+    fn is_last(&self, nodes: Range<usize>, way: Way) -> bool {
+        self.reach(nodes, way) > self.reach(0..self.body.mesh().nodes().len(), way) - self.tolerance()
+    }
+
+    fn tolerance(&self) -> f64 {
+        AS_HIGH * self.body.mesh().size()
+    }
+
+    /// Returns `true` if a boundary has the name of another one that is held, on another body.
+    fn is_alike(&self, other: &Boundary, held: &Boundary) -> bool {
         let own_name = |boundary: &Boundary| {
             let region = self.region_of(boundary).map_or("", |region| self.body.regions()[region].name());
             let own = boundary.name.strip_prefix(region).and_then(|rest| rest.strip_prefix('.'));
             own.filter(|_| !region.is_empty()).unwrap_or(&boundary.name).to_string()
         };
-        let is_alike = |other: &&&Boundary| {
-            has(&HELD, &held.name)
-                && other.name != held.name
-                && own_name(other) == own_name(held)
-                && pressed.is_free_of(other)
-                && self.holds_all(other)
-        };
-        let alike: Vec<&Boundary> = self.named.iter().filter(is_alike).copied().collect();
-        let fixed: Vec<usize> = alike.iter().copied().chain([held]).filter_map(|one| self.region_of(one)).collect();
+        has(&HELD, &held.name) && other.name != held.name && own_name(other) == own_name(held)
+    }
+
+    fn roles(&self, pressed: Pressed, (chosen, held): (Chosen, &Boundary), also: Vec<(Chosen, &Boundary)>) -> Roles {
+        let fits = |(_, other): &(Chosen, &Boundary)| pressed.is_free_of(other) && self.holds_all(other);
+        let also: Vec<(Chosen, &Boundary)> = also.into_iter().filter(fits).collect();
+        let fixed = also.iter().map(|(_, other)| *other).chain([held]);
+        let fixed: Vec<usize> = fixed.filter_map(|boundary| self.region_of(boundary)).collect();
         Roles {
             held: chosen,
-            also_held: alike.iter().map(|boundary| boundary.name.clone()).collect(),
             loose: (0..self.surfaces.len()).filter(|region| !fixed.contains(region)).collect(),
+            also_held: also.into_iter().map(|(chosen, _)| chosen).collect(),
             pressed: pressed.chosen,
             way: pressed.way,
             extent: pressed.extent,
@@ -229,8 +253,14 @@ impl Sides<'_> {
     fn holds_all(&self, boundary: &Boundary) -> bool {
         let Some(region) = self.region_of(boundary) else { return false };
         let all: HashSet<usize> = self.pieces[self.body.regions()[region].elements()].iter().copied().collect();
-        let held: HashSet<usize> =
-            self.body.mesh().faces_of(boundary).into_iter().flatten().map(|(element, _)| self.pieces[element]).collect();
+        let held: HashSet<usize> = self
+            .body
+            .mesh()
+            .faces_of(boundary)
+            .into_iter()
+            .flatten()
+            .map(|(element, _)| self.pieces[element])
+            .collect();
         held == all
     }
 }
@@ -270,14 +300,14 @@ fn has(words: &[&str], name: &str) -> bool {
     words.iter().any(|word| name.to_lowercase().contains(word))
 }
 
-/// Returns `true` if every facet of a boundary lies on the surface of the mesh.
-fn is_outside(boundary: &Boundary, surface: &Boundary) -> bool {
+/// Returns `true` if every facet of a boundary lies on the surface of a body.
+fn is_outside(boundary: &Boundary, surfaces: &[Boundary]) -> bool {
     let sorted = |facet: &[usize]| {
         let mut nodes = facet.to_vec();
         nodes.sort_unstable();
         nodes
     };
-    let outer: HashSet<Vec<usize>> = surface.facets().map(sorted).collect();
+    let outer: HashSet<Vec<usize>> = surfaces.iter().flat_map(Boundary::facets).map(sorted).collect();
     boundary.facets().all(|facet| outer.contains(&sorted(facet)))
 }
 

@@ -6,9 +6,7 @@ use std::str::FromStr;
 use jsonc_parser::ast::{NullKeyword, ObjectProp, Value};
 use jsonc_parser::common::{Range, Ranged};
 use serde::de::value::BorrowedStrDeserializer;
-use serde::de::{
-    DeserializeSeed, Deserializer, EnumAccess, Expected, MapAccess, SeqAccess, VariantAccess, Visitor,
-};
+use serde::de::{DeserializeSeed, Deserializer, EnumAccess, Expected, MapAccess, SeqAccess, VariantAccess, Visitor};
 use serde::forward_to_deserialize_any;
 
 use super::fault::{ARRAY, Fault, NUMBER, OBJECT, What};

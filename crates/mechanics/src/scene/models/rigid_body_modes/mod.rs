@@ -1,5 +1,6 @@
 //! Rigid-body modes: those that nothing resists, and their names.
 
+mod advice;
 mod unit;
 
 use nalgebra::DMatrix;
@@ -12,7 +13,7 @@ use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::COORDINATES;
 use signorini_qp::dot;
-use unit::{AXES, NAMED, Sense, UnitMotions};
+use unit::{NAMED, Sense, UnitMotions};
 
 /// A motion is held if its singular value exceeds this times the largest. A free motion has zero up to rounding, 1e-16, and any intended
 /// support or normal gives a value far above.
@@ -195,40 +196,6 @@ impl RigidBodyModes {
     /// The name of a motion with its sense.
     pub fn name_of(&self, amplitudes: &[f64]) -> String {
         self.describe(amplitudes, Sense::Signed)
-    }
-
-    /// The advice for bodies with these free motions.
-    pub fn advice(&self, parts: &Parts, rows: &[ContactRow], free: &[Vec<f64>]) -> String {
-        let advice =
-            if rows.is_empty() { "add a support" } else { "a frictionless obstacle does not hold it, add a guide" };
-        let advice = match self.support_against(parts, free) {
-            Some(support) => format!("{advice}, such as {support} in `supports`"),
-            None => advice.to_string(),
-        };
-        let is_free = parts.supports == 0 && parts.springs.is_empty();
-        let first =
-            if is_free { ". The scene has no supports: first hold the side where the body is fixed" } else { "" };
-        advice + first
-    }
-
-    /// A support of the first moving body against its free motions, as a scene writes it.
-    fn support_against(&self, parts: &Parts, free: &[Vec<f64>]) -> Option<String> {
-        let moves = |(place, _): &(usize, &UnitMotions)| {
-            free.iter().any(|motion| motion[6 * place..6 * (place + 1)].iter().any(|part| part.abs() > NAMED))
-        };
-        let (place, body) = self.bodies.iter().enumerate().find(moves)?;
-        let is_free = |axis: usize| {
-            // A translation along the axis, or a rotation about one of the two others.
-            let moving = [axis, 3 + (axis + 1) % 3, 3 + (axis + 2) % 3];
-            free.iter().any(|motion| moving.iter().any(|part| motion[6 * place + part].abs() > NAMED))
-        };
-        let is_touched = |name: &str| parts.obstacles.iter().any(|obstacle| obstacle.boundary() == name);
-        let of_body = |nodes: Vec<usize>| !nodes.is_empty() && nodes.iter().all(|node| body.nodes.contains(node));
-        let boundaries = parts.body.mesh().boundaries().iter().filter(|boundary| of_body(boundary.nodes()));
-        let boundary = boundaries.map(|boundary| boundary.name.as_str()).find(|name| !is_touched(name))?;
-        let held: Vec<String> =
-            (0..self.dimension).filter(|&axis| is_free(axis)).map(|axis| format!("\"{}\": 0", AXES[axis])).collect();
-        Some(format!("{{\"on\": {{\"boundary\": \"{boundary}\"}}, {}}}", held.join(", ")))
     }
 
     /// The name of a motion, body by body if there are several.

@@ -46,17 +46,20 @@ pub(super) fn scene(named: &str, bodies: &Bodies, roles: &Roles) -> String {
     let mut text = described(named, bodies);
     let mesh = bodies.joined.mesh();
     let mut parts = Vec::new();
-    let held = named_side(&roles.held, "held", mesh, &mut parts);
+    let mut held = vec![named_side(&roles.held, "held", mesh, &mut parts)];
+    for chosen in &roles.also_held {
+        let name = format!("held of {}", chosen.of().unwrap_or("body"));
+        held.push(named_side(chosen, &name, mesh, &mut parts));
+    }
     let pressed = named_side(&roles.pressed, "pressed", mesh, &mut parts);
     let loose: Vec<String> = roles.loose.iter().map(|&body| surface(body, bodies, &mut parts)).collect();
     if !parts.is_empty() {
         let _ = write!(text, "  \"parts\": [\n{}\n  ],\n", parts.iter().map(written).collect::<Vec<_>>().join(",\n"));
     }
-    let support = |name: &String| {
-        format!("{{\"on\": {{\"boundary\": {}}}, {}}}", quoted(name), along_all(mesh.dimension(), "0"))
-    };
-    let supports: Vec<String> = [&held].into_iter().chain(&roles.also_held).map(support).collect();
-    let _ = writeln!(text, "  \"supports\": [{}],", supports.join(",\n    "));
+    let support =
+        |name: &String| format!("{{\"on\": {{\"boundary\": {}}}, {}}}", quoted(name), along_all(mesh.dimension(), "0"));
+    let supports: Vec<String> = held.iter().map(support).collect();
+    let _ = writeln!(text, "  \"supports\": [{}],", supports.join(",\n               "));
     if !loose.is_empty() {
         text += &springs(&loose, mesh, bodies.young);
     }
@@ -82,9 +85,11 @@ fn described(named: &str, bodies: &Bodies) -> String {
         "{{\n  \"format\": 1,\n  \"title\": {},\n  \"units\": {{\"length\": \"{unit}\", \"force\": \"N\"}},\n  \"model\": \"{model}\",\n",
         quoted(&format!("{named}, pressed")),
     );
-    let further = bodies.sets.iter().skip(1).map(|set| {
-        format!("    {{\"name\": {}, {},\n     {material}}}", quoted(set.name()), body(&set.groups))
-    });
+    let further = bodies
+        .sets
+        .iter()
+        .skip(1)
+        .map(|set| format!("    {{\"name\": {}, {},\n     {material}}}", quoted(set.name()), body(&set.groups)));
     let further: Vec<String> = further.collect();
     let first = bodies.sets.first().map_or(&[][..], |set| &set.groups);
     let _ = write!(text, "  {},\n  // Steel.\n  {material},\n", body(first));
