@@ -229,3 +229,33 @@ fn solve_and_sweep_tell_the_same_width() {
     assert!(table.contains("estimated width [m]") && table.contains(&format!(" {width:.6} ")), "{width} {table}");
     assert!((width - report["contact"]["width"].as_f64().unwrap()).abs() > 1e-3, "{report}");
 }
+
+/// Rows between meshes that do not match hold means: the report and the page say so where they speak of closed rows, and nowhere else.
+#[test]
+fn closed_and_open_are_said_of_mean_gaps_where_rows_hold_means() {
+    let block = |y: f64, cells: usize| json!({"rectangle": {"x": {"points": [0, 1], "divisions": [cells]}, "y": {"points": [y, y + 1.0], "divisions": [2]}}});
+    let scene = |cells: usize| {
+        let material = json!({"young": 1, "poisson": 0.3});
+        json!({"body": block(1.0, 3), "material": material,
+               "further-bodies": [{"name": "base", "body": block(0.0, cells), "material": material}],
+               "supports": [{"on": {"boundary": "base.bottom"}, "x": 0, "y": 0}, {"on": {"boundary": "left"}, "x": 0}],
+               // Without a spring the upper block would float, and nothing could be proven.
+               "springs": [{"on": {"boundary": "top"}, "y": 0.01}],
+               "loads": [{"pressure": {"boundary": "top", "value": 0.01}}],
+               "obstacles": [{"boundary": "bottom", "approach": "-y", "shape": {"body": {"boundary": "base.top"}}}]})
+    };
+    let desk = Desk::new();
+    for (cells, are_means) in [(3, false), (4, true)] {
+        desk.write("blocks.json", scene(cells).to_string());
+        let text = desk.run(&["solve", "blocks.json", "--out", "answer"]).ends_with(0).stdout;
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let between = "Rows between the meshes of `base.top` and `bottom` hold means: closed and open are said, and proven, of the mean \
+                       gap over the area of a node, not of the gap at the node.";
+        let between = between.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(text.contains(" proven closed"), "{text}");
+        assert_eq!(text.contains(&between), are_means, "{text}");
+        let page = std::fs::read_to_string(desk.path("answer/report.html")).unwrap();
+        assert_eq!(page.contains(&between), are_means, "{cells} cells");
+        assert_eq!(page.contains("\"means\":{"), are_means, "the page marks the rows of means");
+    }
+}

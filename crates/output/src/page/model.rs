@@ -38,6 +38,9 @@ pub(super) struct Page<'a> {
     /// The proven part of the contact set, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<String>,
+    /// What closed and open mean for rows between meshes that do not match.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub means: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub body: Option<Body>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -113,6 +116,7 @@ impl<'a> Page<'a> {
             report: Value::Null,
             certificate: None,
             proven: None,
+            means: None,
             body: None,
             question: None,
             rows: None,

@@ -207,11 +207,13 @@ class Panel {
     for (let row = 0; row < (data.rows?.count ?? 0); row++) {
       if (shape.nodes[data.rows.vertices[row]] !== shape.nodes[vertex]) continue;
       const place = frame.rows.indexOf(row),
-        proof = frame.proven ? ["undecided", "proven open", "proven closed"][frame.proven[row]] : null;
+        gap = data.rows.means?.[row] ? "mean gap" : "gap",
+        of = gap === "gap" ? "" : `${gap} `,
+        proof = frame.proven ? of + ["undecided", "proven open", "proven closed"][frame.proven[row]] : null;
       lines.push(
         `row ${row}: ${frame.closed[row] ? "closed" : "open"}${proof ? `, ${proof}` : ""}, pressure ${inUnit(place < 0 ? 0 : frame.pressure[place], units.pressure, 8)}`,
       );
-      if (frame.remaining) lines.push(`gap left ${inUnit(frame.remaining[row], units.length, 6)}`);
+      if (frame.remaining) lines.push(`${gap} left ${inUnit(frame.remaining[row], units.length, 6)}`);
     }
     return lines.join("\n");
   }

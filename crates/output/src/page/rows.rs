@@ -18,6 +18,9 @@ pub(super) struct Rows {
     normals: Packed,
     /// Signed distance along the normal before anything has moved, in length.
     gaps: Packed,
+    /// 1 for a row that holds means over its area, 0 for one that holds the values at its nodes; `None` without rows of means.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    means: Option<Packed>,
 }
 
 /// The values of an answer at the rows.
@@ -50,6 +53,10 @@ impl Rows {
             obstacles: packer.whole(&obstacles, 1),
             normals: packer.quantised(&normals, dimension),
             gaps: packer.exact(&gaps, 1),
+            means: rows
+                .iter()
+                .any(|row| row.is_mean)
+                .then(|| packer.bytes(rows.iter().map(|row| u8::from(row.is_mean)))),
         }
     }
 }

@@ -135,6 +135,7 @@ function contactList(host, summary, data) {
     ],
     ["estimated extent", !several && ifGiven(estimate, known => extentWords(known, units))],
     ["contact set", data.proven && `${data.proven}${aside}`],
+    ["rows of means", data.means],
     ["balance of forces", ifGiven(contact.force_balance, off => `to ${shown(off, 2)}, relative${aside}`)],
     [
       "error of the mesh",

@@ -22,6 +22,7 @@ use crate::draw::drawing::Drawing;
 use crate::picture::mesh_series::meshes_picture;
 use crate::picture::plane_scene::PlaneScene;
 use crate::reports::certificate::CertificateWords;
+use crate::reports::means::means_text;
 use crate::reports::report::proven_text;
 use crate::view::along::Along;
 use crate::view::curves::{error_plot, history_plots, sweep_plots};
@@ -170,7 +171,8 @@ fn of_answer<'a>(
 /// The page with the certificate in words.
 fn judged<'a>(page: Page<'a>, summary: &Summary) -> Page<'a> {
     let certificate = Some(CertificateWords::of(&summary.solution.certificate, summary.goal));
-    Page { certificate, proven: summary.solution.proven.as_ref().map(proven_text), ..page }
+    let proven = summary.solution.proven.as_ref().map(proven_text);
+    Page { certificate, proven, means: means_text(&summary.contact), ..page }
 }
 
 /// The picture of an answer in the plane, for browsers that cannot draw.

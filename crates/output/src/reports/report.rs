@@ -1,6 +1,7 @@
 //! Answers as text and as JSON.
 
 use super::certificate::{CertificateWords, conditions};
+use super::means::means_text;
 use crate::text::printable;
 use signorini_mechanics::scene::{Resultant, Rule, Segment, Units};
 use signorini_mechanics::study::{
@@ -88,6 +89,7 @@ pub(crate) fn solve_text(title: &str, summary: &Summary, units: &Units) -> Strin
         let part = if of_part.is_empty() { String::new() } else { format!(",{of_part}") };
         lines("", vec![proven_text(proven) + &part]);
     }
+    lines("", means_text(contact).map_or_else(Vec::new, |words| wrapped(&words)));
     if let Some(balance) = contact.force_balance {
         lines("", vec![format!("loads, reactions and contact forces{of_part} balance to {balance:.1e}")]);
     }
