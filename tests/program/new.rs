@@ -261,6 +261,16 @@ fn three_bodies_in_a_row_are_pressed_along_the_row() {
     );
 }
 
+/// A boundary `base` of the first body, and a body `base`.
+#[test]
+fn a_body_with_the_name_of_a_boundary_gets_another_name() {
+    let blocks = [block("foot", 0, [0.0; 3], [1.0; 3]), block("base", 1, [0.0, 0.0, 1.0], [1.0, 1.0, 2.0])];
+    let (_, scene, report) = started(&blocks, true);
+    assert_eq!(scene["further-bodies"][0]["name"], "base-body");
+    assert_eq!(scene["further-bodies"][0]["body"]["gmsh"]["group"], "base");
+    assert_eq!(between(&report).len(), 1);
+}
+
 /// A core in a ring stands on the same plane: both are held there, and no spring is needed.
 #[test]
 fn bodies_that_stand_on_one_plane_are_both_held() {

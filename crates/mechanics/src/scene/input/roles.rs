@@ -1,7 +1,6 @@
 //! The boundaries of the bodies that a first scene holds and presses: chosen by name and by the direction that they face.
 
 use std::collections::HashSet;
-use std::ops::Range;
 
 use super::schema::PartSpec;
 use super::schema::part::PartNormalSpec;
@@ -35,6 +34,9 @@ const AS_HIGH: f64 = 1e-6;
 
 /// An axis and a sense along it, 1 or -1.
 pub(crate) type Way = (usize, f64);
+
+/// The smallest and the largest coordinates.
+type Extent = ([f64; 3], [f64; 3]);
 
 /// Facets that are held or pressed.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,15 +75,15 @@ pub(crate) struct Roles {
     pub pressed: Chosen,
     /// The axis and the sense of the way of the plate.
     pub way: Way,
-    /// The smallest and the largest coordinates of what is pressed.
-    pub extent: ([f64; 3], [f64; 3]),
+    /// That of what is pressed.
+    pub extent: Extent,
 }
 
 /// What is pressed, with its nodes that the plate touches first.
 struct Pressed {
     chosen: Chosen,
     way: Way,
-    extent: ([f64; 3], [f64; 3]),
+    extent: Extent,
     first: Vec<usize>,
 }
 
@@ -118,8 +120,9 @@ pub(crate) fn roles(body: &ElasticBody) -> Vec<Roles> {
 impl Sides<'_> {
     /// The best roles of two named boundaries.
     fn of_names(&self) -> Option<(Fit, Roles)> {
-        let held_by_word = self.named.iter().filter(|boundary| has(&HELD, &boundary.name));
-        let is_held = |boundary: &Boundary| has(&HELD, &boundary.name) && self.is_first_held(boundary);
+        let by_word: Vec<&Boundary> =
+            self.named.iter().copied().filter(|boundary| has(&HELD, &boundary.name)).collect();
+        let is_held = |boundary: &Boundary| by_word.first().is_some_and(|first| first.name == boundary.name);
         let mut pressed: Vec<(usize, &Boundary)> =
             self.named.iter().copied().enumerate().filter(|(_, boundary)| !is_held(boundary)).collect();
         // Boundaries with a word first, then those that face one direction, then the last ones of the file.
@@ -127,7 +130,7 @@ impl Sides<'_> {
             let faces_all = length(mean_normal(self.body, boundary)) < FACING;
             (!has(&PRESSED, &boundary.name), faces_all, std::cmp::Reverse(*place))
         });
-        let held: Vec<&Boundary> = held_by_word.chain(&self.named).copied().collect();
+        let held: Vec<&Boundary> = by_word.iter().chain(&self.named).copied().collect();
         let mut best: Option<(Fit, Pressed, &Boundary)> = None;
         for (_, boundary) in pressed {
             let Some(pressed) = Pressed::of(self.body, boundary) else { continue };
@@ -147,11 +150,6 @@ impl Sides<'_> {
         Some((fit, self.roles(pressed, (Chosen::Boundary(held.name.clone()), held), also)))
     }
 
-    /// Returns `true` for the first boundary with a word of what is held.
-    fn is_first_held(&self, boundary: &Boundary) -> bool {
-        self.named.iter().find(|other| has(&HELD, &other.name)).is_some_and(|first| first.name == boundary.name)
-    }
-
     /// The roles of sides that face an axis: up and down alone for a single body.
     fn of_axes(&self) -> Vec<(Fit, Roles)> {
         let (up, count) = (self.body.dimension() - 1, self.surfaces.len());
@@ -162,7 +160,7 @@ impl Sides<'_> {
             let (way, back) = ((axis, sense), (axis, -sense));
             let of = |region: usize| (region > 0).then(|| self.body.regions()[region].name().to_string());
             let side = |region: usize, way: Way| part(self.body, &self.surfaces[region], way);
-            let lowest = |region: &usize| self.is_last(self.body.regions()[*region].nodes(), back);
+            let lowest = |region: &usize| self.is_last(self.extent_of(*region), back);
             let lows: Vec<(usize, Boundary)> =
                 (0..count).filter(lowest).filter_map(|region| Some((region, side(region, back)?))).collect();
             for upper in 0..count {
@@ -186,16 +184,17 @@ impl Sides<'_> {
             return None;
         }
         let (upper, lower) = (self.region_of(facets)?, self.region_of(held)?);
-        let (axis, sense) = pressed.way;
-        let regions = self.body.regions();
-        if regions.len() == 1 {
+        let (way, back) = (pressed.way, (pressed.way.0, -pressed.way.1));
+        if self.surfaces.len() == 1 {
             return Some(Fit::Stacked);
         }
-        let [above, below] = [upper, lower].map(|region| regions[region].nodes());
-        if !self.is_last(above.clone(), (axis, sense)) || !self.is_last(below.clone(), (axis, -sense)) {
+        let nodes = self.body.mesh().nodes();
+        let of_held = extent(&held.nodes().into_iter().map(|node| nodes[node]).collect::<Vec<_>>());
+        if !self.is_last(pressed.extent, way) || !self.is_last(of_held, back) {
             return None;
         }
-        let lies_above = self.reach(above, (axis, -sense)) + self.reach(below, (axis, sense)) < self.tolerance();
+        let [above, below] = [upper, lower].map(|region| self.extent_of(region));
+        let lies_above = reach(above, back) + reach(below, way) < self.tolerance();
         Some(match (upper == lower, lies_above) {
             (true, _) => Fit::SameBody,
             (false, true) => Fit::Stacked,
@@ -203,15 +202,13 @@ impl Sides<'_> {
         })
     }
 
-    /// The largest coordinate of some nodes along a way, positive along it.
-    fn reach(&self, nodes: Range<usize>, (axis, sense): Way) -> f64 {
-        let (low, high) = self.body.mesh().extent_of(nodes);
-        if sense > 0.0 { high[axis] } else { -low[axis] }
+    fn extent_of(&self, region: usize) -> Extent {
+        self.body.mesh().extent_of(self.body.regions()[region].nodes())
     }
 
-    /// Returns `true` if no node lies farther along a way than the last of these.
-    fn is_last(&self, nodes: Range<usize>, way: Way) -> bool {
-        self.reach(nodes, way) > self.reach(0..self.body.mesh().nodes().len(), way) - self.tolerance()
+    /// Returns `true` if no node of any body lies farther along a way than this extent.
+    fn is_last(&self, extent: Extent, way: Way) -> bool {
+        reach(extent, way) > reach(self.body.mesh().extent(), way) - self.tolerance()
     }
 
     fn tolerance(&self) -> f64 {
@@ -298,6 +295,11 @@ impl Pressed {
 
 fn has(words: &[&str], name: &str) -> bool {
     words.iter().any(|word| name.to_lowercase().contains(word))
+}
+
+/// The largest coordinate of an extent along a way, positive along it.
+fn reach((low, high): Extent, (axis, sense): Way) -> f64 {
+    if sense > 0.0 { high[axis] } else { -low[axis] }
 }
 
 /// Returns `true` if every facet of a boundary lies on the surface of a body.

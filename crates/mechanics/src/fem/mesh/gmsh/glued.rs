@@ -13,13 +13,6 @@ pub(crate) struct Glued {
     pub shared: Vec<(usize, usize, usize)>,
 }
 
-impl Glued {
-    /// The name of the body that they make: that of the first group.
-    pub fn name(&self) -> &str {
-        self.groups.first().map_or("", String::as_str)
-    }
-}
-
 impl GmshFile {
     /// The groups of elements of the highest dimension, those that share nodes together: each set is a body. Empty without groups.
     pub(crate) fn glued(&self) -> Vec<Glued> {

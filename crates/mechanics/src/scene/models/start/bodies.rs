@@ -14,8 +14,10 @@ const LARGEST_IN_METRES: f64 = 5.0;
 pub(super) struct Bodies {
     /// The groups of each body; without a group one body has all elements.
     pub sets: Vec<Glued>,
+    /// The name of each body in the scene: that of its first group; empty for the first body.
+    pub names: Vec<String>,
     pub separate: Vec<ElasticBody>,
-    /// All in one, the further ones under the name of their first group.
+    /// All in one.
     pub joined: ElasticBody,
     /// `true` if the mesh is taken to be in millimetres.
     pub are_in_millimetres: bool,
@@ -51,14 +53,17 @@ impl Bodies {
             };
             separate.push(ElasticBody::new(mesh, Material::new(young, 0.3)?, formulation)?);
         }
-        let mut joined: Option<ElasticBody> = None;
-        for (body, set) in separate.iter().zip(&sets) {
-            joined = Some(match joined {
-                None => body.clone(),
-                Some(joined) => joined.beside(body, set.name())?,
-            });
+        let Some(mut joined) = separate.first().cloned() else { return fail("the file has no body".into()) };
+        let mut names = vec![String::new()];
+        for (body, set) in separate.iter().zip(&sets).skip(1) {
+            // A boundary of this name would hide the surface of the body.
+            let mut name = set.groups.first().cloned().unwrap_or_default();
+            while joined.mesh().boundary(&name).is_some() {
+                name += "-body";
+            }
+            joined = joined.beside(body, &name)?;
+            names.push(name);
         }
-        let Some(joined) = joined else { return fail("the file has no body".into()) };
-        Ok(Bodies { sets, separate, joined, are_in_millimetres, young })
+        Ok(Bodies { sets, names, separate, joined, are_in_millimetres, young })
     }
 }

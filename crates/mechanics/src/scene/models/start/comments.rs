@@ -45,7 +45,8 @@ fn groups(bodies: &Bodies) -> String {
         if set.groups.is_empty() {
             continue;
         }
-        let name = if place == 0 { "`body`".to_string() } else { format!("further body {}", quoted(set.name())) };
+        let name =
+            if place == 0 { "`body`".to_string() } else { format!("further body {}", quoted(&bodies.names[place])) };
         let names: Vec<String> = set.groups.iter().map(|name| quoted(name)).collect();
         let elements = |mesh: &Mesh| format!("{} elements {}", mesh.element_count(), mesh.kind_of(0).name());
         let glue: Vec<String> = set

@@ -85,11 +85,9 @@ fn described(named: &str, bodies: &Bodies) -> String {
         "{{\n  \"format\": 1,\n  \"title\": {},\n  \"units\": {{\"length\": \"{unit}\", \"force\": \"N\"}},\n  \"model\": \"{model}\",\n",
         quoted(&format!("{named}, pressed")),
     );
-    let further = bodies
-        .sets
-        .iter()
-        .skip(1)
-        .map(|set| format!("    {{\"name\": {}, {},\n     {material}}}", quoted(set.name()), body(&set.groups)));
+    let further = bodies.sets.iter().zip(&bodies.names).skip(1);
+    let further = further
+        .map(|(set, name)| format!("    {{\"name\": {}, {},\n     {material}}}", quoted(name), body(&set.groups)));
     let further: Vec<String> = further.collect();
     let first = bodies.sets.first().map_or(&[][..], |set| &set.groups);
     let _ = write!(text, "  {},\n  // Steel.\n  {material},\n", body(first));
@@ -112,7 +110,7 @@ fn named_side(chosen: &Chosen, name: &str, mesh: &Mesh, parts: &mut Vec<PartSpec
 
 /// The name of the whole surface of a body, which is added to `parts`.
 fn surface(body: usize, bodies: &Bodies, parts: &mut Vec<PartSpec>) -> String {
-    let of = (body > 0).then(|| bodies.sets[body].name().to_string());
+    let of = (body > 0).then(|| bodies.names[body].clone());
     let name = free_name(&format!("surface of {}", of.as_deref().unwrap_or("body")), bodies.joined.mesh());
     parts.push(PartSpec { name: name.clone(), of, cuboid: None, sphere: None, normal: None });
     name
