@@ -8,6 +8,7 @@ use crate::fem::geometry::COORDINATES;
 use crate::scene::input::entry::number;
 use crate::scene::models::parts::Parts;
 use crate::scene::models::rows::ContactRow;
+use signorini_qp::dot;
 
 /// A place where a motion is below this share of its largest component does not hold it.
 const MOVES: f64 = 1e-3;
@@ -83,24 +84,12 @@ impl RigidBodyModes {
         (place, motions): (usize, Vec<&Vec<f64>>),
     ) -> Vec<String> {
         let nodes = parts.body.mesh().nodes();
-        let own = self.bodies[place].nodes.clone();
-        let is_used = |node: &usize| own.clone().all(|other| touched.contains(&other)) || !touched.contains(node);
-        let candidates: Vec<usize> = own.clone().filter(is_used).collect();
+        let own = || self.bodies[place].nodes.clone();
+        let untouched: Vec<usize> = own().filter(|node| !touched.contains(node)).collect();
+        let candidates = if untouched.is_empty() { own().collect() } else { untouched };
         let mut left: Vec<Vec<f64>> = motions.into_iter().cloned().collect();
         let mut held: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        while !left.is_empty() {
-            let mut best: Option<(usize, usize, Vec<f64>, f64)> = None;
-            for &node in &candidates {
-                for axis in 0..self.dimension {
-                    let unit = self.along(node, nodes[node], COORDINATES[axis]);
-                    let of_motions: Vec<f64> = left.iter().map(|motion| signorini_qp::dot(&unit, motion)).collect();
-                    let size = of_motions.iter().map(|part| part * part).sum::<f64>().sqrt();
-                    if best.as_ref().is_none_or(|best| size > (1.0 + MOVES) * best.3) {
-                        best = Some((node, axis, of_motions, size));
-                    }
-                }
-            }
-            let Some((node, axis, of_motions, _)) = best.filter(|best| best.3 > MOVES) else { break };
+        while let Some((node, axis, of_motions)) = self.strongest(nodes, &candidates, &left) {
             held.entry(node).or_default().push(axis);
             left = without(left, &of_motions);
         }
@@ -111,6 +100,29 @@ impl RigidBodyModes {
             format!("{{\"on\": {{\"point\": [{}]}}, {}}}", at.join(", "), held.join(", "))
         };
         held.into_iter().map(support).collect()
+    }
+
+    /// The node and the axis along which some motions have the largest components, and these; `None` if they have none.
+    fn strongest(
+        &self,
+        nodes: &[[f64; 3]],
+        candidates: &[usize],
+        motions: &[Vec<f64>],
+    ) -> Option<(usize, usize, Vec<f64>)> {
+        let mut best = None;
+        let mut largest = MOVES;
+        for &node in candidates {
+            for (axis, direction) in COORDINATES.into_iter().enumerate().take(self.dimension) {
+                let unit = self.along(node, nodes[node], direction);
+                let components: Vec<f64> = motions.iter().map(|motion| dot(&unit, motion)).collect();
+                let size = dot(&components, &components).sqrt();
+                // Of nodes as good, the first: several directions are then held at one node.
+                if size > (1.0 + MOVES) * largest {
+                    (best, largest) = (Some((node, axis, components)), size);
+                }
+            }
+        }
+        best
     }
 }
 
