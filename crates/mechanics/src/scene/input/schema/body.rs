@@ -117,7 +117,7 @@ pub struct InitialStressSpec {
     pub zx: f64,
 }
 
-/// An elastic body besides the first, with the same model, thickness and element.
+/// An elastic body besides the first, with the same model and thickness, and its own elements.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct FurtherBodySpec {
