@@ -1,7 +1,8 @@
 //! The library refuses parts that do not match, each in a sentence that names both.
 
 use signorini::fem::{
-    DofMap, ElasticBody, ElementKind, Formulation, MassForm, Material, Mesh, discretisation_error, mass, stress,
+    DofMap, ElasticBody, ElementKind, Formulation, Integration, MassForm, Material, Mesh, discretisation_error, mass,
+    stress,
 };
 use signorini::motion::DynamicProblem;
 use signorini::scene::{bar, cuboid, rectangle, ring};
@@ -43,17 +44,14 @@ fn elements_of_another_dimension_are_refused() {
 }
 
 #[test]
-fn bodies_of_different_kinds_cannot_be_combined() {
+fn bodies_of_different_formulations_or_dimensions_cannot_be_combined() {
     let one = || body(square(ElementKind::Q4), STRAIN).unwrap();
     let phrases = ["the same formulation and cross-section", "plane strain and plane stress"];
     refused(one().beside(&body(square(ElementKind::Q4), STRESS).unwrap(), "base"), "mesh", &phrases);
-    refused(
-        one().beside(&body(square(ElementKind::T3), STRAIN).unwrap(), "base"),
-        "mesh",
-        &["here they have Q4 and T3"],
-    );
-    refused(square(ElementKind::T6).beside(&square(ElementKind::Q8), "base"), "mesh", &["here T6 and Q8"]);
-    assert!(one().beside(&one(), "base").is_ok());
+    refused(square(ElementKind::T6).beside(&bar(&[0.0, 1.0]).unwrap(), "base"), "mesh", &["here T6 and Line2"]);
+    let mixed = one().beside(&body(square(ElementKind::T6), STRAIN).unwrap(), "base").unwrap();
+    assert!(mixed.mesh().kinds().eq([ElementKind::Q4, ElementKind::T6]));
+    refused(mixed.with_integration(Integration::MeanDilatation), "mesh", &["not for T6"]);
 }
 
 #[test]

@@ -107,7 +107,7 @@ impl Multigrid {
         by_precision!(self.levels, hierarchy => hierarchy.nodes.units())
     }
 
-    /// The hierarchy in the face of `holds`, in the unknowns v of [`Units`]; `last` is a face of the same hierarchy that may be close.
+    /// The hierarchy in the face of `holds`, in the unknowns v of `Units`; `last` is a face of the same hierarchy that may be close.
     ///
     /// # Errors
     /// As [`Multigrid::new`].
