@@ -285,7 +285,20 @@ fn a_body_deep_inside_another_is_named() {
     });
     let warnings = report(&scene)["warnings"].to_string();
     assert!(
-        warnings.contains("bodies-overlap") && warnings.contains("go through each other, by 2.000e-1"),
+        warnings.contains("bodies-overlap") && warnings.contains("go through each other, by 2.500e-1"),
         "{warnings}"
     );
+}
+
+/// No node of one bar lies inside the other.
+#[test]
+fn bars_that_cross_are_named() {
+    let scene = json!({
+        "body": block([-1.0, 1.0], [-0.05, 0.05], [1, 1]), "material": {"young": 1, "poisson": 0.3},
+        "further-bodies": [{"name": "other", "body": block([-0.05, 0.05], [-1.0, 1.0], [1, 1]), "material": {"young": 1, "poisson": 0.3}}],
+        "supports": [{"on": {"boundary": "left"}, "x": 0, "y": 0}, {"on": {"boundary": "other.bottom"}, "x": 0, "y": 0}],
+        "loads": [{"traction": {"boundary": "right", "value": [1e-6, 0]}}],
+    });
+    let warnings = report(&scene)["warnings"].to_string();
+    assert!(warnings.contains("`other` and `body` go through each other, by 5.0"), "{warnings}");
 }

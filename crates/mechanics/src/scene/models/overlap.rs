@@ -55,6 +55,26 @@ impl Solid {
         Solid { surface, tree, first: elements.start, facet }
     }
 
+    /// The nodes of its surface, and the middles of its facets, each with a node of the facet: where two bodies cross, no node need lie
+    /// inside. Without nodes that rows keep apart, and facets that have one.
+    fn points(&self, nodes: &[[f64; 3]], is_kept_apart: impl Fn(usize) -> bool) -> Vec<(usize, [f64; 3])> {
+        let mut points: Vec<(usize, [f64; 3])> = self
+            .surface
+            .nodes()
+            .into_iter()
+            .filter(|&node| !is_kept_apart(node))
+            .map(|node| (node, nodes[node]))
+            .collect();
+        let reference = self.surface.kind.reference();
+        let shape = (reference.shape)(reference.centroid());
+        for facet in self.surface.facets().filter(|facet| !facet.iter().any(|&node| is_kept_apart(node))) {
+            let at =
+                [0, 1, 2].map(|axis| facet.iter().zip(shape).map(|(&node, share)| share * nodes[node][axis]).sum());
+            points.push((facet[0], at));
+        }
+        points
+    }
+
     /// Returns `true` if a point lies in one of its elements.
     fn contains(&self, mesh: &Mesh, nodes: &[[f64; 3]], at: [f64; 3]) -> bool {
         let mut near = Vec::new();
@@ -93,23 +113,22 @@ impl Model {
         let solid = |region: usize| solids[region].get_or_init(|| Solid::of(self, region, &nodes));
         let mut deepest: Option<Overlap> = None;
         for (own, other) in (0..regions.len()).flat_map(|own| (0..regions.len()).map(move |other| (own, other))) {
-            // Only a node in the box of a body can be inside it.
-            let (low, high) = extent(&nodes[regions[own].nodes()]);
-            let may_be_inside = |node: &usize| {
-                (0..dimension).all(|axis| (low[axis]..=high[axis]).contains(&nodes[*node][axis]))
-                    && !kept_apart.contains(&(*node, own))
-            };
-            if own == other || !regions[other].nodes().any(|node| may_be_inside(&node)) {
+            let [(low, high), (least, most)] = [own, other].map(|region| extent(&nodes[regions[region].nodes()]));
+            let is_kept_apart = |node: usize| kept_apart.contains(&(node, own));
+            // Only a point in the box of a body can be inside it.
+            let is_near = |at: &[f64; 3]| (0..dimension).all(|axis| (low[axis]..=high[axis]).contains(&at[axis]));
+            let boxes_meet = (0..dimension).all(|axis| least[axis] <= high[axis] && low[axis] <= most[axis]);
+            if own == other || !boxes_meet {
                 continue;
             }
             let (body, of_nodes) = (solid(own), solid(other));
             let sides = [body, of_nodes].map(|solid| (&nodes[..], &solid.surface));
-            let least = ROUNDING * mesh.size() + Mortar::new(sides[0], sides[1], *self.body().formulation()).sag();
-            let outer = of_nodes.surface.nodes().into_iter().filter(may_be_inside);
-            for node in outer.filter(|&node| body.contains(mesh, &nodes, nodes[node])) {
-                let depth = body.depth(&nodes, nodes[node]);
+            let rounding = ROUNDING * mesh.size() + Mortar::new(sides[0], sides[1], *self.body().formulation()).sag();
+            let outer = of_nodes.points(&nodes, is_kept_apart).into_iter().filter(|(_, at)| is_near(at));
+            for (node, at) in outer.filter(|&(_, at)| body.contains(mesh, &nodes, at)) {
+                let depth = body.depth(&nodes, at);
                 let allowed = if taking_part.contains(&(node, own)) { TAKING_PART * body.facet } else { 0.0 };
-                if depth > least + allowed && deepest.as_ref().is_none_or(|deepest| depth > deepest.depth) {
+                if depth > rounding + allowed && deepest.as_ref().is_none_or(|deepest| depth > deepest.depth) {
                     deepest = Some(Overlap { node, depth, bodies: [other, own] });
                 }
             }
