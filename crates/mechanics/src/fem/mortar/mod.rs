@@ -288,9 +288,10 @@ impl<'a> Mortar<'a> {
         Ok(Seen { faces: covered.iter().map(Covered::is_covered).collect(), has_layers })
     }
 
-    /// The larger sag of both surfaces, in length.
-    pub(crate) fn sag(&self) -> f64 {
-        Sides::of(self).sag()
+    /// The sag of each slave facet, in length.
+    pub(crate) fn sags(&self) -> Vec<f64> {
+        let sides = Sides::of(self);
+        sides.slave.iter().map(|one| facet::sag(std::slice::from_ref(one), &sides.normals[0])).collect()
     }
 
     /// Checks that facets and formulation fit.

@@ -98,13 +98,15 @@ fn size_of(body: &ElasticBody, region: &Region) -> f64 {
     length(minus(high, low))
 }
 
-/// The largest distance of two nodes of a facet.
+/// The length of the largest facet.
 fn largest_facet(nodes: &[[f64; 3]], surface: &Boundary) -> f64 {
-    let extent = |facet: &[usize]| {
-        let pairs = facet.iter().flat_map(|&a| facet.iter().map(move |&b| distance(nodes[a], nodes[b])));
-        pairs.fold(0.0, f64::max)
-    };
-    surface.facets().map(extent).fold(0.0, f64::max)
+    surface.facets().map(|facet| facet_length(nodes, facet)).fold(0.0, f64::max)
+}
+
+/// The largest distance of two nodes of a facet.
+pub(super) fn facet_length(nodes: &[[f64; 3]], facet: &[usize]) -> f64 {
+    let pairs = facet.iter().flat_map(|&a| facet.iter().map(move |&b| distance(nodes[a], nodes[b])));
+    pairs.fold(0.0, f64::max)
 }
 
 /// The name of a body in the names of its boundaries.

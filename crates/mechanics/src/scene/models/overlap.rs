@@ -3,7 +3,8 @@
 use std::cell::OnceCell;
 use std::collections::HashSet;
 
-use crate::fem::element::Cell;
+use super::contacts::facet_length;
+use crate::fem::element::{Cell, MAX_NODES};
 use crate::fem::mesh::extent;
 use crate::fem::surface::{Tree, distance_from};
 use crate::fem::{Boundary, Mesh, Mortar};
@@ -31,46 +32,52 @@ pub(crate) struct Overlap {
 /// A displaced body.
 struct Solid {
     surface: Boundary,
+    /// How far each facet misses the curve for which it stands, in length.
+    sags: Vec<f64>,
     /// Boxes around its elements.
     tree: Tree,
+    /// Its first element.
     first: usize,
-    /// The largest facet.
-    facet: f64,
+}
+
+/// A point of a surface that must not lie in another body.
+struct Point {
+    at: [f64; 3],
+    /// A node there, or of the facet around it.
+    node: usize,
+    /// How far the facet around it misses its curve; zero at nodes.
+    sag: f64,
 }
 
 impl Solid {
     fn of(model: &Model, region: usize, nodes: &[[f64; 3]]) -> Self {
         let (mesh, elements) = (model.mesh(), model.body().regions()[region].elements());
-        let surface = mesh.surface(elements.clone());
         let numbers: Vec<u32> = (0..elements.len() as u32).collect();
-        let size = |nodes_of: &[usize]| extent_of(nodes, nodes_of);
         let tree = Tree::new(&numbers, |number| {
-            let [low, high] = size(mesh.element(elements.start + number as usize));
+            let places: Vec<[f64; 3]> =
+                mesh.element(elements.start + number as usize).iter().map(|&node| nodes[node]).collect();
+            let (low, high) = extent(&places);
             // A curved side leaves the box of its nodes.
             let room = (0..3).fold(0.0, |room: f64, axis| room.max(high[axis] - low[axis])) / 4.0;
             [low.map(|at| at - room), high.map(|at| at + room)]
         });
-        let largest = |[low, high]: [[f64; 3]; 2]| (0..3).fold(0.0, |most: f64, axis| most.max(high[axis] - low[axis]));
-        let facet = surface.facets().map(|facet| largest(size(facet))).fold(0.0, f64::max);
-        Solid { surface, tree, first: elements.start, facet }
+        let surface = mesh.surface(elements.clone());
+        let sags = Mortar::new((nodes, &surface), (nodes, &surface), *model.body().formulation()).sags();
+        Solid { surface, sags, tree, first: elements.start }
     }
 
-    /// The nodes of its surface, and the middles of its facets, each with a node of the facet: where two bodies cross, no node need lie
-    /// inside. Without nodes that rows keep apart, and facets that have one.
-    fn points(&self, nodes: &[[f64; 3]], is_kept_apart: impl Fn(usize) -> bool) -> Vec<(usize, [f64; 3])> {
-        let mut points: Vec<(usize, [f64; 3])> = self
-            .surface
-            .nodes()
-            .into_iter()
-            .filter(|&node| !is_kept_apart(node))
-            .map(|node| (node, nodes[node]))
-            .collect();
+    /// The nodes of its surface, and the middles of its facets: where two bodies cross, no node need lie inside. Without nodes that rows keep
+    /// apart, and facets that have one.
+    fn points(&self, nodes: &[[f64; 3]], is_kept_apart: impl Fn(usize) -> bool) -> Vec<Point> {
+        let of_nodes = self.surface.nodes().into_iter().filter(|&node| !is_kept_apart(node));
+        let mut points: Vec<Point> = of_nodes.map(|node| Point { at: nodes[node], node, sag: 0.0 }).collect();
         let reference = self.surface.kind.reference();
         let shape = (reference.shape)(reference.centroid());
-        for facet in self.surface.facets().filter(|facet| !facet.iter().any(|&node| is_kept_apart(node))) {
+        let of_facets = self.surface.facets().zip(&self.sags);
+        for (facet, &sag) in of_facets.filter(|(facet, _)| !facet.iter().any(|&node| is_kept_apart(node))) {
             let at =
                 [0, 1, 2].map(|axis| facet.iter().zip(shape).map(|(&node, share)| share * nodes[node][axis]).sum());
-            points.push((facet[0], at));
+            points.push(Point { at, node: facet[0], sag });
         }
         points
     }
@@ -80,17 +87,28 @@ impl Solid {
         let mut near = Vec::new();
         self.tree.around_line(at, [1.0, 0.0, 0.0], [0.0; 3], |number| near.push(self.first + number as usize));
         near.into_iter().any(|element| {
-            let mut places = [[0.0; 3]; crate::fem::element::MAX_NODES];
+            let mut places = [[0.0; 3]; MAX_NODES];
             places.iter_mut().zip(mesh.element(element)).for_each(|(place, &node)| *place = nodes[node]);
             Cell::new(mesh.kind_of(element).reference(), &places).weights_at(at, SAME_PLACE).is_some()
         })
     }
 
-    /// The distance of a point from the surface, straight pieces of curved facets for these.
-    fn depth(&self, nodes: &[[f64; 3]], at: [f64; 3]) -> f64 {
-        let pieces = self.surface.facets().flat_map(|facet| self.surface.kind.straight_cells(facet));
-        let far = |piece: Vec<usize>| distance_from(&piece.into_iter().map(|node| nodes[node]).collect::<Vec<_>>(), at);
-        pieces.map(far).fold(f64::INFINITY, f64::min)
+    /// The distance of a point from the surface, straight pieces of curved facets for these, and the number of the nearest facet.
+    fn depth(&self, nodes: &[[f64; 3]], at: [f64; 3]) -> (f64, usize) {
+        let of_piece = |piece: Vec<usize>| {
+            let places: Vec<[f64; 3]> = piece.into_iter().map(|node| nodes[node]).collect();
+            distance_from(&places, at)
+        };
+        let of_facet = |facet: &[usize]| {
+            self.surface.kind.straight_cells(facet).into_iter().map(of_piece).fold(f64::INFINITY, f64::min)
+        };
+        let all = self.surface.facets().map(of_facet).enumerate();
+        all.fold(
+            (f64::INFINITY, 0),
+            |(least, nearest), (facet, far)| {
+                if far < least { (far, facet) } else { (least, nearest) }
+            },
+        )
     }
 }
 
@@ -122,13 +140,16 @@ impl Model {
                 continue;
             }
             let (body, of_nodes) = (solid(own), solid(other));
-            let sides = [body, of_nodes].map(|solid| (&nodes[..], &solid.surface));
-            let rounding = ROUNDING * mesh.size() + Mortar::new(sides[0], sides[1], *self.body().formulation()).sag();
-            let outer = of_nodes.points(&nodes, is_kept_apart).into_iter().filter(|(_, at)| is_near(at));
-            for (node, at) in outer.filter(|&(_, at)| body.contains(mesh, &nodes, at)) {
-                let depth = body.depth(&nodes, at);
-                let allowed = if taking_part.contains(&(node, own)) { TAKING_PART * body.facet } else { 0.0 };
-                if depth > rounding + allowed && deepest.as_ref().is_none_or(|deepest| depth > deepest.depth) {
+            let rounding = ROUNDING * mesh.size();
+            let points = of_nodes.points(&nodes, is_kept_apart).into_iter().filter(|point| is_near(&point.at));
+            for Point { at, node, sag } in points.filter(|point| body.contains(mesh, &nodes, point.at)) {
+                let (depth, facet) = body.depth(&nodes, at);
+                let mut allowed = rounding + sag + body.sags[facet];
+                if taking_part.contains(&(node, own)) {
+                    let nearest = body.surface.facets().nth(facet).unwrap_or_default();
+                    allowed += TAKING_PART * facet_length(&nodes, nearest);
+                }
+                if depth > allowed && deepest.as_ref().is_none_or(|deepest| depth > deepest.depth) {
                     deepest = Some(Overlap { node, depth, bodies: [other, own] });
                 }
             }
@@ -154,15 +175,4 @@ impl Model {
         kept_apart.extend(pairs);
         [kept_apart, taking_part]
     }
-}
-
-/// The smallest and the largest coordinates of some nodes.
-fn extent_of(nodes: &[[f64; 3]], of: &[usize]) -> [[f64; 3]; 2] {
-    let ends = [f64::INFINITY, f64::NEG_INFINITY].map(|end| [end; 3]);
-    of.iter().fold(ends, |[low, high], &node| {
-        [
-            [0, 1, 2].map(|axis| low[axis].min(nodes[node][axis])),
-            [0, 1, 2].map(|axis| high[axis].max(nodes[node][axis])),
-        ]
-    })
 }

@@ -65,9 +65,7 @@ impl<T: Real> Held<T> {
     /// `E' A E + W`, for a hierarchy of one level; W is the sum of `d d'` over the ways d of `holds`.
     pub fn held_matrix(&self, matrix: &BlockMatrix<T>, nodes: &Nodes, holds: &[Hold]) -> BlockMatrix<T> {
         let ways = sum(nodes, holds.iter().map(|hold| (&hold.way, &hold.way)));
-        let rows = self.transposed.product(matrix, 1);
-        let both = rows.product(&self.matrix, 1);
-        matrix.plus(-1.0, &rows).plus(-1.0, &rows.transposed()).plus(1.0, &both).plus(1.0, &ways)
+        matrix.plus(-1.0, &self.change(matrix)).plus(1.0, &ways)
     }
 }
 
