@@ -249,8 +249,8 @@ fn closed_and_open_are_said_of_mean_gaps_where_rows_hold_means() {
         desk.write("blocks.json", scene(cells).to_string());
         let text = desk.run(&["solve", "blocks.json", "--out", "answer"]).ends_with(0).stdout;
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        let between = "Rows between the meshes of `base.top` and `bottom` hold means: closed and open are said of the mean \
-                       gap over the area of a node, not of the gap at the node.";
+        let between = "Rows between the meshes of `base.top` and `bottom` hold means: closed and open belong to the mean \
+                       gap over the area of a node, not to the gap at the node.";
         let between = between.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(text.contains(" proven closed"), "{text}");
         assert_eq!(text.contains(&between), are_means, "{text}");

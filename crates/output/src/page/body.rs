@@ -115,8 +115,7 @@ impl Shape {
         let dimension = model.mesh().dimension();
         let shown = dimension.max(2);
         let (regions, singular) = (model.body().regions(), singular(model));
-        let region_of =
-            |node: &usize| regions.iter().position(|region| region.nodes().contains(node)).unwrap_or(0) as u8;
+        let region_of = |node: &usize| model.body().region_at(*node).unwrap_or(0) as u8;
         let places: Vec<f64> = self.places.iter().flat_map(|at| at[..shown].iter().copied()).collect();
         Body {
             dimension,

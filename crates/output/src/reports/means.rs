@@ -13,8 +13,8 @@ pub(crate) fn means_text(contact: &ContactSummary) -> Option<String> {
     let between = names.join(", and ");
     (!names.is_empty()).then(|| {
         format!(
-            "Rows between the meshes {between} hold means: closed and open are said of the mean gap over the area of a node, \
-             not of the gap at the node."
+            "Rows between the meshes {between} hold means: closed and open belong to the mean gap over the area of a node, \
+             not to the gap at the node."
         )
     })
 }

@@ -58,7 +58,7 @@ pub(crate) fn eye(model: &Model, obstacle: Option<usize>) -> [f64; 3] {
 /// Returns `true` if the body of the candidates of a pair is the smaller one.
 fn stands_on(model: &Model, obstacle: Option<usize>) -> bool {
     let size = |node: usize| {
-        let region = model.body().regions().iter().find(|region| region.nodes().contains(&node));
+        let region = model.body().region_at(node).map(|region| &model.body().regions()[region]);
         let (low, high) = model.mesh().extent_of(region.map_or(0..0, |region| region.nodes()));
         length(minus(high, low))
     };

@@ -162,7 +162,7 @@ fn contact_modulus(model: &Model, obstacle: usize) -> Option<f64> {
     let other = first.ends.iter().find(|end| end.1 < 0.0).map(|end| end.0);
     let mut compliance = 0.0;
     for node in std::iter::once(first.node).chain(other) {
-        let region = model.body().regions().iter().find(|region| region.nodes().contains(&node))?;
+        let region = &model.body().regions()[model.body().region_at(node)?];
         let mut elements = model.body().elements().skip(region.elements().start).take(region.elements().len());
         let first = elements.next()?;
         if elements.any(|element| element.phase_number != first.phase_number) {

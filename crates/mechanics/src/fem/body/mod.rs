@@ -174,6 +174,16 @@ impl ElasticBody {
         &self.regions
     }
 
+    /// The number of the body that a node belongs to, both from 0; `None` without such a node.
+    pub fn region_at(&self, node: usize) -> Option<usize> {
+        self.regions.iter().position(|region| region.nodes().contains(&node))
+    }
+
+    /// The number of the body that a boundary belongs to; `None` for a boundary without facets.
+    pub(crate) fn region_of(&self, boundary: &Boundary) -> Option<usize> {
+        self.region_at(*boundary.connectivity.first()?)
+    }
+
     /// The dimension of the model and its assumption across the plane or the bar.
     pub fn formulation(&self) -> &Formulation {
         &self.formulation

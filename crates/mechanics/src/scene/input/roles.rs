@@ -183,7 +183,7 @@ impl Sides<'_> {
         if !pressed.is_free_of(held) || !self.holds_all(held) {
             return None;
         }
-        let (upper, lower) = (self.region_of(facets)?, self.region_of(held)?);
+        let (upper, lower) = (self.body.region_of(facets)?, self.body.region_of(held)?);
         let (way, back) = (pressed.way, (pressed.way.0, -pressed.way.1));
         if self.surfaces.len() == 1 {
             return Some(Fit::Stacked);
@@ -218,7 +218,7 @@ impl Sides<'_> {
     /// Returns `true` if a boundary has the name of another one that is held, on another body.
     fn is_alike(&self, other: &Boundary, held: &Boundary) -> bool {
         let own_name = |boundary: &Boundary| {
-            let region = self.region_of(boundary).map_or("", |region| self.body.regions()[region].name());
+            let region = self.body.region_of(boundary).map_or("", |region| self.body.regions()[region].name());
             let own = boundary.name.strip_prefix(region).and_then(|rest| rest.strip_prefix('.'));
             own.filter(|_| !region.is_empty()).unwrap_or(&boundary.name).to_string()
         };
@@ -229,7 +229,7 @@ impl Sides<'_> {
         let fits = |(_, other): &(Chosen, &Boundary)| pressed.is_free_of(other) && self.holds_all(other);
         let also: Vec<(Chosen, &Boundary)> = also.into_iter().filter(fits).collect();
         let fixed = also.iter().map(|(_, other)| *other).chain([held]);
-        let fixed: Vec<usize> = fixed.filter_map(|boundary| self.region_of(boundary)).collect();
+        let fixed: Vec<usize> = fixed.filter_map(|boundary| self.body.region_of(boundary)).collect();
         Roles {
             held: chosen,
             loose: (0..self.surfaces.len()).filter(|region| !fixed.contains(region)).collect(),
@@ -240,15 +240,9 @@ impl Sides<'_> {
         }
     }
 
-    /// The body of a boundary, by its number.
-    fn region_of(&self, boundary: &Boundary) -> Option<usize> {
-        let first = boundary.connectivity.first()?;
-        self.body.regions().iter().position(|region| region.nodes().contains(first))
-    }
-
     /// Returns `true` if a boundary has a facet of every piece of its body.
     fn holds_all(&self, boundary: &Boundary) -> bool {
-        let Some(region) = self.region_of(boundary) else { return false };
+        let Some(region) = self.body.region_of(boundary) else { return false };
         let all: HashSet<usize> = self.pieces[self.body.regions()[region].elements()].iter().copied().collect();
         let held: HashSet<usize> = self
             .body

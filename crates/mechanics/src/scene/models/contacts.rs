@@ -76,10 +76,7 @@ impl Scene {
 
     /// The bodies of the obstacles that are other bodies.
     fn named_pairs(&self, body: &ElasticBody) -> Vec<[Option<usize>; 2]> {
-        let region = |name: &str| {
-            let first = *body.mesh().boundary(name)?.connectivity.first()?;
-            body.regions().iter().position(|region| region.nodes().contains(&first))
-        };
+        let region = |name: &str| body.region_of(body.mesh().boundary(name)?);
         let of_obstacle =
             |spec: &ObstacleSpec| Some([region(&spec.boundary), region(spec.shape.shape().other_boundary()?)]);
         self.obstacles.iter().filter_map(of_obstacle).collect()

@@ -160,8 +160,7 @@ impl Model {
     /// Nodes with the bodies from which contact rows keep them apart: nodes that carry a row, or lie opposite to one; and nodes that take
     /// part in rows.
     fn facing_bodies(&self) -> [HashSet<(usize, usize)>; 2] {
-        let regions = self.body().regions();
-        let region_of = |node: usize| regions.iter().position(|region| region.nodes().contains(&node)).unwrap_or(0);
+        let region_of = |node: usize| self.body().region_at(node).unwrap_or(0);
         let [mut kept_apart, mut taking_part] = [HashSet::new(), HashSet::new()];
         let rows = self.rows().iter().chain(self.rows_across());
         for ContactRow { node, ends, .. } in rows {

@@ -167,9 +167,9 @@ impl Model {
     pub(crate) fn moment_on_other(&self, obstacle: usize, multiplier: &[f64]) -> Vec<f64> {
         let mut sum = Sum::default();
         for (row, &lambda) in self.rows().iter().zip(multiplier).filter(|(row, _)| row.obstacle == obstacle) {
-            let own = self.body().regions().iter().find(|region| region.nodes().contains(&row.node));
+            let own = self.body().region_at(row.node);
             for &(node, share) in &row.ends {
-                if own.is_some_and(|own| !own.nodes().contains(&node)) {
+                if self.body().region_at(node) != own {
                     sum.add(self.place(node), row.normal.map(|component| 0.0 + share * lambda * component));
                 }
             }
@@ -294,7 +294,7 @@ impl Model {
     /// The body of a node, if there are several.
     fn name_of_body(&self, node: Option<usize>) -> Option<String> {
         let regions = self.body().regions();
-        let region = regions.iter().find(|region| node.is_some_and(|node| region.nodes().contains(&node)))?;
+        let region = &regions[self.body().region_at(node?)?];
         (regions.len() > 1).then(|| if region.name().is_empty() { "body".into() } else { region.name().into() })
     }
 

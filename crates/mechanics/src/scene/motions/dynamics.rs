@@ -397,7 +397,7 @@ fn crossing_time(model: &Model) -> Option<f64> {
     let of_obstacle = (0..model.obstacles().len()).filter_map(|obstacle| {
         let rows = model.rows().iter().filter(|row| row.obstacle == obstacle);
         let nearest = rows.min_by(|a, b| a.gap.total_cmp(&b.gap))?;
-        let region = body.regions().iter().find(|region| region.nodes().contains(&nearest.node))?;
+        let region = &body.regions()[body.region_at(nearest.node)?];
         let along = region.nodes().map(|node| dot(&nearest.normal, &nodes[node]));
         let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
         Some((high - low) / body.phases_of(region).iter().map(wave_speed).fold(0.0, f64::max))

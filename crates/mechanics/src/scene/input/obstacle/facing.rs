@@ -6,7 +6,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::mortar;
-use super::order::region;
 use super::pairs::{Between, Facing};
 use super::shape::{About, Geometry, ObstacleShape, Site};
 use crate::error::Error;
@@ -125,7 +124,7 @@ impl ObstacleShape for FacingSpec {
         let mesh = site.body.mesh();
         let own = boundary(mesh, site.boundary, &format!("{}.boundary", site.obstacle))?;
         let other = boundary(mesh, &self.boundary, &site.field("boundary"))?;
-        if region(site.body, own) == region(site.body, other) {
+        if site.body.region_of(own) == site.body.region_of(other) {
             let message = format!("`{}` and `{}` belong to one body; take a boundary of another", own.name, other.name);
             return Err(wrong(site.field("boundary"), message));
         }

@@ -20,7 +20,7 @@ impl SideOrder {
     /// The order by the surfaces with which the bodies may touch each other.
     pub fn of<'a>(body: &ElasticBody, surfaces: impl Iterator<Item = &'a Boundary>) -> Self {
         let mut touching: Vec<Vec<&Boundary>> = vec![Vec::new(); body.regions().len()];
-        surfaces.for_each(|surface| touching[region(body, surface)].push(surface));
+        surfaces.for_each(|surface| touching[body.region_of(surface).unwrap_or(0)].push(surface));
         let moduli: Vec<f64> = touching.iter().map(|surfaces| modulus_behind(body, surfaces)).collect();
         let sizes: Vec<f64> = touching.iter().map(|surfaces| facet_size(body, surfaces)).collect();
         let mut order: Vec<usize> = (0..touching.len()).collect();
@@ -41,18 +41,17 @@ impl SideOrder {
 
     /// Returns `true` if the second of two boundaries carries the rows.
     pub fn carries_other(&self, body: &ElasticBody, boundaries: [&Boundary; 2]) -> bool {
-        let [own, other] = boundaries.map(|boundary| self.places[region(body, boundary)]);
+        let [own, other] = boundaries.map(|boundary| body.region_of(boundary).map(|region| self.places[region]));
         other < own
     }
 
     /// The first obstacle whose side is against the order, and whose rows lead to nodes that carry rows which lead back: a contact would
     /// count twice. Rows are given with the numbers of their obstacles. Without sides against the order there is none.
     pub fn circle<'a>(&self, body: &ElasticBody, rows: impl Iterator<Item = (usize, &'a Facing)>) -> Option<usize> {
-        let region_at = |node: usize| body.regions().iter().position(|region| region.nodes().contains(&node));
         let mut steps: Vec<(usize, usize, usize)> = Vec::new();
         for (obstacle, row) in rows.filter(|(_, row)| row.area.is_some()) {
             let own = row.ends[0].0;
-            let others = row.ends.iter().filter(|end| region_at(end.0) != region_at(own));
+            let others = row.ends.iter().filter(|end| body.region_at(end.0) != body.region_at(own));
             steps.extend(others.map(|end| (own, end.0, obstacle)));
         }
         // Steps that no other one precedes, or follows, are on no circle.
@@ -64,15 +63,9 @@ impl SideOrder {
                 break;
             }
         }
-        let place = |node: usize| region_at(node).map(|region| self.places[region]);
+        let place = |node: usize| body.region_at(node).map(|region| self.places[region]);
         steps.iter().filter(|step| place(step.0) > place(step.1)).map(|step| step.2).min()
     }
-}
-
-/// The number of the body to which a boundary belongs.
-pub(super) fn region(body: &ElasticBody, of: &Boundary) -> usize {
-    let first = of.connectivity.first().copied().unwrap_or(0);
-    body.regions().iter().position(|region| region.nodes().contains(&first)).unwrap_or(0)
 }
 
 /// The mean of Young's modulus in the elements behind boundaries.
