@@ -146,6 +146,26 @@ fn bodies_that_go_through_each_other_without_rows_are_named_and_auto_keeps_them_
     assert!(apart["contact"]["force"].as_f64().unwrap() > 0.0);
 }
 
+/// A stiff block of one facet carries the rows; a round bump under it, of radius 0.6, enters it in its middle by 1/24 of the square of the
+/// facet over the radius, 0.069, less what it yields.
+#[test]
+fn bodies_that_go_through_each_other_between_rows_are_named() {
+    let warnings = |cells: usize| {
+        let bump = json!({"radius": {"points": [0.2, 0.6], "divisions": [4]}, "angle": {"points": [20, 160], "divisions": [80]}});
+        let scene = json!({
+            "body": block([-0.5, 0.5], [0.6, 1.0], [cells, 2]), "material": {"young": 1000, "poisson": 0.3},
+            "further-bodies": [{"name": "bump", "body": {"ring": bump}, "material": {"young": 1, "poisson": 0.3}}],
+            "supports": [{"on": {"boundary": "bump.inner"}, "x": 0, "y": 0}, {"on": {"boundary": "top"}, "x": 0, "y": -1e-3}],
+            "obstacles": [{"boundary": "bottom", "rule": "closest-point", "shape": {"body": {"boundary": "bump.outer", "side": "this"}}}],
+        });
+        report(&scene)["warnings"].to_string()
+    };
+    let coarse = warnings(1);
+    assert!(coarse.contains("bodies-overlap") && coarse.contains("between contact rows"), "{coarse}");
+    let fine = warnings(40);
+    assert!(!fine.contains("bodies-overlap"), "{fine}");
+}
+
 /// Two blocks, one above the other, with an obstacle that a test changes.
 fn two_blocks(upper: Value, lower: Value, body: Value) -> Model {
     let mut shape = body;

@@ -109,17 +109,21 @@ pub(super) fn of_scene(answer: &Answer, solution: &Solution, segments: &[Segment
     of_model.chain(of_answer.into_iter().flatten()).collect()
 }
 
-/// Warns that two displaced bodies go through each other where no row keeps them apart.
+/// Warns that two displaced bodies go through each other, with what helps.
 fn overlap(answer: &Answer) -> Option<AnswerWarning> {
     let model = answer.model();
-    let Overlap { node, depth, bodies } = model.overlap(answer.displacement())?;
+    let Overlap { node, depth, bodies, has_rows } = model.overlap(answer.displacement())?;
     let name = |body: usize| match model.body().regions()[body].name() {
         "" => "body",
         name => name,
     };
+    let help = if has_rows {
+        "between contact rows, which keep means of the gap apart: make the elements smaller there"
+    } else {
+        "where no contact row keeps them apart; name both boundaries in an obstacle, or set `\"contact\": \"auto\"`"
+    };
     let message = format!(
-        "`{}` and `{}` go through each other, by {depth:.3e} {} at {}, where no contact row keeps them apart; name both boundaries in an \
-         obstacle, or set `\"contact\": \"auto\"`",
+        "`{}` and `{}` go through each other, by {depth:.3e} {} at {}, {help}",
         name(bodies[0]),
         name(bodies[1]),
         model.units().length,

@@ -31,6 +31,12 @@ impl Boundary {
         self.connectivity.chunks_exact(self.kind.nodes())
     }
 
+    /// The node indices of a facet, by its number.
+    pub(crate) fn facet(&self, number: usize) -> &[usize] {
+        let count = self.kind.nodes();
+        &self.connectivity[number * count..(number + 1) * count]
+    }
+
     /// The node indices, each once, from 0, in the order of their first appearance along the facets.
     pub fn nodes(&self) -> Vec<usize> {
         let along = self.kind.reference().along;

@@ -86,7 +86,7 @@ impl Mesh {
     pub(super) fn check_facets(&self) -> Result<(), Error> {
         for boundary in self.boundaries() {
             if let Some(index) = self.faces_of(boundary).iter().position(Option::is_none) {
-                let facet: Vec<usize> = boundary.facets().nth(index).unwrap_or_default().to_vec();
+                let facet: Vec<usize> = boundary.facet(index).to_vec();
                 return fail(format!(
                     "boundary `{}`: facet {index} (nodes {facet:?}, from 0) is not a face of any element",
                     boundary.name

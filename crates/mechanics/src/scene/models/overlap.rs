@@ -1,7 +1,7 @@
-//! Overlaps of displaced bodies where no contact row keeps them apart.
+//! Overlaps of displaced bodies: where no contact row keeps them apart, and between the rows where these lie too far apart.
 
 use std::cell::OnceCell;
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 use super::contacts::facet_length;
 use crate::fem::element::{Cell, MAX_NODES};
@@ -19,7 +19,10 @@ const TAKING_PART: f64 = 0.01;
 /// A point outside an element by less than this, in reference coordinates, is inside.
 const SAME_PLACE: f64 = 1e-9;
 
-/// A node of one body inside another, where no row keeps them apart.
+/// A node with a row, or opposite to one, may lie this share of a facet inside: rows keep means apart, not every point.
+const KEPT_APART: f64 = 0.05;
+
+/// A node of one body inside another.
 #[derive(Clone, Debug)]
 pub(crate) struct Overlap {
     pub node: usize,
@@ -27,15 +30,19 @@ pub(crate) struct Overlap {
     pub depth: f64,
     /// The body of the node, and the other, by their numbers.
     pub bodies: [usize; 2],
+    /// Whether rows keep the bodies apart around the node.
+    pub has_rows: bool,
 }
 
 /// A displaced body.
 struct Solid {
     surface: Boundary,
+    /// Boxes around its facets.
+    facets: Tree,
     /// How far each facet misses the curve for which it stands, in length.
     sags: Vec<f64>,
     /// Boxes around its elements.
-    tree: Tree,
+    elements: Tree,
     /// Its first element.
     first: usize,
 }
@@ -47,13 +54,15 @@ struct Point {
     node: usize,
     /// How far the facet around it misses its curve; zero at nodes.
     sag: f64,
+    /// How deep it may lie in the other body, in lengths of a facet.
+    allowed: f64,
 }
 
 impl Solid {
     fn of(model: &Model, region: usize, nodes: &[[f64; 3]]) -> Self {
         let (mesh, elements) = (model.mesh(), model.body().regions()[region].elements());
         let numbers: Vec<u32> = (0..elements.len() as u32).collect();
-        let tree = Tree::new(&numbers, |number| {
+        let tree_of_elements = Tree::new(&numbers, |number| {
             let places: Vec<[f64; 3]> =
                 mesh.element(elements.start + number as usize).iter().map(|&node| nodes[node]).collect();
             let (low, high) = extent(&places);
@@ -62,30 +71,37 @@ impl Solid {
             [low.map(|at| at - room), high.map(|at| at + room)]
         });
         let surface = mesh.surface(elements.clone());
+        let numbers: Vec<u32> = (0..surface.facets().count() as u32).collect();
+        let facets = Tree::new(&numbers, |number| {
+            let facet = surface.facet(number as usize);
+            let (low, high) = extent(&facet.iter().map(|&node| nodes[node]).collect::<Vec<_>>());
+            [low, high]
+        });
         let sags = Mortar::new((nodes, &surface), (nodes, &surface), *model.body().formulation()).sags();
-        Solid { surface, sags, tree, first: elements.start }
+        Solid { surface, facets, sags, elements: tree_of_elements, first: elements.start }
     }
 
-    /// The nodes of its surface, and the middles of its facets: where two bodies cross, no node need lie inside. Without nodes that rows keep
-    /// apart, and facets that have one.
-    fn points(&self, nodes: &[[f64; 3]], is_kept_apart: impl Fn(usize) -> bool) -> Vec<Point> {
-        let of_nodes = self.surface.nodes().into_iter().filter(|&node| !is_kept_apart(node));
-        let mut points: Vec<Point> = of_nodes.map(|node| Point { at: nodes[node], node, sag: 0.0 }).collect();
+    /// The nodes of its surface, and the middles of its facets: where two bodies cross, no node need lie inside. `allowed` has how deep a node
+    /// may lie in the other body, in lengths of a facet.
+    fn points(&self, nodes: &[[f64; 3]], allowed: impl Fn(usize) -> f64) -> Vec<Point> {
+        let of_nodes = self.surface.nodes().into_iter();
+        let mut points: Vec<Point> =
+            of_nodes.map(|node| Point { at: nodes[node], node, sag: 0.0, allowed: allowed(node) }).collect();
         let reference = self.surface.kind.reference();
         let shape = (reference.shape)(reference.centroid());
-        let of_facets = self.surface.facets().zip(&self.sags);
-        for (facet, &sag) in of_facets.filter(|(facet, _)| !facet.iter().any(|&node| is_kept_apart(node))) {
+        points.extend(self.surface.facets().zip(&self.sags).map(|(facet, &sag)| {
             let at =
                 [0, 1, 2].map(|axis| facet.iter().zip(shape).map(|(&node, share)| share * nodes[node][axis]).sum());
-            points.push(Point { at, node: facet[0], sag });
-        }
+            let allowed = facet.iter().map(|&node| allowed(node)).fold(0.0, f64::max);
+            Point { at, node: facet[0], sag, allowed }
+        }));
         points
     }
 
     /// Returns `true` if a point lies in one of its elements.
     fn contains(&self, mesh: &Mesh, nodes: &[[f64; 3]], at: [f64; 3]) -> bool {
         let mut near = Vec::new();
-        self.tree.around_line(at, [1.0, 0.0, 0.0], [0.0; 3], |number| near.push(self.first + number as usize));
+        self.elements.around_line(at, [1.0, 0.0, 0.0], [0.0; 3], |number| near.push(self.first + number as usize));
         near.into_iter().any(|element| {
             let mut places = [[0.0; 3]; MAX_NODES];
             places.iter_mut().zip(mesh.element(element)).for_each(|(place, &node)| *place = nodes[node]);
@@ -102,19 +118,21 @@ impl Solid {
         let of_facet = |facet: &[usize]| {
             self.surface.kind.straight_cells(facet).into_iter().map(of_piece).fold(f64::INFINITY, f64::min)
         };
-        let all = self.surface.facets().map(of_facet).enumerate();
-        all.fold(
-            (f64::INFINITY, 0),
-            |(least, nearest), (facet, far)| {
-                if far < least { (far, facet) } else { (least, nearest) }
-            },
-        )
+        let (mut least, mut nearest) = (f64::INFINITY, 0);
+        self.facets.near(at, |number| {
+            let far = of_facet(self.surface.facet(number as usize));
+            if far < least {
+                (least, nearest) = (far, number as usize);
+            }
+            least * least
+        });
+        (least, nearest)
     }
 }
 
 impl Model {
-    /// The deepest overlap of two displaced bodies at a node of a surface that no contact row between the two keeps apart; `None` without
-    /// one. `displacement` has `dim` entries a node.
+    /// The deepest overlap of two displaced bodies at a node or in the middle of a facet, beyond what contact rows between the two leave;
+    /// `None` without one. `displacement` has `dim` entries a node.
     pub(crate) fn overlap(&self, displacement: &[f64]) -> Option<Overlap> {
         let (mesh, regions, dimension) = (self.mesh(), self.body().regions(), self.body().dimension());
         if regions.len() < 2 || dimension < 2 {
@@ -126,13 +144,13 @@ impl Model {
             at
         };
         let nodes: Vec<[f64; 3]> = mesh.nodes().iter().enumerate().map(moved).collect();
-        let [kept_apart, taking_part] = self.facing_bodies();
+        let allowed = self.depths_that_rows_leave();
         let solids: Vec<OnceCell<Solid>> = (0..regions.len()).map(|_| OnceCell::new()).collect();
         let solid = |region: usize| solids[region].get_or_init(|| Solid::of(self, region, &nodes));
         let mut deepest: Option<Overlap> = None;
         for (own, other) in (0..regions.len()).flat_map(|own| (0..regions.len()).map(move |other| (own, other))) {
             let [(low, high), (least, most)] = [own, other].map(|region| extent(&nodes[regions[region].nodes()]));
-            let is_kept_apart = |node: usize| kept_apart.contains(&(node, own));
+            let of_node = |node: usize| allowed.get(&(node, own)).copied().unwrap_or(0.0);
             // Only a point in the box of a body can be inside it.
             let is_near = |at: &[f64; 3]| (0..dimension).all(|axis| (low[axis]..=high[axis]).contains(&at[axis]));
             let boxes_meet = (0..dimension).all(|axis| least[axis] <= high[axis] && low[axis] <= most[axis]);
@@ -141,37 +159,37 @@ impl Model {
             }
             let (body, of_nodes) = (solid(own), solid(other));
             let rounding = ROUNDING * mesh.size();
-            let points = of_nodes.points(&nodes, is_kept_apart).into_iter().filter(|point| is_near(&point.at));
-            for Point { at, node, sag } in points.filter(|point| body.contains(mesh, &nodes, point.at)) {
-                let (depth, facet) = body.depth(&nodes, at);
-                let mut allowed = rounding + sag + body.sags[facet];
-                if taking_part.contains(&(node, own)) {
-                    let nearest = body.surface.facets().nth(facet).unwrap_or_default();
-                    allowed += TAKING_PART * facet_length(&nodes, nearest);
-                }
-                if depth > allowed && deepest.as_ref().is_none_or(|deepest| depth > deepest.depth) {
-                    deepest = Some(Overlap { node, depth, bodies: [other, own] });
+            let points = of_nodes.points(&nodes, of_node).into_iter().filter(|point| is_near(&point.at));
+            for point in points.filter(|point| body.contains(mesh, &nodes, point.at)) {
+                let (depth, facet) = body.depth(&nodes, point.at);
+                let length = facet_length(&nodes, body.surface.facet(facet));
+                let left = rounding + point.sag + body.sags[facet] + point.allowed * length;
+                if depth > left && deepest.as_ref().is_none_or(|deepest| depth > deepest.depth) {
+                    let has_rows = point.allowed == KEPT_APART;
+                    deepest = Some(Overlap { node: point.node, depth, bodies: [other, own], has_rows });
                 }
             }
         }
         deepest
     }
 
-    /// Nodes with the bodies from which contact rows keep them apart: nodes that carry a row, or lie opposite to one; and nodes that take
-    /// part in rows.
-    fn facing_bodies(&self) -> [HashSet<(usize, usize)>; 2] {
+    /// How deep nodes may lie in a body, in lengths of a facet, because contact rows keep the two apart: nodes that carry a row or lie
+    /// opposite to one, and nodes that take part in the means of others. By node and body.
+    fn depths_that_rows_leave(&self) -> HashMap<(usize, usize), f64> {
         let region_of = |node: usize| self.body().region_at(node).unwrap_or(0);
-        let [mut kept_apart, mut taking_part] = [HashSet::new(), HashSet::new()];
+        let [mut kept_apart, mut taking_part] = [HashMap::new(), HashMap::new()];
         let rows = self.rows().iter().chain(self.rows_across());
         for ContactRow { node, ends, .. } in rows {
             let own = region_of(*node);
             let Some(other) = ends.iter().map(|end| region_of(end.0)).find(|&region| region != own) else { continue };
-            kept_apart.insert((*node, other));
-            taking_part.extend(ends.iter().map(|end| (end.0, if region_of(end.0) == own { other } else { own })));
+            kept_apart.insert((*node, other), KEPT_APART);
+            let facing = ends.iter().map(|end| (end.0, if region_of(end.0) == own { other } else { own }));
+            taking_part.extend(facing.map(|node| (node, TAKING_PART)));
         }
         // The other node of a pair is held by the same row.
         let pairs = self.rows().iter().filter_map(|row| Some((row.partner()?, region_of(row.node))));
-        kept_apart.extend(pairs);
-        [kept_apart, taking_part]
+        kept_apart.extend(pairs.map(|pair| (pair, KEPT_APART)));
+        taking_part.extend(kept_apart);
+        taking_part
     }
 }
