@@ -1,5 +1,7 @@
 //! The certificate: every condition of the solution recomputed from the original problem.
 
+use std::borrow::Cow;
+
 use super::EnergyNorm;
 use super::bound::{Answer, ErrorBound, Measured};
 use super::scales::{Balance, OfPart, Scales, larger, relative};
@@ -102,7 +104,8 @@ impl ContactProblem {
         if !matches!(by, Bounding::OwnFactor) {
             return Ok(self.recomputed(by, displacement, multiplier));
         }
-        let norm = self.energy_norm(displacement, multiplier)?;
+        let (two_sided, of_rows) = self.two_sided(multiplier);
+        let norm = two_sided.energy_norm(displacement, &of_rows)?;
         Ok(self.recomputed(&norm.map_or(Bounding::Nothing, Bounding::Factor), displacement, multiplier))
     }
 
@@ -167,12 +170,18 @@ impl ContactProblem {
             ..Certificate::unknown()
         };
         let rounding = scales.whole.rounding();
+        let (two_sided, of_rows) = self.two_sided(lambda);
         let answer = Answer { displacement: u, multiplier: lambda, residual, violation, rounding };
+        let by_sides = match &of_rows {
+            Cow::Borrowed(_) => None,
+            Cow::Owned(of_rows) => Some(Answer { rounding, ..two_sided.answer(u, of_rows) }),
+        };
+        let bounded = by_sides.as_ref().unwrap_or(&answer);
         let (bound, measured, loss) = match bounding {
             Bounding::Nothing | Bounding::OwnFactor | Bounding::Pieces(_) => (ErrorBound::none(), None, 1.0),
-            Bounding::Factor(norm) => (self.energy_error_bound(norm, &answer), None, norm.loss()),
+            Bounding::Factor(norm) => (two_sided.energy_error_bound(norm, bounded), None, norm.loss()),
             Bounding::Cycles(multigrid, watch) => {
-                let found = self.energy_error_bound_by(multigrid, &answer, watch);
+                let found = two_sided.energy_error_bound_by(multigrid, bounded, watch);
                 let (bound, measured) = found.unwrap_or((ErrorBound::none(), None));
                 (bound, measured, measured.map_or(1.0, |measured| 1.0 / measured.ritz.min(1.0)))
             }
@@ -381,14 +390,17 @@ mod tests {
 
     #[test]
     fn dofs_without_stiffness_or_force_out_of_balance_do_not_hide_the_bound() {
-        // A dof of stiffness 4 under a force of 8 before a wall at 1, and a loose dof between two walls without clearance.
+        // A dof of stiffness 4 under a force of 8 before a wall at 1, and a loose dof between two walls.
         let walls = [(0, 0, 1.0), (1, 1, 1.0), (2, 1, -1.0)];
-        let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[8.0, 0.0], &walls, &[1.0, 0.0, 0.0]);
+        let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[8.0, 0.0], &walls, &[1.0, 0.0, 1.0]);
         let right = problem.certify(&[1.0, 0.0], &[-4.0, 0.0, 0.0]).unwrap();
         assert!(right.meets(1e-12), "{right:?}");
         let off = problem.certify(&[0.75, 0.0], &[-5.0, 0.0, 0.0]).unwrap();
         assert!((off.energy_error / 0.5 - 1.0).abs() < ROUNDED, "{off:?}");
         // A force on the loose dof that no row takes has no bound, and neither has one that rows take with another force.
         assert!(!problem.certify(&[1.0, 0.0], &[-4.0, -1e-30, 0.0]).unwrap().has_bound());
+        // Without clearance the walls are an equality, which holds the dof by any force.
+        let held = problem.with_gap(vec![1.0, 0.0, 0.0]).unwrap();
+        assert!(held.certify(&[1.0, 0.0], &[-4.0, -1e-30, 0.0]).unwrap().has_bound());
     }
 }

@@ -54,17 +54,25 @@ impl ContactProblem {
     pub fn prove(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Option<ProvenSet>, Error> {
         self.check_answer(displacement, multiplier)?;
         let norm = EnergyNorm::of(&self.stiffness, &self.contact)?;
-        Ok(norm.and_then(|norm| self.prove_in(&norm, WithEvidence { displacement, multiplier, evidence: None })))
+        let answer = WithEvidence { displacement, multiplier, evidence: None };
+        Ok(norm.and_then(|norm| self.prove_by(&Bounding::Factor(norm), answer)))
     }
 
     /// As [`ContactProblem::prove`], by the means of a certificate, for vectors that fit; from the evidence of that certificate if
     /// there is any.
     pub(crate) fn prove_by(&self, by: &Bounding, answer: WithEvidence) -> Option<ProvenSet> {
-        match by {
+        let proven = match by {
             Bounding::Factor(norm) => self.prove_in(norm, answer),
             Bounding::Cycles(multigrid, watch) => self.prove_by_cycles(multigrid, watch, answer),
             Bounding::Nothing | Bounding::OwnFactor | Bounding::Pieces(_) => None,
-        }
+        };
+        proven.map(|proven| self.with_equalities_closed(proven))
+    }
+
+    /// The same with the rows of equalities, which are closed in every answer.
+    fn with_equalities_closed(&self, mut proven: ProvenSet) -> ProvenSet {
+        self.equalities().iter().flat_map(|pair| [pair.row, pair.opposed]).for_each(|row| proven.closed.insert(row));
+        proven
     }
 
     /// As [`ContactProblem::prove`], in an energy norm that is already available.

@@ -3,11 +3,13 @@
 use crate::error::Error;
 use crate::linear::{SparseMatrix, SymmetricMatrix, ldexp};
 
-/// Springs D on rows C that press: with them a singular K becomes `K_D = K + B_C' D B_C`.
+/// Springs D on rows C that press, or that are equalities: with them a singular K becomes `K_D = K + B_C' D B_C`.
 #[derive(Clone, Debug)]
 pub(super) struct Springs {
     /// D of each row, zero on rows without a spring.
     pub stiffness: Vec<f64>,
+    /// The rows that are equalities: at their gaps they stay there, whatever their force.
+    pub are_equalities: Vec<bool>,
 }
 
 impl Springs {
@@ -36,15 +38,19 @@ impl Springs {
         residual.iter().zip(contact.mul_transposed(&pull)).map(|(r, spring)| r + spring).collect()
     }
 
-    /// Returns `true` if the certain force of every row with a spring, zero beside its gap, exceeds twice the force that `left(row)`, the
-    /// dual norm of the forces left over on its part, could take off.
-    pub fn hold(&self, certain_force: impl Fn(usize) -> f64, left: impl Fn(usize) -> f64) -> bool {
+    /// Returns `true` if every row with a spring is `closed`, and its certain force exceeds twice the force that `left(row)`, the dual norm
+    /// of the forces left over on its part, could take off.
+    pub fn hold(&self, closed: &[bool], certain_force: impl Fn(usize) -> f64, left: impl Fn(usize) -> f64) -> bool {
         let springs = self.stiffness.iter().enumerate().filter(|spring| *spring.1 != 0.0);
-        springs.into_iter().all(|(row, stiffness)| certain_force(row) > 2.0 * stiffness.sqrt() * left(row))
+        let presses = |row: usize, stiffness: f64| certain_force(row) > 2.0 * stiffness.sqrt() * left(row);
+        springs
+            .into_iter()
+            .all(|(row, &stiffness)| closed[row] && (self.are_equalities[row] || presses(row, stiffness)))
     }
 
     /// The same springs in other units of stiffness, `2^unit`.
     pub fn in_unit(&self, unit: i32) -> Self {
-        Springs { stiffness: self.stiffness.iter().map(|&value| ldexp(value, -unit)).collect() }
+        let stiffness = self.stiffness.iter().map(|&value| ldexp(value, -unit)).collect();
+        Springs { stiffness, are_equalities: self.are_equalities.clone() }
     }
 }

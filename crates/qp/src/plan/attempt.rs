@@ -63,6 +63,8 @@ impl Arrangement {
 pub(crate) enum Step {
     /// Each piece is solved by a ladder of its own.
     Pieces,
+    /// The problem without its equalities is solved by a ladder of its own.
+    Elimination,
     /// The method of the attempt.
     Method,
     /// The active set, from the set that a penalty ladder reaches.
@@ -124,6 +126,8 @@ const fn rung(step: Step, when: When, because: &'static str) -> Rung {
 }
 
 pub(super) const IN_PIECES: &[Rung] = &[rung(Step::Pieces, When::Always, "")];
+
+pub(super) const BY_ELIMINATION: &[Rung] = &[rung(Step::Elimination, When::Always, "")];
 
 const FREE_MOTION: Rung = rung(
     Step::Existence,

@@ -4,7 +4,8 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::attempt::{
-    Arrangement, Attempt, From, IN_PIECES, Limits, Means, OF_EXISTENCE, WITH_FACTOR, WITH_MULTIGRID, When, WithFactor,
+    Arrangement, Attempt, BY_ELIMINATION, From, IN_PIECES, Limits, Means, OF_EXISTENCE, WITH_FACTOR, WITH_MULTIGRID,
+    When, WithFactor,
 };
 use super::choice::Choice;
 use super::pieces::pieces_of;
@@ -56,7 +57,11 @@ impl Ladder {
             choice: None,
             refusal: None,
         };
-        if !known.is_whole
+        let equalities = problem.equalities().len();
+        if equalities > 0 {
+            let because = format!("{equalities} pairs of rows are equalities");
+            ladder.add(Attempt { steps: BY_ELIMINATION, ..ladder.attempt(Means::Problem, because) });
+        } else if !known.is_whole
             && let Some(pieces) = pieces_of(problem, settings)
         {
             let because = format!("nothing couples its {} pieces", pieces.count());
@@ -130,6 +135,11 @@ impl Ladder {
                 self.with_factor(after(self, None));
             }
         }
+    }
+
+    /// The first attempt that needs more than the problem.
+    pub fn first_with_data(&self) -> usize {
+        self.attempts.iter().position(|attempt| attempt.means != Means::Problem).unwrap_or(0)
     }
 
     /// Adds an attempt; none but the first is made if an answer meets the goal.

@@ -2,6 +2,7 @@
 //! says what follows after what was found. `run` carries it out and decides nothing.
 //!
 //! ```text
+//! elimination   pairs of rows that are equalities eliminated, the rest by a ladder of its own
 //! pieces        uncoupled parts, each by a ladder of its own
 //! with a factor method -> existence, if it met a free motion -> continuation, if unsettled -> dual, if unsettled
 //!                 -> refinement and repair, while they gain -> dual, if it falls short -> refinement and repair

@@ -19,8 +19,8 @@ impl Ladder {
     pub fn why(&self, history: &History) -> Why {
         let Some(best) = &history.best else { return Why::default() };
         let Some((estimate, choice)) = &self.choice else {
-            let (chosen, first) = (self.settings.method.name().to_string(), usize::from(self.pieces.is_some()));
-            let reason = format!("by {chosen}: {}", self.attempts[first].because);
+            let chosen = self.settings.method.name().to_string();
+            let reason = format!("by {chosen}: {}", self.attempts[self.first_with_data()].because);
             return Why { chosen, reason, considered: Vec::new() };
         };
         let why = estimate.why(choice);
@@ -91,6 +91,7 @@ impl Step {
     fn in_words(self) -> &'static str {
         match self {
             Step::Pieces => "each piece by a plan of its own",
+            Step::Elimination => "the equalities eliminated, and the rest by a plan of its own",
             Step::Method => "the method",
             Step::Continuation => "the active set again, from the set that a penalty ladder reaches",
             Step::Dual => "the dual active-set method",
@@ -138,7 +139,9 @@ impl Attempt {
     fn in_words(&self) -> String {
         let method = self.method().name();
         let with = match self.means {
-            Means::Problem if self.steps[0].step == Step::Pieces => return Step::Pieces.in_words().to_string(),
+            Means::Problem if matches!(self.steps[0].step, Step::Pieces | Step::Elimination) => {
+                return self.steps[0].step.in_words().to_string();
+            }
             Means::Problem => return "existence and uniqueness of the answer".to_string(),
             Means::Multigrid => return format!("{method} with a multigrid hierarchy"),
             Means::Factor(with) => with,

@@ -8,7 +8,7 @@ use crate::linear::multigrid::Multigrid;
 use crate::method::Start;
 use crate::plan::{Attempt, Ended, History, Known, Ladder, Record, Step, Tried};
 use crate::problem::ContactProblem;
-use crate::run::{Run, Workbench, engine_by};
+use crate::run::{Run, Workbench, engine_by, solved};
 use crate::settings::Settings;
 use crate::solution::{Seconds, Solution};
 
@@ -73,7 +73,7 @@ impl Prepared {
         let settings = &given.started()?;
         // A problem that is prepared stays in one piece.
         let ladder = Ladder::of(problem, Known { gaps, is_whole: true }, settings)?;
-        let mut history = History::new(settings.goal());
+        let mut history = History { first: ladder.first_with_data(), ..History::new(settings.goal()) };
         let with = |ladder: Ladder, bench: Option<Workbench>| {
             let (problem, settings, ladder) = (problem.clone(), given.clone(), Arc::new(ladder));
             Prepared { problem, settings, ladder, bench, start: Start::default() }
@@ -146,6 +146,10 @@ impl Prepared {
     /// gaps that are infinite in other rows than those of the problem that was prepared.
     pub fn solve(&self, gap: &[f64]) -> Result<Solution, Error> {
         let (problem, settings) = (self.problem_at(gap)?, self.settings.started()?);
+        // Equalities are eliminated for each set of gaps anew.
+        if !problem.equalities().is_empty() {
+            return solved(&problem, &self.start, &settings);
+        }
         let run = Run::new(&problem, &self.ladder, &self.start, &settings);
         match &self.bench {
             Some(bench) => run.with(bench).solved(),

@@ -4,8 +4,10 @@ mod diagonal;
 mod opposed;
 mod parts;
 
+pub(crate) use opposed::Equality;
 pub(crate) use parts::Parts;
 
+use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 use diagonal::Diagonal;
@@ -52,6 +54,9 @@ pub struct ContactProblem {
     parts: FoundOnce<Parts>,
     free_mode: FoundOnce<bool>,
     opposed: FoundOnce<OpposedRows>,
+    equalities: FoundOnce<Vec<Equality>>,
+    /// The rows that count as equalities by themselves, with a multiplier of either sign: only in a certificate, see `two_sided`.
+    two_sided: Vec<bool>,
 }
 
 /// Data that follow from the matrices of a problem, and some also from which rows have an obstacle: computed at the first use
@@ -105,8 +110,21 @@ impl ContactProblem {
         }
         let gap = with_infinite(gap);
         let (diagonal, parts, free_mode) = (FoundOnce::default(), FoundOnce::default(), FoundOnce::default());
-        let opposed = FoundOnce::default();
-        Ok(ContactProblem { stiffness, load, contact, gap, near_null: None, diagonal, parts, free_mode, opposed })
+        let (opposed, equalities, two_sided) = (FoundOnce::default(), FoundOnce::default(), Vec::new());
+        let near_null = None;
+        Ok(ContactProblem {
+            stiffness,
+            load,
+            contact,
+            gap,
+            near_null,
+            diagonal,
+            parts,
+            free_mode,
+            opposed,
+            equalities,
+            two_sided,
+        })
     }
 
     /// The same problem with the near-null space of its body for multigrid: displacements of almost no energy, such as the
@@ -186,8 +204,8 @@ impl ContactProblem {
         let gap = with_infinite(gap);
         let same_rows = gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
         let parts = if same_rows { self.parts.clone() } else { FoundOnce::default() };
-        let (diagonal, free_mode, opposed) = (self.diagonal.clone(), self.free_mode.clone(), self.opposed.clone());
-        Ok(ContactProblem { stiffness, load, contact, gap, near_null, diagonal, parts, free_mode, opposed })
+        let equalities = if gap == self.gap { self.equalities.clone() } else { FoundOnce::default() };
+        Ok(ContactProblem { stiffness, load, contact, gap, near_null, parts, equalities, ..self.clone() })
     }
 
     /// The diagonal of K, computed at its first use.
@@ -224,7 +242,37 @@ impl ContactProblem {
     /// # Errors
     /// [`Error::Infeasible`] for a row without dofs and with a negative gap, and for two opposed rows with overlapping gaps.
     pub(crate) fn check_rows(&self) -> Result<(), Error> {
-        self.opposed.get_or_init(|| OpposedRows::of(&self.contact)).check(&self.gap)
+        self.opposed_rows().check(&self.gap)
+    }
+
+    fn opposed_rows(&self) -> &OpposedRows {
+        self.opposed.get_or_init(|| OpposedRows::of(&self.contact))
+    }
+
+    /// The pairs of rows that are equalities, found at their first use.
+    pub(crate) fn equalities(&self) -> &[Equality] {
+        self.equalities.get_or_init(|| self.opposed_rows().equalities(&self.gap))
+    }
+
+    /// The same problem with one row of either sign in place of each pair that is an equality, and the multiplier (length m, in force)
+    /// that belongs to it.
+    pub(crate) fn two_sided<'a>(&'a self, multiplier: &'a [f64]) -> (Cow<'a, Self>, Cow<'a, [f64]>) {
+        if self.equalities().is_empty() {
+            return (Cow::Borrowed(self), Cow::Borrowed(multiplier));
+        }
+        let (mut problem, mut multiplier) = (self.clone(), multiplier.to_vec());
+        problem.two_sided = vec![false; self.rows()];
+        for &Equality { row, opposed, ratio } in self.equalities() {
+            problem.two_sided[row] = true;
+            problem.gap[opposed] = f64::INFINITY;
+            multiplier[row] -= ratio * std::mem::take(&mut multiplier[opposed]);
+        }
+        (Cow::Owned(problem), Cow::Owned(multiplier))
+    }
+
+    /// Returns `true` for a row that counts as an equality by itself.
+    pub(crate) fn is_two_sided(&self, row: usize) -> bool {
+        self.two_sided.get(row).copied().unwrap_or(false)
     }
 
     /// The violation B u - g of each row, length m, in m: positive is penetration; `-inf` without an obstacle. The

@@ -14,6 +14,14 @@ type Direction = Vec<(usize, u64)>;
 /// Rows with the size of their first entry, on each of the two sides of a direction.
 type Sides = [Vec<(usize, f64)>; 2];
 
+/// Two opposed rows that meet exactly, which makes them an equality: `opposed` is `-ratio` times `row`, in coefficients and gap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Equality {
+    pub row: usize,
+    pub opposed: usize,
+    pub ratio: f64,
+}
+
 /// The rows of a contact matrix that may contradict each other at some gaps.
 #[derive(Clone, Debug)]
 pub(super) struct OpposedRows {
@@ -57,22 +65,9 @@ impl OpposedRows {
                 format!("contact row {row} has no free dof, but its gap is {:e}: it must not be negative", gap[row]);
             return Err(Error::Infeasible { reason, rows: vec![row], weights: vec![1.0], overlap: -gap[row] });
         }
-        let nearest = |side: &[(usize, f64)]| {
-            let distances = side
-                .iter()
-                .filter(|entry| gap[entry.0].is_finite())
-                .map(|&(row, first)| (row, first, gap[row] / first));
-            distances.min_by(|a, b| a.2.total_cmp(&b.2))
-        };
-        let crossing = self.directions.iter().filter_map(|[above, below]| {
-            let (a, b) = (nearest(above)?, nearest(below)?);
+        let crossing = self.nearest(gap).filter(|[a, b]| {
             let overlaps = a.2 + b.2 < -MEETING * a.2.abs().max(b.2.abs());
-            let are_parallel = |by_row: &SparseMatrix| are_parallel(by_row, a.0, b.0);
-            (overlaps && self.by_row.as_ref().is_some_and(are_parallel)).then_some(if a.0 < b.0 {
-                [a, b]
-            } else {
-                [b, a]
-            })
+            overlaps && self.are_parallel(a.0, b.0)
         });
         let Some(rows) = crossing.min_by_key(|rows| rows[0].0) else { return Ok(()) };
         let overlap = -(rows[0].2 + rows[1].2);
@@ -81,6 +76,41 @@ impl OpposedRows {
         // The rows cancel if each is divided by its first entry.
         let weights = rows.iter().map(|row| 1.0 / row.1).collect();
         Err(Error::Infeasible { reason, rows: vec![first, second], weights, overlap })
+    }
+
+    /// The equalities under `gap` (length m), in the order of their first rows.
+    pub fn equalities(&self, gap: &[f64]) -> Vec<Equality> {
+        let meet = |[a, b]: &[(usize, f64, f64); 2]| {
+            // Not rounded: rows that meet only almost leave room between them, or none.
+            let mut distance = Accumulator::new(&[0.0]);
+            let unit = -exponent(a.1.max(b.1));
+            distance.add_product(0, gap[a.0], ldexp(b.1, unit));
+            distance.add_product(0, gap[b.0], ldexp(a.1, unit));
+            distance.into_sums()[0] == 0.0 && self.are_parallel(a.0, b.0)
+        };
+        let of = |[a, b]: [(usize, f64, f64); 2]| Equality { row: a.0, opposed: b.0, ratio: b.1 / a.1 };
+        let mut equalities: Vec<Equality> = self.nearest(gap).filter(meet).map(of).collect();
+        equalities.sort_by_key(|equality| equality.row);
+        equalities
+    }
+
+    /// The nearest row on each side of a direction under `gap`, the one of the smaller number first: row, first entry, distance.
+    fn nearest(&self, gap: &[f64]) -> impl Iterator<Item = [(usize, f64, f64); 2]> {
+        let nearest = |side: &[(usize, f64)]| {
+            let distances = side
+                .iter()
+                .filter(|entry| gap[entry.0].is_finite())
+                .map(|&(row, first)| (row, first, gap[row] / first));
+            distances.min_by(|a, b| a.2.total_cmp(&b.2))
+        };
+        self.directions.iter().filter_map(move |[above, below]| {
+            let (a, b) = (nearest(above)?, nearest(below)?);
+            Some(if a.0 < b.0 { [a, b] } else { [b, a] })
+        })
+    }
+
+    fn are_parallel(&self, a: usize, b: usize) -> bool {
+        self.by_row.as_ref().is_some_and(|by_row| are_parallel(by_row, a, b))
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::pieces;
+use super::{elimination, pieces};
 use crate::certificate::{Bounding, Examined};
 use crate::engine::{Engine, Factored, Found, Hierarchical, Load, Task};
 use crate::error::Error;
@@ -120,6 +120,7 @@ impl<'a> Run<'a> {
     fn made_step(&mut self, next: &Next, attempt: &Attempt, record: &mut Record) -> Result<Ended, Error> {
         match record.step {
             Step::Pieces => self.in_pieces(record),
+            Step::Elimination => self.by_elimination(record),
             Step::Existence => self.looked_at_existence(),
             Step::Proximal => self.by_proximal_steps(record),
             Step::Uniqueness => self.looked_at_uniqueness(),
@@ -250,6 +251,15 @@ impl<'a> Run<'a> {
         record.stages = Seconds { factor, certificate, proof, solve: 0.0 };
         let answer = Best::of(solution, record.place.attempt);
         self.judged(answer, &Bounding::Pieces(&certificates), record).map(Ended::Answered)
+    }
+
+    /// The answer without the equalities, and these put back.
+    fn by_elimination(&mut self, record: &mut Record) -> Result<Ended, Error> {
+        let found = elimination::solved(self.problem, self.start, self.settings, solved)?;
+        let Some(solution) = found else { return Ok(Ended::Empty) };
+        let Seconds { factor, certificate, .. } = solution.seconds;
+        record.stages = Seconds { factor, certificate, ..Seconds::default() };
+        self.judged(Best::of(solution, record.place.attempt), &Bounding::OwnFactor, record).map(Ended::Answered)
     }
 
     /// Whether an answer exists.

@@ -116,7 +116,9 @@ impl Run<'_> {
     /// The rows that the best answer proves, and the seconds that this took.
     fn proven(&self, best: &mut Best) -> (Option<ProvenSet>, f64) {
         let nothing = (None, 0.0);
-        let Some(bench) = self.made.as_ref().or(self.kept) else { return nothing };
+        let Some(bench) = self.made.as_ref().or(self.kept) else {
+            return if self.settings.prove && best.tried.is_none() { self.proven_alone(best) } else { nothing };
+        };
         let watch = &self.settings.watch;
         if !self.settings.prove || watch.acknowledge() || !watch.allows(bench.engine.proof_seconds()) {
             return nothing;
@@ -126,6 +128,15 @@ impl Run<'_> {
         let Solution { displacement, multiplier, .. } = &best.solution;
         let evidence = best.evidence.take();
         (self.problem.prove_by(&by, WithEvidence { displacement, multiplier, evidence }), clock.elapsed().as_secs_f64())
+    }
+
+    /// The same for an answer without prepared data, with a factor of its own.
+    fn proven_alone(&self, best: &Best) -> (Option<ProvenSet>, f64) {
+        let clock = Instant::now();
+        let is_due = !self.problem.equalities().is_empty() && !self.settings.watch.is_over();
+        let Solution { displacement, multiplier, .. } = &best.solution;
+        let proven = || self.problem.prove(displacement, multiplier).ok().flatten();
+        (if is_due { proven() } else { None }, clock.elapsed().as_secs_f64())
     }
 
     /// The attempts that did not give the best answer, each with the ending of its own best.

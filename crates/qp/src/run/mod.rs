@@ -2,6 +2,7 @@
 //! all.
 
 mod carried_out;
+mod elimination;
 mod ending;
 mod pieces;
 

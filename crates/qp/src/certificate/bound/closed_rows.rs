@@ -146,7 +146,8 @@ impl ContactProblem {
                 return Some(Placed { shift: moved.shift, rest: moved.rest, closed });
             }
             let looser: Vec<usize> = off.iter().copied().filter(|&row| moved.distance[row] < 0.0).collect();
-            if !off.is_empty() && looser.is_empty() {
+            // An equality that follows from other rows contradicts them if it is missed.
+            if (!off.is_empty() && looser.is_empty()) || looser.iter().any(|&row| self.is_two_sided(row)) {
                 return None;
             }
             looser.iter().for_each(|&row| closed[row] = false);

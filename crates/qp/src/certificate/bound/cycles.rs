@@ -32,11 +32,14 @@ impl ContactProblem {
         answer: &Answer,
         watch: &Watch,
     ) -> Option<(ErrorBound, Option<Measured>)> {
-        let at_gap = (0..self.rows()).map(|row| answer.multiplier[row] < 0.0 || answer.violation[row] > 0.0).collect();
+        let touches =
+            |row: usize| answer.multiplier[row] < 0.0 || answer.violation[row] > 0.0 || self.is_two_sided(row);
+        let at_gap = (0..self.rows()).map(touches).collect();
         let watched = self.watched_rows(watch);
         let placed = self.placed(&watched, answer.displacement, at_gap)?;
         // Neither a force that pulls nor one on an open row is a multiplier.
-        let keeps = |row: usize| if placed.closed[row] { answer.multiplier[row].min(0.0) } else { 0.0 };
+        let allowed = |row: usize, mu: f64| if self.is_two_sided(row) { mu } else { mu.min(0.0) };
+        let keeps = |row: usize| if placed.closed[row] { allowed(row, answer.multiplier[row]) } else { 0.0 };
         let kept: Vec<f64> = (0..self.rows()).map(keeps).collect();
         let is_dropped = kept.iter().zip(answer.multiplier).any(|(kept, given)| kept != given);
         let mut residual = match is_dropped {
@@ -66,7 +69,7 @@ impl ContactProblem {
         let ritz = left.iter().fold(f64::INFINITY, |least, dual| dual.ritz.min(least));
         let left: Vec<f64> = left.iter().map(|dual| ROUNDED_BOUND * dual.most).collect();
         let left_on = |row: usize| left[if are_apart { parts.of_row(row) } else { 0 }];
-        if springs.is_some_and(|springs| !springs.hold(|row| -kept[row], left_on)) {
+        if springs.is_some_and(|springs| !springs.hold(&placed.closed, |row| -kept[row], left_on)) {
             return None;
         }
         let of_residual = left.iter().map(|left| left * left).sum::<f64>().sqrt();

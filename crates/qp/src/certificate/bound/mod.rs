@@ -162,7 +162,8 @@ impl ContactProblem {
     fn rows_that_look_closed(&self, answer: &Answer) -> Vec<bool> {
         let compliance = self.compliance_of_rows(|square, stiffness| square / stiffness);
         let looks = |row: usize| -answer.multiplier[row] * compliance[row] > -answer.violation[row];
-        (0..self.rows()).map(|row| self.gap[row].is_finite() && looks(row)).collect()
+        let is_closed = |row: usize| self.is_two_sided(row) || (self.gap[row].is_finite() && looks(row));
+        (0..self.rows()).map(is_closed).collect()
     }
 
     /// The energy norm of a shift.
@@ -221,7 +222,8 @@ impl ContactProblem {
         for (row, column, _) in self.stiffness.lower().triplets().filter(|entry| entry.2 != 0.0) {
             (is_loose[row], is_loose[column]) = (false, false);
         }
-        let acting = self.contact.triplets().filter(|&(row, _, b)| b != 0.0 && multiplier[row] != 0.0);
+        let acts = |row: usize| multiplier[row] != 0.0 || self.is_two_sided(row);
+        let acting = self.contact.triplets().filter(|&(row, _, b)| b != 0.0 && acts(row));
         acting.for_each(|(_, dof, _)| is_loose[dof] = false);
         let dofs: Vec<usize> = (0..self.dofs()).filter(|&dof| is_loose[dof]).collect();
         let mut rows = vec![false; self.rows()];
@@ -229,7 +231,7 @@ impl ContactProblem {
         (!dofs.is_empty()).then_some(Loose { dofs, rows })
     }
 
-    /// Springs on the rows that press, each as stiff as the row itself if only its own dofs move.
+    /// Springs on the rows that press and on equalities, each as stiff as the row itself if only its own dofs move.
     pub(super) fn springs(&self, displacement: &[f64], multiplier: &[f64]) -> Springs {
         let parts = self.parts();
         let of_stiff = |square: f64, stiffness: f64| if stiffness > 0.0 { square / stiffness } else { 0.0 };
@@ -240,15 +242,20 @@ impl ContactProblem {
             let (force, size) = (-multiplier[row], sizes[parts.of_row(row)]);
             // A row that acts only on dofs without stiffness has no stiffness of its own: its force sets the scale.
             let stiffness = match compliance[row] {
-                0.0 if size > 0.0 => (force / size).powi(2),
+                0.0 if size > 0.0 && force != 0.0 => (force / size).powi(2),
                 0.0 => 1.0,
                 compliance => 1.0 / compliance,
             };
+            if self.is_two_sided(row) {
+                return stiffness;
+            }
             let presses = force > PRESSING * stiffness.sqrt() * size && force * compliance[row] >= -violation[row];
             if presses { stiffness } else { 0.0 }
         };
+        let has_one = |row: usize| multiplier[row] < 0.0 || self.is_two_sided(row);
         Springs {
-            stiffness: (0..self.rows()).map(|row| if multiplier[row] < 0.0 { spring(row) } else { 0.0 }).collect(),
+            stiffness: (0..self.rows()).map(|row| if has_one(row) { spring(row) } else { 0.0 }).collect(),
+            are_equalities: (0..self.rows()).map(|row| self.is_two_sided(row)).collect(),
         }
     }
 }

@@ -66,7 +66,7 @@ pub(super) struct Witness {
 
 /// An answer on the contact boundary, in equilibrated units, rows normalised by powers of two.
 pub(super) struct Repair<'a> {
-    problem: &'a ContactProblem,
+    pub problem: &'a ContactProblem,
     pub norm: &'a EnergyNorm,
     boundary: &'a Boundary,
     answer: &'a Answer<'a>,
@@ -170,7 +170,7 @@ impl<'a> Repair<'a> {
         let terms = |row: usize| self.multiplier[row].abs() + error.terms[row] + left.terms[row];
         let force = |row: usize| if closed[row] { -multiplier[row] - CANCELLED * terms(row) } else { 0.0 };
         let force = self.expanded(&(0..rest.len()).map(force).collect::<Vec<_>>());
-        if springs.is_some_and(|springs| !springs.hold(|row| force[row], |_| of_left)) {
+        if springs.is_some_and(|springs| !springs.hold(closed, |row| force[row], |_| of_left)) {
             return ErrorBound::none();
         }
         // Closed rows are put exactly at their gaps, which moves the answer and its residual; forces that cancel each other

@@ -34,7 +34,8 @@ impl ContactProblem {
         let negligible = self.negligible(answer.displacement);
         let touches = |row: usize| {
             let violation = answer.violation[row];
-            violation > 0.0 || (answer.multiplier[row] < 0.0 && violation >= -negligible[row])
+            let is_pressed = answer.multiplier[row] < 0.0 && violation >= -negligible[row];
+            violation > 0.0 || is_pressed || self.is_two_sided(row)
         };
         let keeps_all = closed.is_none();
         let at_gap = closed.unwrap_or_else(|| (0..self.rows()).map(touches).collect());
@@ -44,8 +45,9 @@ impl ContactProblem {
         let (closed, mut repair) = (&placed.closed, placed.shift);
         let is_moved = repair.iter().any(|&change| change != 0.0);
         let keeps = |row: usize| self.gap[row].is_finite() && (keeps_all || closed[row]);
+        let allowed = |row: usize, mu: f64| if self.is_two_sided(row) { mu } else { mu.min(0.0) };
         let kept: Vec<f64> =
-            (0..self.rows()).map(|row| if keeps(row) { answer.multiplier[row].min(0.0) } else { 0.0 }).collect();
+            (0..self.rows()).map(|row| if keeps(row) { allowed(row, answer.multiplier[row]) } else { 0.0 }).collect();
         let mut residual = self.residual_at(answer, &[&kept], &repair);
         if !keeps_all && is_moved {
             let mut held = vec![false; self.dofs()];
@@ -67,8 +69,9 @@ impl ContactProblem {
         }
         let mut multiplier = kept.clone();
         if !keeps_all && let Some(forces) = self.balancing(&watched, closed, &residual) {
-            let pushing = |(mu, force): (&f64, f64)| if mu + force < 0.0 { force } else { -mu };
-            let change: Vec<f64> = kept.iter().zip(forces).map(pushing).collect();
+            let change = |row: usize| allowed(row, kept[row] + forces[row]) != 0.0;
+            let change: Vec<f64> =
+                (0..self.rows()).map(|row| if change(row) { forces[row] } else { -kept[row] }).collect();
             // Not rounded: a sum of two multipliers may leave more than all other forces on a dof.
             let left = self.residual_at(answer, &[&kept, &change], &repair);
             if self.size_alone(&left) < self.size_alone(&residual) {
@@ -109,7 +112,7 @@ impl ContactProblem {
         let left = length(norm.of_force(residual).powi(2), total(&slack_work));
         let rounding = |row: usize| f64::EPSILON * answer.multiplier[row].abs();
         let force = |row: usize| if closed[row] { -multiplier[row] - rounding(row) } else { 0.0 };
-        if norm.springs.as_ref().is_some_and(|springs| !springs.hold(force, |_| left)) {
+        if norm.springs.as_ref().is_some_and(|springs| !springs.hold(closed, force, |_| left)) {
             return ErrorBound::none();
         }
         let whole = left + self.length(repair) + 2.0 * total(rest);

@@ -59,7 +59,9 @@ impl Repair<'_> {
             let (deeper, looser): (Vec<usize>, Vec<usize>) = follows.partition(|&row| distance[row] > 0.0);
             let pulling: Vec<usize> = match multipliers {
                 Multipliers::InEquilibrium => {
-                    set.iter().copied().filter(|&row| self.multiplier[row] + change[row] > 0.0).collect()
+                    let pulls =
+                        |row: usize| self.multiplier[row] + change[row] > 0.0 && !self.problem.is_two_sided(row);
+                    set.iter().copied().filter(|&row| pulls(row)).collect()
                 }
                 Multipliers::OfTheAnswer => Vec::new(),
             };
@@ -75,6 +77,10 @@ impl Repair<'_> {
             }
             // Of copies that differ by rounding the tightest comes first in the end, unless they contradict each other.
             if exchange >= EXCHANGES && deeper.iter().any(|&row| first[row] > 0) {
+                return None;
+            }
+            // An equality that follows from other rows contradicts them if it is missed.
+            if looser.iter().any(|&row| self.problem.is_two_sided(row)) {
                 return None;
             }
             deeper.iter().for_each(|&row| first[row] = exchange + 1);
@@ -95,17 +101,22 @@ impl Repair<'_> {
         // A force that pulls is no multiplier, and nothing balances one on a loose dof.
         let holds = |row: usize| closed[row] && !self.norm.is_on_loose_dof(row);
         let multiplier: Vec<f64> =
-            (0..change.len()).map(|row| if holds(row) { balanced(row).min(0.0) } else { 0.0 }).collect();
+            (0..change.len()).map(|row| if holds(row) { self.allowed(row, balanced(row)) } else { 0.0 }).collect();
         let left = |row: usize| match in_equilibrium {
             true if closed[row] => multiplier[row] - balanced(row),
             true => 0.0,
             false => multiplier[row] - self.multiplier[row] - change[row],
         };
         let rows = (0..change.len()).map(left).collect();
-        let pushes = |row: usize| multiplier[row] < 0.0;
+        let pushes = |row: usize| multiplier[row] != 0.0;
         let change = (0..change.len()).map(|row| if in_equilibrium && pushes(row) { change[row] } else { 0.0 });
         let (change, left) = (change.collect(), Force::new(1.0 - error.alpha, rows));
         Witness { error, left, multiplier, change, closed, rest: Vec::new(), is_rounded: false }
+    }
+
+    /// A multiplier as its row allows it: no row but an equality pulls.
+    fn allowed(&self, row: usize, multiplier: f64) -> f64 {
+        if self.problem.is_two_sided(row) { multiplier } else { multiplier.min(0.0) }
     }
 
     /// For each row an upper bound on the energy norm of the shift that moves it from its place after a fit exactly to its gap

@@ -1,0 +1,38 @@
+//! The answer of a problem whose equalities are eliminated.
+
+use crate::error::Error;
+use crate::method::Start;
+use crate::problem::ContactProblem;
+use crate::settings::Settings;
+use crate::solution::{Seconds, Solution};
+use crate::transform::Elimination;
+
+/// The answer, found by `solve` without the equalities, with the equalities put back and without a certificate; `None` if they are not
+/// eliminated, or if the rest has no answer of its own, or more than one: that is decided for the whole.
+///
+/// # Errors
+/// [`Error::Infeasible`] with rows of the whole; [`Error::Interrupted`].
+pub(super) fn solved(
+    problem: &ContactProblem,
+    start: &Start,
+    settings: &Settings,
+    solve: impl Fn(&ContactProblem, &Start, &Settings) -> Result<Solution, Error>,
+) -> Result<Option<Solution>, Error> {
+    let Some(elimination) = Elimination::of(problem)? else { return Ok(None) };
+    // The certificate of the whole and its proof follow.
+    let settings = &Settings { prove: false, ..settings.clone() };
+    let Ok(rest) = elimination.problem(problem) else { return Ok(None) };
+    let answer = match solve(&rest, &elimination.start(start), settings) {
+        Ok(solution) => solution,
+        Err(Error::NotCertified { solution, .. }) => *solution,
+        Err(Error::Interrupted) => return Err(Error::Interrupted),
+        Err(Error::Infeasible { rows, weights, .. }) => {
+            let (rows, weights) = elimination.contradiction(problem, &rows, &weights);
+            let is_proven = problem.overlap(&rows, &weights).is_some();
+            return if is_proven { Err(problem.infeasible(&rows, &weights)) } else { Ok(None) };
+        }
+        Err(_) => return Ok(None),
+    };
+    let seconds = Seconds { proof: 0.0, ..answer.seconds };
+    Ok(Some(elimination.expanded(problem, Solution { seconds, ..answer })))
+}

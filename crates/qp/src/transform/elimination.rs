@@ -1,0 +1,425 @@
+//! The equalities of a problem eliminated, sparse, with the way back.
+//!
+//! Equalities `E u = e` of rank r are solved for r dofs, the pivots: `u = u_0 + Z y`, y the other dofs. The rest of the problem is one in y,
+//!
+//! ```text
+//! minimise 1/2 y' Z'K Z y - (f - K u_0)' Z y   subject to   B Z y <= g - B u_0
+//! ```
+//!
+//! which is definite wherever the equalities hold a motion without energy. The way back gives the multipliers of the equalities from the
+//! forces on the pivots. All of it has twice the working precision, so that rows that cancel are seen to cancel.
+//!
+//! # Source
+//! The choice of pivots: I. S. Duff, A. M. Erisman, J. K. Reid, *Direct Methods for Sparse Matrices*, Oxford University Press (1986), ch. 7.
+
+use std::collections::{BTreeMap, HashMap};
+
+use crate::error::Error;
+use crate::linear::multigrid::NearNullSpace;
+use crate::linear::{SparseMatrix, SymmetricMatrix, Twice};
+use crate::method::Start;
+use crate::problem::{ContactProblem, Equality};
+use crate::solution::{ContactSet, Iteration, Solution};
+
+/// A pivot has at least this share of the largest entry of its row.
+const PIVOT: f64 = 0.1;
+
+/// A sum below this share of its terms is zero: far above the rounding of twice the working precision.
+const CANCELLED: f64 = 1e-26;
+
+/// A row follows from others, but for the rounding of its entries, if less than this share of them is left.
+const FOLLOWS: f64 = 4.0 * f64::EPSILON;
+
+/// The elimination may add this many entries to K for each one that it has, and `FEW` to any: more, and the equalities stay pairs of rows.
+const FILL: usize = 4;
+
+/// Entries that are not worth counting.
+const FEW: usize = 2_000_000;
+
+/// Sparse numbers by their places.
+type Sparse = BTreeMap<usize, Twice>;
+
+/// A sum with the magnitudes of its terms.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sum {
+    value: Twice,
+    terms: f64,
+}
+
+impl Sum {
+    fn add(&mut self, term: Twice) {
+        self.value = self.value + term;
+        self.terms += term.rounded().abs();
+    }
+
+    /// Zero if the terms cancel.
+    fn settled(self) -> Twice {
+        if self.value.rounded().abs() > CANCELLED * self.terms { self.value } else { Twice::ZERO }
+    }
+}
+
+/// A dof that an equality gives: `u_dof = constant + sum of others`.
+#[derive(Clone, Debug)]
+struct Pivot {
+    dof: usize,
+    constant: Twice,
+    /// Dofs that stay, with their coefficients.
+    others: Sparse,
+    /// The weights of the equalities whose sum is the row of this pivot, by their numbers.
+    weights: Sparse,
+}
+
+/// The equalities of a problem, solved for some of its dofs.
+#[derive(Clone, Debug)]
+pub struct Elimination {
+    equalities: Vec<Equality>,
+    pivots: Vec<Pivot>,
+    /// The number of each dof among those that stay, or that of its pivot.
+    place: Vec<Result<usize, usize>>,
+    /// The dofs, and the rows, that stay, in increasing order.
+    dofs: Vec<usize>,
+    rows: Vec<usize>,
+}
+
+impl Elimination {
+    /// The elimination of all equalities of `problem`; `None` if it would fill the stiffness, or if it is open within rounding whether some
+    /// of them follow from others or contradict them.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] for equalities that contradict each other.
+    pub fn of(problem: &ContactProblem) -> Result<Option<Self>, Error> {
+        let (equalities, by_row) = (problem.equalities().to_vec(), problem.contact().transposed());
+        // Short rows first: they fill the others least.
+        let mut order: Vec<usize> = (0..equalities.len()).collect();
+        order.sort_by_key(|&number| by_row.column(equalities[number].row).count());
+        let columns: Vec<usize> = (0..problem.dofs())
+            .map(|dof| problem.stiffness().lower().column(dof).count() + problem.contact().column(dof).count())
+            .collect();
+        let most = FEW + FILL * problem.stiffness().entries();
+        let (mut found, mut fill) = (Found::default(), 0);
+        for number in order {
+            let row = equalities[number].row;
+            let entries: Sparse =
+                by_row.column(row).filter(|entry| entry.1 != 0.0).map(|(dof, b)| (dof, b.into())).collect();
+            match found.reduced(&entries, problem.gap()[row].into(), number) {
+                Reduced::Row(pivot) => {
+                    let largest = pivot.others.values().map(|a| a.rounded().abs()).fold(0.0, f64::max);
+                    let may_be = |entry: &(&usize, &Twice)| entry.1.rounded().abs() >= PIVOT * largest;
+                    let best = pivot.others.iter().filter(may_be).min_by_key(|entry| columns[*entry.0]);
+                    let Some((&dof, _)) = best else { return Ok(None) };
+                    fill += pivot.others.len() * (pivot.others.len() + columns[dof]);
+                    if fill > most {
+                        return Ok(None);
+                    }
+                    found.solve_for(dof, pivot);
+                }
+                Reduced::Follows => {}
+                Reduced::Contradicts(weights) => {
+                    let (rows, weights) = signed(&equalities, &weights);
+                    return match problem.overlap(&rows, &weights) {
+                        Some(_) => Err(problem.infeasible(&rows, &weights)),
+                        None => Ok(None),
+                    };
+                }
+                Reduced::Unclear => return Ok(None),
+            }
+        }
+        Ok(Some(Self::with(problem, equalities, found.pivots)))
+    }
+
+    fn with(problem: &ContactProblem, equalities: Vec<Equality>, pivots: Vec<Pivot>) -> Self {
+        let mut place = vec![Ok(0); problem.dofs()];
+        pivots.iter().enumerate().for_each(|(number, pivot)| place[pivot.dof] = Err(number));
+        let dofs: Vec<usize> = (0..problem.dofs()).filter(|&dof| place[dof].is_ok()).collect();
+        dofs.iter().enumerate().for_each(|(number, &dof)| place[dof] = Ok(number));
+        let mut is_equality = vec![false; problem.rows()];
+        equalities.iter().flat_map(|pair| [pair.row, pair.opposed]).for_each(|row| is_equality[row] = true);
+        let rows = (0..problem.rows()).filter(|&row| !is_equality[row]).collect();
+        Elimination { equalities, pivots, place, dofs, rows }
+    }
+
+    /// The problem in the dofs that stay.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`].
+    pub fn problem(&self, problem: &ContactProblem) -> Result<ContactProblem, Error> {
+        let count = self.dofs.len();
+        let (stiffness, load) = (self.stiffness(problem)?, self.load(problem));
+        let mut sums: BTreeMap<(usize, usize), Sum> = BTreeMap::new();
+        let mut gaps: Vec<Sum> = vec![Sum::default(); self.rows.len()];
+        let mut place_of_row = vec![None; problem.rows()];
+        for (place, &row) in self.rows.iter().enumerate() {
+            place_of_row[row] = Some(place);
+            gaps[place].add(problem.gap()[row].into());
+        }
+        for (row, dof, b) in problem.contact().triplets() {
+            let Some(row) = place_of_row[row] else { continue };
+            match self.place[dof] {
+                Ok(place) => sums.entry((row, place)).or_default().add(b.into()),
+                Err(pivot) => {
+                    let Pivot { constant, others, .. } = &self.pivots[pivot];
+                    let add = |(dof, &a): (&usize, &Twice)| {
+                        let place = self.place[*dof].unwrap_or(0);
+                        sums.entry((row, place)).or_default().add(Twice::from(b) * a);
+                    };
+                    others.iter().for_each(add);
+                    gaps[row].add(-(Twice::from(b) * *constant));
+                }
+            }
+        }
+        let entries: Vec<(usize, usize, f64)> =
+            sums.into_iter().map(|((row, column), sum)| (row, column, sum.settled().rounded())).collect();
+        let contact = SparseMatrix::from_triplets(self.rows.len(), count, &entries)?;
+        let gap =
+            gaps.into_iter().map(|sum| if sum.terms.is_finite() { sum.settled().rounded() } else { f64::INFINITY });
+        let reduced = ContactProblem::new(stiffness, load, contact, gap.collect())?;
+        let Some(modes) = problem.near_null() else { return Ok(reduced) };
+        let staying = |mode: &Vec<f64>| self.dofs.iter().map(|&dof| mode[dof]).collect::<Vec<f64>>();
+        let moves = |mode: &Vec<f64>| mode.iter().any(|&value| value != 0.0);
+        match NearNullSpace::of_modes(modes.vectors().iter().map(staying).filter(moves).collect()) {
+            Some(modes) => reduced.with_near_null(modes),
+            None => Ok(reduced),
+        }
+    }
+
+    /// The dofs that stay on which a dof depends, with their places and coefficients.
+    fn in_staying(&self, dof: usize) -> Vec<(usize, Twice)> {
+        match self.place[dof] {
+            Ok(place) => vec![(place, 1.0.into())],
+            Err(pivot) => {
+                let place = |(other, &a): (&usize, &Twice)| (self.place[*other].unwrap_or(0), a);
+                self.pivots[pivot].others.iter().map(place).collect()
+            }
+        }
+    }
+
+    /// `Z'K Z`; entries between dofs that no equality joins stay bit by bit.
+    fn stiffness(&self, problem: &ContactProblem) -> Result<SymmetricMatrix, Error> {
+        let mut sums: HashMap<(usize, usize), Sum> = HashMap::new();
+        let mut entries = Vec::with_capacity(problem.stiffness().entries());
+        for (row, column, value) in problem.stiffness().lower().triplets() {
+            if let (Ok(row), Ok(column)) = (self.place[row], self.place[column]) {
+                entries.push((row.max(column), row.min(column), value));
+                continue;
+            }
+            let value = Twice::from(value);
+            let [of_row, of_column] = [row, column].map(|dof| self.in_staying(dof));
+            for &(a, of_a) in &of_row {
+                for &(b, of_b) in &of_column {
+                    // An entry beside the diagonal stands for two, which meet where both dofs depend on the same one.
+                    let times = match (row == column, a == b) {
+                        (true, _) if a < b => continue,
+                        (false, true) => 2.0,
+                        _ => 1.0,
+                    };
+                    let term = value * of_a * of_b * times.into();
+                    sums.entry((a.max(b), a.min(b))).or_default().add(term);
+                }
+            }
+        }
+        // One rounding of each sum, with the entry of K itself.
+        for (row, column, value) in &mut entries {
+            if let Some(mut sum) = sums.remove(&(*row, *column)) {
+                sum.add((*value).into());
+                *value = sum.settled().rounded();
+            }
+        }
+        let mut added: Vec<(usize, usize, f64)> =
+            sums.into_iter().map(|((row, column), sum)| (row, column, sum.settled().rounded())).collect();
+        added.sort_unstable_by_key(|entry| (entry.1, entry.0));
+        entries.extend(added);
+        SymmetricMatrix::from_lower(SparseMatrix::from_triplets(self.dofs.len(), self.dofs.len(), &entries)?)
+    }
+
+    /// `Z'(f - K u_0)`.
+    fn load(&self, problem: &ContactProblem) -> Vec<f64> {
+        let constant = |dof: usize| self.place[dof].err().map_or(Twice::ZERO, |pivot| self.pivots[pivot].constant);
+        let mut forces: Vec<Sum> = vec![Sum::default(); problem.dofs()];
+        forces.iter_mut().zip(problem.load()).for_each(|(force, &f)| force.add(f.into()));
+        for (row, column, value) in problem.stiffness().lower().triplets() {
+            let value = Twice::from(value);
+            forces[row].add(-(value * constant(column)));
+            if row != column {
+                forces[column].add(-(value * constant(row)));
+            }
+        }
+        let mut load: Vec<Sum> = self.dofs.iter().map(|&dof| forces[dof]).collect();
+        for pivot in &self.pivots {
+            for (dof, &a) in &pivot.others {
+                load[self.place[*dof].unwrap_or(0)].add(a * forces[pivot.dof].value);
+            }
+        }
+        load.into_iter().map(|sum| sum.settled().rounded()).collect()
+    }
+
+    /// A start in the dofs and rows that stay.
+    pub fn start(&self, start: &Start) -> Start {
+        let displacement = start.displacement.as_ref().map(|u| self.dofs.iter().map(|&dof| u[dof]).collect());
+        let contact_set =
+            start.contact_set.as_ref().map(|set| self.rows.iter().map(|&row| set.contains(row)).collect());
+        Start { displacement, contact_set }
+    }
+
+    /// The displacement of all dofs, length n, from that of those that stay.
+    fn displacement(&self, y: &[f64]) -> Vec<f64> {
+        let given = |pivot: &Pivot| {
+            let of = |(dof, &a): (&usize, &Twice)| a * y[self.place[*dof].unwrap_or(0)].into();
+            pivot.others.iter().map(of).fold(pivot.constant, |sum, term| sum + term).rounded()
+        };
+        let value = |place: &Result<usize, usize>| match *place {
+            Ok(place) => y[place],
+            Err(pivot) => given(&self.pivots[pivot]),
+        };
+        self.place.iter().map(value).collect()
+    }
+
+    /// The multipliers of the equalities, one for each, that balance these forces on the pivots.
+    fn balancing(&self, force: &[f64]) -> Vec<f64> {
+        let mut multipliers = vec![Twice::ZERO; self.equalities.len()];
+        for pivot in &self.pivots {
+            for (number, &weight) in &pivot.weights {
+                multipliers[*number] = multipliers[*number] + weight * force[pivot.dof].into();
+            }
+        }
+        multipliers.into_iter().map(Twice::rounded).collect()
+    }
+
+    /// An answer in the dofs that stay as one of the whole, without a certificate.
+    pub fn expanded(&self, problem: &ContactProblem, answer: Solution) -> Solution {
+        let displacement = self.displacement(&answer.displacement);
+        let mut multiplier = vec![0.0; problem.rows()];
+        self.rows.iter().zip(&answer.multiplier).for_each(|(&row, &force)| multiplier[row] = force);
+        let left: Vec<f64> = problem.accurate_residual(&displacement, &multiplier).iter().map(|force| -force).collect();
+        for (pair, mu) in self.equalities.iter().zip(self.balancing(&left)) {
+            if mu <= 0.0 { multiplier[pair.row] = mu } else { multiplier[pair.opposed] = -mu / pair.ratio }
+        }
+        let set = |of: &ContactSet| {
+            let mut set = ContactSet::open(problem.rows());
+            of.iter().filter_map(|place| self.rows.get(place)).for_each(|&row| set.insert(row));
+            // One row of each pair: both together follow from each other.
+            let pressing = |pair: &Equality| if multiplier[pair.opposed] < 0.0 { pair.opposed } else { pair.row };
+            self.equalities.iter().for_each(|pair| set.insert(pressing(pair)));
+            set
+        };
+        let history = answer.history.iter();
+        let history = history.map(|step| Iteration { contact_set: set(&step.contact_set), ..step.clone() }).collect();
+        let (contact_set, method) = (set(&answer.contact_set), format!("{}-eliminated", answer.method));
+        Solution { contact_set, history, method, displacement, multiplier, proven: None, ..answer }
+    }
+
+    /// Rows that contradict each other, with their weights, from those of the rows that stay: the equalities take what is left on the pivots.
+    pub fn contradiction(&self, problem: &ContactProblem, rows: &[usize], weights: &[f64]) -> (Vec<usize>, Vec<f64>) {
+        let mut pressed = vec![0.0; problem.rows()];
+        rows.iter().zip(weights).for_each(|(&row, weight)| pressed[self.rows[row]] += weight);
+        let left: Vec<f64> = problem.contact().mul_transposed(&pressed).iter().map(|force| -force).collect();
+        let of_equalities = self.balancing(&left).into_iter().map(Twice::from).enumerate().collect();
+        let (mut all, mut of_all) = signed(&self.equalities, &of_equalities);
+        all.extend(rows.iter().map(|&row| self.rows[row]));
+        of_all.extend(weights);
+        (all, of_all)
+    }
+}
+
+/// The rows of the pairs, each on the side of its weight, with their magnitudes.
+fn signed(equalities: &[Equality], weights: &Sparse) -> (Vec<usize>, Vec<f64>) {
+    let of = |(&number, weight): (&usize, &Twice)| {
+        let Equality { row, opposed, ratio } = equalities[number];
+        let weight = weight.rounded();
+        if weight >= 0.0 { (row, weight) } else { (opposed, -weight / ratio) }
+    };
+    weights.iter().filter(|entry| entry.1.rounded() != 0.0).map(of).unzip()
+}
+
+/// What is left of an equality after the pivots so far.
+enum Reduced {
+    /// `sum of others + constant = 0`, not yet solved for a dof.
+    Row(Pivot),
+    Follows,
+    /// Nothing is left but a number: with these weights the equalities contradict each other.
+    Contradicts(Sparse),
+    /// No more is left than rounding of the entries may leave.
+    Unclear,
+}
+
+/// The pivots so far. None depends on another.
+#[derive(Default)]
+struct Found {
+    pivots: Vec<Pivot>,
+    by_dof: HashMap<usize, usize>,
+    /// The pivots that depend on a dof that stays.
+    depending: HashMap<usize, Vec<usize>>,
+}
+
+impl Found {
+    /// The equality `entries u = right` with the pivots put in.
+    fn reduced(&self, entries: &Sparse, right: Twice, number: usize) -> Reduced {
+        let mut sums: BTreeMap<usize, Sum> = BTreeMap::new();
+        let mut weights: BTreeMap<usize, Sum> = BTreeMap::new();
+        let mut constant = Sum::default();
+        constant.add(-right);
+        weights.entry(number).or_default().add(1.0.into());
+        for (dof, &b) in entries {
+            let Some(&pivot) = self.by_dof.get(dof) else {
+                sums.entry(*dof).or_default().add(b);
+                continue;
+            };
+            let pivot = &self.pivots[pivot];
+            pivot.others.iter().for_each(|(dof, &a)| sums.entry(*dof).or_default().add(b * a));
+            constant.add(b * pivot.constant);
+            // The row of a pivot is `u_dof - others = constant`.
+            pivot.weights.iter().for_each(|(number, &weight)| weights.entry(*number).or_default().add(-(b * weight)));
+        }
+        let terms = sums.values().map(|sum| sum.terms).fold(0.0, f64::max);
+        let weights: Sparse = weights.into_iter().map(|(number, sum)| (number, sum.settled())).collect();
+        let others: Sparse = sums.into_iter().map(|(dof, sum)| (dof, sum.settled())).collect();
+        let others: Sparse = others.into_iter().filter(|entry| entry.1 != Twice::ZERO).collect();
+        let largest = others.values().map(|a| a.rounded().abs()).fold(0.0, f64::max);
+        let (left, size) = (constant.settled(), constant.terms);
+        match (others.is_empty(), left == Twice::ZERO) {
+            (true, true) => Reduced::Follows,
+            (true, false) => {
+                let sign = if left.rounded() > 0.0 { 1.0 } else { -1.0 };
+                Reduced::Contradicts(
+                    weights.into_iter().map(|(number, weight)| (number, weight * sign.into())).collect(),
+                )
+            }
+            _ if largest > FOLLOWS * terms => Reduced::Row(Pivot { dof: 0, constant: left, others, weights }),
+            // The entries are rounded, and so is the right-hand side.
+            _ if left.rounded().abs() <= FOLLOWS * size => Reduced::Follows,
+            _ => Reduced::Unclear,
+        }
+    }
+
+    /// Solves a row for one of its dofs, and puts it into the pivots before.
+    fn solve_for(&mut self, dof: usize, row: Pivot) {
+        let Pivot { constant, mut others, weights, .. } = row;
+        let Some(own) = others.remove(&dof) else { return };
+        let divided =
+            |values: Sparse, by: Twice| -> Sparse { values.into_iter().map(|(at, a)| (at, a / by)).collect() };
+        let pivot =
+            Pivot { dof, constant: -(constant / own), others: divided(others, -own), weights: divided(weights, own) };
+        let number = self.pivots.len();
+        for before in self.depending.remove(&dof).unwrap_or_default() {
+            let earlier = &mut self.pivots[before];
+            let Some(share) = earlier.others.remove(&dof) else { continue };
+            for (other, &a) in &pivot.others {
+                let before_it = earlier.others.get(other);
+                if before_it.is_none() {
+                    self.depending.entry(*other).or_default().push(before);
+                }
+                let mut sum = Sum::default();
+                sum.add(before_it.copied().unwrap_or_default());
+                sum.add(share * a);
+                earlier.others.insert(*other, sum.settled());
+            }
+            earlier.constant = earlier.constant + share * pivot.constant;
+            for (equality, &weight) in &pivot.weights {
+                let sum = earlier.weights.entry(*equality).or_insert(Twice::ZERO);
+                *sum = *sum + share * weight;
+            }
+        }
+        pivot.others.keys().for_each(|other| self.depending.entry(*other).or_default().push(number));
+        self.by_dof.insert(dof, number);
+        self.pivots.push(pivot);
+    }
+}
