@@ -15,13 +15,13 @@ pub fn start_of(start: Option<&Bound<'_, PyAny>>, problem: &ContactProblem) -> P
     let py = start.py();
     if let Ok(solution) = start.cast::<Solution>() {
         let known = &solution.get().inner;
-        if known.displacement.len() != problem.dofs() || known.contact_set.rows() != problem.rows() {
+        if known.displacement.len() != problem.dofs() || known.contact_set.rows() != problem.inequalities() {
             let sentence = format!(
                 "start has {} dofs and {} rows; the problem has {} dofs and {} rows",
                 known.displacement.len(),
                 known.contact_set.rows(),
                 problem.dofs(),
-                problem.rows()
+                problem.inequalities()
             );
             return Err(bad_input(py, sentence));
         }
@@ -33,12 +33,13 @@ pub fn start_of(start: Option<&Bound<'_, PyAny>>, problem: &ContactProblem) -> P
         .is_ok_and(|kind| kind.extract::<String>().is_ok_and(|kind| kind == "i" || kind == "u"));
     if is_rows {
         let rows = Indices::of("start", start)?.to_usize(py)?;
-        if let Some(row) = rows.iter().find(|&&row| row >= problem.rows()) {
+        if let Some(row) = rows.iter().find(|&&row| row >= problem.inequalities()) {
             let row = if *row == usize::MAX { "a negative number".into() } else { row.to_string() };
-            let sentence = format!("start names the row {row}; rows go from 0 to {}", problem.rows().saturating_sub(1));
+            let sentence =
+                format!("start names the row {row}; rows go from 0 to {}", problem.inequalities().saturating_sub(1));
             return Err(bad_input(py, sentence));
         }
-        let mut set = ContactSet::open(problem.rows());
+        let mut set = ContactSet::open(problem.inequalities());
         rows.into_iter().for_each(|row| set.insert(row));
         return Ok(Some(set.into()));
     }

@@ -29,7 +29,7 @@ impl Prepared {
     }
 
     fn gap(&self, g: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>> {
-        g.map_or_else(|| Ok(self.problem.gap().to_vec()), |g| reals("g", g))
+        g.map_or_else(|| Ok(self.problem.inequalities_given().1.to_vec()), |g| reals("g", g))
     }
 }
 
@@ -175,6 +175,11 @@ impl Path {
     /// Returns the multipliers at t, length m, <= 0 in compression.
     fn multiplier<'py>(&self, py: Python<'py>, t: f64) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, &self.inner.multiplier(place(py, t)?))
+    }
+
+    /// Returns the multipliers of the equality rows at t, length p, of either sign.
+    fn equality_multiplier<'py>(&self, py: Python<'py>, t: f64) -> PyResult<Bound<'py, PyAny>> {
+        of_reals(py, &self.inner.equality_multiplier(place(py, t)?))
     }
 
     /// Returns the indices of the closed rows at t; at an event, those just before it.

@@ -15,6 +15,7 @@ pub struct Solution {
     pub inner: Arc<Answer>,
     displacement: PyOnceLock<Py<PyAny>>,
     multiplier: PyOnceLock<Py<PyAny>>,
+    equality_multiplier: PyOnceLock<Py<PyAny>>,
     closed: PyOnceLock<Py<PyAny>>,
 }
 
@@ -24,6 +25,7 @@ impl Solution {
             inner: Arc::new(answer),
             displacement: PyOnceLock::new(),
             multiplier: PyOnceLock::new(),
+            equality_multiplier: PyOnceLock::new(),
             closed: PyOnceLock::new(),
         }
     }
@@ -66,6 +68,12 @@ impl Solution {
     #[getter]
     fn multiplier(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         once(py, &self.multiplier, || Ok(of_reals(py, &self.inner.multiplier)?.unbind()))
+    }
+
+    /// Multipliers of the equality rows, length p, in the unit of force, of either sign; empty without such rows.
+    #[getter]
+    fn equality_multiplier(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        once(py, &self.equality_multiplier, || Ok(of_reals(py, &self.inner.equality_multiplier)?.unbind()))
     }
 
     /// Indices of the closed rows, counted from 0, in increasing order.

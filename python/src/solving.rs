@@ -84,15 +84,21 @@ pub fn prepare<'py>(
     }
 }
 
-/// Returns the certificate of any displacement u (length n) and multiplier (length m, <= 0 in compression).
+/// Returns the certificate of any displacement u (length n), multiplier (length m, <= 0 in compression) and multiplier of the equality
+/// rows (length p, of either sign).
 #[pyfunction]
+#[pyo3(signature = (problem, u, multiplier, equality_multiplier = None))]
 pub fn verify(
     problem: &Bound<'_, Problem>,
     u: &Bound<'_, PyAny>,
     multiplier: &Bound<'_, PyAny>,
+    equality_multiplier: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Certificate> {
     let (py, inner): (_, Arc<ContactProblem>) = (problem.py(), problem.get().inner.clone());
-    let (displacement, multiplier) = (finite_reals("u", u)?, finite_reals("multiplier", multiplier)?);
+    let (displacement, mut multiplier) = (finite_reals("u", u)?, finite_reals("multiplier", multiplier)?);
+    if let Some(of_equalities) = equality_multiplier {
+        multiplier.extend(finite_reals("equality_multiplier", of_equalities)?);
+    }
     let place = Place::for_problem(&inner);
     match run(py, place, move |_: &Watch| inner.certify(&displacement, &multiplier))? {
         End::Done(Ok(inner)) => Ok(Certificate { inner }),

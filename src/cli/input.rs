@@ -107,11 +107,13 @@ impl Input {
         }
     }
 
-    /// The warnings of the scene, one line each; none for a problem directory.
+    /// The warnings of the scene, or of the problem of a directory, one line each.
     pub fn warnings(&self) -> String {
         match &self.content {
             Content::Scene(model) => warnings(model),
-            Content::Directory(_) => String::new(),
+            Content::Directory(problem) => {
+                problem.warnings().iter().map(|warning| format!("warning: {warning}\n")).collect()
+            }
         }
     }
 }

@@ -509,6 +509,9 @@ pub(super) struct Verify {
     /// Contact multiplier lambda of the contact rows, negative in compression
     #[arg(long, value_name = "lambda.mtx")]
     pub multiplier: PathBuf,
+    /// Multiplier mu of the equality rows of E.mtx, of either sign
+    #[arg(long, value_name = "mu.mtx")]
+    pub equality_multiplier: Option<PathBuf>,
     /// Relative tolerance of the certificate
     #[arg(long, default_value = "1e-9", value_name = "T", allow_negative_numbers = true, value_parser = parse_tolerance)]
     pub tolerance: f64,

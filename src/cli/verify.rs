@@ -1,7 +1,7 @@
 //! `signorini verify`: the certificate of an answer that came from elsewhere.
 
 use super::options::{Verify, most_memory};
-use super::outcome::{Outcome, Report};
+use super::outcome::{Outcome, Report, unfit, warn};
 use crate::Error;
 use crate::output::InWords;
 use crate::qp::{Settings, Watch, read_problem, read_vector};
@@ -17,7 +17,17 @@ pub(super) fn run(options: &Verify, watch: &Watch) -> Result<Outcome, Error> {
     let (threads, tolerance) = (options.threads, Some(options.tolerance));
     let mut settings = Settings::default().with_threads(threads).watched(watch);
     (settings.memory, settings.tolerance) = (memory, tolerance);
-    let certificate = problem.certify_within(options.factor_time, (&displacement, &multiplier), &settings)?;
+    let mut of_rows = multiplier.clone();
+    match &options.equality_multiplier {
+        Some(file) => of_rows.extend(read_vector(file)?),
+        None if problem.equality_rows() > 0 => {
+            let message = "the problem has equality rows (E.mtx); name the file of their multiplier";
+            return unfit("--equality-multiplier", message);
+        }
+        None => {}
+    }
+    warn(&problem.warnings().iter().map(|warning| format!("warning: {warning}\n")).collect::<String>());
+    let certificate = problem.certify_within(options.factor_time, (&displacement, &of_rows), &settings)?;
     let verification = Verification::new(certificate, &multiplier, ModelSize::of(&problem), options.tolerance);
     let text = verification.text(&format!("Problem directory {}", options.directory.display()), &Units::unnamed());
     Ok(Report::new(&verification, text)?.outcome(options.format, verification.status))

@@ -329,8 +329,8 @@ fn a_loose_part_between_two_walls_hides_no_bound_of_the_others() {
     let finding = Finding::read("loose_part_between_walls");
     finding.is_certified_by(&[Method::Auto]);
     let certificate = &finding.command(&["--format", "json"]).ends_with(0).json()["certificate"];
-    assert_eq!(certificate["loose_dofs"], 1);
-    // It has no stiffness whose digits could be lost.
+    // The walls meet: they hold it as an equality does, with no stiffness whose digits could be lost.
+    assert!(certificate["loose_dofs"].is_null(), "{certificate}");
     let text = finding.command(&[]).stdout;
     assert!(!text.contains("warning"), "{text}");
 }

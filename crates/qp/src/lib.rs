@@ -172,7 +172,7 @@ impl ContactProblem {
         plan::Ladder::of(self, known, settings)?.in_words(self, settings)
     }
 
-    /// The certificate of an answer (u, lambda), one entry per dof and per row, that came from elsewhere, within the memory of `settings`: with a factor if that is
+    /// The certificate of an answer (u, lambda), one entry per dof and per row of B and then of E, that came from elsewhere, within the memory of `settings`: with a factor if that is
     /// estimated to take at most `seconds`, else by multigrid.
     ///
     /// # Errors
@@ -215,8 +215,8 @@ impl ContactProblem {
 }
 
 impl Solution {
-    /// The files of an answer: name and text, `u.mtx` and `lambda.mtx`.
-    pub fn files(&self) -> [(&'static str, String); 2] {
+    /// The files of an answer: name and text, `u.mtx`, `lambda.mtx`, and with equality rows `mu.mtx`.
+    pub fn files(&self) -> Vec<(&'static str, String)> {
         matrix_market::solution_files(self)
     }
 }

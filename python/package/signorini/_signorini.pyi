@@ -39,7 +39,7 @@ _Start: TypeAlias = Solution | ArrayLike
 class Problem:
     """Frictionless unilateral contact as a convex quadratic program. The arrays are checked once, here.
 
-    minimise 1/2 u'K u - f'u  subject to  B u - g <= 0
+    minimise 1/2 u'K u - f'u  subject to  B u - g <= 0,  E u = e
 
     K: stiffness after supports, n x n, symmetric to rounding (1e-10 of its diagonal). Both triangles must be given; the values are
     taken from the lower one. K is a sparse matrix of scipy, an array of numpy, or an object with `to_scipy()`, such as a matrix of
@@ -49,6 +49,9 @@ class Problem:
     g: initial gaps, length m, in the unit of length. A negative gap means that the obstacle starts inside the body; inf, 1e20 or
     1e30 means that the row has no obstacle.
     If B and g are left out, the problem has no contact rows.
+
+    E: equality rows, p x n, in the same forms as K; e: their values, length p. They may follow from each other.
+    A row without entries whose gap or value is rounding beside the largest (16 eps) counts as 0, with a warning that names it.
 
     near_null: displacements of almost zero energy, n x k, one per column. Multigrid needs them for bodies in space.
     coordinates: coordinates of the nodes, one row per node; the rigid-body modes are computed from them. They can replace
@@ -65,6 +68,8 @@ class Problem:
         B: Any = None,
         g: ArrayLike | None = None,
         near_null: ArrayLike | None = None,
+        E: Any = None,
+        e: ArrayLike | None = None,
         *,
         coordinates: ArrayLike | None = None,
     ) -> Problem: ...
@@ -74,6 +79,9 @@ class Problem:
     @property
     def row_count(self) -> int:
         """Number of contact rows m."""
+    @property
+    def equality_count(self) -> int:
+        """Number of equality rows p."""
     @property
     def K(self) -> Any:
         """Stiffness, n x n, with both triangles, as a `csc_array` of scipy."""
@@ -87,10 +95,17 @@ class Problem:
     def g(self) -> NDArray[np.float64]:
         """Initial gaps, length m, read-only."""
     @property
+    def E(self) -> Any:
+        """Equality rows, p x n, as a `csc_array` of scipy; None without such rows."""
+    @property
+    def e(self) -> NDArray[np.float64] | None:
+        """Values of the equality rows, length p, read-only; None without such rows."""
+    @property
     def near_null(self) -> NDArray[np.float64] | None:
         """Displacements of almost zero energy, n x k, one per column; None if none were given."""
     def replace(self, *, f: ArrayLike | None = None, g: ArrayLike | None = None) -> Problem:
-        """Returns a problem with the load f (length n), the gaps g (length m), or both replaced; the matrices are shared."""
+        """Returns a problem with the load f (length n), the gaps g (length m), or both replaced; the matrices are shared, and so are the
+        equality rows."""
     def __reduce__(self) -> tuple[Any, ...]:
         """Supports pickle, so that a problem can be sent to another process."""
 
@@ -104,6 +119,9 @@ class Solution:
     @property
     def multiplier(self) -> NDArray[np.float64]:
         """Contact multipliers, length m, in the unit of force: the force on the body along each row, <= 0 in compression."""
+    @property
+    def equality_multiplier(self) -> NDArray[np.float64]:
+        """Multipliers of the equality rows, length p, in the unit of force, of either sign; empty without such rows."""
     @property
     def contact_set(self) -> NDArray[np.int64]:
         """Indices of the closed rows, counted from 0, in increasing order."""
@@ -292,6 +310,8 @@ class Path:
         """Returns the gaps at t, length m. Raises `BadInput` for a t outside [0, 1], as all methods of a path do."""
     def multiplier(self, t: float) -> NDArray[np.float64]:
         """Returns the multipliers at t, length m, <= 0 in compression."""
+    def equality_multiplier(self, t: float) -> NDArray[np.float64]:
+        """Returns the multipliers of the equality rows at t, length p, of either sign."""
     def contact_set(self, t: float) -> NDArray[np.int64]:
         """Returns the indices of the closed rows at t; at an event, those just before it."""
     def solution(self, t: float) -> Solution:
@@ -541,8 +561,11 @@ def prepare(
     `Interrupted`.
     """
 
-def verify(problem: Problem, u: ArrayLike, multiplier: ArrayLike) -> Certificate:
-    """Returns the certificate of any displacement u (length n) and multiplier (length m, <= 0 in compression).
+def verify(
+    problem: Problem, u: ArrayLike, multiplier: ArrayLike, equality_multiplier: ArrayLike | None = None
+) -> Certificate:
+    """Returns the certificate of any displacement u (length n), multiplier (length m, <= 0 in compression) and multiplier of the
+    equality rows (length p, of either sign).
 
     Raises `BadInput` if a length is wrong or a value is not finite.
     """

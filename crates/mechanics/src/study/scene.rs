@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::exact_path::ExactPath;
 use super::kept_answers::{KeptAnswers, points};
 use super::summary::{LargestDisplacement, OF_MESHED_PART};
-use super::warnings::{check_approach, initial_overlap, of_scene, point_support};
+use super::warnings::{AnswerWarning, check_approach, initial_overlap, of_scene, point_support};
 use super::{ModelSize, Summary, obstacles::contact_on_obstacles};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
@@ -30,8 +30,9 @@ impl Summary {
         assemble_seconds: f64,
     ) -> Summary {
         let warning = super::warnings::untouched(problem, &solution);
+        let empty = problem.warnings().into_iter().map(|message| AnswerWarning { code: "empty-row", message });
         let mut summary = Summary::new(solution, ModelSize::of(problem), goal, assemble_seconds);
-        summary.warnings.extend(warning);
+        summary.warnings.extend(empty.chain(warning));
         summary
     }
 }

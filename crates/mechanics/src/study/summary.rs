@@ -221,6 +221,9 @@ pub struct ModelSize {
     pub dofs: usize,
     /// Number m of rows of B, those that can never close included.
     pub contact_rows: usize,
+    /// Number p of equality rows; left out without such rows.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub equality_rows: usize,
     /// Number of unknowns of the method: fewer than `dofs` if the problem was condensed.
     pub condensed_dofs: usize,
     /// Entries of the stiffness, both triangles.
@@ -273,12 +276,27 @@ impl ModelSize {
     pub fn of(problem: &ContactProblem) -> Self {
         ModelSize {
             dofs: problem.dofs(),
-            contact_rows: problem.rows(),
+            contact_rows: problem.inequalities(),
+            equality_rows: problem.equality_rows(),
             condensed_dofs: problem.dofs(),
             stiffness_entries: problem.stiffness().entries(),
             ..ModelSize::default()
         }
     }
+
+    /// The numbers of rows in words.
+    pub fn rows_in_words(&self) -> String {
+        let rows = |count: usize, kind: &str| format!("{count} {kind} row{}", if count == 1 { "" } else { "s" });
+        let contact = rows(self.contact_rows, "contact");
+        match self.equality_rows {
+            0 => contact,
+            count => format!("{contact}, {}", rows(count, "equality")),
+        }
+    }
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 impl Summary {

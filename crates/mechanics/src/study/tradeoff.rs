@@ -193,7 +193,7 @@ impl Tradeoff {
 
 impl TradeoffMesh {
     fn of(problem: &ContactProblem, divided_by: usize) -> Self {
-        let (dofs, contact_rows) = (problem.dofs(), problem.gap().len());
+        let (dofs, contact_rows) = (problem.dofs(), problem.inequalities());
         TradeoffMesh { divided_by, dofs, contact_rows, discretisation_error: None }
     }
 }

@@ -237,7 +237,7 @@ fn between_nodes(answer: &Answer) -> Option<AnswerWarning> {
 
 /// Warns that no row of a problem without a scene is closed and none carries a force; names the nearest row.
 pub(super) fn untouched(problem: &ContactProblem, solution: &Solution) -> Option<AnswerWarning> {
-    if is_touched(solution) {
+    if is_touched(solution) || (problem.inequalities() == 0 && problem.equality_rows() > 0) {
         return None;
     }
     let message = match nearest(problem, solution) {
@@ -254,7 +254,8 @@ fn is_touched(solution: &Solution) -> bool {
 
 /// The row with the smallest remaining gap.
 fn nearest(problem: &ContactProblem, solution: &Solution) -> Option<(usize, f64)> {
-    let left = problem.violation(&solution.displacement).into_iter().map(|violation| -violation);
+    let left =
+        problem.violation(&solution.displacement).into_iter().take(problem.inequalities()).map(|violation| -violation);
     left.enumerate().filter(|(_, gap)| gap.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 

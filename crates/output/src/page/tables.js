@@ -123,7 +123,7 @@ function contactList(host, summary, data) {
     ],
     [
       "model",
-      `${model.nodes ? `${counted(model.nodes, "node")}, ${counted(model.elements, "element")}, ` : ""}${counted(model.dofs, "dof")}, ${counted(model.contact_rows, "contact row")}${part}`,
+      `${model.nodes ? `${counted(model.nodes, "node")}, ${counted(model.elements, "element")}, ` : ""}${counted(model.dofs, "dof")}, ${counted(model.contact_rows, "contact row")}${model.equality_rows ? `, ${counted(model.equality_rows, "equality row")}` : ""}${part}`,
     ],
     [
       "contact",

@@ -39,7 +39,7 @@ pub(crate) fn solve_text(title: &str, summary: &Summary, units: &Units) -> Strin
     let mut text = format!("{}\n", printable(title));
     let of_part = of_part(summary);
     let mut lines = |name: &str, content: Vec<String>| text += &entries(name, content);
-    lines("model", vec![format!("{mesh}{} dofs, {}{of_part}", model.dofs, plural(model.contact_rows, "contact row"))]);
+    lines("model", vec![format!("{mesh}{} dofs, {}{of_part}", model.dofs, model.rows_in_words())]);
     if summary.parts_of_whole.is_some() {
         lines("symmetry", wrapped(OF_SYMMETRY));
     }
@@ -393,7 +393,7 @@ fn certificate_text(certificate: &Certificate, goal: Goal) -> String {
 pub(crate) fn verify_text(title: &str, verification: &Verification) -> String {
     let Verification { model, contact, .. } = verification;
     let mut text = format!("{}\n", printable(title));
-    text += &entry("model", &format!("{} dofs, {}", model.dofs, plural(model.contact_rows, "contact row")));
+    text += &entry("model", &format!("{} dofs, {}", model.dofs, model.rows_in_words()));
     text += &entry("contact", &format!("{}, sum of multipliers {:.6e}", plural(contact.count, "row"), contact.force));
     text += &certificate_text(&verification.certificate, verification.tolerance.into());
     text + &warnings_text(&verification.warnings)
@@ -513,13 +513,8 @@ pub(crate) fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Ag
             ("seconds", &|(of, ..)| format!("{:.4}", of.seconds.factor + of.seconds.solve)),
         ],
     );
-    let mut text = format!(
-        "{}\n{} dofs, {}{}\n\n",
-        printable(title),
-        qp.model.dofs,
-        plural(qp.model.contact_rows, "contact row"),
-        of_part(qp)
-    );
+    let mut text =
+        format!("{}\n{} dofs, {}{}\n\n", printable(title), qp.model.dofs, qp.model.rows_in_words(), of_part(qp));
     text += &columns(&methods);
     if qp.parts_of_whole.is_some() {
         text += "-sum(lambda) and peak pressure are of the whole body, all other columns of the meshed part.\n";

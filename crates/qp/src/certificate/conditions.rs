@@ -59,7 +59,7 @@ fn worst(values: impl IntoIterator<Item = f64>) -> f64 {
 
 impl ContactProblem {
     /// The certificate of an answer: displacement u (length n, in m) and multiplier lambda (length m, in N, `<= 0` in
-    /// compression), with the energy bound if K is positive definite or the rows that press hold the body.
+    /// compression; with equality rows followed by theirs, of either sign), with the energy bound if K is positive definite or the rows that press hold the body.
     ///
     /// # Errors
     /// [`Error::Length`] for vectors that do not fit, [`Error::Numerical`] if the factorisation of K fails for lack of memory.
@@ -72,6 +72,7 @@ impl ContactProblem {
     /// # Errors
     /// As [`ContactProblem::certify`].
     pub(crate) fn examine(&self, by: &Bounding, displacement: &[f64], multiplier: &[f64]) -> Result<Examined, Error> {
+        let multiplier = &*self.of_all_rows(multiplier);
         self.check_answer(displacement, multiplier)?;
         if let Bounding::Pieces(pieces) = by {
             let examined = self.examine(&Bounding::Nothing, displacement, multiplier)?;
@@ -228,7 +229,13 @@ impl ContactProblem {
             if found == expected { Ok(()) } else { Err(Error::Length { name, found, expected, of }) }
         };
         length("displacement", displacement.len(), self.dofs(), "dofs")?;
-        length("multiplier", multiplier.len(), self.rows(), "contact rows")
+        let (found, of) =
+            (multiplier.len(), if self.equality_rows() == 0 { "contact rows" } else { "contact and equality rows" });
+        if found == self.rows() {
+            Ok(())
+        } else {
+            length("multiplier", found, self.inequalities() + self.equality_rows(), of)
+        }
     }
 
     /// `f + B' lambda - K u` of the given doubles, with twice the working precision.

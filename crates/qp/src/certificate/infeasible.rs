@@ -16,8 +16,16 @@ impl ContactProblem {
     pub(crate) fn infeasible(&self, rows: &[usize], weights: &[f64]) -> Error {
         let overlap = self.overlap(rows, weights).unwrap_or(0.0);
         let by = if overlap > 0.0 { format!(": they overlap by {overlap:.3e}") } else { String::new() };
-        let reason = format!("no displacement satisfies the contact rows {rows:?} together{by} (indices from 0)");
-        Error::Infeasible { reason, rows: rows.to_vec(), weights: weights.to_vec(), overlap }
+        let (rows, weights) = self.weights_of_given(rows, weights);
+        let (contact, equalities): (Vec<usize>, Vec<usize>) = rows.iter().partition(|&&row| row < self.inequalities());
+        let equalities: Vec<usize> = equalities.into_iter().map(|row| row - self.inequalities()).collect();
+        let named = match (contact.is_empty(), equalities.is_empty()) {
+            (_, true) => format!("the contact rows {contact:?}"),
+            (true, false) => format!("the equality rows {equalities:?}"),
+            (false, false) => format!("the contact rows {contact:?} and the equality rows {equalities:?}"),
+        };
+        let reason = format!("no displacement satisfies {named} together{by} (indices from 0)");
+        Error::Infeasible { reason, rows, weights, overlap }
     }
 
     /// The length by which the contact rows `rows` overlap under the weights y, one for each row: `-g'y` if the largest weight

@@ -52,6 +52,7 @@ impl ContactProblem {
     /// # Errors
     /// As [`ContactProblem::certify`].
     pub fn prove(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Option<ProvenSet>, Error> {
+        let multiplier = &*self.of_all_rows(multiplier);
         self.check_answer(displacement, multiplier)?;
         let norm = EnergyNorm::of(&self.stiffness, &self.contact)?;
         let answer = WithEvidence { displacement, multiplier, evidence: None };

@@ -43,11 +43,27 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     check_filled(&file, &contact, empty)?;
     let contact = matrix(contact)?;
     let gap = vector(&directory.join("g.mtx"), Values::FiniteOrInfinite)?;
-    let problem = ContactProblem::new(stiffness, load, contact, gap)?;
+    let problem = with_equalities(directory, ContactProblem::new(stiffness, load, contact, gap)?)?;
     match near_null(directory, problem.dofs())? {
         Some(near_null) => problem.with_near_null(near_null),
         None => Ok(problem),
     }
+}
+
+/// The problem with the equality rows of `E.mtx` and `e.mtx`, if there are these files.
+fn with_equalities(directory: &Path, problem: ContactProblem) -> Result<ContactProblem, Error> {
+    let [rows, values] = ["E.mtx", "e.mtx"].map(|name| directory.join(name));
+    let missing = |file: PathBuf, sentence: &str| Err(fault(file, format!("it is missing, but {sentence}")));
+    match (rows.exists(), values.exists()) {
+        (false, false) => return Ok(problem),
+        (true, false) => return missing(values, "there is E.mtx: every row of E needs a value"),
+        (false, true) => return missing(rows, "there is e.mtx: every value needs a row of E"),
+        (true, true) => {}
+    }
+    let content = read(&rows, Values::Finite)?;
+    let fits = content.columns == problem.dofs();
+    check_filled(&rows, &content, if fits { content.rows } else { content.rows.max(content.columns) })?;
+    problem.with_equalities(&matrix(content)?, read_vector(&values)?)
 }
 
 /// The other end of the problem of a directory: its gaps in `g1.mtx`, its load in `f1.mtx`; without a file the gaps or the load stay
@@ -73,7 +89,7 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
         }
         Err(fault(file.to_path_buf(), format!("it has length {}, but there are {} {of}", end.len(), own.len())))
     };
-    let gap = end(&gap_file, Values::FiniteOrInfinite, problem.gap(), "contact rows")?;
+    let gap = end(&gap_file, Values::FiniteOrInfinite, problem.inequalities_given().1, "contact rows")?;
     let load = end(&load_file, Values::Finite, problem.load(), "dofs")?;
     let last = problem.with(load, gap)?;
     let mut rows = problem.gap().iter().zip(last.gap()).enumerate();
@@ -136,12 +152,18 @@ fn columns(content: Content) -> Vec<Vec<f64>> {
 
 /// The files of a problem, with its near-null space if it has one.
 pub fn streamed_files<'a>(problem: &'a ContactProblem) -> Vec<Streamed<'a>> {
+    let (contact, gap) = problem.inequalities_given();
     let mut files = vec![
         Streamed::new(STIFFNESS, |out| write_entries(out, problem.stiffness().lower(), "symmetric")),
         Streamed::new("f.mtx", |out| write_columns(out, &[problem.load()])),
-        Streamed::new("B.mtx", |out| write_entries(out, problem.contact(), "general")),
-        Streamed::new("g.mtx", |out| write_columns(out, &[problem.gap()])),
+        Streamed::new("B.mtx", move |out| write_entries(out, &contact, "general")),
+        Streamed::new("g.mtx", move |out| write_columns(out, &[gap])),
     ];
+    if problem.equality_rows() > 0 {
+        let (rows, values) = problem.equalities_given();
+        files.push(Streamed::new("E.mtx", move |out| write_entries(out, &rows, "general")));
+        files.push(Streamed::new("e.mtx", move |out| write_columns(out, &[values])));
+    }
     let of_modes = |near_null: &'a Arc<NearNullSpace>| {
         Streamed::new("near_null.mtx", |out| write_columns(out, near_null.vectors()))
     };
@@ -173,10 +195,16 @@ fn vector(file: &Path, values: Values) -> Result<Vec<f64>, Error> {
     Ok(vector)
 }
 
-/// Name and text of the two Matrix Market files of an answer: `u.mtx` (displacement, length n) and `lambda.mtx`
-/// (multiplier, length m).
-pub fn solution_files(solution: &Solution) -> [(&'static str, String); 2] {
-    [("u.mtx", format_vector(&solution.displacement)), ("lambda.mtx", format_vector(&solution.multiplier))]
+/// Name and text of the Matrix Market files of an answer: `u.mtx` (displacement, length n), `lambda.mtx` (multiplier, length m), and with
+/// equality rows `mu.mtx` (their multiplier, length p).
+pub fn solution_files(solution: &Solution) -> Vec<(&'static str, String)> {
+    let vectors = [
+        ("u.mtx", &solution.displacement),
+        ("lambda.mtx", &solution.multiplier),
+        ("mu.mtx", &solution.equality_multiplier),
+    ];
+    let is_there = |entry: &(&str, &Vec<f64>)| entry.0 != "mu.mtx" || !entry.1.is_empty();
+    vectors.into_iter().filter(is_there).map(|(name, values)| (name, format_vector(values))).collect()
 }
 
 fn read(file: &Path, values: Values) -> Result<Content, Error> {

@@ -87,6 +87,9 @@ impl Prepared {
     }
 
     fn on_boundary(&self, gap: &[f64], is_bounded: bool) -> Result<BoundarySolution, Error> {
+        if self.problem.equality_rows() > 0 {
+            return Ok(self.solve(gap)?.into());
+        }
         let found = self.ask(gap, &self.start, |engine, task| engine.on_boundary(task, is_bounded));
         // The certificate of the whole answer shows what is wrong, unless the answer meets its goal.
         let Ok(Some(found)) = found else { return Ok(self.solve(gap)?.into()) };

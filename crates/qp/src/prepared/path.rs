@@ -61,12 +61,13 @@ impl Path {
 
     /// The multipliers, one per row, in force, at `t` on `piece`: at a corner the pieces on both sides agree except for rounding.
     pub fn multiplier_on(&self, piece: &Piece, t: f64) -> Vec<f64> {
-        self.walk.to_rows.multiplier(&piece.multiplier(t))
+        let [multiplier, _] = self.prepared.problem.split(self.walk.to_rows.multiplier(&piece.multiplier(t)));
+        multiplier
     }
 
     /// The closed rows on `piece`.
     pub fn contact_set_on(&self, piece: &Piece) -> ContactSet {
-        self.walk.to_rows.contact_set(&piece.contact_set)
+        self.prepared.problem.of_inequalities(&self.walk.to_rows.contact_set(&piece.contact_set))
     }
 
     /// The gaps at `t`, length m, in the problem's unit of length; negative if the obstacle starts inside the body.
@@ -77,6 +78,12 @@ impl Path {
     /// The multipliers at `t`, length m, in the problem's unit of force, `<= 0` in compression.
     pub fn multiplier(&self, t: f64) -> Vec<f64> {
         self.piece(t).map_or_else(Vec::new, |piece| self.multiplier_on(piece, t))
+    }
+
+    /// The multipliers of the equality rows at `t`, length p, in the problem's unit of force, of either sign.
+    pub fn equality_multiplier(&self, t: f64) -> Vec<f64> {
+        let of = |piece: &Piece| self.prepared.problem.split(self.walk.to_rows.multiplier(&piece.multiplier(t)));
+        self.piece(t).map_or_else(Vec::new, |piece| of(piece)[1].clone())
     }
 
     /// The closed rows at `t`; at an event those of the stretch before it.
@@ -114,6 +121,8 @@ impl Prepared {
     /// As [`Prepared::solve`] for both ends; [`Error::Interrupted`]; [`Error::NotCondensed`] for a problem that was not
     /// condensed or has a stiffness that is not definite by itself.
     pub fn path(&self, from: &[f64], to: &[f64]) -> Result<Path, Error> {
+        let gap = |gap: &[f64]| self.problem.gaps_of_all_rows(gap.to_vec());
+        let [from, to] = [&gap(from)[..], &gap(to)[..]];
         // A path takes a factor.
         if self.hierarchy().is_some() && self.settings.method == Method::Auto {
             return self.with_settings(&self.settings.clone().exactly())?.path(from, to);
@@ -123,7 +132,8 @@ impl Prepared {
             Some(walk) => Some(walk),
             None => walk(&Start::from(&self.solve(from)?.contact_set))?,
         };
-        let walk = walk.ok_or(Error::NotCondensed { step: "the exact path" })?;
+        let mut walk = walk.ok_or(Error::NotCondensed { step: "the exact path" })?;
+        walk.events.retain(|event| event.row < self.problem.inequalities());
         Ok(Path { prepared: self.clone(), from: from.to_vec(), to: to.to_vec(), walk })
     }
 }

@@ -37,7 +37,7 @@ use crate::solution::{Seconds, Solution};
 #[derive(Clone, Debug)]
 pub struct Prepared {
     /// The problem under the current load.
-    problem: ContactProblem,
+    pub(super) problem: ContactProblem,
     pub(super) settings: Settings,
     ladder: Arc<Ladder>,
     /// The data of the first attempt that memory and time allow; `None` if the stiffness cannot be prepared.
@@ -172,7 +172,7 @@ impl Prepared {
     /// [`Error::Length`] and [`Error::NotFinite`] for gaps or a start that do not fit, [`Error::Infeasible`] for rows that contradict each
     /// other at sight.
     fn problem_at(&self, gap: &[f64]) -> Result<ContactProblem, Error> {
-        self.start.check(self.problem.dofs(), self.problem.rows())?;
+        self.problem.start_of_all_rows(&self.start).check(self.problem.dofs(), self.problem.rows())?;
         let problem = self.problem.with_gap(gap.to_vec())?;
         problem.check_rows()?;
         Ok(problem)

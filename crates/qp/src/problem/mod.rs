@@ -1,6 +1,7 @@
 //! The contact problem as a convex QP, checked once.
 
 mod diagonal;
+mod given_rows;
 mod opposed;
 mod parts;
 
@@ -55,6 +56,11 @@ pub struct ContactProblem {
     free_mode: FoundOnce<bool>,
     opposed: FoundOnce<OpposedRows>,
     equalities: FoundOnce<Vec<Equality>>,
+    /// The number of equality rows: the last rows are as many, and the same from the other side.
+    equality_rows: usize,
+    /// The rows without an entry, and those of them whose gaps were rounding, with these gaps.
+    without_entries: Arc<[usize]>,
+    rounded: Vec<(usize, f64)>,
     /// The rows that count as equalities by themselves, with a multiplier of either sign: only in a certificate, see `two_sided`.
     two_sided: Vec<bool>,
 }
@@ -67,7 +73,8 @@ impl PartialEq for ContactProblem {
     /// Data that follow from equal data are equal.
     fn eq(&self, other: &Self) -> bool {
         let same_matrices = self.stiffness == other.stiffness && self.contact == other.contact;
-        let same_vectors = self.load == other.load && self.gap == other.gap;
+        let same_vectors =
+            self.load == other.load && self.gap == other.gap && self.equality_rows == other.equality_rows;
         same_matrices && same_vectors && self.near_null == other.near_null
     }
 }
@@ -87,7 +94,8 @@ fn with_infinite(mut gap: Vec<f64>) -> Vec<f64> {
 impl ContactProblem {
     /// The problem of stiffness K (n x n, in N/m), load f (length n, in N, along the positive axes), contact rows B (m x n,
     /// dimensionless) and initial gaps g (length m, in m). A row of B is positive towards the obstacle. A gap is negative if
-    /// the obstacle starts inside the body and `f64::INFINITY`, or exactly 1e20 or 1e30, without an obstacle.
+    /// the obstacle starts inside the body and `f64::INFINITY`, or exactly 1e20 or 1e30, without an obstacle. The gap of a row without
+    /// entries counts as zero if it is rounding beside the largest, see [`warnings`](Self::warnings).
     ///
     /// # Errors
     /// [`Error::Length`] and [`Error::Shape`] for sizes that do not fit, [`Error::NotFinite`] for a load that is not
@@ -108,7 +116,9 @@ impl ContactProblem {
         if let Some((dof, value)) = stiffness.diagonal().iter().enumerate().find(|entry| *entry.1 < 0.0) {
             return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
         }
-        let gap = with_infinite(gap);
+        let mut gap = with_infinite(gap);
+        let without_entries: Arc<[usize]> = given_rows::without_entries(&contact).into();
+        let rounded = given_rows::settle(&without_entries, &mut gap);
         let (diagonal, parts, free_mode) = (FoundOnce::default(), FoundOnce::default(), FoundOnce::default());
         let (opposed, equalities, two_sided) = (FoundOnce::default(), FoundOnce::default(), Vec::new());
         let near_null = None;
@@ -123,6 +133,9 @@ impl ContactProblem {
             free_mode,
             opposed,
             equalities,
+            equality_rows: 0,
+            without_entries,
+            rounded,
             two_sided,
         })
     }
@@ -151,7 +164,7 @@ impl ContactProblem {
         self.load.len()
     }
 
-    /// Number of contact rows m.
+    /// Number of rows: m of B, and two for each equality row.
     pub fn rows(&self) -> usize {
         self.gap.len()
     }
@@ -199,13 +212,15 @@ impl ContactProblem {
     /// As [`ContactProblem::new`].
     pub fn with(&self, load: Vec<f64>, gap: Vec<f64>) -> Result<Self, Error> {
         check_load(&load, self.dofs())?;
+        let gap = self.gaps_of_all_rows(gap);
         check_gap(&gap, self.rows())?;
         let (stiffness, contact, near_null) = (self.stiffness.clone(), self.contact.clone(), self.near_null.clone());
-        let gap = with_infinite(gap);
+        let mut gap = with_infinite(gap);
+        let rounded = given_rows::settle(&self.without_entries, &mut gap);
         let same_rows = gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
         let parts = if same_rows { self.parts.clone() } else { FoundOnce::default() };
         let equalities = if gap == self.gap { self.equalities.clone() } else { FoundOnce::default() };
-        Ok(ContactProblem { stiffness, load, contact, gap, near_null, parts, equalities, ..self.clone() })
+        Ok(ContactProblem { stiffness, load, contact, gap, near_null, parts, equalities, rounded, ..self.clone() })
     }
 
     /// The diagonal of K, computed at its first use.
@@ -242,7 +257,12 @@ impl ContactProblem {
     /// # Errors
     /// [`Error::Infeasible`] for a row without dofs and with a negative gap, and for two opposed rows with overlapping gaps.
     pub(crate) fn check_rows(&self) -> Result<(), Error> {
-        self.opposed_rows().check(&self.gap)
+        match self.opposed_rows().check(&self.gap) {
+            Err(Error::Infeasible { rows, weights, .. }) if self.equality_rows > 0 => {
+                Err(self.infeasible(&rows, &weights))
+            }
+            checked => checked,
+        }
     }
 
     fn opposed_rows(&self) -> &OpposedRows {

@@ -30,6 +30,7 @@ fn by(
     part: impl Fn(Ladder) -> Ladder,
 ) -> Result<Solution, Error> {
     let settings = &settings.started()?;
+    let start = &problem.start_of_all_rows(start);
     start.check(problem.dofs(), problem.rows())?;
     problem.check_rows()?;
     let ladder = part(Ladder::of(problem, Known { gaps: 1, is_whole: !start.is_unknown() }, settings)?);
@@ -303,6 +304,7 @@ pub(super) fn without_certificate(outcome: Outcome, name: &str) -> Solution {
         condensed_dofs: displacement.len(),
         displacement,
         multiplier,
+        equality_multiplier: Vec::new(),
         contact_set,
         method: format!("{name}{variant}"),
         iterations,

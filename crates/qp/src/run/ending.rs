@@ -57,6 +57,8 @@ impl Run<'_> {
         let (factor, certificate) = (of(|stages| stages.factor), of(|stages| stages.certificate));
         solution.proven = solution.proven.or(proven.0);
         solution.seconds = Seconds { factor, certificate, proof, solve: self.clock.elapsed().as_secs_f64() };
+        let solution = self.problem.in_given_rows(solution);
+        let mut solution = solution;
         if certified {
             return Ok(solution);
         }
@@ -106,7 +108,8 @@ impl Run<'_> {
                 let at_rest = without_certificate(Outcome::at_rest(self.problem, Ending::Unsettled), "none");
                 let (u, lambda) = (&at_rest.displacement, &at_rest.multiplier);
                 let certificate = self.problem.examine(&Bounding::Nothing, u, lambda)?.certificate;
-                Ok(fallen_short(Solution { certificate, cut_short, ..at_rest }, self.settings.goal()))
+                let at_rest = self.problem.in_given_rows(Solution { certificate, cut_short, ..at_rest });
+                Ok(fallen_short(at_rest, self.settings.goal()))
             }
             (Some(error), None) => Ok(error),
             (None, _) => Ok(Error::Interrupted),

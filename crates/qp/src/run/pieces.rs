@@ -68,6 +68,7 @@ pub(super) fn solved(
         },
         displacement,
         multiplier,
+        equality_multiplier: Vec::new(),
         certificate: Certificate::unknown(),
         attempts: answers.into_iter().flat_map(|answer| answer.attempts).collect(),
     };

@@ -133,6 +133,9 @@ pub struct Solution {
     /// Contact multiplier lambda, one entry per contact row, in the problem's unit of force, `<= 0` in compression.
     #[serde(skip)]
     pub multiplier: Vec<f64>,
+    /// Multiplier mu of the equality rows, one entry each, in the problem's unit of force, of either sign; empty without such rows.
+    #[serde(skip)]
+    pub equality_multiplier: Vec<f64>,
     /// The closed rows.
     #[serde(skip)]
     pub contact_set: ContactSet,

@@ -1,0 +1,182 @@
+//! The rows as they were given: those of B, and equality rows, each of which is a pair of rows inside; empty rows.
+
+use std::borrow::Cow;
+
+use super::ContactProblem;
+use crate::error::Error;
+use crate::linear::{SparseMatrix, check_vector};
+use crate::method::Start;
+use crate::solution::{ContactSet, Iteration, ProvenSet, Solution};
+
+/// The gap of a row without entries is rounding if it is below this share of the largest.
+const OF_LARGEST: f64 = 16.0 * f64::EPSILON;
+
+/// The rows of a matrix without an entry.
+pub(super) fn without_entries(contact: &SparseMatrix) -> Vec<usize> {
+    let mut has_entry = vec![false; contact.rows()];
+    contact.triplets().filter(|entry| entry.2 != 0.0).for_each(|(row, ..)| has_entry[row] = true);
+    (0..contact.rows()).filter(|&row| !has_entry[row]).collect()
+}
+
+/// Sets the gaps of these rows to zero where they are rounding beside the largest; returns the rows with their former gaps.
+pub(super) fn settle(without_entries: &[usize], gap: &mut [f64]) -> Vec<(usize, f64)> {
+    let size = OF_LARGEST * largest_finite(gap);
+    let is_rounding = |row: &usize| gap[*row] != 0.0 && gap[*row].abs() <= size;
+    let rows: Vec<usize> = without_entries.iter().copied().filter(is_rounding).collect();
+    rows.into_iter().map(|row| (row, std::mem::take(&mut gap[row]))).collect()
+}
+
+/// The largest magnitude of the finite gaps.
+fn largest_finite(gap: &[f64]) -> f64 {
+    gap.iter().filter(|gap| gap.is_finite()).fold(0.0, |most, gap| gap.abs().max(most))
+}
+
+impl ContactProblem {
+    /// The same problem with the equality rows `E u = e`: E is p x n, dimensionless, and e has length p, in m. They may follow from each
+    /// other. Then
+    ///
+    /// ```text
+    /// K u - f - B' lambda - E' mu = 0,   E u = e,   mu of either sign
+    /// ```
+    ///
+    /// Each counts as two rows after those of B: first all of `E u <= e`, then all of `-E u <= -e`.
+    ///
+    /// ```
+    /// use signorini_qp::{ContactProblem, SparseMatrix, SymmetricMatrix, solve_qp};
+    ///
+    /// // Two springs of stiffness 1, pushed with 3 and 1, whose ends move together: both by 2, and the tie takes 1.
+    /// let stiffness = SparseMatrix::from_triplets(2, 2, &[(0, 0, 1.0), (1, 1, 1.0)])?;
+    /// let none = SparseMatrix::from_triplets(0, 2, &[])?;
+    /// let tie = SparseMatrix::from_triplets(1, 2, &[(0, 0, 1.0), (0, 1, -1.0)])?;
+    /// let problem = ContactProblem::new(SymmetricMatrix::from_lower(stiffness)?, vec![3.0, 1.0], none, vec![])?;
+    /// let solution = solve_qp(&problem.with_equalities(&tie, vec![0.0])?)?;
+    /// assert_eq!((solution.displacement, solution.equality_multiplier), (vec![2.0, 2.0], vec![-1.0]));
+    /// # Ok::<(), signorini_qp::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Shape`], [`Error::Length`], [`Error::NotFinite`] for numbers that do not fit.
+    pub fn with_equalities(&self, rows: &SparseMatrix, values: Vec<f64>) -> Result<Self, Error> {
+        if rows.columns() != self.dofs() {
+            let (found, expected) = ((rows.rows(), rows.columns()), (rows.rows(), self.dofs()));
+            return Err(Error::Shape { name: "equality matrix", found, expected });
+        }
+        check_vector("equality vector", &values, (rows.rows(), "equality rows"), f64::is_finite, "finite")?;
+        let (inequalities, count) = (self.inequalities(), rows.rows());
+        let own = self.contact.triplets().filter(|entry| entry.0 < inequalities);
+        let sides = |first: usize, sign: f64| rows.triplets().map(move |(row, dof, b)| (first + row, dof, sign * b));
+        let entries: Vec<(usize, usize, f64)> =
+            own.chain(sides(inequalities, 1.0)).chain(sides(inequalities + count, -1.0)).collect();
+        let contact = SparseMatrix::from_triplets(inequalities + 2 * count, self.dofs(), &entries)?;
+        let mut gap = self.gap[..inequalities].to_vec();
+        gap.extend(&values);
+        gap.extend(values.iter().map(|value| -value));
+        let problem = ContactProblem::new(self.stiffness.clone(), self.load.clone(), contact, gap)?;
+        Ok(ContactProblem { near_null: self.near_null.clone(), equality_rows: count, ..problem })
+    }
+
+    /// Number m of rows of B.
+    pub fn inequalities(&self) -> usize {
+        self.rows() - 2 * self.equality_rows
+    }
+
+    /// Number p of equality rows.
+    pub fn equality_rows(&self) -> usize {
+        self.equality_rows
+    }
+
+    /// The matrix E (p x n) and the values e (length p) of the equality rows.
+    pub fn equalities_given(&self) -> (SparseMatrix, &[f64]) {
+        let rows: Vec<usize> = (self.inequalities()..self.inequalities() + self.equality_rows).collect();
+        (self.contact.select_rows(&rows), &self.gap[self.inequalities()..][..self.equality_rows])
+    }
+
+    /// The matrix B (m x n) and the gaps g (length m), without the equality rows.
+    pub fn inequalities_given(&self) -> (Cow<'_, SparseMatrix>, &[f64]) {
+        let count = self.inequalities();
+        let rows = || self.contact.select_rows(&(0..count).collect::<Vec<usize>>());
+        let contact = if self.equality_rows == 0 { Cow::Borrowed(&self.contact) } else { Cow::Owned(rows()) };
+        (contact, &self.gap[..count])
+    }
+
+    /// A sentence for each row without entries whose gap was rounding beside the largest gap, and counts as zero.
+    pub fn warnings(&self) -> Vec<String> {
+        let (inequalities, size) = (self.inequalities(), largest_finite(&self.gap));
+        let first_of_pair = self.rounded.iter().filter(|entry| entry.0 < inequalities + self.equality_rows);
+        let in_words = |&(row, gap): &(usize, f64)| {
+            let row = match row.checked_sub(inequalities) {
+                None => format!("contact row {row}"),
+                Some(row) => format!("equality row {row}"),
+            };
+            format!(
+                "{row} (from 0) has no entry, and the gap {gap:e}, which is rounding beside the largest, {size:e}: it counts as 0, and the \
+                 certificate is that of the changed problem"
+            )
+        };
+        first_of_pair.map(in_words).collect()
+    }
+
+    /// Multipliers of all rows, from those of the rows of B (m), followed by those of the equality rows (p); others stay as they are.
+    pub(crate) fn of_all_rows<'a>(&self, multiplier: &'a [f64]) -> Cow<'a, [f64]> {
+        let inequalities = self.inequalities();
+        if self.equality_rows == 0 || multiplier.len() != inequalities + self.equality_rows {
+            return Cow::Borrowed(multiplier);
+        }
+        let (own, of_equalities) = multiplier.split_at(inequalities);
+        let sides = [1.0, -1.0].map(|sign| of_equalities.iter().map(move |mu| (sign * mu).min(0.0)));
+        Cow::Owned(own.iter().copied().chain(sides.into_iter().flatten()).collect())
+    }
+
+    /// The gaps of all rows, from those of the rows of B; others stay as they are.
+    pub(crate) fn gaps_of_all_rows(&self, mut gap: Vec<f64>) -> Vec<f64> {
+        if self.equality_rows > 0 && gap.len() == self.inequalities() {
+            gap.extend(&self.gap[self.inequalities()..]);
+        }
+        gap
+    }
+
+    /// A start with a set of all rows, from one of the rows of B.
+    pub(crate) fn start_of_all_rows(&self, start: &Start) -> Start {
+        let of_all = |set: &ContactSet| match set.rows() == self.inequalities() {
+            true => ContactSet::from_fn(self.rows(), |row| set.contains(row)),
+            false => set.clone(),
+        };
+        Start { contact_set: start.contact_set.as_ref().map(of_all), ..start.clone() }
+    }
+
+    /// A set of the rows of B alone.
+    pub(crate) fn of_inequalities(&self, set: &ContactSet) -> ContactSet {
+        ContactSet::from_fn(self.inequalities(), |row| set.contains(row))
+    }
+
+    /// The multipliers of the rows of B, and those of the equality rows.
+    pub(crate) fn split(&self, mut multiplier: Vec<f64>) -> [Vec<f64>; 2] {
+        let pairs = multiplier.split_off(self.inequalities());
+        let (sides, opposed) = pairs.split_at(self.equality_rows);
+        [multiplier, sides.iter().zip(opposed).map(|(a, b)| a - b).collect()]
+    }
+
+    /// An answer in the rows as they were given.
+    pub(crate) fn in_given_rows(&self, solution: Solution) -> Solution {
+        if self.equality_rows == 0 {
+            return solution;
+        }
+        let of = |set: &ContactSet| self.of_inequalities(set);
+        let history = solution.history.into_iter();
+        let history = history.map(|step| Iteration { contact_set: of(&step.contact_set), ..step }).collect();
+        let proven =
+            solution.proven.map(|ProvenSet { open, closed }| ProvenSet { open: of(&open), closed: of(&closed) });
+        let contact_set = of(&solution.contact_set);
+        let [multiplier, equality_multiplier] = self.split(solution.multiplier);
+        Solution { history, proven, contact_set, multiplier, equality_multiplier, ..solution }
+    }
+
+    /// Rows with weights, as they were given: an equality row follows those of B, and has a weight of either sign.
+    pub(crate) fn weights_of_given(&self, rows: &[usize], weights: &[f64]) -> (Vec<usize>, Vec<f64>) {
+        let opposed = self.inequalities() + self.equality_rows;
+        let given = |(&row, &weight): (&usize, &f64)| {
+            if row < opposed { (row, weight) } else { (row - self.equality_rows, -weight) }
+        };
+        rows.iter().zip(weights).map(given).unzip()
+    }
+}
