@@ -202,7 +202,8 @@ def on_active_set(problem: Program, near: Answer, least: float = 1e-6) -> Answer
     solution = solved_exactly(top + bottom, list(-exact(q)) + list(exact(np.array(side))))
     if solution is None:
         return None
-    parts = {"z": [Fraction(0)] * (0 if G is None else len(h)), "y": [Fraction(0)] * (0 if A is None else len(b)), "z_box": [Fraction(0)] * n}
+    lengths = {"z": 0 if G is None else len(h), "y": 0 if A is None else len(b), "z_box": n}
+    parts = {part: [Fraction(0)] * length for part, length in lengths.items()}
     for (part, i, sign), value in zip(kinds, solution[n:]):
         parts[part][i] += sign * value
     fractions = lambda values: np.array(values, dtype=object)

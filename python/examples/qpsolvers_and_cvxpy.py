@@ -1,39 +1,36 @@
 """Solves a quadratic program by signorini, by the solvers of qpsolvers, and by cvxpy.
 
-`register` adds signorini to the solvers of qpsolvers, in the same way as the modules of qpsolvers do it. Then
-`qpsolvers.solve_qp(..., solver="signorini")`, and every program that is built on qpsolvers, can use it.
+`register` adds signorini to the solvers of qpsolvers. Then `qpsolvers.solve_qp(..., solver="signorini")`, and every program that is
+built on qpsolvers, can use it. The interface is `signorini_.py` beside this file, which has the form of a module in the folder
+`solvers` of qpsolvers: it can be put there unchanged.
 """
 
 from __future__ import annotations
 
+import importlib.util
+import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import qpsolvers
-import signorini as sg
-
-
-def solve_problem(problem: Any, initvals: Any = None, verbose: bool = False, **options: Any) -> Any:
-    """Solves a `qpsolvers.Problem` by signorini. The signature is the one that qpsolvers requires of a solver."""
-    data = (problem.P, problem.q, problem.G, problem.h, problem.A, problem.b, problem.lb, problem.ub)
-    answer = sg.qp.solve_problem(*data, initvals=initvals, **options)
-    found = qpsolvers.Solution(problem)
-    found.found, found.x, found.obj = answer.found, answer.x, answer.obj
-    found.y, found.z, found.z_box = answer.y, answer.z, answer.z_box
-    if answer.certificate is not None:
-        found.extras["certificate"] = answer.certificate.to_dict()
-    return found
 
 
 def register() -> None:
-    """Adds "signorini" to the solvers of qpsolvers."""
+    """Loads `signorini_.py` as a module of `qpsolvers.solvers`, and adds "signorini" to the solvers of qpsolvers."""
     from qpsolvers import solvers
 
-    if "signorini" not in solvers.available_solvers:
-        solvers.available_solvers.append("signorini")
-    solvers.solve_function["signorini"] = solve_problem
-    solvers.dense_solvers.append("signorini")
-    solvers.sparse_solvers.append("signorini")
+    name = "qpsolvers.solvers.signorini_"
+    if name in sys.modules:
+        return
+    spec = importlib.util.spec_from_file_location(name, Path(__file__).with_name("signorini_.py"))
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    sys.modules[name] = module
+    solvers.solve_function["signorini"] = module.signorini_solve_problem
+    for names in (solvers.available_solvers, solvers.dense_solvers, solvers.sparse_solvers):
+        names.append("signorini")
 
 
 def program(unknowns: int = 40) -> tuple[Any, ...]:
