@@ -30,6 +30,7 @@ import numpy as np
 
 import qp_control
 import qp_folder
+import qp_forms
 import qp_made
 import qp_typed
 from qp_solvers import SOLVERS, Outcome, Server, available
@@ -48,7 +49,7 @@ def typed() -> list[Program]:
     return qp_typed.problems() + qp_made.dualc_like() + qp_made.qafiro_like()
 
 
-SETS = {"typed": typed, "singular": qp_made.singular, "unsolvable": qp_made.unsolvable, "control": qp_control.control}
+SETS = {"typed": typed, "singular": qp_made.singular, "unsolvable": qp_made.unsolvable, "control": qp_control.control, "forms": qp_forms.forms}
 
 
 @dataclass(frozen=True)
