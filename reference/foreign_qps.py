@@ -12,6 +12,7 @@
 | singular | 100 with a singular P and equalities and one solution, known exactly (qp_made.py) |
 | unsolvable | 40 whose constraints contradict each other, or whose objective has no lower bound (qp_made.py) |
 | control | 60 of model predictive control with empty rows whose h is rounding (qp_control.py) |
+| forms | 70 as other fields write them: least squares, lasso, Huber, support vectors, portfolio, states, redundant rows (qp_forms.py) |
 
 A program counts as solved to 1e-3, 1e-6 or 1e-9 if the primal and dual residual and the gap of qpbenchmark are at most this, and no
 multiplier has the wrong sign by more, which qpbenchmark does not ask. If the minimum is known, `answer` counts the programs whose
@@ -21,6 +22,7 @@ The exit code is 1 if signorini misses a program of a generated or typed set at 
 """
 
 import argparse
+import importlib.metadata
 import statistics
 import sys
 from dataclasses import dataclass
@@ -49,7 +51,9 @@ def typed() -> list[Program]:
     return qp_typed.problems() + qp_made.dualc_like() + qp_made.qafiro_like()
 
 
-SETS = {"typed": typed, "singular": qp_made.singular, "unsolvable": qp_made.unsolvable, "control": qp_control.control, "forms": qp_forms.forms}
+SETS = {
+    "typed": typed, "singular": qp_made.singular, "unsolvable": qp_made.unsolvable, "control": qp_control.control, "forms": qp_forms.forms,
+}
 
 
 @dataclass(frozen=True)
@@ -60,7 +64,7 @@ class Judged:
     outcome: Outcome
     residuals: Residuals
     error: float | None
-    """Error of the objective, relative if the minimum is above 1; None if there is no answer or the minimum is not known."""
+    """Error of the objective, relative if the minimum is above 1; None without an answer or without a known minimum."""
     error_of_x: float | None
     """The same for the entry of x that is farthest off."""
 
@@ -142,6 +146,21 @@ def table(name: str, problems: list[Program], solvers: list[str], limit: float) 
     return "\n".join(lines), own
 
 
+def version(solver: str) -> str:
+    """Returns the name of the package of a solver and its version."""
+    if solver == "signorini":
+        import signorini
+
+        return f"signorini {signorini.__version__}"
+    package = "proxsuite" if solver == "proxqp" else solver
+    return f"{package} {importlib.metadata.version(package)}"
+
+
+def versions(solvers: list[str]) -> str:
+    """Returns the sentence that names the versions of all packages."""
+    return f"Versions: {', '.join(map(version, solvers + ['qpsolvers'] * (solvers != ['signorini'])))}."
+
+
 def put_into(page: Path, tables: list[str]) -> None:
     """Replaces the tables of a page.
 
@@ -174,7 +193,8 @@ def main(words: list[str]) -> int:
     except (ValueError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
-    tables, code = [], 0
+    tables, code = [versions(solvers)], 0
+    print(tables[0] + "\n")
     for name, problems in sets.items():
         text, own = table(name if name in SETS else Path(name).name, problems, solvers, given.limit)
         tables.append(text)

@@ -1,4 +1,5 @@
-"""Generated quadratic programs with answers that are known exactly: the sets `singular` and `unsolvable` of foreign_qps.py.
+"""Generated quadratic programs with answers that are known exactly: the sets `singular` and `unsolvable` of foreign_qps.py, and those with
+the shape of DUALC and QAFIRO in the set `typed`.
 
 Everything is built from integers, so that doubles hold the data and the answer without rounding. First come the solution, the active
 constraints and their multipliers, then P, then q = -(P x + G'z + A'y + z_box). `quadratic.with_known` checks every optimality
@@ -154,13 +155,6 @@ def unsolvable(count: int = 40) -> list[Program]:
     """Returns programs that have no solution, with a singular P and equalities: contradictory and unbounded ones by turns."""
     kinds = (("contradictory", contradictory), ("unbounded", unbounded))
     return [kinds[i % 2][1](f"{kinds[i % 2][0]} {i}", np.random.default_rng([2, i])) for i in range(count)]
-
-
-def scaled(base: Program, name: str, factor: float) -> Program:
-    """Returns a program whose objective is that of another one times a power of two, which is exact."""
-    known = base.known
-    larger = Answer(known.x, factor * known.z, factor * known.y, factor * known.z_box)
-    return with_known(program(name, factor * base.P, factor * base.q, base.G, base.h, base.A, base.b, base.lb, base.ub), larger)
 
 
 def dualc_like() -> list[Program]:

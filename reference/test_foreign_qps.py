@@ -93,7 +93,7 @@ class Generated(unittest.TestCase):
             with self.subTest(problem.name):
                 self.assertEqual(judged(problem).missed(), "")
 
-    def test_every_form_is_convex_and_feasible_in_shape(self):
+    def test_every_form_has_a_positive_semidefinite_matrix(self):
         for problem in qp_forms.forms(len(qp_forms.FORMS)):
             values = np.linalg.eigvalsh(problem.P)
             self.assertGreaterEqual(values[0], -1e-12 * values[-1])
