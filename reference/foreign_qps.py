@@ -1,7 +1,7 @@
 """Solves quadratic programs of others, and generated ones, by signorini and by solvers of qpsolvers, and prints a table per set.
 
     pip install qpsolvers clarabel piqp proxsuite osqp daqp quadprog pyarrow
-    python reference/foreign_qps.py                                   # all sets, all solvers: about five minutes
+    python reference/foreign_qps.py                                   # all sets, all solvers: about three minutes
     python reference/foreign_qps.py --set typed --solvers signorini quadprog
     python reference/foreign_qps.py --set FOLDER                      # *.parquet of qpbenchmark, *.npz of qpsolvers
     python reference/foreign_qps.py --page docs/foreign.md            # puts the tables into the page
