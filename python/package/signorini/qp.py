@@ -2,8 +2,8 @@
 
     minimise 1/2 x'P x + q'x   subject to   G x <= h,  A x = b,  lb <= x <= ub
 
-P is symmetric and positive semidefinite. An equality becomes two opposite rows, so that the certificate covers its residual, its
-multiplier and the error bound like those of any other row. If there are several minima, proximal steps find one of them; its
+P is symmetric and positive semidefinite. Equalities are eliminated, and the certificate covers their residuals and multipliers like those of
+any other row. If there are several minima, proximal steps find one of them; its
 optimality conditions are certified, but its distance to the other minima is not bounded.
 """
 
@@ -114,14 +114,14 @@ def solve_problem(
     rows = _Rows(load.size)
     if np.ndim(P) == 1 and np.size(P) == load.size == 1:
         P = np.reshape(P, (1, 1))
-    rows.add("G", "h", G, h, _INEQUALITY)
-    rows.add("A", "b", A, b, _EQUALITY)
+    rows.add("G", "h", G, h)
+    rows.add_equalities(A, b)
     rows.add_bounds(lb, ub)
-    problem = _signorini.Problem(P, load, *rows.joined())
+    problem = rows.problem(P, load)
     start = None if initvals is None else _vector("initvals", initvals)
     try:
         solution = _signorini.solve(problem, start=start, proof=False, **options)
-        return rows.answer(problem, solution.u, solution.multiplier, solution.certificate, unique=True)
+        return rows.answer(problem, solution, solution.certificate, unique=True)
     except (Infeasible, Unbounded) as error:
         return QPSolution(False, None, None, None, None, None, None, False, str(error))
     except UnderHeld:
@@ -131,14 +131,11 @@ def solve_problem(
         # unique, and proximal steps are tried.
         best = fell_short.solution if isinstance(fell_short, NotCertified) else None
         if best is not None and best.certificate.conditions_hold(_TOLERANCE):
-            return rows.answer(problem, best.u, best.multiplier, best.certificate, unique=False)
+            return rows.answer(problem, best, best.certificate, unique=False)
         try:
             return _one_of_many(problem, rows, start, options)
         except SignoriniError:
             raise fell_short from None
-
-
-_INEQUALITY, _EQUALITY = "inequality", "equality"
 
 
 def _vector(name: str, values: Any) -> NDArray[np.float64]:
@@ -154,7 +151,7 @@ def _is_sparse(matrix: Any) -> bool:
 
 
 class _Rows:
-    """The rows B x <= g of a contact problem that represent the constraints of a quadratic program."""
+    """The rows B x <= g and E x = e of a contact problem that represent the constraints of a quadratic program."""
 
     def __init__(self, unknowns: int) -> None:
         self.unknowns = unknowns
@@ -162,6 +159,7 @@ class _Rows:
         self.gaps: list[NDArray[np.float64]] = []
         self.groups: dict[str, tuple[int, int]] = {}
         self.count = 0
+        self.equalities: tuple[Any, Any] = (None, None)
         self.has_box = False
         self.lower = self.upper = np.empty(0, dtype=np.int64)
 
@@ -171,12 +169,28 @@ class _Rows:
         self.matrices.append(matrix)
         self.gaps.append(gap)
 
-    def add(self, name: str, side_name: str, matrix: Any, side: Any, kind: str) -> None:
-        """Adds `matrix x <= side`, or `matrix x = side` as two opposite rows per equation."""
+    def add(self, name: str, side_name: str, matrix: Any, side: Any) -> None:
+        """Adds `matrix x <= side`."""
+        checked = self._checked(name, side_name, matrix, side)
+        if checked is not None:
+            self._append(name, checked[0], _gaps(side_name, checked[1]))
+
+    def add_equalities(self, A: Any, b: Any) -> None:
+        """Adds `A x = b`."""
+        checked = self._checked("A", "b", A, b)
+        if checked is None:
+            return
+        if not np.isfinite(checked[1]).all():
+            entry = int(np.flatnonzero(~np.isfinite(checked[1]))[0])
+            raise BadInput(f"b has the value {checked[1][entry]} at entry {entry} (from 0); it must be finite")
+        self.equalities = checked
+
+    def _checked(self, name: str, side_name: str, matrix: Any, side: Any) -> tuple[Any, NDArray[np.float64]] | None:
+        """Returns a matrix and its sides if their shapes fit; None if neither is given."""
         from scipy import sparse
 
         if matrix is None and side is None:
-            return
+            return None
         if matrix is None or side is None:
             given, missing = (side_name, name) if matrix is None else (name, side_name)
             raise BadInput(f"{given} is given without {missing}; every row of {name} needs an entry of {side_name}")
@@ -190,14 +204,7 @@ class _Rows:
             raise BadInput(
                 f"{name} is {matrix.shape[0]} x {matrix.shape[1]}; {side_name} and q ask for {len(values)} x {self.unknowns}"
             )
-        if kind == _INEQUALITY:
-            self._append(name, matrix, _gaps(side_name, values))
-            return
-        if not np.isfinite(values).all():
-            entry = int(np.flatnonzero(~np.isfinite(values))[0])
-            raise BadInput(f"{side_name} has the value {values[entry]} at entry {entry} (from 0); it must be finite")
-        self._append(name, matrix, values)
-        self._append(f"-{name}", -matrix, -values)
+        return matrix, values
 
     def add_bounds(self, lb: Any, ub: Any) -> None:
         """Adds one row for each finite bound."""
@@ -220,13 +227,15 @@ class _Rows:
             else:
                 self.lower = bounded
 
-    def joined(self) -> tuple[Any, Any]:
-        """Returns B and g; both are None if there are no rows."""
+    def problem(self, P: Any, load: NDArray[np.float64]) -> _signorini.Problem:
+        """Returns the contact problem with these rows."""
         from scipy import sparse
 
+        E, e = self.equalities
         if self.count == 0:
-            return None, None
-        return sparse.csc_array(sparse.vstack(self.matrices, format="csc")), np.concatenate(self.gaps)
+            return _signorini.Problem(P, load, E=E, e=e)
+        B = sparse.csc_array(sparse.vstack(self.matrices, format="csc"))
+        return _signorini.Problem(P, load, B, np.concatenate(self.gaps), E=E, e=e)
 
     def _of(self, name: str, multiplier: NDArray[np.float64]) -> NDArray[np.float64]:
         first, end = self.groups[name]
@@ -236,16 +245,15 @@ class _Rows:
     def answer(
         self,
         problem: _signorini.Problem,
-        u: NDArray[np.float64],
-        multiplier: NDArray[np.float64],
+        solution: _signorini.Solution,
         certificate: _signorini.Certificate,
         *,
         unique: bool,
     ) -> QPSolution:
         """Converts a solution into the signs of qpsolvers."""
-        x = u.copy()
+        x, multiplier = solution.u.copy(), solution.multiplier
         z = self._of("G", multiplier) if "G" in self.groups else None
-        y = self._of("A", multiplier) - self._of("-A", multiplier) if "A" in self.groups else None
+        y = None if self.equalities[0] is None else 0.0 - solution.equality_multiplier
         z_box = None
         if self.has_box:
             z_box = np.zeros(self.unknowns)
@@ -277,10 +285,10 @@ def _one_of_many(problem: _signorini.Problem, rows: _Rows, start: Any, options: 
     x = np.zeros(problem.dofs) if start is None else start.copy()
     shortest: NotCertified | None = None
     for proximity in _PROXIMITIES:
-        known = _steps(problem, rows.count > 0, proximity, x, options)
-        x, certificate = known.u, _signorini.verify(problem, known.u, known.multiplier)
+        known = _steps(problem, proximity, x, options)
+        x, certificate = known.u, _signorini.verify(problem, known.u, known.multiplier, known.equality_multiplier)
         if certificate.conditions_hold(_TOLERANCE):
-            return rows.answer(problem, x, known.multiplier, certificate, unique=False)
+            return rows.answer(problem, known, certificate, unique=False)
         condition, value = max(((name, getattr(certificate, name)) for name in _CONDITIONS), key=lambda worst: worst[1])
         error = NotCertified(f"not certified: {condition} is {value:.3e}, above the tolerance {_TOLERANCE:.1e}")
         error.solution, error.condition, error.value, error.tolerance = known, condition, value, _TOLERANCE
@@ -294,14 +302,14 @@ _CONDITIONS = ("stationarity", "penetration", "adhesion", "complementarity", "du
 
 
 def _steps(
-    problem: _signorini.Problem, has_rows: bool, proximity: float, x: NDArray[np.float64], options: dict[str, Any]
+    problem: _signorini.Problem, proximity: float, x: NDArray[np.float64], options: dict[str, Any]
 ) -> _signorini.Solution:
     """Makes proximal steps from x. A single step need not be certified: the last one is verified on the problem itself."""
     from scipy import sparse
 
     size = proximity * (float(np.asarray(problem.K.diagonal()).max(initial=0.0)) or 1.0)
     near = sparse.csc_array(problem.K + size * sparse.eye_array(problem.dofs, format="csc"))
-    stepping = _signorini.Problem(near, problem.f + size * x, *((problem.B, problem.g) if has_rows else ()))
+    stepping = _signorini.Problem(near, problem.f + size * x, problem.B, problem.g, E=problem.E, e=problem.e)
     chosen = {name: value for name, value in options.items() if name not in ("method", "time")}
     prepared = _signorini.prepare(stepping, proof=False, method="active-set", **chosen)
     known: Any = None
