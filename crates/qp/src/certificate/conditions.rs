@@ -134,16 +134,19 @@ impl ContactProblem {
         let scales = Scales::of(self, u, &balance, &forces);
         let Balance { residual, elastic, strain, terms } = balance;
 
-        let share = |dof: usize, force: f64| relative(force.abs(), terms[dof] + forces[dof]);
+        let balanced = self.balanced_forces(terms.iter().zip(&forces).map(|(terms, forces)| terms + forces).collect());
+        let share = |dof: usize, force: f64| relative(force.abs(), balanced[dof]);
         let mut shares_of_rows = vec![0.0; self.rows()];
         for (row, dof, b) in self.contact.triplets().filter(|entry| lambda[entry.0] != 0.0) {
             shares_of_rows[row] = larger(share(dof, b * lambda[row]), shares_of_rows[row]);
         }
-        let length = |row: usize| {
+        let own_length = |row: usize| {
             let of_part = scales.of_parts[self.parts().of_row(row)].strain.max(0.0).sqrt() * scales.reach[row];
             let gap = if self.gap[row].is_finite() { self.gap[row].abs() } else { 0.0 };
             larger(lengths[row], larger(gap, of_part))
         };
+        let lengths_of_rows = self.coupled_lengths((0..self.rows()).map(own_length).collect());
+        let length = |row: usize| lengths_of_rows[row];
         let rows = || (0..self.rows()).filter(|&row| self.gap[row].is_finite() || lambda[row] != 0.0);
         // A row without obstacle carries no multiplier.
         let work = |row: usize| if lambda[row] == 0.0 { 0.0 } else { lambda[row] * violation[row] };
@@ -163,7 +166,7 @@ impl ContactProblem {
             adhesion,
             complementarity: relative(worst(rows().map(work)), strain.max(0.0)),
             duality_gap: relative(gap.abs(), strain.max(0.0)),
-            imbalance: self.imbalance(&residual, |dof| terms[dof] + forces[dof]),
+            imbalance: self.imbalance(&residual, |dof| balanced[dof]),
             loose_dofs: if let Bounding::Factor(norm) = bounding { norm.loose_dofs() } else { 0 },
             open_force: worst(rows().map(|row| shares_of_rows[row].min((-distance(row)).max(0.0)))),
             parts: self.parts().count(),

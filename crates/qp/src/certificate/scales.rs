@@ -103,6 +103,43 @@ impl Scales {
     }
 }
 
+/// A dof without stiffness has no scale of its own: rows give it one, which they share with the dofs that they couple it to.
+impl ContactProblem {
+    /// The lengths of the rows, at least those to which rows with the same dofs without stiffness are known.
+    pub(super) fn coupled_lengths(&self, own: Vec<f64>) -> Vec<f64> {
+        let roots = &self.diagonal().roots;
+        if roots.iter().all(|&root| root > 0.0) {
+            return own;
+        }
+        let entries = || {
+            let counts =
+                |&(row, dof, b): &(usize, usize, f64)| b != 0.0 && roots[dof] == 0.0 && self.gap[row].is_finite();
+            self.contact.triplets().filter(counts)
+        };
+        let mut of_dofs = vec![0.0; self.dofs()];
+        entries().for_each(|(row, dof, b)| of_dofs[dof] = larger(own[row] / b.abs(), of_dofs[dof]));
+        let mut coupled = own;
+        entries().for_each(|(row, dof, b)| coupled[row] = larger(b.abs() * of_dofs[dof], coupled[row]));
+        coupled
+    }
+
+    /// The forces that balance on each dof; on one without stiffness at least those that its rows pass on from dofs with stiffness.
+    pub(super) fn balanced_forces(&self, own: Vec<f64>) -> Vec<f64> {
+        let roots = &self.diagonal().roots;
+        if roots.iter().all(|&root| root > 0.0) {
+            return own;
+        }
+        let entries = |is_stiff: bool| {
+            self.contact.triplets().filter(move |&(_, dof, b)| b != 0.0 && (roots[dof] > 0.0) == is_stiff)
+        };
+        let mut of_rows = vec![0.0; self.rows()];
+        entries(true).for_each(|(row, dof, b)| of_rows[row] = larger(own[dof] / b.abs(), of_rows[row]));
+        let mut balanced = own;
+        entries(false).for_each(|(row, dof, b)| balanced[dof] = larger(b.abs() * of_rows[row], balanced[dof]));
+        balanced
+    }
+}
+
 impl ContactProblem {
     /// `w_p' K_pp w_p` of each part p: twice its energy under the displacement w, without couplings to other parts.
     pub(super) fn energies(&self, parts: &Parts, w: &[f64]) -> Vec<f64> {
