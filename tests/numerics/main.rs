@@ -6,6 +6,7 @@ mod condensation;
 mod degenerate;
 mod dual_active_set;
 mod energy_bound;
+mod equalities;
 mod exact_arithmetic;
 mod exact_path;
 mod extremes;
