@@ -1,6 +1,7 @@
 //! The start of an iteration.
 
 use crate::error::Error;
+use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Solution};
 
 /// Earlier knowledge of the answer: nothing, a contact set, a displacement, or both.
@@ -41,6 +42,15 @@ impl Start {
     pub fn earlier(displacement: Vec<f64>, multiplier: &[f64]) -> Self {
         let closed = multiplier.iter().map(|&force| force < 0.0).collect();
         Start { displacement: Some(displacement), contact_set: Some(closed) }
+    }
+
+    /// The same for all rows of a problem, from a set of the rows of B.
+    pub(crate) fn of_all_rows(&self, problem: &ContactProblem) -> Self {
+        let of_all = |set: &ContactSet| match set.rows() == problem.inequalities() {
+            true => ContactSet::from_fn(problem.rows(), |row| set.contains(row)),
+            false => set.clone(),
+        };
+        Start { contact_set: self.contact_set.as_ref().map(of_all), ..self.clone() }
     }
 
     /// Refuses a start that does not fit a problem with this number of dofs and rows, or is not finite.

@@ -1,7 +1,7 @@
 //! The layout of a factor: its arrangement, its precision, and the parts that are kept, within memory and time.
 
 use super::attempt::{Arrangement, WithFactor};
-use super::rules::{Size, Way};
+use super::rules::{Size, Way, is_crowded};
 use crate::certificate::EnergyNorm;
 use crate::cost::{Estimate, FACTORS, Kept, bytes, check_memory, check_time, seconds};
 use crate::error::Error;
@@ -70,7 +70,8 @@ impl Layout {
             };
             let Some(analysis) = analysis else { continue };
             let analysis = analysis.with_threads(settings.threads);
-            let size = Size { is_condensed, multiplications: analysis.multiplications(), rows: problem.rows() };
+            let (multiplications, rows) = (analysis.multiplications(), problem.rows());
+            let size = Size { is_condensed, multiplications, rows, is_crowded: is_crowded(problem) };
             let way = with.way(settings.accuracy, size);
             let (width, keeps_norm, method) = (Width::Double, true, ByFactor::ActiveSet);
             let layout = Layout { analysis, last, size, way, method, width, keeps_norm };

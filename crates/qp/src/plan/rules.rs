@@ -5,6 +5,7 @@ pub(crate) use crate::cost::fitted::Way;
 use crate::cost::fitted::{STEPS, Step};
 use crate::method::interior_point::InteriorPoint;
 use crate::method::penalty::Penalty;
+use crate::problem::ContactProblem;
 use crate::settings::{ByFactor, Precision};
 
 /// The interior point aims at this share of the requested accuracy.
@@ -20,6 +21,9 @@ const LONG: usize = 1000;
 /// The penalty of the single rung that should reach an accuracy: this number divided by the accuracy.
 const PENALTY_OVER_ACCURACY: f64 = 100.0;
 
+/// Rows with more entries than this in the mean are no rows of contact, which join a node to the few that face it.
+const LONG_ROWS: usize = 8;
+
 /// The size of a factor, as the rules measure it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Size {
@@ -28,6 +32,21 @@ pub(crate) struct Size {
     pub multiplications: f64,
     /// Contact rows of the problem.
     pub rows: usize,
+    /// `true` if most sets of rows that may be closed are dependent: the loop of the active set wanders among them.
+    pub is_crowded: bool,
+}
+
+/// Returns `true` if a problem has more long rows than dofs in them, or if most of its dofs have no stiffness, as in a linear program.
+pub(super) fn is_crowded(problem: &ContactProblem) -> bool {
+    let bounded: Vec<bool> = problem.gap().iter().map(|gap| gap.is_finite()).collect();
+    let (mut entries, mut dofs) = (0, 0);
+    for dof in 0..problem.dofs() {
+        let own = problem.contact().column(dof).filter(|&(row, b)| b != 0.0 && bounded[row]).count();
+        (entries, dofs) = (entries + own, dofs + usize::from(own > 0));
+    }
+    let rows = bounded.into_iter().filter(|&bounded| bounded).count();
+    let has_long_rows = rows > dofs && entries > LONG_ROWS * rows;
+    has_long_rows || (rows > 0 && 2 * problem.without_stiffness().len() > problem.dofs())
 }
 
 impl WithFactor {
@@ -44,6 +63,7 @@ impl WithFactor {
         let step = STEPS.iter().filter(covers).min_by(nearest);
         let is_long_chain = !of.is_condensed && of.rows > LONG && size < CHAIN;
         let way = match step.map_or(Way::ActiveSet, |step| step.way) {
+            Way::ActiveSet | Way::ActiveSetMixed if of.is_crowded => Way::Qp,
             Way::ActiveSet if is_long_chain => Way::Qp,
             way => way,
         };

@@ -172,7 +172,7 @@ impl Prepared {
     /// [`Error::Length`] and [`Error::NotFinite`] for gaps or a start that do not fit, [`Error::Infeasible`] for rows that contradict each
     /// other at sight.
     fn problem_at(&self, gap: &[f64]) -> Result<ContactProblem, Error> {
-        self.problem.start_of_all_rows(&self.start).check(self.problem.dofs(), self.problem.rows())?;
+        self.start.of_all_rows(&self.problem).check(self.problem.dofs(), self.problem.rows())?;
         let problem = self.problem.with_gap(gap.to_vec())?;
         problem.check_rows()?;
         Ok(problem)

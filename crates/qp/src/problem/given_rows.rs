@@ -5,7 +5,6 @@ use std::borrow::Cow;
 use super::ContactProblem;
 use crate::error::Error;
 use crate::linear::{SparseMatrix, check_vector};
-use crate::method::Start;
 use crate::solution::{ContactSet, Iteration, ProvenSet, Solution};
 
 /// The gap of a row without entries is rounding if it is below this share of the largest.
@@ -133,15 +132,6 @@ impl ContactProblem {
             gap.extend(&self.gap[self.inequalities()..]);
         }
         gap
-    }
-
-    /// A start with a set of all rows, from one of the rows of B.
-    pub(crate) fn start_of_all_rows(&self, start: &Start) -> Start {
-        let of_all = |set: &ContactSet| match set.rows() == self.inequalities() {
-            true => ContactSet::from_fn(self.rows(), |row| set.contains(row)),
-            false => set.clone(),
-        };
-        Start { contact_set: start.contact_set.as_ref().map(of_all), ..start.clone() }
     }
 
     /// A set of the rows of B alone.

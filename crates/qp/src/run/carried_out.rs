@@ -30,7 +30,7 @@ fn by(
     part: impl Fn(Ladder) -> Ladder,
 ) -> Result<Solution, Error> {
     let settings = &settings.started()?;
-    let start = &problem.start_of_all_rows(start);
+    let start = &start.of_all_rows(problem);
     start.check(problem.dofs(), problem.rows())?;
     problem.check_rows()?;
     let ladder = part(Ladder::of(problem, Known { gaps: 1, is_whole: !start.is_unknown() }, settings)?);

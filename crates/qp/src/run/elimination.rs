@@ -22,7 +22,11 @@ pub(super) fn solved(
     // The certificate of the whole and its proof follow.
     let settings = &Settings { prove: false, ..settings.clone() };
     let Ok(rest) = elimination.problem(problem) else { return Ok(None) };
-    let answer = match solve(&rest, &elimination.start(start), settings) {
+    let start = Start {
+        displacement: start.displacement.as_deref().map(|u| elimination.staying(u)),
+        contact_set: start.contact_set.as_ref().map(|set| elimination.staying_rows(set)),
+    };
+    let answer = match solve(&rest, &start, settings) {
         Ok(solution) => solution,
         Err(Error::NotCertified { solution, .. }) => *solution,
         Err(Error::Interrupted) => return Err(Error::Interrupted),

@@ -17,7 +17,6 @@ use std::collections::{BTreeMap, HashMap};
 use crate::error::Error;
 use crate::linear::multigrid::NearNullSpace;
 use crate::linear::{SparseMatrix, SymmetricMatrix, Twice};
-use crate::method::Start;
 use crate::problem::{ContactProblem, Equality};
 use crate::solution::{ContactSet, Iteration, Solution};
 
@@ -174,9 +173,8 @@ impl Elimination {
             gaps.into_iter().map(|sum| if sum.terms.is_finite() { sum.settled().rounded() } else { f64::INFINITY });
         let reduced = ContactProblem::new(stiffness, load, contact, gap.collect())?;
         let Some(modes) = problem.near_null() else { return Ok(reduced) };
-        let staying = |mode: &Vec<f64>| self.dofs.iter().map(|&dof| mode[dof]).collect::<Vec<f64>>();
         let moves = |mode: &Vec<f64>| mode.iter().any(|&value| value != 0.0);
-        match NearNullSpace::of_modes(modes.vectors().iter().map(staying).filter(moves).collect()) {
+        match NearNullSpace::of_modes(modes.vectors().iter().map(|mode| self.staying(mode)).filter(moves).collect()) {
             Some(modes) => reduced.with_near_null(modes),
             None => Ok(reduced),
         }
@@ -252,12 +250,14 @@ impl Elimination {
         load.into_iter().map(|sum| sum.settled().rounded()).collect()
     }
 
-    /// A start in the dofs and rows that stay.
-    pub fn start(&self, start: &Start) -> Start {
-        let displacement = start.displacement.as_ref().map(|u| self.dofs.iter().map(|&dof| u[dof]).collect());
-        let contact_set =
-            start.contact_set.as_ref().map(|set| self.rows.iter().map(|&row| set.contains(row)).collect());
-        Start { displacement, contact_set }
+    /// The entries of those dofs that stay, of one for each dof.
+    pub fn staying(&self, of_dofs: &[f64]) -> Vec<f64> {
+        self.dofs.iter().map(|&dof| of_dofs[dof]).collect()
+    }
+
+    /// The set of the rows that stay, from one of all rows.
+    pub fn staying_rows(&self, set: &ContactSet) -> ContactSet {
+        self.rows.iter().map(|&row| set.contains(row)).collect()
     }
 
     /// The displacement of all dofs, length n, from that of those that stay.
