@@ -284,7 +284,7 @@ impl ModelSize {
         }
     }
 
-    /// The numbers of rows in words.
+    /// The number of rows of each kind, in words: such as `3 contact rows, 1 equality row`.
     pub fn rows_in_words(&self) -> String {
         let rows = |count: usize, kind: &str| format!("{count} {kind} row{}", if count == 1 { "" } else { "s" });
         let contact = rows(self.contact_rows, "contact");

@@ -1,34 +1,12 @@
-//! The rows as they were given: those of B, and equality rows, each of which is a pair of rows inside; empty rows.
+//! The rows as they were given: those of B, and equality rows, each of which is a pair of rows inside.
 
 use std::borrow::Cow;
 
 use super::ContactProblem;
+use super::empty_rows::largest_finite;
 use crate::error::Error;
 use crate::linear::{SparseMatrix, check_vector};
 use crate::solution::{ContactSet, Iteration, ProvenSet, Solution};
-
-/// The gap of a row without entries is rounding if it is below this share of the largest.
-const OF_LARGEST: f64 = 16.0 * f64::EPSILON;
-
-/// The rows of a matrix without an entry.
-pub(super) fn without_entries(contact: &SparseMatrix) -> Vec<usize> {
-    let mut has_entry = vec![false; contact.rows()];
-    contact.triplets().filter(|entry| entry.2 != 0.0).for_each(|(row, ..)| has_entry[row] = true);
-    (0..contact.rows()).filter(|&row| !has_entry[row]).collect()
-}
-
-/// Sets the gaps of these rows to zero where they are rounding beside the largest; returns the rows with their former gaps.
-pub(super) fn settle(without_entries: &[usize], gap: &mut [f64]) -> Vec<(usize, f64)> {
-    let size = OF_LARGEST * largest_finite(gap);
-    let is_rounding = |row: &usize| gap[*row] != 0.0 && gap[*row].abs() <= size;
-    let rows: Vec<usize> = without_entries.iter().copied().filter(is_rounding).collect();
-    rows.into_iter().map(|row| (row, std::mem::take(&mut gap[row]))).collect()
-}
-
-/// The largest magnitude of the finite gaps.
-fn largest_finite(gap: &[f64]) -> f64 {
-    gap.iter().filter(|gap| gap.is_finite()).fold(0.0, |most, gap| gap.abs().max(most))
-}
 
 impl ContactProblem {
     /// The same problem with the equality rows `E u = e`: E is p x n, dimensionless, and e has length p, in m. They may follow from each
@@ -84,13 +62,13 @@ impl ContactProblem {
         self.equality_rows
     }
 
-    /// The matrix E (p x n) and the values e (length p) of the equality rows.
+    /// The matrix E (p x n, dimensionless) and the values e (length p, in m) of the equality rows.
     pub fn equalities_given(&self) -> (SparseMatrix, &[f64]) {
         let rows: Vec<usize> = (self.inequalities()..self.inequalities() + self.equality_rows).collect();
         (self.contact.select_rows(&rows), &self.gap[self.inequalities()..][..self.equality_rows])
     }
 
-    /// The matrix B (m x n) and the gaps g (length m), without the equality rows.
+    /// The matrix B (m x n, dimensionless) and the gaps g (length m, in m, negative inside the body), without the equality rows.
     pub fn inequalities_given(&self) -> (Cow<'_, SparseMatrix>, &[f64]) {
         let count = self.inequalities();
         let rows = || self.contact.select_rows(&(0..count).collect::<Vec<usize>>());

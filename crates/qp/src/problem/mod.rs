@@ -1,6 +1,7 @@
 //! The contact problem as a convex QP, checked once.
 
 mod diagonal;
+mod empty_rows;
 mod given_rows;
 mod opposed;
 mod parts;
@@ -117,8 +118,8 @@ impl ContactProblem {
             return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
         }
         let mut gap = with_infinite(gap);
-        let without_entries: Arc<[usize]> = given_rows::without_entries(&contact).into();
-        let rounded = given_rows::settle(&without_entries, &mut gap);
+        let without_entries: Arc<[usize]> = empty_rows::without_entries(&contact).into();
+        let rounded = empty_rows::settle(&without_entries, &mut gap);
         let (diagonal, parts, free_mode) = (FoundOnce::default(), FoundOnce::default(), FoundOnce::default());
         let (opposed, equalities, two_sided) = (FoundOnce::default(), FoundOnce::default(), Vec::new());
         let near_null = None;
@@ -216,7 +217,7 @@ impl ContactProblem {
         check_gap(&gap, self.rows())?;
         let (stiffness, contact, near_null) = (self.stiffness.clone(), self.contact.clone(), self.near_null.clone());
         let mut gap = with_infinite(gap);
-        let rounded = given_rows::settle(&self.without_entries, &mut gap);
+        let rounded = empty_rows::settle(&self.without_entries, &mut gap);
         let same_rows = gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
         let parts = if same_rows { self.parts.clone() } else { FoundOnce::default() };
         let equalities = if gap == self.gap { self.equalities.clone() } else { FoundOnce::default() };
