@@ -53,7 +53,12 @@ impl Sum {
 
     /// Zero if the terms cancel.
     fn settled(self) -> Twice {
-        if self.value.rounded().abs() > CANCELLED * self.terms { self.value } else { Twice::ZERO }
+        self.beyond(CANCELLED)
+    }
+
+    /// Zero if at most this share of the terms is left.
+    fn beyond(self, share: f64) -> Twice {
+        if self.value.rounded().abs() > share * self.terms { self.value } else { Twice::ZERO }
     }
 }
 
@@ -166,12 +171,22 @@ impl Elimination {
                 }
             }
         }
-        let entries: Vec<(usize, usize, f64)> =
-            sums.into_iter().map(|((row, column), sum)| (row, column, sum.settled().rounded())).collect();
+        // What is left within the rounding of the entries of a row is no row of its own.
+        let mut is_empty = vec![true; self.rows.len()];
+        let mut entries = Vec::with_capacity(sums.len());
+        for ((row, place), sum) in sums {
+            let value = sum.beyond(FOLLOWS).rounded();
+            is_empty[row] &= value == 0.0;
+            entries.push((row, place, value));
+        }
         let contact = SparseMatrix::from_triplets(self.rows.len(), count, &entries)?;
-        let gap =
-            gaps.into_iter().map(|sum| if sum.terms.is_finite() { sum.settled().rounded() } else { f64::INFINITY });
-        let reduced = ContactProblem::new(stiffness, load, contact, gap.collect())?;
+        let gap = |(sum, is_empty): (Sum, bool)| match (sum.terms.is_finite(), is_empty) {
+            (false, _) => f64::INFINITY,
+            (true, true) => sum.beyond(FOLLOWS).rounded(),
+            (true, false) => sum.settled().rounded(),
+        };
+        let gap: Vec<f64> = gaps.into_iter().zip(is_empty).map(gap).collect();
+        let reduced = ContactProblem::new(stiffness, load, contact, gap)?;
         let Some(modes) = problem.near_null() else { return Ok(reduced) };
         let moves = |mode: &Vec<f64>| mode.iter().any(|&value| value != 0.0);
         match NearNullSpace::of_modes(modes.vectors().iter().map(|mode| self.staying(mode)).filter(moves).collect()) {
