@@ -111,6 +111,34 @@ def test_a_body_without_rows_is_solved() -> None:
     assert answer.u.tolist() == [1.5] and answer.multiplier.shape == (0,) and answer.energy_error_bound < 1e-9
 
 
+def test_equality_rows_hold_two_nodes_together_and_the_multiplier_balances_them() -> None:
+    K, f, B, g = membrane(6)
+    E = np.zeros((2, K.shape[0]))
+    E[0, 3], E[0, 20] = 1.0, -1.0
+    E[1] = 2.0 * E[0]
+    problem = sg.Problem(K, f, B, g, E=sparse.csr_array(E), e=[0.0, 0.0])
+    assert (problem.equality_count, problem.row_count) == (2, B.shape[0])
+    answer = sg.solve(problem)
+    assert abs(answer.u[3] - answer.u[20]) < 1e-12
+    left = K @ answer.u - f - B.T @ answer.multiplier - E.T @ answer.equality_multiplier
+    assert np.abs(left).max() < 1e-12 * np.abs(f).max() and np.abs(E.T @ answer.equality_multiplier).max() > 1e-3 * np.abs(f).max()
+    again = sg.verify(problem, answer.u, answer.multiplier, answer.equality_multiplier)
+    assert again.energy_error_bound == answer.energy_error_bound
+    copy = pickle.loads(pickle.dumps(problem))
+    assert abs(copy.E - problem.E).max() == 0.0 and np.array_equal(copy.e, problem.e)
+    with pytest.raises(sg.BadInput, match="E is given without e"):
+        sg.Problem(K, f, B, g, E=E)
+    with pytest.raises(sg.Infeasible, match="equality rows") as refusal:
+        sg.solve(sg.Problem(K, f, B, g, E=E, e=[0.0, 1.0]))
+    assert sorted(refusal.value.rows) == [B.shape[0], B.shape[0] + 1]
+
+
+def test_an_empty_row_with_a_gap_of_rounding_is_named_in_a_warning() -> None:
+    with pytest.warns(UserWarning, match="contact row 1 .* counts as 0"):
+        problem = sg.Problem(np.eye(2), [3.0, 0.0], [[1.0, 0.0], [0.0, 0.0]], [1.0, -7e-18])
+    assert problem.g[1] == 0.0 and sg.solve(problem).u[0] == 1.0
+
+
 def test_every_object_has_a_short_text_for_the_console() -> None:
     problem = two_springs()
     assert repr(problem) == "<signorini.Problem: 2 dofs, 1 contact rows>"
