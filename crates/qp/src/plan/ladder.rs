@@ -8,6 +8,7 @@ use super::attempt::{
     When, WithFactor,
 };
 use super::choice::Choice;
+use super::nearly_linear;
 use super::pieces::pieces_of;
 use crate::cost::{Estimate, starts_near};
 use crate::error::Error;
@@ -48,7 +49,7 @@ impl Ladder {
     /// The ladder for `problem`.
     ///
     /// # Errors
-    /// [`Error::NoRoom`] if neither a factor nor multigrid fits into the memory.
+    /// [`Error::NoRoom`] if neither a factor nor multigrid fits into the memory, [`Error::Undecided`] for a nearly linear program.
     pub fn of(problem: &ContactProblem, known: Known, settings: &Settings) -> Result<Self, Error> {
         let mut ladder = Ladder {
             attempts: Vec::with_capacity(8),
@@ -57,6 +58,7 @@ impl Ladder {
             choice: None,
             refusal: None,
         };
+        nearly_linear::check(problem)?;
         let equalities = problem.equalities().len();
         if equalities > 0 {
             let because = format!("{equalities} pairs of rows are equalities");

@@ -19,6 +19,7 @@ mod choice;
 mod history;
 mod ladder;
 mod layout;
+mod nearly_linear;
 mod next;
 mod pieces;
 mod rules;
