@@ -20,6 +20,13 @@ fn spring(stiffness: f64, rows: &[f64], gap: &[f64]) -> Result<ContactProblem, q
     Dense::new(&[&[stiffness]], &[2.0], &rows, gap).problem()
 }
 
+/// Three hundred unknowns with an upper limit each, of which one has stiffness.
+fn linear_program() -> Result<ContactProblem, qp::Error> {
+    let limits: Vec<(usize, usize, f64)> = (0..300).map(|dof| (dof, dof, 1.0)).collect();
+    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(300, 300, &[(0, 0, 1.0)])?)?;
+    ContactProblem::new(stiffness, vec![1.0; 300], SparseMatrix::from_triplets(300, 300, &limits)?, vec![1.0; 300])
+}
+
 fn settings(change: impl Fn(&mut Settings)) -> Settings {
     let mut settings = Settings::default();
     change(&mut settings);
@@ -68,6 +75,7 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
             "UnderHeld",
             ("under-held", solve_qp(&spring(0.0, &[1.0], &[0.5])?.with_load(vec![0.0])?).unwrap_err().into()),
         ),
+        ("NearlyLinear", ("nearly-linear", solve_qp(&linear_program()?).unwrap_err().into())),
         ("Undecided", ("undecided", solve_qp(&held_within_rounding).unwrap_err().into())),
         ("OutOfTime", ("out-of-time", hasty.map(drop).unwrap_err().into())),
         ("NotCertified", ("not-certified", solve(&spring_and_wall, &never).unwrap_err().into())),

@@ -130,6 +130,17 @@ pub enum Error {
         /// The obstacle to a decision, in words, with the remedy.
         reason: String,
     },
+    /// The stiffness holds so few directions that the program is nearly linear.
+    #[error(
+        "the stiffness holds {rank} of {unknowns} directions, and rows alone would have to hold the others: that is nearly a linear program, \
+         which a solver for linear programs answers"
+    )]
+    NearlyLinear {
+        /// The number of directions with stiffness, its rank.
+        rank: usize,
+        /// The number of dofs, less that of the equalities.
+        unknowns: usize,
+    },
     /// An answer was found, but it does not meet the tolerance.
     #[error("{}", not_certified(solution, condition, *value, *tolerance))]
     NotCertified {
@@ -283,6 +294,7 @@ impl Error {
             Error::Undecided { .. } => ("undecided", "not_certified", NotCertified),
             Error::NotCertified { .. } => ("not-certified", "not_certified", NotCertified),
             Error::Setting { .. } => bad_input("setting"),
+            Error::NearlyLinear { .. } => bad_input("nearly-linear"),
             Error::NotCondensed { .. } => bad_input("not-condensed"),
             Error::TooLarge { .. } | Error::NoRoom { .. } => bad_input("too-large"),
             Error::Numerical { .. } => ("numerical", "failed", BadInput),

@@ -92,6 +92,7 @@ use prepared::between;
 /// * [`Error::Unbounded`] for a load along a rigid-body mode that nothing stops,
 /// * [`Error::UnderHeld`] for a rigid-body mode that nothing resists: the answer would not be unique,
 /// * [`Error::NotConvex`] for a stiffness with a negative eigenvalue,
+/// * [`Error::NearlyLinear`] for more than 256 dofs of which the stiffness holds less than a quarter,
 /// * [`Error::NotCertified`] with the best answer, if it does not meet the tolerance,
 /// * [`Error::NoRoom`] if no way within `settings.memory` leads to a certified answer, [`Error::TooLarge`] if the named method does not
 ///   fit,

@@ -49,7 +49,7 @@ impl Ladder {
     /// The ladder for `problem`.
     ///
     /// # Errors
-    /// [`Error::NoRoom`] if neither a factor nor multigrid fits into the memory, [`Error::Undecided`] for a nearly linear program.
+    /// [`Error::NoRoom`] if neither a factor nor multigrid fits into the memory, [`Error::NearlyLinear`].
     pub fn of(problem: &ContactProblem, known: Known, settings: &Settings) -> Result<Self, Error> {
         let mut ladder = Ladder {
             attempts: Vec::with_capacity(8),

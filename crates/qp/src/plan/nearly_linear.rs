@@ -19,7 +19,7 @@ const NO_PIVOT: f64 = 1e-10;
 /// Refuses a nearly linear program: each of its motions without energy would have to be stopped by a row of its own.
 ///
 /// # Errors
-/// [`Error::Undecided`] with the number of directions that have stiffness.
+/// [`Error::NearlyLinear`] with the number of directions that have stiffness.
 pub(super) fn check(problem: &ContactProblem) -> Result<(), Error> {
     // An equality takes a direction away.
     let unknowns = problem.dofs().saturating_sub(problem.equalities().len());
@@ -29,12 +29,7 @@ pub(super) fn check(problem: &ContactProblem) -> Result<(), Error> {
     }
     match rank_within(problem, most) {
         None => Ok(()),
-        Some(rank) => Err(Error::Undecided {
-            reason: format!(
-                "the stiffness holds {rank} of {unknowns} directions, and rows alone would have to hold the others; that is nearly a linear \
-                 program, which a solver for linear programs answers"
-            ),
-        }),
+        Some(rank) => Err(Error::NearlyLinear { rank, unknowns }),
     }
 }
 
