@@ -1,6 +1,6 @@
-//! `signorini new`: a first scene for a mesh.
+//! `signorini new`: a first scene for a mesh, or the scene of a deck.
 
-use super::options::New;
+use super::options::{New, permits};
 use super::outcome::Outcome;
 use crate::Error;
 use crate::output::write_atomically;
@@ -13,11 +13,16 @@ pub(super) fn run(options: &New) -> Result<Outcome, Error> {
         Some(name) => name.to_string_lossy().into_owned(),
         None => options.mesh.to_string_lossy().into_owned(),
     };
-    let text = Scene::start(&options.mesh, &named)?;
+    let is_deck = Scene::is_deck(&options.mesh);
+    let text = match is_deck {
+        true => Scene::text_of_deck(&options.mesh, &named, &permits(options.allow_outside, options.without_friction))?,
+        false => Scene::start(&options.mesh, &named)?,
+    };
     match &options.out {
         Some(file) => {
             write_atomically(file, text.as_bytes())?;
-            Ok(Outcome::done(format!("{}: written as a first scene; solve it, then change it\n", file.display())))
+            let what = if is_deck { "the scene of the deck" } else { "a first scene" };
+            Ok(Outcome::done(format!("{}: written as {what}; solve it, then change it\n", file.display())))
         }
         None => Ok(Outcome::done(text)),
     }

@@ -213,7 +213,7 @@ impl Common {
 
 #[derive(Debug, Args)]
 pub(super) struct Solve {
-    /// Scene (a JSON file, - for standard input) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, or the same as .petsc)
+    /// Scene (a JSON file, - for standard input), deck of CalculiX (a .inp file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, or the same as .petsc)
     pub input: PathBuf,
     /// Method that finds the contact set
     #[arg(long, value_parser = choice::<Method>(), default_value = "auto")]
@@ -264,8 +264,14 @@ pub(super) struct Solve {
 
 #[derive(Debug, Args)]
 pub(super) struct New {
-    /// Mesh (a .msh file of Gmsh)
+    /// Mesh (a .msh file of Gmsh), or an input deck of CalculiX (a .inp file)
     pub mesh: PathBuf,
+    /// Let a deck include files that lie outside its own folder
+    #[arg(long)]
+    pub allow_outside: bool,
+    /// Translate a deck with friction without it
+    #[arg(long)]
+    pub without_friction: bool,
     /// File for the scene; standard output if it is left out
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
@@ -394,6 +400,12 @@ fn parse_threads(text: &str) -> Result<usize, String> {
     allowed(text, |threads| (1..=MOST_THREADS).contains(threads), || format!("a whole number from 1 to {MOST_THREADS}"))
 }
 
+/// The names of the permissions for the reading of a deck.
+pub(super) fn permits(allow_outside: bool, without_friction: bool) -> Vec<&'static str> {
+    let named = [("outside", allow_outside), ("friction", without_friction)];
+    named.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name).collect()
+}
+
 /// Limits of memory and files for a scene or a problem.
 #[derive(Debug, Args)]
 pub(super) struct Limits {
@@ -403,9 +415,17 @@ pub(super) struct Limits {
     /// Let the scene read files of meshes and surfaces that lie outside its own folder
     #[arg(long)]
     pub allow_outside: bool,
+    /// Solve a deck with friction without it: the answer is that of a frictionless contact
+    #[arg(long)]
+    pub without_friction: bool,
 }
 
 impl Limits {
+    /// The permissions for the reading of a deck.
+    pub fn permits(&self) -> Vec<&'static str> {
+        permits(self.allow_outside, self.without_friction)
+    }
+
     /// The memory, in bytes.
     pub fn most_memory(&self) -> f64 {
         most_memory(self.max_memory)

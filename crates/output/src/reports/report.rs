@@ -129,7 +129,7 @@ fn within(value: f64, uncertainty: Option<f64>, unit: &str) -> String {
 /// The largest pressure, and the extent of the contact.
 fn extent_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
     let (Some(pressure), Some(area)) = (contact.pressure_max, contact.area) else { return Vec::new() };
-    let square = format!("{}²", units.length);
+    let square = square(units);
     let Some(estimate) = &contact.estimate else {
         return vec![format!(
             "peak pressure {}, area {}",

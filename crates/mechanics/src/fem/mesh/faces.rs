@@ -26,6 +26,22 @@ impl Mesh {
     /// The element and its local face for each facet of a boundary: the first one if the boundary lies between two elements, `None` if
     /// the facet is not a face of any element.
     pub fn faces_of(&self, boundary: &Boundary) -> Vec<Option<(usize, usize)>> {
+        let mut found = vec![None; boundary.facet_count()];
+        self.for_faces_of(boundary, |index, face| {
+            found[index].get_or_insert(face);
+        });
+        found
+    }
+
+    /// The first facet of a boundary that is a face of two elements.
+    pub(super) fn inner_facet(&self, boundary: &Boundary) -> Option<usize> {
+        let mut count = vec![0_usize; boundary.facet_count()];
+        self.for_faces_of(boundary, |index, _| count[index] += 1);
+        count.iter().position(|&count| count > 1)
+    }
+
+    /// Calls `visit` with the number of a facet of a boundary, and an element and its local face, for each that there is.
+    fn for_faces_of(&self, boundary: &Boundary, mut visit: impl FnMut(usize, (usize, usize))) {
         let mut places: HashMap<Key, Vec<usize>> = HashMap::with_capacity(boundary.facet_count());
         let mut marked = vec![false; self.nodes().len()];
         for (index, facet) in boundary.facets().enumerate() {
@@ -36,7 +52,6 @@ impl Mesh {
                 }
             }
         }
-        let mut found = vec![None; boundary.facet_count()];
         for (element, nodes) in self.elements().enumerate() {
             // Most elements do not touch the boundary.
             if !nodes.iter().any(|&node| marked[node]) {
@@ -47,11 +62,10 @@ impl Mesh {
                     continue;
                 }
                 for &index in places.get(&key(local.iter().map(|&place| nodes[place]))).into_iter().flatten() {
-                    found[index].get_or_insert((element, face));
+                    visit(index, (element, face));
                 }
             }
         }
-        found
     }
 
     /// All faces that belong to one of these elements of one kind only, seen from outside; edges in the order in which they follow each

@@ -3,11 +3,13 @@
 mod axis;
 pub(crate) mod bisection;
 mod boundary;
+pub(crate) mod deck;
 mod elevation;
 mod faces;
 pub mod gmsh;
 mod group;
 pub(crate) mod lattice;
+mod node_names;
 mod outline;
 pub(crate) mod round;
 pub(crate) mod triangle_pieces;
@@ -17,6 +19,7 @@ pub use crate::fem::element::{ElementKind, FacetKind};
 pub use axis::Axis;
 pub use boundary::Boundary;
 pub(crate) use group::ElementGroup;
+pub(crate) use node_names::NodeNames;
 pub use zone::Zone;
 
 use crate::error::Error;
@@ -36,6 +39,7 @@ pub struct Mesh {
     connectivity: Vec<usize>,
     boundaries: Vec<Boundary>,
     groups: Vec<ElementGroup>,
+    node_names: NodeNames,
 }
 
 /// Consecutive elements of one kind.
@@ -72,7 +76,8 @@ impl Mesh {
             ));
         }
         let blocks = vec![Block { kind, elements: 0..connectivity.len() / each, first: 0 }];
-        Mesh { nodes, blocks, connectivity, boundaries, groups: Vec::new() }.checked()
+        let (groups, node_names) = (Vec::new(), NodeNames::default());
+        Mesh { nodes, blocks, connectivity, boundaries, groups, node_names }.checked()
     }
 
     fn checked(self) -> Result<Self, Error> {
@@ -206,6 +211,16 @@ impl Mesh {
         Mesh { groups, ..self }
     }
 
+    /// The names of its nodes in its file.
+    pub(crate) fn node_names(&self) -> &NodeNames {
+        &self.node_names
+    }
+
+    /// The same mesh with other names of its nodes.
+    fn with_node_names(self, node_names: NodeNames) -> Self {
+        Mesh { node_names, ..self }
+    }
+
     /// The mirror image across the plane where the coordinate `axis` (0, 1, 2 for x, y, z) is `plane`; boundaries keep
     /// their names.
     pub fn mirrored(mut self, axis: usize, plane: f64) -> Self {
@@ -240,6 +255,7 @@ impl Mesh {
             }
         }
         let first = self.nodes.len();
+        self.node_names.extend(&other.node_names, name, first);
         let behind = |nodes: &[usize]| nodes.iter().map(|node| first + node).collect::<Vec<usize>>();
         self.nodes.extend_from_slice(&other.nodes);
         self.connectivity.extend(behind(&other.connectivity));

@@ -115,6 +115,21 @@ pub(crate) fn boundary<'a>(mesh: &'a Mesh, name: &str, path: &str) -> Result<&'a
     })
 }
 
+/// The nodes of the set of this name, or the node of this number, in the file of a mesh.
+pub(crate) fn nodes_named(mesh: &Mesh, name: &str, path: &str) -> Result<Vec<usize>, Error> {
+    let names = mesh.node_names();
+    names.nodes(name).ok_or_else(|| {
+        let sets: Vec<&str> = names.sets().collect();
+        let there = match (names.has_numbers(), sets.is_empty()) {
+            (false, _) => "only nodes of a deck have names".to_string(),
+            (true, true) => "the deck has no sets of nodes".to_string(),
+            (true, false) => format!("there are the sets {}, and numbers of nodes", sets.join(", ")),
+        };
+        let meant = nearly(name, sets.iter().copied());
+        wrong(path, format!("there is no set of nodes, and no node of the number, `{name}`; {there}{meant}"))
+    })
+}
+
 /// The node at a point of a scene.
 pub(crate) fn node_at(mesh: &Mesh, at: &[f64], path: &str) -> Result<usize, Error> {
     let dimension = mesh.dimension();

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::Path;
 
+use super::deck::{DeckScene, is_deck};
 use super::files::Named;
 use super::json::{line_and_column, parsed, plain, start_of};
 use crate::error::Error;
@@ -16,6 +17,13 @@ pub(super) const MOST_OF_SCENE: u64 = 256 << 20;
 impl Scene {
     /// An error of a value with its line and column, if the scene was read from a file that can be read again.
     pub fn located(error: Error, file: &Path) -> Error {
+        if is_deck(file) {
+            // Only the lines of its entries are wanted.
+            return match DeckScene::read(file, "", &["outside", "friction"]) {
+                Ok(deck) => deck.located(error),
+                Err(_) => error,
+            };
+        }
         let place_of = |path: &str| match read_text_capped(file, MOST_OF_SCENE) {
             Ok(text) if file.is_file() => position(&text, path),
             _ => None,

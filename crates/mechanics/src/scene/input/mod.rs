@@ -2,6 +2,7 @@
 
 pub(crate) mod absent;
 pub(crate) mod body;
+pub(crate) mod deck;
 pub(crate) mod entry;
 pub(crate) mod files;
 mod json;

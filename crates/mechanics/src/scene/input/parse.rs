@@ -7,6 +7,7 @@ use serde::Deserialize;
 use signorini_qp as qp;
 
 use super::absent::other_format;
+use super::deck::is_deck;
 use super::json::{Typed, line_and_column, parsed, plain};
 use super::locate::MOST_OF_SCENE;
 use crate::error::Error;
@@ -28,15 +29,19 @@ impl Scene {
         })
     }
 
-    /// Reads a scene from a JSON file; relative names of other files start in its folder.
+    /// Reads a scene from a JSON file, or from a deck of CalculiX, whose name ends with `.inp`; relative names of other files start in its
+    /// folder.
     ///
     /// # Errors
-    /// [`qp::Error::File`] for a file that cannot be read, and as [`Scene::from_json`].
+    /// [`qp::Error::File`] for a file that cannot be read, and as [`Scene::from_json`] and [`Scene::read_deck`].
     pub fn read(path: impl AsRef<Path>) -> Result<Scene, Error> {
         let path = path.as_ref();
         if path.is_dir() {
             let source = io::Error::new(io::ErrorKind::IsADirectory, "it is a folder, but a scene is a JSON file");
             return Err(qp::Error::File { action: "read", path: path.into(), source }.into());
+        }
+        if is_deck(path) {
+            return Scene::read_deck(path, &[]);
         }
         let text = read_text_capped(path, MOST_OF_SCENE)?;
         let scene = Self::from_json(&text, &path.display().to_string())?;

@@ -203,6 +203,14 @@ pub enum Warning {
         /// Number of nodes that share their place with a node before them.
         count: usize,
     },
+    /// A deck says something that is answered in another way.
+    #[error("{place}: {message}")]
+    Deck {
+        /// The file and the line of the deck, as `part.inp:12`.
+        place: String,
+        /// A sentence on what is answered instead.
+        message: String,
+    },
     /// The scheme can gain energy.
     #[error(
         "the scheme `{scheme}` can gain energy at every impact: it is for comparison only; take `midpoint` or \
@@ -246,6 +254,7 @@ impl Warning {
             Warning::PointLoad { .. } => "point-load",
             Warning::FreeSymmetry { .. } => "free-symmetry",
             Warning::CoincidentNodes { .. } => "coincident-nodes",
+            Warning::Deck { .. } => "deck",
             Warning::GainsEnergy { .. } => "gains-energy",
         }
     }

@@ -74,7 +74,8 @@ impl Scene {
         let (supports, is_part) = (self.supports.len(), self.may_be_part(&body)?);
         let load = self.load(&body)?;
         let obstacles = self.placed_obstacles(&body, &dofs, further)?;
-        let mut warnings: Vec<_> = locking(&body).into_iter().collect();
+        let mut warnings = self.noted.clone();
+        warnings.extend(locking(&body));
         warnings.extend(stiffness_jumps(&body));
         warnings.extend(unit_of_young(&body, &self.units));
         warnings.extend(self.suspect(&body, &dofs)?);

@@ -62,11 +62,12 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] for a force at a point, except on a bar.
     pub(crate) fn check_continuum(&self) -> Result<(), Error> {
-        match self.loads.iter().position(LoadSpec::is_at_point) {
+        match self.loads.iter().position(LoadSpec::is_at_points) {
             Some(index) if self.model.dimension() > 1 => {
                 let message = "a force at a point makes an infinite displacement in a continuum, so that there is \
                                no total error; spread it over a boundary";
-                Err(wrong(format!("loads[{index}].force"), message))
+                let field = if self.loads[index].is_at_point() { "force" } else { "nodal-forces" };
+                Err(wrong(format!("loads[{index}].{field}"), message))
             }
             _ => Ok(()),
         }
@@ -228,6 +229,7 @@ fn on_outline<'a>(model: &Model, index: usize, load: &'a LoadSpec) -> Result<OnO
             varies("pressure.profile", "a pressure that changes along a boundary")
         }
         LoadSpec::Moment(_) => varies("moment", "the traction of a moment"),
+        LoadSpec::NodalForces(_) => varies("nodal-forces", "a force on a node"),
         LoadSpec::Centrifugal(_) => varies("centrifugal", "a force that grows with the distance from an axis"),
         LoadSpec::Traction(spec) => Ok(Some((path("traction.boundary"), &spec.boundary, in_plane(&spec.value), 0.0))),
         LoadSpec::Pressure(spec) => Ok(Some((path("pressure.boundary"), &spec.boundary, [0.0; 2], spec.value))),

@@ -1,12 +1,16 @@
 //! Loads of a scene, at the nodes.
 
+use std::collections::BTreeMap;
+
 use crate::error::Error;
 use crate::fem::assembly::{
     add_body_force, add_centrifugal, add_gravity, add_moment, add_pressure, add_traction, add_traction_with_kinks,
     tributary_areas,
 };
 use crate::fem::{Boundary, ElasticBody, Region};
-use crate::scene::input::entry::{COORDINATE_ROUNDING, boundary, direction, finite, node_at, vector, wrong};
+use crate::scene::input::entry::{
+    COORDINATE_ROUNDING, boundary, direction, finite, node_at, nodes_named, vector, wrong,
+};
 use crate::scene::input::profile::Profile;
 use crate::scene::input::schema::load::{CentrifugalSpec, ForceSpec, LoadSpec, MomentSpec, PressureSpec, TractionSpec};
 use crate::scene::input::schema::profile::ProfileSpec;
@@ -31,6 +35,7 @@ impl Scene {
             LoadSpec::Traction(spec) => placed("traction").add_traction(spec, load),
             LoadSpec::Pressure(spec) => placed("pressure").add_pressure(spec, load),
             LoadSpec::Force(spec) => placed("force").add_force(spec, load),
+            LoadSpec::NodalForces(forces) => placed("nodal-forces").add_nodal(forces, load),
             LoadSpec::Moment(spec) => placed("moment").add_moment(spec, load),
             LoadSpec::BodyForce(value) => {
                 let placed = placed("body-force");
@@ -131,6 +136,25 @@ impl PlacedLoad<'_> {
             (None, None) => Err(wrong(&*self.path, "acts nowhere; give `at`, a point, or a `boundary`")),
             (Some(_), Some(_)) => Err(wrong(&*self.path, "acts at a point and on a boundary; give only one")),
         }
+    }
+
+    fn add_nodal(&self, forces: &BTreeMap<String, Vec<f64>>, load: &mut [f64]) -> Result<(), Error> {
+        let dimension = self.body.dimension();
+        if forces.is_empty() {
+            return Err(wrong(
+                &*self.path,
+                "acts nowhere; give a set of nodes, or the number of a node, with its force",
+            ));
+        }
+        for (name, force) in forces {
+            let nodes = nodes_named(self.body.mesh(), name, &self.at(name))?;
+            let force = self.vector(name, force)?;
+            for node in nodes {
+                let entries = &mut load[dimension * node..dimension * (node + 1)];
+                entries.iter_mut().zip(force).for_each(|(entry, component)| *entry += component);
+            }
+        }
+        Ok(())
     }
 
     fn add_moment(&self, spec: &MomentSpec, load: &mut [f64]) -> Result<(), Error> {

@@ -52,6 +52,10 @@ impl SpringSpec {
                 Err(wrong(format!("{path}.stiffness"), "a node has no area; `total` is the stiffness of the spring"))
             }
             Place::Point(at) => Ok(Springs::at_node(node_at(body.mesh(), at, &format!("{path}.on.point"))?, along)),
+            Place::Nodes(_) => Err(wrong(
+                format!("{path}.on.nodes"),
+                "a spring holds a boundary, or the node at a point; give one of them",
+            )),
             Place::Boundary(name) => {
                 let boundary = boundary(body.mesh(), name, &format!("{path}.on.boundary"))?;
                 let share = match self.stiffness {

@@ -64,13 +64,18 @@ impl BodyShape for GmshSpec {
     }
 
     fn block(&self, files: Option<Files>) -> Block {
-        let bytes = files.map_or(0.0, |files| files.length(&self.file));
-        // A plane mesh has fewer elements per node; the estimate of its size hardly depends on that.
-        let side = (bytes / OF_MESH_FILE).sqrt();
-        Block { cells: vec![side; 2], lengths: Vec::new(), counts: ElementKind::T3.reference().counts }
+        block_of_file(&self.file, files)
     }
 
     fn refine(&mut self, _: usize) -> Result<(), Error> {
         Err(wrong("body.gmsh", "a mesh from a file cannot be refined here; mesh the body again with smaller cells"))
     }
+}
+
+/// The block for a mesh file, by its length.
+pub(super) fn block_of_file(file: &str, files: Option<Files>) -> Block {
+    let bytes = files.map_or(0.0, |files| files.length(file));
+    // A plane mesh has fewer elements per node; the estimate of its size hardly depends on that.
+    let side = (bytes / OF_MESH_FILE).sqrt();
+    Block { cells: vec![side; 2], lengths: Vec::new(), counts: ElementKind::T3.reference().counts }
 }

@@ -4,6 +4,7 @@ mod bar;
 mod cuboid;
 #[cfg(test)]
 mod curved_bodies;
+mod deck;
 mod disc;
 mod gmsh;
 mod half_ball;
@@ -14,6 +15,7 @@ mod shape;
 
 pub use bar::{BarSpec, bar};
 pub use cuboid::{BoxSpec, cuboid};
+pub use deck::DeckSpec;
 pub use disc::{DiscSpec, disc};
 pub use gmsh::GmshSpec;
 pub use half_ball::{HalfBallSpec, half_ball};
@@ -53,10 +55,12 @@ pub enum BodySpec {
     Ring(RingSpec),
     /// A mesh written by Gmsh; its physical groups are the boundaries.
     Gmsh(GmshSpec),
+    /// The mesh of an input deck of CalculiX; its surfaces are the boundaries.
+    Deck(DeckSpec),
 }
 
 /// The names of all body shapes, in the order of messages.
-const ALL: [About; 8] = [
+const ALL: [About; 9] = [
     rectangle::ABOUT,
     bar::ABOUT,
     cuboid::ABOUT,
@@ -65,6 +69,7 @@ const ALL: [About; 8] = [
     half_ball::ABOUT,
     ring::ABOUT,
     gmsh::ABOUT,
+    deck::ABOUT,
 ];
 
 impl BodySpec {
@@ -89,6 +94,7 @@ impl BodySpec {
             BodySpec::HalfBall(spec) => (half_ball::ABOUT, spec),
             BodySpec::Ring(spec) => (ring::ABOUT, spec),
             BodySpec::Gmsh(spec) => (gmsh::ABOUT, spec),
+            BodySpec::Deck(spec) => (deck::ABOUT, spec),
         }
     }
 
@@ -103,6 +109,7 @@ impl BodySpec {
             BodySpec::HalfBall(spec) => spec,
             BodySpec::Ring(spec) => spec,
             BodySpec::Gmsh(spec) => spec,
+            BodySpec::Deck(spec) => spec,
         }
     }
 

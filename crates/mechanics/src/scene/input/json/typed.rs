@@ -1,5 +1,6 @@
 //! From a tree of JSON to typed values: the type alone says what it accepts, and nothing else is read in its place.
 
+use std::collections::HashSet;
 use std::slice::{Iter, from_ref};
 use std::str::FromStr;
 
@@ -120,6 +121,17 @@ impl<'de> Deserializer<'de> for Typed<'de> {
         })
     }
 
+    /// An object whose keys are names of the user.
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        let Value::Object(object) = self.0 else { return self.not(OBJECT) };
+        let mut names = HashSet::new();
+        if let Some(twice) = object.properties.iter().find(|field| !names.insert(field.name.as_str())) {
+            let name = twice.name.as_str();
+            return Err(Fault::at(twice.start(), What::Other(format!("the key `{name}` stands twice"))));
+        }
+        visitor.visit_map(Fields { rest: object.properties.iter(), last: None })
+    }
+
     fn deserialize_enum<V: Visitor<'de>>(self, _: &'static str, known: Names, visitor: V) -> Result<V::Value, Fault> {
         let first = self.0.as_object().and_then(|object| object.properties.first());
         let name = first.map(|first| first.name.as_str()).or(self.0.as_string_lit().map(|text| &*text.value));
@@ -127,7 +139,7 @@ impl<'de> Deserializer<'de> for Typed<'de> {
     }
 
     forward_to_deserialize_any! {
-        i8 i16 i32 i64 u8 u16 f32 char str bytes byte_buf unit unit_struct newtype_struct tuple_struct map identifier ignored_any
+        i8 i16 i32 i64 u8 u16 f32 char str bytes byte_buf unit unit_struct newtype_struct tuple_struct identifier ignored_any
     }
 }
 

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::profile::ProfileSpec;
+use crate::scene::input::names;
 
 /// The place on the body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -13,6 +14,10 @@ pub enum Place {
     Boundary(String),
     /// The node at this point.
     Point(Vec<f64>),
+    /// The nodes of a set, or of several, of a deck; a node is named by its number.
+    #[serde(with = "names")]
+    #[schemars(schema_with = "names::schema")]
+    Nodes(Vec<String>),
 }
 
 /// A support: a direction that is left out is free; a number is the prescribed displacement.

@@ -1,5 +1,7 @@
 //! Loads as they are written in a scene.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +17,8 @@ pub enum LoadSpec {
     Pressure(PressureSpec),
     /// A force at a node, or on a boundary.
     Force(ForceSpec),
+    /// Forces on nodes of a deck: for each name of a set or number of a node the force that each of its nodes carries. They add up.
+    NodalForces(BTreeMap<String, Vec<f64>>),
     /// A moment on a boundary.
     Moment(MomentSpec),
     /// A constant body force, in force per volume.
@@ -29,6 +33,11 @@ impl LoadSpec {
     /// Returns `true` for a force at a single point.
     pub fn is_at_point(&self) -> bool {
         matches!(self, LoadSpec::Force(ForceSpec { at: Some(_), .. }))
+    }
+
+    /// Returns `true` for forces at one point or several.
+    pub(crate) fn is_at_points(&self) -> bool {
+        self.is_at_point() || matches!(self, LoadSpec::NodalForces(_))
     }
 }
 

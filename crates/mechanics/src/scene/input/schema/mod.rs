@@ -33,6 +33,7 @@ pub use symmetry::SymmetryPlane;
 use std::path::PathBuf;
 
 use super::body::BodySpec;
+use super::warning::Warning;
 
 /// The format of scenes that this program reads.
 const FORMAT: u32 = 1;
@@ -119,6 +120,9 @@ pub struct Scene {
     /// `true` if the scene may name files outside its folder. Not part of the text.
     #[serde(skip)]
     pub reads_outside: bool,
+    /// Warnings about the deck that the scene was read from. Not part of the text.
+    #[serde(skip)]
+    pub noted: Vec<Warning>,
 }
 
 /// Accepts the number of the one format of scenes.

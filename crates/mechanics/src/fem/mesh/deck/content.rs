@@ -1,0 +1,213 @@
+//! The content of a deck: nodes, elements, sets, surfaces.
+
+use std::path::Path;
+
+use super::card::{Card, Place, key};
+use super::faces::{FacePressure, Surfaces};
+use super::kinds::{DeckElementType, element_type};
+use super::sets::{Numbered, Sets};
+use super::source::Source;
+use crate::error::Error;
+use crate::fem::element::ElementKind;
+use crate::fem::mesh::MAX_NODES;
+use signorini_qp::Forest;
+
+/// An input deck, read with the files that it includes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Deck {
+    pub source: Source,
+    pub nodes: Numbered,
+    pub(super) at: Vec<[f64; 3]>,
+    pub(super) node_places: Vec<Place>,
+    pub elements: Numbered,
+    pub element_list: Vec<DeckElement>,
+    /// The nodes of all elements, by their places from 0.
+    connectivity: Vec<usize>,
+    pub node_sets: Sets,
+    pub element_sets: Sets,
+    pub surfaces: Surfaces,
+    /// The faces that the cards *DLOAD press.
+    pub pressures: Vec<FacePressure>,
+    /// The body of each element and of each node, from 0; `None` for a node without elements.
+    pub body_of_element: Vec<usize>,
+    pub body_of_node: Vec<Option<usize>>,
+    pub bodies: usize,
+}
+
+/// An element of a deck.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DeckElement {
+    pub of_type: &'static DeckElementType,
+    pub kind: ElementKind,
+    pub place: Place,
+    /// The place of its first node in the connectivity.
+    start: usize,
+}
+
+impl Deck {
+    /// Reads a deck. The files that it includes must lie in the folder `within` or below it; anywhere without one.
+    ///
+    /// # Errors
+    /// [`qp::Error::File`](signorini_qp::Error::File) for a file that cannot be read; [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a value
+    /// of the wrong kind, a number that is given twice or does not exist, an element that is not read, a deck without elements.
+    pub fn read(path: &Path, within: Option<&Path>) -> Result<Self, Error> {
+        let mut source = Source::read(path, within)?;
+        let cards = std::mem::take(&mut source.cards);
+        let mut deck = Deck {
+            source,
+            nodes: Numbered::default(),
+            at: Vec::new(),
+            node_places: Vec::new(),
+            elements: Numbered::default(),
+            element_list: Vec::new(),
+            connectivity: Vec::new(),
+            node_sets: Sets::new("node"),
+            element_sets: Sets::new("element"),
+            surfaces: Surfaces::default(),
+            pressures: Vec::new(),
+            body_of_element: Vec::new(),
+            body_of_node: Vec::new(),
+            bodies: 0,
+        };
+        for card in &cards {
+            if card.is("NODE") {
+                deck.read_nodes(card)?;
+            } else if card.is("ELEMENT") {
+                deck.read_elements(card)?;
+            }
+        }
+        deck.replace_numbers()?;
+        for card in &cards {
+            if card.is("NSET") {
+                deck.node_sets.read(&deck.source, card, &deck.nodes)?;
+            } else if card.is("ELSET") {
+                deck.element_sets.read(&deck.source, card, &deck.elements)?;
+            }
+        }
+        for card in &cards {
+            if card.is("SURFACE") {
+                deck.read_surface(card)?;
+            }
+        }
+        for (index, card) in cards.iter().enumerate().filter(|(_, card)| card.is("DLOAD")) {
+            deck.read_pressures(index, card)?;
+        }
+        deck.find_bodies();
+        deck.source.cards = cards;
+        Ok(deck)
+    }
+
+    fn read_nodes(&mut self, card: &Card) -> Result<(), Error> {
+        let first = self.nodes.len();
+        for line in &card.lines {
+            let mut fields = self.source.fields(line);
+            let number = fields.whole("the number of a node")?;
+            let mut at = [0.0; 3];
+            for (value, name) in at.iter_mut().zip(["x", "y", "z"]) {
+                *value = fields.finite_or_zero(format_args!("the {name} of node {number}"))?;
+            }
+            fields.end()?;
+            if !self.nodes.add(number) {
+                return Err(fields.fault(format!("node {number} is given twice")));
+            }
+            if self.nodes.len() > MAX_NODES {
+                return Err(fields.fault(format!("the deck has more than the {MAX_NODES} nodes that are allowed")));
+            }
+            self.at.push(at);
+            self.node_places.push(line.place);
+        }
+        if let Some(set) = card.value("NSET") {
+            self.node_sets.extend(set, first..self.nodes.len());
+        }
+        Ok(())
+    }
+
+    fn read_elements(&mut self, card: &Card) -> Result<(), Error> {
+        let Some(name) = card.value("TYPE") else {
+            return Err(self.source.fault(card.place, "*ELEMENT has no type; write TYPE=C3D10 or another"));
+        };
+        let (of_type, kind) = element_type(&key(name)).map_err(|message| self.source.fault(card.place, message))?;
+        let first = self.elements.len();
+        // An element may go on in the next lines.
+        let mut open: Option<(usize, Place)> = None;
+        for line in &card.lines {
+            let mut fields = self.source.fields(line);
+            let (number, place) = match open {
+                Some(open) => open,
+                None => {
+                    let number = fields.whole("the number of an element")?;
+                    if !self.elements.add(number) {
+                        return Err(fields.fault(format!("element {number} is given twice")));
+                    }
+                    let start = self.connectivity.len();
+                    self.element_list.push(DeckElement { of_type, kind, place: line.place, start });
+                    (number, line.place)
+                }
+            };
+            let wanted = (self.element_list.len() - first) * of_type.nodes + self.element_list[first].start;
+            while self.connectivity.len() < wanted && fields.clone().next().is_some() {
+                let node = fields.whole(format_args!("a node of element {number}"))?;
+                self.connectivity.push(node);
+            }
+            fields.end()?;
+            open = (self.connectivity.len() < wanted).then_some((number, place));
+        }
+        if let Some((number, place)) = open {
+            let found = self.connectivity.len() - self.element_list.last().map_or(0, |element| element.start);
+            let message = format!("element {number} has {found} nodes, but {} has {}", of_type.name, of_type.nodes);
+            return Err(self.source.fault(place, message));
+        }
+        if let Some(set) = card.value("ELSET") {
+            self.element_sets.extend(set, first..self.elements.len());
+        }
+        Ok(())
+    }
+
+    /// Replaces the numbers of nodes in elements by their places.
+    fn replace_numbers(&mut self) -> Result<(), Error> {
+        if self.elements.len() == 0 {
+            return Err(self
+                .source
+                .fault(Place { file: 0, line: 1 }, "the deck has no elements; a body needs at least one"));
+        }
+        for (index, element) in self.element_list.iter().enumerate() {
+            let number = self.elements.numbers[index];
+            for node in &mut self.connectivity[element.start..element.start + element.of_type.nodes] {
+                *node = self.nodes.place(*node).ok_or_else(|| {
+                    let message = format!("element {number} names node {node}, which does not exist");
+                    self.source.fault(element.place, message)
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Finds the elements that are joined by common nodes.
+    fn find_bodies(&mut self) {
+        let elements = self.elements.len();
+        let mut forest = Forest::new(elements);
+        let mut first_at: Vec<Option<usize>> = vec![None; self.nodes.len()];
+        for element in 0..elements {
+            for &node in self.nodes_of(element) {
+                match first_at[node] {
+                    Some(first) => forest.join(first, element),
+                    None => first_at[node] = Some(element),
+                }
+            }
+        }
+        let (bodies, count) = forest.into_trees();
+        self.body_of_node = first_at.into_iter().map(|first| first.map(|element| bodies[element])).collect();
+        (self.body_of_element, self.bodies) = (bodies, count);
+    }
+
+    /// The nodes of an element, by their places.
+    pub fn nodes_of(&self, element: usize) -> &[usize] {
+        let DeckElement { start, of_type, .. } = self.element_list[element];
+        &self.connectivity[start..start + of_type.nodes]
+    }
+
+    /// The name of a body, numbered from 0.
+    pub fn body_name(body: usize) -> String {
+        format!("body-{}", body + 1)
+    }
+}

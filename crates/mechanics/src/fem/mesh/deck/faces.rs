@@ -1,0 +1,198 @@
+//! Surfaces of a deck: faces of elements, or nodes; and the faces that pressures act on.
+
+use std::collections::{HashMap, HashSet};
+
+use super::card::{Card, Place, key};
+use super::content::Deck;
+use crate::error::{Error, nearly};
+
+/// A named surface.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Surface {
+    pub name: String,
+    pub place: Place,
+    /// Elements and their faces, from 0; for a surface of nodes the faces that have only nodes of it.
+    pub faces: Vec<(usize, usize)>,
+    /// The nodes of a surface of nodes that are on none of these faces, by their places.
+    pub bare: Vec<usize>,
+}
+
+/// All surfaces; names that differ only in case or blanks are one name.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Surfaces {
+    pub all: Vec<Surface>,
+    places: HashMap<String, usize>,
+}
+
+impl Surfaces {
+    pub fn named(&self, name: &str) -> Option<&Surface> {
+        self.places.get(&key(name)).map(|&place| &self.all[place])
+    }
+
+    fn add(&mut self, surface: Surface) {
+        self.places.insert(key(&surface.name), self.all.len());
+        self.all.push(surface);
+    }
+}
+
+/// More different pressures than this would need as many boundaries.
+const MOST_PRESSURES: usize = 1000;
+
+/// Faces that a card *DLOAD presses with one value.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct FacePressure {
+    /// The number of the card among all cards.
+    pub card: usize,
+    /// The name of the surface of these faces.
+    pub surface: String,
+    pub place: Place,
+    pub value: f64,
+}
+
+impl Deck {
+    pub(super) fn read_surface(&mut self, card: &Card) -> Result<(), Error> {
+        let Some(name) = card.value("NAME").filter(|name| !name.is_empty()) else {
+            return Err(self.source.fault(card.place, "*SURFACE has no name; write NAME=NAME"));
+        };
+        if self.surfaces.named(name).is_some() {
+            return Err(self.source.fault(card.place, format!("there are two surfaces `{name}`")));
+        }
+        let (mut faces, mut nodes) = (Vec::new(), Vec::new());
+        let of_nodes = card.says("TYPE", "NODE");
+        if !of_nodes && card.value("TYPE").is_some_and(|value| key(value) != "ELEMENT") {
+            let message = "a surface consists of faces (TYPE=ELEMENT) or of nodes (TYPE=NODE)";
+            return Err(self.source.fault(card.place, message));
+        }
+        for line in &card.lines {
+            let mut fields = self.source.fields(line);
+            let target = fields.text().ok_or_else(|| fields.fault("a set or a number must begin this line"))?;
+            if of_nodes {
+                nodes.extend(self.node_sets.members(&target, &self.nodes).map_err(|message| fields.fault(message))?);
+                continue;
+            }
+            let label = fields.text().unwrap_or_default();
+            fields.end()?;
+            faces.extend(self.faces(&target, &label, 'S').map_err(|message| fields.fault(message))?);
+        }
+        if of_nodes {
+            faces = self.faces_on(&nodes);
+        }
+        faces.sort_unstable();
+        faces.dedup();
+        if faces.is_empty() && nodes.is_empty() {
+            return Err(self.source.fault(card.place, format!("the surface `{name}` is empty")));
+        }
+        let covered: HashSet<usize> = faces.iter().flat_map(|&face| self.nodes_of_face(face)).collect();
+        nodes.retain(|node| !covered.contains(node));
+        self.surfaces.add(Surface { name: name.into(), place: card.place, faces, bare: nodes });
+        Ok(())
+    }
+
+    /// The nodes of a face, by their places.
+    fn nodes_of_face(&self, (element, face): (usize, usize)) -> impl Iterator<Item = usize> + '_ {
+        let nodes = self.nodes_of(element);
+        self.element_list[element].kind.reference().faces[face].iter().map(move |&local| nodes[local])
+    }
+
+    /// The faces that have only these nodes and belong to one element.
+    fn faces_on(&self, nodes: &[usize]) -> Vec<(usize, usize)> {
+        let mut marked = vec![false; self.nodes.len()];
+        nodes.iter().for_each(|&node| marked[node] = true);
+        let mut found: HashMap<Vec<usize>, Option<(usize, usize)>> = HashMap::new();
+        for element in 0..self.elements.len() {
+            for face in 0..self.element_list[element].kind.reference().faces.len() {
+                if self.nodes_of_face((element, face)).all(|node| marked[node]) {
+                    let mut key: Vec<usize> = self.nodes_of_face((element, face)).collect();
+                    key.sort_unstable();
+                    found.entry(key).and_modify(|face| *face = None).or_insert(Some((element, face)));
+                }
+            }
+        }
+        found.into_values().flatten().collect()
+    }
+
+    /// The faces of an element, or of the elements of a set: `S1` or `P1` and so on.
+    fn faces(&self, target: &str, label: &str, letter: char) -> Result<Vec<(usize, usize)>, String> {
+        let elements = self.element_sets.members(target, &self.elements)?;
+        let number = key(label).strip_prefix(letter).and_then(|number| number.parse::<usize>().ok());
+        let mut faces = Vec::with_capacity(elements.len());
+        for element in elements {
+            let count = self.element_list[element].kind.reference().faces.len();
+            match number.filter(|number| (1..=count).contains(number)) {
+                Some(number) => faces.push((element, number - 1)),
+                None => {
+                    let (name, number) = (self.element_list[element].of_type.name, self.elements.numbers[element]);
+                    let shown: String = label.chars().take(40).collect();
+                    return Err(format!(
+                        "`{shown}` is no face of element {number}; {name} has {letter}1 to {letter}{count}"
+                    ));
+                }
+            }
+        }
+        Ok(faces)
+    }
+
+    /// Makes a surface of the faces of each value of a card *DLOAD; a face that occurs again gets another surface, because pressures add up.
+    pub(super) fn read_pressures(&mut self, index: usize, card: &Card) -> Result<(), Error> {
+        let mut groups: Vec<(f64, Place, Vec<(usize, usize)>)> = Vec::new();
+        for line in &card.lines {
+            let mut fields = self.source.fields(line);
+            let target = fields.text().ok_or_else(|| fields.fault("a set or a number must begin this line"))?;
+            let label = fields.text().unwrap_or_default();
+            let is_face = key(&label).strip_prefix('P').is_some_and(|rest| rest.parse::<usize>().is_ok());
+            if !is_face {
+                continue;
+            }
+            let value = fields.finite("the pressure")?;
+            fields.end()?;
+            let faces = self.faces(&target, &label, 'P').map_err(|message| fields.fault(message))?;
+            match groups.last_mut().filter(|group| group.0 == value) {
+                Some(group) => group.2.extend(faces),
+                None => groups.push((value, line.place, faces)),
+            }
+        }
+        for (value, place, mut faces) in groups {
+            if self.pressures.len() >= MOST_PRESSURES {
+                let message =
+                    format!("the deck has more than the {MOST_PRESSURES} different pressures that are allowed");
+                return Err(self.source.fault(place, message));
+            }
+            faces.sort_unstable();
+            while !faces.is_empty() {
+                // The further occurrences of a face.
+                let mut again = Vec::new();
+                let mut last = None;
+                faces.retain(|&face| {
+                    let is_new = last != Some(face);
+                    last = Some(face);
+                    if !is_new {
+                        again.push(face);
+                    }
+                    is_new
+                });
+                let mut number = self.pressures.len() + 1;
+                while self.surfaces.named(&format!("dload-{number}")).is_some() {
+                    number += 1;
+                }
+                let name = format!("dload-{number}");
+                self.pressures.push(FacePressure { card: index, surface: name.clone(), place, value });
+                self.surfaces.add(Surface {
+                    name,
+                    place,
+                    faces: std::mem::replace(&mut faces, again),
+                    bare: Vec::new(),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The surface of this name, or a sentence without one.
+    pub fn surface_or(&self, name: &str) -> Result<&Surface, String> {
+        self.surfaces.named(name).ok_or_else(|| {
+            let meant = nearly(name, self.surfaces.all.iter().map(|surface| surface.name.as_str()));
+            let shown: String = name.chars().take(80).collect();
+            format!("there is no surface `{shown}`{meant}")
+        })
+    }
+}

@@ -1,0 +1,103 @@
+//! The elements of decks by name, with the nearest element of this library.
+//!
+//! # Source
+//! G. Dhondt, *CalculiX CrunchiX User's Manual*, chapter "Element types": nodes and faces have the order of this library.
+
+use crate::fem::element::ElementKind;
+
+/// The space that the elements of a deck are made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Space {
+    PlaneStress,
+    PlaneStrain,
+    Axisymmetric,
+    Solid,
+}
+
+/// An element of a deck.
+#[derive(Debug, PartialEq)]
+pub(crate) struct DeckElementType {
+    /// Its name, as `C3D8I`.
+    pub name: &'static str,
+    pub space: Space,
+    /// Number of its nodes.
+    pub nodes: usize,
+    /// How the nearest element of this library differs; empty if it does not.
+    pub differs: &'static str,
+}
+
+const fn element(name: &'static str, space: Space, nodes: usize, differs: &'static str) -> DeckElementType {
+    DeckElementType { name, space, nodes, differs }
+}
+
+const INCOMPATIBLE: &str = "without incompatible modes, and therefore stiffer in bending";
+const REDUCED: &str = "with full instead of reduced integration, and therefore stiffer in bending";
+const REDUCED_QUADRATIC: &str = "with full instead of reduced integration, and therefore a little stiffer";
+
+const EXPANDED: &str = "with no stress across the plane at any point; CalculiX takes solid elements of the thickness, which are a little stiffer near supports";
+const WEDGE: &str = "of a full circle; CalculiX takes a wedge of two degrees with flat sides, so that forces of pressures differ by 2e-4";
+
+/// All elements that are read.
+pub(crate) static TYPES: [DeckElementType; 25] = {
+    use Space::{Axisymmetric, PlaneStrain, PlaneStress, Solid};
+    [
+        element("C3D4", Solid, 4, ""),
+        element("C3D8", Solid, 8, ""),
+        element("C3D8I", Solid, 8, INCOMPATIBLE),
+        element("C3D8R", Solid, 8, REDUCED),
+        element("C3D10", Solid, 10, ""),
+        element("C3D20", Solid, 20, ""),
+        element("C3D20R", Solid, 20, REDUCED_QUADRATIC),
+        element("CPS3", PlaneStress, 3, EXPANDED),
+        element("CPS4", PlaneStress, 4, EXPANDED),
+        element("CPS4R", PlaneStress, 4, REDUCED),
+        element("CPS6", PlaneStress, 6, EXPANDED),
+        element("CPS8", PlaneStress, 8, EXPANDED),
+        element("CPS8R", PlaneStress, 8, REDUCED_QUADRATIC),
+        element("CPE3", PlaneStrain, 3, ""),
+        element("CPE4", PlaneStrain, 4, ""),
+        element("CPE4R", PlaneStrain, 4, REDUCED),
+        element("CPE6", PlaneStrain, 6, ""),
+        element("CPE8", PlaneStrain, 8, ""),
+        element("CPE8R", PlaneStrain, 8, REDUCED_QUADRATIC),
+        element("CAX3", Axisymmetric, 3, WEDGE),
+        element("CAX4", Axisymmetric, 4, WEDGE),
+        element("CAX4R", Axisymmetric, 4, REDUCED),
+        element("CAX6", Axisymmetric, 6, WEDGE),
+        element("CAX8", Axisymmetric, 8, WEDGE),
+        element("CAX8R", Axisymmetric, 8, REDUCED_QUADRATIC),
+    ]
+};
+
+impl DeckElementType {
+    /// The nearest element of this library: the one with as many nodes and dimensions.
+    pub fn kind(&self) -> Option<ElementKind> {
+        let dimension = if self.space == Space::Solid { 3 } else { 2 };
+        ElementKind::ALL.into_iter().find(|kind| kind.nodes() == self.nodes && kind.dimension() == dimension)
+    }
+}
+
+/// The element of this name in capitals.
+///
+/// # Errors
+/// A sentence that names what it is and what is read.
+pub(super) fn element_type(name: &str) -> Result<(&'static DeckElementType, ElementKind), String> {
+    let found = TYPES.iter().find(|element| element.name == name);
+    if let Some(found) = found.and_then(|element| Some((element, element.kind()?))) {
+        return Ok(found);
+    }
+    let family = match name {
+        _ if name.starts_with("C3D6") || name.starts_with("C3D15") => "wedges",
+        _ if name.starts_with("C3D") => "elements in space of another form",
+        _ if name.starts_with("SPRING") => "springs",
+        _ if name.starts_with("DASHPOT") => "dampers",
+        _ if name.starts_with("SC") || name.starts_with("STRI") => "shells",
+        _ if name.starts_with('S') => "shells",
+        _ if name.starts_with('B') => "beams",
+        _ if name.starts_with("T2D") || name.starts_with("T3D") => "trusses",
+        _ if name.starts_with('M') => "membranes or masses",
+        _ => "elements of this type",
+    };
+    let names: Vec<&str> = TYPES.iter().map(|element| element.name).collect();
+    Err(format!("the element type {name} is not read: {family} are not modelled; there are {}", names.join(", ")))
+}

@@ -1,0 +1,143 @@
+//! Named sets of nodes or of elements.
+
+use std::collections::HashMap;
+
+use super::card::{Card, Fields, key};
+use super::source::Source;
+use crate::error::{Error, nearly};
+
+/// The things of a deck that have numbers, nodes or elements: their numbers, and their places in the deck.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Numbered {
+    /// The number of each, in the order of the deck.
+    pub numbers: Vec<usize>,
+    places: HashMap<usize, usize>,
+}
+
+impl Numbered {
+    /// Adds the thing of this number; `false` if there is one.
+    pub fn add(&mut self, number: usize) -> bool {
+        if self.places.insert(number, self.numbers.len()).is_some() {
+            return false;
+        }
+        self.numbers.push(number);
+        true
+    }
+
+    pub fn len(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// The place of a number, from 0.
+    pub fn place(&self, number: usize) -> Option<usize> {
+        self.places.get(&number).copied()
+    }
+
+    /// The places of the numbers from `first` to `last` in steps of `step` that there are.
+    fn range(&self, first: usize, last: usize, step: usize) -> Vec<usize> {
+        let steps = (last - first) / step;
+        if steps < self.numbers.len() {
+            return (0..=steps).filter_map(|count| self.place(first + count * step)).collect();
+        }
+        let is_in = |number: usize| (first..=last).contains(&number) && (number - first).is_multiple_of(step);
+        (0..self.numbers.len()).filter(|&place| is_in(self.numbers[place])).collect()
+    }
+}
+
+/// A set as it is named first, with the places of its members, increasing.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct NamedSet {
+    pub name: String,
+    pub members: Vec<usize>,
+}
+
+/// Sets of one kind of thing; names that differ only in case or blanks are one name.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Sets {
+    /// `node` or `element`.
+    of: &'static str,
+    pub all: Vec<NamedSet>,
+    places: HashMap<String, usize>,
+}
+
+impl Sets {
+    pub fn new(of: &'static str) -> Self {
+        Sets { of, all: Vec::new(), places: HashMap::new() }
+    }
+
+    /// Adds members to the set of this name, which begins if it is new.
+    pub fn extend(&mut self, name: &str, members: impl IntoIterator<Item = usize>) {
+        let next = self.all.len();
+        let place = *self.places.entry(key(name)).or_insert(next);
+        if place == next {
+            self.all.push(NamedSet { name: name.into(), members: Vec::new() });
+        }
+        let own = &mut self.all[place].members;
+        own.extend(members);
+        own.sort_unstable();
+        own.dedup();
+    }
+
+    pub fn named(&self, name: &str) -> Option<&NamedSet> {
+        self.places.get(&key(name)).map(|&place| &self.all[place])
+    }
+
+    /// Reads a card *NSET or *ELSET: numbers, names of earlier sets, or ranges of numbers.
+    pub fn read(&mut self, source: &Source, card: &Card, of: &Numbered) -> Result<(), Error> {
+        let parameter = if self.of == "node" { "NSET" } else { "ELSET" };
+        let Some(name) = card.value(parameter).filter(|name| !name.is_empty()) else {
+            return Err(source.fault(card.place, format!("{} has no name; write {parameter}=NAME", card.name)));
+        };
+        let mut members = Vec::new();
+        for line in &card.lines {
+            let mut fields = source.fields(line);
+            if card.has("GENERATE") {
+                members.extend(self.range(&mut fields, of)?);
+                continue;
+            }
+            while fields.clone().next().is_some() {
+                if let Some(target) = fields.text() {
+                    members.extend(self.members(&target, of).map_err(|message| fields.fault(message))?);
+                }
+            }
+        }
+        self.extend(name, members);
+        Ok(())
+    }
+
+    /// The members of a range: first, last, step.
+    fn range(&self, fields: &mut Fields, of: &Numbered) -> Result<Vec<usize>, Error> {
+        let (first, last) =
+            (fields.whole("the first number of the range")?, fields.whole("the last number of the range")?);
+        let step = if fields.clone().text().is_some() { fields.whole("the step of the range")? } else { 1 };
+        fields.end()?;
+        if step == 0 || last < first {
+            return Err(fields.fault(format!("the range from {first} to {last} in steps of {step} has no number")));
+        }
+        match of.range(first, last, step) {
+            members if members.is_empty() => {
+                Err(fields.fault(format!("the deck has no {} from {first} to {last} in steps of {step}", self.of)))
+            }
+            members => Ok(members),
+        }
+    }
+
+    /// The members of a set, or the thing of a number.
+    ///
+    /// # Errors
+    /// A sentence if there is none.
+    pub fn members(&self, target: &str, of: &Numbered) -> Result<Vec<usize>, String> {
+        if let Ok(number) = target.parse() {
+            let missing = || format!("the deck has no {} {number}", self.of);
+            return of.place(number).map(|place| vec![place]).ok_or_else(missing);
+        }
+        match self.named(target) {
+            Some(set) => Ok(set.members.clone()),
+            None => {
+                let meant = nearly(target, self.all.iter().map(|set| set.name.as_str()));
+                let shown: String = target.chars().take(80).collect();
+                Err(format!("there is no set of {}s `{shown}` above this line{meant}", self.of))
+            }
+        }
+    }
+}

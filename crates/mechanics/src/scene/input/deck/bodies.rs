@@ -1,0 +1,125 @@
+//! The bodies of a deck, and the names of their nodes and surfaces in the scene.
+
+use serde_json::{Value, json};
+
+use super::materials::Sections;
+use super::scene_text::{Entry, object};
+use super::temperatures::Temperatures;
+use crate::error::Error;
+use crate::fem::mesh::deck::{Card, Deck, Place, key};
+
+/// Returns `true` for a card that removes those before it.
+pub(super) fn is_new(card: &Card) -> bool {
+    card.value("OP").is_some_and(|value| key(value) == "NEW")
+}
+
+/// The names of things of a deck in its scene: those of a further body begin with its name.
+pub(super) struct Names;
+
+impl Names {
+    /// The name of a node set or a surface of a body.
+    pub fn of_body(body: usize, name: &str) -> String {
+        if body == 0 { name.to_string() } else { format!("{}.{name}", Deck::body_name(body)) }
+    }
+
+    /// The names of the nodes of a set, or of the node of a number, in each body that has some of them.
+    pub fn of_nodes(&self, deck: &Deck, target: &str, nodes: &[usize]) -> Vec<String> {
+        let name = match target.parse::<usize>() {
+            Ok(number) => number.to_string(),
+            Err(_) => deck.node_sets.named(target).map_or(target, |set| &set.name).to_string(),
+        };
+        let mut bodies: Vec<usize> = nodes.iter().filter_map(|&node| deck.body_of_node[node]).collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        bodies.into_iter().map(|body| Self::of_body(body, &name)).collect()
+    }
+
+    /// The names of a surface in each body that has some of its faces, with the bodies.
+    pub fn of_surface(&self, deck: &Deck, faces: &[(usize, usize)], name: &str) -> Vec<(usize, String)> {
+        let mut bodies: Vec<usize> = faces.iter().map(|&(element, _)| deck.body_of_element[element]).collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        bodies.into_iter().map(|body| (body, Self::of_body(body, name))).collect()
+    }
+}
+
+/// A body of the scene: its keys, each with the place in the deck that it comes from.
+pub(super) struct Body {
+    pub name: String,
+    pub place: Place,
+    pub body: Value,
+    pub material: Option<Entry>,
+    pub materials: Vec<Entry>,
+    pub temperature: Option<Entry>,
+}
+
+impl Body {
+    /// Body number `index` of a deck that the scene calls `named`.
+    ///
+    /// # Errors
+    /// An error with the line for temperatures that change within the body.
+    pub fn of(
+        deck: &Deck,
+        index: usize,
+        named: &str,
+        sections: &Sections,
+        temperatures: &Temperatures,
+    ) -> Result<Self, Error> {
+        let name = Deck::body_name(index);
+        let body = match deck.bodies {
+            1 => json!({"deck": {"file": named}}),
+            _ => json!({"deck": {"file": named, "group": name}}),
+        };
+        let temperature = temperatures.of_body(deck, index)?;
+        let mut is_used = vec![false; sections.all.len()];
+        let own = (0..deck.elements.len()).filter(|&element| deck.body_of_element[element] == index);
+        own.for_each(|element| is_used[sections.of_element[element]] = true);
+        let used = || sections.all.iter().zip(&is_used).filter(|(_, used)| **used).map(|(section, _)| section);
+        // A material without expansion does not feel a temperature.
+        let warms = temperature.is_some() && used().any(|section| section.expands);
+        let material = |section: &super::materials::Section| {
+            let mut material = section.material.clone();
+            if warms && !section.expands {
+                match material.get_mut("orthotropic") {
+                    Some(orthotropic) => orthotropic["expansion"] = vec![0.0; 3].into(),
+                    None => material["expansion"] = 0.0.into(),
+                }
+            }
+            material
+        };
+        let first = used().next();
+        let is_one = first.is_some_and(|first| used().all(|section| material(section) == material(first)));
+        let materials = used()
+            .filter(|_| !is_one)
+            .map(|section| Entry::new(json!({"group": section.group, "material": material(section)}), section.place));
+        Ok(Body {
+            place: deck.place_of_body(index),
+            name,
+            body,
+            materials: materials.collect(),
+            material: first.filter(|_| is_one).map(|section| Entry::new(material(section), section.place)),
+            temperature: temperature
+                .filter(|_| warms)
+                .map(|(value, place)| Entry::new(object("value", value.into()), place)),
+        })
+    }
+
+    /// The body as an entry of `further-bodies`, with the places of its keys.
+    pub fn further(&self) -> (Entry, Vec<(&'static str, Place)>) {
+        let mut value = json!({"name": self.name, "body": self.body});
+        let mut places = Vec::new();
+        if let Some(material) = &self.material {
+            value["material"] = material.value.clone();
+            places.push(("material", material.place));
+        }
+        if let Some(first) = self.materials.first() {
+            value["materials"] = self.materials.iter().map(|entry| entry.value.clone()).collect::<Vec<_>>().into();
+            places.push(("materials", first.place));
+        }
+        if let Some(temperature) = &self.temperature {
+            value["temperature"] = json!([temperature.value]);
+            places.push(("temperature", temperature.place));
+        }
+        (Entry::new(value, self.place), places)
+    }
+}

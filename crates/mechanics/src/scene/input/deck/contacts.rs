@@ -1,0 +1,218 @@
+//! Contacts: the cards *CONTACT PAIR, with their interactions and clearances.
+
+use std::collections::HashMap;
+
+use serde_json::{Value, json};
+
+use super::bodies::Names;
+use super::scene_text::Entry;
+use crate::error::{Error, nearly};
+use crate::fem::mesh::deck::{Card, Deck, Place, key};
+
+/// The contacts of a scene, and what a reader should know of them.
+pub(super) struct Contacts {
+    pub obstacles: Vec<Entry>,
+    pub warnings: Vec<(Place, String)>,
+}
+
+/// The obstacles of a scene; a deck with friction is refused unless it `may_rub`, and is then solved without it.
+///
+/// # Errors
+/// An error with the line for a contact that is not read.
+pub(super) fn contacts(deck: &Deck, names: &Names, may_rub: bool) -> Result<Contacts, Error> {
+    let mut found = Contacts { obstacles: Vec::new(), warnings: Vec::new() };
+    let interactions = interactions(deck, may_rub, &mut found.warnings)?;
+    let clearances = clearances(deck)?;
+    let mut used = vec![false; clearances.len()];
+    for card in deck.source.cards.iter().filter(|card| card.is("CONTACTPAIR")) {
+        let fault = |message: String| Err(deck.source.fault(card.place, message));
+        let interaction = card.value("INTERACTION").unwrap_or_default();
+        if !interactions.contains_key(&key(interaction)) {
+            let meant = nearly(&key(interaction), interactions.keys().map(String::as_str));
+            return fault(format!("there is no *SURFACE INTERACTION `{interaction}`{meant}"));
+        }
+        if let Some(kind) = card.value("TYPE").filter(|kind| !IS_READ.contains(&key(kind).as_str())) {
+            return fault(format!("contacts of TYPE={kind} are not read; there are {}", IS_READ.join(", ")));
+        }
+        let adjust = adjusted(deck, card)?;
+        for line in &card.lines {
+            let mut fields = deck.source.fields(line);
+            let pair = [fields.text().unwrap_or_default(), fields.text().unwrap_or_default()];
+            fields.end()?;
+            let mut sides = Vec::with_capacity(2);
+            for name in &pair {
+                sides.push(side(deck, names, name).map_err(|message| fields.fault(message))?);
+            }
+            if sides[0].0 == sides[1].0 {
+                let message = format!(
+                    "`{}` and `{}` belong to one body; the contact of a body with itself is not modelled",
+                    pair[0], pair[1]
+                );
+                return Err(fields.fault(message));
+            }
+            let mut facing = json!({"boundary": sides[1].1});
+            let clearance =
+                clearances.iter().position(|clearance| clearance.pair == pair.each_ref().map(|name| key(name)));
+            if let Some(clearance) = clearance {
+                used[clearance] = true;
+                facing["fit"] = clearances[clearance].fit();
+            } else if let Some(reach) = adjust {
+                facing["fit"] = json!({"clearance": 0.0});
+                facing["reach"] = reach.into();
+                let message = format!(
+                    "ADJUST: the surfaces `{}` and `{}` have the distance 0 where they are within {reach} of each other; farther nodes have \
+                     no contact row",
+                    pair[0], pair[1]
+                );
+                found.warnings.push((card.place, message));
+            }
+            let obstacle = json!({"boundary": sides[0].1, "rule": "closest-point", "shape": {"body": facing}});
+            found.obstacles.push(Entry::new(obstacle, line.place));
+        }
+    }
+    match used.iter().position(|used| !used) {
+        Some(unused) => {
+            Err(deck.source.fault(clearances[unused].place, "no *CONTACT PAIR has these surfaces in this order"))
+        }
+        None => Ok(found),
+    }
+}
+
+/// The types of contact pairs that hard contact answers.
+const IS_READ: [&str; 4] = ["NODETOSURFACE", "SURFACETOSURFACE", "MORTAR", "LINMORTAR"];
+
+/// The distance of ADJUST.
+fn adjusted(deck: &Deck, card: &Card) -> Result<Option<f64>, Error> {
+    let Some(value) = card.value("ADJUST") else { return Ok(None) };
+    match value.parse::<f64>() {
+        Ok(distance) if distance > 0.0 && distance.is_finite() => Ok(Some(distance)),
+        _ => {
+            let message = format!(
+                "ADJUST={value} is not read; it must be a positive distance within which the surfaces are to touch, or *CLEARANCE may say their distance"
+            );
+            Err(deck.source.fault(card.place, message))
+        }
+    }
+}
+
+/// The body of a surface and its name in the scene.
+fn side(deck: &Deck, names: &Names, name: &str) -> Result<(usize, String), String> {
+    let surface = deck.surface_or(name)?;
+    if let Some(&node) = surface.bare.first() {
+        let number = deck.nodes.numbers[node];
+        return Err(format!(
+            "node {number} of the surface `{}` is on no face that has only nodes of the surface; name faces (TYPE=ELEMENT), or the nodes of \
+             whole faces",
+            surface.name
+        ));
+    }
+    match &names.of_surface(deck, &surface.faces, &surface.name)[..] {
+        [(body, name)] => Ok((*body, name.clone())),
+        several => {
+            let message = "has faces of several bodies; name a surface of each body";
+            Err(format!("the surface `{}` {message}, of which there are {}", surface.name, several.len()))
+        }
+    }
+}
+
+/// The interactions by their names in capitals, with their places.
+fn interactions(
+    deck: &Deck,
+    may_rub: bool,
+    warnings: &mut Vec<(Place, String)>,
+) -> Result<HashMap<String, Place>, Error> {
+    let mut all = HashMap::new();
+    for card in &deck.source.cards {
+        if card.is("SURFACEINTERACTION") {
+            let Some(name) = card.value("NAME") else {
+                return Err(deck.source.fault(card.place, "*SURFACE INTERACTION has no name; write NAME=NAME"));
+            };
+            if all.insert(key(name), card.place).is_some() {
+                return Err(deck.source.fault(card.place, format!("there are two interactions `{name}`")));
+            }
+        } else if (card.is("SURFACEBEHAVIOR") || card.is("FRICTION")) && all.is_empty() {
+            return Err(deck.source.fault(card.place, format!("{} follows no *SURFACE INTERACTION", card.name)));
+        } else if card.is("SURFACEBEHAVIOR") {
+            warnings.extend(behaviour(deck, card)?.map(|message| (card.place, message)));
+        } else if card.is("FRICTION") {
+            warnings.extend(friction(deck, card, may_rub)?.map(|message| (card.place, message)));
+        }
+    }
+    Ok(all)
+}
+
+/// The warning for a contact that is soft in the deck.
+fn behaviour(deck: &Deck, card: &Card) -> Result<Option<String>, Error> {
+    let law = card.value("PRESSURE-OVERCLOSURE").map_or_else(|| "HARD".into(), key);
+    let mut values = Vec::new();
+    for line in &card.lines {
+        let mut fields = deck.source.fields(line);
+        while fields.clone().next().is_some() {
+            values.push(fields.finite_or_zero("a value of the contact")?.to_string());
+        }
+    }
+    match law.as_str() {
+        // The values are those with which CalculiX approximates hard contact.
+        "HARD" => Ok(None),
+        "LINEAR" | "EXPONENTIAL" | "TABULAR" => Ok(Some(format!(
+            "{} with PRESSURE-OVERCLOSURE={law} ({}) is answered by hard contact: no contact stiffness is needed, and surfaces do not overlap",
+            card.name,
+            values.join(", ")
+        ))),
+        _ => {
+            let message =
+                format!("PRESSURE-OVERCLOSURE={law} is not modelled; there are HARD, LINEAR, EXPONENTIAL and TABULAR");
+            Err(deck.source.fault(card.place, message))
+        }
+    }
+}
+
+/// The warning for friction that is left out.
+fn friction(deck: &Deck, card: &Card, may_rub: bool) -> Result<Option<String>, Error> {
+    let Some(line) = card.lines.first() else { return Err(deck.source.fault(card.place, "*FRICTION has no values")) };
+    let coefficient = deck.source.fields(line).finite("the coefficient of friction")?;
+    match coefficient {
+        0.0 => Ok(None),
+        _ if may_rub => Ok(Some(format!(
+            "the friction of {coefficient} is left out (--without-friction): the answer is that of a frictionless contact"
+        ))),
+        _ => {
+            let message = format!(
+                "*FRICTION of {coefficient} changes the answer and is not modelled; --without-friction solves the deck without it"
+            );
+            Err(deck.source.fault(line.place, message))
+        }
+    }
+}
+
+/// The distance of two surfaces that *CLEARANCE prescribes.
+struct Clearance {
+    /// Slave and master, in capitals.
+    pair: [String; 2],
+    value: f64,
+    place: Place,
+}
+
+impl Clearance {
+    fn fit(&self) -> Value {
+        match self.value < 0.0 {
+            true => json!({"interference": -self.value}),
+            false => json!({"clearance": self.value}),
+        }
+    }
+}
+
+fn clearances(deck: &Deck) -> Result<Vec<Clearance>, Error> {
+    let mut clearances = Vec::new();
+    for card in deck.source.cards.iter().filter(|card| card.is("CLEARANCE")) {
+        let (Some(slave), Some(master)) = (card.value("SLAVE"), card.value("MASTER")) else {
+            return Err(deck.source.fault(card.place, "*CLEARANCE needs SLAVE=NAME and MASTER=NAME"));
+        };
+        let value = card.value("VALUE").and_then(|value| value.parse::<f64>().ok()).filter(|value| value.is_finite());
+        let Some(value) = value else {
+            return Err(deck.source.fault(card.place, "*CLEARANCE needs VALUE=NUMBER"));
+        };
+        clearances.push(Clearance { pair: [key(slave), key(master)], value, place: card.place });
+    }
+    Ok(clearances)
+}

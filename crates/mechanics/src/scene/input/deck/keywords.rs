@@ -1,0 +1,194 @@
+//! The cards of a deck: those that are read, with their parameters, those that change no answer, and those that are refused by name.
+
+use crate::error::Error;
+use crate::fem::mesh::deck::{Card, Deck, Place, key};
+
+/// A keyword that is read, in capitals without blanks.
+struct Read {
+    keyword: &'static str,
+    /// Its parameters that are read.
+    parameters: &'static [&'static str],
+    /// Its parameters that change no answer.
+    passed: &'static [&'static str],
+}
+
+const fn read(keyword: &'static str, parameters: &'static [&'static str], passed: &'static [&'static str]) -> Read {
+    Read { keyword, parameters, passed }
+}
+
+const READ: [Read; 26] = [
+    read("HEADING", &[], &[]),
+    read("NODE", &["NSET"], &[]),
+    read("ELEMENT", &["TYPE", "ELSET"], &[]),
+    read("NSET", &["NSET", "GENERATE"], &["INTERNAL", "UNSORTED"]),
+    read("ELSET", &["ELSET", "GENERATE"], &["INTERNAL", "UNSORTED"]),
+    read("SURFACE", &["NAME", "TYPE"], &["INTERNAL"]),
+    read("MATERIAL", &["NAME"], &[]),
+    read("ELASTIC", &["TYPE"], &[]),
+    read("DENSITY", &[], &[]),
+    read("EXPANSION", &["TYPE", "ZERO"], &[]),
+    read("SOLIDSECTION", &["ELSET", "MATERIAL"], &[]),
+    read("BOUNDARY", &["OP", "AMPLITUDE", "TYPE"], &[]),
+    read("CLOAD", &["OP", "AMPLITUDE"], &[]),
+    read("DLOAD", &["OP", "AMPLITUDE"], &[]),
+    read("DSLOAD", &["OP", "AMPLITUDE"], &[]),
+    read("TEMPERATURE", &["OP", "AMPLITUDE"], &[]),
+    read("INITIALCONDITIONS", &["TYPE"], &[]),
+    read("AMPLITUDE", &["NAME", "TIME"], &[]),
+    read("CONTACTPAIR", &["INTERACTION", "TYPE", "ADJUST"], &["SMALLSLIDING"]),
+    read("SURFACEINTERACTION", &["NAME"], &[]),
+    read("SURFACEBEHAVIOR", &["PRESSURE-OVERCLOSURE"], &[]),
+    read("FRICTION", &[], &[]),
+    read("CLEARANCE", &["MASTER", "SLAVE", "VALUE"], &[]),
+    read("STEP", &["NLGEOM"], &["INC", "AMPLITUDE", "NAME"]),
+    read("STATIC", &[], &["SOLVER", "DIRECT", "TIMERESET", "TOTALTIMEATSTART"]),
+    read("ENDSTEP", &[], &[]),
+];
+
+/// Keywords that change only output or iterations, or what an equilibrium does not depend on.
+const PASSED: [&str; 22] = [
+    "OUTPUT",
+    "NODEOUTPUT",
+    "ELEMENTOUTPUT",
+    "CONTACTOUTPUT",
+    "NODEFILE",
+    "ELFILE",
+    "CONTACTFILE",
+    "SECTIONFILE",
+    "NODEPRINT",
+    "ELPRINT",
+    "FACEPRINT",
+    "CONTACTPRINT",
+    "SECTIONPRINT",
+    "ENERGYPRINT",
+    "MONITOR",
+    "PREPRINT",
+    "CONTROLS",
+    "TIMEPOINTS",
+    "PHYSICALCONSTANTS",
+    "CONDUCTIVITY",
+    "SPECIFICHEAT",
+    "DAMPING",
+];
+
+/// Keywords that change the answer, with the thing that is not modelled.
+const ABSENT: [(&str, &str); 43] = [
+    ("ORIENTATION", "material axes of decks are not read yet; in a scene an orthotropic material has `axes`"),
+    ("TRANSFORM", "local axes of nodes are not read yet; in a scene a support has a `normal`"),
+    ("EQUATION", "equations between displacements are not modelled"),
+    ("MPC", "constraints between displacements are not modelled"),
+    ("TIE", "tied surfaces are not modelled; join the bodies in one mesh"),
+    ("RIGIDBODY", "rigid bodies of decks are not read yet; in a scene `rigid-faces` move as plates"),
+    ("COUPLING", "couplings are not modelled"),
+    ("KINEMATIC", "couplings are not modelled"),
+    ("DISTRIBUTING", "couplings are not modelled"),
+    ("DISTRIBUTINGCOUPLING", "couplings are not modelled"),
+    ("PRE-TENSIONSECTION", "pre-tension is not modelled"),
+    ("SPRING", "springs of decks are not read yet; in a scene `springs` hold boundaries"),
+    ("DASHPOT", "dampers are not modelled"),
+    ("GAP", "gap elements are not modelled"),
+    ("MASS", "point masses are not modelled"),
+    ("CYCLICSYMMETRYMODEL", "cyclic symmetry is not modelled"),
+    ("SHELLSECTION", "shells are not modelled"),
+    ("BEAMSECTION", "beams are not modelled"),
+    ("BEAMGENERALSECTION", "beams are not modelled"),
+    ("MEMBRANESECTION", "membranes are not modelled"),
+    ("FLUIDSECTION", "fluids are not modelled"),
+    ("PLASTIC", "plasticity is not modelled, every material is linear elastic"),
+    ("CYCLICHARDENING", "plasticity is not modelled, every material is linear elastic"),
+    ("CREEP", "creep is not modelled, every material is linear elastic"),
+    ("VISCO", "creep is not modelled, every material is linear elastic"),
+    ("HYPERELASTIC", "hyperelasticity is not modelled, every material is linear elastic"),
+    ("HYPERFOAM", "hyperelasticity is not modelled, every material is linear elastic"),
+    ("DEFORMATIONPLASTICITY", "plasticity is not modelled, every material is linear elastic"),
+    ("USERMATERIAL", "materials of users are not modelled"),
+    ("DYNAMIC", "motions of decks are not read; a scene has an `analysis`"),
+    ("MODALDYNAMIC", "motions of decks are not read; a scene has an `analysis`"),
+    ("STEADYSTATEDYNAMICS", "vibrations are not computed"),
+    ("FREQUENCY", "natural frequencies are not computed"),
+    ("BUCKLE", "buckling is not computed"),
+    ("HEATTRANSFER", "heat is not modelled; temperatures may be given"),
+    ("COUPLEDTEMPERATURE-DISPLACEMENT", "heat is not modelled; temperatures may be given"),
+    ("UNCOUPLEDTEMPERATURE-DISPLACEMENT", "heat is not modelled; temperatures may be given"),
+    ("MODELCHANGE", "bodies and contacts that change between steps are not modelled"),
+    ("CHANGEFRICTION", "friction is not modelled"),
+    ("SUBMODEL", "submodels are not modelled"),
+    ("PART", "parts and instances of Abaqus are not read; write the deck for CalculiX, without *PART"),
+    ("INSTANCE", "parts and instances of Abaqus are not read; write the deck for CalculiX, without *INSTANCE"),
+    ("ASSEMBLY", "parts and instances of Abaqus are not read; write the deck for CalculiX, without *ASSEMBLY"),
+];
+
+/// The cards that stand only in a step.
+const OF_STEP: [&str; 6] = ["CLOAD", "DLOAD", "DSLOAD", "TEMPERATURE", "STATIC", "ENDSTEP"];
+
+/// Checks every card of a deck and the order of its step; returns the names of what is passed over, each once with its first place.
+///
+/// # Errors
+/// An error with the line for a keyword or a parameter that changes the answer and is not read, and for a deck without one whole step.
+pub(super) fn judged(deck: &Deck) -> Result<Vec<(String, Place)>, Error> {
+    let mut passed: Vec<(String, Place)> = Vec::new();
+    let mut pass = |name: String, place: Place| {
+        if passed.iter().all(|(other, _)| *other != name) {
+            passed.push((name, place));
+        }
+    };
+    let (mut step, mut end): (Option<&Card>, Option<&Card>) = (None, None);
+    for card in &deck.source.cards {
+        let fault = |message: String| Err(deck.source.fault(card.place, message));
+        if PASSED.iter().any(|keyword| card.is(keyword)) {
+            pass(card.name.clone(), card.place);
+            continue;
+        }
+        let Some(known) = READ.iter().find(|known| card.is(known.keyword)) else { return fault(refusal(card)) };
+        for (name, value) in &card.parameters {
+            let has = |names: &[&str]| names.contains(&name.as_str());
+            if has(known.passed) {
+                pass(format!("{name} of {}", card.name), card.place);
+            } else if !has(known.parameters) && !card.is("HEADING") {
+                return fault(format!("{} has the parameter {}, which is not read", card.name, shown(name)));
+            } else if name == "OP" && !value.as_ref().is_some_and(|value| ["NEW", "MOD"].contains(&key(value).as_str()))
+            {
+                return fault(format!("OP of {} must be NEW or MOD", card.name));
+            }
+        }
+        if card.is("STEP") {
+            if let Some(first) = step {
+                let first = deck.source.named(first.place);
+                return fault(format!(
+                    "there is a second *STEP after that of {first}; one step is solved: write a deck for each"
+                ));
+            }
+            step = Some(card);
+        } else if let Some(end) = end {
+            return fault(format!("{} follows the *END STEP of {}", card.name, deck.source.named(end.place)));
+        } else if step.is_none() && OF_STEP.iter().any(|keyword| card.is(keyword)) {
+            return fault(format!("{} stands before *STEP, but belongs into the step", card.name));
+        }
+        if card.is("ENDSTEP") {
+            end = Some(card);
+        }
+    }
+    let whole = Place { file: 0, line: 1 };
+    let Some(step) = step else { return Err(deck.source.fault(whole, "the deck has no *STEP: it asks for no answer")) };
+    if end.is_none() {
+        return Err(deck.source.fault(step.place, "the step has no *END STEP"));
+    }
+    match deck.source.cards.iter().any(|card| card.is("STATIC")) {
+        true => Ok(passed),
+        false => Err(deck.source.fault(step.place, "the step has no *STATIC; only an equilibrium is solved")),
+    }
+}
+
+/// The sentence about a keyword that is not read.
+fn refusal(card: &Card) -> String {
+    let name = shown(&card.name);
+    match ABSENT.iter().find(|(keyword, _)| card.is(keyword)) {
+        Some((_, reason)) => format!("{name} changes the answer and is refused: {reason}"),
+        None => format!("{name} is no keyword that is read; it may change the answer"),
+    }
+}
+
+/// A name in a message; longer names are cut.
+fn shown(name: &str) -> String {
+    name.chars().filter(|c| !c.is_control()).take(60).collect()
+}

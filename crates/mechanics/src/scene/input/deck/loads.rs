@@ -1,0 +1,219 @@
+//! Loads: the cards *CLOAD, *DLOAD and *DSLOAD. Loads of one step add up.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Value, json};
+
+use super::amplitudes::Amplitudes;
+use super::bodies::{Names, is_new};
+use super::scene_text::{Entry, object};
+use crate::error::Error;
+use crate::fem::geometry::{dot, unit};
+use crate::fem::mesh::deck::{Card, Deck, Fields, Place, key};
+
+/// A load on the volume: it acts on all bodies.
+struct OnVolume {
+    value: Value,
+    place: Place,
+    elements: Vec<bool>,
+}
+
+/// The loads of a scene.
+pub(super) struct Loads<'a> {
+    deck: &'a Deck,
+    names: &'a Names,
+    loads: Vec<Entry>,
+    on_volume: Vec<OnVolume>,
+}
+
+impl<'a> Loads<'a> {
+    /// # Errors
+    /// An error with the line for a load that is not read.
+    pub fn of(deck: &'a Deck, names: &'a Names, amplitudes: &Amplitudes) -> Result<Vec<Entry>, Error> {
+        let mut loads = Loads { deck, names, loads: Vec::new(), on_volume: Vec::new() };
+        for keyword in ["CLOAD", "DLOAD", "DSLOAD"] {
+            let cards = deck.source.cards.iter().enumerate().filter(|(_, card)| card.is(keyword));
+            for (count, (index, card)) in cards.enumerate() {
+                if is_new(card) && count > 0 {
+                    let message = format!("OP=NEW must stand on the first {} of the step", card.name);
+                    return Err(deck.source.fault(card.place, message));
+                }
+                let factor = amplitudes.factor(deck, card)?;
+                match keyword {
+                    "CLOAD" => loads.add_nodal(card, factor)?,
+                    "DLOAD" => loads.add_distributed(index, card, factor)?,
+                    _ => loads.add_on_surfaces(card, factor)?,
+                }
+            }
+        }
+        loads.end()
+    }
+
+    /// Number of coordinates of the elements.
+    fn dimension(&self) -> usize {
+        self.deck.element_list.first().map_or(3, |element| element.kind.dimension())
+    }
+
+    /// Forces on nodes: node, direction, force.
+    fn add_nodal(&mut self, card: &Card, factor: f64) -> Result<(), Error> {
+        let dimension = self.dimension();
+        let mut forces: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+        for line in &card.lines {
+            let mut fields = self.deck.source.fields(line);
+            let (target, nodes) = self.nodes(&mut fields)?;
+            let direction = fields.whole("the direction")?;
+            let force = factor * fields.finite("the force")?;
+            fields.end()?;
+            if !(1..=dimension).contains(&direction) {
+                let message = format!("{direction} is no direction of a force here; there are 1 to {dimension}");
+                return Err(fields.fault(message));
+            }
+            if let Some(&loose) = nodes.iter().find(|&&node| self.deck.body_of_node[node].is_none()) {
+                let number = self.deck.nodes.numbers[loose];
+                return Err(fields.fault(format!("node {number} belongs to no element and carries no force")));
+            }
+            for name in self.names.of_nodes(self.deck, &target, &nodes) {
+                forces.entry(name).or_insert_with(|| vec![0.0; dimension])[direction - 1] += force;
+            }
+        }
+        if !forces.is_empty() {
+            self.loads.push(Entry::new(object("nodal-forces", json!(forces)), card.place));
+        }
+        Ok(())
+    }
+
+    fn nodes(&self, fields: &mut Fields) -> Result<(String, Vec<usize>), Error> {
+        let target = fields.text().ok_or_else(|| fields.fault("a set or a number must begin this line"))?;
+        let nodes = self.deck.node_sets.members(&target, &self.deck.nodes).map_err(|message| fields.fault(message))?;
+        Ok((target, nodes))
+    }
+
+    /// Pressures on faces, and loads on the volume.
+    fn add_distributed(&mut self, index: usize, card: &Card, factor: f64) -> Result<(), Error> {
+        for pressure in self.deck.pressures.iter().filter(|pressure| pressure.card == index) {
+            self.add_pressure(&pressure.surface, factor * pressure.value, pressure.place)?;
+        }
+        for line in &card.lines {
+            let mut fields = self.deck.source.fields(line);
+            let target = fields.text().unwrap_or_default();
+            let label = fields.text().map(|label| key(&label)).unwrap_or_default();
+            let value = match label.as_str() {
+                "GRAV" => self.gravity(&mut fields, factor)?,
+                "CENTRIF" => self.centrifugal(&mut fields, factor)?,
+                _ if label.strip_prefix('P').is_some_and(|rest| rest.parse::<usize>().is_ok()) => continue,
+                _ => {
+                    let shown: String = label.chars().take(40).collect();
+                    let message = format!("the load `{shown}` is not read; there are P1 to P6, GRAV and CENTRIF");
+                    return Err(fields.fault(message));
+                }
+            };
+            fields.end()?;
+            let deck = self.deck;
+            let members =
+                deck.element_sets.members(&target, &deck.elements).map_err(|message| fields.fault(message))?;
+            let mut elements = vec![false; deck.elements.len()];
+            members.into_iter().for_each(|element| elements[element] = true);
+            // Lines for disjoint sets are one load on all of them.
+            let is_apart = |other: &[bool]| other.iter().zip(&elements).all(|(other, own)| !(*other && *own));
+            match self.on_volume.iter_mut().find(|other| other.value == value && is_apart(&other.elements)) {
+                Some(other) => other.elements.iter_mut().zip(elements).for_each(|(other, own)| *other |= own),
+                None => self.on_volume.push(OnVolume { value, place: line.place, elements }),
+            }
+        }
+        Ok(())
+    }
+
+    /// The vector of the next fields.
+    fn vector(&self, fields: &mut Fields, what: &str) -> Result<[f64; 3], Error> {
+        let mut vector = [0.0; 3];
+        for (value, axis) in vector.iter_mut().zip(["x", "y", "z"]) {
+            *value = fields.finite_or_zero(format_args!("the {axis} of {what}"))?;
+        }
+        Ok(vector)
+    }
+
+    fn gravity(&self, fields: &mut Fields, factor: f64) -> Result<Value, Error> {
+        let acceleration = factor * fields.finite("the acceleration of gravity")?;
+        let direction = unit(self.vector(fields, "the direction of gravity")?);
+        if direction == [0.0; 3] {
+            return Err(fields.fault("the direction of gravity has no length"));
+        }
+        if self.dimension() == 2 && direction[2] != 0.0 {
+            return Err(fields.fault("gravity must lie in the plane of a plane model"));
+        }
+        let vector = direction.map(|part| acceleration * part);
+        Ok(object("gravity", json!(vector[..self.dimension()])))
+    }
+
+    fn centrifugal(&self, fields: &mut Fields, factor: f64) -> Result<Value, Error> {
+        let square = factor * fields.finite("the square of the angular velocity")?;
+        let point = self.vector(fields, "a point on the axis")?;
+        let axis = unit(self.vector(fields, "the direction of the axis")?);
+        if square < 0.0 || axis == [0.0; 3] {
+            return Err(
+                fields.fault("the square of the angular velocity must not be negative, and the axis needs a length")
+            );
+        }
+        let omega = square.sqrt();
+        let is_axisymmetric = self
+            .deck
+            .element_list
+            .first()
+            .is_some_and(|one| one.of_type.space == crate::fem::mesh::deck::Space::Axisymmetric);
+        match self.dimension() {
+            3 => Ok(object("centrifugal", json!({"omega": omega, "axis": axis, "point": point}))),
+            _ if is_axisymmetric && dot(axis, [0.0, 1.0, 0.0]).abs() == 1.0 && point[0] == 0.0 && point[2] == 0.0 => {
+                Ok(object("centrifugal", json!({"omega": omega})))
+            }
+            _ if !is_axisymmetric && dot(axis, [0.0, 0.0, 1.0]).abs() == 1.0 => {
+                Ok(object("centrifugal", json!({"omega": omega, "point": point[..2]})))
+            }
+            _ => Err(fields.fault("a plane model turns about an axis across the plane, an axisymmetric one about y")),
+        }
+    }
+
+    /// Pressures on surfaces: surface, P, pressure.
+    fn add_on_surfaces(&mut self, card: &Card, factor: f64) -> Result<(), Error> {
+        for line in &card.lines {
+            let mut fields = self.deck.source.fields(line);
+            let surface = fields.text().unwrap_or_default();
+            let label = fields.text().map(|label| key(&label)).unwrap_or_default();
+            if label != "P" {
+                return Err(fields.fault("only pressures, with the label P, are read as loads of surfaces"));
+            }
+            let value = factor * fields.finite("the pressure")?;
+            fields.end()?;
+            self.deck.surface_or(&surface).map_err(|message| fields.fault(message))?;
+            self.add_pressure(&surface, value, line.place)?;
+        }
+        Ok(())
+    }
+
+    /// A pressure on a surface, in each body that has some of its faces.
+    fn add_pressure(&mut self, surface: &str, value: f64, place: Place) -> Result<(), Error> {
+        let surface = self.deck.surface_or(surface).map_err(|message| self.deck.source.fault(place, message))?;
+        if !surface.bare.is_empty() {
+            let message = format!("the surface `{}` consists of nodes, on which no pressure acts", surface.name);
+            return Err(self.deck.source.fault(place, message));
+        }
+        for (_, boundary) in self.names.of_surface(self.deck, &surface.faces, &surface.name) {
+            self.loads.push(Entry::new(json!({"pressure": {"boundary": boundary, "value": value}}), place));
+        }
+        Ok(())
+    }
+
+    /// All loads; those on the volume must act on all elements.
+    fn end(mut self) -> Result<Vec<Entry>, Error> {
+        for OnVolume { value, place, elements } in self.on_volume {
+            if let Some(element) = elements.iter().position(|is_in| !is_in) {
+                let number = self.deck.elements.numbers[element];
+                let message = format!(
+                    "this load acts on a part of the elements, not on element {number}; a load on the volume is read for all elements only"
+                );
+                return Err(self.deck.source.fault(place, message));
+            }
+            self.loads.push(Entry::new(value, place));
+        }
+        Ok(self.loads)
+    }
+}

@@ -1,0 +1,231 @@
+//! Input decks of CalculiX as scenes: a deck becomes the text of a scene, whose body is the mesh of the deck.
+//!
+//! A card is read, passed over because it changes no answer, or refused with its line: a deck is never half read.
+
+mod amplitudes;
+mod bodies;
+mod contacts;
+mod keywords;
+mod loads;
+mod materials;
+mod scene_text;
+mod supports;
+mod temperatures;
+
+use std::path::{Path, PathBuf};
+
+use crate::error::Error;
+use crate::fem::mesh::deck::{Deck, DeckElement, Place, Space};
+use crate::scene::Scene;
+use crate::scene::input::warning::Warning;
+use amplitudes::Amplitudes;
+use bodies::{Body, Names};
+use contacts::contacts;
+use loads::Loads;
+use materials::Sections;
+use scene_text::SceneText;
+use signorini_qp as qp;
+use supports::supports;
+use temperatures::Temperatures;
+
+/// Longer titles are cut.
+const LONGEST_TITLE: usize = 200;
+
+/// Returns `true` for the name of an input deck: it ends with `.inp`.
+pub(crate) fn is_deck(file: &Path) -> bool {
+    file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("inp"))
+}
+
+/// The scene of a deck.
+pub(crate) struct DeckScene {
+    /// Its text, with a comment for each entry.
+    pub text: String,
+    pub warnings: Vec<Warning>,
+    /// The lines of the deck for JSON paths; the first is that of the whole scene.
+    places: Vec<(String, (PathBuf, usize))>,
+}
+
+impl DeckScene {
+    /// The scene of the deck `file`, which it calls `named`. Files that the deck includes may lie outside its folder if `permits` has
+    /// `outside`; friction is left out if it has `friction`.
+    ///
+    /// # Errors
+    /// As [`Deck::read`]; [`qp::Error::FileSyntax`] with the line for what changes the answer and is not read.
+    pub fn read(file: &Path, named: &str, permits: &[&str]) -> Result<Self, Error> {
+        let within = file.parent().filter(|_| !permits.contains(&"outside"));
+        let deck = Deck::read(file, within)?;
+        let passed = keywords::judged(&deck)?;
+        let space = space(&deck)?;
+        let (names, amplitudes) = (Names, Amplitudes::of(&deck)?);
+        let sections = Sections::of(&deck, space)?;
+        let temperatures = Temperatures::of(&deck, &amplitudes)?;
+        let supports = supports(&deck, &names, &amplitudes)?;
+        let loads = Loads::of(&deck, &names, &amplitudes)?;
+        let contacts = contacts(&deck, &names, permits.contains(&"friction"))?;
+        let mut noted = nearest_elements(&deck);
+        noted.extend(large_displacements(&deck));
+        noted.extend(contacts.warnings);
+        let mut comments =
+            vec![format!("The scene of {named}; each entry names the line of the deck that it comes from.")];
+        comments
+            .extend(noted.iter().map(|(place, message)| format!("Warning, {}: {message}", deck.source.named(*place))));
+        if !passed.is_empty() {
+            let names: Vec<String> = passed.iter().map(|(name, _)| name.clone()).collect();
+            comments.push(format!("Passed over, because it changes no answer: {}.", names.join(", ")));
+        }
+        let mut text = SceneText::new(&deck, &comments);
+        text.plain("title", &title(&deck).into());
+        text.plain("units", &serde_json::json!({"length": "", "force": ""}));
+        text.plain("model", &model(space).into());
+        if let Some((thickness, place)) = sections.thickness.filter(|thickness| thickness.0 != 1.0) {
+            text.one("thickness", &scene_text::Entry::new(thickness.into(), place));
+        }
+        let bodies = (0..deck.bodies).map(|index| Body::of(&deck, index, named, &sections, &temperatures));
+        add_bodies(&mut text, bodies.collect::<Result<_, Error>>()?);
+        text.list("supports", &supports);
+        text.list("loads", &loads);
+        text.list("obstacles", &contacts.obstacles);
+        let (text, places) = text.end();
+        let whole = (String::new(), Place { file: 0, line: 1 });
+        let position = |place: Place| {
+            let (file, line) = deck.source.position(place);
+            (file.to_path_buf(), line)
+        };
+        let warning = |(place, message): (Place, String)| {
+            let (file, line) = position(place);
+            Warning::Deck { place: format!("{}:{line}", file.display()), message }
+        };
+        let warnings = noted.into_iter().map(warning).collect();
+        let places = std::iter::once(whole).chain(places).map(|(path, place)| (path, position(place))).collect();
+        Ok(DeckScene { text, warnings, places })
+    }
+
+    /// An error of a value of the scene with the line of the deck that it comes from.
+    pub fn located(&self, error: Error) -> Error {
+        let of = |path: &str| {
+            let is_in = |known: &str| {
+                path.strip_prefix(known).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+            };
+            let known = self.places.iter().filter(|(known, _)| known.is_empty() || is_in(known));
+            known.max_by_key(|(known, _)| known.len()).map(|(_, place)| place.clone())
+        };
+        match error {
+            Error::Scene { path, message } => match of(&path) {
+                Some((file, line)) => {
+                    let message = format!("at `{path}` of the scene of this deck: {message}");
+                    qp::Error::FileSyntax { file, line, message }.into()
+                }
+                None => Error::Scene { path, message },
+            },
+            Error::Refused { code, place, path, message } => {
+                let found = of(&path).map(|(file, line)| format!("{}:{line}: ", file.display()));
+                Error::Refused { code, place: found.unwrap_or(place), path, message }
+            }
+            other => other,
+        }
+    }
+}
+
+impl Scene {
+    /// Reads a deck of CalculiX as a scene; relative names of files start in its folder. Files that it includes may lie outside its folder
+    /// if `permits` has `outside`, and friction is left out with a warning if it has `friction`.
+    ///
+    /// # Errors
+    /// [`qp::Error::File`] for a file that cannot be read; [`qp::Error::FileSyntax`] with the line for what is wrong, and for what changes the
+    /// answer and is not modelled.
+    pub fn read_deck(path: impl AsRef<Path>, permits: &[&str]) -> Result<Scene, Error> {
+        let path = path.as_ref();
+        let named = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let deck = DeckScene::read(path, &named, permits)?;
+        let scene = Scene::from_json(&deck.text, &named)?;
+        Ok(Scene { folder: path.parent().map(Path::to_path_buf), noted: deck.warnings, ..scene })
+    }
+
+    /// The text of the scene of a deck, with comment lines; `named` is the name of the deck in the scene. The scene is not built.
+    ///
+    /// # Errors
+    /// As [`Scene::read_deck`].
+    pub fn text_of_deck(file: &Path, named: &str, permits: &[&str]) -> Result<String, Error> {
+        DeckScene::read(file, named, permits).map(|scene| scene.text)
+    }
+
+    /// Returns `true` for the name of an input deck, which ends with `.inp`: such a file is read by [`Scene::read_deck`].
+    pub fn is_deck(file: impl AsRef<Path>) -> bool {
+        is_deck(file.as_ref())
+    }
+}
+
+/// Adds the first body, then the others.
+fn add_bodies(text: &mut SceneText, bodies: Vec<Body>) {
+    let mut bodies = bodies.into_iter();
+    let Some(first) = bodies.next() else { return };
+    text.one("body", &scene_text::Entry::new(first.body, first.place));
+    first.material.iter().for_each(|material| text.one("material", material));
+    text.list("materials", &first.materials);
+    text.list("temperature", &first.temperature.into_iter().collect::<Vec<_>>());
+    let (entries, places): (Vec<_>, Vec<_>) = bodies.map(|body| body.further()).unzip();
+    text.list("further-bodies", &entries);
+    for (index, places) in places.into_iter().enumerate() {
+        text.places.extend(places.into_iter().map(|(key, place)| (format!("further-bodies[{index}].{key}"), place)));
+    }
+}
+
+/// The one space of all elements.
+fn space(deck: &Deck) -> Result<Space, Error> {
+    let first = deck.element_list.first().map_or(Space::Solid, |element| element.of_type.space);
+    match deck.element_list.iter().find(|element| element.of_type.space != first) {
+        None => Ok(first),
+        Some(DeckElement { place, of_type, .. }) => {
+            let message = format!(
+                "{} follows elements of the model `{}`; a deck has elements of one model",
+                of_type.name,
+                model(first)
+            );
+            Err(deck.source.fault(*place, message))
+        }
+    }
+}
+
+fn model(space: Space) -> &'static str {
+    match space {
+        Space::PlaneStress => "plane-stress",
+        Space::PlaneStrain => "plane-strain",
+        Space::Axisymmetric => "axisymmetric",
+        Space::Solid => "space",
+    }
+}
+
+/// The first line of *HEADING, or the name of the deck.
+fn title(deck: &Deck) -> String {
+    let heading = deck.source.cards.iter().find(|card| card.is("HEADING")).and_then(|card| card.lines.first());
+    let text = heading.map(|line| String::from_utf8_lossy(deck.source.text(line)).into_owned());
+    let text =
+        text.unwrap_or_else(|| deck.source.path().file_stem().unwrap_or_default().to_string_lossy().into_owned());
+    text.chars().filter(|c| !c.is_control()).take(LONGEST_TITLE).collect()
+}
+
+/// The elements that are answered by others, each type once.
+fn nearest_elements(deck: &Deck) -> Vec<(Place, String)> {
+    let mut seen: Vec<&str> = Vec::new();
+    let mut noted = Vec::new();
+    for DeckElement { of_type, kind, place, .. } in &deck.element_list {
+        if !seen.contains(&of_type.name) {
+            seen.push(of_type.name);
+            if !of_type.differs.is_empty() {
+                let count = deck.element_list.iter().filter(|element| element.of_type == *of_type).count();
+                let message =
+                    format!("{count} elements {} are answered by {}, {}", of_type.name, kind.name(), of_type.differs);
+                noted.push((*place, message));
+            }
+        }
+    }
+    noted
+}
+
+/// The warning for a step with large displacements.
+fn large_displacements(deck: &Deck) -> Option<(Place, String)> {
+    let step = deck.source.cards.iter().find(|card| card.is("STEP"))?;
+    let is_nonlinear = step.has("NLGEOM") && !step.says("NLGEOM", "NO");
+    let message = "NLGEOM is answered with small displacements: rotations and strains must stay below some percent";
+    is_nonlinear.then(|| (step.place, message.into()))
+}

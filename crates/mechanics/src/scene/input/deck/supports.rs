@@ -1,0 +1,192 @@
+//! Supports: the cards *BOUNDARY.
+
+use std::collections::HashMap;
+
+use serde_json::{Value, json};
+
+use super::amplitudes::Amplitudes;
+use super::bodies::{Names, is_new};
+use super::scene_text::Entry;
+use crate::error::Error;
+use crate::fem::mesh::deck::{Card, Deck, Place, key};
+
+/// The directions of a node in a scene; those of a deck are numbered from 1.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Names of dofs in decks of Abaqus, with the first directions that they hold.
+const NAMED: [(&str, &[usize]); 5] =
+    [("ENCASTRE", &[0, 1, 2]), ("PINNED", &[0, 1, 2]), ("XSYMM", &[0]), ("YSYMM", &[1]), ("ZSYMM", &[2])];
+
+/// A line: the displacements that it prescribes for some nodes.
+struct Prescribed {
+    /// The number of its card.
+    card: usize,
+    target: String,
+    nodes: Vec<usize>,
+    values: [Option<f64>; 3],
+    place: Place,
+}
+
+/// The supports of a scene.
+///
+/// # Errors
+/// An error with the line for a dof that is not a displacement, a node without elements, a line of which a later line replaces a part.
+pub(super) fn supports(deck: &Deck, names: &Names, amplitudes: &Amplitudes) -> Result<Vec<Entry>, Error> {
+    let mut lines: Vec<Prescribed> = Vec::new();
+    let mut is_in_step = false;
+    let mut first_of_step = lines.len();
+    for (index, card) in deck.source.cards.iter().enumerate() {
+        if card.is("STEP") {
+            (is_in_step, first_of_step) = (true, lines.len());
+        }
+        if !card.is("BOUNDARY") {
+            continue;
+        }
+        if card.value("TYPE").is_some_and(|value| key(value) != "DISPLACEMENT") {
+            return Err(deck.source.fault(card.place, "only displacements are prescribed in an equilibrium"));
+        }
+        if is_new(card) {
+            if is_in_step && lines.len() > first_of_step {
+                return Err(deck.source.fault(card.place, "OP=NEW must stand on the first *BOUNDARY of the step"));
+            }
+            lines.clear();
+            first_of_step = 0;
+        }
+        let factor = amplitudes.factor(deck, card)?;
+        for line in read(deck, card, index, factor)? {
+            if line.values.iter().any(|value| value.is_some_and(|value| value != 0.0)) && !is_in_step {
+                return Err(deck.source.fault(line.place, "a displacement other than 0 must stand in the step"));
+            }
+            lines.push(line);
+        }
+    }
+    replace(deck, &mut lines)?;
+    let mut supports: Vec<(usize, [Option<f64>; 3], Vec<String>, Place)> = Vec::new();
+    for line in lines.iter().filter(|line| line.values.iter().any(Option::is_some)) {
+        let targets = names.of_nodes(deck, &line.target, &line.nodes);
+        if targets.is_empty() {
+            let message = format!("no node of `{}` belongs to an element; nothing is held", line.target);
+            return Err(deck.source.fault(line.place, message));
+        }
+        for target in targets {
+            // Lines of one card that hold the same nodes, or other nodes alike, are one support.
+            if let Some(last) = supports.last_mut().filter(|last| last.0 == line.card) {
+                let is_apart = (0..3).all(|axis| last.1[axis].is_none() || line.values[axis].is_none());
+                if last.2 == [target.clone()] && is_apart {
+                    (0..3).for_each(|axis| last.1[axis] = last.1[axis].or(line.values[axis]));
+                    continue;
+                }
+                if last.1 == line.values {
+                    last.2.push(target);
+                    continue;
+                }
+            }
+            supports.push((line.card, line.values, vec![target], line.place));
+        }
+    }
+    Ok(supports.into_iter().map(|(_, values, targets, place)| Entry::new(support(&values, targets), place)).collect())
+}
+
+fn support(values: &[Option<f64>; 3], mut targets: Vec<String>) -> Value {
+    let on = match targets.len() {
+        1 => Value::from(targets.remove(0)),
+        _ => targets.into(),
+    };
+    let mut value = json!({"on": {"nodes": on}});
+    for (axis, displacement) in AXES.iter().zip(values) {
+        if let Some(displacement) = displacement {
+            value[*axis] = (*displacement).into();
+        }
+    }
+    value
+}
+
+/// The lines of a card: nodes, first dof, last dof, displacement.
+fn read(deck: &Deck, card: &Card, index: usize, factor: f64) -> Result<Vec<Prescribed>, Error> {
+    let mut lines = Vec::with_capacity(card.lines.len());
+    for line in &card.lines {
+        let mut fields = deck.source.fields(line);
+        let target = fields.text().ok_or_else(|| fields.fault("a set or a number must begin this line"))?;
+        let nodes = deck.node_sets.members(&target, &deck.nodes).map_err(|message| fields.fault(message))?;
+        let label = fields.clone().text().map(|text| key(&text)).unwrap_or_default();
+        let mut values = [None; 3];
+        if let Some((_, axes)) = NAMED.iter().find(|(name, _)| *name == label) {
+            fields.text();
+            axes.iter().for_each(|&axis| values[axis] = Some(0.0));
+        } else {
+            let first = fields.whole("the first direction")?;
+            let last = if fields.clone().text().is_some() {
+                fields.whole("the last direction")?
+            } else {
+                fields.next();
+                first
+            };
+            let value = factor * fields.finite_or_zero("the displacement")?;
+            if first == 0 || last < first || last > 6 {
+                let message = format!(
+                    "directions {first} to {last} are not those of a solid; there are 1, 2 and 3, and rotations 4 to 6"
+                );
+                return Err(fields.fault(message));
+            }
+            // A node of a solid has no rotations: to hold them changes nothing.
+            for (axis, held) in values.iter_mut().enumerate() {
+                if (first..=last).contains(&(axis + 1)) {
+                    *held = Some(value);
+                }
+            }
+            if first > 3 && value != 0.0 {
+                return Err(fields.fault("a node of a solid has no rotation that could be prescribed"));
+            }
+        }
+        fields.end()?;
+        if names_z_of_plane(deck, &mut values) {
+            return Err(fields.fault("a plane model has no displacement along z"));
+        }
+        lines.push(Prescribed { card: index, target, nodes, values, place: line.place });
+    }
+    Ok(lines)
+}
+
+/// Leaves z out of a plane model, in which it is zero; `true` for another value.
+fn names_z_of_plane(deck: &Deck, values: &mut [Option<f64>; 3]) -> bool {
+    let is_plane = deck.element_list.first().is_some_and(|element| element.kind.dimension() == 2);
+    is_plane && values[2].take().is_some_and(|value| value != 0.0)
+}
+
+/// A later line replaces the displacements of its nodes in earlier lines.
+fn replace(deck: &Deck, lines: &mut [Prescribed]) -> Result<(), Error> {
+    let mut last: HashMap<(usize, usize), usize> = HashMap::new();
+    for (index, line) in lines.iter().enumerate() {
+        for axis in (0..3).filter(|&axis| line.values[axis].is_some()) {
+            line.nodes.iter().for_each(|&node| _ = last.insert((node, axis), index));
+        }
+    }
+    for index in 0..lines.len() {
+        for axis in 0..3 {
+            let own = lines[index].values[axis];
+            let replaced = |node: &&usize| last.get(&(**node, axis)).filter(|&&by| lines[by].values[axis] != own);
+            if own.is_none() {
+                continue;
+            }
+            let count = lines[index].nodes.iter().filter(|node| replaced(node).is_some()).count();
+            if count == 0 {
+                continue;
+            }
+            if count < lines[index].nodes.len() {
+                let line = &lines[index];
+                let node = line.nodes.iter().find(|node| replaced(node).is_some());
+                let by = node.as_ref().and_then(|node| replaced(node)).map_or(line.place, |&by| lines[by].place);
+                let number = node.map_or(0, |&node| deck.nodes.numbers[node]);
+                let message = format!(
+                    "{} prescribes another displacement along {} for node {number}, but not for all nodes of `{}`; give each node one value",
+                    deck.source.named(by),
+                    AXES[axis],
+                    line.target
+                );
+                return Err(deck.source.fault(line.place, message));
+            }
+            lines[index].values[axis] = None;
+        }
+    }
+    Ok(())
+}
