@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use signorini::qp::read_problem;
 use support::draws::Draws;
-use support::fuzz::damage::{damaged, fault, faults, read};
+use support::fuzz::damage::{damaged, damaged_deck, fault, faults, read};
 use support::fuzz::problem;
 
 fn corpus() -> PathBuf {
@@ -105,6 +105,29 @@ fn damaged_files_and_random_problems_cause_no_panic() {
     for seed in 0..inputs as u64 / 4 {
         problem::ending(&mut Draws(1000 * seed)).unwrap_or_else(|fault| panic!("{seed}: {fault}"));
     }
+}
+
+/// Each damaged deck is refused with one sentence that has a line of a file, or it is built as it stands.
+#[test]
+fn damaged_decks_have_a_sentence_with_a_line_or_a_model() {
+    let (inputs, desk) = (2000, desk());
+    let mut draws = Draws(7);
+    let text = fs::read_to_string(faults("stack.inp")).unwrap();
+    let mut accepted = 0;
+    for _ in 0..inputs {
+        let deck = damaged_deck(&mut draws, &text, "stack.inp");
+        match read("stack.inp", deck.as_bytes(), desk.path()) {
+            Ok(()) => accepted += 1,
+            Err(error) => {
+                let sentence = error.to_string();
+                let line = sentence.split("stack.inp:").nth(1).and_then(|rest| rest.split(':').next());
+                let has_line = line.is_some_and(|line| line.parse::<usize>().is_ok());
+                let is_of_model = error.status() == "under_held";
+                assert!((has_line || is_of_model) && !sentence.contains('\n'), "{sentence}\n{deck}");
+            }
+        }
+    }
+    assert!(accepted > inputs / 50 && accepted < inputs, "{accepted} of {inputs}");
 }
 
 /// The methods by name and by choice; an unpolished QP and a soft penalty are returned as they are.

@@ -263,6 +263,7 @@ fn every_key_of_a_scene_has_an_example_that_builds() {
     let page = read("docs/scenes.md");
     let desk = desk();
     fs::copy(root().join("examples/first-part/foot.msh"), desk.path().join("foot.msh")).unwrap();
+    fs::copy(root().join("tests/faults/stack.inp"), desk.path().join("stack.inp")).unwrap();
     let mut found = BTreeSet::new();
     let mut built = 0;
     for part in parts(&page) {

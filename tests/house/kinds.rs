@@ -80,6 +80,7 @@ fn a_body_shape_is_named_in_two_files() {
         ("HalfBall", "HalfBallSpec", "half_ball"),
         ("Ring", "RingSpec", "ring"),
         ("Gmsh", "GmshSpec", "gmsh"),
+        ("Deck", "DeckSpec", "deck"),
     ] {
         let file = format!("scene/input/body/{file}.rs");
         assert_named_in(&[spec.into(), format!("BodySpec::{shape}")], &["scene/input/body/mod.rs", &file]);

@@ -567,9 +567,9 @@ fn a_deck_or_a_mesh_in_place_of_a_scene_is_recognised() {
     for deck in
         ["*HEADING\nTwo cubes\n*NODE\n1, 0, 0, 0\n", "** a comment\n**\n*Node, NSET=all\n", "\n*NODE\n1, 0, 0, 0\n"]
     {
-        desk.write("deck.inp", deck);
-        desk.run(&["solve", "deck.inp"])
-            .fails_with(1, &["deck.inp", "an input deck of Abaqus or CalculiX", "signorini new"]);
+        desk.write("deck.txt", deck);
+        desk.run(&["solve", "deck.txt"])
+            .fails_with(1, &["deck.txt", "an input deck of Abaqus or CalculiX", "ends with `.inp`"]);
     }
     desk.write("part.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
     desk.run(&["solve", "part.msh"]).fails_with(1, &["part.msh", "a mesh of Gmsh", "signorini new"]);

@@ -50,6 +50,18 @@ fn an_overlap_before_contact_is_named_with_its_depth_and_place() {
     assert!(!is_warning && line.ends_with("lies 1.000e-2 m inside obstacles[0]"), "{line}");
 }
 
+/// A deck with reduced integration: the report names the line.
+#[test]
+fn a_deck_that_is_answered_in_another_way_is_named_with_its_line() {
+    let desk = Desk::new();
+    let deck = std::fs::read_to_string(support::root().join("tests/faults/stack.inp")).unwrap();
+    desk.write("stack.inp", deck.replace("C3D8I", "C3D8R"));
+    let report = desk.run(&["solve", "stack.inp", "--format", "json"]).ends_with(0).json();
+    let text = desk.run(&["solve", "stack.inp"]).ends_with(0).stdout;
+    let message = warned(&(report, text), "deck");
+    assert!(message.contains("stack.inp:23: 1 elements C3D8R are answered by Hex8"), "{message}");
+}
+
 /// The block lies below its obstacle, but the scene says that the obstacle approaches from above: its closed nodes
 /// would be in tension.
 #[test]

@@ -3,6 +3,8 @@
 mod concave_obstacles;
 mod contact_scenes;
 mod contacts_found;
+mod decks;
+mod decks_refused;
 mod dimensions;
 mod every_shape;
 mod inclined_frames;

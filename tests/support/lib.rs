@@ -5,6 +5,7 @@
 pub mod bodies;
 pub mod clock;
 pub mod closed_forms;
+pub mod decks;
 pub mod draws;
 pub mod endings;
 pub mod extremes;

@@ -62,6 +62,32 @@ pub fn damaged(draws: &mut Draws, text: &[u8]) -> Vec<u8> {
     bytes
 }
 
+/// Returns the deck with a few changes: lines that are lost, repeated, exchanged or included again, words and numbers that are replaced.
+pub fn damaged_deck(draws: &mut Draws, text: &str, name: &str) -> String {
+    let mut lines: Vec<String> = text.lines().map(str::to_string).collect();
+    for _ in 0..1 + draws.below(3) {
+        let (from, to) = (draws.below(lines.len()), draws.below(lines.len()));
+        match draws.below(8) {
+            0 => drop(lines.remove(from)),
+            1 => lines.insert(to, lines[from].clone()),
+            2 => lines.swap(from, to),
+            3 => lines.insert(from, format!("*INCLUDE, INPUT={name}")),
+            4 => lines.truncate(from.max(1)),
+            5 => lines[from] = String::from_utf8_lossy(&damaged(draws, lines[from].as_bytes())).into_owned(),
+            _ => {
+                let mut words: Vec<String> = lines[from].split(',').map(str::to_string).collect();
+                let (place, other) = (draws.below(words.len()), lines[to].split(',').next().unwrap_or_default());
+                words[place] = if draws.below(2) == 0 { other.into() } else { WORDS[draws.below(WORDS.len())].into() };
+                lines[from] = words.join(",");
+            }
+        }
+        if lines.is_empty() {
+            break;
+        }
+    }
+    lines.join("\n")
+}
+
 /// Returns the path of a valid file that is to be damaged.
 pub fn faults(name: &str) -> PathBuf {
     crate::root().join("tests/faults").join(name)
@@ -77,6 +103,15 @@ pub fn read(name: &str, bytes: &[u8], desk: &Path) -> Result<(), Error> {
         Some("json") => {
             let scene = Scene::from_json(&text, name)?;
             if scene.size().nodes < FEW_NODES { scene.build().map(drop) } else { Ok(()) }
+        }
+        Some("inp") => {
+            let file = desk.join(name);
+            std::fs::write(&file, bytes).map_err(|source| qp::Error::File {
+                action: "write",
+                path: desk.into(),
+                source,
+            })?;
+            Scene::read(&file)?.build().map_err(|error| Scene::located(error, &file)).map(drop)
         }
         Some("msh") => GmshFile::parse(bytes, name)?.mesh(&[], 1.0).map(drop),
         _ => {

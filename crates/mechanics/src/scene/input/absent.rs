@@ -62,8 +62,8 @@ pub(crate) fn other_format(text: &str) -> Option<String> {
     }
     let is_deck = first.starts_with("**") || first.strip_prefix('*')?.starts_with(|c: char| c.is_ascii_alphabetic());
     is_deck.then(|| {
-        "this is an input deck of Abaqus or CalculiX, which is not read: convert its mesh to a .msh file of Gmsh, as meshio does, \
-         and let `signorini new` write a first scene for it, or solve the deck with CalculiX"
+        "this is an input deck of Abaqus or CalculiX, not a scene: give its file a name that ends with `.inp`, and `solve` and \
+         `signorini new` read it"
             .into()
     })
 }

@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use super::card::{Card, Place, key};
-use super::faces::{FacePressure, Surfaces};
+
 use super::kinds::{DeckElementType, element_type};
 use super::sets::{Numbered, Sets};
 use super::source::Source;
+use super::surfaces::{FacePressure, Surfaces};
 use crate::error::Error;
 use crate::fem::element::ElementKind;
 use crate::fem::mesh::MAX_NODES;
@@ -48,8 +49,9 @@ impl Deck {
     /// Reads a deck. The files that it includes must lie in the folder `within` or below it; anywhere without one.
     ///
     /// # Errors
-    /// [`qp::Error::File`](signorini_qp::Error::File) for a file that cannot be read; [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a value
-    /// of the wrong kind, a number that is given twice or does not exist, an element that is not read, a deck without elements.
+    /// [`qp::Error::File`](signorini_qp::Error::File) for a file that cannot be read;
+    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a value of the wrong kind, a number that is given twice
+    /// or does not exist, an element that is not read, a deck without elements.
     pub fn read(path: &Path, within: Option<&Path>) -> Result<Self, Error> {
         let mut source = Source::read(path, within)?;
         let cards = std::mem::take(&mut source.cards);

@@ -1,53 +1,14 @@
-//! Surfaces of a deck: faces of elements, or nodes; and the faces that pressures act on.
+//! The faces of the surfaces of a deck, and those that pressures act on.
 
 use std::collections::{HashMap, HashSet};
 
 use super::card::{Card, Place, key};
 use super::content::Deck;
+use super::surfaces::{FacePressure, Surface};
 use crate::error::{Error, nearly};
-
-/// A named surface.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Surface {
-    pub name: String,
-    pub place: Place,
-    /// Elements and their faces, from 0; for a surface of nodes the faces that have only nodes of it.
-    pub faces: Vec<(usize, usize)>,
-    /// The nodes of a surface of nodes that are on none of these faces, by their places.
-    pub bare: Vec<usize>,
-}
-
-/// All surfaces; names that differ only in case or blanks are one name.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Surfaces {
-    pub all: Vec<Surface>,
-    places: HashMap<String, usize>,
-}
-
-impl Surfaces {
-    pub fn named(&self, name: &str) -> Option<&Surface> {
-        self.places.get(&key(name)).map(|&place| &self.all[place])
-    }
-
-    fn add(&mut self, surface: Surface) {
-        self.places.insert(key(&surface.name), self.all.len());
-        self.all.push(surface);
-    }
-}
 
 /// More different pressures than this would need as many boundaries.
 const MOST_PRESSURES: usize = 1000;
-
-/// Faces that a card *DLOAD presses with one value.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct FacePressure {
-    /// The number of the card among all cards.
-    pub card: usize,
-    /// The name of the surface of these faces.
-    pub surface: String,
-    pub place: Place,
-    pub value: f64,
-}
 
 impl Deck {
     pub(super) fn read_surface(&mut self, card: &Card) -> Result<(), Error> {
@@ -132,7 +93,7 @@ impl Deck {
         Ok(faces)
     }
 
-    /// Makes a surface of the faces of each value of a card *DLOAD; a face that occurs again gets another surface, because pressures add up.
+    /// Makes a surface of the faces of each value of a card *DLOAD. A face that occurs again is in a second surface: pressures add up.
     pub(super) fn read_pressures(&mut self, index: usize, card: &Card) -> Result<(), Error> {
         let mut groups: Vec<(f64, Place, Vec<(usize, usize)>)> = Vec::new();
         for line in &card.lines {

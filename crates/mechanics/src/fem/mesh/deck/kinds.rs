@@ -34,7 +34,7 @@ const INCOMPATIBLE: &str = "without incompatible modes, and therefore stiffer in
 const REDUCED: &str = "with full instead of reduced integration, and therefore stiffer in bending";
 const REDUCED_QUADRATIC: &str = "with full instead of reduced integration, and therefore a little stiffer";
 
-const EXPANDED: &str = "with no stress across the plane at any point; CalculiX takes solid elements of the thickness, which are a little stiffer near supports";
+const EXPANDED: &str = "with no stress across the plane at any point; CalculiX takes solid elements, which are a little stiffer near supports";
 const WEDGE: &str = "of a full circle; CalculiX takes a wedge of two degrees with flat sides, so that forces of pressures differ by 2e-4";
 
 /// All elements that are read.

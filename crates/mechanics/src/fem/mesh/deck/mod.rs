@@ -1,5 +1,5 @@
-//! Input decks of CalculiX, a dialect of those of Abaqus: `.inp` files with nodes, elements, sets and surfaces, and with all other cards for
-//! those who understand them.
+//! Input decks of CalculiX, a dialect of those of Abaqus: `.inp` files with nodes, elements, sets and surfaces. All other cards are kept as
+//! they are written.
 //!
 //! A body is all elements that are joined by common nodes; the bodies are called `body-1`, `body-2`, ... in the order of their first
 //! elements. An element set is a group of elements as well. Surfaces of faces are boundaries, and the faces that *DLOAD presses too.
@@ -12,10 +12,13 @@ mod boundaries;
 mod card;
 mod content;
 mod faces;
+mod fields;
 mod kinds;
 mod sets;
 mod source;
+mod surfaces;
 
-pub(crate) use card::{Card, Fields, Place, key};
+pub(crate) use card::{Card, Place, key};
 pub(crate) use content::{Deck, DeckElement};
+pub(crate) use fields::Fields;
 pub(crate) use kinds::Space;

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::card::{Card, Fields, key};
+use super::card::{Card, key};
+use super::fields::Fields;
 use super::source::Source;
 use crate::error::{Error, nearly};
 

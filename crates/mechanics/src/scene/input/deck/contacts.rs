@@ -60,7 +60,7 @@ pub(super) fn contacts(deck: &Deck, names: &Names, may_rub: bool) -> Result<Cont
                 facing["fit"] = json!({"clearance": 0.0});
                 facing["reach"] = reach.into();
                 let message = format!(
-                    "ADJUST: the surfaces `{}` and `{}` have the distance 0 where they are within {reach} of each other; farther nodes have \
+                    "ADJUST: the surfaces `{}` and `{}` have the distance 0 where they are within {reach} of each other; other nodes have \
                      no contact row",
                     pair[0], pair[1]
                 );
@@ -88,7 +88,7 @@ fn adjusted(deck: &Deck, card: &Card) -> Result<Option<f64>, Error> {
         Ok(distance) if distance > 0.0 && distance.is_finite() => Ok(Some(distance)),
         _ => {
             let message = format!(
-                "ADJUST={value} is not read; it must be a positive distance within which the surfaces are to touch, or *CLEARANCE may say their distance"
+                "ADJUST={value} is not read; it must be a positive distance within which surfaces touch; *CLEARANCE says another distance"
             );
             Err(deck.source.fault(card.place, message))
         }
@@ -101,7 +101,7 @@ fn side(deck: &Deck, names: &Names, name: &str) -> Result<(usize, String), Strin
     if let Some(&node) = surface.bare.first() {
         let number = deck.nodes.numbers[node];
         return Err(format!(
-            "node {number} of the surface `{}` is on no face that has only nodes of the surface; name faces (TYPE=ELEMENT), or the nodes of \
+            "node {number} of the surface `{}` is on no face that has only nodes of it; name faces (TYPE=ELEMENT), or the nodes of \
              whole faces",
             surface.name
         ));
@@ -155,7 +155,7 @@ fn behaviour(deck: &Deck, card: &Card) -> Result<Option<String>, Error> {
         // The values are those with which CalculiX approximates hard contact.
         "HARD" => Ok(None),
         "LINEAR" | "EXPONENTIAL" | "TABULAR" => Ok(Some(format!(
-            "{} with PRESSURE-OVERCLOSURE={law} ({}) is answered by hard contact: no contact stiffness is needed, and surfaces do not overlap",
+            "{} with PRESSURE-OVERCLOSURE={law} ({}) is answered by hard contact: its stiffness is not needed, and surfaces do not overlap",
             card.name,
             values.join(", ")
         ))),

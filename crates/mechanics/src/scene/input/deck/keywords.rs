@@ -118,6 +118,9 @@ const ABSENT: [(&str, &str); 43] = [
     ("ASSEMBLY", "parts and instances of Abaqus are not read; write the deck for CalculiX, without *ASSEMBLY"),
 ];
 
+/// The cards that have no data lines.
+const BARE: [&str; 5] = ["MATERIAL", "STEP", "ENDSTEP", "SURFACEINTERACTION", "CLEARANCE"];
+
 /// The cards that stand only in a step.
 const OF_STEP: [&str; 6] = ["CLOAD", "DLOAD", "DSLOAD", "TEMPERATURE", "STATIC", "ENDSTEP"];
 
@@ -150,6 +153,13 @@ pub(super) fn judged(deck: &Deck) -> Result<Vec<(String, Place)>, Error> {
             {
                 return fault(format!("OP of {} must be NEW or MOD", card.name));
             }
+        }
+        let most = if card.is("STATIC") || card.is("FRICTION") { 1 } else { usize::MAX };
+        let most = if BARE.iter().any(|keyword| card.is(keyword)) { 0 } else { most };
+        if let Some(line) = card.lines.get(most) {
+            return Err(deck
+                .source
+                .fault(line.place, format!("this line does not belong to {}; a keyword may be missing", card.name)));
         }
         if card.is("STEP") {
             if let Some(first) = step {

@@ -131,8 +131,8 @@ impl Scene {
     /// if `permits` has `outside`, and friction is left out with a warning if it has `friction`.
     ///
     /// # Errors
-    /// [`qp::Error::File`] for a file that cannot be read; [`qp::Error::FileSyntax`] with the line for what is wrong, and for what changes the
-    /// answer and is not modelled.
+    /// [`qp::Error::File`] for a file that cannot be read; [`qp::Error::FileSyntax`] with the line for what is wrong, and for what changes
+    /// the answer and is not modelled.
     pub fn read_deck(path: impl AsRef<Path>, permits: &[&str]) -> Result<Scene, Error> {
         let path = path.as_ref();
         let named = path.file_name().unwrap_or_default().to_string_lossy().into_owned();

@@ -178,7 +178,7 @@ fn replace(deck: &Deck, lines: &mut [Prescribed]) -> Result<(), Error> {
                 let by = node.as_ref().and_then(|node| replaced(node)).map_or(line.place, |&by| lines[by].place);
                 let number = node.map_or(0, |&node| deck.nodes.numbers[node]);
                 let message = format!(
-                    "{} prescribes another displacement along {} for node {number}, but not for all nodes of `{}`; give each node one value",
+                    "{} prescribes another displacement along {} for node {number}, not for all nodes of `{}`; give each node one value",
                     deck.source.named(by),
                     AXES[axis],
                     line.target

@@ -1,0 +1,138 @@
+"""Compares displacements of decks with those of CalculiX, element by element.
+
+    python3 reference/decks.py target/release/signorini
+
+Each deck is a bar without right angles, held at one end, under pressure, gravity, a force on a node and warming. CalculiX is the Debian
+package calculix-ccx; its command is ccx. It prints seven digits. A line has the largest displacement and the largest difference over it.
+"""
+
+import itertools
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+SOLIDS = ("C3D4", "C3D8", "C3D10", "C3D20", "C3D8I", "C3D8R", "C3D20R")
+PLANES = ("CPE3", "CPE4", "CPE6", "CPE8", "CPE4R", "CPE8R", "CPS3", "CPS4", "CPS6", "CPS8", "CAX3", "CAX4", "CAX6", "CAX8")
+
+TETRAHEDRA = ((0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6))
+"""Six tetrahedra around the diagonal of a brick."""
+
+CELLS = {
+    "tetrahedron": (
+        ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)),
+        ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)),
+    ),
+    "brick": (
+        ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
+        ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)),
+    ),
+    "triangle": (((0, 1), (1, 2), (2, 0)), ((0, 1), (1, 2), (2, 0))),
+    "quadrilateral": (((0, 1), (1, 2), (2, 3), (3, 0)), ((0, 1), (1, 2), (2, 3), (3, 0))),
+}
+"""Corners of the faces and of the mid-sides, in the order of CalculiX."""
+
+
+def place(i: float, j: float, k: float, start: float) -> tuple[float, float, float]:
+    """Returns the place of a corner of the lattice; no cell has right angles."""
+    x, y, z = 2 * i, j, k
+    return (start + x * (1 + 0.1 * y) + 0.05 * z * y, y + 0.08 * x * (z + 0.5), z * (1 - 0.05 * x))
+
+
+class Bar:
+    """Nodes and elements of a bar of one type."""
+
+    def __init__(self, element: str) -> None:
+        self.is_solid = element.startswith("C3D")
+        count = int(re.sub("[IR]$", "", element[3:]))
+        forms = {4: "tetrahedron", 10: "tetrahedron"} if self.is_solid else {3: "triangle", 6: "triangle"}
+        form = forms.get(count, "brick" if self.is_solid else "quadrilateral")
+        self.faces, mid_sides = CELLS[form]
+        self.numbers: dict = {}
+        self.nodes: list = []
+        self.elements = []
+        start = 1.0 if element.startswith("CAX") else 0.0
+        cells = (3, 2, 2) if self.is_solid else (4, 3, 0)
+        steps = [[step / max(of, 1) for step in range(of + 1)] for of in cells]
+
+        def corner(i: int, j: int, k: int) -> int:
+            return self.node((i, j, k), place(steps[0][i], steps[1][j], steps[2][k], start))
+
+        for k, j, i in itertools.product(range(max(cells[2], 1)), range(cells[1]), range(cells[0])):
+            layers = (k, k + 1) if self.is_solid else (k,)
+            around = [corner(a, b, c) for c in layers for a, b in ((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1))]
+            parts = {"tetrahedron": TETRAHEDRA, "triangle": ((0, 1, 2), (0, 2, 3))}.get(form, (range(len(around)),))
+            for part in parts:
+                own = [around[local] for local in part]
+                if count > len(own):
+                    own += [self.middle(own[a], own[b]) for a, b in mid_sides]
+                self.elements.append(own)
+
+    def node(self, key: tuple, at: tuple) -> int:
+        """Returns the number of a node, from 0."""
+        if key not in self.numbers:
+            self.numbers[key] = len(self.nodes)
+            self.nodes.append(at)
+        return self.numbers[key]
+
+    def middle(self, a: int, b: int) -> int:
+        """Returns the number of the node in the middle of two."""
+        ends = (self.nodes[a], self.nodes[b])
+        return self.node(("middle", min(a, b), max(a, b)), tuple(sum(pair) / 2 for pair in zip(*ends, strict=True)))
+
+    def deck(self, element: str) -> str:
+        """Returns the deck of the bar; nodes have ten times their numbers from 1."""
+        lines = ["*HEADING", f"A bar of {element}", "*NODE, NSET=ALL"]
+        lines += [f"{10 * (node + 1)}, {x:.12f}, {y:.12f}, {z:.12f}" for node, (x, y, z) in enumerate(self.nodes)]
+        lines.append(f"*ELEMENT, TYPE={element}, ELSET=BAR")
+        for number, nodes in enumerate(self.elements):
+            words = [str(number + 1), *(str(10 * (node + 1)) for node in nodes)]
+            lines += [", ".join(words[at : at + 11]) + ("," if at + 11 < len(words) else "") for at in range(0, len(words), 11)]
+        is_round = element.startswith("CAX")
+        axis, base = (1, min(at[1] for at in self.nodes)) if is_round else (0, self.nodes[0][0])
+        held = [node for node, at in enumerate(self.nodes) if at[axis] < base + (0.2 if is_round else 1e-9)]
+        lines += ["*NSET, NSET=HELD", *(f"{10 * (node + 1)}," for node in held)]
+        lines += ["*MATERIAL, NAME=STEEL", "*ELASTIC", "200000., .3", "*DENSITY", "7.8D-6", "*EXPANSION, ZERO=20.", "1.2E-5"]
+        lines.append("*SOLID SECTION, ELSET=BAR, MATERIAL=STEEL")
+        lines += [] if self.is_solid or is_round else ["0.7"]
+        lines += ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", "ALL, 20.", "*BOUNDARY"]
+        lines.append("HELD, 2, 2" if is_round else f"HELD, 1, {3 if self.is_solid else 2}")
+        lines += ["*STEP", "*STATIC", "*DLOAD"]
+        for (number, nodes), (face, corners) in itertools.product(enumerate(self.elements), enumerate(self.faces)):
+            if all(self.nodes[nodes[corner]][2 if self.is_solid else 1] > 0.85 for corner in corners):
+                lines.append(f"{number + 1}, P{face + 1}, 12.5")
+        lines.append("BAR, GRAV, 9810., 0., -2., " + ("-1." if self.is_solid else "0."))
+        last = 10 * len(self.nodes)
+        lines += ["*CLOAD", f"{last}, 2, -3.", f"{last}, 1, 7.", "*TEMPERATURE", "ALL, 55."]
+        return "\n".join([*lines, "*NODE PRINT, NSET=ALL", "U", "*END STEP"]) + "\n"
+
+
+def differs(program: str, element: str, folder: pathlib.Path) -> tuple[float, float]:
+    """Returns the largest displacement of CalculiX, and the largest difference over it."""
+    bar = Bar(element)
+    (folder / "bar.inp").write_text(bar.deck(element))
+    subprocess.run(["ccx", "bar"], cwd=folder, check=True, capture_output=True)
+    lines = [line.split() for line in (folder / "bar.dat").read_text().splitlines()]
+    printed = {int(words[0]) // 10 - 1: [float(word) for word in words[1:]] for words in lines if len(words) == 4 and words[0].isdigit()}
+    command = [program, "solve", "bar.inp", "--out", "answer", "--pictures", "none"]
+    subprocess.run(command, cwd=folder, check=True, capture_output=True)
+    text = (folder / "answer/solution.vtu").read_text()
+    found = re.search('Name="u"[^>]*>\n(.*?)</DataArray', text, re.DOTALL).group(1).strip().splitlines()
+    axes = 3 if bar.is_solid else 2
+    largest = max(abs(value) for values in printed.values() for value in values)
+    pairs = ((printed[node], [float(word) for word in line.split()]) for node, line in enumerate(found))
+    return largest, max(abs(a - b) for one, other in pairs for a, b in zip(one[:axes], other[:axes], strict=True)) / largest
+
+
+def main() -> None:
+    """Prints a line for each element."""
+    program = str(pathlib.Path(sys.argv[1]).resolve())
+    for element in (*SOLIDS, *PLANES):
+        with tempfile.TemporaryDirectory() as folder:
+            largest, difference = differs(program, element, pathlib.Path(folder))
+        print(f"{element:7} largest displacement {largest:.6e}, differs by {difference:.1e}")
+
+
+if __name__ == "__main__":
+    main()
