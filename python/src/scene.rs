@@ -91,6 +91,9 @@ impl Scene {
                 let scene = scene.map(|scene| signorini::Scene { folder: Some(folder.unwrap_or_default()), ..scene });
                 (scene, None)
             }
+            (false, Ok(path)) if allow_outside && signorini::Scene::is_deck(&path) => {
+                (signorini::Scene::read_deck(&path, &["outside"]), Some(path))
+            }
             (false, Ok(path)) => (signorini::Scene::read(&path), Some(path)),
             (false, Err(_)) => {
                 let kind = kind_of(source);

@@ -59,7 +59,7 @@ fn a_deck_that_is_answered_in_another_way_is_named_with_its_line() {
     let report = desk.run(&["solve", "stack.inp", "--format", "json"]).ends_with(0).json();
     let text = desk.run(&["solve", "stack.inp"]).ends_with(0).stdout;
     let message = warned(&(report, text), "deck");
-    assert!(message.contains("stack.inp:23: 1 elements C3D8R are answered by Hex8"), "{message}");
+    assert!(message.contains("stack.inp:23: C3D8R is answered by Hex8"), "{message}");
 }
 
 /// The block lies below its obstacle, but the scene says that the obstacle approaches from above: its closed nodes

@@ -42,10 +42,10 @@ fn compare(answer: &Answer, exact: impl Fn([f64; 3]) -> [f64; 3]) {
     let exact: Vec<[f64; 3]> = mesh.nodes().iter().map(|at| exact(*at)).collect();
     let largest = exact.iter().flatten().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     for (node, exact) in exact.iter().enumerate() {
-        for axis in 0..size {
+        for (axis, exact) in exact.iter().enumerate().take(size) {
             let found = answer.displacement()[size * node + axis];
-            let differs = (found - exact[axis]).abs();
-            assert!(differs < ROUNDING * largest, "node {node} axis {axis}: {found} instead of {}", exact[axis]);
+            let differs = (found - exact).abs();
+            assert!(differs < ROUNDING * largest, "node {node} axis {axis}: {found} instead of {exact}");
         }
     }
 }
@@ -257,7 +257,7 @@ fn what_is_answered_in_another_way_has_a_warning() {
     let line = |text: &str| 1 + deck.lines().position(|line| line.contains(text)).unwrap();
     let said: Vec<String> = scene.noted.iter().map(ToString::to_string).collect();
     for (text, phrase) in [
-        ("*ELEMENT", "22 elements C3D8R are answered by Hex8, with full instead of reduced integration"),
+        ("*ELEMENT", "C3D8R is answered by Hex8, with full instead of reduced integration"),
         ("NLGEOM", "NLGEOM is answered with small displacements"),
         ("LINEAR", "PRESSURE-OVERCLOSURE=LINEAR (10000000, 3) is answered by hard contact"),
         ("*FRICTION", "the friction of 0.2 is left out"),

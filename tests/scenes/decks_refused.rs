@@ -118,12 +118,21 @@ fn wrong_cards_are_refused_with_their_line() {
         ("8, 0., 1., 1.", "eight, 0., 1., 1.", "the number of a node is `eight`; it must be a whole number"),
         ("1, 2, 3, 4\n", "1, 2, 3, 44\n", "the deck has no node 44"),
         ("1, 2, 3, 4\n", "1, 2, BASES\n", "there is no set of nodes `BASES` above this line"),
+        ("NSET=BASE\n", "NSET=12\n", "a set of nodes is called 12; a name must not be a number"),
         ("NSET=BASE\n", "NSET=BASE, GENERATE\n", "`4` follows the last value of this line"),
         (
             "1, 2, 3, 4\n",
             "1, 2, 3, 4\n*NSET, NSET=G, GENERATE\n4, 1\n",
             "the range from 4 to 1 in steps of 1 has no number",
         ),
+    ] {
+        check(from, to, phrase);
+    }
+}
+
+#[test]
+fn wrong_materials_loads_and_steps_are_refused_with_their_line() {
+    for (from, to, phrase) in [
         ("PART, S2", "PART, S7", "`S7` is no face of element 1; C3D8 has S1 to S6"),
         ("NAME=TOP", "NAME=TOP, TYPE=CUTTING", "a surface consists of faces (TYPE=ELEMENT) or of nodes (TYPE=NODE)"),
         ("200., 0.3", "200., 0.3, 20.\n100., 0.3, 200.", "values that depend on the temperature are not read"),

@@ -35,7 +35,10 @@ impl Scene {
             let (whole, free) = (size(&load), size(&dofs.restrict(&load)?));
             if whole > 0.0 && free <= NOTHING * whole {
                 warnings.push(Warning::LoadOnSupport { load: index });
-            } else if self.loads[index].is_at_point() && body.dimension() > 1 {
+            } else if self.loads[index].is_at_points()
+                && body.dimension() > 1
+                && is_on_one_node(&load, body.dimension())
+            {
                 warnings.push(Warning::PointLoad { load: index });
             }
         }
@@ -56,6 +59,11 @@ impl Scene {
         let free = names.filter(is_cut).filter(|name| !is_held(name) && !on_axis(name));
         free.map(|name| Warning::FreeSymmetry { boundary: name.to_string() }).collect()
     }
+}
+
+/// Returns `true` if a nodal load is zero on all nodes but one.
+fn is_on_one_node(load: &[f64], dimension: usize) -> bool {
+    load.chunks(dimension).filter(|force| force.iter().any(|&component| component != 0.0)).count() == 1
 }
 
 /// Nodes of one body at the same place: the mesh is connected only in the drawing.

@@ -60,11 +60,11 @@ impl Deck {
         let mut elements = Vec::new();
         for name in groups {
             let body = (0..self.bodies).find(|&body| Deck::body_name(body) == *name);
-            match (self.element_sets.named(name), body) {
-                (Some(set), _) => elements.extend(&set.members),
-                (None, Some(body)) => {
+            match (body, self.element_sets.named(name)) {
+                (Some(body), _) => {
                     elements.extend((0..self.elements.len()).filter(|&element| self.body_of_element[element] == body));
                 }
+                (None, Some(set)) => elements.extend(&set.members),
                 (None, None) => {
                     let sets = self.element_sets.all.iter().map(|set| set.name.clone());
                     let names: Vec<String> = sets.chain((0..self.bodies).map(Deck::body_name)).collect();

@@ -118,7 +118,7 @@ impl Deck {
             self.at.push(at);
             self.node_places.push(line.place);
         }
-        if let Some(set) = card.value("NSET") {
+        if let Some(set) = self.node_sets.name_in(&self.source, card)? {
             self.node_sets.extend(set, first..self.nodes.len());
         }
         Ok(())
@@ -159,7 +159,7 @@ impl Deck {
             let message = format!("element {number} has {found} nodes, but {} has {}", of_type.name, of_type.nodes);
             return Err(self.source.fault(place, message));
         }
-        if let Some(set) = card.value("ELSET") {
+        if let Some(set) = self.element_sets.name_in(&self.source, card)? {
             self.element_sets.extend(set, first..self.elements.len());
         }
         Ok(())

@@ -7,6 +7,9 @@ use super::content::Deck;
 use super::surfaces::{FacePressure, Surface};
 use crate::error::{Error, nearly};
 
+/// An element and its face, from 0.
+type Face = (usize, usize);
+
 /// More different pressures than this would need as many boundaries.
 const MOST_PRESSURES: usize = 1000;
 
@@ -95,7 +98,7 @@ impl Deck {
 
     /// Makes a surface of the faces of each value of a card *DLOAD. A face that occurs again is in a second surface: pressures add up.
     pub(super) fn read_pressures(&mut self, index: usize, card: &Card) -> Result<(), Error> {
-        let mut groups: Vec<(f64, Place, Vec<(usize, usize)>)> = Vec::new();
+        let mut groups: Vec<(f64, Place, Vec<Face>)> = Vec::new();
         for line in &card.lines {
             let mut fields = self.source.fields(line);
             let target = fields.text().ok_or_else(|| fields.fault("a set or a number must begin this line"))?;

@@ -22,3 +22,4 @@ pub(crate) use card::{Card, Place, key};
 pub(crate) use content::{Deck, DeckElement};
 pub(crate) use fields::Fields;
 pub(crate) use kinds::Space;
+pub(crate) use surfaces::Surface;

@@ -83,11 +83,26 @@ impl Sets {
         self.places.get(&key(name)).map(|&place| &self.all[place])
     }
 
+    fn parameter(&self) -> &'static str {
+        if self.of == "node" { "NSET" } else { "ELSET" }
+    }
+
+    /// The name of the set that a card makes or extends, if it names one; a number is no name.
+    pub fn name_in<'a>(&self, source: &Source, card: &'a Card) -> Result<Option<&'a str>, Error> {
+        match card.value(self.parameter()).filter(|name| !name.is_empty()) {
+            Some(name) if name.parse::<usize>().is_ok() => {
+                let message = format!("a set of {}s is called {name}; a name must not be a number", self.of);
+                Err(source.fault(card.place, message))
+            }
+            name => Ok(name),
+        }
+    }
+
     /// Reads a card *NSET or *ELSET: numbers, names of earlier sets, or ranges of numbers.
     pub fn read(&mut self, source: &Source, card: &Card, of: &Numbered) -> Result<(), Error> {
-        let parameter = if self.of == "node" { "NSET" } else { "ELSET" };
-        let Some(name) = card.value(parameter).filter(|name| !name.is_empty()) else {
-            return Err(source.fault(card.place, format!("{} has no name; write {parameter}=NAME", card.name)));
+        let Some(name) = self.name_in(source, card)? else {
+            let message = format!("{} has no name; write {}=NAME", card.name, self.parameter());
+            return Err(source.fault(card.place, message));
         };
         let mut members = Vec::new();
         for line in &card.lines {

@@ -1,46 +1,39 @@
 //! The bodies of a deck, and the names of their nodes and surfaces in the scene.
 
+use std::collections::BTreeSet;
+
 use serde_json::{Value, json};
 
-use super::materials::Sections;
+use super::materials::{Section, Sections};
 use super::scene_text::{Entry, object};
 use super::temperatures::Temperatures;
 use crate::error::Error;
-use crate::fem::mesh::deck::{Card, Deck, Place, key};
+use crate::fem::mesh::deck::{Card, Deck, Place, Surface, key};
 
 /// Returns `true` for a card that removes those before it.
 pub(super) fn is_new(card: &Card) -> bool {
     card.value("OP").is_some_and(|value| key(value) == "NEW")
 }
 
-/// The names of things of a deck in its scene: those of a further body begin with its name.
-pub(super) struct Names;
+/// The name of a node set or a surface of a body: in a further body it begins with the name of the body.
+fn name_in(body: usize, name: &str) -> String {
+    if body == 0 { name.to_string() } else { format!("{}.{name}", Deck::body_name(body)) }
+}
 
-impl Names {
-    /// The name of a node set or a surface of a body.
-    pub fn of_body(body: usize, name: &str) -> String {
-        if body == 0 { name.to_string() } else { format!("{}.{name}", Deck::body_name(body)) }
-    }
+/// The names of the nodes of a set, or of the node of a number, in each body that has some of them.
+pub(super) fn names_of_nodes(deck: &Deck, target: &str, nodes: &[usize]) -> Vec<String> {
+    let name = match target.parse::<usize>() {
+        Ok(number) => number.to_string(),
+        Err(_) => deck.node_sets.named(target).map_or(target, |set| &set.name).to_string(),
+    };
+    let bodies: BTreeSet<usize> = nodes.iter().filter_map(|&node| deck.body_of_node[node]).collect();
+    bodies.into_iter().map(|body| name_in(body, &name)).collect()
+}
 
-    /// The names of the nodes of a set, or of the node of a number, in each body that has some of them.
-    pub fn of_nodes(&self, deck: &Deck, target: &str, nodes: &[usize]) -> Vec<String> {
-        let name = match target.parse::<usize>() {
-            Ok(number) => number.to_string(),
-            Err(_) => deck.node_sets.named(target).map_or(target, |set| &set.name).to_string(),
-        };
-        let mut bodies: Vec<usize> = nodes.iter().filter_map(|&node| deck.body_of_node[node]).collect();
-        bodies.sort_unstable();
-        bodies.dedup();
-        bodies.into_iter().map(|body| Self::of_body(body, &name)).collect()
-    }
-
-    /// The names of a surface in each body that has some of its faces, with the bodies.
-    pub fn of_surface(&self, deck: &Deck, faces: &[(usize, usize)], name: &str) -> Vec<(usize, String)> {
-        let mut bodies: Vec<usize> = faces.iter().map(|&(element, _)| deck.body_of_element[element]).collect();
-        bodies.sort_unstable();
-        bodies.dedup();
-        bodies.into_iter().map(|body| (body, Self::of_body(body, name))).collect()
-    }
+/// The names of a surface in each body that has some of its faces, with the bodies.
+pub(super) fn names_of_surface(deck: &Deck, surface: &Surface) -> Vec<(usize, String)> {
+    let bodies: BTreeSet<usize> = surface.faces.iter().map(|&(element, _)| deck.body_of_element[element]).collect();
+    bodies.into_iter().map(|body| (body, name_in(body, &surface.name))).collect()
 }
 
 /// A body of the scene: its keys, each with the place in the deck that it comes from.
@@ -77,7 +70,7 @@ impl Body {
         let used = || sections.all.iter().zip(&is_used).filter(|(_, used)| **used).map(|(section, _)| section);
         // A material without expansion does not feel a temperature.
         let warms = temperature.is_some() && used().any(|section| section.expands);
-        let material = |section: &super::materials::Section| {
+        let material = |section: &Section| {
             let mut material = section.material.clone();
             if warms && !section.expands {
                 match material.get_mut("orthotropic") {

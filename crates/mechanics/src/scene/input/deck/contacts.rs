@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use serde_json::{Value, json};
 
-use super::bodies::Names;
+use super::bodies::names_of_surface;
 use super::scene_text::Entry;
 use crate::error::{Error, nearly};
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
@@ -19,7 +19,7 @@ pub(super) struct Contacts {
 ///
 /// # Errors
 /// An error with the line for a contact that is not read.
-pub(super) fn contacts(deck: &Deck, names: &Names, may_rub: bool) -> Result<Contacts, Error> {
+pub(super) fn contacts(deck: &Deck, may_rub: bool) -> Result<Contacts, Error> {
     let mut found = Contacts { obstacles: Vec::new(), warnings: Vec::new() };
     let interactions = interactions(deck, may_rub, &mut found.warnings)?;
     let clearances = clearances(deck)?;
@@ -41,7 +41,7 @@ pub(super) fn contacts(deck: &Deck, names: &Names, may_rub: bool) -> Result<Cont
             fields.end()?;
             let mut sides = Vec::with_capacity(2);
             for name in &pair {
-                sides.push(side(deck, names, name).map_err(|message| fields.fault(message))?);
+                sides.push(side(deck, name).map_err(|message| fields.fault(message))?);
             }
             if sides[0].0 == sides[1].0 {
                 let message = format!(
@@ -96,7 +96,7 @@ fn adjusted(deck: &Deck, card: &Card) -> Result<Option<f64>, Error> {
 }
 
 /// The body of a surface and its name in the scene.
-fn side(deck: &Deck, names: &Names, name: &str) -> Result<(usize, String), String> {
+fn side(deck: &Deck, name: &str) -> Result<(usize, String), String> {
     let surface = deck.surface_or(name)?;
     if let Some(&node) = surface.bare.first() {
         let number = deck.nodes.numbers[node];
@@ -106,7 +106,7 @@ fn side(deck: &Deck, names: &Names, name: &str) -> Result<(usize, String), Strin
             surface.name
         ));
     }
-    match &names.of_surface(deck, &surface.faces, &surface.name)[..] {
+    match &names_of_surface(deck, surface)[..] {
         [(body, name)] => Ok((*body, name.clone())),
         several => {
             let message = "has faces of several bodies; name a surface of each body";

@@ -119,7 +119,7 @@ const ABSENT: [(&str, &str); 43] = [
 ];
 
 /// The cards that have no data lines.
-const BARE: [&str; 5] = ["MATERIAL", "STEP", "ENDSTEP", "SURFACEINTERACTION", "CLEARANCE"];
+const BARE: [&str; 4] = ["MATERIAL", "STEP", "ENDSTEP", "CLEARANCE"];
 
 /// The cards that stand only in a step.
 const OF_STEP: [&str; 6] = ["CLOAD", "DLOAD", "DSLOAD", "TEMPERATURE", "STATIC", "ENDSTEP"];

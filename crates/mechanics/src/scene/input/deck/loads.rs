@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 use super::amplitudes::Amplitudes;
-use super::bodies::{Names, is_new};
+use super::bodies::{is_new, names_of_nodes, names_of_surface};
 use super::scene_text::{Entry, object};
 use crate::error::Error;
 use crate::fem::geometry::{dot, unit};
-use crate::fem::mesh::deck::{Card, Deck, Fields, Place, key};
+use crate::fem::mesh::deck::{Card, Deck, Fields, Place, Space, key};
 
 /// A load on the volume: it acts on all bodies.
 struct OnVolume {
@@ -21,7 +21,6 @@ struct OnVolume {
 /// The loads of a scene.
 pub(super) struct Loads<'a> {
     deck: &'a Deck,
-    names: &'a Names,
     loads: Vec<Entry>,
     on_volume: Vec<OnVolume>,
 }
@@ -29,8 +28,8 @@ pub(super) struct Loads<'a> {
 impl<'a> Loads<'a> {
     /// # Errors
     /// An error with the line for a load that is not read.
-    pub fn of(deck: &'a Deck, names: &'a Names, amplitudes: &Amplitudes) -> Result<Vec<Entry>, Error> {
-        let mut loads = Loads { deck, names, loads: Vec::new(), on_volume: Vec::new() };
+    pub fn of(deck: &'a Deck, amplitudes: &Amplitudes) -> Result<Vec<Entry>, Error> {
+        let mut loads = Loads { deck, loads: Vec::new(), on_volume: Vec::new() };
         for keyword in ["CLOAD", "DLOAD", "DSLOAD"] {
             let cards = deck.source.cards.iter().enumerate().filter(|(_, card)| card.is(keyword));
             for (count, (index, card)) in cards.enumerate() {
@@ -72,7 +71,7 @@ impl<'a> Loads<'a> {
                 let number = self.deck.nodes.numbers[loose];
                 return Err(fields.fault(format!("node {number} belongs to no element and carries no force")));
             }
-            for name in self.names.of_nodes(self.deck, &target, &nodes) {
+            for name in names_of_nodes(self.deck, &target, &nodes) {
                 forces.entry(name).or_insert_with(|| vec![0.0; dimension])[direction - 1] += force;
             }
         }
@@ -155,11 +154,8 @@ impl<'a> Loads<'a> {
             );
         }
         let omega = square.sqrt();
-        let is_axisymmetric = self
-            .deck
-            .element_list
-            .first()
-            .is_some_and(|one| one.of_type.space == crate::fem::mesh::deck::Space::Axisymmetric);
+        let is_axisymmetric =
+            self.deck.element_list.first().is_some_and(|one| one.of_type.space == Space::Axisymmetric);
         match self.dimension() {
             3 => Ok(object("centrifugal", json!({"omega": omega, "axis": axis, "point": point}))),
             _ if is_axisymmetric && dot(axis, [0.0, 1.0, 0.0]).abs() == 1.0 && point[0] == 0.0 && point[2] == 0.0 => {
@@ -196,7 +192,7 @@ impl<'a> Loads<'a> {
             let message = format!("the surface `{}` consists of nodes, on which no pressure acts", surface.name);
             return Err(self.deck.source.fault(place, message));
         }
-        for (_, boundary) in self.names.of_surface(self.deck, &surface.faces, &surface.name) {
+        for (_, boundary) in names_of_surface(self.deck, surface) {
             self.loads.push(Entry::new(json!({"pressure": {"boundary": boundary, "value": value}}), place));
         }
         Ok(())

@@ -19,7 +19,7 @@ use crate::fem::mesh::deck::{Deck, DeckElement, Place, Space};
 use crate::scene::Scene;
 use crate::scene::input::warning::Warning;
 use amplitudes::Amplitudes;
-use bodies::{Body, Names};
+use bodies::Body;
 use contacts::contacts;
 use loads::Loads;
 use materials::Sections;
@@ -27,6 +27,9 @@ use scene_text::SceneText;
 use signorini_qp as qp;
 use supports::supports;
 use temperatures::Temperatures;
+
+/// More bodies than this are a mesh whose nodes were not merged.
+const MOST_BODIES: usize = 1000;
 
 /// Longer titles are cut.
 const LONGEST_TITLE: usize = 200;
@@ -55,25 +58,24 @@ impl DeckScene {
         let within = file.parent().filter(|_| !permits.contains(&"outside"));
         let deck = Deck::read(file, within)?;
         let passed = keywords::judged(&deck)?;
+        if deck.bodies > MOST_BODIES {
+            let message = format!(
+                "the deck has {} bodies that share no node; merge the nodes in the mesher: at most {MOST_BODIES} are allowed",
+                deck.bodies
+            );
+            return Err(deck.source.fault(deck.place_of_body(1), message));
+        }
         let space = space(&deck)?;
-        let (names, amplitudes) = (Names, Amplitudes::of(&deck)?);
+        let amplitudes = Amplitudes::of(&deck)?;
         let sections = Sections::of(&deck, space)?;
         let temperatures = Temperatures::of(&deck, &amplitudes)?;
-        let supports = supports(&deck, &names, &amplitudes)?;
-        let loads = Loads::of(&deck, &names, &amplitudes)?;
-        let contacts = contacts(&deck, &names, permits.contains(&"friction"))?;
+        let supports = supports(&deck, &amplitudes)?;
+        let loads = Loads::of(&deck, &amplitudes)?;
+        let contacts = contacts(&deck, permits.contains(&"friction"))?;
         let mut noted = nearest_elements(&deck);
         noted.extend(large_displacements(&deck));
         noted.extend(contacts.warnings);
-        let mut comments =
-            vec![format!("The scene of {named}; each entry names the line of the deck that it comes from.")];
-        comments
-            .extend(noted.iter().map(|(place, message)| format!("Warning, {}: {message}", deck.source.named(*place))));
-        if !passed.is_empty() {
-            let names: Vec<String> = passed.iter().map(|(name, _)| name.clone()).collect();
-            comments.push(format!("Passed over, because it changes no answer: {}.", names.join(", ")));
-        }
-        let mut text = SceneText::new(&deck, &comments);
+        let mut text = SceneText::new(&deck, &comments(&deck, named, &noted, &passed));
         text.plain("title", &title(&deck).into());
         text.plain("units", &serde_json::json!({"length": "", "force": ""}));
         text.plain("model", &model(space).into());
@@ -155,6 +157,17 @@ impl Scene {
     }
 }
 
+/// The comments before the scene.
+fn comments(deck: &Deck, named: &str, noted: &[(Place, String)], passed: &[(String, Place)]) -> Vec<String> {
+    let mut comments = vec![format!("The scene of {named}; each entry names the line of the deck that it comes from.")];
+    comments.extend(noted.iter().map(|(place, message)| format!("Warning, {}: {message}", deck.source.named(*place))));
+    if !passed.is_empty() {
+        let names: Vec<&str> = passed.iter().map(|(name, _)| name.as_str()).collect();
+        comments.push(format!("Passed over, because it changes no answer: {}.", names.join(", ")));
+    }
+    comments
+}
+
 /// Adds the first body, then the others.
 fn add_bodies(text: &mut SceneText, bodies: Vec<Body>) {
     let mut bodies = bodies.into_iter();
@@ -212,9 +225,7 @@ fn nearest_elements(deck: &Deck) -> Vec<(Place, String)> {
         if !seen.contains(&of_type.name) {
             seen.push(of_type.name);
             if !of_type.differs.is_empty() {
-                let count = deck.element_list.iter().filter(|element| element.of_type == *of_type).count();
-                let message =
-                    format!("{count} elements {} are answered by {}, {}", of_type.name, kind.name(), of_type.differs);
+                let message = format!("{} is answered by {}, {}", of_type.name, kind.name(), of_type.differs);
                 noted.push((*place, message));
             }
         }

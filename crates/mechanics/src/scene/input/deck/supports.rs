@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use serde_json::{Value, json};
 
 use super::amplitudes::Amplitudes;
-use super::bodies::{Names, is_new};
+use super::bodies::{is_new, names_of_nodes};
 use super::scene_text::Entry;
 use crate::error::Error;
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
@@ -27,17 +27,69 @@ struct Prescribed {
     place: Place,
 }
 
+/// A support that grows: lines of one card that hold the same nodes, or other nodes alike.
+struct Merged {
+    card: usize,
+    values: [Option<f64>; 3],
+    targets: Vec<String>,
+    place: Place,
+}
+
+impl Merged {
+    /// Adds a line for one target; `false` if it needs a support of its own.
+    fn takes(&mut self, line: &Prescribed, target: &str) -> bool {
+        if self.card != line.card {
+            return false;
+        }
+        let is_apart = self.values.iter().zip(&line.values).all(|(own, other)| own.is_none() || other.is_none());
+        if self.targets == [target] && is_apart {
+            self.values.iter_mut().zip(&line.values).for_each(|(own, other)| *own = own.or(*other));
+            return true;
+        }
+        let is_alike = self.values == line.values;
+        if is_alike {
+            self.targets.push(target.to_string());
+        }
+        is_alike
+    }
+}
+
 /// The supports of a scene.
 ///
 /// # Errors
 /// An error with the line for a dof that is not a displacement, a node without elements, a line of which a later line replaces a part.
-pub(super) fn supports(deck: &Deck, names: &Names, amplitudes: &Amplitudes) -> Result<Vec<Entry>, Error> {
+pub(super) fn supports(deck: &Deck, amplitudes: &Amplitudes) -> Result<Vec<Entry>, Error> {
+    let mut lines = in_force(deck, amplitudes)?;
+    replace(deck, &mut lines)?;
+    let mut supports: Vec<Merged> = Vec::new();
+    for line in lines.iter().filter(|line| line.values.iter().any(Option::is_some)) {
+        let targets = names_of_nodes(deck, &line.target, &line.nodes);
+        if targets.is_empty() {
+            let message = format!("no node of `{}` belongs to an element; nothing is held", line.target);
+            return Err(deck.source.fault(line.place, message));
+        }
+        for target in targets {
+            if !supports.last_mut().is_some_and(|last| last.takes(line, &target)) {
+                supports.push(Merged {
+                    card: line.card,
+                    values: line.values,
+                    targets: vec![target],
+                    place: line.place,
+                });
+            }
+        }
+    }
+    Ok(supports.into_iter().map(|one| Entry::new(support(&one.values, one.targets), one.place)).collect())
+}
+
+/// All lines that OP=NEW does not remove.
+fn in_force(deck: &Deck, amplitudes: &Amplitudes) -> Result<Vec<Prescribed>, Error> {
     let mut lines: Vec<Prescribed> = Vec::new();
-    let mut is_in_step = false;
-    let mut first_of_step = lines.len();
+    // The number of lines before the step, once it has begun.
+    let mut of_model = None;
     for (index, card) in deck.source.cards.iter().enumerate() {
         if card.is("STEP") {
-            (is_in_step, first_of_step) = (true, lines.len());
+            of_model = Some(lines.len());
         }
         if !card.is("BOUNDARY") {
             continue;
@@ -46,45 +98,20 @@ pub(super) fn supports(deck: &Deck, names: &Names, amplitudes: &Amplitudes) -> R
             return Err(deck.source.fault(card.place, "only displacements are prescribed in an equilibrium"));
         }
         if is_new(card) {
-            if is_in_step && lines.len() > first_of_step {
+            if of_model.is_some_and(|before| lines.len() > before) {
                 return Err(deck.source.fault(card.place, "OP=NEW must stand on the first *BOUNDARY of the step"));
             }
             lines.clear();
-            first_of_step = 0;
+            of_model = of_model.map(|_| 0);
         }
-        let factor = amplitudes.factor(deck, card)?;
-        for line in read(deck, card, index, factor)? {
-            if line.values.iter().any(|value| value.is_some_and(|value| value != 0.0)) && !is_in_step {
+        for line in read(deck, card, index, amplitudes.factor(deck, card)?)? {
+            if of_model.is_none() && line.values.iter().flatten().any(|&value| value != 0.0) {
                 return Err(deck.source.fault(line.place, "a displacement other than 0 must stand in the step"));
             }
             lines.push(line);
         }
     }
-    replace(deck, &mut lines)?;
-    let mut supports: Vec<(usize, [Option<f64>; 3], Vec<String>, Place)> = Vec::new();
-    for line in lines.iter().filter(|line| line.values.iter().any(Option::is_some)) {
-        let targets = names.of_nodes(deck, &line.target, &line.nodes);
-        if targets.is_empty() {
-            let message = format!("no node of `{}` belongs to an element; nothing is held", line.target);
-            return Err(deck.source.fault(line.place, message));
-        }
-        for target in targets {
-            // Lines of one card that hold the same nodes, or other nodes alike, are one support.
-            if let Some(last) = supports.last_mut().filter(|last| last.0 == line.card) {
-                let is_apart = (0..3).all(|axis| last.1[axis].is_none() || line.values[axis].is_none());
-                if last.2 == [target.clone()] && is_apart {
-                    (0..3).for_each(|axis| last.1[axis] = last.1[axis].or(line.values[axis]));
-                    continue;
-                }
-                if last.1 == line.values {
-                    last.2.push(target);
-                    continue;
-                }
-            }
-            supports.push((line.card, line.values, vec![target], line.place));
-        }
-    }
-    Ok(supports.into_iter().map(|(_, values, targets, place)| Entry::new(support(&values, targets), place)).collect())
+    Ok(lines)
 }
 
 fn support(values: &[Option<f64>; 3], mut targets: Vec<String>) -> Value {
@@ -162,30 +189,24 @@ fn replace(deck: &Deck, lines: &mut [Prescribed]) -> Result<(), Error> {
         }
     }
     for index in 0..lines.len() {
-        for axis in 0..3 {
-            let own = lines[index].values[axis];
-            let replaced = |node: &&usize| last.get(&(**node, axis)).filter(|&&by| lines[by].values[axis] != own);
-            if own.is_none() {
-                continue;
-            }
-            let count = lines[index].nodes.iter().filter(|node| replaced(node).is_some()).count();
-            if count == 0 {
-                continue;
-            }
-            if count < lines[index].nodes.len() {
-                let line = &lines[index];
-                let node = line.nodes.iter().find(|node| replaced(node).is_some());
-                let by = node.as_ref().and_then(|node| replaced(node)).map_or(line.place, |&by| lines[by].place);
-                let number = node.map_or(0, |&node| deck.nodes.numbers[node]);
+        for (axis, name) in AXES.iter().enumerate() {
+            let line = &lines[index];
+            let Some(own) = line.values[axis] else { continue };
+            let by = |node: &usize| last.get(&(*node, axis)).filter(|&&by| lines[by].values[axis] != Some(own));
+            let count = line.nodes.iter().filter(|node| by(node).is_some()).count();
+            if count > 0 && count < line.nodes.len() {
+                let first = line.nodes.iter().find_map(|node| Some((deck.nodes.numbers[*node], *by(node)?)));
+                let (number, by) = first.unwrap_or_default();
                 let message = format!(
-                    "{} prescribes another displacement along {} for node {number}, not for all nodes of `{}`; give each node one value",
-                    deck.source.named(by),
-                    AXES[axis],
+                    "{} prescribes another displacement along {name} for node {number}, not for all nodes of `{}`; give each node one value",
+                    deck.source.named(lines[by].place),
                     line.target
                 );
                 return Err(deck.source.fault(line.place, message));
             }
-            lines[index].values[axis] = None;
+            if count > 0 {
+                lines[index].values[axis] = None;
+            }
         }
     }
     Ok(())
