@@ -341,3 +341,41 @@ fn a_group_of_a_mesh_is_a_name_or_a_list_of_names() {
     let is_required = schema["$defs"]["GmshSpec"]["required"].as_array().unwrap().contains(&json!("group"));
     assert!(!is_required, "{schema}");
 }
+
+#[test]
+fn the_scene_of_a_deck_is_solved_as_the_deck_itself() {
+    let desk = Desk::new();
+    desk.write("stack.inp", fs::read(support::root().join("tests/faults/stack.inp")).unwrap());
+    let run = desk.run(&["new", "stack.inp", "--out", "stack.json"]).ends_with(0);
+    assert_eq!(run.stdout, "stack.json: written as the scene of the deck; solve it, then change it\n");
+    let [deck, scene] =
+        ["stack.inp", "stack.json"].map(|file| desk.run(&["solve", file, "--format", "json"]).ends_with(0).json());
+    assert_eq!(deck["resultants"], scene["resultants"]);
+    assert!(deck["resultants"].as_array().unwrap().len() >= 4, "{deck}");
+    // The text has a comment for each warning that the deck itself has.
+    let text = fs::read_to_string(desk.path("stack.json")).unwrap();
+    let of_deck: Vec<&Value> =
+        deck["warnings"].as_array().unwrap().iter().filter(|warning| warning["code"] == "deck").collect();
+    assert_eq!(of_deck.len(), text.lines().filter(|line| line.starts_with("// Warning, line ")).count());
+    assert_eq!(of_deck.len(), 3);
+}
+
+#[test]
+fn friction_and_files_elsewhere_need_a_permission() {
+    let desk = Desk::new();
+    let deck = fs::read_to_string(support::root().join("tests/faults/stack.inp")).unwrap();
+    desk.write("rubs.inp", deck.replace("*CONTACT PAIR", "*FRICTION\n0.1, 1.E5\n*CONTACT PAIR"));
+    for command in ["solve", "new"] {
+        desk.run(&[command, "rubs.inp"]).fails_with(1, &["rubs.inp:50: *FRICTION of 0.1", "--without-friction"]);
+        let run = desk.run(&[command, "rubs.inp", "--without-friction"]).ends_with(0);
+        assert!((run.stderr + &run.stdout).contains("the friction of 0.1 is left out"), "{command}");
+    }
+    let (nodes, rest) = deck.split_at(deck.find("*ELEMENT").unwrap());
+    desk.write("nodes.inc", nodes);
+    fs::create_dir(desk.path("below")).unwrap();
+    desk.write("below/stack.inp", format!("*INCLUDE, INPUT=../nodes.inc\n{rest}"));
+    for command in ["solve", "new"] {
+        desk.run(&[command, "below/stack.inp"]).fails_with(1, &["stack.inp:1: the included file", "--allow-outside"]);
+        desk.run(&[command, "below/stack.inp", "--allow-outside"]).ends_with(0);
+    }
+}

@@ -10,6 +10,15 @@ use crate::error::{Error, nearly};
 /// An element and its face, from 0.
 type Face = (usize, usize);
 
+/// Faces under one pressure in a card *DLOAD.
+struct Pressed {
+    value: f64,
+    place: Place,
+    /// A name of their surface, if they are faces of one set.
+    name: Option<String>,
+    faces: Vec<Face>,
+}
+
 /// More different pressures than this would need as many boundaries.
 const MOST_PRESSURES: usize = 1000;
 
@@ -98,55 +107,59 @@ impl Deck {
 
     /// Makes a surface of the faces of each value of a card *DLOAD. A face that occurs again is in a second surface: pressures add up.
     pub(super) fn read_pressures(&mut self, index: usize, card: &Card) -> Result<(), Error> {
-        let mut groups: Vec<(f64, Place, Vec<Face>)> = Vec::new();
+        let mut groups: Vec<Pressed> = Vec::new();
         for line in &card.lines {
             let mut fields = self.source.fields(line);
             let target = fields.text().ok_or_else(|| fields.fault("a set or a number must begin this line"))?;
-            let label = fields.text().unwrap_or_default();
-            let is_face = key(&label).strip_prefix('P').is_some_and(|rest| rest.parse::<usize>().is_ok());
-            if !is_face {
+            let label = key(&fields.text().unwrap_or_default());
+            if label.strip_prefix('P').is_none_or(|rest| rest.parse::<usize>().is_err()) {
                 continue;
             }
             let value = fields.finite("the pressure")?;
             fields.end()?;
             let faces = self.faces(&target, &label, 'P').map_err(|message| fields.fault(message))?;
-            match groups.last_mut().filter(|group| group.0 == value) {
-                Some(group) => group.2.extend(faces),
-                None => groups.push((value, line.place, faces)),
+            match groups.last_mut().filter(|group| group.value == value) {
+                Some(group) => {
+                    group.name = None;
+                    group.faces.extend(faces);
+                }
+                None => {
+                    let name = self.element_sets.named(&target).map(|set| format!("{}-{label}", set.name));
+                    groups.push(Pressed { value, place: line.place, name, faces });
+                }
             }
         }
-        for (value, place, mut faces) in groups {
+        groups.into_iter().try_for_each(|group| self.add_pressed(index, group))
+    }
+
+    /// Adds the surfaces of some pressed faces.
+    fn add_pressed(&mut self, card: usize, group: Pressed) -> Result<(), Error> {
+        let Pressed { value, place, name, mut faces } = group;
+        faces.sort_unstable();
+        while !faces.is_empty() {
             if self.pressures.len() >= MOST_PRESSURES {
                 let message =
                     format!("the deck has more than the {MOST_PRESSURES} different pressures that are allowed");
                 return Err(self.source.fault(place, message));
             }
-            faces.sort_unstable();
-            while !faces.is_empty() {
-                // The further occurrences of a face.
-                let mut again = Vec::new();
-                let mut last = None;
-                faces.retain(|&face| {
-                    let is_new = last != Some(face);
-                    last = Some(face);
-                    if !is_new {
-                        again.push(face);
-                    }
-                    is_new
-                });
-                let mut number = self.pressures.len() + 1;
-                while self.surfaces.named(&format!("dload-{number}")).is_some() {
-                    number += 1;
+            // The further occurrences of a face.
+            let mut again = Vec::new();
+            let mut last = None;
+            faces.retain(|&face| {
+                let is_new = last != Some(face);
+                last = Some(face);
+                if !is_new {
+                    again.push(face);
                 }
-                let name = format!("dload-{number}");
-                self.pressures.push(FacePressure { card: index, surface: name.clone(), place, value });
-                self.surfaces.add(Surface {
-                    name,
-                    place,
-                    faces: std::mem::replace(&mut faces, again),
-                    bare: Vec::new(),
-                });
-            }
+                is_new
+            });
+            let numbered = (self.pressures.len() + 1..).map(|number| format!("dload-{number}"));
+            let mut names = name.iter().cloned().chain(numbered).filter(|name| self.surfaces.named(name).is_none());
+            let surface = names.next().unwrap_or_default();
+            drop(names);
+            self.pressures.push(FacePressure { card, surface: surface.clone(), place, value });
+            let own = std::mem::replace(&mut faces, again);
+            self.surfaces.add(Surface { name: surface, place, faces: own, bare: Vec::new() });
         }
         Ok(())
     }
