@@ -303,7 +303,7 @@ fn invalid_bodies_are_refused_at_their_path() {
         (on("space", gmsh(json!({}))), "body.gmsh.file", "the mesh is plane, which does not fit the model `space`"),
         (on("plane-strain", gmsh(json!({"file": "box-hex8.msh"}))), "body.gmsh.file", "in space"),
         (on("plane-strain", gmsh(json!({"integration": "mean-dilatation"}))), "body.gmsh.integration", "T3"),
-        (on("plane-strain", ball(1.0)), "body.half-ball", "half-disc, ring or gmsh"),
+        (on("plane-strain", ball(1.0)), "body.half-ball", "half-disc, ring, gmsh or deck"),
         (on("space", disc(1.0, json!({"width": 0.1, "divisions": 2}))), "body.half-disc", "box, half-ball or gmsh"),
         (on("plane-strain", disc(0.0, json!({"width": 0.1, "divisions": 2}))), "body.half-disc.radius", "positive"),
         (on("plane-strain", disc(1.0, json!({"width": 2, "divisions": 2}))), "body.half-disc.zone.width", "the radius"),

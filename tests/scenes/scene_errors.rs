@@ -199,7 +199,7 @@ fn invalid_scene_texts_are_refused_with_path_line_and_column() {
         (with("/supports/0/on", json!("bottom")), "supports[0].on", "must be an object with a single key"),
         (with("/model", json!(5)), "model", "must be a string, but is the number 5"),
         (with("/obstacles/0/rule", json!(["approach"])), "obstacles[0].rule", "must be a string, but is an array"),
-        (with("/supports/0/on", json!({"edge": "top"})), "supports[0].on.edge", "`boundary` or `point`"),
+        (with("/supports/0/on", json!({"edge": "top"})), "supports[0].on.edge", "one of `boundary`, `point`, `nodes`"),
         (with("/gap", json!([0])), "gap", "must be a number"),
         // An array in place of an object: serde alone would fill the fields in order.
         (with("/material", json!([1000, 0.3])), "material", "must be an object"),
