@@ -304,7 +304,11 @@ fn invalid_bodies_are_refused_at_their_path() {
         (on("plane-strain", gmsh(json!({"file": "box-hex8.msh"}))), "body.gmsh.file", "in space"),
         (on("plane-strain", gmsh(json!({"integration": "mean-dilatation"}))), "body.gmsh.integration", "T3"),
         (on("plane-strain", ball(1.0)), "body.half-ball", "half-disc, ring, gmsh or deck"),
-        (on("space", disc(1.0, json!({"width": 0.1, "divisions": 2}))), "body.half-disc", "box, half-ball or gmsh"),
+        (
+            on("space", disc(1.0, json!({"width": 0.1, "divisions": 2}))),
+            "body.half-disc",
+            "box, half-ball, gmsh or deck",
+        ),
         (on("plane-strain", disc(0.0, json!({"width": 0.1, "divisions": 2}))), "body.half-disc.radius", "positive"),
         (on("plane-strain", disc(1.0, json!({"width": 2, "divisions": 2}))), "body.half-disc.zone.width", "the radius"),
         (

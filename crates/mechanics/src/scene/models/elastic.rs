@@ -114,7 +114,7 @@ impl DescribedBody<'_> {
     fn formulation(&self) -> Result<Formulation, Error> {
         let (thickness, model) = (self.scene.thickness, self.scene.model);
         let about = self.spec.about();
-        if about.dimension.is_some_and(|dimension| dimension != model.dimension()) {
+        if !about.dimensions.contains(&model.dimension()) {
             let (body, fitting, model) = (about.name, BodySpec::fitting(model.dimension()), model.name());
             let message = format!("a {body} does not fit the model `{model}`; a body of this model is a {fitting}");
             return Err(wrong(self.path(""), message));

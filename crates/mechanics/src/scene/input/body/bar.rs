@@ -21,7 +21,7 @@ pub struct BarSpec {
     pub area: f64,
 }
 
-pub(super) const ABOUT: About = About { name: "bar", dimension: Some(1) };
+pub(super) const ABOUT: About = About { name: "bar", dimensions: &[1] };
 
 impl BodyShape for BarSpec {
     fn integration(&self) -> Integration {

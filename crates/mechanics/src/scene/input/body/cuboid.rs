@@ -48,7 +48,7 @@ pub struct BoxSpec {
     pub integration: Integration,
 }
 
-pub(super) const ABOUT: About = About { name: "box", dimension: Some(3) };
+pub(super) const ABOUT: About = About { name: "box", dimensions: &[3] };
 
 impl BodyShape for BoxSpec {
     fn integration(&self) -> Integration {

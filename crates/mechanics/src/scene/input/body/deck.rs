@@ -31,7 +31,7 @@ pub struct DeckSpec {
     pub integration: Integration,
 }
 
-pub(super) const ABOUT: About = About { name: "deck", dimension: None };
+pub(super) const ABOUT: About = About { name: "deck", dimensions: &[2, 3] };
 
 impl BodyShape for DeckSpec {
     fn integration(&self) -> Integration {

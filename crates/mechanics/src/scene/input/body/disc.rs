@@ -34,7 +34,7 @@ pub struct DiscSpec {
     pub integration: Integration,
 }
 
-pub(super) const ABOUT: About = About { name: "disc", dimension: Some(2) };
+pub(super) const ABOUT: About = About { name: "disc", dimensions: &[2] };
 
 impl BodyShape for DiscSpec {
     fn integration(&self) -> Integration {

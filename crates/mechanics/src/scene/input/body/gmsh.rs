@@ -33,7 +33,7 @@ pub struct GmshSpec {
     pub integration: Integration,
 }
 
-pub(super) const ABOUT: About = About { name: "gmsh", dimension: None };
+pub(super) const ABOUT: About = About { name: "gmsh", dimensions: &[1, 2, 3] };
 
 impl BodyShape for GmshSpec {
     fn integration(&self) -> Integration {

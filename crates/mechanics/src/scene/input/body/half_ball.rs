@@ -53,7 +53,7 @@ pub enum SymmetrySpec {
     Y,
 }
 
-pub(super) const ABOUT: About = About { name: "half-ball", dimension: Some(3) };
+pub(super) const ABOUT: About = About { name: "half-ball", dimensions: &[3] };
 
 impl BodyShape for HalfBallSpec {
     fn integration(&self) -> Integration {

@@ -38,7 +38,7 @@ pub struct HalfDiscSpec {
     pub integration: Integration,
 }
 
-pub(super) const ABOUT: About = About { name: "half-disc", dimension: Some(2) };
+pub(super) const ABOUT: About = About { name: "half-disc", dimensions: &[2] };
 
 impl BodyShape for HalfDiscSpec {
     fn integration(&self) -> Integration {

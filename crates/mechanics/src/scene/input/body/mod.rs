@@ -115,7 +115,7 @@ impl BodySpec {
 
     /// The bodies allowed in a model of `dimension` coordinates, as `box, half-ball or gmsh`.
     pub(crate) fn fitting(dimension: usize) -> String {
-        let fits = |about: &&About| about.dimension.is_none_or(|own| own == dimension);
+        let fits = |about: &&About| about.dimensions.contains(&dimension);
         let names: Vec<&str> = ALL.iter().filter(fits).map(|about| about.name).collect();
         match names.split_last() {
             Some((last, [])) => (*last).to_string(),

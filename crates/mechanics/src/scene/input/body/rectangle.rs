@@ -30,7 +30,7 @@ pub struct RectangleSpec {
     pub integration: Integration,
 }
 
-pub(super) const ABOUT: About = About { name: "rectangle", dimension: Some(2) };
+pub(super) const ABOUT: About = About { name: "rectangle", dimensions: &[2] };
 
 impl BodyShape for RectangleSpec {
     fn integration(&self) -> Integration {

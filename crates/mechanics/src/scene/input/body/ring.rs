@@ -30,7 +30,7 @@ pub struct RingSpec {
     pub integration: Integration,
 }
 
-pub(super) const ABOUT: About = About { name: "ring", dimension: Some(2) };
+pub(super) const ABOUT: About = About { name: "ring", dimensions: &[2] };
 
 impl BodyShape for RingSpec {
     fn integration(&self) -> Integration {

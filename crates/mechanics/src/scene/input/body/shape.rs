@@ -16,8 +16,8 @@ const SHELLS: f64 = 0.6;
 pub struct About {
     /// The name in a scene.
     pub name: &'static str,
-    /// The number of coordinates of the body; `None` if only its file determines it.
-    pub dimension: Option<usize>,
+    /// The numbers of coordinates that the body may have; several if its file determines them.
+    pub dimensions: &'static [usize],
 }
 
 /// A body shape with its numbers.
