@@ -15,6 +15,9 @@ const MOST_OF_DECK: u64 = 4 << 30;
 /// Most files of a deck: files that include others several times each could be endlessly many.
 const MOST_FILES: usize = 1000;
 
+/// Longest message, in characters.
+const LONGEST: usize = 500;
+
 /// Error for a file without a keyword; it quotes no content, which may be private.
 const NO_DECK: &str = "this is not an input deck: a keyword, as *NODE, must begin here";
 
@@ -87,10 +90,11 @@ impl Source {
         }
     }
 
-    /// An error at a place.
+    /// An error at a place; a message that quotes a long name is cut.
     pub fn fault(&self, place: Place, message: impl Into<String>) -> Error {
         let (file, line) = self.position(place);
-        qp::Error::FileSyntax { file: file.into(), line: line.max(1), message: message.into() }.into()
+        let message = message.into().chars().filter(|c| !c.is_control()).take(LONGEST).collect();
+        qp::Error::FileSyntax { file: file.into(), line: line.max(1), message }.into()
     }
 }
 
