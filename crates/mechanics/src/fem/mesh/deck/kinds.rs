@@ -23,10 +23,10 @@ pub(crate) struct DeckElementType {
     /// Number of its nodes.
     pub nodes: usize,
     /// How the nearest element of this library differs; empty if it does not.
-    pub differs: &'static str,
+    pub differs: &'static [&'static str],
 }
 
-const fn element(name: &'static str, space: Space, nodes: usize, differs: &'static str) -> DeckElementType {
+const fn element(name: &'static str, space: Space, nodes: usize, differs: &'static [&'static str]) -> DeckElementType {
     DeckElementType { name, space, nodes, differs }
 }
 
@@ -41,31 +41,31 @@ const WEDGE: &str = "of a full circle; CalculiX takes a wedge of two degrees wit
 pub(crate) static TYPES: [DeckElementType; 25] = {
     use Space::{Axisymmetric, PlaneStrain, PlaneStress, Solid};
     [
-        element("C3D4", Solid, 4, ""),
-        element("C3D8", Solid, 8, ""),
-        element("C3D8I", Solid, 8, INCOMPATIBLE),
-        element("C3D8R", Solid, 8, REDUCED),
-        element("C3D10", Solid, 10, ""),
-        element("C3D20", Solid, 20, ""),
-        element("C3D20R", Solid, 20, REDUCED_QUADRATIC),
-        element("CPS3", PlaneStress, 3, EXPANDED),
-        element("CPS4", PlaneStress, 4, EXPANDED),
-        element("CPS4R", PlaneStress, 4, REDUCED),
-        element("CPS6", PlaneStress, 6, EXPANDED),
-        element("CPS8", PlaneStress, 8, EXPANDED),
-        element("CPS8R", PlaneStress, 8, REDUCED_QUADRATIC),
-        element("CPE3", PlaneStrain, 3, ""),
-        element("CPE4", PlaneStrain, 4, ""),
-        element("CPE4R", PlaneStrain, 4, REDUCED),
-        element("CPE6", PlaneStrain, 6, ""),
-        element("CPE8", PlaneStrain, 8, ""),
-        element("CPE8R", PlaneStrain, 8, REDUCED_QUADRATIC),
-        element("CAX3", Axisymmetric, 3, WEDGE),
-        element("CAX4", Axisymmetric, 4, WEDGE),
-        element("CAX4R", Axisymmetric, 4, REDUCED),
-        element("CAX6", Axisymmetric, 6, WEDGE),
-        element("CAX8", Axisymmetric, 8, WEDGE),
-        element("CAX8R", Axisymmetric, 8, REDUCED_QUADRATIC),
+        element("C3D4", Solid, 4, &[]),
+        element("C3D8", Solid, 8, &[]),
+        element("C3D8I", Solid, 8, &[INCOMPATIBLE]),
+        element("C3D8R", Solid, 8, &[REDUCED]),
+        element("C3D10", Solid, 10, &[]),
+        element("C3D20", Solid, 20, &[]),
+        element("C3D20R", Solid, 20, &[REDUCED_QUADRATIC]),
+        element("CPS3", PlaneStress, 3, &[EXPANDED]),
+        element("CPS4", PlaneStress, 4, &[EXPANDED]),
+        element("CPS4R", PlaneStress, 4, &[REDUCED, EXPANDED]),
+        element("CPS6", PlaneStress, 6, &[EXPANDED]),
+        element("CPS8", PlaneStress, 8, &[EXPANDED]),
+        element("CPS8R", PlaneStress, 8, &[REDUCED_QUADRATIC, EXPANDED]),
+        element("CPE3", PlaneStrain, 3, &[]),
+        element("CPE4", PlaneStrain, 4, &[]),
+        element("CPE4R", PlaneStrain, 4, &[REDUCED]),
+        element("CPE6", PlaneStrain, 6, &[]),
+        element("CPE8", PlaneStrain, 8, &[]),
+        element("CPE8R", PlaneStrain, 8, &[REDUCED_QUADRATIC]),
+        element("CAX3", Axisymmetric, 3, &[WEDGE]),
+        element("CAX4", Axisymmetric, 4, &[WEDGE]),
+        element("CAX4R", Axisymmetric, 4, &[REDUCED, WEDGE]),
+        element("CAX6", Axisymmetric, 6, &[WEDGE]),
+        element("CAX8", Axisymmetric, 8, &[WEDGE]),
+        element("CAX8R", Axisymmetric, 8, &[REDUCED_QUADRATIC, WEDGE]),
     ]
 };
 

@@ -225,7 +225,8 @@ fn nearest_elements(deck: &Deck) -> Vec<(Place, String)> {
         if !seen.contains(&of_type.name) {
             seen.push(of_type.name);
             if !of_type.differs.is_empty() {
-                let message = format!("{} is answered by {}, {}", of_type.name, kind.name(), of_type.differs);
+                let message =
+                    format!("{} is answered by {}, {}", of_type.name, kind.name(), of_type.differs.join("; "));
                 noted.push((*place, message));
             }
         }
