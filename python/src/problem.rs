@@ -29,6 +29,7 @@ impl Problem {
     #[new]
     #[pyo3(signature = (K, f, B = None, g = None, near_null = None, E = None, e = None, *, coordinates = None))]
     #[expect(non_snake_case, reason = "the names of the equation")]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn new(
         K: &Bound<'_, PyAny>,
         f: &Bound<'_, PyAny>,

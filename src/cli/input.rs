@@ -24,7 +24,7 @@ pub(super) struct Input {
 
 pub(super) enum Content {
     Scene(Arc<Model>),
-    Directory(ContactProblem),
+    Directory(Box<ContactProblem>),
 }
 
 /// The input as read, before anything is built; a pipe is read only once.
@@ -42,7 +42,7 @@ impl Source {
             let scene = Box::new(scene_of(path, limits)?);
             return Ok(Source::Scene(scene, clock.elapsed().as_secs_f64()));
         }
-        let content = Content::Directory(read_problem(path)?);
+        let content = Content::Directory(Box::new(read_problem(path)?));
         let (title, units) = (format!("Problem directory {}", path.display()), Units::unnamed());
         let assemble_seconds = clock.elapsed().as_secs_f64();
         Ok(Source::Directory(Box::new(Input { title, units, assemble_seconds, content })))

@@ -55,12 +55,10 @@ fn pivots(mut rows: Rows) -> (usize, f64) {
         }
         rows.swap(count, best);
         least = least.min(rows[count][column].abs());
-        for row in count + 1..rows.len() {
-            let share = rows[row][column] / rows[count][column];
-            for at in 0..columns {
-                let above = rows[count][at];
-                rows[row][at] -= share * above;
-            }
+        let above = rows[count].clone();
+        for row in rows.iter_mut().skip(count + 1) {
+            let share = row[column] / above[column];
+            row.iter_mut().zip(&above).for_each(|(value, above)| *value -= share * above);
         }
         count += 1;
     }
