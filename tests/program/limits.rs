@@ -12,9 +12,9 @@ use support::program::{Desk, Problem, Run, matrix, vector};
 /// The estimate and the measured peak may differ by this factor.
 const WITHIN: f64 = 2.0;
 
-/// The whole address space of the program, in kB, when it refuses a scene of 1e12 elements: most is the code of the
-/// program.
-const REFUSAL_KILOBYTES: u32 = 20_000;
+/// The address space, in kB, that the program takes to refuse a scene of 1e12 elements, beside that in which it tells its version: most of
+/// both is its own code.
+const REFUSAL_KILOBYTES: u32 = 1_000;
 
 /// The address space, in kB, in which hostile files are refused; one announces rows of 800 MB.
 const FILE_KILOBYTES: u32 = 400_000;
@@ -41,6 +41,16 @@ fn confined(desk: &Desk, kilobytes: u32, arguments: &str) -> Run {
         stdout: String::from_utf8(output.stdout).unwrap(),
         stderr: String::from_utf8(output.stderr).unwrap(),
     }
+}
+
+/// The least address space, in kB, in which the program tells its version, to `REFUSAL_KILOBYTES / 8`.
+fn least_kilobytes(desk: &Desk) -> u32 {
+    let starts = |kilobytes: &u32| {
+        let script = format!("ulimit -v {kilobytes}; exec '{}' --version", env!("CARGO_BIN_EXE_signorini"));
+        let output = Command::new("sh").args(["-c", &script]).current_dir(desk.path(".")).output().unwrap();
+        output.status.success()
+    };
+    (8_000..FILE_KILOBYTES).step_by(REFUSAL_KILOBYTES as usize / 8).find(starts).expect("the program starts")
 }
 
 fn rectangle(cells: [usize; 2], element: &str) -> Value {
@@ -208,10 +218,11 @@ fn a_scene_of_a_million_million_elements_is_refused_at_once_and_without_memory()
             "cells make more",
         ),
     ];
+    let kilobytes = least_kilobytes(&desk) + REFUSAL_KILOBYTES;
     for (scene, phrase) in cases {
         desk.write("scene.json", scene.to_string());
         for command in ["solve scene.json", "compare scene.json", "export scene.json p", "tradeoff scene.json"] {
-            confined(&desk, REFUSAL_KILOBYTES, command).fails_with(1, &[phrase, "5000000 nodes that are allowed"]);
+            confined(&desk, kilobytes, command).fails_with(1, &[phrase, "5000000 nodes that are allowed"]);
         }
     }
 }

@@ -61,7 +61,7 @@ impl Ladder {
         nearly_linear::check(problem)?;
         let equalities = problem.equalities().len();
         if equalities > 0 {
-            let because = format!("{equalities} pairs of rows are equalities");
+            let because = format!("{equalities} pair{} of rows leave no room", if equalities == 1 { "" } else { "s" });
             ladder.add(Attempt { steps: BY_ELIMINATION, ..ladder.attempt(Means::Problem, because) });
         } else if !known.is_whole
             && let Some(pieces) = pieces_of(problem, settings)

@@ -38,8 +38,7 @@ impl ContactProblem {
         let watched = self.watched_rows(watch);
         let placed = self.placed(&watched, answer.displacement, at_gap)?;
         // Neither a force that pulls nor one on an open row is a multiplier.
-        let allowed = |row: usize, mu: f64| if self.is_two_sided(row) { mu } else { mu.min(0.0) };
-        let keeps = |row: usize| if placed.closed[row] { allowed(row, answer.multiplier[row]) } else { 0.0 };
+        let keeps = |row: usize| if placed.closed[row] { self.allowed(row, answer.multiplier[row]) } else { 0.0 };
         let kept: Vec<f64> = (0..self.rows()).map(keeps).collect();
         let is_dropped = kept.iter().zip(answer.multiplier).any(|(kept, given)| kept != given);
         let mut residual = match is_dropped {

@@ -166,6 +166,11 @@ impl ContactProblem {
         (0..self.rows()).map(is_closed).collect()
     }
 
+    /// A multiplier as its row allows it: no row but an equality pulls.
+    fn allowed(&self, row: usize, multiplier: f64) -> f64 {
+        if self.is_two_sided(row) { multiplier } else { multiplier.min(0.0) }
+    }
+
     /// The energy norm of a shift.
     fn length(&self, shift: &[f64]) -> f64 {
         self.accurate_forces(shift).products_by(shift, |_| 0, 1)[0].max(0.0).sqrt()

@@ -45,9 +45,9 @@ impl ContactProblem {
         let (closed, mut repair) = (&placed.closed, placed.shift);
         let is_moved = repair.iter().any(|&change| change != 0.0);
         let keeps = |row: usize| self.gap[row].is_finite() && (keeps_all || closed[row]);
-        let allowed = |row: usize, mu: f64| if self.is_two_sided(row) { mu } else { mu.min(0.0) };
-        let kept: Vec<f64> =
-            (0..self.rows()).map(|row| if keeps(row) { allowed(row, answer.multiplier[row]) } else { 0.0 }).collect();
+        let kept: Vec<f64> = (0..self.rows())
+            .map(|row| if keeps(row) { self.allowed(row, answer.multiplier[row]) } else { 0.0 })
+            .collect();
         let mut residual = self.residual_at(answer, &[&kept], &repair);
         if !keeps_all && is_moved {
             let mut held = vec![false; self.dofs()];
@@ -69,7 +69,7 @@ impl ContactProblem {
         }
         let mut multiplier = kept.clone();
         if !keeps_all && let Some(forces) = self.balancing(&watched, closed, &residual) {
-            let change = |row: usize| allowed(row, kept[row] + forces[row]) != 0.0;
+            let change = |row: usize| self.allowed(row, kept[row] + forces[row]) != 0.0;
             let change: Vec<f64> =
                 (0..self.rows()).map(|row| if change(row) { forces[row] } else { -kept[row] }).collect();
             // Not rounded: a sum of two multipliers may leave more than all other forces on a dof.

@@ -100,8 +100,9 @@ impl Repair<'_> {
         let balanced = |row: usize| self.multiplier[row] + if in_equilibrium { change[row] } else { 0.0 };
         // A force that pulls is no multiplier, and nothing balances one on a loose dof.
         let holds = |row: usize| closed[row] && !self.norm.is_on_loose_dof(row);
-        let multiplier: Vec<f64> =
-            (0..change.len()).map(|row| if holds(row) { self.allowed(row, balanced(row)) } else { 0.0 }).collect();
+        let multiplier: Vec<f64> = (0..change.len())
+            .map(|row| if holds(row) { self.problem.allowed(row, balanced(row)) } else { 0.0 })
+            .collect();
         let left = |row: usize| match in_equilibrium {
             true if closed[row] => multiplier[row] - balanced(row),
             true => 0.0,
@@ -112,11 +113,6 @@ impl Repair<'_> {
         let change = (0..change.len()).map(|row| if in_equilibrium && pushes(row) { change[row] } else { 0.0 });
         let (change, left) = (change.collect(), Force::new(1.0 - error.alpha, rows));
         Witness { error, left, multiplier, change, closed, rest: Vec::new(), is_rounded: false }
-    }
-
-    /// A multiplier as its row allows it: no row but an equality pulls.
-    fn allowed(&self, row: usize, multiplier: f64) -> f64 {
-        if self.problem.is_two_sided(row) { multiplier } else { multiplier.min(0.0) }
     }
 
     /// For each row an upper bound on the energy norm of the shift that moves it from its place after a fit exactly to its gap
