@@ -105,7 +105,7 @@ impl Scales {
 
 /// A dof without stiffness has no scale of its own: rows give it one, which they share with the dofs that they couple it to.
 impl ContactProblem {
-    /// The lengths of the rows, at least those to which rows with the same dofs without stiffness are known.
+    /// The lengths of the rows, at least those that rows to dofs with stiffness give to their dofs without stiffness.
     pub(super) fn coupled_lengths(&self, own: Vec<f64>) -> Vec<f64> {
         let roots = &self.diagonal().roots;
         if roots.iter().all(|&root| root > 0.0) {
@@ -116,8 +116,14 @@ impl ContactProblem {
                 |&(row, dof, b): &(usize, usize, f64)| b != 0.0 && roots[dof] == 0.0 && self.gap[row].is_finite();
             self.contact.triplets().filter(counts)
         };
+        let mut is_stiff = vec![false; self.rows()];
+        self.contact
+            .triplets()
+            .filter(|&(_, dof, b)| b != 0.0 && roots[dof] > 0.0)
+            .for_each(|(row, ..)| is_stiff[row] = true);
         let mut of_dofs = vec![0.0; self.dofs()];
-        entries().for_each(|(row, dof, b)| of_dofs[dof] = larger(own[row] / b.abs(), of_dofs[dof]));
+        let known = entries().filter(|entry| is_stiff[entry.0]);
+        known.for_each(|(row, dof, b)| of_dofs[dof] = larger(own[row] / b.abs(), of_dofs[dof]));
         let mut coupled = own;
         entries().for_each(|(row, dof, b)| coupled[row] = larger(b.abs() * of_dofs[dof], coupled[row]));
         coupled

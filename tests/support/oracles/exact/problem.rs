@@ -14,6 +14,15 @@ pub struct Exact {
     pub rows: Vec<usize>,
 }
 
+/// The gap of a row as the problem states it: that of a row without entries counts as zero if it is at most 16 units in the last place of
+/// the largest gap.
+fn counted_gap(case: &Case, row: usize) -> f64 {
+    let lengths = (0..case.gap.len()).filter(|&row| case.is_bounded(row)).map(|row| case.gap[row].abs());
+    let largest = lengths.fold(0.0, f64::max);
+    let is_empty = case.contact[row].iter().all(|&b| b == 0.0);
+    if is_empty && case.gap[row].abs() <= largest / 2f64.powi(48) { 0.0 } else { case.gap[row] }
+}
+
 impl Exact {
     pub fn new(case: &Case) -> Self {
         let exact = |values: &[f64]| values.iter().map(|&value| Dyadic::from(value)).collect::<Vec<_>>();
@@ -22,7 +31,7 @@ impl Exact {
             stiffness: case.stiffness.iter().map(|row| exact(row)).collect(),
             load: exact(&case.load),
             contact: rows.iter().map(|&row| exact(&case.contact[row])).collect(),
-            gap: rows.iter().map(|&row| Dyadic::from(case.gap[row])).collect(),
+            gap: rows.iter().map(|&row| Dyadic::from(counted_gap(case, row))).collect(),
             rows,
         }
     }
