@@ -103,9 +103,10 @@ impl Scales {
     }
 }
 
-/// A dof without stiffness has no scale of its own: rows give it one, which they share with the dofs that they couple it to.
+/// A dof without stiffness and load, and a row with gap zero, have no scale of their own: rows give them one, which they share with the dofs
+/// that they couple them to.
 impl ContactProblem {
-    /// The lengths of the rows, at least those that rows to dofs with stiffness give to their dofs without stiffness.
+    /// The lengths of the rows; of those with gap zero at least those that rows to dofs with stiffness give to their dofs without stiffness.
     pub(super) fn coupled_lengths(&self, own: Vec<f64>) -> Vec<f64> {
         let roots = &self.diagonal().roots;
         if roots.iter().all(|&root| root > 0.0) {
@@ -125,11 +126,12 @@ impl ContactProblem {
         let known = entries().filter(|entry| is_stiff[entry.0]);
         known.for_each(|(row, dof, b)| of_dofs[dof] = larger(own[row] / b.abs(), of_dofs[dof]));
         let mut coupled = own;
-        entries().for_each(|(row, dof, b)| coupled[row] = larger(b.abs() * of_dofs[dof], coupled[row]));
+        let without_scale = entries().filter(|entry| self.gap[entry.0] == 0.0);
+        without_scale.for_each(|(row, dof, b)| coupled[row] = larger(b.abs() * of_dofs[dof], coupled[row]));
         coupled
     }
 
-    /// The forces that balance on each dof; on one without stiffness at least those that its rows pass on from dofs with stiffness.
+    /// The forces that balance on each dof; on one without stiffness and load at least those that its rows pass on from dofs with stiffness.
     pub(super) fn balanced_forces(&self, own: Vec<f64>) -> Vec<f64> {
         let roots = &self.diagonal().roots;
         if roots.iter().all(|&root| root > 0.0) {
@@ -141,7 +143,8 @@ impl ContactProblem {
         let mut of_rows = vec![0.0; self.rows()];
         entries(true).for_each(|(row, dof, b)| of_rows[row] = larger(own[dof] / b.abs(), of_rows[row]));
         let mut balanced = own;
-        entries(false).for_each(|(row, dof, b)| balanced[dof] = larger(b.abs() * of_rows[row], balanced[dof]));
+        let without_scale = entries(false).filter(|entry| self.load[entry.1] == 0.0);
+        without_scale.for_each(|(row, dof, b)| balanced[dof] = larger(b.abs() * of_rows[row], balanced[dof]));
         balanced
     }
 }
