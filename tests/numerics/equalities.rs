@@ -158,6 +158,8 @@ fn equalities_are_held_whatever_holds_the_stiffness() {
             let name = format!("{number} by {}", method.name());
             let solution = solve(&built.problem(), &Settings::with_method(method))
                 .unwrap_or_else(|error| panic!("{name}: {error}"));
+            // Another way would hide a fault of the elimination.
+            assert!(solution.method.contains("eliminated"), "{name}: {}", solution.method);
             assert!(is_near(&solution.displacement, &built.u), "{name}: {:?}", solution.displacement);
             assert!(is_near(&solution.multiplier, &built.lambda), "{name}: {:?}", solution.multiplier);
             assert!(is_near(&solution.equality_multiplier, &built.mu), "{name}: {:?}", solution.equality_multiplier);

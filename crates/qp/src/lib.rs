@@ -173,8 +173,8 @@ impl ContactProblem {
         plan::Ladder::of(self, known, settings)?.in_words(self, settings)
     }
 
-    /// The certificate of an answer (u, lambda), one entry per dof and per row of B and then of E, that came from elsewhere, within the memory of `settings`: with a factor if that is
-    /// estimated to take at most `seconds`, else by multigrid.
+    /// The certificate of an answer (u, lambda), one entry per dof and per row of B and then of E, that came from elsewhere, within the
+    /// memory of `settings`: with a factor if that is estimated to take at most `seconds`, else by multigrid.
     ///
     /// # Errors
     /// As [`ContactProblem::certify`]; [`Error::Infeasible`] as [`solve`], if an answer misses its rows;

@@ -118,7 +118,7 @@ fn overlap(answer: &Answer) -> Option<AnswerWarning> {
         name => name,
     };
     let help = if has_rows {
-        "between contact rows, which keep means of the gap apart: make the elements smaller there"
+        "between contact rows, which do not keep every point apart: make the elements smaller there"
     } else {
         "where no contact row keeps them apart; name both boundaries in an obstacle, or set `\"contact\": \"auto\"`"
     };

@@ -59,7 +59,8 @@ fn worst(values: impl IntoIterator<Item = f64>) -> f64 {
 
 impl ContactProblem {
     /// The certificate of an answer: displacement u (length n, in m) and multiplier lambda (length m, in N, `<= 0` in
-    /// compression; with equality rows followed by theirs, of either sign), with the energy bound if K is positive definite or the rows that press hold the body.
+    /// compression; with equality rows followed by theirs, of either sign), with the energy bound if K is positive definite or the rows
+    /// that press hold the body.
     ///
     /// # Errors
     /// [`Error::Length`] for vectors that do not fit, [`Error::Numerical`] if the factorisation of K fails for lack of memory.

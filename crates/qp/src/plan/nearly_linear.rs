@@ -7,7 +7,7 @@ use crate::problem::ContactProblem;
 /// Fewer motions without energy than this are found one by one, and cost little.
 const FEW_MOTIONS: usize = 256;
 
-/// A program is nearly linear if fewer directions than one of so many have stiffness.
+/// A program is nearly linear if the stiffness holds less than one of this many directions.
 const ONE_OF: usize = 4;
 
 /// Most unknowns of a program that is looked at: its factor of low rank is dense.
@@ -70,7 +70,7 @@ fn rank_within(problem: &ContactProblem, most: usize) -> Option<usize> {
 mod tests {
     use super::*;
 
-    /// `u'F'F u` with F of `rank` rows in `unknowns` unknowns, all of whose entries are within two crowded boxes.
+    /// `K = F'F` with F of `rank` rows, and twice as many rows as unknowns, of ten entries each.
     fn program(unknowns: usize, rank: usize) -> ContactProblem {
         let entry = |row: usize, dof: usize| (((row + 1) * (dof + 3) * 7919) % 1009) as f64 / 504.0 - 1.0;
         let of = |i: usize, j: usize| (0..rank).map(|row| entry(row, i) * entry(row, j)).sum::<f64>();

@@ -57,8 +57,7 @@ impl Run<'_> {
         let (factor, certificate) = (of(|stages| stages.factor), of(|stages| stages.certificate));
         solution.proven = solution.proven.or(proven.0);
         solution.seconds = Seconds { factor, certificate, proof, solve: self.clock.elapsed().as_secs_f64() };
-        let solution = self.problem.in_given_rows(solution);
-        let mut solution = solution;
+        let mut solution = self.problem.in_given_rows(solution);
         if certified {
             return Ok(solution);
         }

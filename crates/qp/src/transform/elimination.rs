@@ -438,3 +438,86 @@ impl Found {
         self.pivots.push(pivot);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::Settings;
+    use crate::solve;
+
+    /// Rounding of sums of a handful of numbers of order ten.
+    const ROUNDING: f64 = 1e-13;
+
+    /// A chain of four dofs under loads, with the equality `u_0 - 2 u_1 + u_3 = 3` as two rows, the second three times as large, and one
+    /// inequality before them.
+    fn tied(load: [f64; 4]) -> ContactProblem {
+        let diagonal = [4.0, 3.0, 2.0, 5.0].into_iter().enumerate().map(|(dof, value)| (dof, dof, value));
+        let stiffness: Vec<_> = diagonal.chain([(1, 0, -1.0), (2, 1, -1.0), (3, 2, -1.0)]).collect();
+        let tie = [(0, 1.0), (1, -2.0), (3, 1.0)];
+        let rows = [(0, 0, 1.0), (0, 1, 3.0), (0, 2, -1.0)].into_iter();
+        let rows = rows.chain(tie.map(|(dof, b)| (1, dof, b))).chain(tie.map(|(dof, b)| (2, dof, -3.0 * b)));
+        ContactProblem::of_entries(&stiffness, &load, &rows.collect::<Vec<_>>(), &[2.0, 3.0, -9.0])
+    }
+
+    /// `1/2 u'K u - f'u`.
+    fn objective(problem: &ContactProblem, u: &[f64]) -> f64 {
+        let elastic = problem.stiffness().mul(u);
+        u.iter().zip(elastic).zip(problem.load()).map(|((u, k), f)| u * (k / 2.0 - f)).sum()
+    }
+
+    #[test]
+    fn the_rest_has_the_objective_and_the_distances_of_the_whole_on_the_equalities() {
+        let problem = tied([1.0, -2.0, 3.0, 0.5]);
+        let elimination = Elimination::of(&problem).unwrap().unwrap();
+        let rest = elimination.problem(&problem).unwrap();
+        assert_eq!((rest.dofs(), rest.rows()), (3, 1));
+        let at_rest = objective(&problem, &elimination.displacement(&[0.0; 3]));
+        for y in [[0.0; 3], [1.0, 2.0, -1.0], [-3.0, 0.5, 4.0], [0.25, -7.0, 2.0]] {
+            let u = elimination.displacement(&y);
+            assert!((u[0] - 2.0 * u[1] + u[3] - 3.0).abs() < ROUNDING, "{u:?}");
+            let (whole, of_rest) = (objective(&problem, &u) - at_rest, objective(&rest, &y));
+            assert!((whole - of_rest).abs() < ROUNDING * (1.0 + whole.abs()), "{y:?}: {whole} {of_rest}");
+            assert!((problem.violation(&u)[0] - rest.violation(&y)[0]).abs() < ROUNDING, "{y:?}");
+        }
+    }
+
+    #[test]
+    fn the_answer_of_the_rest_is_one_of_the_whole_with_multipliers_that_push() {
+        // The tie pulls to one side and to the other: the multiplier goes to the first row or to the second.
+        for (load, pressing) in [([9.0, -9.0, 3.0, 9.0], 1), ([-9.0, 9.0, 3.0, -9.0], 2)] {
+            let problem = tied(load);
+            let elimination = Elimination::of(&problem).unwrap().unwrap();
+            let answer = solve(&elimination.problem(&problem).unwrap(), &Settings::default()).unwrap();
+            let found = elimination.expanded(&problem, answer);
+            let left = problem.accurate_residual(&found.displacement, &found.multiplier);
+            assert!(left.iter().all(|force| force.abs() < ROUNDING), "{left:?}");
+            assert!(
+                found.multiplier[pressing] < -0.1 && found.multiplier[3 - pressing] == 0.0,
+                "{:?}",
+                found.multiplier
+            );
+            assert!(found.contact_set.contains(pressing) && !found.contact_set.contains(3 - pressing));
+        }
+    }
+
+    #[test]
+    fn rows_that_follow_drop_out_and_contradictory_ones_are_named_with_weights_that_cancel() {
+        let plain = tied([0.0; 4]);
+        let entries = [(0, 0, 1.0), (0, 1, 1.0), (1, 1, 3.0), (1, 2, 1.0), (2, 0, 2.0), (2, 1, -1.0), (2, 2, -1.0)];
+        // The third is twice the first less the second.
+        let rows = SparseMatrix::from_triplets(3, 4, &entries).unwrap();
+        let follows = plain.with_equalities(&rows, vec![1.0, 5.0, -3.0]).unwrap();
+        // Two of these, and the tie.
+        assert_eq!(Elimination::of(&follows).unwrap().unwrap().pivots.len(), 3);
+        let contradicts = plain.with_equalities(&rows, vec![1.0, 5.0, -4.0]).unwrap();
+        let Err(Error::Infeasible { rows, weights, overlap, .. }) = Elimination::of(&contradicts) else {
+            panic!("nothing is found")
+        };
+        let weight =
+            |row: usize| rows.iter().zip(&weights).filter(|entry| *entry.0 == row).map(|entry| entry.1).sum::<f64>();
+        // Twice the first less the second less the third, in either direction.
+        let exact = [2.0, -1.0, -1.0].map(|of_exact| of_exact * weight(3) / 2.0);
+        assert!((0..3).all(|row| (weight(3 + row) - exact[row]).abs() < ROUNDING) && weight(3) != 0.0, "{weights:?}");
+        assert!(overlap > 0.0);
+    }
+}

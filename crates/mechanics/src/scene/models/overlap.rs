@@ -19,7 +19,7 @@ const TAKING_PART: f64 = 0.01;
 /// A point outside an element by less than this, in reference coordinates, is inside.
 const SAME_PLACE: f64 = 1e-9;
 
-/// A node with a row, or opposite to one, may lie this share of a facet inside: rows keep means apart, not every point.
+/// A node with a row, or opposite to one, may lie this share of a facet inside: rows do not keep every point apart.
 const KEPT_APART: f64 = 0.05;
 
 /// A node of one body inside another.

@@ -53,13 +53,7 @@ impl BodyShape for DeckSpec {
             return Err(refused("several-groups", format!("{}.group", site.path), message));
         }
         let groups: Vec<&str> = self.group.iter().map(String::as_str).collect();
-        let mesh = deck.mesh(&groups, self.scale)?;
-        if mesh.dimension() != site.model.dimension() {
-            let body = if mesh.dimension() == 2 { "plane" } else { "in space" };
-            let message = format!("the mesh is {body}, which does not fit the model `{}`", site.model.name());
-            return Err(wrong(format!("{}.file", site.path), message));
-        }
-        Ok(mesh)
+        site.fitting(deck.mesh(&groups, self.scale)?)
     }
 
     fn block(&self, files: Option<Files>) -> Block {

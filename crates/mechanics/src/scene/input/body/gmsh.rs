@@ -53,14 +53,7 @@ impl BodyShape for GmshSpec {
             return Err(refused("several-groups", format!("{}.group", site.path), message));
         }
         let groups: Vec<&str> = self.group.iter().map(String::as_str).collect();
-        let mesh = file.mesh(&groups, self.scale)?;
-        let (found, model) = (mesh.dimension(), site.model.name());
-        if found != site.model.dimension() {
-            let body = ["a bar", "plane", "in space"][found - 1];
-            let message = format!("the mesh is {body}, which does not fit the model `{model}`");
-            return Err(wrong(format!("{}.file", site.path), message));
-        }
-        Ok(mesh)
+        site.fitting(file.mesh(&groups, self.scale)?)
     }
 
     fn block(&self, files: Option<Files>) -> Block {

@@ -62,6 +62,16 @@ impl Site<'_> {
         axis.coordinates().map_err(|error| wrong(format!("{}.{name}.{}", self.path, error.field), error.message))
     }
 
+    /// Refuses a mesh from a file that has another number of coordinates than the model.
+    pub fn fitting(&self, mesh: Mesh) -> Result<Mesh, Error> {
+        if mesh.dimension() == self.model.dimension() {
+            return Ok(mesh);
+        }
+        let body = ["a bar", "plane", "in space"][mesh.dimension() - 1];
+        let message = format!("the mesh is {body}, which does not fit the model `{}`", self.model.name());
+        Err(wrong(format!("{}.file", self.path), message))
+    }
+
     /// Refuses a product of divisions with more nodes than allowed, before its lines are made.
     pub fn check_product(&self, axes: &[&Axis]) -> Result<(), Error> {
         let cells: Vec<usize> = axes.iter().map(|axis| axis.cells()).collect();
