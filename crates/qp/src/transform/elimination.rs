@@ -448,11 +448,11 @@ mod tests {
     /// Rounding of sums of a handful of numbers of order ten.
     const ROUNDING: f64 = 1e-13;
 
-    /// A chain of four dofs under loads, with the equality `u_0 - 2 u_1 + u_3 = 3` as two rows, the second three times as large, and one
+    /// A ring of four dofs under loads, with the equality `u_0 - 2 u_1 + u_3 = 3` as two rows, the second three times as large, and one
     /// inequality before them.
     fn tied(load: [f64; 4]) -> ContactProblem {
         let diagonal = [4.0, 3.0, 2.0, 5.0].into_iter().enumerate().map(|(dof, value)| (dof, dof, value));
-        let stiffness: Vec<_> = diagonal.chain([(1, 0, -1.0), (2, 1, -1.0), (3, 2, -1.0)]).collect();
+        let stiffness: Vec<_> = diagonal.chain([(1, 0, -1.0), (2, 1, -1.0), (3, 2, -1.0), (3, 0, -0.5)]).collect();
         let tie = [(0, 1.0), (1, -2.0), (3, 1.0)];
         let rows = [(0, 0, 1.0), (0, 1, 3.0), (0, 2, -1.0)].into_iter();
         let rows = rows.chain(tie.map(|(dof, b)| (1, dof, b))).chain(tie.map(|(dof, b)| (2, dof, -3.0 * b)));
@@ -467,14 +467,17 @@ mod tests {
 
     #[test]
     fn the_rest_has_the_objective_and_the_distances_of_the_whole_on_the_equalities() {
-        let problem = tied([1.0, -2.0, 3.0, 0.5]);
+        // A second tie, on dofs that the first one may be solved for: u_0 + u_1 + u_2 + 2 u_3 = 1.
+        let second = SparseMatrix::from_triplets(1, 4, &[(0, 0, 1.0), (0, 1, 1.0), (0, 2, 1.0), (0, 3, 2.0)]).unwrap();
+        let problem = tied([1.0, -2.0, 3.0, 0.5]).with_equalities(&second, vec![1.0]).unwrap();
         let elimination = Elimination::of(&problem).unwrap().unwrap();
         let rest = elimination.problem(&problem).unwrap();
-        assert_eq!((rest.dofs(), rest.rows()), (3, 1));
-        let at_rest = objective(&problem, &elimination.displacement(&[0.0; 3]));
-        for y in [[0.0; 3], [1.0, 2.0, -1.0], [-3.0, 0.5, 4.0], [0.25, -7.0, 2.0]] {
+        assert_eq!((rest.dofs(), rest.rows()), (2, 1));
+        let at_rest = objective(&problem, &elimination.displacement(&[0.0; 2]));
+        for y in [[0.0; 2], [1.0, 2.0], [-3.0, 0.5], [0.25, -7.0]] {
             let u = elimination.displacement(&y);
-            assert!((u[0] - 2.0 * u[1] + u[3] - 3.0).abs() < ROUNDING, "{u:?}");
+            let held = [u[0] - 2.0 * u[1] + u[3] - 3.0, u[0] + u[1] + u[2] + 2.0 * u[3] - 1.0];
+            assert!(held.iter().all(|left| left.abs() < ROUNDING), "{u:?}");
             let (whole, of_rest) = (objective(&problem, &u) - at_rest, objective(&rest, &y));
             assert!((whole - of_rest).abs() < ROUNDING * (1.0 + whole.abs()), "{y:?}: {whole} {of_rest}");
             assert!((problem.violation(&u)[0] - rest.violation(&y)[0]).abs() < ROUNDING, "{y:?}");
