@@ -179,3 +179,32 @@ impl ContactProblem {
         couplings
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A dof of stiffness 4 and one without, joined by a row with gap zero; the second has a row with gap zero, and one with a gap of 6.
+    fn joined(load: f64) -> ContactProblem {
+        let rows = [(0, 0, 2.0), (0, 1, -0.5), (1, 1, -3.0), (2, 1, -3.0)];
+        ContactProblem::of_entries(&[(0, 0, 4.0)], &[10.0, load], &rows, &[0.0, 0.0, 6.0])
+    }
+
+    #[test]
+    fn a_row_with_gap_zero_on_a_dof_without_stiffness_has_the_length_of_the_row_that_joins_the_dof_to_another() {
+        // The first row moves the second dof by 8 over 1/2, which moves the second row by three times as much.
+        assert_eq!(joined(0.0).coupled_lengths(vec![8.0, 1e-31, 1e-31]), [8.0, 48.0, 1e-31]);
+        // A row that is longer by itself stays as it is, and so does every row of a body with stiffness everywhere.
+        assert_eq!(joined(0.0).coupled_lengths(vec![8.0, 100.0, 0.0]), [8.0, 100.0, 0.0]);
+        let stiff =
+            ContactProblem::of_entries(&[(0, 0, 4.0), (1, 1, 1.0)], &[0.0; 2], &[(0, 0, 1.0), (1, 1, 1.0)], &[0.0; 2]);
+        assert_eq!(stiff.coupled_lengths(vec![8.0, 1e-31]), [8.0, 1e-31]);
+    }
+
+    #[test]
+    fn forces_on_a_dof_without_stiffness_and_load_have_the_scale_of_the_dof_that_a_row_joins_it_to() {
+        // A force of 10 on the first dof is 5 along the row, and 5/2 on the second.
+        assert_eq!(joined(0.0).balanced_forces(vec![10.0, 1e-33]), [10.0, 2.5]);
+        assert_eq!(joined(1e-20).balanced_forces(vec![10.0, 1e-20]), [10.0, 1e-20]);
+    }
+}
