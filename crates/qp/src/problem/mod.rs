@@ -349,3 +349,21 @@ impl ContactProblem {
         ContactProblem::new(stiffness, load.to_vec(), contact, gap.to_vec()).unwrap()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_equality_counts_as_one_row_with_the_force_of_both_of_its_rows() {
+        // u <= 1 and -3 u <= -3: a force of -2 on the second row is one of 6 along the first.
+        let problem = ContactProblem::of_entries(&[(0, 0, 1.0)], &[4.0], &[(0, 0, 1.0), (1, 0, -3.0)], &[1.0, -3.0]);
+        for (forces, along) in [([0.0, -2.0], 6.0), ([-5.0, 0.0], -5.0), ([-5.0, -2.0], 1.0)] {
+            let (two_sided, multiplier) = problem.two_sided(&forces);
+            assert_eq!(*multiplier, [along, 0.0]);
+            assert!(two_sided.is_two_sided(0) && !two_sided.is_two_sided(1) && two_sided.gap()[1].is_infinite());
+        }
+        let apart = problem.with_gap(vec![1.0, -2.0]).unwrap();
+        assert!(!apart.two_sided(&[0.0, 0.0]).0.is_two_sided(0));
+    }
+}

@@ -128,3 +128,19 @@ fn are_parallel(by_row: &SparseMatrix, a: usize, b: usize) -> bool {
         difference.into_sums()[0] == 0.0
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_opposed_rows_are_an_equality_if_they_leave_no_room_to_the_last_bit() {
+        let rows = |gap: [f64; 3]| {
+            let entries = [(0, 0, 1.0), (0, 1, -2.0), (1, 1, 1.0), (2, 0, -3.0), (2, 1, 6.0)];
+            OpposedRows::of(&SparseMatrix::from_triplets(3, 2, &entries).unwrap()).equalities(&gap)
+        };
+        assert_eq!(rows([2.0, 1.0, -6.0]), [Equality { row: 0, opposed: 2, ratio: 3.0 }]);
+        assert_eq!(rows([2.0, 1.0, -6.0 + 8.0 * f64::EPSILON]), []);
+        assert_eq!(rows([2.0, 1.0, f64::INFINITY]), []);
+    }
+}
