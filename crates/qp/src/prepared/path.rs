@@ -72,7 +72,8 @@ impl Path {
 
     /// The gaps at `t`, length m, in the problem's unit of length; negative if the obstacle starts inside the body.
     pub fn gap(&self, t: f64) -> Vec<f64> {
-        between(&self.from, &self.to, t)
+        let count = self.prepared.problem.inequalities();
+        between(&self.from[..count], &self.to[..count], t)
     }
 
     /// The multipliers at `t`, length m, in the problem's unit of force, `<= 0` in compression.
@@ -82,8 +83,10 @@ impl Path {
 
     /// The multipliers of the equality rows at `t`, length p, in the problem's unit of force, of either sign.
     pub fn equality_multiplier(&self, t: f64) -> Vec<f64> {
-        let of = |piece: &Piece| self.prepared.problem.split(self.walk.to_rows.multiplier(&piece.multiplier(t)));
-        self.piece(t).map_or_else(Vec::new, |piece| of(piece)[1].clone())
+        self.piece(t).map_or_else(Vec::new, |piece| {
+            let [_, multiplier] = self.prepared.problem.split(self.walk.to_rows.multiplier(&piece.multiplier(t)));
+            multiplier
+        })
     }
 
     /// The closed rows at `t`; at an event those of the stretch before it.
