@@ -4,7 +4,7 @@ use std::fs;
 use std::sync::Arc;
 
 use signorini::scene::{Answer, Warning};
-use signorini::{Error, Scene, solve_qp};
+use signorini::{Error, Scene, qp, solve_qp};
 use support::decks::Block;
 
 /// Answers differ from a displacement that the elements represent exactly by rounding alone.
@@ -27,7 +27,7 @@ pub fn read(files: &[(&str, &str)], permits: &[&str]) -> Result<Scene, Error> {
 }
 
 /// The answer of a deck.
-fn answer(deck: &str) -> Answer {
+pub fn answer(deck: &str) -> Answer {
     let scene = read(&[("deck.inp", deck)], &[]).unwrap_or_else(|error| panic!("{error}\n{deck}"));
     let model = scene.build().unwrap();
     let solution = solve_qp(model.problem()).unwrap();
@@ -36,8 +36,17 @@ fn answer(deck: &str) -> Answer {
     answer
 }
 
+/// The line and the message of the error of a deck.
+pub fn refusal(deck: &str) -> (usize, String) {
+    match read(&[("deck.inp", deck)], &[]) {
+        Err(Error::Qp(qp::Error::FileSyntax { line, message, .. })) => (line, message),
+        Err(error) => panic!("{error}"),
+        Ok(_) => panic!("accepted: {deck}"),
+    }
+}
+
 /// Compares each displacement with that at the place of its node.
-fn compare(answer: &Answer, exact: impl Fn([f64; 3]) -> [f64; 3]) {
+pub fn compare(answer: &Answer, exact: impl Fn([f64; 3]) -> [f64; 3]) {
     let (mesh, size) = (answer.model().mesh(), answer.model().mesh().dimension());
     let exact: Vec<[f64; 3]> = mesh.nodes().iter().map(|at| exact(*at)).collect();
     let largest = exact.iter().flatten().fold(0.0_f64, |largest, value| largest.max(value.abs()));
@@ -66,7 +75,7 @@ fn block(element: &'static str) -> String {
 
 const SYMMETRIC: &str = "*BOUNDARY\nX0, 1\nY0, 2\nZ0, 3\n";
 
-fn step(cards: &str) -> String {
+pub fn step(cards: &str) -> String {
     format!("*STEP\n*STATIC\n{cards}*END STEP\n")
 }
 

@@ -205,13 +205,17 @@ impl ContactProblem {
     }
 
     /// Factorises the stiffness once for many sets of held rows. Each call of the returned function is one iteration of the active-set loop,
-    /// and gives displacement (one entry per dof, in length) and multiplier (one per row, in force), which may have either sign; `None` if these rows do not hold the body.
+    /// and gives displacement (one entry per dof, in length) and multiplier (one per row of B, then one per equality row, in force), which may
+    /// have either sign; `None` if these rows do not hold the body. Equality rows are always held.
     ///
     /// # Errors
     /// As [`Prepared::new`].
     pub fn with_contact_sets(&self) -> Result<impl Fn(&ContactSet) -> Option<[Vec<f64>; 2]>, Error> {
         let factored = engine::Factored::new(self, &plan::WithFactor::BY_RULES, &Settings::default())?;
-        Ok(move |closed: &ContactSet| factored.with_contact_set(closed).map(|(u, lambda)| [u, lambda]))
+        Ok(move |closed: &ContactSet| {
+            let (displacement, multiplier) = factored.with_contact_set(&self.with_equality_rows(closed))?;
+            Some([displacement, self.split(multiplier).concat()])
+        })
     }
 }
 

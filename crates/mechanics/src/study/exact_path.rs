@@ -73,6 +73,7 @@ impl ExactPath {
     pub fn answer(&self, share: f64) -> Result<Answer, Error> {
         let model = std::sync::Arc::new(self.model.with_gap(self.gap(share))?);
         let (displacement, multiplier) = (self.path.displacement(share)?, self.path.multiplier(share));
+        let multiplier = [multiplier, self.path.equality_multiplier(share)].concat();
         Answer::new(model, &displacement, &multiplier, &self.path.contact_set(share))
     }
 }

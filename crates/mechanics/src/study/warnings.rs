@@ -358,7 +358,7 @@ fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<AnswerWarning> 
 /// to the body first.
 pub(super) fn initial_overlap(model: &Model) -> Option<String> {
     let stands = |row: usize| !model.is_pressed(model.rows()[row].obstacle);
-    let gaps = model.problem().gap().iter().copied().enumerate().filter(|&(row, _)| stands(row));
+    let gaps = model.problem().inequalities_given().1.iter().copied().enumerate().filter(|&(row, _)| stands(row));
     let (row, gap) = gaps.min_by(|a, b| a.1.total_cmp(&b.1))?;
     let (unit, row) = (&model.units().length, &model.rows()[row]);
     let place = model.node_in_words(row.node);

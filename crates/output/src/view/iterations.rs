@@ -82,7 +82,7 @@ fn of_penalty(model: &Model, penalty: f64) -> Found {
         Err(qp::Error::NotCertified { solution, .. }) => *solution,
         Err(_) => return None,
     };
-    Some((solution.displacement, solution.multiplier))
+    Some((solution.displacement, [solution.multiplier, solution.equality_multiplier].concat()))
 }
 
 /// At most `most` indices below `count`, the first and the last among them, at even distances.

@@ -37,8 +37,10 @@ pub(crate) struct Size {
 }
 
 /// Returns `true` if a problem has more long rows than dofs in them, or if most of its dofs have no stiffness, as in a linear program.
+/// Equalities are closed in every answer, and do not count.
 pub(super) fn is_crowded(problem: &ContactProblem) -> bool {
-    let bounded: Vec<bool> = problem.gap().iter().map(|gap| gap.is_finite()).collect();
+    let mut bounded: Vec<bool> = problem.gap().iter().map(|gap| gap.is_finite()).collect();
+    problem.equalities().iter().flat_map(|pair| [pair.row, pair.opposed]).for_each(|row| bounded[row] = false);
     let (mut entries, mut dofs) = (0, 0);
     for dof in 0..problem.dofs() {
         let own = problem.contact().column(dof).filter(|&(row, b)| b != 0.0 && bounded[row]).count();

@@ -117,6 +117,12 @@ impl ContactProblem {
         ContactSet::from_fn(self.inequalities(), |row| set.contains(row))
     }
 
+    /// A set of the rows of B, and one row of each equality.
+    pub(crate) fn with_equality_rows(&self, set: &ContactSet) -> ContactSet {
+        let equalities = self.inequalities()..self.inequalities() + self.equality_rows;
+        ContactSet::from_fn(self.rows(), |row| equalities.contains(&row) || set.contains(row))
+    }
+
     /// The multipliers of the rows of B, and those of the equality rows.
     pub(crate) fn split(&self, mut multiplier: Vec<f64>) -> [Vec<f64>; 2] {
         let pairs = multiplier.split_off(self.inequalities());

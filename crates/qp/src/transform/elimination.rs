@@ -96,6 +96,10 @@ impl Elimination {
         // Short rows first: they fill the others least.
         let mut order: Vec<usize> = (0..equalities.len()).collect();
         order.sort_by_key(|&number| by_row.column(equalities[number].row).count());
+        // A dof of few equalities goes into few others; then one of few entries of K and B.
+        let mut of_equalities = vec![0; problem.dofs()];
+        let in_equalities = equalities.iter().flat_map(|pair| by_row.column(pair.row));
+        in_equalities.filter(|entry| entry.1 != 0.0).for_each(|(dof, _)| of_equalities[dof] += 1);
         let columns: Vec<usize> = (0..problem.dofs())
             .map(|dof| problem.stiffness().lower().column(dof).count() + problem.contact().column(dof).count())
             .collect();
@@ -109,7 +113,8 @@ impl Elimination {
                 Reduced::Row(pivot) => {
                     let largest = pivot.others.values().map(|a| a.rounded().abs()).fold(0.0, f64::max);
                     let may_be = |entry: &(&usize, &Twice)| entry.1.rounded().abs() >= PIVOT * largest;
-                    let best = pivot.others.iter().filter(may_be).min_by_key(|entry| columns[*entry.0]);
+                    let best = pivot.others.iter().filter(may_be);
+                    let best = best.min_by_key(|entry| (of_equalities[*entry.0], columns[*entry.0]));
                     let Some((&dof, _)) = best else { return Ok(None) };
                     fill += pivot.others.len() * (pivot.others.len() + columns[dof]);
                     if fill > most {

@@ -21,6 +21,7 @@ mod springs;
 mod stiffness;
 mod surface;
 
+pub(crate) use dofs::Along;
 pub use dofs::DofMap;
 pub use element_stiffness::element_stiffness;
 pub use frame::Frame;

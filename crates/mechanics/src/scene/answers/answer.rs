@@ -29,6 +29,8 @@ pub struct Answer {
     /// The travel of each obstacle that a force presses, in length.
     travel: Vec<Option<f64>>,
     multiplier: Vec<f64>,
+    /// The multiplier of each equation of a tie, in force, of either sign.
+    of_ties: Vec<f64>,
     contact_set: ContactSet,
     pressure: Vec<f64>,
     stress: OnceLock<StressField>,
@@ -50,7 +52,9 @@ pub struct Forces {
     pub springs: Vec<f64>,
     /// Forces of rigid faces on the body, length `dim * n_nodes`, in force.
     pub rigid_faces: Vec<f64>,
-    /// The imbalance of loads, reactions, springs, rigid faces and contact forces, relative, as
+    /// Forces of ties on the body, length `dim * n_nodes`, in force.
+    pub ties: Vec<f64>,
+    /// The imbalance of loads, reactions, springs, rigid faces, ties and contact forces, relative, as
     /// [`Model::force_balance`].
     pub balance: f64,
 }
@@ -61,11 +65,12 @@ impl Answer {
     /// # Errors
     /// [`qp::Error::Length`] if it is not an answer to this model.
     pub fn of(model: Arc<Model>, solution: &Solution) -> Result<Self, Error> {
-        Self::new(model, &solution.displacement, &solution.multiplier, &solution.contact_set)
+        let multiplier = [solution.multiplier.as_slice(), &solution.equality_multiplier].concat();
+        Self::new(model, &solution.displacement, &multiplier, &solution.contact_set)
     }
 
     /// An answer from the displacement of the free dofs (one entry per free dof, in length) with the multiplier (one entry per contact
-    /// row, in force) and the closed rows.
+    /// row, then one per equation of a tie, in force) and the closed rows.
     ///
     /// # Errors
     /// [`qp::Error::Length`] if a vector does not fit the model.
@@ -76,6 +81,7 @@ impl Answer {
         contact_set: &ContactSet,
     ) -> Result<Self, Error> {
         qp::Error::check_length("contact set", contact_set.rows(), model.rows().len(), "contact rows")?;
+        let (multiplier, of_ties) = model.split(multiplier)?;
         Ok(Answer {
             displacement: model.nodal_displacement(displacement)?,
             unknowns: displacement.to_vec(),
@@ -84,6 +90,7 @@ impl Answer {
                 .collect::<Result<_, _>>()?,
             pressure: model.pressure(multiplier)?,
             multiplier: multiplier.to_vec(),
+            of_ties: of_ties.to_vec(),
             contact_set: contact_set.clone(),
             stress: OnceLock::new(),
             forces: OnceLock::new(),
@@ -184,7 +191,7 @@ impl Answer {
     /// # Errors
     /// As [`Model::reactions`].
     pub fn forces(&self) -> Result<&Forces, Error> {
-        once(&self.forces, || self.model.forces(&self.displacement, &self.multiplier))
+        once(&self.forces, || self.model.forces(&self.displacement, &self.multiplier, &self.of_ties))
     }
 
     /// The resultants of contact forces, support reactions and loads: obstacle by obstacle, support by support.
@@ -199,6 +206,7 @@ impl Answer {
             all.extend(self.model.support_resultants(|node| self.model.at_node(reactions, node)));
             all.extend(self.model.spring_resultants(&self.displacement));
             all.extend(self.model.face_resultants(&self.forces()?.rigid_faces, &self.unknowns)?);
+            all.extend(self.model.tie_resultants(&self.of_ties));
             all.extend(self.model.load_resultant());
             without_rounding(&mut all);
             Ok(all)
@@ -248,7 +256,7 @@ fn once<T>(cell: &OnceLock<T>, find: impl FnOnce() -> Result<T, Error>) -> Resul
 
 impl Model {
     /// Nodal support reactions on the body, length `dim * n_nodes`, in force, along the positive axes; zero along free
-    /// dofs, so that a roller pushes along its normal. `multiplier` has one entry per contact row, in force, `<= 0`.
+    /// dofs, so that a roller pushes along its normal. `multiplier` has one entry per contact row, in force, `<= 0`, then one per equation of a tie.
     ///
     /// They are the internal forces at the supported dofs, minus load and contact force there. The multiplier enters because a contact
     /// row may press on a supported dof.
@@ -256,18 +264,20 @@ impl Model {
     /// # Errors
     /// [`qp::Error::Length`] if `displacement` or `multiplier` do not fit.
     pub fn reactions(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Vec<f64>, Error> {
-        Ok(self.forces(&self.nodal_displacement(displacement)?, multiplier)?.reactions)
+        let (multiplier, of_ties) = self.split(multiplier)?;
+        Ok(self.forces(&self.nodal_displacement(displacement)?, multiplier, of_ties)?.reactions)
     }
 
     /// The imbalance of loads, support reactions and contact forces on each body: the largest of the virtual works on
     /// its unit rigid-body modes (the resultant forces, and the resultant moments over half its size), relative to the
     /// sum of all force magnitudes. A body of revolution has one rigid-body mode, and its forces count along the axis.
-    /// `multiplier` has one entry per contact row, in force, `<= 0`.
+    /// `multiplier` is that of [`Model::reactions`].
     ///
     /// # Errors
     /// As [`Model::reactions`].
     pub fn force_balance(&self, displacement: &[f64], multiplier: &[f64]) -> Result<f64, Error> {
-        Ok(self.forces(&self.nodal_displacement(displacement)?, multiplier)?.balance)
+        let (multiplier, of_ties) = self.split(multiplier)?;
+        Ok(self.forces(&self.nodal_displacement(displacement)?, multiplier, of_ties)?.balance)
     }
 
     /// The stress in the displaced body, per element and per node, in force per area, tension positive.
@@ -285,17 +295,18 @@ impl Model {
     }
 
     /// The forces of a nodal displacement.
-    fn forces(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Forces, Error> {
+    fn forces(&self, displacement: &[f64], multiplier: &[f64], of_ties: &[f64]) -> Result<Forces, Error> {
         let contact = self.contact_forces(multiplier)?;
+        let ties = self.tie_forces(of_ties, 0..of_ties.len(), false);
         let mut forces = internal_force(self.body(), displacement)?;
         let acting = self.nodal_load().iter().zip(&contact);
         forces.iter_mut().zip(acting).for_each(|(force, (load, contact))| *force = *force - load - contact);
         let springs = self.parts.spring_forces(displacement);
-        forces.iter_mut().zip(&springs).for_each(|(force, spring)| *force -= spring);
+        forces.iter_mut().zip(springs.iter().zip(&ties)).for_each(|(force, (spring, tie))| *force -= spring + tie);
         let mut reactions = self.dofs().supported_part(&forces)?;
         let rigid_faces = self.force_of_faces(&forces, |_| true)?;
         let motions = RigidBodyModes::of(self.body());
-        let mut all = vec![self.nodal_load(), &contact, &springs, &rigid_faces];
+        let mut all = vec![self.nodal_load(), &contact, &springs, &rigid_faces, &ties];
         let own;
         if self.body().has_own_stress() {
             own = internal_force(self.body(), &vec![0.0; displacement.len()])?;
@@ -312,6 +323,6 @@ impl Model {
         }
         all.push(&reactions);
         let balance = motions.imbalance(self.mesh().nodes(), &all);
-        Ok(Forces { contact, reactions, springs, rigid_faces, balance })
+        Ok(Forces { contact, reactions, springs, rigid_faces, ties, balance })
     }
 }

@@ -42,9 +42,8 @@ const ABSENT: [Absent; 7] = [
                   with the yield stress, or take CalculiX or code_aster",
     },
     Absent {
-        names: "adhesion cohesion cohesive glue tie tied bonded",
-        instead: "adhesion is not modelled, a contact only presses: join tied bodies in one mesh with `materials`, or take code_aster for \
-                  cohesive zones",
+        names: "adhesion cohesion cohesive glue tied bonded",
+        instead: "adhesion is not modelled, a contact only presses: `ties` glue surfaces together for good, and code_aster has cohesive zones",
     },
 ];
 

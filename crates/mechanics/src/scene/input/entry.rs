@@ -130,6 +130,17 @@ pub(crate) fn nodes_named(mesh: &Mesh, name: &str, path: &str) -> Result<Vec<usi
     })
 }
 
+/// The nodes of these names, each once.
+pub(crate) fn nodes_named_once(mesh: &Mesh, names: &[String], path: &str) -> Result<Vec<usize>, Error> {
+    let mut nodes = Vec::new();
+    for name in names {
+        nodes.extend(nodes_named(mesh, name, path)?);
+    }
+    nodes.sort_unstable();
+    nodes.dedup();
+    Ok(nodes)
+}
+
 /// The node at a point of a scene.
 pub(crate) fn node_at(mesh: &Mesh, at: &[f64], path: &str) -> Result<usize, Error> {
     let dimension = mesh.dimension();

@@ -95,6 +95,39 @@ pub enum Warning {
         /// Share of the nodes of the other boundary that face the carrying one.
         of_other: f64,
     },
+    /// Two surfaces move together across a gap.
+    #[error(
+        "{tie}: `{boundary}` and `{to}` are tied over distances up to {apart:.2e}: forces along the surfaces turn both bodies over such a \
+         distance; move the bodies together, or give a smaller `reach`"
+    )]
+    TiedApart {
+        /// Its place in the scene, as `ties[0].surfaces`.
+        tie: String,
+        /// Name of the boundary that takes the means.
+        boundary: String,
+        /// Name of the boundary of the other body.
+        to: String,
+        /// Largest distance, in length.
+        apart: f64,
+    },
+    /// Two tied surfaces cover each other only in part.
+    #[error(
+        "{tie}: {:.1} % of the area of `{boundary}` and {:.1} % of the nodes of `{to}` are tied; the rest is free, and the bodies can go \
+         through each other there",
+        100.0 * share, 100.0 * of_other
+    )]
+    PartlyTied {
+        /// Its place in the scene, as `ties[0].surfaces`.
+        tie: String,
+        /// Name of the boundary that takes the means.
+        boundary: String,
+        /// Name of the boundary of the other body.
+        to: String,
+        /// Tied share of the area of the boundary.
+        share: f64,
+        /// Share of the nodes of the other boundary that are tied.
+        of_other: f64,
+    },
     /// Facets that cut the corner of a curve are off by a large part of the gap.
     #[error(
         "{obstacle}: facets stand for curves and miss them by up to {sag:.2e}, while the largest gap is {gap:.2e}: gaps are those of curves \
@@ -245,6 +278,8 @@ impl Warning {
             Warning::NoContactRow { .. } => "no-contact-row",
             Warning::NoFacingFacet { .. } => "no-facing-facet",
             Warning::PartlyCovered { .. } => "partly-covered",
+            Warning::TiedApart { .. } => "tied-apart",
+            Warning::PartlyTied { .. } => "partly-tied",
             Warning::Sag { .. } => "sag",
             Warning::CoarseMaster { .. } => "coarse-master",
             Warning::FitDiffers { .. } => "fit-differs",

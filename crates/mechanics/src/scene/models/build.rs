@@ -83,6 +83,8 @@ impl Scene {
         let moves = self.analysis.is_some();
         let nodes = body.mesh().nodes();
         let unknowns = Unknowns::of(nodes, &dofs, body.dimension(), &rigid_faces, &obstacles)?;
+        let ties = self.tied(&body, &dofs, &unknowns)?;
+        warnings.extend(ties.warnings.iter().cloned());
         if let Some(index) = unknowns.pressed.first().filter(|_| moves) {
             let message = "an obstacle without mass has no motion of its own; let it stand still, or load the body";
             return Err(wrong(format!("obstacles[{index}].force"), message));
@@ -102,6 +104,7 @@ impl Scene {
                 rigid_faces,
                 obstacles,
                 unknowns,
+                ties,
                 warnings,
                 moves,
             },
@@ -143,12 +146,13 @@ impl Scene {
         Ok(obstacles)
     }
 
-    /// The dofs with coefficients on the quadratic faces that may touch an obstacle.
+    /// The dofs with coefficients on the quadratic faces that may touch an obstacle or are tied.
     fn with_contact_faces(&self, dofs: DofMap, body: &ElasticBody, further: &[(&str, Arc<dyn Obstacle>)]) -> DofMap {
         let of_scene = self
             .obstacles
             .iter()
             .flat_map(|spec| [Some(spec.boundary.as_str()), spec.shape.shape().other_boundary()].into_iter().flatten());
-        dofs.with_contact_faces(body, of_scene.chain(further.iter().map(|(boundary, _)| *boundary)))
+        let tied = self.tied_surfaces().flatten();
+        dofs.with_contact_faces(body, of_scene.chain(tied).chain(further.iter().map(|(boundary, _)| *boundary)))
     }
 }

@@ -5,8 +5,7 @@ use crate::error::Error;
 use crate::fem::assembly::node_normals;
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{COORDINATES, dot};
-use crate::fem::mesh::Mesh;
-use crate::scene::input::entry::{boundary, finite, node_at, nodes_named, point, vector, wrong};
+use crate::scene::input::entry::{boundary, finite, node_at, nodes_named_once, point, vector, wrong};
 use crate::scene::input::profile::Profile;
 use crate::scene::input::schema::{Place, Scene, SupportSpec};
 
@@ -33,7 +32,7 @@ impl Scene {
             let nodes = match &support.on {
                 Place::Boundary(name) => boundary(mesh, name, &format!("{path}.on.boundary"))?.nodes(),
                 Place::Point(at) => vec![node_at(mesh, at, &format!("{path}.on.point"))?],
-                Place::Nodes(names) => named_once(mesh, names, &format!("{path}.on.nodes"))?,
+                Place::Nodes(names) => nodes_named_once(mesh, names, &format!("{path}.on.nodes"))?,
             };
             let profile = support.profile.as_ref();
             let profile = profile.map(|spec| Profile::of(spec, &format!("{path}.profile"), body.dimension()));
@@ -104,15 +103,4 @@ impl Scene {
         }
         Ok(components)
     }
-}
-
-/// The nodes of these names, each once.
-fn named_once(mesh: &Mesh, names: &[String], path: &str) -> Result<Vec<usize>, Error> {
-    let mut nodes = Vec::new();
-    for name in names {
-        nodes.extend(nodes_named(mesh, name, path)?);
-    }
-    nodes.sort_unstable();
-    nodes.dedup();
-    Ok(nodes)
 }

@@ -74,12 +74,13 @@ impl Scene {
         Ok((scene, body))
     }
 
-    /// The bodies of the obstacles that are other bodies.
+    /// The bodies of the obstacles that are other bodies, and of tied surfaces.
     fn named_pairs(&self, body: &ElasticBody) -> Vec<[Option<usize>; 2]> {
         let region = |name: &str| body.region_of(body.mesh().boundary(name)?);
         let of_obstacle =
             |spec: &ObstacleSpec| Some([region(&spec.boundary), region(spec.shape.shape().other_boundary()?)]);
-        self.obstacles.iter().filter_map(of_obstacle).collect()
+        let of_tie = |pair: [&str; 2]| pair.map(region);
+        self.obstacles.iter().filter_map(of_obstacle).chain(self.tied_surfaces().map(of_tie)).collect()
     }
 
     /// The largest prescribed displacement, in length.

@@ -86,6 +86,7 @@ impl Scene {
             ("springs", !self.springs.is_empty()),
             ("symmetry", !self.symmetry.is_empty()),
             ("rigid-faces", !self.rigid_faces.is_empty()),
+            ("ties", !self.ties.is_empty()),
         ] {
             if is_there {
                 return Err(none(field, "they have no guaranteed bound: only supports have one"));

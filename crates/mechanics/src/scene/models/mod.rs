@@ -23,5 +23,6 @@ mod springs;
 pub(crate) mod start;
 mod suspect;
 mod symmetry;
+mod ties;
 pub(crate) mod unknowns;
 mod unstrained;

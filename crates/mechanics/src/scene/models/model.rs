@@ -1,5 +1,6 @@
 //! The model: a discretised scene, its contact problem, and the meaning of its rows and dofs.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::parts::Parts;
@@ -87,6 +88,7 @@ impl Model {
         if let Some(near_null) = near_null {
             problem = problem.with_near_null(near_null)?;
         }
+        let problem = parts.tied(problem)?;
         let suspect = suspect_rows(&parts, &built.rows);
         let warnings = parts.warnings.iter().cloned().chain(built.warnings).chain(suspect).collect();
         Ok(Model { parts, gap, rows: built.rows, across: built.across, warnings, problem })
@@ -158,10 +160,12 @@ impl Model {
         let is_pressed = |row: usize| parts.unknowns.travel(self.rows[row].obstacle).is_some();
         // The obstacles are out of reach, on springs that nothing stretches.
         let away = |(row, &gap): (usize, &f64)| if is_pressed(row) { f64::INFINITY } else { gap };
-        let gap = problem.gap().iter().enumerate().map(away).collect();
+        let (contact, gap) = problem.inequalities_given();
+        let gap = gap.iter().enumerate().map(away).collect();
         let load = parts.unknowns.pressed_by(problem.load().to_vec(), |_| 0.0);
         let stiffness = parts.unknowns.on_springs(problem.stiffness())?;
-        let mut solution = solve(&ContactProblem::new(stiffness, load, problem.contact().clone(), gap)?, settings)?;
+        let away = parts.tied(ContactProblem::new(stiffness, load, contact.into_owned(), gap)?)?;
+        let mut solution = solve(&away, settings)?;
         let left = problem.violation(&solution.displacement);
         for &obstacle in &parts.unknowns.pressed {
             let Some(travel) = parts.unknowns.travel(obstacle) else { continue };
@@ -360,6 +364,23 @@ impl Model {
         Ok(forces)
     }
 
+    /// The forces of some equations of ties on the nodes, length `dim * n_nodes`, in force, from the multipliers of all equations; those on
+    /// the first side of each alone, if so wanted.
+    pub(crate) fn tie_forces(&self, of_ties: &[f64], rows: Range<usize>, is_own: bool) -> Vec<f64> {
+        let dimension = self.body().dimension();
+        let mut forces = vec![0.0; self.parts.dofs.nodal_count()];
+        for index in rows {
+            let (row, mu) = (&self.parts.ties.rows[index], of_ties[index]);
+            let own = if is_own { row.own.clone() } else { 0..row.terms.len() };
+            for (node, vector) in &row.terms[own] {
+                let entries = &mut forces[dimension * node..dimension * (node + 1)];
+                entries.iter_mut().zip(vector).for_each(|(entry, part)| *entry += mu * part);
+            }
+        }
+        self.parts.dofs.basis.scatter(&mut forces, dimension);
+        forces
+    }
+
     /// External loads at all nodes, length `dim * n_nodes`, order `[f_x0, f_y0, f_x1, ...]`, in force, along the
     /// positive axes.
     pub fn nodal_load(&self) -> &[f64] {
@@ -369,6 +390,14 @@ impl Model {
     /// The point of application of the force of a row for moments: the node, or, in the middle of a curved edge, its coefficient.
     pub(crate) fn place(&self, node: usize) -> [f64; 3] {
         self.parts.dofs.basis.place(self.mesh().nodes(), node)
+    }
+
+    /// Multipliers of contact rows, followed by those of the equations of ties.
+    pub(crate) fn split<'a>(&self, multiplier: &'a [f64]) -> Result<(&'a [f64], &'a [f64]), Error> {
+        let (rows, ties) = (self.rows.len(), self.parts.ties.rows.len());
+        let of = if ties == 0 { "contact rows" } else { "contact rows and equations of ties" };
+        qp::Error::check_length("multiplier", multiplier.len(), rows + ties, of)?;
+        Ok(multiplier.split_at(rows))
     }
 
     pub(crate) fn check_multiplier(&self, multiplier: &[f64]) -> Result<(), Error> {

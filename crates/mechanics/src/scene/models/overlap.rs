@@ -189,6 +189,10 @@ impl Model {
         // The other node of a pair is held by the same row.
         let pairs = self.rows().iter().filter_map(|row| Some((row.partner()?, region_of(row.node))));
         kept_apart.extend(pairs.map(|pair| (pair, KEPT_APART)));
+        let ties = self.parts.ties.rows.iter().filter(|row| row.at.is_some());
+        for (node, other) in ties.flat_map(|row| row.sides()) {
+            kept_apart.insert((node, region_of(other)), KEPT_APART);
+        }
         taking_part.extend(kept_apart);
         taking_part
     }

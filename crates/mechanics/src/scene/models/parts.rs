@@ -3,13 +3,14 @@
 use super::held::Held;
 use super::rigid_face::RigidFace;
 use super::symmetry::Symmetry;
+use super::ties::Ties;
 use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, Springs};
 use crate::fem::body::ElasticBody;
 use crate::scene::input::obstacle::PlacedObstacle;
 use crate::scene::{Units, Warning};
-use signorini_qp::SymmetricMatrix;
+use signorini_qp::{ContactProblem, SymmetricMatrix};
 
 /// The data that do not depend on the gap.
 #[derive(Debug)]
@@ -33,6 +34,7 @@ pub(crate) struct Parts {
     pub rigid_faces: Vec<RigidFace>,
     pub obstacles: Vec<PlacedObstacle>,
     pub unknowns: Unknowns,
+    pub ties: Ties,
     pub warnings: Vec<Warning>,
     /// `true` if the analysis is dynamic: inertia then resists motions that no support holds.
     pub moves: bool,
@@ -61,6 +63,17 @@ impl Parts {
             load.iter_mut().zip(self.spring_forces(&lifted)).for_each(|(load, force)| *load += force);
         }
         Ok(load)
+    }
+
+    /// A problem of the unknowns with the equations of the ties.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::with_equalities`].
+    pub fn tied(&self, problem: ContactProblem) -> Result<ContactProblem, Error> {
+        match self.ties.rows.is_empty() {
+            true => Ok(problem),
+            false => Ok(problem.with_equalities(&self.ties.matrix, self.ties.values.clone())?),
+        }
     }
 
     /// The forces of all springs on the nodes in a nodal displacement.

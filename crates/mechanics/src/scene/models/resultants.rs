@@ -278,6 +278,18 @@ impl Model {
         Ok(all)
     }
 
+    /// The resultants of the ties on their first sides, in the order of the scene, from the multipliers of all equations.
+    pub(crate) fn tie_resultants(&self, of_ties: &[f64]) -> Vec<Resultant> {
+        let ties = &self.parts.ties;
+        let of_tie = |(index, rows): (usize, &Range<usize>)| {
+            let first = ties.rows[rows.clone()].first().and_then(|row| row.terms.first());
+            let sum = self.sum_of(&self.tie_forces(of_ties, rows.clone(), true));
+            let on = self.name_of_body(first.map(|term| term.0));
+            Resultant { on, ..sum.resultant(self, format!("ties[{index}]")) }
+        };
+        ties.of_tie.iter().enumerate().map(of_tie).collect()
+    }
+
     /// The resultant of the loads, if there are any.
     pub(crate) fn load_resultant(&self) -> Option<Resultant> {
         let loads = self.sum_of(self.nodal_load());

@@ -6,7 +6,7 @@ use super::held::Held;
 use crate::error::Error;
 use crate::fem::geometry::{COORDINATES, cross, distance, dot, minus};
 use crate::fem::{ElasticBody, tributary_areas};
-use crate::scene::input::entry::{boundary, finite, point, vector, wrong};
+use crate::scene::input::entry::{boundary, finite, nodes_named_once, point, vector, wrong};
 use crate::scene::input::schema::{RigidFaceSpec, Scene};
 
 /// A part of a motion below this, relative to the size of the face, is rounding.
@@ -79,8 +79,16 @@ impl Scene {
 impl RigidFace {
     fn of(spec: &RigidFaceSpec, path: &str, body: &ElasticBody) -> Result<Self, Error> {
         let (mesh, dimension) = (body.mesh(), body.dimension());
-        let boundary = boundary(mesh, &spec.boundary, &format!("{path}.boundary"))?;
-        let areas = tributary_areas(body, boundary);
+        let areas = match &spec.boundary {
+            Some(name) if spec.nodes.is_empty() => {
+                tributary_areas(body, boundary(mesh, name, &format!("{path}.boundary"))?)
+            }
+            None if !spec.nodes.is_empty() => {
+                let nodes = nodes_named_once(mesh, &spec.nodes, &format!("{path}.nodes"))?;
+                nodes.into_iter().map(|node| (node, 1.0)).collect()
+            }
+            _ => return Err(wrong(path, "needs either a `boundary` or `nodes`; give one of them")),
+        };
         let centre = match &spec.centre {
             Some(centre) => vector(&format!("{path}.centre"), centre, dimension)?,
             None => {

@@ -96,9 +96,8 @@ pub(crate) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
             let value = |node: usize| by_node.get(&node).copied().unwrap_or(row.gap);
             let mut remaining = if row.is_mean { row.gap } else { dofs.coefficient(row.node, value) };
             for &(node, share) in &row.ends {
-                let along = dofs.along(node, &row.normal[..dimension]);
-                let (entries, prescribed) = parts.unknowns.combination(&along.free);
-                remaining -= share * (along.prescribed + prescribed);
+                let (entries, prescribed) = parts.unknowns.along(dofs, node, &row.normal[..dimension]);
+                remaining -= share * prescribed;
                 free.extend(entries.into_iter().map(|(column, component)| (rows.len(), column, share * component)));
             }
             if let Some(travel) = travel {

@@ -15,7 +15,7 @@ use signorini_qp as qp;
 
 use super::rigid_face::RigidFace;
 use crate::error::Error;
-use crate::fem::assembly::DofMap;
+use crate::fem::assembly::{Along, DofMap};
 use crate::scene::input::obstacle::PlacedObstacle;
 use signorini_qp::{SparseMatrix, SymmetricMatrix};
 
@@ -24,7 +24,7 @@ use signorini_qp::{SparseMatrix, SymmetricMatrix};
 pub(crate) struct Unknowns {
     /// Number of free dofs.
     free: usize,
-    ties: Option<Ties>,
+    on_faces: Option<FaceMotions>,
     /// The pressed obstacles, in the order of their unknowns, which come last.
     pub pressed: Vec<usize>,
 }
@@ -59,7 +59,7 @@ pub enum Meaning {
 
 /// The map from the unknowns to the free dofs: u = R y + u_0.
 #[derive(Clone, Debug)]
-struct Ties {
+struct FaceMotions {
     /// Columns of the transpose of R: the row of R of each free dof.
     rows: SparseMatrix,
     /// u_0, for each free dof.
@@ -67,7 +67,7 @@ struct Ties {
     /// The force or the moment along each unknown; zero except on faces.
     load: Vec<f64>,
     /// The unknowns of each face, by its motions; `None` if one is prescribed.
-    faces: Vec<Vec<Option<usize>>>,
+    unknowns: Vec<Vec<Option<usize>>>,
 }
 
 impl Unknowns {
@@ -83,14 +83,14 @@ impl Unknowns {
         obstacles: &[PlacedObstacle],
     ) -> Result<Self, Error> {
         let is_pressed = |index: &usize| obstacles[*index].force().is_some();
-        let ties = if faces.is_empty() { None } else { Some(Ties::of(nodes, dofs, dimension, faces)?) };
+        let on_faces = if faces.is_empty() { None } else { Some(FaceMotions::of(nodes, dofs, dimension, faces)?) };
         let pressed = (0..obstacles.len()).filter(is_pressed).collect();
-        Ok(Unknowns { free: dofs.free().len(), ties, pressed })
+        Ok(Unknowns { free: dofs.free().len(), on_faces, pressed })
     }
 
     /// Number of unknowns of the body.
     fn of_body(&self) -> usize {
-        self.ties.as_ref().map_or(self.free, |ties| ties.rows.rows())
+        self.on_faces.as_ref().map_or(self.free, |on_faces| on_faces.rows.rows())
     }
 
     /// Number of unknowns.
@@ -105,7 +105,7 @@ impl Unknowns {
 
     /// The values of the motions of a rigid face that are unknowns, among values of the unknowns; `None` if one is prescribed.
     pub fn motions(&self, values: &[f64], face: usize) -> Vec<Option<f64>> {
-        let unknowns = self.ties.as_ref().and_then(|ties| ties.faces.get(face));
+        let unknowns = self.on_faces.as_ref().and_then(|on_faces| on_faces.unknowns.get(face));
         unknowns.into_iter().flatten().map(|unknown| unknown.and_then(|unknown| values.get(unknown).copied())).collect()
     }
 
@@ -115,8 +115,8 @@ impl Unknowns {
     /// [`qp::Error::Length`] if there is not one value for each unknown.
     pub fn displacement<'a>(&self, values: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
         let mut moved = self.motion(values)?;
-        if let Some(ties) = &self.ties {
-            moved.to_mut().iter_mut().zip(&ties.offset).for_each(|(moved, offset)| *moved += offset);
+        if let Some(on_faces) = &self.on_faces {
+            moved.to_mut().iter_mut().zip(&on_faces.offset).for_each(|(moved, offset)| *moved += offset);
         }
         Ok(moved)
     }
@@ -128,13 +128,16 @@ impl Unknowns {
     pub fn motion<'a>(&self, values: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
         qp::Error::check_length("displacement", values.len(), self.count(), "unknowns")?;
         let of_body = &values[..self.of_body()];
-        Ok(self.ties.as_ref().map_or(Cow::Borrowed(of_body), |ties| Cow::Owned(ties.rows.mul_transposed(of_body))))
+        Ok(self
+            .on_faces
+            .as_ref()
+            .map_or(Cow::Borrowed(of_body), |on_faces| Cow::Owned(on_faces.rows.mul_transposed(of_body))))
     }
 
     /// The unknowns of a motion of the free dofs in which the faces move rigidly, with a value for each pressed obstacle.
     pub fn of_motion(&self, of_free: Vec<f64>, of_travel: impl Fn(usize) -> f64) -> Vec<f64> {
-        let mut values = match &self.ties {
-            Some(ties) => ties.unknowns(&of_free),
+        let mut values = match &self.on_faces {
+            Some(on_faces) => on_faces.nearest(&of_free),
             None => of_free,
         };
         values.extend(self.pressed.iter().map(|&obstacle| of_travel(obstacle)));
@@ -143,11 +146,11 @@ impl Unknowns {
 
     /// The load of the unknowns: from that of the free dofs, their stiffness, and the force on each pressed obstacle.
     pub fn load(&self, of_free: Vec<f64>, stiffness: &SymmetricMatrix, force: impl Fn(usize) -> f64) -> Vec<f64> {
-        let mut load = match &self.ties {
-            Some(ties) => {
-                let lifted = stiffness.mul(&ties.offset);
+        let mut load = match &self.on_faces {
+            Some(on_faces) => {
+                let lifted = stiffness.mul(&on_faces.offset);
                 let left: Vec<f64> = of_free.iter().zip(lifted).map(|(load, lifted)| load - lifted).collect();
-                ties.rows.mul(&left).into_iter().zip(&ties.load).map(|(sum, own)| sum + own).collect()
+                on_faces.rows.mul(&left).into_iter().zip(&on_faces.load).map(|(sum, own)| sum + own).collect()
             }
             None => of_free,
         };
@@ -167,11 +170,11 @@ impl Unknowns {
     /// # Errors
     /// None for a stiffness of the free dofs.
     pub fn stiffness(&self, of_free: SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
-        let Some(ties) = &self.ties else { return Ok(of_free.with_empty(self.pressed.len())) };
+        let Some(on_faces) = &self.on_faces else { return Ok(of_free.with_empty(self.pressed.len())) };
         let mut entries = Vec::with_capacity(of_free.lower().entries());
         for (i, j, value) in of_free.lower().triplets() {
-            for (p, a) in ties.rows.column(i) {
-                for (q, b) in ties.rows.column(j) {
+            for (p, a) in on_faces.rows.column(i) {
+                for (q, b) in on_faces.rows.column(j) {
                     // Entries off the diagonal have a mirror image (j, i).
                     match (i == j, p >= q) {
                         (true, true) => entries.push((p, q, a * value * b)),
@@ -186,11 +189,12 @@ impl Unknowns {
         Ok(SymmetricMatrix::from_lower(SparseMatrix::from_triplets(self.count(), self.count(), &entries)?)?)
     }
 
-    /// A combination of free dofs in the unknowns, and its prescribed part.
-    pub fn combination(&self, of_free: &[(usize, f64)]) -> (Vec<(usize, f64)>, f64) {
-        let Some(ties) = &self.ties else { return (of_free.to_vec(), 0.0) };
-        let entries = of_free.iter().flat_map(|&(dof, part)| ties.rows.column(dof).map(move |(q, r)| (q, part * r)));
-        (entries.collect(), of_free.iter().map(|&(dof, part)| part * ties.offset[dof]).sum())
+    /// The displacement of a node along a vector, or its coefficient, in the unknowns, and its prescribed part.
+    pub fn along(&self, dofs: &DofMap, node: usize, vector: &[f64]) -> (Vec<(usize, f64)>, f64) {
+        let Along { free, prescribed } = dofs.along(node, vector);
+        let Some(on_faces) = &self.on_faces else { return (free, prescribed) };
+        let entries = free.iter().flat_map(|&(dof, part)| on_faces.rows.column(dof).map(move |(q, r)| (q, part * r)));
+        (entries.collect(), free.iter().fold(prescribed, |sum, &(dof, part)| sum + part * on_faces.offset[dof]))
     }
 
     /// The meaning of each unknown.
@@ -227,7 +231,7 @@ impl Unknowns {
     }
 }
 
-impl Ties {
+impl FaceMotions {
     fn of(nodes: &[[f64; 3]], dofs: &DofMap, dimension: usize, faces: &[RigidFace]) -> Result<Self, Error> {
         let mut face_of = vec![None; nodes.len()];
         for (index, face) in faces.iter().enumerate() {
@@ -263,19 +267,19 @@ impl Ties {
             }
         }
         let rows = SparseMatrix::from_triplets(load.len(), dofs.free().len(), &entries)?;
-        Ok(Ties { rows, offset, load, faces: unknowns })
+        Ok(FaceMotions { rows, offset, load, unknowns })
     }
 
     /// The unknowns next to a motion of the free dofs: those of the faces by least squares.
-    fn unknowns(&self, of_free: &[f64]) -> Vec<f64> {
+    fn nearest(&self, of_free: &[f64]) -> Vec<f64> {
         let by_unknown = self.rows.transposed();
         let mut values = vec![0.0; self.rows.rows()];
-        let of_faces: Vec<usize> = self.faces.iter().flatten().flatten().copied().collect();
+        let of_faces: Vec<usize> = self.unknowns.iter().flatten().flatten().copied().collect();
         let first = of_faces.first().copied().unwrap_or(values.len());
         for (unknown, value) in values.iter_mut().enumerate().take(first) {
             *value = by_unknown.column(unknown).map(|(dof, share)| share * of_free[dof]).sum();
         }
-        for face in &self.faces {
+        for face in &self.unknowns {
             let unknowns: Vec<usize> = face.iter().flatten().copied().collect();
             if unknowns.is_empty() {
                 continue;

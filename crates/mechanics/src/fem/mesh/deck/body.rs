@@ -156,6 +156,11 @@ impl Deck {
         )
     }
 
+    /// The coordinates of a node, by its place.
+    pub fn place_of_node(&self, node: usize) -> [f64; 3] {
+        self.at[node]
+    }
+
     /// The place of the first element of a body, numbered from 0.
     pub fn place_of_body(&self, body: usize) -> Place {
         let first = self.body_of_element.iter().position(|&own| own == body);

@@ -30,6 +30,11 @@ pub(super) fn names_of_nodes(deck: &Deck, target: &str, nodes: &[usize]) -> Vec<
     bodies.into_iter().map(|body| name_in(body, &name)).collect()
 }
 
+/// The name of a node, by its place; `None` for a node without elements.
+pub(super) fn name_of_node(deck: &Deck, node: usize) -> Option<String> {
+    deck.body_of_node[node].map(|body| name_in(body, &deck.nodes.numbers[node].to_string()))
+}
+
 /// The names of a surface in each body that has some of its faces, with the bodies.
 pub(super) fn names_of_surface(deck: &Deck, surface: &Surface) -> Vec<(usize, String)> {
     let bodies: BTreeSet<usize> = surface.faces.iter().map(|&(element, _)| deck.body_of_element[element]).collect();

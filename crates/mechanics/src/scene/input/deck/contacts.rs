@@ -4,14 +4,15 @@ use std::collections::HashMap;
 
 use serde_json::{Value, json};
 
-use super::bodies::names_of_surface;
 use super::scene_text::Entry;
+use super::ties::{side, surfaces};
 use crate::error::{Error, nearly};
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
 
 /// The contacts of a scene, and what a reader should know of them.
 pub(super) struct Contacts {
     pub obstacles: Vec<Entry>,
+    pub ties: Vec<Entry>,
     pub warnings: Vec<(Place, String)>,
 }
 
@@ -20,17 +21,17 @@ pub(super) struct Contacts {
 /// # Errors
 /// An error with the line for a contact that is not read.
 pub(super) fn contacts(deck: &Deck, may_rub: bool) -> Result<Contacts, Error> {
-    let mut found = Contacts { obstacles: Vec::new(), warnings: Vec::new() };
+    let mut found = Contacts { obstacles: Vec::new(), ties: Vec::new(), warnings: Vec::new() };
     let interactions = interactions(deck, may_rub, &mut found.warnings)?;
     let clearances = clearances(deck)?;
     let mut used = vec![false; clearances.len()];
     for card in deck.source.cards.iter().filter(|card| card.is("CONTACTPAIR")) {
         let fault = |message: String| Err(deck.source.fault(card.place, message));
         let interaction = card.value("INTERACTION").unwrap_or_default();
-        if !interactions.contains_key(&key(interaction)) {
+        let Some(&is_tied) = interactions.get(&key(interaction)) else {
             let meant = nearly(&key(interaction), interactions.keys().map(String::as_str));
             return fault(format!("there is no *SURFACE INTERACTION `{interaction}`{meant}"));
-        }
+        };
         if let Some(kind) = card.value("TYPE").filter(|kind| !IS_READ.contains(&key(kind).as_str())) {
             return fault(format!("contacts of TYPE={kind} are not read; there are {}", IS_READ.join(", ")));
         }
@@ -39,6 +40,10 @@ pub(super) fn contacts(deck: &Deck, may_rub: bool) -> Result<Contacts, Error> {
             let mut fields = deck.source.fields(line);
             let pair = [fields.text().unwrap_or_default(), fields.text().unwrap_or_default()];
             fields.end()?;
+            if is_tied {
+                found.ties.push(surfaces(deck, &pair, adjust, line.place)?);
+                continue;
+            }
             let mut sides = Vec::with_capacity(2);
             for name in &pair {
                 sides.push(side(deck, name).map_err(|message| fields.fault(message))?);
@@ -95,50 +100,39 @@ fn adjusted(deck: &Deck, card: &Card) -> Result<Option<f64>, Error> {
     }
 }
 
-/// The body of a surface and its name in the scene.
-fn side(deck: &Deck, name: &str) -> Result<(usize, String), String> {
-    let surface = deck.surface_or(name)?;
-    if let Some(&node) = surface.bare.first() {
-        let number = deck.nodes.numbers[node];
-        return Err(format!(
-            "node {number} of the surface `{}` is on no face that has only nodes of it; name faces (TYPE=ELEMENT), or the nodes of \
-             whole faces",
-            surface.name
-        ));
-    }
-    match &names_of_surface(deck, surface)[..] {
-        [(body, name)] => Ok((*body, name.clone())),
-        several => {
-            let message = "has faces of several bodies; name a surface of each body";
-            Err(format!("the surface `{}` {message}, of which there are {}", surface.name, several.len()))
-        }
-    }
-}
-
-/// The interactions by their names in capitals, with their places.
+/// The interactions by their names in capitals; `true` for those that tie.
 fn interactions(
     deck: &Deck,
     may_rub: bool,
     warnings: &mut Vec<(Place, String)>,
-) -> Result<HashMap<String, Place>, Error> {
+) -> Result<HashMap<String, bool>, Error> {
     let mut all = HashMap::new();
+    let mut last = String::new();
     for card in &deck.source.cards {
         if card.is("SURFACEINTERACTION") {
             let Some(name) = card.value("NAME") else {
                 return Err(deck.source.fault(card.place, "*SURFACE INTERACTION has no name; write NAME=NAME"));
             };
-            if all.insert(key(name), card.place).is_some() {
+            last = key(name);
+            if all.insert(last.clone(), is_tied(deck, card)).is_some() {
                 return Err(deck.source.fault(card.place, format!("there are two interactions `{name}`")));
             }
         } else if (card.is("SURFACEBEHAVIOR") || card.is("FRICTION")) && all.is_empty() {
             return Err(deck.source.fault(card.place, format!("{} follows no *SURFACE INTERACTION", card.name)));
         } else if card.is("SURFACEBEHAVIOR") {
             warnings.extend(behaviour(deck, card)?.map(|message| (card.place, message)));
-        } else if card.is("FRICTION") {
+        } else if card.is("FRICTION") && all.get(&last) == Some(&false) {
             warnings.extend(friction(deck, card, may_rub)?.map(|message| (card.place, message)));
         }
     }
     Ok(all)
+}
+
+/// Returns `true` for an interaction, by its first card, whose behaviour is to tie.
+fn is_tied(deck: &Deck, first: &Card) -> bool {
+    let own = deck.source.cards.iter().skip_while(|card| card.place != first.place).skip(1);
+    let mut own = own.take_while(|card| ["SURFACEBEHAVIOR", "FRICTION"].iter().any(|name| card.is(name)));
+    own.any(|card| card.says("PRESSURE-OVERCLOSURE", "TIED"))
 }
 
 /// The warning for a contact that is soft in the deck.
@@ -154,14 +148,20 @@ fn behaviour(deck: &Deck, card: &Card) -> Result<Option<String>, Error> {
     match law.as_str() {
         // The values are those with which CalculiX approximates hard contact.
         "HARD" => Ok(None),
+        "TIED" => Ok(Some(format!(
+            "{} with PRESSURE-OVERCLOSURE=TIED ({}) is answered by surfaces that move together; its stiffness is not needed",
+            card.name,
+            values.join(", ")
+        ))),
         "LINEAR" | "EXPONENTIAL" | "TABULAR" => Ok(Some(format!(
             "{} with PRESSURE-OVERCLOSURE={law} ({}) is answered by hard contact: its stiffness is not needed, and surfaces do not overlap",
             card.name,
             values.join(", ")
         ))),
         _ => {
-            let message =
-                format!("PRESSURE-OVERCLOSURE={law} is not modelled; there are HARD, LINEAR, EXPONENTIAL and TABULAR");
+            let message = format!(
+                "PRESSURE-OVERCLOSURE={law} is not modelled; there are HARD, LINEAR, EXPONENTIAL, TABULAR and TIED"
+            );
             Err(deck.source.fault(card.place, message))
         }
     }

@@ -16,7 +16,7 @@ const fn read(keyword: &'static str, parameters: &'static [&'static str], passed
     Read { keyword, parameters, passed }
 }
 
-const READ: [Read; 26] = [
+const READ: [Read; 29] = [
     read("HEADING", &[], &[]),
     read("NODE", &["NSET"], &[]),
     read("ELEMENT", &["TYPE", "ELSET"], &[]),
@@ -40,6 +40,9 @@ const READ: [Read; 26] = [
     read("SURFACEBEHAVIOR", &["PRESSURE-OVERCLOSURE"], &[]),
     read("FRICTION", &[], &[]),
     read("CLEARANCE", &["MASTER", "SLAVE", "VALUE"], &[]),
+    read("TIE", &["POSITIONTOLERANCE"], &["NAME", "ADJUST"]),
+    read("EQUATION", &[], &[]),
+    read("RIGIDBODY", &["NSET", "REFNODE", "ROTNODE"], &[]),
     read("STEP", &["NLGEOM"], &["INC", "AMPLITUDE", "NAME"]),
     read("STATIC", &[], &["SOLVER", "DIRECT", "TIMERESET", "TOTALTIMEATSTART"]),
     read("ENDSTEP", &[], &[]),
@@ -72,13 +75,10 @@ const PASSED: [&str; 22] = [
 ];
 
 /// Keywords that change the answer, with the thing that is not modelled.
-const ABSENT: [(&str, &str); 43] = [
+const ABSENT: [(&str, &str); 40] = [
     ("ORIENTATION", "material axes of decks are not read yet; in a scene an orthotropic material has `axes`"),
     ("TRANSFORM", "local axes of nodes are not read yet; in a scene a support has a `normal`"),
-    ("EQUATION", "equations between displacements are not modelled"),
     ("MPC", "constraints between displacements are not modelled"),
-    ("TIE", "tied surfaces are not modelled; join the bodies in one mesh"),
-    ("RIGIDBODY", "rigid bodies of decks are not read yet; in a scene `rigid-faces` move as plates"),
     ("COUPLING", "couplings are not modelled"),
     ("KINEMATIC", "couplings are not modelled"),
     ("DISTRIBUTING", "couplings are not modelled"),
@@ -119,7 +119,7 @@ const ABSENT: [(&str, &str); 43] = [
 ];
 
 /// The cards that have no data lines.
-const BARE: [&str; 4] = ["MATERIAL", "STEP", "ENDSTEP", "CLEARANCE"];
+const BARE: [&str; 5] = ["MATERIAL", "STEP", "ENDSTEP", "CLEARANCE", "RIGIDBODY"];
 
 /// The cards that stand only in a step.
 const OF_STEP: [&str; 6] = ["CLOAD", "DLOAD", "DSLOAD", "TEMPERATURE", "STATIC", "ENDSTEP"];

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::amplitudes::Amplitudes;
 use super::bodies::{is_new, names_of_nodes, names_of_surface};
+use super::rigid::RigidBodies;
 use super::scene_text::{Entry, object};
 use crate::error::Error;
 use crate::fem::geometry::{dot, unit};
@@ -21,6 +22,7 @@ struct OnVolume {
 /// The loads of a scene.
 pub(super) struct Loads<'a> {
     deck: &'a Deck,
+    rigid_bodies: &'a mut RigidBodies,
     loads: Vec<Entry>,
     on_volume: Vec<OnVolume>,
 }
@@ -28,8 +30,8 @@ pub(super) struct Loads<'a> {
 impl<'a> Loads<'a> {
     /// # Errors
     /// An error with the line for a load that is not read.
-    pub fn of(deck: &'a Deck, amplitudes: &Amplitudes) -> Result<Vec<Entry>, Error> {
-        let mut loads = Loads { deck, loads: Vec::new(), on_volume: Vec::new() };
+    pub fn of(deck: &'a Deck, amplitudes: &Amplitudes, rigid_bodies: &'a mut RigidBodies) -> Result<Vec<Entry>, Error> {
+        let mut loads = Loads { deck, rigid_bodies, loads: Vec::new(), on_volume: Vec::new() };
         for keyword in ["CLOAD", "DLOAD", "DSLOAD"] {
             let cards = deck.source.cards.iter().enumerate().filter(|(_, card)| card.is(keyword));
             for (count, (index, card)) in cards.enumerate() {
@@ -63,7 +65,20 @@ impl<'a> Loads<'a> {
             let direction = fields.whole("the direction")?;
             let force = factor * fields.finite("the force")?;
             fields.end()?;
-            if !(1..=dimension).contains(&direction) {
+            if !(1..=6).contains(&direction) {
+                return Err(fields.fault(format!("{direction} is no direction; there are 1 to 6")));
+            }
+            let mut on_bodies = Vec::with_capacity(nodes.len());
+            for node in nodes {
+                if !self.rigid_bodies.press(node, direction, force).map_err(|message| fields.fault(message))? {
+                    on_bodies.push(node);
+                }
+            }
+            if on_bodies.is_empty() {
+                continue;
+            }
+            let nodes = on_bodies;
+            if direction > dimension {
                 let message = format!("{direction} is no direction of a force here; there are 1 to {dimension}");
                 return Err(fields.fault(message));
             }

@@ -8,9 +8,11 @@ mod contacts;
 mod keywords;
 mod loads;
 mod materials;
+mod rigid;
 mod scene_text;
 mod supports;
 mod temperatures;
+mod ties;
 
 use std::path::{Path, PathBuf};
 
@@ -23,10 +25,12 @@ use bodies::Body;
 use contacts::contacts;
 use loads::Loads;
 use materials::Sections;
+use rigid::RigidBodies;
 use scene_text::SceneText;
 use signorini_qp as qp;
 use supports::supports;
 use temperatures::Temperatures;
+use ties::ties;
 
 /// More bodies than this are a mesh whose nodes were not merged.
 const MOST_BODIES: usize = 1000;
@@ -69,9 +73,11 @@ impl DeckScene {
         let amplitudes = Amplitudes::of(&deck)?;
         let sections = Sections::of(&deck, space)?;
         let temperatures = Temperatures::of(&deck, &amplitudes)?;
-        let supports = supports(&deck, &amplitudes)?;
-        let loads = Loads::of(&deck, &amplitudes)?;
-        let contacts = contacts(&deck, permits.contains(&"friction"))?;
+        let mut rigid_bodies = RigidBodies::of(&deck)?;
+        let supports = supports(&deck, &amplitudes, &mut rigid_bodies)?;
+        let loads = Loads::of(&deck, &amplitudes, &mut rigid_bodies)?;
+        let mut contacts = contacts(&deck, permits.contains(&"friction"))?;
+        contacts.ties.extend(ties(&deck)?);
         let mut noted = nearest_elements(&deck);
         noted.extend(large_displacements(&deck));
         noted.extend(contacts.warnings);
@@ -85,6 +91,8 @@ impl DeckScene {
         let bodies = (0..deck.bodies).map(|index| Body::of(&deck, index, named, &sections, &temperatures));
         add_bodies(&mut text, bodies.collect::<Result<_, Error>>()?);
         text.list("supports", &supports);
+        text.list("rigid-faces", &rigid_bodies.entries());
+        text.list("ties", &contacts.ties);
         text.list("loads", &loads);
         text.list("obstacles", &contacts.obstacles);
         let (text, places) = text.end();

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::amplitudes::Amplitudes;
 use super::bodies::{is_new, names_of_nodes};
+use super::rigid::RigidBodies;
 use super::scene_text::Entry;
 use crate::error::Error;
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
@@ -24,6 +25,8 @@ struct Prescribed {
     target: String,
     nodes: Vec<usize>,
     values: [Option<f64>; 3],
+    /// Rotations, which only reference nodes of rigid bodies have.
+    turns: [Option<f64>; 3],
     place: Place,
 }
 
@@ -58,8 +61,15 @@ impl Merged {
 ///
 /// # Errors
 /// An error with the line for a dof that is not a displacement, a node without elements, a line of which a later line replaces a part.
-pub(super) fn supports(deck: &Deck, amplitudes: &Amplitudes) -> Result<Vec<Entry>, Error> {
-    let mut lines = in_force(deck, amplitudes)?;
+pub(super) fn supports(
+    deck: &Deck,
+    amplitudes: &Amplitudes,
+    rigid_bodies: &mut RigidBodies,
+) -> Result<Vec<Entry>, Error> {
+    let mut lines = Vec::new();
+    for line in in_force(deck, amplitudes)? {
+        lines.extend(off_rigid_bodies(deck, line, rigid_bodies)?);
+    }
     replace(deck, &mut lines)?;
     let mut supports: Vec<Merged> = Vec::new();
     for line in lines.iter().filter(|line| line.values.iter().any(Option::is_some)) {
@@ -80,6 +90,32 @@ pub(super) fn supports(deck: &Deck, amplitudes: &Amplitudes) -> Result<Vec<Entry
         }
     }
     Ok(supports.into_iter().map(|one| Entry::new(support(&one.values, one.targets), one.place)).collect())
+}
+
+/// A line without the reference nodes of rigid bodies, which it prescribes; `None` if nothing is left.
+fn off_rigid_bodies(
+    deck: &Deck,
+    line: Prescribed,
+    rigid_bodies: &mut RigidBodies,
+) -> Result<Option<Prescribed>, Error> {
+    let mut nodes = Vec::with_capacity(line.nodes.len());
+    for &node in &line.nodes {
+        let mut is_reference = false;
+        for (axis, value) in line.values.iter().chain(&line.turns).enumerate() {
+            if let Some(value) = *value {
+                let fault = |message: String| deck.source.fault(line.place, message);
+                is_reference |= rigid_bodies.prescribe(node, axis + 1, value).map_err(fault)?;
+            }
+        }
+        // A reference node that belongs to elements is held with its body.
+        if !is_reference || deck.body_of_node[node].is_some() {
+            nodes.push(node);
+        }
+    }
+    if !nodes.is_empty() && line.turns.iter().flatten().any(|&value| value != 0.0) {
+        return Err(deck.source.fault(line.place, "a node of a solid has no rotation that could be prescribed"));
+    }
+    Ok((!nodes.is_empty()).then_some(Prescribed { nodes, ..line }))
 }
 
 /// All lines that OP=NEW does not remove.
@@ -136,7 +172,7 @@ fn read(deck: &Deck, card: &Card, index: usize, factor: f64) -> Result<Vec<Presc
         let target = fields.text().ok_or_else(|| fields.fault("a set or a number must begin this line"))?;
         let nodes = deck.node_sets.members(&target, &deck.nodes).map_err(|message| fields.fault(message))?;
         let label = fields.clone().text().map(|text| key(&text)).unwrap_or_default();
-        let mut values = [None; 3];
+        let (mut values, mut turns) = ([None; 3], [None; 3]);
         if let Some((_, axes)) = NAMED.iter().find(|(name, _)| *name == label) {
             fields.text();
             axes.iter().for_each(|&axis| values[axis] = Some(0.0));
@@ -156,20 +192,17 @@ fn read(deck: &Deck, card: &Card, index: usize, factor: f64) -> Result<Vec<Presc
                 return Err(fields.fault(message));
             }
             // A node of a solid has no rotations: to hold them changes nothing.
-            for (axis, held) in values.iter_mut().enumerate() {
+            for (axis, held) in values.iter_mut().chain(&mut turns).enumerate() {
                 if (first..=last).contains(&(axis + 1)) {
                     *held = Some(value);
                 }
-            }
-            if first > 3 && value != 0.0 {
-                return Err(fields.fault("a node of a solid has no rotation that could be prescribed"));
             }
         }
         fields.end()?;
         if names_z_of_plane(deck, &mut values) {
             return Err(fields.fault("a plane model has no displacement along z"));
         }
-        lines.push(Prescribed { card: index, target, nodes, values, place: line.place });
+        lines.push(Prescribed { card: index, target, nodes, values, turns, place: line.place });
     }
     Ok(lines)
 }

@@ -6,9 +6,9 @@ use super::order::facet_size;
 use super::pairs::{Between, Facing};
 use super::shape::Site;
 use crate::error::Error;
-use crate::fem::assembly::outward;
-use crate::fem::mortar::{Found, Opposite};
-use crate::fem::{Boundary, Mortar};
+use crate::fem::assembly::{PositiveBasis, outward};
+use crate::fem::mortar::{Found, MortarRow, Opposite};
+use crate::fem::{Boundary, DofMap, ElasticBody, Mortar};
 use crate::scene::Warning;
 use crate::scene::input::entry::wrong;
 use crate::scene::input::schema::approach::Rule;
@@ -37,48 +37,67 @@ pub(super) fn between(
 ) -> Result<Between, Error> {
     let is_swapped = side.unwrap_or_else(|| site.order.carries_other(site.body, boundaries));
     let [slave, master] = if is_swapped { [boundaries[1], boundaries[0]] } else { boundaries };
-    let [own, other] = [slave, master].map(|boundary| outward(site.body, boundary));
-    let nodes = site.body.mesh().nodes();
-    let basis = &site.dofs.basis;
-    let has_coefficient = |node: usize| basis.ends(node).is_some();
+    let along = (site.rule == Rule::Approach).then(|| {
+        let towards = site.direction();
+        if is_swapped { towards.map(|part| 0.0 - part) } else { towards }
+    });
+    let reach = reach.unwrap_or(f64::INFINITY);
     let dimension = site.body.dimension();
     // A node that supports hold in all directions cannot make a row a bound: its function goes to its neighbours.
     let may_carry = |node: usize| (0..dimension).any(|axis| site.dofs.number(dimension * node + axis).is_some());
-    let mut mortar = Mortar::new((nodes, &own), (nodes, &other), *site.body.formulation())
-        .within(reach.unwrap_or(f64::INFINITY))
-        .carried_by(&may_carry)
-        .with_coefficients(&has_coefficient);
-    if site.rule == Rule::Approach {
-        let towards = site.direction();
-        mortar = mortar.along(if is_swapped { towards.map(|part| 0.0 - part) } else { towards });
-    }
-    let found = mortar.found().map_err(|error| match error {
-        Error::Mesh { message } => wrong(site.path.as_str(), message),
-        other => other,
-    })?;
+    let found = means((site.body, site.dofs), [slave, master], (reach, along), &may_carry, &site.path)?;
     let warnings = warnings(site, [slave, master], &found, fit);
     let mut of_node: HashMap<usize, Facing> = HashMap::with_capacity(found.rows.len());
     for row in found.rows {
-        // Displacements of nodes with coefficients are sums of these.
-        let mut ends = row.slave;
-        // The node of the row comes first.
-        ends.sort_by_key(|end| end.0 != row.node);
-        for (node, share) in row.master {
-            for (of, part) in basis.values(node) {
-                match ends.iter_mut().find(|end| end.0 == of) {
-                    Some(end) => end.1 -= share * part,
-                    None => ends.push((of, 0.0 - share * part)),
-                }
-            }
-        }
-        ends.retain(|end| end.1 != 0.0);
-        let distance = fit.unwrap_or(row.gap);
+        let (ends, distance) = (ends(&row, &site.dofs.basis), fit.unwrap_or(row.gap));
         of_node.insert(row.node, Facing { ends, normal: row.normal, mean: row.mean, distance, area: Some(row.area) });
     }
     // In the order of the candidates of the boundary that carries the rows.
     let rows = slave.nodes().into_iter().map(|node| of_node.remove(&node)).collect();
     let across = found.opposite.into_iter().map(|seen| (seen.node, facing(seen))).collect();
     Ok(Between { rows, across, other: master.name.clone(), covered: Some(found.covered), is_swapped, warnings })
+}
+
+/// The means of the first boundary over the second within reach, along a direction or half way between the normals of both, at the nodes
+/// that may carry one.
+///
+/// # Errors
+/// [`Error::Scene`] at `path` if a surface lies in several layers before the other within reach.
+pub(crate) fn means(
+    (body, dofs): (&ElasticBody, &DofMap),
+    [slave, master]: [&Boundary; 2],
+    (reach, along): (f64, Option<[f64; 3]>),
+    may_carry: &dyn Fn(usize) -> bool,
+    path: &str,
+) -> Result<Found, Error> {
+    let [own, other] = [slave, master].map(|boundary| outward(body, boundary));
+    let nodes = body.mesh().nodes();
+    let has_coefficient = |node: usize| dofs.basis.ends(node).is_some();
+    let mortar = Mortar::new((nodes, &own), (nodes, &other), *body.formulation())
+        .within(reach)
+        .carried_by(may_carry)
+        .with_coefficients(&has_coefficient);
+    let mortar = along.map_or(mortar, |direction| mortar.along(direction));
+    mortar.found().map_err(|error| match error {
+        Error::Mesh { message } => wrong(path, message),
+        other => other,
+    })
+}
+
+/// The nodes that a row couples, its own first, with their shares: displacements of nodes with coefficients are sums of these.
+pub(crate) fn ends(row: &MortarRow, basis: &PositiveBasis) -> Vec<(usize, f64)> {
+    let mut ends = row.slave.clone();
+    ends.sort_by_key(|end| end.0 != row.node);
+    for &(node, share) in &row.master {
+        for (of, part) in basis.values(node) {
+            match ends.iter_mut().find(|end| end.0 == of) {
+                Some(end) => end.1 -= share * part,
+                None => ends.push((of, 0.0 - share * part)),
+            }
+        }
+    }
+    ends.retain(|end| end.1 != 0.0);
+    ends
 }
 
 /// The contact seen from a node of the other body.

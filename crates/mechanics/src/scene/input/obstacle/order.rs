@@ -76,7 +76,7 @@ fn modulus_behind(body: &ElasticBody, boundaries: &[&Boundary]) -> f64 {
 }
 
 /// The mean length or area of the facets of boundaries.
-pub(super) fn facet_size(body: &ElasticBody, boundaries: &[&Boundary]) -> f64 {
+pub(crate) fn facet_size(body: &ElasticBody, boundaries: &[&Boundary]) -> f64 {
     let sizes: Vec<f64> =
         boundaries.iter().flat_map(|boundary| facet_sizes(body, boundary)).map(|(extent, _)| extent).collect();
     sizes.iter().sum::<f64>() / sizes.len().max(1) as f64

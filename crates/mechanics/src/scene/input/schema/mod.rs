@@ -17,6 +17,7 @@ pub(crate) mod profile;
 mod rigid_face;
 pub(crate) mod spring;
 mod symmetry;
+mod tie;
 
 pub use analysis::{AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, PenetrationSpec, WatchSpec};
 pub use approach::Rule;
@@ -29,6 +30,7 @@ pub use part::PartSpec;
 pub use rigid_face::RigidFaceSpec;
 pub use spring::SpringSpec;
 pub use symmetry::SymmetryPlane;
+pub use tie::{EquationSpec, TieSpec, TiedSurfacesSpec};
 
 use std::path::PathBuf;
 
@@ -92,6 +94,9 @@ pub struct Scene {
     /// Boundaries that move as rigid plates.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rigid_faces: Vec<RigidFaceSpec>,
+    /// Displacements that are tied to each other.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ties: Vec<TieSpec>,
     /// Springs between the body and the ground.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub springs: Vec<SpringSpec>,

@@ -3,14 +3,22 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::scene::input::names;
+
 /// A boundary that moves as a rigid plate: a displacement of its centre and a rotation about it. Components that are not prescribed
 /// follow from the force and the moment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RigidFaceSpec {
-    /// The boundary.
-    pub boundary: String,
-    /// The centre of rotation, at which the force acts; the centroid of the boundary's area if left out.
+    /// The boundary, or `nodes` instead.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub boundary: Option<String>,
+    /// The nodes of a set, or of several, of a deck.
+    #[serde(default, with = "names", skip_serializing_if = "Vec::is_empty")]
+    #[schemars(schema_with = "names::schema")]
+    pub nodes: Vec<String>,
+    /// The centre of rotation, at which the force acts; the centroid of the boundary's area, or the mean of the
+    /// nodes, if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub centre: Option<Vec<f64>>,
     /// Prescribed displacement of the centre along x.

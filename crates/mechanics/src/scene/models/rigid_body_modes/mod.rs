@@ -9,6 +9,7 @@ use signorini_qp as qp;
 use super::parts::Parts;
 use super::rigid_face::{Motion, RigidFace};
 use super::rows::ContactRow;
+use super::ties::TieRow;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::COORDINATES;
@@ -83,6 +84,17 @@ impl RigidBodyModes {
         components
     }
 
+    /// The component of each unit motion in the equation of a tie: surfaces are tied at one place, whatever their distance.
+    fn in_tie(&self, parts: &Parts, row: &TieRow) -> Vec<f64> {
+        let mut components = vec![0.0; 6 * self.bodies.len()];
+        for &(node, vector) in &row.terms {
+            let at = row.at.unwrap_or_else(|| parts.dofs.basis.place(parts.body.mesh().nodes(), node));
+            let of_node = self.along(node, at, vector);
+            components.iter_mut().zip(of_node).for_each(|(component, part)| *component += part);
+        }
+        components
+    }
+
     /// The travel of each pressed obstacle in a motion, against its approach direction.
     fn travels(&self, parts: &Parts, amplitudes: &[f64]) -> Vec<f64> {
         let first = self.bodies.len() - self.obstacles.len();
@@ -138,7 +150,9 @@ impl RigidBodyModes {
         let held = parts.springs.iter().flat_map(|springs| springs.held());
         let of_springs = held.map(|(node, direction)| self.along(node, nodes[node], direction));
         let of_faces = parts.rigid_faces.iter().flat_map(|face| self.prescribed(face));
-        let mut resisted: Vec<Vec<f64>> = of_supports.chain(of_rows).chain(of_springs).chain(of_faces).collect();
+        let of_ties = parts.ties.rows.iter().map(|row| self.in_tie(parts, row));
+        let mut resisted: Vec<Vec<f64>> =
+            of_supports.chain(of_rows).chain(of_springs).chain(of_faces).chain(of_ties).collect();
         let (modes, amplitudes) = (self.modes(), 6 * self.bodies.len());
         // At least one row for each motion; otherwise the decomposition would omit part of the null space.
         resisted.resize(resisted.len().max(modes.len()), vec![0.0; amplitudes]);
