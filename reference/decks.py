@@ -1,17 +1,24 @@
 """Compares displacements of decks with those of CalculiX, element by element.
 
     python3 reference/decks.py target/release/signorini
+    python3 reference/decks.py target/release/signorini --decks FOLDER
 
 Each deck is a bar without right angles, held at one end, under pressure, gravity, a force on a node and warming. CalculiX is the Debian
 package calculix-ccx; its command is ccx. It prints seven digits. A line has the largest displacement and the largest difference over it.
+
+With `--decks` both programs solve each deck of a folder. A line has the seconds of both, the largest value of each field of the last
+increment and the largest difference over it, as the files `.frd` and the sums of forces in the files `.dat` say, and the last error or
+warning of CalculiX.
 """
 
 import itertools
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
+import time
 
 SOLIDS = ("C3D4", "C3D8", "C3D10", "C3D20", "C3D8I", "C3D8R", "C3D20R")
 PLANES = ("CPE3", "CPE4", "CPE6", "CPE8", "CPE4R", "CPE8R", "CPS3", "CPS4", "CPS6", "CPS8", "CAX3", "CAX4", "CAX6", "CAX8")
@@ -125,9 +132,59 @@ def differs(program: str, element: str, folder: pathlib.Path) -> tuple[float, fl
     return largest, max(abs(a - b) for one, other in pairs for a, b in zip(one[:axes], other[:axes], strict=True)) / largest
 
 
+def fields(frd: pathlib.Path) -> dict[str, dict[int, list[float]]]:
+    """Returns the values of each node in the last increment, field by field."""
+    found: dict = {}
+    for line in frd.read_text(errors="replace").splitlines() if frd.exists() else ():
+        if line.startswith(" -4"):
+            values = found[line[5:13].strip()] = {}
+        elif line.startswith(" -1") and found:
+            values[int(line[3:13])] = [float(line[at : at + 12]) for at in range(13, len(line.rstrip()), 12)]
+    return found
+
+
+def sums(dat: pathlib.Path) -> dict[str, dict[int, list[float]]]:
+    """Returns the last sum of forces of each set, as a field of one node."""
+    text = dat.read_text() if dat.exists() else ""
+    found = re.findall(r"total force \(fx,fy,fz\) for set (\S+) and time.*\n\n(.*)", text)
+    return {f"sum {name}": {0: [float(word) for word in line.split()]} for name, line in found}
+
+
+def run(command: list[str], deck: pathlib.Path) -> tuple[float, str, dict]:
+    """Returns the seconds of a program in a copy of the folder of a deck, its last error, or else its last warning, and its fields."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name) / "deck"
+        shutil.copytree(deck.parent, folder, ignore=shutil.ignore_patterns("*.frd", "*.dat", "*.signorini"))
+        start = time.perf_counter()
+        ended = subprocess.run([*command, "-i", deck.stem], cwd=folder, capture_output=True, text=True, errors="replace")
+        seconds = time.perf_counter() - start
+        lines = [line.strip() for line in ended.stdout.splitlines()]
+        said = [line for word in ("*WARNING", "*ERROR") for line in lines if line.startswith(word)]
+        code = f"exit code {ended.returncode}: " if ended.returncode else ""
+        return seconds, code + (said or [""])[-1], fields(folder / f"{deck.stem}.frd") | sums(folder / f"{deck.stem}.dat")
+
+
+def side_by_side(program: str, folder: pathlib.Path) -> None:
+    """Prints the differences of both programs on each deck of a folder."""
+    for deck in sorted(folder.resolve().glob("*.inp")):
+        (seconds, ending, ours), (of_other, said, theirs) = run([program, "ccx"], deck), run(["ccx"], deck)
+        print(f"{deck.stem}: {seconds:.2f} s, CalculiX {of_other:.2f} s")
+        for name in [name for name in ours if name in theirs]:
+            nodes = [node for node in ours[name] if node in theirs[name]]
+            pairs = [pair for node in nodes for pair in zip(ours[name][node], theirs[name][node], strict=False)]
+            largest = max((abs(value) for _, value in pairs), default=0.0)
+            difference = max((abs(one - other) for one, other in pairs), default=0.0) / (largest or 1.0)
+            missing = len(theirs[name]) - len(nodes)
+            print(f"  {name:20} largest {largest:.5e}, differs by {difference:.1e}" + (f", {missing} nodes are missing" if missing else ""))
+        for name, words in (("signorini", ending), ("CalculiX", said)):
+            print(f"  {name} says: {words[:200]}" if words else f"  {name} says nothing")
+
+
 def main() -> None:
-    """Prints a line for each element."""
+    """Prints a line for each element, or for each deck of a folder."""
     program = str(pathlib.Path(sys.argv[1]).resolve())
+    if "--decks" in sys.argv:
+        return side_by_side(program, pathlib.Path(sys.argv[sys.argv.index("--decks") + 1]))
     for element in (*SOLIDS, *PLANES):
         with tempfile.TemporaryDirectory() as folder:
             largest, difference = differs(program, element, pathlib.Path(folder))

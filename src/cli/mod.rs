@@ -2,6 +2,7 @@
 
 mod about;
 mod along;
+mod ccx;
 mod compare;
 mod draw;
 mod dynamic;
@@ -41,7 +42,7 @@ use usage::with_nearest_option;
 
 /// Runs the program with `arguments`, of which the first is its name, prints its report, and returns its exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let given: Vec<OsString> = arguments.into_iter().collect();
+    let given: Vec<OsString> = ccx::named(arguments.into_iter().collect());
     let arguments = match Arguments::try_parse_from(&given) {
         Ok(arguments) => arguments,
         Err(help) => {
@@ -63,6 +64,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Compare(options) => compare::run(&options, &watch),
         Command::Sweep(options) => sweep::run(&options, &watch),
         Command::Tradeoff(options) => tradeoff::run(&options, &watch),
+        Command::Ccx(options) => Ok(ccx::run(&options, &watch)),
         Command::Draw(options) => draw::run(&options),
         Command::Export(options) => export::run(&options),
         Command::New(options) => new::run(&options),

@@ -65,6 +65,14 @@ A problem directory is swept from g.mtx and f.mtx to g1.mtx and f1.mtx, on a str
     /// Solve a scene or a problem directory by every method, and print the seconds that each digit costs
     #[command(after_help = "Example: signorini tradeoff examples/indentation.json --refinements 2 --time 60")]
     Tradeoff(Tradeoff),
+    /// Solve a deck as the program ccx of CalculiX does: NAME.inp is answered by NAME.frd, NAME.dat, NAME.sta and the folder
+    /// NAME.signorini
+    #[command(arg_required_else_help = false)]
+    #[command(after_help = "\
+Example: signorini ccx -i cube
+
+The program does the same if it is called ccx: through a link or a copy of that name.")]
+    Ccx(Ccx),
     /// Write the problem of a scene as Matrix Market or PETSc files
     #[command(after_help = "\
 Example: signorini export examples/ball.json ball
@@ -407,7 +415,7 @@ pub(super) fn permits(allow_outside: bool, without_friction: bool) -> Vec<&'stat
 }
 
 /// Limits of memory and files for a scene or a problem.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(super) struct Limits {
     /// Refuse a problem that needs more memory, such as 500MB or 1.5GB [default: what the machine has available]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
@@ -498,6 +506,32 @@ pub(super) struct Tradeoff {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct Ccx {
+    /// Name of the deck, with or without its ending .inp
+    #[arg(short = 'i', value_name = "NAME", conflicts_with = "deck")]
+    pub job: Option<PathBuf>,
+    /// The same without -i
+    #[arg(value_name = "NAME")]
+    pub deck: Option<PathBuf>,
+    /// Print the version of CalculiX whose decks and files these are
+    #[arg(short = 'v')]
+    pub version: bool,
+    #[command(flatten)]
+    pub limits: Limits,
+}
+
+impl Ccx {
+    /// The options of `solve` for the same deck, with a folder for its page.
+    pub fn solve(&self, input: PathBuf, out: PathBuf) -> Option<Solve> {
+        let words = ["signorini", "solve", "--", "deck.inp"];
+        let Command::Solve(mut options) = Arguments::try_parse_from(words).ok()?.command else { return None };
+        (options.input, options.common.out) = (input, Some(out));
+        options.common.limits = self.limits.clone();
+        Some(options)
+    }
+}
+
+#[derive(Debug, Args)]
 pub(super) struct Export {
     /// Scene (a JSON file)
     pub scene: PathBuf,
@@ -558,7 +592,7 @@ impl Command {
             | Command::Sweep(Sweep { common, .. }) => common.format,
             Command::Tradeoff(options) => options.format,
             Command::Verify(options) => options.format,
-            Command::New(_) | Command::Draw(_) | Command::Export(_) => Format::Text,
+            Command::New(_) | Command::Ccx(_) | Command::Draw(_) | Command::Export(_) => Format::Text,
             Command::Schema | Command::Completions(_) | Command::Man => Format::Text,
         }
     }

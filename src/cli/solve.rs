@@ -15,7 +15,7 @@ use super::total_error;
 use crate::Error;
 use crate::qp;
 use crate::qp::{Goal, Method, Settings, Solution, Start, Watch, read_vector};
-use crate::scene::Scene;
+use crate::scene::{Answer, Scene};
 use crate::study::TotalErrorGoal;
 
 /// Assembly that takes at most this many seconds is done even if no time is left: the report can then state the time that the rest
@@ -86,7 +86,8 @@ pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome
         let method = &solution.method;
         warn(&format!("warning: --extrapolate changes nothing: the method is {method}; it needs --method penalty\n"));
     }
-    reported(&input, solution, settings.goal(), (about, options), watch)
+    let answer = input.answer(&solution)?;
+    reported(&input, (solution, answer), settings.goal(), (about, options), watch)
 }
 
 /// The motion of a scene, without the options of a single solve.
@@ -117,7 +118,7 @@ fn earlier(folder: &Path) -> Result<Start, Error> {
 }
 
 /// Refuses a scene that does not fit into memory or time; returns the estimated seconds of its assembly.
-fn assembly_seconds(scene: &Scene, options: &Solve, watch: &Watch) -> Result<f64, Error> {
+pub(super) fn assembly_seconds(scene: &Scene, options: &Solve, watch: &Watch) -> Result<f64, Error> {
     let most_memory = options.common.limits.most_memory();
     let needs_factor = !matches!(options.method, Method::Auto | Method::Mprgp);
     if needs_factor || scene.analysis.is_some() {
@@ -145,16 +146,15 @@ fn best_of(input: &Input, start: &Start, settings: &Settings) -> Result<Solution
 }
 
 /// Reports an answer, and writes the output of `--out`.
-fn reported(
+pub(super) fn reported(
     input: &Input,
-    solution: Solution,
+    (solution, answer): (Solution, Option<Answer>),
     goal: Goal,
     (about, options): (About, &Solve),
     watch: &Watch,
 ) -> Result<Outcome, Error> {
     let common = &options.common;
     watch.step("report", 0);
-    let answer = input.answer(&solution)?;
     let mut summary = input.summary(solution, answer.as_ref(), goal)?;
     if let Some(answer) = &answer
         && !watch.is_over()

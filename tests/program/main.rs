@@ -3,6 +3,7 @@
 mod answers;
 mod auto;
 mod blocks;
+mod drop_in;
 mod exit_codes;
 mod files_read;
 mod habits;

@@ -27,7 +27,10 @@ pub fn write_atomically(path: &Path, contents: &[u8]) -> Result<(), Error> {
 ///
 /// # Errors
 /// As [`write_atomically`].
-fn streamed_atomically(path: &Path, contents: impl Fn(&mut dyn Write) -> io::Result<()>) -> Result<(), Error> {
+pub(crate) fn streamed_atomically(
+    path: &Path,
+    contents: impl Fn(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Error> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),

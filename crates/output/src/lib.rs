@@ -30,6 +30,7 @@ mod view;
 
 pub use draw::drawing::Drawing;
 pub use file::{remove_files, write_atomically, write_files, write_streamed};
+pub use folder::calculix::CalculixFiles;
 pub use folder::gallery::{Pictures, Wanted};
 pub use folder::motion::MotionFolder;
 pub use folder::tables::of_model as tables_of_model;

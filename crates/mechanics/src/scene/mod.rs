@@ -22,6 +22,7 @@ mod motions;
 pub use answers::answer::{Answer, Forces};
 pub use answers::segments::{ContactExtent, Segment};
 pub use input::body::{Sides, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
+pub use input::deck::requests::{RequestedTable, Requests};
 pub(crate) use input::entry::refused;
 pub use input::obstacle::{Obstacle, ObstacleRow, PlacedObstacle};
 pub use input::schema::{Rule, Scene, Units};

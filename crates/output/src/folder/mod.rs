@@ -1,5 +1,6 @@
 //! The files of a command in its folder: answers, fields, tables and pictures.
 
+pub(crate) mod calculix;
 mod fields;
 // A motion needs only its fields and the scene of a picture.
 pub(crate) mod gallery;

@@ -226,11 +226,20 @@ impl ElasticBody {
 
     /// Every element with its coordinates, region by region.
     pub fn elements(&self) -> impl Iterator<Item = BodyElement<'_>> + '_ {
-        self.mesh.elements().zip(&self.of_elements).enumerate().map(|(element, (nodes, &phase_number))| {
-            let kind = self.mesh.kind_of(element);
-            let cell = Cell::new(kind.reference(), &self.coordinates(nodes));
-            BodyElement { nodes, kind, cell, phase: &self.phases[phase_number as usize], phase_number }
-        })
+        let all = self.mesh.elements().zip(&self.of_elements).enumerate();
+        all.map(|(element, (nodes, &phase_number))| self.with_coordinates(element, nodes, phase_number))
+    }
+
+    /// One element with its coordinates; `None` if there is no such element.
+    pub(crate) fn element(&self, element: usize) -> Option<BodyElement<'_>> {
+        let phase_number = *self.of_elements.get(element)?;
+        Some(self.with_coordinates(element, self.mesh.element(element), phase_number))
+    }
+
+    fn with_coordinates<'a>(&'a self, element: usize, nodes: &'a [usize], phase_number: u32) -> BodyElement<'a> {
+        let kind = self.mesh.kind_of(element);
+        let cell = Cell::new(kind.reference(), &self.coordinates(nodes));
+        BodyElement { nodes, kind, cell, phase: &self.phases[phase_number as usize], phase_number }
     }
 
     /// The material and the stress without strain of an element.
@@ -344,6 +353,18 @@ impl Strained<'_> {
         let point = self.body.point(cell, at);
         let stress = self.element.stress(at, &point.strain(&self.local, cell.unit()), self.mean_dilatation);
         (point, stress)
+    }
+
+    /// The strain at a tabulated point, and the stress there: tensor components `[xx, yy, zz, xy, yz, zx]`. In plane stress the strain
+    /// across the plane is that of the stress and the temperature.
+    pub fn strain_and_stress(&self, at: &TabulatedPoint) -> [Symmetric; 2] {
+        let cell = &self.element.cell;
+        let (point, stress) = self.at(at);
+        let mut strain = point.strain(&self.local, cell.unit());
+        if let Formulation::PlaneStress { .. } = self.body.formulation {
+            strain[2] = self.element.phase.strain_across(&stress, cell.place(&at.shape));
+        }
+        [strain, stress]
     }
 }
 

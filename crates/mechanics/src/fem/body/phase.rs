@@ -28,6 +28,13 @@ pub struct Temperature {
     pub gradient: [f64; 3],
 }
 
+impl Temperature {
+    #[inline]
+    fn at(&self, place: [f64; 3]) -> f64 {
+        self.value + dot(self.gradient, place)
+    }
+}
+
 /// The stress without strain: `sigma_0 - C alpha T(x)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OwnStress {
@@ -48,7 +55,7 @@ impl OwnStress {
     /// The stress at a point.
     #[inline]
     pub fn at(&self, place: [f64; 3]) -> Symmetric {
-        let warmer = self.temperature.value + dot(self.temperature.gradient, place);
+        let warmer = self.temperature.at(place);
         [0, 1, 2, 3, 4, 5].map(|component| self.initial[component] + warmer * self.per_degree[component])
     }
 }
@@ -94,6 +101,15 @@ impl Phase {
             }
         }
         Ok(Phase { own: Some(OwnStress { initial, ..self.own.unwrap_or(OwnStress::NONE) }), ..self })
+    }
+
+    /// The strain along z that a stress at a place causes, with that of the temperature there.
+    pub fn strain_across(&self, stress: &Symmetric, place: [f64; 3]) -> f64 {
+        let own = self.own.unwrap_or(OwnStress::NONE);
+        let mut elastic = *stress;
+        elastic.iter_mut().zip(own.initial).for_each(|(stress, initial)| *stress -= initial);
+        let expansion = self.material.expansion().map_or(0.0, |per_degree| per_degree[2]);
+        self.material.strain_across(&elastic) + own.temperature.at(place) * expansion
     }
 
     /// The material.

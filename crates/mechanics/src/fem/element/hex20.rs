@@ -2,7 +2,7 @@
 //! N = s_1 s_2 s_3 (xi_a xi + eta_a eta + zeta_a zeta - 2)/8 at corners, (1 - xi^2) s_2 s_3/4 and so on at the mid-sides.
 
 use super::quadrature::CUBE_3X3X3;
-use super::reference::{FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape, with_middles};
+use super::reference::{CalculixCell, FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape, with_middles};
 
 /// The corners between which each mid-side node lies.
 const EDGES: [[usize; 2]; 12] =
@@ -48,6 +48,12 @@ pub(super) static HEX20: ReferenceElement = ReferenceElement {
     gmsh: 17,
     gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15],
     vtk: 25,
+    calculix: CalculixCell {
+        number: 4,
+        order: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15],
+        points: &CUBE_3X3X3,
+        layers: 1,
+    },
     counts: LatticeCounts { nodes: 4.0, line: 2.0, connections: 20.0, neighbours: 58.5 },
 };
 

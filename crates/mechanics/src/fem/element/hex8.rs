@@ -3,7 +3,7 @@
 use super::hex20::CORNERS;
 use super::product::{multilinear, multilinear_slopes};
 use super::quadrature::CUBE_2X2X2;
-use super::reference::{FacetKind, LatticeCounts, ReferenceElement, Shape};
+use super::reference::{CalculixCell, FacetKind, LatticeCounts, ReferenceElement, Shape};
 
 /// The trilinear hexahedron.
 pub(super) static HEX8: ReferenceElement = ReferenceElement {
@@ -23,5 +23,6 @@ pub(super) static HEX8: ReferenceElement = ReferenceElement {
     gmsh: 5,
     gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7],
     vtk: 12,
+    calculix: CalculixCell { number: 1, order: &[0, 1, 2, 3, 4, 5, 6, 7], points: &CUBE_2X2X2, layers: 1 },
     counts: LatticeCounts { nodes: 1.0, line: 1.0, connections: 8.0, neighbours: 27.0 },
 };

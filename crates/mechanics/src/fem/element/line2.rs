@@ -2,7 +2,7 @@
 
 use super::product::{multilinear, multilinear_slopes};
 use super::quadrature::{INTERVAL_1, INTERVAL_2};
-use super::reference::{FacetKind, LatticeCounts, ReferenceElement, Shape};
+use super::reference::{CalculixCell, FacetKind, LatticeCounts, ReferenceElement, Shape};
 
 const ENDS: &[[f64; 3]] = &[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
 
@@ -24,5 +24,6 @@ pub(super) static LINE2: ReferenceElement = ReferenceElement {
     gmsh: 1,
     gmsh_order: &[0, 1],
     vtk: 3,
+    calculix: CalculixCell { number: 11, order: &[0, 1], points: &INTERVAL_2, layers: 1 },
     counts: LatticeCounts { nodes: 1.0, line: 1.0, connections: 2.0, neighbours: 3.0 },
 };

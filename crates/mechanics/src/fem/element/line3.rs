@@ -1,7 +1,7 @@
 //! Line3, the quadratic edge: N = (xi (xi - 1)/2, xi (xi + 1)/2, 1 - xi^2), ends first.
 
 use super::quadrature::INTERVAL_3;
-use super::reference::{FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape, padded};
+use super::reference::{CalculixCell, FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape, padded};
 
 /// The quadratic line.
 pub(super) static LINE3: ReferenceElement = ReferenceElement {
@@ -21,6 +21,7 @@ pub(super) static LINE3: ReferenceElement = ReferenceElement {
     gmsh: 8,
     gmsh_order: &[0, 1, 2],
     vtk: 21,
+    calculix: CalculixCell { number: 12, order: &[0, 2, 1], points: &INTERVAL_3, layers: 1 },
     counts: LatticeCounts::NONE,
 };
 

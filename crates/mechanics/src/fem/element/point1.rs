@@ -1,7 +1,7 @@
 //! Point1, the end of a bar: N = 1.
 
 use super::quadrature::POINT;
-use super::reference::{FacetKind, LatticeCounts, MAX_NODES, ReferenceElement, Shape, padded};
+use super::reference::{CalculixCell, FacetKind, LatticeCounts, MAX_NODES, ReferenceElement, Shape, padded};
 
 /// A single node.
 pub(super) static POINT1: ReferenceElement = ReferenceElement {
@@ -21,5 +21,6 @@ pub(super) static POINT1: ReferenceElement = ReferenceElement {
     gmsh: 15,
     gmsh_order: &[0],
     vtk: 1,
+    calculix: CalculixCell { number: 0, order: &[0], points: &POINT, layers: 1 },
     counts: LatticeCounts::NONE,
 };

@@ -3,7 +3,7 @@
 use super::product::{multilinear, multilinear_slopes};
 use super::q8::CORNERS;
 use super::quadrature::SQUARE_2X2;
-use super::reference::{FacetKind, LatticeCounts, ReferenceElement, Shape};
+use super::reference::{CalculixCell, FacetKind, LatticeCounts, ReferenceElement, Shape};
 
 /// The bilinear quadrilateral.
 pub(super) static Q4: ReferenceElement = ReferenceElement {
@@ -23,5 +23,6 @@ pub(super) static Q4: ReferenceElement = ReferenceElement {
     gmsh: 3,
     gmsh_order: &[0, 1, 2, 3],
     vtk: 9,
+    calculix: CalculixCell { number: 9, order: &[0, 1, 2, 3], points: &SQUARE_2X2, layers: 2 },
     counts: LatticeCounts { nodes: 1.0, line: 1.0, connections: 4.0, neighbours: 9.0 },
 };

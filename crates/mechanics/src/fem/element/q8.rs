@@ -3,7 +3,9 @@
 //! (1 + xi_a xi)(1 - eta^2)/2 at the mid-sides.
 
 use super::quadrature::SQUARE_3X3;
-use super::reference::{FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape, padded, with_middles};
+use super::reference::{
+    CalculixCell, FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape, padded, with_middles,
+};
 
 /// The corners between which each mid-side node lies.
 const SIDES: [[usize; 2]; 4] = [[0, 1], [1, 2], [2, 3], [3, 0]];
@@ -32,6 +34,7 @@ pub(super) static Q8: ReferenceElement = ReferenceElement {
     gmsh: 16,
     gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7],
     vtk: 23,
+    calculix: CalculixCell { number: 10, order: &[0, 1, 2, 3, 4, 5, 6, 7], points: &SQUARE_3X3, layers: 3 },
     counts: LatticeCounts { nodes: 3.0, line: 2.0, connections: 8.0, neighbours: 15.5 },
 };
 

@@ -82,6 +82,15 @@ pub(super) const TRIANGLE_6: [QuadraturePoint; 6] = {
 /// The centroid of the tetrahedron (0,0,0), (1,0,0), (0,1,0), (0,0,1), exact for linear functions.
 pub(super) const TETRAHEDRON_1: [QuadraturePoint; 1] = [point(0.25, 0.25, 0.25, 1.0 / 6.0)];
 
+/// Four points inside the tetrahedron, exact for quadratics.
+pub(super) const TETRAHEDRON_4: [QuadraturePoint; 4] = {
+    /// (5 - sqrt(5))/20, the distance from the faces.
+    const A: f64 = 0.138_196_601_125_010_5;
+    const B: f64 = 1.0 - 3.0 * A;
+    const WEIGHT: f64 = 1.0 / 24.0;
+    [point(A, A, A, WEIGHT), point(B, A, A, WEIGHT), point(A, B, A, WEIGHT), point(A, A, B, WEIGHT)]
+};
+
 /// Eight points inside the tetrahedron, exact for cubics: with curved edges the stiffness needs this to pass the patch test.
 ///
 /// # Source

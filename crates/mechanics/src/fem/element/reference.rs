@@ -82,8 +82,27 @@ pub struct ReferenceElement {
     pub gmsh_order: &'static [usize],
     /// The number of the element in a VTK file, with its nodes in the same order.
     pub vtk: u8,
+    /// The element in files of CalculiX.
+    pub calculix: CalculixCell,
     /// The counts that a cell of a structured mesh adds.
     pub counts: LatticeCounts,
+}
+
+/// An element in the files of results of CalculiX.
+///
+/// # Source
+/// K. Wittig, *CalculiX GraphiX User's Manual*, version 2.20, "Element Types"; points and their order as CalculiX 2.20 prints strains that
+/// are linear in a single element.
+#[derive(Debug)]
+pub struct CalculixCell {
+    /// The number of the type in a file `.frd`.
+    pub number: usize,
+    /// The local node at each position in an element of that file.
+    pub order: &'static [usize],
+    /// The points of a layer at which stress and strain are printed.
+    pub points: &'static [QuadraturePoint],
+    /// The number of layers of points: CalculiX makes solid elements of those in the plane.
+    pub layers: usize,
 }
 
 /// The counts that a cell of a large structured mesh adds: a quadrilateral or a brick, cut into simplices if the element is a simplex.

@@ -1,7 +1,7 @@
 //! T3, the linear triangle: N = (1 - xi - eta, xi, eta); strain and stress are constant in the plane.
 
 use super::quadrature::{TRIANGLE_1, TRIANGLE_3};
-use super::reference::{FacetKind, LatticeCounts, ReferenceElement, Shape};
+use super::reference::{CalculixCell, FacetKind, LatticeCounts, ReferenceElement, Shape};
 use super::simplex::{linear, linear_slopes};
 
 /// The linear triangle.
@@ -24,5 +24,6 @@ pub(super) static T3: ReferenceElement = ReferenceElement {
     gmsh: 2,
     gmsh_order: &[0, 1, 2],
     vtk: 5,
+    calculix: CalculixCell { number: 7, order: &[0, 1, 2], points: &TRIANGLE_1, layers: 2 },
     counts: LatticeCounts { nodes: 1.0, line: 1.0, connections: 6.0, neighbours: 7.0 },
 };

@@ -1,7 +1,7 @@
 //! T6, the quadratic triangle: N = L_a (2 L_a - 1) at corners, 4 L_a L_b at the mid-sides, L = (1 - xi - eta, xi, eta).
 
-use super::quadrature::TRIANGLE_6;
-use super::reference::{FacetKind, LatticeCounts, ReferenceElement, Shape};
+use super::quadrature::{TRIANGLE_3, TRIANGLE_6};
+use super::reference::{CalculixCell, FacetKind, LatticeCounts, ReferenceElement, Shape};
 use super::simplex::{quadratic, quadratic_slopes};
 
 /// The sides, each with the corners between which its mid-side node lies.
@@ -26,5 +26,6 @@ pub(super) static T6: ReferenceElement = ReferenceElement {
     gmsh: 9,
     gmsh_order: &[0, 1, 2, 3, 4, 5],
     vtk: 22,
+    calculix: CalculixCell { number: 8, order: &[0, 1, 2, 3, 4, 5], points: &TRIANGLE_3, layers: 3 },
     counts: LatticeCounts { nodes: 4.0, line: 2.0, connections: 12.0, neighbours: 11.5 },
 };

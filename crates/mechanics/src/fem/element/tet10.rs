@@ -1,8 +1,8 @@
 //! Tet10, the quadratic tetrahedron: N = L_a (2 L_a - 1) at corners, 4 L_a L_b at the mid-sides,
 //! L = (1 - xi - eta - zeta, xi, eta, zeta).
 
-use super::quadrature::TETRAHEDRON_8;
-use super::reference::{FacetKind, LatticeCounts, ReferenceElement, Shape, with_middles};
+use super::quadrature::{TETRAHEDRON_4, TETRAHEDRON_8};
+use super::reference::{CalculixCell, FacetKind, LatticeCounts, ReferenceElement, Shape, with_middles};
 use super::simplex::{quadratic, quadratic_slopes};
 use super::tet4::CORNERS;
 
@@ -29,5 +29,6 @@ pub(super) static TET10: ReferenceElement = ReferenceElement {
     gmsh: 11,
     gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7, 9, 8],
     vtk: 24,
+    calculix: CalculixCell { number: 6, order: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9], points: &TETRAHEDRON_4, layers: 1 },
     counts: LatticeCounts { nodes: 8.0, line: 2.0, connections: 60.0, neighbours: 27.0 },
 };

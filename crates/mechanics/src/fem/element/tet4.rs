@@ -1,7 +1,7 @@
 //! Tet4, the linear tetrahedron: N = (1 - xi - eta - zeta, xi, eta, zeta); strain and stress are constant.
 
 use super::quadrature::TETRAHEDRON_1;
-use super::reference::{FacetKind, LatticeCounts, ReferenceElement, Shape};
+use super::reference::{CalculixCell, FacetKind, LatticeCounts, ReferenceElement, Shape};
 use super::simplex::{linear, linear_slopes};
 
 /// The corners, which are those of the quadratic tetrahedron too.
@@ -25,5 +25,6 @@ pub(super) static TET4: ReferenceElement = ReferenceElement {
     gmsh: 4,
     gmsh_order: &[0, 1, 2, 3],
     vtk: 10,
+    calculix: CalculixCell { number: 3, order: &[0, 1, 2, 3], points: &TETRAHEDRON_1, layers: 1 },
     counts: LatticeCounts { nodes: 1.0, line: 1.0, connections: 24.0, neighbours: 15.0 },
 };

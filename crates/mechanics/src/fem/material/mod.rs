@@ -119,6 +119,14 @@ impl Material {
         }
     }
 
+    /// The strain along z of a stress `[xx, yy, zz, xy, yz, zx]`.
+    pub(crate) fn strain_across(&self, stress: &Symmetric) -> f64 {
+        match &self.elasticity {
+            Elasticity::Isotropic { young, poisson } => (stress[2] - poisson * (stress[0] + stress[1])) / young,
+            Elasticity::Orthotropic(own) => own.strain_across(stress),
+        }
+    }
+
     /// The law of stress and strain in `formulation`.
     ///
     /// # Errors

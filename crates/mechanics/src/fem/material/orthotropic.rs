@@ -112,6 +112,11 @@ impl Orthotropic {
         [0, 1, 2].map(|i| self.axes.map(|axis| axis[i]))
     }
 
+    /// The strain along z of a stress.
+    pub fn strain_across(&self, stress: &Symmetric) -> f64 {
+        self.compliance()[2].iter().zip(stress).map(|(entry, component)| entry * component).sum()
+    }
+
     /// From stress to engineering strain, both along the coordinate axes.
     fn compliance(&self) -> Matrix {
         let ([e1, e2, e3], [nu12, nu23, nu13], [g12, g23, g13]) = (self.young, self.poisson, self.shear);

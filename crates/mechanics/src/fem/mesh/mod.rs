@@ -40,6 +40,8 @@ pub struct Mesh {
     boundaries: Vec<Boundary>,
     groups: Vec<ElementGroup>,
     node_names: NodeNames,
+    /// The number of each element in its file; empty if there are none.
+    element_numbers: Vec<usize>,
 }
 
 /// Consecutive elements of one kind.
@@ -76,8 +78,8 @@ impl Mesh {
             ));
         }
         let blocks = vec![Block { kind, elements: 0..connectivity.len() / each, first: 0 }];
-        let (groups, node_names) = (Vec::new(), NodeNames::default());
-        Mesh { nodes, blocks, connectivity, boundaries, groups, node_names }.checked()
+        let (groups, node_names, element_numbers) = (Vec::new(), NodeNames::default(), Vec::new());
+        Mesh { nodes, blocks, connectivity, boundaries, groups, node_names, element_numbers }.checked()
     }
 
     fn checked(self) -> Result<Self, Error> {
@@ -221,6 +223,22 @@ impl Mesh {
         Mesh { node_names, ..self }
     }
 
+    /// The same mesh with the number of each element in its file.
+    fn with_element_numbers(self, element_numbers: Vec<usize>) -> Self {
+        Mesh { element_numbers, ..self }
+    }
+
+    /// The number of each node in the deck that the mesh comes from, in the order of [`Mesh::nodes`]; `None` for a mesh from elsewhere.
+    pub fn node_numbers(&self) -> Option<Vec<usize>> {
+        self.node_names.numbers(self.nodes.len())
+    }
+
+    /// The number of each element in the deck that the mesh comes from, in the order of [`Mesh::elements`]; `None` for a mesh from
+    /// elsewhere.
+    pub fn element_numbers(&self) -> Option<&[usize]> {
+        (self.element_numbers.len() == self.element_count()).then_some(&self.element_numbers)
+    }
+
     /// The mirror image across the plane where the coordinate `axis` (0, 1, 2 for x, y, z) is `plane`; boundaries keep
     /// their names.
     pub fn mirrored(mut self, axis: usize, plane: f64) -> Self {
@@ -262,6 +280,9 @@ impl Mesh {
         self.boundaries.extend(other.boundaries.iter().map(|boundary| {
             Boundary::new(format!("{name}.{}", boundary.name), boundary.kind, behind(&boundary.connectivity))
         }));
+        // Numbers of some elements only would be those of others.
+        self.element_numbers.truncate(if self.element_numbers.len() == elements { elements } else { 0 });
+        self.element_numbers.extend_from_slice(&other.element_numbers);
         self.groups.extend(other.groups.iter().map(|group| ElementGroup {
             name: format!("{name}.{}", group.name),
             elements: group.elements.iter().map(|element| elements + element).collect(),

@@ -29,6 +29,15 @@ impl NodeNames {
         })
     }
 
+    /// The number of each of `count` nodes; `None` if some have none.
+    pub fn numbers(&self, count: usize) -> Option<Vec<usize>> {
+        let mut all = vec![None; count];
+        for (_, first, numbers) in &self.numbers {
+            numbers.iter().for_each(|(&number, &node)| all[first + node] = Some(number));
+        }
+        all.into_iter().collect()
+    }
+
     /// The names of all sets.
     pub fn sets(&self) -> impl Iterator<Item = &str> {
         self.sets.keys().map(String::as_str)

@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 use crate::error::Error;
 use crate::fem::assembly::internal_force;
 use crate::fem::geometry::dot;
+use crate::fem::recovery::points::{at_points, nodal_strain, volume_and_energy};
 use crate::fem::recovery::{self, StressField};
 use crate::scene::Model;
 use crate::scene::models::resultants::{Resultant, without_rounding};
@@ -184,6 +185,32 @@ impl Answer {
     /// As [`Model::stress`].
     pub fn stress(&self) -> Result<&StressField, Error> {
         once(&self.stress, || self.model.stress_of_nodal(&self.displacement))
+    }
+
+    /// The strain at each node, dimensionless tensor components `[xx, yy, zz, xy, yz, zx]`, extension positive, in the order of the mesh:
+    /// recovered and averaged as the stress. The expansion by temperature is a part of it.
+    ///
+    /// # Errors
+    /// As [`Model::stress`].
+    pub fn strain(&self) -> Result<Vec<[f64; 6]>, Error> {
+        nodal_strain(self.model.body(), &self.displacement)
+    }
+
+    /// Strain (dimensionless) and stress (force per area) in some elements of the mesh, numbered from 0, at the points at which CalculiX
+    /// prints them, in its order: tensor components `[xx, yy, zz, xy, yz, zx]`, extension and tension positive.
+    ///
+    /// # Errors
+    /// [`qp::Error::Setting`] for an element that does not exist.
+    pub fn strain_and_stress(&self, elements: &[usize]) -> Result<Vec<Vec<[[f64; 6]; 2]>>, Error> {
+        at_points(self.model.body(), &self.displacement, elements)
+    }
+
+    /// The volume of each element, and its strain energy, in force times length, in the order of the mesh.
+    ///
+    /// # Errors
+    /// As [`Model::stress`].
+    pub fn volume_and_energy(&self) -> Result<Vec<[f64; 2]>, Error> {
+        volume_and_energy(self.model.body(), &self.displacement)
     }
 
     /// The forces on all nodes by their source; computed at the first call.

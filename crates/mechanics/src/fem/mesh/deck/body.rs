@@ -48,7 +48,8 @@ impl Deck {
         self.check(kind, &elements, &nodes, &connectivity)?;
         let mesh = Mesh::new(nodes, kind, connectivity, Vec::new())?
             .with_groups(self.groups(&elements))
-            .with_node_names(self.names(&places, &numbers));
+            .with_node_names(self.names(&places, &numbers))
+            .with_element_numbers(elements.iter().map(|&element| self.elements.numbers[element]).collect());
         self.with_boundaries(mesh, &elements)
     }
 

@@ -49,7 +49,7 @@ impl Amplitudes {
 }
 
 /// The time at the end of the step: the second value of *STATIC, 1 if it is left out.
-fn period(deck: &Deck) -> Result<f64, Error> {
+pub(super) fn period(deck: &Deck) -> Result<f64, Error> {
     let line = deck.source.cards.iter().find(|card| card.is("STATIC")).and_then(|card| card.lines.first());
     let Some(line) = line else { return Ok(1.0) };
     let mut fields = deck.source.fields(line);

@@ -8,6 +8,7 @@ mod contacts;
 mod keywords;
 mod loads;
 mod materials;
+pub(crate) mod requests;
 mod rigid;
 mod scene_text;
 mod supports;

@@ -7,6 +7,8 @@ use crate::fem::mesh::deck::{Card, Deck, Place, key};
 /// The difference of temperature of each node of the deck.
 pub(super) struct Temperatures {
     differences: Vec<f64>,
+    /// The temperature of each node at the end of the step.
+    pub end: Vec<f64>,
     /// The last line with a temperature; without one all differences are zero.
     last: Option<Place>,
 }
@@ -29,7 +31,7 @@ impl Temperatures {
             last = card.lines.last().map(|line| line.place).or(last);
         }
         let differences = end.iter().zip(&start).map(|(end, start)| end - start).collect();
-        Ok(Temperatures { differences, last })
+        Ok(Temperatures { differences, end, last })
     }
 
     /// The one difference of a body, with the line that gives it; `None` if it is zero.

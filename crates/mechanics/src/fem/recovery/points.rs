@@ -1,0 +1,84 @@
+//! Strain and stress at given points of elements, strain at the nodes, volume and energy of elements.
+
+use super::add;
+use crate::error::Error;
+use crate::fem::body::{BodyElement, ElasticBody, Phase};
+use crate::fem::element::TabulatedPoint;
+use crate::fem::formulation::Formulation;
+use crate::fem::geometry::Symmetric;
+use crate::fem::material::Law;
+use signorini_qp as qp;
+
+/// The strain at each node, of all elements around it: recovered as the stress of [`super::StressField`].
+///
+/// # Errors
+/// [`qp::Error::Length`] if the displacement does not have `dim` entries per node.
+pub(crate) fn nodal_strain(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<Symmetric>, Error> {
+    body.check_nodal("nodal displacement", displacement.len())?;
+    let (tables, extrapolations) = (body.tabulated(), body.extrapolations());
+    let mut sums: Vec<(Symmetric, usize)> = vec![([0.0; 6], 0); body.mesh().nodes().len()];
+    for element in body.elements() {
+        let (strained, extrapolation) =
+            (body.strained(&tables, displacement, &element), extrapolations.at(element.kind));
+        for (index, at) in tables.at(element.kind).points.iter().enumerate() {
+            let [strain, _] = strained.strain_and_stress(at);
+            for (local, &node) in element.nodes.iter().enumerate() {
+                add(&mut sums[node].0, extrapolation[(local, index)], &strain);
+            }
+        }
+        element.nodes.iter().for_each(|&node| sums[node].1 += 1);
+    }
+    Ok(sums.into_iter().map(|(sum, count)| sum.map(|component| component / count as f64)).collect())
+}
+
+/// Strain and stress in some elements at the points of CalculiX, layer by layer.
+///
+/// # Errors
+/// [`qp::Error::Length`] if the displacement does not have `dim` entries per node, [`qp::Error::Setting`] for an element that does not
+/// exist.
+pub(crate) fn at_points(
+    body: &ElasticBody,
+    displacement: &[f64],
+    elements: &[usize],
+) -> Result<Vec<Vec<[Symmetric; 2]>>, Error> {
+    body.check_nodal("nodal displacement", displacement.len())?;
+    let tables = body.tabulated();
+    let points = body.per_kind(|reference| -> Vec<TabulatedPoint> {
+        reference.calculix.points.iter().map(|point| TabulatedPoint::new(reference, point.at, point.weight)).collect()
+    });
+    let values = |&index: &usize| {
+        let allowed = "smaller than the number of elements (indices from 0)";
+        let missing = qp::Error::Setting { name: "element", value: index as f64, allowed };
+        let element = body.element(index).ok_or(missing)?;
+        let strained = body.strained(&tables, displacement, &element);
+        let layer: Vec<[Symmetric; 2]> =
+            points.at(element.kind).iter().map(|at| strained.strain_and_stress(at)).collect();
+        Ok(layer.repeat(element.kind.reference().calculix.layers))
+    };
+    elements.iter().map(values).collect()
+}
+
+/// The volume of each element, and its energy `1/2 sigma : C^-1 : sigma` with the law in space: in the plane, stress and strain across it
+/// do work as well.
+///
+/// # Errors
+/// As [`nodal_strain`].
+pub(crate) fn volume_and_energy(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<[f64; 2]>, Error> {
+    body.check_nodal("nodal displacement", displacement.len())?;
+    let tables = body.tabulated();
+    // An incompressible material has a law in plane stress only, and no stress works across its plane.
+    let in_space = |phase: &Phase| phase.material().law(&Formulation::Space).unwrap_or_else(|_| phase.law.clone());
+    let laws: Vec<Law> = body.phases().iter().map(in_space).collect();
+    let of_element = |element: BodyElement| {
+        let strained = body.strained(&tables, displacement, &element);
+        let (mut volume, mut energy) = (0.0, 0.0);
+        for at in &tables.at(element.kind).points {
+            let (point, stress) = strained.at(at);
+            volume += point.weight;
+            energy += point.weight * laws[element.phase_number as usize].complementary_energy(&stress) / 2.0;
+        }
+        let scale = element.cell.unit().powi(body.dimension() as i32);
+        [scale * volume, scale * energy]
+    };
+    Ok(body.elements().map(of_element).collect())
+}

@@ -1,0 +1,123 @@
+//! What a deck asks for in the files of results: the cards *NODE FILE, *EL FILE, *CONTACT FILE, *NODE PRINT, *EL PRINT, *CONTACT PRINT.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use super::amplitudes::{Amplitudes, period};
+use super::temperatures::Temperatures;
+use crate::error::Error;
+use crate::fem::mesh::deck::{Card, Deck, Place, key};
+
+/// The results that a deck asks for, under the labels of CalculiX in capitals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Requests {
+    /// Labels of fields: `U`, `RF`, `S`, `E`, `CDIS` and so on.
+    pub fields: BTreeSet<String>,
+    /// Tables, in the order of the deck.
+    pub tables: Vec<RequestedTable>,
+    /// The places of the cards that ask for a kind of result that has no field and no table here, as `*SECTION PRINT (line 7)`.
+    pub others: Vec<String>,
+    /// The temperature at the end of the step by the number of its node, in the order of the deck; 0 where the deck gives none.
+    pub temperatures: Vec<(usize, f64)>,
+    /// The time at the end of the step.
+    pub time: f64,
+}
+
+/// One result of the nodes or elements of a set, or of contacts, in rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RequestedTable {
+    /// `U`, `RF`, `S`, `E`, `EVOL`, `ELSE`, `CDIS`, `CSTR`, `CF` and so on.
+    pub label: String,
+    /// The line of the deck that asks for it, as `line 7`.
+    pub place: String,
+    /// The name of the set in capitals; empty for a contact.
+    pub set: String,
+    /// The numbers of its nodes or elements, in the order of the deck; empty for a contact.
+    pub numbers: Vec<usize>,
+    /// `true` if the value of each node or element is asked for.
+    pub parts: bool,
+    /// `true` if the sum of all is asked for.
+    pub totals: bool,
+    /// Slave and master of one contact, as the card names them; `None` for all contacts.
+    pub contact: Option<[String; 2]>,
+}
+
+/// The cards that ask for fields.
+const FIELDS: [&str; 6] = ["NODEFILE", "ELFILE", "CONTACTFILE", "NODEOUTPUT", "ELEMENTOUTPUT", "CONTACTOUTPUT"];
+
+/// The cards that ask for results of another kind.
+const OTHERS: [&str; 4] = ["FACEPRINT", "SECTIONPRINT", "SECTIONFILE", "ENERGYPRINT"];
+
+impl Requests {
+    /// Reads what a deck asks for. Files that it includes may lie outside its folder if `permits` has `outside`.
+    ///
+    /// # Errors
+    /// [`qp::Error::File`](signorini_qp::Error::File) for a file that cannot be read;
+    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a set that does not exist, and for what is not read.
+    pub fn of_deck(file: impl AsRef<Path>, permits: &[&str]) -> Result<Self, Error> {
+        let file = file.as_ref();
+        let deck = Deck::read(file, file.parent().filter(|_| !permits.contains(&"outside")))?;
+        let end = Temperatures::of(&deck, &Amplitudes::of(&deck)?)?.end;
+        let temperatures = deck.nodes.numbers.iter().copied().zip(end).collect();
+        let (fields, tables, others) = (BTreeSet::new(), Vec::new(), Vec::new());
+        let mut requests = Requests { fields, tables, others, temperatures, time: period(&deck)? };
+        for card in &deck.source.cards {
+            let is_one_of = |keywords: &[&str]| keywords.iter().any(|keyword| card.is(keyword));
+            if is_one_of(&FIELDS) {
+                requests.fields.extend(labels(&deck, card).into_iter().map(|(label, _)| label));
+            } else if is_one_of(&OTHERS) {
+                requests.others.push(format!("{} ({})", card.name, deck.source.named(card.place)));
+            } else if is_one_of(&["NODEPRINT", "ELPRINT", "CONTACTPRINT"]) {
+                requests.add_tables(&deck, card)?;
+            }
+        }
+        Ok(requests)
+    }
+
+    fn add_tables(&mut self, deck: &Deck, card: &Card) -> Result<(), Error> {
+        let fault = |message: String| deck.source.fault(card.place, message);
+        let (parameter, sets, of) = match card {
+            _ if card.is("NODEPRINT") => ("NSET", Some(&deck.node_sets), &deck.nodes),
+            _ if card.is("ELPRINT") => ("ELSET", Some(&deck.element_sets), &deck.elements),
+            _ => ("", None, &deck.elements),
+        };
+        let (mut set, mut numbers) = (String::new(), Vec::new());
+        if let Some(sets) = sets {
+            let Some(name) = card.value(parameter) else {
+                return Err(fault(format!("{} names no set; write {parameter}=NAME", card.name)));
+            };
+            set = key(name);
+            numbers = sets.members(name, of).map_err(fault)?.iter().map(|&place| of.numbers[place]).collect();
+        }
+        let contact = match [card.value("SLAVE"), card.value("MASTER")] {
+            [Some(slave), Some(master)] => Some([slave.to_string(), master.to_string()]),
+            _ => None,
+        };
+        let (parts, totals) = match card.value("TOTALS").map(key).as_deref() {
+            None | Some("NO") => (true, false),
+            Some("YES") => (true, true),
+            Some("ONLY") => (false, true),
+            Some(other) => return Err(fault(format!("TOTALS={other} of {} must be NO, YES or ONLY", card.name))),
+        };
+        for (label, place) in labels(deck, card) {
+            let (place, set, numbers) = (deck.source.named(place), set.clone(), numbers.clone());
+            self.tables.push(RequestedTable { label, place, set, numbers, parts, totals, contact: contact.clone() });
+        }
+        Ok(())
+    }
+}
+
+/// The labels of a card with their places.
+fn labels(deck: &Deck, card: &Card) -> Vec<(String, Place)> {
+    let mut labels = Vec::new();
+    for line in &card.lines {
+        let mut fields = deck.source.fields(line);
+        while let Some(field) = fields.next() {
+            let label = key(&String::from_utf8_lossy(field));
+            if !label.is_empty() {
+                labels.push((label, line.place));
+            }
+        }
+    }
+    labels
+}
