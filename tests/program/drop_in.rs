@@ -131,6 +131,11 @@ const TABLES: &str = "
         4.500000E-02
 ";
 
+const STEP: &str = "SUMMARY OF JOB INFORMATION
+  STEP      INC     ATT  ITRS     TOT TIME     STEP TIME      INC TIME
+     1          1     1     1  0.200000E+01  0.200000E+01  0.200000E+01
+";
+
 /// A file whose numbers below 1e-9, which are rounding, are written as zero.
 fn without_rounding(text: &str) -> String {
     let mut bytes = text.as_bytes().to_vec();
@@ -182,8 +187,7 @@ fn fields_tables_and_step_of_a_brick_are_those_of_calculix() {
     let run = desk.run(&["ccx", "-i", "brick"]).ends_with(0);
     assert!(run.stderr.is_empty() && run.stdout.contains("certified"), "{}{}", run.stdout, run.stderr);
     let frd = read(&desk, "brick.frd");
-    let expected =
-        FIELDS.replace("VERSION  ", "VERSION  ").replace("VERSION\n", &format!("{}\n", env!("CARGO_PKG_VERSION")));
+    let expected = FIELDS.replace("VERSION\n", &format!("{}\n", env!("CARGO_PKG_VERSION")));
     assert_eq!(&frd[..expected.len()], expected);
     assert!(frd.ends_with(" -3\n 9999\n"));
     for (_, stress) in field(&frd, "STRESS") {
@@ -199,8 +203,7 @@ fn fields_tables_and_step_of_a_brick_are_those_of_calculix() {
     }
     assert!(!frd.contains("NDTEMP") && !frd.contains("CONTACT"), "{frd}");
     assert_eq!(read(&desk, "brick.dat"), TABLES);
-    let step = "SUMMARY OF JOB INFORMATION\n  STEP      INC     ATT  ITRS     TOT TIME     STEP TIME      INC TIME\n\x20    1          1     1     1  0.200000E+01  0.200000E+01  0.200000E+01\n";
-    assert_eq!(read(&desk, "brick.sta"), step);
+    assert_eq!(read(&desk, "brick.sta"), STEP);
     assert!(desk.path("brick.signorini/report.html").exists() && desk.path("brick.signorini/report.json").exists());
 }
 
@@ -252,7 +255,8 @@ fn a_run_that_fails_leaves_no_file_of_an_earlier_one() {
 #[test]
 fn results_that_are_not_written_are_named_once() {
     let desk = Desk::new();
-    let asked = "*EL FILE\nS, PEEQ\n*NODE PRINT, NSET=X0, TOTALS=ONLY\nU\n*EL PRINT, ELSET=PART\nSVF\n*SECTION PRINT, SURFACE=END, NAME=N\nSOF\n*END STEP\n";
+    let asked = "*EL FILE\nS, PEEQ\n*NODE PRINT, NSET=X0, TOTALS=ONLY\nU\n*EL PRINT, ELSET=PART\nSVF\n\
+                 *SECTION PRINT, SURFACE=END, NAME=N\nSOF\n*END STEP\n";
     desk.write("brick.inp", format!("{BRICK}{asked}"));
     let run = desk.run(&["ccx", "brick"]).ends_with(0);
     let expected =
