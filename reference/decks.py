@@ -115,20 +115,19 @@ class Bar:
         return "\n".join([*lines, "*NODE PRINT, NSET=ALL", "U", "*END STEP"]) + "\n"
 
 
-def differs(program: str, element: str, folder: pathlib.Path) -> tuple[float, float]:
-    """Returns the largest displacement of CalculiX, and the largest difference over it."""
-    bar = Bar(element)
-    (folder / "bar.inp").write_text(bar.deck(element))
-    subprocess.run(["ccx", "bar"], cwd=folder, check=True, capture_output=True)
-    lines = [line.split() for line in (folder / "bar.dat").read_text().splitlines()]
-    printed = {int(words[0]) // 10 - 1: [float(word) for word in words[1:]] for words in lines if len(words) == 4 and words[0].isdigit()}
-    command = [program, "solve", "bar.inp", "--out", "answer", "--pictures", "none"]
+def compared(program: str, deck: str, folder: pathlib.Path, axes: int = 3) -> tuple[float, float]:
+    """Returns the largest displacement of CalculiX, and the largest difference over it; nodes have the order of their numbers."""
+    (folder / "deck.inp").write_text(deck)
+    subprocess.run(["ccx", "deck"], cwd=folder, check=True, capture_output=True)
+    lines = [line.split() for line in (folder / "deck.dat").read_text().splitlines()]
+    by_number = {int(words[0]): [float(word) for word in words[1:]] for words in lines if len(words) == 4 and words[0].isdigit()}
+    printed = [by_number[number] for number in sorted(by_number)]
+    command = [program, "solve", "deck.inp", "--out", "answer", "--pictures", "none"]
     subprocess.run(command, cwd=folder, check=True, capture_output=True)
     text = (folder / "answer/solution.vtu").read_text()
     found = re.search('Name="u"[^>]*>\n(.*?)</DataArray', text, re.DOTALL).group(1).strip().splitlines()
-    axes = 3 if bar.is_solid else 2
-    largest = max(abs(value) for values in printed.values() for value in values)
-    pairs = ((printed[node], [float(word) for word in line.split()]) for node, line in enumerate(found))
+    largest = max(abs(value) for values in printed for value in values)
+    pairs = ((own, [float(word) for word in line.split()]) for own, line in zip(printed, found, strict=True))
     return largest, max(abs(a - b) for one, other in pairs for a, b in zip(one[:axes], other[:axes], strict=True)) / largest
 
 
@@ -187,7 +186,7 @@ def main() -> None:
         return side_by_side(program, pathlib.Path(sys.argv[sys.argv.index("--decks") + 1]))
     for element in (*SOLIDS, *PLANES):
         with tempfile.TemporaryDirectory() as folder:
-            largest, difference = differs(program, element, pathlib.Path(folder))
+            largest, difference = compared(program, Bar(element).deck(element), pathlib.Path(folder), 3 if element.startswith("C3D") else 2)
         print(f"{element:7} largest displacement {largest:.6e}, differs by {difference:.1e}")
 
 

@@ -183,6 +183,25 @@ fn each_section_has_its_material() {
     compare(&answer(&deck), |[x, ..]| [0.01 * x.min(1.0) + 0.02 * (x - 1.0).max(0.0), 0.0, 0.0]);
 }
 
+/// Axis 1 of the material along y, axis 2 against x: tension along x by 3 stretches by 3/E2, and narrows by nu12 3/E1 along y. A
+/// surface within the body that only prints a force is left out.
+#[test]
+fn material_axes_are_turned_by_an_orientation() {
+    const TURNED: &str = "*ORIENTATION, NAME=O, SYSTEM=RECTANGULAR\n0., 2., 0., -1., 1., 0.\n\
+                          *MATERIAL, NAME=STEEL\n*ELASTIC, TYPE=ENGINEERING CONSTANTS\n\
+                          400., 100., 200., 0.2, 0.1, 0.3, 60., 70.,\n80.\n";
+    for element in ["C3D8", "C3D10", "CPS4"] {
+        let deck = block(element)
+            .replace(MATERIAL, TURNED)
+            .replace("ELSET=PART, MATERIAL=STEEL", "ELSET=PART, MATERIAL=STEEL, ORIENTATION=o");
+        let inner = "*SURFACE, NAME=INNER\n1, S2\n";
+        let print = "*SECTION PRINT, SURFACE=INNER, NAME=CUT\nSOF\n";
+        let answer = answer(&(deck + inner + SYMMETRIC + &step(&format!("*DSLOAD\nFACE, P, -3.\n{print}"))));
+        // nu23/E2 along z.
+        compare(&answer, |[x, y, z]| [3.0 * x / 100.0, -0.2 * 3.0 * y / 400.0, -0.3 * 3.0 * z / 100.0]);
+    }
+}
+
 /// A plane body of thickness 0.5: a force of 3 on its end is a stress of 6.
 #[test]
 fn the_thickness_of_a_plane_section_counts() {

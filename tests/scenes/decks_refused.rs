@@ -67,7 +67,8 @@ fn check(from: &str, to: &str, phrase: &str) {
 #[test]
 fn what_changes_the_answer_and_is_not_modelled_is_refused_by_name_and_line() {
     for (card, phrase) in [
-        ("*ORIENTATION, NAME=O", "*ORIENTATION changes the answer and is refused: material axes"),
+        ("*ORIENTATION, NAME=O", "*ORIENTATION has no values"),
+        ("*ORIENTATION, NAME=O, SYSTEM=ODD\n1., 0., 0., 0., 1., 0.", "SYSTEM=ODD is not read"),
         ("*TRANSFORM, NSET=ALL", "*TRANSFORM changes the answer"),
         ("*SPRING, ELSET=S", "*SPRING changes the answer"),
         ("*COUPLING", "*COUPLING changes the answer"),
@@ -147,8 +148,8 @@ fn wrong_materials_loads_and_steps_are_refused_with_their_line() {
         ("ELSET=PART, MATERIAL=STEEL", "ELSET=PARTS, MATERIAL=STEEL", "there is no set of elements `PARTS`"),
         (
             "ELSET=PART, MATERIAL=STEEL",
-            "ELSET=PART, MATERIAL=STEEL, ORIENTATION=O",
-            "has the parameter ORIENTATION, which is not read",
+            "ELSET=PART, MATERIAL=STEEL, COMPOSITE",
+            "has the parameter COMPOSITE, which is not read",
         ),
         ("BASE, 1, 3", "BASE, 1, 7", "directions 1 to 7 are not those of a solid"),
         ("BASE, 1, 3", "BASE, 1, 3, 0.1", "a displacement other than 0 must stand in the step"),
@@ -164,6 +165,11 @@ fn wrong_materials_loads_and_steps_are_refused_with_their_line() {
             "the load `BX` is not read; there are P1 to P6, GRAV and CENTRIF",
         ),
         ("*CLOAD\n7, 3, -1.", "*DLOAD\nPART, GRAV, 9.81, 0., 0., 0.", "the direction of gravity has no length"),
+        (
+            "*SOLID SECTION, ELSET=PART, MATERIAL=STEEL",
+            "*SOLID SECTION, ELSET=PART, MATERIAL=STEEL, ORIENTATION=O",
+            "there is no *ORIENTATION `O`",
+        ),
         ("*CLOAD\n7, 3, -1.", "*DSLOAD\nTIP, P, 1.", "there is no surface `TIP`; did you mean `TOP`?"),
         ("*CLOAD\n7, 3, -1.", "*TEMPERATURE\n1, 20.", "nodes 1 and 2 of one body differ by 20 and 0"),
         ("*CLOAD\n7, 3, -1.", "*CONTACT PAIR, INTERACTION=I\nTOP, TOP", "there is no *SURFACE INTERACTION `I`"),

@@ -37,11 +37,14 @@ impl<'a> Content<'a> {
         self.in_space(self.answer.displacement())
     }
 
-    /// The force on each node of the mesh from outside the bodies and their contacts: loads and reactions.
+    /// The force on each node of the mesh except from contacts: loads, reactions, ties and rigid bodies.
     pub fn forces(&self) -> Result<Vec<[f64; 3]>, Error> {
-        let (load, forces) = (self.answer.model().nodal_load(), self.answer.forces()?);
-        let sum = load.iter().zip(&forces.reactions).map(|(load, reaction)| load + reaction);
-        Ok(self.in_space(&sum.collect::<Vec<f64>>()))
+        let forces = self.answer.forces()?;
+        let mut sum = self.answer.model().nodal_load().to_vec();
+        for part in [&forces.reactions, &forces.ties, &forces.rigid_faces] {
+            sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+        }
+        Ok(self.in_space(&sum))
     }
 
     /// Nodal values with three components each.

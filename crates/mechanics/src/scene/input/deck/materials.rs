@@ -48,7 +48,7 @@ impl Sections {
     /// An error with the line for a material that is not read, a section without a set or a material, elements without a section, sections
     /// of different thickness.
     pub fn of(deck: &Deck, space: Space) -> Result<Self, Error> {
-        let materials = materials(deck)?;
+        let (materials, orientations) = (materials(deck)?, orientations(deck)?);
         let names: Vec<&str> = materials.keys().map(String::as_str).collect();
         let mut sections = Sections { all: Vec::new(), of_element: Vec::new(), thickness: None };
         let mut of_element: Vec<Option<usize>> = vec![None; deck.elements.len()];
@@ -63,10 +63,16 @@ impl Sections {
                 let meant = nearly(&key(material), names.iter().copied());
                 return Err(deck.source.fault(card.place, format!("there is no material `{material}`{meant}")));
             };
-            let Some(value) = given.value() else {
+            let Some(mut value) = given.value() else {
                 return Err(deck.source.fault(card.place, format!("the material `{material}` has no *ELASTIC")));
             };
             sections.read_thickness(deck, card, space)?;
+            if let Some(name) = card.value("ORIENTATION") {
+                let orientation =
+                    orientations.get(&key(name)).ok_or_else(|| format!("there is no *ORIENTATION `{name}`"));
+                let turned = orientation.and_then(|orientation| orientation.turn(&mut value, space));
+                turned.map_err(|message| deck.source.fault(card.place, message))?;
+            }
             set.members.iter().for_each(|&element| of_element[element] = Some(sections.all.len()));
             let expands = given.expansion.is_some();
             sections.all.push(Section { group: set.name.clone(), place: card.place, material: value, expands });
@@ -132,6 +138,65 @@ impl Given {
         }
         Some(value)
     }
+}
+
+/// Material axes: a vector along axis 1, and one in the plane of axes 1 and 2.
+enum Orientation {
+    Rectangular([[f64; 3]; 2]),
+    Cylindrical,
+}
+
+impl Orientation {
+    /// Turns an orthotropic material, as a scene has it; an isotropic one has no axes.
+    fn turn(&self, material: &mut Value, space: Space) -> Result<(), String> {
+        let Some(orthotropic) = material.get_mut("orthotropic") else { return Ok(()) };
+        match (self, space) {
+            (Orientation::Rectangular(axes), Space::Solid) => orthotropic["axes"] = json!(axes),
+            (Orientation::Rectangular([[x, y, z], second]), _) => {
+                if *z != 0.0 || x * second[1] - y * second[0] <= 0.0 {
+                    return Err(
+                        "in a plane model axis 2 lies a quarter turn from axis 1, counterclockwise from x to y".into(),
+                    );
+                }
+                orthotropic["angle"] = y.atan2(*x).to_degrees().into();
+            }
+            (Orientation::Cylindrical, _) => {
+                return Err(
+                    "the axes of an orthotropic material are read as RECTANGULAR, one direction for all elements"
+                        .into(),
+                );
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The orientations by their names in capitals.
+fn orientations(deck: &Deck) -> Result<HashMap<String, Orientation>, Error> {
+    let mut all = HashMap::new();
+    for card in deck.source.cards.iter().filter(|card| card.is("ORIENTATION")) {
+        let Some(name) = card.value("NAME") else {
+            return Err(deck.source.fault(card.place, "*ORIENTATION has no name; write NAME=NAME"));
+        };
+        let mut fields = only_line(deck, card)?;
+        let mut axes = [[0.0; 3]; 2];
+        for (part, what) in axes.as_flattened_mut().iter_mut().zip(["Xa", "Ya", "Za", "Xb", "Yb", "Zb"]) {
+            *part = fields.finite_or_zero(what)?;
+        }
+        fields.end()?;
+        let orientation = match card.value("SYSTEM").map_or_else(|| "RECTANGULAR".into(), key).as_str() {
+            "RECTANGULAR" => Orientation::Rectangular(axes),
+            "CYLINDRICAL" => Orientation::Cylindrical,
+            other => {
+                let message = format!("SYSTEM={other} is not read; there are RECTANGULAR and CYLINDRICAL");
+                return Err(deck.source.fault(card.place, message));
+            }
+        };
+        if all.insert(key(name), orientation).is_some() {
+            return Err(deck.source.fault(card.place, format!("there are two orientations `{name}`")));
+        }
+    }
+    Ok(all)
 }
 
 /// The materials by their names in capitals.

@@ -1,0 +1,109 @@
+"""Compares decks of two joined blocks with CalculiX: ties, equations, rigid bodies.
+
+    python3 reference/decks_joined.py target/release/signorini
+
+One block stands on the other; the lower one is held, the upper one is pressed and pushed aside at a corner. The blocks of the first lines
+have the same mesh on both sides; in the next ones the slave side is the finer one. CalculiX, whose command is ccx, prints seven digits. A
+line has the largest displacement and the largest difference over it.
+"""
+
+import itertools
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import decks
+
+TIE = ["*TIE, NAME=GLUE", "LOWER_SIDE, UPPER_SIDE"]
+PRESSED = ["*DSLOAD", "TOP, P, 3.", "*CLOAD", "CORNER, 1, 0.5"]
+PLATE = ["*NODE, NSET=REFERENCES", "200001, 0.5, 0.5, 2.", "200002, 0.5, 0.5, 2.", "*RIGID BODY, NSET=END, REF NODE=200001, ROT NODE=200002"]
+
+
+class Block:
+    """A block [0, 1] x [0, 1] above a height, of one type."""
+
+    def __init__(self, element: str, cells: tuple[int, int, int], height: float, first: int) -> None:
+        self.element, self.first, self.height = element, first, height
+        count = int(re.sub("[IR]$", "", element[3:]))
+        form = "tetrahedron" if count in (4, 10) else "brick"
+        self.faces, mid_sides = decks.CELLS[form]
+        self.numbers: dict = {}
+        self.nodes: list = []
+        self.elements = []
+        for k, j, i in itertools.product(*(range(cells[axis]) for axis in (2, 1, 0))):
+            around = [
+                self.node((a, b, c), (a / cells[0], b / cells[1], height + c / cells[2]))
+                for c in (k, k + 1)
+                for a, b in ((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1))
+            ]
+            for part in decks.TETRAHEDRA if form == "tetrahedron" else (range(8),):
+                own = [around[local] for local in part]
+                if count > len(own):
+                    own += [self.middle(own[a], own[b]) for a, b in mid_sides]
+                self.elements.append(own)
+
+    node, middle = decks.Bar.node, decks.Bar.middle
+
+    def at_height(self, height: float) -> list[int]:
+        """Returns the numbers of the nodes at a height."""
+        return [self.first + node for node, at in enumerate(self.nodes) if abs(at[2] - height) < 1e-9]
+
+    def cards(self, name: str) -> list[str]:
+        """Returns nodes and elements."""
+        lines = [f"*NODE, NSET={name}"]
+        lines += [f"{self.first + node}, {x:.12f}, {y:.12f}, {z:.12f}" for node, (x, y, z) in enumerate(self.nodes)]
+        lines.append(f"*ELEMENT, TYPE={self.element}, ELSET={name}")
+        for number, nodes in enumerate(self.elements):
+            words = [str(self.first + number), *(str(self.first + node) for node in nodes)]
+            lines += [", ".join(words[at : at + 11]) + ("," if at + 11 < len(words) else "") for at in range(0, len(words), 11)]
+        return lines
+
+    def surface(self, name: str, height: float) -> list[str]:
+        """Returns the surface of the faces at a height."""
+        is_there = set(self.at_height(height))
+        found = itertools.product(enumerate(self.elements), enumerate(self.faces))
+        own = [(number, face) for (number, nodes), (face, corners) in found if all(self.first + nodes[at] in is_there for at in corners)]
+        return [f"*SURFACE, NAME={name}", *(f"{self.first + number}, S{face + 1}" for number, face in own)]
+
+
+def deck(elements: tuple[str, str], cells: tuple[int, int], joined: list[str], equations: bool, loads: list[str]) -> str:
+    """Returns the deck of two blocks with `cells` along their sides."""
+    below = Block(elements[0], (cells[0], cells[0], max(cells[0] // 2, 2)), 0.0, 1)
+    above = Block(elements[1], (cells[1], cells[1], max(cells[1] // 3, 2)), 1.0, 100001)
+    lines = ["*HEADING", "Two blocks", *below.cards("BELOW"), *above.cards("ABOVE")]
+    lines += [*below.surface("UPPER_SIDE", 1.0), *above.surface("LOWER_SIDE", 1.0), *above.surface("TOP", 2.0)]
+    end = above.at_height(2.0)
+    for name, numbers in {"BASE": below.at_height(0.0), "END": end, "CORNER": [end[-1]]}.items():
+        lines += [f"*NSET, NSET={name}", *(f"{number}," for number in numbers)]
+    lines += ["*MATERIAL, NAME=SOFT", "*ELASTIC", "1000., .3"]
+    lines += [f"*SOLID SECTION, ELSET={name}, MATERIAL=SOFT" for name in ("BELOW", "ABOVE")]
+    lines += [*TIE, *joined]
+    if equations:
+        lines += ["*EQUATION", *(line for node in end[1:] for line in ("2", f"{node}, 3, 1., {end[0]}, 3, -1."))]
+    lines += ["*BOUNDARY", "BASE, 1, 3", "*STEP", "*STATIC", *loads]
+    return "\n".join([*lines, "*NODE PRINT, NSET=BELOW", "U", "*NODE PRINT, NSET=ABOVE", "U", "*END STEP"]) + "\n"
+
+
+def main() -> None:
+    """Prints a line for each deck."""
+    program = str(pathlib.Path(sys.argv[1]).resolve())
+    cases = [(f"tied, {one}", deck((one, one), (2, 2), [], False, PRESSED)) for one in ("C3D4", "C3D8", "C3D10", "C3D20")]
+    for pair, times in itertools.product((("C3D8", "C3D8"), ("C3D10", "C3D8"), ("C3D20", "C3D20")), (2, 4)):
+        name = f"tied, {pair[0]} on {pair[1]}, {3 * times} on {2 * times} cells"
+        cases.append((name, deck(pair[::-1], (2 * times, 3 * times), [], False, PRESSED)))
+    hexa = ("C3D8", "C3D8")
+    cases.append(("equations: a flat end", deck(hexa, (2, 2), [], True, PRESSED)))
+    cases.append(("rigid body, force", deck(hexa, (2, 2), PLATE, False, ["*CLOAD", "200001, 3, -2.", "200001, 1, 0.7"])))
+    cases.append(("rigid body, moment", deck(hexa, (2, 2), PLATE, False, ["*CLOAD", "200002, 2, 0.3", "200002, 3, 0.2"])))
+    turned = ["*BOUNDARY", "200002, 3, 3, 0.001", "200001, 1, 2"]
+    cases.append(("rigid body, turned", deck(hexa, (2, 2), PLATE, False, turned)))
+    for name, text in cases:
+        with tempfile.TemporaryDirectory() as folder:
+            largest, difference = decks.compared(program, text, pathlib.Path(folder))
+        print(f"{name:40} largest displacement {largest:.6e}, differs by {difference:.1e}")
+
+
+if __name__ == "__main__":
+    main()
