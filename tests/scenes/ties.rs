@@ -124,6 +124,34 @@ fn two_tied_bodies_with_matching_meshes_are_one_body() {
     }
 }
 
+/// Three bodies that meet at a line, each tied to both others: the equations along the line repeat each other, but for rounding.
+#[test]
+fn bodies_that_are_tied_in_a_ring_have_an_answer() {
+    for (elements, counts) in
+        [(["hex8"; 3], [2, 2, 2]), (["tet4", "hex8", "tet4"], [2, 3, 3]), (["hex8", "tet10", "hex20"], [1, 2, 3])]
+    {
+        let body = |index: usize, x: [f64; 2], z: [f64; 2]| {
+            let [across, depth, up] = [x, [0.0, 1.0], z].map(|[from, to]| cells(from, to, counts[index]));
+            json!({"box": {"x": across, "y": depth, "z": up, "element": elements[index]}})
+        };
+        let material = |young: f64| json!({"young": young, "poisson": 0.3});
+        let tie = |boundary: &str, to: &str| json!({"surfaces": {"boundary": boundary, "to": to}});
+        let scene = json!({
+            "model": "space", "body": body(0, [0.0, 1.0], [0.0, 1.0]), "material": material(100.0),
+            "further-bodies": [{"name": "beside", "body": body(1, [1.0, 2.0], [0.0, 1.0]), "material": material(30.0)},
+                               {"name": "above", "body": body(2, [0.0, 2.0], [1.0, 2.0]), "material": material(10.0)}],
+            "supports": [{"on": {"boundary": "left"}, "x": 0, "y": 0, "z": 0}],
+            "ties": [tie("right", "beside.left"), tie("top", "above.bottom"), tie("beside.top", "above.bottom")],
+            "loads": [{"traction": {"boundary": "above.top", "value": [0.1, 0, -0.2]}}],
+        });
+        let answer = answer(&scene);
+        let support = answer.resultants().unwrap().iter().find(|one| one.of == "supports[0]").unwrap();
+        let away = [(0, -0.2), (2, 0.4)].map(|(axis, force)| (support.force[axis] - force).abs());
+        assert!(away.iter().all(|away| *away < INTEGRATED), "{elements:?} {counts:?}: {support:?}");
+        assert!(answer.forces().unwrap().balance < INTEGRATED);
+    }
+}
+
 /// Equal displacements along x at the right end are a plate that neither turns nor holds across.
 #[test]
 fn equations_between_nodes_pull_as_a_plate_does() {

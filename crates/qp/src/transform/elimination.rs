@@ -73,6 +73,40 @@ struct Pivot {
     weights: Sparse,
 }
 
+impl Pivot {
+    /// The dof with the least rank among those of large coefficients.
+    fn best<R: Ord>(&self, rank: impl Fn(usize) -> R) -> Option<usize> {
+        let largest = self.others.values().map(|a| a.rounded().abs()).fold(0.0, f64::max);
+        let may_be = |entry: &(&usize, &Twice)| entry.1.rounded().abs() >= PIVOT * largest;
+        self.others.iter().filter(may_be).map(|entry| *entry.0).min_by_key(|&dof| rank(dof))
+    }
+}
+
+impl SparseMatrix {
+    /// The rows of the equations `A u = values` that do not follow from the others within `accuracy`, relative to their entries and values;
+    /// in increasing order. `values` has an entry for each row, in any unit. A row that contradicts the others stays.
+    pub fn independent_rows(&self, values: &[f64], accuracy: f64) -> Vec<usize> {
+        let by_row = self.transposed();
+        let of_row = |row: usize| by_row.column(row).filter(|entry| entry.1 != 0.0);
+        let mut order: Vec<usize> = (0..self.rows()).collect();
+        order.sort_by_key(|&row| of_row(row).count());
+        let (mut found, mut stays) = (Found::default(), vec![true; self.rows()]);
+        for row in order {
+            let entries: Sparse = of_row(row).map(|(dof, a)| (dof, a.into())).collect();
+            match found.reduced(&entries, values.get(row).copied().unwrap_or(0.0).into(), (row, accuracy)) {
+                Reduced::Row(pivot) => {
+                    if let Some(dof) = pivot.best(|dof| self.column(dof).count()) {
+                        found.solve_for(dof, pivot);
+                    }
+                }
+                Reduced::Follows => stays[row] = false,
+                Reduced::Contradicts(_) | Reduced::Unclear => {}
+            }
+        }
+        (0..self.rows()).filter(|&row| stays[row]).collect()
+    }
+}
+
 /// The equalities of a problem, solved for some of its dofs.
 #[derive(Clone, Debug)]
 pub struct Elimination {
@@ -109,13 +143,9 @@ impl Elimination {
             let row = equalities[number].row;
             let entries: Sparse =
                 by_row.column(row).filter(|entry| entry.1 != 0.0).map(|(dof, b)| (dof, b.into())).collect();
-            match found.reduced(&entries, problem.gap()[row].into(), number) {
+            match found.reduced(&entries, problem.gap()[row].into(), (number, FOLLOWS)) {
                 Reduced::Row(pivot) => {
-                    let largest = pivot.others.values().map(|a| a.rounded().abs()).fold(0.0, f64::max);
-                    let may_be = |entry: &(&usize, &Twice)| entry.1.rounded().abs() >= PIVOT * largest;
-                    let best = pivot.others.iter().filter(may_be);
-                    let best = best.min_by_key(|entry| (of_equalities[*entry.0], columns[*entry.0]));
-                    let Some((&dof, _)) = best else { return Ok(None) };
+                    let Some(dof) = pivot.best(|dof| (of_equalities[dof], columns[dof])) else { return Ok(None) };
                     fill += pivot.others.len() * (pivot.others.len() + columns[dof]);
                     if fill > most {
                         return Ok(None);
@@ -371,8 +401,8 @@ struct Found {
 }
 
 impl Found {
-    /// The equality `entries u = right` with the pivots put in.
-    fn reduced(&self, entries: &Sparse, right: Twice, number: usize) -> Reduced {
+    /// The equality `entries u = right` of a number with the pivots put in; it follows from them if less than this share of it is left.
+    fn reduced(&self, entries: &Sparse, right: Twice, (number, follows): (usize, f64)) -> Reduced {
         let mut sums: BTreeMap<usize, Sum> = BTreeMap::new();
         let mut weights: BTreeMap<usize, Sum> = BTreeMap::new();
         let mut constant = Sum::default();
@@ -403,9 +433,9 @@ impl Found {
                     weights.into_iter().map(|(number, weight)| (number, weight * sign.into())).collect(),
                 )
             }
-            _ if largest > FOLLOWS * terms => Reduced::Row(Pivot { dof: 0, constant: left, others, weights }),
+            _ if largest > follows * terms => Reduced::Row(Pivot { dof: 0, constant: left, others, weights }),
             // The entries are rounded, and so is the right-hand side.
-            _ if left.rounded().abs() <= FOLLOWS * size => Reduced::Follows,
+            _ if left.rounded().abs() <= follows * size => Reduced::Follows,
             _ => Reduced::Unclear,
         }
     }
@@ -510,6 +540,20 @@ mod tests {
             );
             assert!(found.contact_set.contains(pressing) && !found.contact_set.contains(3 - pressing));
         }
+    }
+
+    #[test]
+    fn rows_that_follow_within_an_accuracy_are_left_out_unless_they_contradict() {
+        // The third is the sum of the others, but for 1e-12 in one entry; the last is the first with another value.
+        let entries =
+            [(0, 0, 1.0), (0, 1, 2.0), (1, 1, 1.0), (1, 2, -1.0), (2, 0, 1.0), (2, 1, 3.0), (2, 2, -1.0 + 1e-12)];
+        let rows = |value: f64| {
+            let again = [(3, 0, 1.0), (3, 1, 2.0)];
+            let rows = SparseMatrix::from_triplets(4, 3, &[&entries[..], &again].concat()).unwrap();
+            [1e-10, 1e-14].map(|accuracy| rows.independent_rows(&[1.0, 2.0, 3.0, value], accuracy))
+        };
+        assert_eq!(rows(1.0), [vec![0, 1], vec![0, 1, 2]]);
+        assert_eq!(rows(1.5), [vec![0, 1, 3], vec![0, 1, 2, 3]]);
     }
 
     #[test]

@@ -21,6 +21,9 @@ use signorini_qp::SparseMatrix;
 /// Surfaces farther apart than this share of a facet are apart: far above what straight facets miss of a curve.
 const APART: f64 = 0.1;
 
+/// An equation of which less than this share is left by others follows from them: far above the rounding of integrals over facets.
+const REPEATED: f64 = 1e-9;
+
 /// A surface covered by less than this share is only partly tied.
 const COVERED: f64 = 1.0 - 1e-6;
 
@@ -58,6 +61,21 @@ pub(crate) struct Ties {
     /// e, in length.
     pub values: Vec<f64>,
     pub warnings: Vec<Warning>,
+}
+
+impl Ties {
+    /// The same without equations that follow from others, as where three bodies meet that are tied to each other.
+    fn without_repeated(self) -> Self {
+        let stays = self.matrix.independent_rows(&self.values, REPEATED);
+        let before = |row: usize| stays.partition_point(|&own| own < row);
+        Ties {
+            rows: stays.iter().map(|&row| self.rows[row].clone()).collect(),
+            of_tie: self.of_tie.iter().map(|rows| before(rows.start)..before(rows.end)).collect(),
+            matrix: self.matrix.select_rows(&stays),
+            values: stays.iter().map(|&row| self.values[row]).collect(),
+            warnings: self.warnings,
+        }
+    }
 }
 
 impl Scene {
@@ -104,7 +122,8 @@ impl Scene {
             of_tie.push(first..rows.len());
         }
         let matrix = SparseMatrix::from_triplets(rows.len(), unknowns.count(), &entries)?;
-        Ok(Ties { rows, of_tie, matrix, values, warnings })
+        let ties = Ties { rows, of_tie, matrix, values, warnings };
+        Ok(if ties.of_tie.len() > 1 { ties.without_repeated() } else { ties })
     }
 
     /// The pairs of boundaries that are tied.
