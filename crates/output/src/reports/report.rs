@@ -236,7 +236,9 @@ fn resultants_text(summary: &Summary, units: &Units) -> String {
     let force_scale = largest(|resultant| &resultant.force);
     let length_scale = largest(|resultant| resultant.centre.as_deref().unwrap_or_default());
     let (force, place) = (|values: &[f64]| rounded(values, force_scale), |at: &[f64]| rounded(at, length_scale));
-    let moment_unit = format!("{} {}", units.force, units.length);
+    let behind = |unit: &str| if unit.trim().is_empty() { String::new() } else { format!(" {unit}") };
+    let (of_force, of_length) = (behind(&units.force), behind(&units.length));
+    let of_moment = behind(&format!("{} {}", units.force, units.length));
     let resultant = |resultant: &Resultant| {
         let on = resultant.on.as_ref().map_or_else(String::new, |on| format!(" on {}", printable(on)));
         let rule = match resultant.rule {
@@ -244,23 +246,23 @@ fn resultants_text(summary: &Summary, units: &Units) -> String {
             Some(Rule::ClosestPoint) => " (rule closest-point)",
             None => "",
         };
-        let mut text = format!("{}{on}{rule}: force {} {}", resultant.of, force(&resultant.force), units.force);
+        let mut text = format!("{}{on}{rule}: force {}{of_force}", resultant.of, force(&resultant.force));
         if !resultant.moment.is_empty() {
-            text += &format!(", moment {} {moment_unit}", rounded(&resultant.moment, force_scale * length_scale));
+            text += &format!(", moment {}{of_moment}", rounded(&resultant.moment, force_scale * length_scale));
         }
         if let Some(centre) = &resultant.centre {
-            text += &format!(", centre {} {}", place(centre), units.length);
+            text += &format!(", centre {}{of_length}", place(centre));
         }
         if let Some(motion) = &resultant.motion {
-            text += &format!(", moved {} {}", rounded(&motion.displacement, 0.0), units.length);
+            text += &format!(", moved {}{of_length}", rounded(&motion.displacement, 0.0));
             if !motion.rotation.is_empty() {
                 text += &format!(", turned {}", rounded(&motion.rotation, 0.0));
             }
         }
         if let Some(travel) = resultant.travel {
-            text += &format!(", travel {travel:.6e} {}", units.length);
+            text += &format!(", travel {travel:.6e}{of_length}");
         }
-        text.trim_end().to_string()
+        text
     };
     let segment = |segment: &Segment| {
         let where_it_is = match (&segment.ends, &segment.centre) {
