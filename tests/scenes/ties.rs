@@ -179,6 +179,32 @@ fn equations_between_nodes_pull_as_a_plate_does() {
     assert!((of("supports[0]")[0] + 4.0).abs() < 1e-12 && forces.balance < 1e-12);
 }
 
+/// A bar whose end stays 0.01 ahead of its support, which moves by 0.02, in place of any load; so does a tied neighbour.
+#[test]
+fn prescribed_displacements_count_in_ties() {
+    let bar =
+        |from: f64, to: f64| json!({"rectangle": {"x": cells(from, to, 4), "y": cells(0.0, 1.0, 2), "element": "q8"}});
+    let material = json!({"young": 50, "poisson": 0});
+    let ahead = |y: f64| {
+        let terms = json!([{"on": {"point": [2, y]}, "x": 1}, {"on": {"point": [0, 0]}, "x": -1, "y": 3}]);
+        json!({"equation": {"terms": terms, "value": 0.01 + 3.0 * 0.005}})
+    };
+    let answer = answer(&json!({
+        "model": "plane-stress", "body": bar(0.0, 1.0), "material": material,
+        "further-bodies": [{"name": "end", "body": bar(1.0, 2.0), "material": material}],
+        "supports": [{"on": {"boundary": "left"}, "x": 0.02, "y": 0.005}],
+        "ties": [{"surfaces": {"boundary": "right", "to": "end.left"}}, ahead(0.0), ahead(0.25), ahead(0.5), ahead(0.75), ahead(1.0)],
+    }));
+    for (node, &[x, ..]) in answer.model().mesh().nodes().iter().enumerate() {
+        let found = &answer.displacement()[2 * node..2 * node + 2];
+        let exact = [0.02 + 0.005 * x, 0.005];
+        assert!(
+            (0..2).all(|axis| (found[axis] - exact[axis]).abs() < ROUNDING),
+            "{found:?} instead of {exact:?} at {x}"
+        );
+    }
+}
+
 /// The energy principle: an equation that the free body would fulfil by itself carries no force.
 #[test]
 fn an_equation_that_holds_by_itself_carries_no_force() {
