@@ -70,7 +70,9 @@ class Launch(unittest.TestCase):
 
     def test_an_error_on_many_ranks_is_one_sentence_with_the_exit_code_of_the_program(self):
         done = self.ended(self.folder / "nothing", "--out", self.folder / "answer", "--ranks", 3)
-        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1), done.stderr)
+        # The event library of the launcher may warn when it closes its own files.
+        said = [line for line in done.stderr.splitlines() if not line.startswith("[warn] Epoll")]
+        self.assertEqual((done.returncode, len(said)), (1, 1), done.stderr)
         self.assertIn("signorini export writes them", done.stderr)
 
     def test_a_number_of_ranks_below_one_is_refused(self):
