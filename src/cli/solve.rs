@@ -171,8 +171,9 @@ pub(super) fn reported(
     let status = summary.status;
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
     Wanted::write_answer(&folder, &summary.solution, answer.as_ref())?;
-    // The lines of an earlier run would not belong to this answer.
-    remove_files(&folder, &["along.csv"])?;
+    // Lines and ties of an earlier run would not belong to this answer.
+    let is_tied = !summary.solution.equality_multiplier.is_empty();
+    remove_files(&folder, if is_tied { &["along.csv"] } else { &["along.csv", "mu.mtx"] })?;
     report.write(&folder)?;
     let outcome = report.outcome(common.format, status);
     if watch.is_over() && !watch.is_stopped() {

@@ -341,6 +341,47 @@ fn pressure_and_force_of_a_contact_are_in_both_files() {
 }
 
 /// A plate under tension, 50 degrees warmer: across its plane it has the strain of stress and temperature.
+/// The upper block is glued to the lower one and pulled up by 3: as in CalculiX, the forces of its nodes are those of the load and of the
+/// tie, and cancel; the base pulls down. An answer without ties leaves no multiplier of ties behind.
+#[test]
+fn forces_of_ties_are_part_of_the_forces_of_nodes() {
+    let desk = Desk::new();
+    let below = Block { element: "C3D8", low: [0.0; 3], high: [1.0; 3], cells: [2, 2, 1], after: 0 }.mesh();
+    let above = Block { element: "C3D8", low: [0.0, 0.0, 1.0], high: [1.0, 1.0, 2.0], cells: [3, 3, 1], after: 100 };
+    let above = above.mesh();
+    let deck = below.cards("PART")
+        + &above.cards("PART")
+        + &below.set("BASE", |at| at[2] == 0.0)
+        + &above.set("UPPER", |_| true)
+        + &above.set("END", |at| at[2] == 2.0)
+        + &below.surface("MASTER", |at| at[2] == 1.0)
+        + &above.surface("SLAVE", |at| at[2] == 1.0)
+        + &above.surface("TOP", |at| at[2] == 2.0)
+        + "*MATERIAL, NAME=M\n*ELASTIC\n200., 0.\n*SOLID SECTION, ELSET=PART, MATERIAL=M\n*BOUNDARY\nBASE, 1, 3\n\
+           *TIE, NAME=T\nSLAVE, MASTER\n*STEP\n*STATIC\n*DSLOAD\nTOP, P, -3.\n*NODE FILE\nRF\n\
+           *NODE PRINT, NSET=BASE, TOTALS=ONLY\nRF\n*NODE PRINT, NSET=END, TOTALS=ONLY\nRF\n*END STEP\n";
+    desk.write("glued.inp", &deck);
+    desk.run(&["ccx", "glued"]).ends_with(0);
+    let forces = field(&read(&desk, "glued.frd"), "FORC");
+    let sum = |is_in: &dyn Fn(usize) -> bool| -> f64 {
+        forces.iter().filter(|(number, _)| is_in(*number)).map(|(_, force)| force[2]).sum()
+    };
+    // Sums of 16 numbers of six digits.
+    assert!(sum(&|number| number > 100).abs() < 1e-4, "{forces:?}");
+    assert!((sum(&|number| number <= 9) + 3.0).abs() < 1e-4, "{forces:?}");
+    let is_slave = |number: usize| above.nodes.iter().any(|(own, at)| *own == number && at[2] == 1.0);
+    assert!((sum(&is_slave) + 3.0).abs() < 1e-4, "{forces:?}");
+    let dat = read(&desk, "glued.dat");
+    for (set, force) in [("BASE", "-3.000000E+00"), ("END", " 3.000000E+00")] {
+        let (_, after) = dat.split_once(&format!("for set {set} and time ")).unwrap();
+        assert!(after.lines().nth(2).unwrap().ends_with(force), "{dat}");
+    }
+    assert!(desk.path("glued.signorini/mu.mtx").exists());
+    desk.write("glued.inp", deck.replace("*TIE, NAME=T\nSLAVE, MASTER\n", "*BOUNDARY\nEND, 1, 2\nUPPER, 3\n"));
+    desk.run(&["ccx", "glued"]).ends_with(0);
+    assert!(!desk.path("glued.signorini/mu.mtx").exists());
+}
+
 #[test]
 fn plane_stress_has_the_strain_across_the_plane() {
     let mesh = Block { element: "CPS8", low: [0.0; 3], high: [2.0, 1.0, 0.0], cells: [2, 1, 0], after: 0 }.mesh();
