@@ -451,7 +451,8 @@ fn the_energy_of_plane_strain_has_the_work_across_the_plane() {
     assert!(read(&desk, "block.dat").contains("\n        1.000000E+00\n"), "{}", read(&desk, "block.dat"));
 }
 
-/// Bending about two axes, which quadratic elements represent: with nu = 0 it has the strains e_x = y + 2 z and e_y = 3 x, and no shear.
+/// Bending about two axes, which quadratic elements represent: with nu = 0 it has the strains e_x = y + 2 z, e_y = 3 x and
+/// e_xz = 0.1, and no other shear.
 fn bent([x, y, z]: [f64; 3]) -> [f64; 3] {
     [x * y + 2.0 * x * z - 1.5 * y * y + 0.2 * z, 3.0 * x * y - x * x / 2.0, -x * x]
 }
