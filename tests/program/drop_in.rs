@@ -340,7 +340,46 @@ fn pressure_and_force_of_a_contact_are_in_both_files() {
     assert!(statistics.starts_with(expected), "{statistics}");
 }
 
-/// A plate under tension, 50 degrees warmer: across its plane it has the strain of stress and temperature.
+/// What CalculiX 2.20 prints for two nodes of the base of a cube, whose axis 1 leads away from a line along z.
+const LOCAL: &str = "
+ displacements (vx,vy,vz) for set HALF and time  0.1000000E+01
+
+         2  0.000000E+00  0.000000E+00  0.000000E+00 L
+         4  0.000000E+00  0.000000E+00  0.000000E+00 L
+
+ forces (fx,fy,fz) for set HALF and time  0.1000000E+01
+
+         2 -3.384920E+01  2.068875E+01  4.820513E+01 L
+         4 -8.769195E+00  7.192481E+00  1.017949E+02 L
+
+ total force (fx,fy,fz) for set HALF and time  0.1000000E+01
+
+       -3.208333E+01  3.615385E+01  1.500000E+02
+
+ forces (fx,fy,fz) for set HALF and time  0.1000000E+01
+
+         2 -2.102335E+01  3.364240E+01  4.820513E+01
+         4 -1.105998E+01  2.511447E+00  1.017949E+02
+";
+
+#[test]
+fn vectors_of_nodes_with_local_axes_are_printed_along_them() {
+    let desk = Desk::new();
+    let cube = Block { element: "C3D8", low: [0.0; 3], high: [1.0; 3], cells: [1; 3], after: 0 }.mesh();
+    let deck = cube.cards("PART")
+        + &cube.set("BASE", |at| at[2] == 0.0)
+        + &cube.set("HALF", |at| at[2] == 0.0 && at[0] == 1.0)
+        + &cube.set("CORNER", |at| at == [1.0; 3])
+        + "*MATERIAL, NAME=M\n*ELASTIC\n210000., 0.3\n*SOLID SECTION, ELSET=PART, MATERIAL=M\n\
+           *TRANSFORM, NSET=HALF, TYPE=C\n0., 0.5, 0., 0., 0.5, 1.\n*BOUNDARY\nBASE, 1, 3\n*STEP\n*STATIC\n\
+           *CLOAD\nCORNER, 3, -100.\nCORNER, 1, 50.\n*NODE PRINT, NSET=HALF, TOTALS=YES\nU, RF\n\
+           *NODE PRINT, NSET=HALF, GLOBAL=YES\nRF\n*NODE FILE, GLOBAL=NO\nRF\n*END STEP\n";
+    desk.write("cube.inp", deck);
+    let run = desk.run(&["ccx", "cube"]).ends_with(0);
+    assert_eq!(read(&desk, "cube.dat"), LOCAL);
+    assert!(run.stdout.contains("GLOBAL=NO of *NODE FILE"), "{}", run.stdout);
+}
+
 /// The upper block is glued to the lower one and pulled up by 3: as in CalculiX, the forces of its nodes are those of the load and of the
 /// tie, and cancel; the base pulls down. An answer without ties leaves no multiplier of ties behind.
 #[test]
@@ -382,6 +421,7 @@ fn forces_of_ties_are_part_of_the_forces_of_nodes() {
     assert!(!desk.path("glued.signorini/mu.mtx").exists());
 }
 
+/// A plate under tension, 50 degrees warmer: across its plane it has the strain of stress and temperature.
 #[test]
 fn plane_stress_has_the_strain_across_the_plane() {
     let mesh = Block { element: "CPS8", low: [0.0; 3], high: [2.0, 1.0, 0.0], cells: [2, 1, 0], after: 0 }.mesh();

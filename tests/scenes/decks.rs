@@ -202,6 +202,26 @@ fn material_axes_are_turned_by_an_orientation() {
     }
 }
 
+/// Directions 1, 2, 3 of all nodes are y, -x, z: supports and forces along them stretch along x. Around a line through (-1, 2) along z the
+/// end moves outwards by 0.01.
+#[test]
+fn supports_and_forces_are_along_the_axes_of_a_transform() {
+    const TURNED: &str = "*TRANSFORM, NSET=ALL, TYPE=R\n0., 3., 0., -1., 1., 0.\n";
+    let deck = block("C3D8") + TURNED + "*BOUNDARY\nX0, 2\nY0, 1\nZ0, 3\n";
+    let answer = answer(&(deck + &step("*BOUNDARY\nEND, 2, 2, -0.03\n*CLOAD\nX0, 2, 5.\n")));
+    compare(&answer, |[x, y, z]| [0.015 * x, -0.25 * 0.015 * y, -0.25 * 0.015 * z]);
+
+    let around = "*TRANSFORM, NSET=END, TYPE=C\n-1., 2., 0., -1., 2., 5.\n";
+    let held = "*BOUNDARY\nX0, 1, 3\n".to_string() + &step("*BOUNDARY\nEND, 1, 1, 0.01\nEND, 2, 3, 0.\n");
+    let answer = self::answer(&(block("C3D8") + around + &held));
+    for (node, &[x, y, _]) in answer.model().mesh().nodes().iter().enumerate().filter(|(_, at)| at[0] == 2.0) {
+        let away = (x + 1.0).hypot(y - 2.0);
+        let exact = [0.01 * (x + 1.0) / away, 0.01 * (y - 2.0) / away, 0.0];
+        let found = &answer.displacement()[3 * node..3 * node + 3];
+        assert!((0..3).all(|axis| (found[axis] - exact[axis]).abs() < 1e-15), "{found:?} instead of {exact:?}");
+    }
+}
+
 /// A plane body of thickness 0.5: a force of 3 on its end is a stress of 6.
 #[test]
 fn the_thickness_of_a_plane_section_counts() {

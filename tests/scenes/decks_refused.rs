@@ -69,7 +69,9 @@ fn what_changes_the_answer_and_is_not_modelled_is_refused_by_name_and_line() {
     for (card, phrase) in [
         ("*ORIENTATION, NAME=O", "*ORIENTATION has no values"),
         ("*ORIENTATION, NAME=O, SYSTEM=ODD\n1., 0., 0., 0., 1., 0.", "SYSTEM=ODD is not read"),
-        ("*TRANSFORM, NSET=ALL", "*TRANSFORM changes the answer"),
+        ("*TRANSFORM, NSET=ALL", "*TRANSFORM has one line, with six numbers"),
+        ("*TRANSFORM, NSET=ALL\n1., 0., 0., 2., 0., 0.", "the two vectors give no axes"),
+        ("*TRANSFORM, NSET=ALL, TYPE=S\n1., 0., 0., 0., 1., 0.", "TYPE=S is not read; there are R and C"),
         ("*SPRING, ELSET=S", "*SPRING changes the answer"),
         ("*COUPLING", "*COUPLING changes the answer"),
         ("*DISTRIBUTING", "*DISTRIBUTING changes the answer"),

@@ -61,7 +61,8 @@ fn tied_surfaces_stretch_as_one_bar() {
     }
 }
 
-/// All nodes of the end follow one of them along x; the force on it is spread as a plate spreads it.
+/// All nodes of the end follow one of them along x; the force on it is spread as a plate spreads it. The second time, directions 1, 2, 3
+/// of all nodes are y, -x, z.
 #[test]
 fn equations_make_a_plate() {
     let mesh = Block { element: "C3D8", low: [0.0; 3], high: [2.0, 1.0, 1.0], cells: [2, 2, 2], after: 0 }.mesh();
@@ -71,17 +72,21 @@ fn equations_make_a_plate() {
     }
     let end: Vec<usize> = mesh.nodes.iter().filter(|(_, at)| at[0] == 2.0).map(|(number, _)| *number).collect();
     deck += MATERIAL;
-    deck += "*SOLID SECTION, ELSET=PART, MATERIAL=STEEL\n*EQUATION\n";
-    // One equation of five terms, on two lines; the others have two.
-    deck += &format!(
-        "5\n{}, 1, 4., {}, 1, -1., {}, 1, -1., {}, 1, -1.,\n{}, 1, -1.\n",
-        end[8], end[0], end[2], end[5], end[7]
-    );
-    for node in &end[1..8] {
-        deck += &format!("2\n{node}, 1, 2.5, {}, 1, -2.5\n", end[0]);
+    deck += "*SOLID SECTION, ELSET=PART, MATERIAL=STEEL\n";
+    let turned = mesh.set("ALL", |_| true) + "*TRANSFORM, NSET=ALL\n0., 3., 0., -1., 1., 0.\n";
+    for (cards, [x, y], force) in [("", [1, 2], 3.0), (&turned, [2, 1], -3.0)] {
+        // One equation of five terms, on two lines; the others have two.
+        let mut equations = format!(
+            "*EQUATION\n5\n{}, {x}, 4., {}, {x}, -1., {}, {x}, -1., {}, {x}, -1.,\n{}, {x}, -1.\n",
+            end[8], end[0], end[2], end[5], end[7]
+        );
+        for node in &end[1..8] {
+            equations += &format!("2\n{node}, {x}, 2.5, {}, {x}, -2.5\n", end[0]);
+        }
+        let supports = format!("*BOUNDARY\nX0, {x}\nY0, {y}\nZ0, 3\n");
+        let pulled = step(&format!("*CLOAD\n{}, {x}, {force}\n", end[0]));
+        stretched(&answer(&(deck.clone() + cards + &equations + &supports + &pulled)), 3.0 / 200.0);
     }
-    let answer = answer(&(deck + "*BOUNDARY\nX0, 1\nY0, 2\nZ0, 3\n" + &step(&format!("*CLOAD\n{}, 1, 3.\n", end[0]))));
-    stretched(&answer, 3.0 / 200.0);
 }
 
 /// The end is a plate with reference nodes: pulled, or moved and turned.
@@ -119,6 +124,11 @@ fn ties_that_cannot_be_read_are_refused_with_their_line() {
         ("*RIGID BODY, NSET=END\n", 0, "no reference node; write REF NODE=NUMBER"),
         ("*RIGID BODY, NSET=Y0, REF NODE=1\n", 0, "`Y0` has nodes of 2 bodies; a rigid body is read in one body"),
         ("*RIGID BODY, NSET=END, REF NODE=9999\n", 0, "the deck has no node 9999"),
+        (
+            "*RIGID BODY, NSET=END, REF NODE=1\n*TRANSFORM, NSET=Z0\n1., 0., 0., 0., 1., 0.\n",
+            1,
+            "node 1 moves a rigid body",
+        ),
         ("*RIGID BODY, ELSET=LEFT, REF NODE=1\n", 0, "the parameter ELSET, which is not read"),
     ] {
         let (at, message) = refusal(&(deck.clone() + cards + &step("*CLOAD\nEND, 1, 1.\n")));

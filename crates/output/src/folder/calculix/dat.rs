@@ -32,24 +32,38 @@ pub(super) fn is_given(table: &RequestedTable) -> bool {
     }
 }
 
-/// A table: its title up to the time, and its lines: a beginning, then values.
+/// A table: its title up to the time, and its lines.
 pub(super) struct Table {
     title: String,
-    lines: Vec<(String, Vec<f64>)>,
+    lines: Vec<Line>,
+}
+
+/// A line: a beginning, then values.
+struct Line {
+    head: String,
+    values: Vec<f64>,
+    /// Along local axes, which a letter at the end says.
+    is_local: bool,
+}
+
+impl Line {
+    fn new(title: &str, head: String, values: Vec<f64>) -> Result<Self, Error> {
+        Ok(Line { head, values: checked(title, values)?, is_local: false })
+    }
 }
 
 impl Table {
     fn new<const N: usize>(title: String, lines: Vec<(String, [f64; N])>) -> Result<Self, Error> {
-        let lines = lines.into_iter().map(|(head, values)| Ok((head, checked(&title, values.to_vec())?)));
+        let lines = lines.into_iter().map(|(head, values)| Line::new(&title, head, values.to_vec()));
         Ok(Table { lines: lines.collect::<Result<_, Error>>()?, title })
     }
 
     pub fn write(&self, out: &mut dyn Write, end: f64) -> io::Result<()> {
         writeln!(out, "\n {} {}\n", self.title, time(end, 7))?;
-        for (head, values) in &self.lines {
+        for Line { head, values, is_local } in &self.lines {
             write!(out, "{head}")?;
             values.iter().try_for_each(|&value| write!(out, " {}", wide(value, DIGITS)))?;
-            writeln!(out)?;
+            writeln!(out, "{}", if *is_local { " L" } else { "" })?;
         }
         Ok(())
     }
@@ -68,8 +82,8 @@ pub(super) fn tables(content: &Content) -> Result<Vec<Table>, Error> {
     let mut tables = Vec::new();
     for table in wanted {
         match table.label.as_str() {
-            "U" => tables.extend(content.of_nodes(table, &content.displacements(), 1.0)?),
-            "RF" => tables.extend(content.of_nodes(table, &content.forces()?, content.share())?),
+            "U" => tables.extend(content.of_vectors(table, &content.displacements(), 1.0)?),
+            "RF" => tables.extend(content.of_vectors(table, &content.forces()?, content.share())?),
             "NT" => tables.extend(content.of_nodes(table, &content.temperatures(), 1.0)?),
             "S" | "E" => tables.push(content.of_points(table)?),
             "EVOL" | "ELSE" => tables.extend(content.of_elements(table)?),
@@ -81,6 +95,21 @@ pub(super) fn tables(content: &Content) -> Result<Vec<Table>, Error> {
 }
 
 impl Content<'_> {
+    /// Vectors of nodes along their local axes if the table asks for it, and their sum along x, y and z, times `share`.
+    fn of_vectors(&self, table: &RequestedTable, vectors: &[[f64; 3]], share: f64) -> Result<Vec<Table>, Error> {
+        let mut tables = self.of_nodes(table, vectors, share)?;
+        if table.parts && table.is_local {
+            let nodes = placed(&table.numbers, &self.nodes).into_iter();
+            for (line, (number, node)) in tables.iter_mut().take(1).flat_map(|values| &mut values.lines).zip(nodes) {
+                if let Some(axes) = self.requests.axes.get(&number) {
+                    line.values = axes.map(|axis| share * dot(axis, vectors[node])).to_vec();
+                    line.is_local = true;
+                }
+            }
+        }
+        Ok(tables)
+    }
+
     /// Values of nodes and their sum, times `share`.
     fn of_nodes<const N: usize>(
         &self,
@@ -159,7 +188,7 @@ impl Content<'_> {
             ("\n   moment about the center of gravity(mx,my,mz)", about_centre.to_vec()),
             ("\n   area,  normal force (+ = tension) and shear force (size)", vec![area, along, 0.0]),
         ];
-        let lines = lines.into_iter().map(|(words, values)| Ok((format!("{words}\n\n  "), checked(&title, values)?)));
+        let lines = lines.into_iter().map(|(words, values)| Line::new(&title, format!("{words}\n\n  "), values));
         Ok(Some(Table { lines: lines.collect::<Result<_, Error>>()?, title }))
     }
 }
@@ -207,4 +236,8 @@ fn add(sum: &mut [f64; 3], vector: [f64; 3], factor: f64) {
 
 fn cross([a, b, c]: [f64; 3], [x, y, z]: [f64; 3]) -> [f64; 3] {
     [b * z - c * y, c * x - a * z, a * y - b * x]
+}
+
+fn dot(one: [f64; 3], other: [f64; 3]) -> f64 {
+    one.iter().zip(other).map(|(a, b)| a * b).sum()
 }

@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 use super::amplitudes::Amplitudes;
-use super::bodies::{is_new, names_of_nodes, names_of_surface};
+use super::bodies::{is_new, name_of_node, names_of_nodes, names_of_surface};
 use super::rigid::RigidBodies;
 use super::scene_text::{Entry, object};
+use super::transforms::Transforms;
 use crate::error::Error;
 use crate::fem::geometry::{dot, unit};
 use crate::fem::mesh::deck::{Card, Deck, Fields, Place, Space, key};
@@ -23,6 +24,7 @@ struct OnVolume {
 pub(super) struct Loads<'a> {
     deck: &'a Deck,
     rigid_bodies: &'a mut RigidBodies,
+    transforms: &'a Transforms,
     loads: Vec<Entry>,
     on_volume: Vec<OnVolume>,
 }
@@ -30,8 +32,13 @@ pub(super) struct Loads<'a> {
 impl<'a> Loads<'a> {
     /// # Errors
     /// An error with the line for a load that is not read.
-    pub fn of(deck: &'a Deck, amplitudes: &Amplitudes, rigid_bodies: &'a mut RigidBodies) -> Result<Vec<Entry>, Error> {
-        let mut loads = Loads { deck, rigid_bodies, loads: Vec::new(), on_volume: Vec::new() };
+    pub fn of(
+        deck: &'a Deck,
+        amplitudes: &Amplitudes,
+        rigid_bodies: &'a mut RigidBodies,
+        transforms: &'a Transforms,
+    ) -> Result<Vec<Entry>, Error> {
+        let mut loads = Loads { deck, rigid_bodies, transforms, loads: Vec::new(), on_volume: Vec::new() };
         for keyword in ["CLOAD", "DLOAD", "DSLOAD"] {
             let cards = deck.source.cards.iter().enumerate().filter(|(_, card)| card.is(keyword));
             for (count, (index, card)) in cards.enumerate() {
@@ -86,7 +93,23 @@ impl<'a> Loads<'a> {
                 let number = self.deck.nodes.numbers[loose];
                 return Err(fields.fault(format!("node {number} belongs to no element and carries no force")));
             }
-            for name in names_of_nodes(self.deck, &target, &nodes) {
+            let (mut plain, mut is_turned) = (Vec::with_capacity(nodes.len()), false);
+            for node in nodes {
+                let axes = self.transforms.axes(self.deck, node).map_err(|message| fields.fault(message))?;
+                match (axes, name_of_node(self.deck, node)) {
+                    (Some(axes), Some(name)) => {
+                        let sum = forces.entry(name).or_insert_with(|| vec![0.0; dimension]);
+                        sum.iter_mut().zip(axes[direction - 1]).for_each(|(sum, part)| *sum += force * part);
+                        is_turned = true;
+                    }
+                    _ => plain.push(node),
+                }
+            }
+            let names = match is_turned {
+                true => plain.iter().filter_map(|&node| name_of_node(self.deck, node)).collect(),
+                false => names_of_nodes(self.deck, &target, &plain),
+            };
+            for name in names {
                 forces.entry(name).or_insert_with(|| vec![0.0; dimension])[direction - 1] += force;
             }
         }

@@ -14,6 +14,7 @@ mod scene_text;
 mod supports;
 mod temperatures;
 mod ties;
+mod transforms;
 
 use std::path::{Path, PathBuf};
 
@@ -32,6 +33,7 @@ use signorini_qp as qp;
 use supports::supports;
 use temperatures::Temperatures;
 use ties::ties;
+use transforms::Transforms;
 
 /// More bodies than this are a mesh whose nodes were not merged.
 const MOST_BODIES: usize = 1000;
@@ -75,10 +77,11 @@ impl DeckScene {
         let sections = Sections::of(&deck, space)?;
         let temperatures = Temperatures::of(&deck, &amplitudes)?;
         let mut rigid_bodies = RigidBodies::of(&deck)?;
-        let supports = supports(&deck, &amplitudes, &mut rigid_bodies)?;
-        let loads = Loads::of(&deck, &amplitudes, &mut rigid_bodies)?;
+        let transforms = Transforms::of(&deck, &rigid_bodies)?;
+        let supports = supports(&deck, &amplitudes, &mut rigid_bodies, &transforms)?;
+        let loads = Loads::of(&deck, &amplitudes, &mut rigid_bodies, &transforms)?;
         let mut contacts = contacts(&deck, permits.contains(&"friction"))?;
-        contacts.ties.extend(ties(&deck)?);
+        contacts.ties.extend(ties(&deck, &transforms)?);
         let mut noted = nearest_elements(&deck);
         noted.extend(large_displacements(&deck));
         noted.extend(contacts.warnings);

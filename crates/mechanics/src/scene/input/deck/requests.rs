@@ -1,10 +1,12 @@
 //! What a deck asks for in the files of results: the cards *NODE FILE, *EL FILE, *CONTACT FILE, *NODE PRINT, *EL PRINT, *CONTACT PRINT.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
 use super::amplitudes::{Amplitudes, period};
+use super::rigid::RigidBodies;
 use super::temperatures::Temperatures;
+use super::transforms::Transforms;
 use crate::error::Error;
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
 
@@ -19,6 +21,8 @@ pub struct Requests {
     pub others: Vec<String>,
     /// The temperature at the end of the step by the number of its node, in the order of the deck; 0 where the deck gives none.
     pub temperatures: Vec<(usize, f64)>,
+    /// The local axes of nodes by their numbers, each of unit length.
+    pub axes: HashMap<usize, [[f64; 3]; 3]>,
     /// The time at the end of the step.
     pub time: f64,
 }
@@ -38,6 +42,8 @@ pub struct RequestedTable {
     pub parts: bool,
     /// `true` if the sum of all is asked for.
     pub totals: bool,
+    /// `true` if vectors are along the local axes of their nodes.
+    pub is_local: bool,
     /// Slave and master of one contact, as the card names them; `None` for all contacts.
     pub contact: Option<[String; 2]>,
 }
@@ -59,12 +65,17 @@ impl Requests {
         let deck = Deck::read(file, file.parent().filter(|_| !permits.contains(&"outside")))?;
         let end = Temperatures::of(&deck, &Amplitudes::of(&deck)?)?.end;
         let temperatures = deck.nodes.numbers.iter().copied().zip(end).collect();
+        let transforms = Transforms::of(&deck, &RigidBodies::of(&deck)?)?;
         let (fields, tables, others) = (BTreeSet::new(), Vec::new(), Vec::new());
-        let mut requests = Requests { fields, tables, others, temperatures, time: period(&deck)? };
+        let (axes, time) = (transforms.by_number(&deck), period(&deck)?);
+        let mut requests = Requests { fields, tables, others, temperatures, axes, time };
         for card in &deck.source.cards {
             let is_one_of = |keywords: &[&str]| keywords.iter().any(|keyword| card.is(keyword));
             if is_one_of(&FIELDS) {
                 requests.fields.extend(labels(&deck, card).into_iter().map(|(label, _)| label));
+                if card.says("GLOBAL", "NO") && !requests.axes.is_empty() {
+                    requests.others.push(format!("GLOBAL=NO of {} ({})", card.name, deck.source.named(card.place)));
+                }
             } else if is_one_of(&OTHERS) {
                 requests.others.push(format!("{} ({})", card.name, deck.source.named(card.place)));
             } else if is_one_of(&["NODEPRINT", "ELPRINT", "CONTACTPRINT"]) {
@@ -101,7 +112,8 @@ impl Requests {
         };
         for (label, place) in labels(deck, card) {
             let (place, set, numbers) = (deck.source.named(place), set.clone(), numbers.clone());
-            self.tables.push(RequestedTable { label, place, set, numbers, parts, totals, contact: contact.clone() });
+            let (is_local, contact) = (!card.says("GLOBAL", "YES"), contact.clone());
+            self.tables.push(RequestedTable { label, place, set, numbers, parts, totals, is_local, contact });
         }
         Ok(())
     }

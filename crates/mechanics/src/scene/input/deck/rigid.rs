@@ -81,6 +81,11 @@ impl RigidBodies {
         Ok(())
     }
 
+    /// Returns `true` for a node that moves a rigid body.
+    pub fn is_reference(&self, node: usize) -> bool {
+        self.by_node.contains_key(&node)
+    }
+
     /// The motion that a direction of a node, from 1, names; `None` for a node that is no reference.
     ///
     /// # Errors

@@ -5,9 +5,10 @@ use std::collections::HashMap;
 use serde_json::{Value, json};
 
 use super::amplitudes::Amplitudes;
-use super::bodies::{is_new, names_of_nodes};
+use super::bodies::{is_new, name_of_node, names_of_nodes};
 use super::rigid::RigidBodies;
 use super::scene_text::Entry;
+use super::transforms::Transforms;
 use crate::error::Error;
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
 
@@ -65,15 +66,27 @@ pub(super) fn supports(
     deck: &Deck,
     amplitudes: &Amplitudes,
     rigid_bodies: &mut RigidBodies,
+    transforms: &Transforms,
 ) -> Result<Vec<Entry>, Error> {
     let mut lines = Vec::new();
     for line in in_force(deck, amplitudes)? {
         lines.extend(off_rigid_bodies(deck, line, rigid_bodies)?);
     }
     replace(deck, &mut lines)?;
-    let mut supports: Vec<Merged> = Vec::new();
+    let (mut supports, mut turned): (Vec<Merged>, Vec<Entry>) = (Vec::new(), Vec::new());
     for line in lines.iter().filter(|line| line.values.iter().any(Option::is_some)) {
-        let targets = names_of_nodes(deck, &line.target, &line.nodes);
+        let in_axes = in_local_axes(deck, line, transforms)?;
+        let targets = match in_axes.is_empty() {
+            true => names_of_nodes(deck, &line.target, &line.nodes),
+            false => {
+                let plain = line.nodes.iter().filter(|node| !in_axes.iter().any(|one| one.node == **node));
+                turned.extend(in_axes.iter().flat_map(|one| one.entries(line)));
+                plain.filter_map(|&node| name_of_node(deck, node)).collect()
+            }
+        };
+        if targets.is_empty() && !in_axes.is_empty() {
+            continue;
+        }
         if targets.is_empty() {
             let message = format!("no node of `{}` belongs to an element; nothing is held", line.target);
             return Err(deck.source.fault(line.place, message));
@@ -89,7 +102,44 @@ pub(super) fn supports(
             }
         }
     }
-    Ok(supports.into_iter().map(|one| Entry::new(support(&one.values, one.targets), one.place)).collect())
+    let plain = supports.into_iter().map(|one| Entry::new(support(&one.values, one.targets), one.place));
+    Ok(plain.chain(turned).collect())
+}
+
+/// A node that a line holds along local axes.
+struct Local {
+    node: usize,
+    name: String,
+    axes: [[f64; 3]; 3],
+    dimension: usize,
+}
+
+impl Local {
+    /// A support for each held axis.
+    fn entries(&self, line: &Prescribed) -> Vec<Entry> {
+        let held = line.values.iter().zip(&self.axes).filter_map(|(value, axis)| Some(((*value)?, axis)));
+        let entry = |(value, axis): (f64, &[f64; 3])| {
+            let value = json!({"on": {"nodes": self.name}, "normal": axis[..self.dimension], "value": value});
+            Entry::new(value, line.place)
+        };
+        held.map(entry).collect()
+    }
+}
+
+/// The nodes of a line that have local axes. A node that does not move at all needs none.
+fn in_local_axes(deck: &Deck, line: &Prescribed, transforms: &Transforms) -> Result<Vec<Local>, Error> {
+    let dimension = deck.element_list.first().map_or(3, |element| element.kind.dimension());
+    let mut found = Vec::new();
+    if line.values[..dimension].iter().all(|value| *value == Some(0.0)) {
+        return Ok(found);
+    }
+    for &node in &line.nodes {
+        let axes = transforms.axes(deck, node).map_err(|message| deck.source.fault(line.place, message))?;
+        if let (Some(axes), Some(name)) = (axes, name_of_node(deck, node)) {
+            found.push(Local { node, name, axes, dimension });
+        }
+    }
+    Ok(found)
 }
 
 /// A line without the reference nodes of rigid bodies, which it prescribes; `None` if nothing is left.

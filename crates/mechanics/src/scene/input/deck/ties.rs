@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::bodies::{name_of_node, names_of_surface};
 use super::scene_text::Entry;
+use super::transforms::{AXES, Transforms};
 use crate::error::Error;
 use crate::fem::mesh::deck::{Card, Deck, Place};
 
@@ -11,7 +12,7 @@ use crate::fem::mesh::deck::{Card, Deck, Place};
 ///
 /// # Errors
 /// An error with the line for a surface or a node that cannot be tied.
-pub(super) fn ties(deck: &Deck) -> Result<Vec<Entry>, Error> {
+pub(super) fn ties(deck: &Deck, transforms: &Transforms) -> Result<Vec<Entry>, Error> {
     let mut ties = Vec::new();
     for card in &deck.source.cards {
         if card.is("TIE") {
@@ -23,7 +24,7 @@ pub(super) fn ties(deck: &Deck) -> Result<Vec<Entry>, Error> {
                 ties.push(surfaces(deck, &pair, reach, line.place)?);
             }
         } else if card.is("EQUATION") {
-            add_equations(deck, card, &mut ties)?;
+            add_equations(deck, card, transforms, &mut ties)?;
         }
     }
     Ok(ties)
@@ -77,7 +78,7 @@ fn tolerance(deck: &Deck, card: &Card) -> Result<Option<f64>, Error> {
 }
 
 /// Equations: their number of terms, then all terms, each a node, a direction and a coefficient.
-fn add_equations(deck: &Deck, card: &Card, ties: &mut Vec<Entry>) -> Result<(), Error> {
+fn add_equations(deck: &Deck, card: &Card, transforms: &Transforms, ties: &mut Vec<Entry>) -> Result<(), Error> {
     let dimension = deck.element_list.first().map_or(3, |element| element.kind.dimension());
     let mut lines = card.lines.iter();
     while let Some(first) = lines.next() {
@@ -104,8 +105,14 @@ fn add_equations(deck: &Deck, card: &Card, ties: &mut Vec<Entry>) -> Result<(), 
                     let message = format!("{direction} is no displacement of a node here; there are 1 to {dimension}");
                     return Err(fields.fault(message));
                 }
+                let axes = transforms.axes(deck, node).map_err(|message| fields.fault(message))?;
+                let along = axes.unwrap_or(AXES)[direction - 1];
                 if coefficient != 0.0 {
-                    terms.push(json!({"on": {"nodes": name}, ["x", "y", "z"][direction - 1]: coefficient}));
+                    let mut term = json!({"on": {"nodes": name}});
+                    for (axis, part) in ["x", "y", "z"].into_iter().zip(along).filter(|(_, part)| *part != 0.0) {
+                        term[axis] = (coefficient * part).into();
+                    }
+                    terms.push(term);
                 }
             }
             fields.end()?;
