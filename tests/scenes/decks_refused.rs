@@ -76,7 +76,6 @@ fn what_changes_the_answer_and_is_not_modelled_is_refused_by_name_and_line() {
         ("*COUPLING", "*COUPLING changes the answer"),
         ("*DISTRIBUTING", "*DISTRIBUTING changes the answer"),
         ("*MPC", "*MPC changes the answer"),
-        ("*PRE-TENSION SECTION", "*PRE-TENSION SECTION changes the answer"),
         ("*PLASTIC", "*PLASTIC changes the answer and is refused: plasticity"),
         ("*SHELL SECTION, ELSET=PART", "*SHELL SECTION changes the answer and is refused: shells"),
         ("*BEAM SECTION, ELSET=PART", "*BEAM SECTION changes the answer and is refused: beams"),

@@ -259,8 +259,8 @@ fn resultants_text(summary: &Summary, units: &Units) -> String {
                 text += &format!(", turned {}", rounded(&motion.rotation, 0.0));
             }
         }
-        if let Some(travel) = resultant.travel {
-            text += &format!(", travel {travel:.6e}{of_length}");
+        for (name, value) in [("travel", resultant.travel), ("shortening", resultant.shortening)] {
+            text += &value.map_or_else(String::new, |value| format!(", {name} {value:.6e}{of_length}"));
         }
         text
     };

@@ -233,7 +233,7 @@ impl Answer {
             all.extend(self.model.support_resultants(|node| self.model.at_node(reactions, node)));
             all.extend(self.model.spring_resultants(&self.displacement));
             all.extend(self.model.face_resultants(&self.forces()?.rigid_faces, &self.unknowns)?);
-            all.extend(self.model.tie_resultants(&self.of_ties));
+            all.extend(self.model.tie_resultants(&self.of_ties, &self.unknowns));
             all.extend(self.model.load_resultant());
             without_rounding(&mut all);
             Ok(all)
@@ -324,7 +324,7 @@ impl Model {
     /// The forces of a nodal displacement.
     fn forces(&self, displacement: &[f64], multiplier: &[f64], of_ties: &[f64]) -> Result<Forces, Error> {
         let contact = self.contact_forces(multiplier)?;
-        let ties = self.tie_forces(of_ties, 0..of_ties.len(), false);
+        let ties = self.parts.tie_forces(of_ties, None);
         let mut forces = internal_force(self.body(), displacement)?;
         let acting = self.nodal_load().iter().zip(&contact);
         forces.iter_mut().zip(acting).for_each(|(force, (load, contact))| *force = *force - load - contact);

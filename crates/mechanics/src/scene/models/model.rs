@@ -1,6 +1,5 @@
 //! The model: a discretised scene, its contact problem, and the meaning of its rows and dofs.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::parts::Parts;
@@ -69,7 +68,7 @@ impl Model {
             other => other,
         })?;
         let force = |obstacle: usize| parts.share_of(obstacle, parts.obstacles[obstacle].force().unwrap_or(0.0));
-        let load = free_load(&parts.body, &parts.dofs, &parts.load_on_springs()?)?;
+        let load = free_load(&parts.body, &parts.dofs, &parts.acting_load()?)?;
         let load = parts.unknowns.load(load, &of_free, force);
         let stiffness = parts.unknowns.stiffness(of_free)?;
         let modes = rigid_body_modes(&parts.body, &parts.dofs).into_iter();
@@ -362,23 +361,6 @@ impl Model {
         }
         self.parts.dofs.basis.scatter(&mut forces, dimension);
         Ok(forces)
-    }
-
-    /// The forces of some equations of ties on the nodes, length `dim * n_nodes`, in force, from the multipliers of all equations; those on
-    /// the first side of each alone, if so wanted.
-    pub(crate) fn tie_forces(&self, of_ties: &[f64], rows: Range<usize>, is_own: bool) -> Vec<f64> {
-        let dimension = self.body().dimension();
-        let mut forces = vec![0.0; self.parts.dofs.nodal_count()];
-        for index in rows {
-            let (row, mu) = (&self.parts.ties.rows[index], of_ties[index]);
-            let own = if is_own { row.own.clone() } else { 0..row.terms.len() };
-            for (node, vector) in &row.terms[own] {
-                let entries = &mut forces[dimension * node..dimension * (node + 1)];
-                entries.iter_mut().zip(vector).for_each(|(entry, part)| *entry += mu * part);
-            }
-        }
-        self.parts.dofs.basis.scatter(&mut forces, dimension);
-        forces
     }
 
     /// External loads at all nodes, length `dim * n_nodes`, order `[f_x0, f_y0, f_x1, ...]`, in force, along the

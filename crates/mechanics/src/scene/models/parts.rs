@@ -52,12 +52,16 @@ impl Parts {
         self.springs.iter().try_fold(of_body, add)
     }
 
-    /// The external load with the forces of springs on nodes with prescribed displacements.
+    /// The external load with the tensions of bolts, and the forces of springs on nodes with prescribed displacements.
     ///
     /// # Errors
     /// None for the dofs of the body.
-    pub fn load_on_springs(&self) -> Result<Vec<f64>, Error> {
+    pub fn acting_load(&self) -> Result<Vec<f64>, Error> {
         let mut load = self.load.clone();
+        if !self.ties.shortenings.is_empty() {
+            let tensions = self.tie_forces(&vec![0.0; self.ties.rows.len()], None);
+            load.iter_mut().zip(tensions).for_each(|(load, force)| *load += force);
+        }
         if !self.springs.is_empty() {
             let lifted = self.dofs.expand(&vec![0.0; self.dofs.free().len()])?;
             load.iter_mut().zip(self.spring_forces(&lifted)).for_each(|(load, force)| *load += force);
@@ -74,6 +78,25 @@ impl Parts {
             true => Ok(problem),
             false => Ok(problem.with_equalities(&self.ties.matrix, self.ties.values.clone())?),
         }
+    }
+
+    /// The forces of one tie on its first side, or of all ties on both sides: on the nodes, length `dim * n_nodes`, in force, from the
+    /// multipliers of all equations.
+    pub fn tie_forces(&self, of_ties: &[f64], one: Option<usize>) -> Vec<f64> {
+        let (ties, dimension) = (&self.ties, self.body.dimension());
+        let rows = one.map_or(0..ties.rows.len(), |tie| ties.of_tie[tie].clone());
+        let of_rows = rows.map(|row| (&ties.rows[row].terms, &ties.rows[row].own, of_ties[row]));
+        let tensions = ties.shortenings.iter().filter(|of| one.is_none_or(|tie| tie == of.tie));
+        let mut forces = vec![0.0; self.dofs.nodal_count()];
+        for (terms, own, size) in of_rows.chain(tensions.map(|of| (&of.terms, &of.own, of.force))) {
+            let own = if one.is_some() { own.clone() } else { 0..terms.len() };
+            for (node, vector) in &terms[own] {
+                let entries = &mut forces[dimension * node..dimension * (node + 1)];
+                entries.iter_mut().zip(vector).for_each(|(entry, part)| *entry += size * part);
+            }
+        }
+        self.dofs.basis.scatter(&mut forces, dimension);
+        forces
     }
 
     /// The forces of all springs on the nodes in a nodal displacement.

@@ -49,6 +49,9 @@ pub struct Resultant {
     /// The motion of a rigid face.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<FaceMotion>,
+    /// The shortening of a bolt by its preload, in length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shortening: Option<f64>,
 }
 
 /// The motion of a rigid face.
@@ -125,6 +128,7 @@ impl Sum {
             centre: self.centre(formulation).map(|centre| centre[..dimension].to_vec()),
             travel: None,
             motion: None,
+            shortening: None,
         }
     }
 }
@@ -278,14 +282,18 @@ impl Model {
         Ok(all)
     }
 
-    /// The resultants of the ties on their first sides, in the order of the scene, from the multipliers of all equations.
-    pub(crate) fn tie_resultants(&self, of_ties: &[f64]) -> Vec<Resultant> {
+    /// The resultants of the ties on their first sides, in the order of the scene, from the multipliers of all equations and the values
+    /// of the unknowns.
+    pub(crate) fn tie_resultants(&self, of_ties: &[f64], unknowns: &[f64]) -> Vec<Resultant> {
         let ties = &self.parts.ties;
         let of_tie = |(index, rows): (usize, &Range<usize>)| {
             let first = ties.rows[rows.clone()].first().and_then(|row| row.terms.first());
-            let sum = self.sum_of(&self.tie_forces(of_ties, rows.clone(), true));
+            let sum = self.sum_of(&self.parts.tie_forces(of_ties, Some(index)));
             let on = self.name_of_body(first.map(|term| term.0));
-            Resultant { on, ..sum.resultant(self, format!("ties[{index}]")) }
+            let shortening = ties.shortenings.iter().find(|one| one.tie == index);
+            let shortening =
+                shortening.map(|one| one.value((self.dofs(), &self.parts.unknowns), self.body().dimension(), unknowns));
+            Resultant { on, shortening, ..sum.resultant(self, format!("ties[{index}]")) }
         };
         ties.of_tie.iter().enumerate().map(of_tie).collect()
     }

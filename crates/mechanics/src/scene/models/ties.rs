@@ -1,54 +1,22 @@
 //! Ties of a scene: linear equations E u = e between displacements.
 
-use std::collections::HashSet;
 use std::ops::Range;
 
+use super::facing::Facing;
+use super::preload::Shortening;
+use super::tie_row::TieRow;
 use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
-use crate::fem::mortar::MortarRow;
 use crate::scene::Warning;
-use crate::scene::input::entry::{
-    COORDINATE_ROUNDING, boundary, finite, node_at, nodes_named_once, number, positive, wrong,
-};
+use crate::scene::input::entry::{COORDINATE_ROUNDING, boundary, finite, node_at, nodes_named_once, number, wrong};
 use crate::scene::input::obstacle::SideOrder;
-use crate::scene::input::obstacle::mortar::{ends, means};
-use crate::scene::input::obstacle::order::facet_size;
-use crate::scene::input::schema::{EquationSpec, Place, Scene, TieSpec, TiedSurfacesSpec};
+use crate::scene::input::schema::{EquationSpec, Place, PreloadSpec, Scene, TieSpec, TiedSurfacesSpec};
 use signorini_qp::SparseMatrix;
-
-/// Surfaces farther apart than this share of a facet are apart: far above what straight facets miss of a curve.
-const APART: f64 = 0.1;
 
 /// An equation of which less than this share is left by others follows from them: far above the rounding of integrals over facets.
 const REPEATED: f64 = 1e-9;
-
-/// A surface covered by less than this share is only partly tied.
-const COVERED: f64 = 1.0 - 1e-6;
-
-/// One equation: the sum of `vector . u` over its terms is `value`.
-#[derive(Clone, Debug)]
-pub(crate) struct TieRow {
-    /// Nodes with their vectors [x, y, z], dimensionless; at a node with a coefficient for the coefficient.
-    pub terms: Vec<(usize, [f64; 3])>,
-    /// The nodes of its first side.
-    pub own: Range<usize>,
-    /// The place at which two surfaces are tied; `None` for an equation between nodes.
-    pub at: Option<[f64; 3]>,
-    value: f64,
-}
-
-impl TieRow {
-    /// Its nodes, each with a node of the other side.
-    pub fn sides(&self) -> impl Iterator<Item = (usize, usize)> {
-        let (first, second) = self.terms.split_at(self.own.end);
-        [(first, second), (second, first)]
-            .into_iter()
-            .flat_map(|(side, other)| side.iter().zip(std::iter::repeat(other.first())))
-            .filter_map(|(term, other)| Some((term.0, other?.0)))
-    }
-}
 
 /// All ties of a scene in the unknowns.
 #[derive(Debug)]
@@ -60,6 +28,8 @@ pub(crate) struct Ties {
     pub matrix: SparseMatrix,
     /// e, in length.
     pub values: Vec<f64>,
+    /// One for each preload.
+    pub shortenings: Vec<Shortening>,
     pub warnings: Vec<Warning>,
 }
 
@@ -73,6 +43,7 @@ impl Ties {
             of_tie: self.of_tie.iter().map(|rows| before(rows.start)..before(rows.end)).collect(),
             matrix: self.matrix.select_rows(&stays),
             values: stays.iter().map(|&row| self.values[row]).collect(),
+            shortenings: self.shortenings,
             warnings: self.warnings,
         }
     }
@@ -91,12 +62,18 @@ impl Scene {
         let surfaces = self.tied_surfaces().flatten().filter_map(|name| body.mesh().boundary(name));
         let order = SideOrder::of(body, surfaces);
         let (mut rows, mut of_tie, mut warnings) = (Vec::new(), Vec::with_capacity(self.ties.len()), Vec::new());
-        let (mut entries, mut values) = (Vec::new(), Vec::new());
+        let (mut entries, mut values, mut shortenings) = (Vec::new(), Vec::new(), Vec::new());
         let (dimension, rounding) = (body.dimension(), COORDINATE_ROUNDING * body.mesh().size());
         for (index, tie) in self.ties.iter().enumerate() {
             let path = format!("ties[{index}]");
             let found = match tie {
                 TieSpec::Surfaces(spec) => of_surfaces(spec, &path, (body, dofs, &order), &mut warnings)?,
+                TieSpec::Preload(spec) => {
+                    let path = format!("{path}.preload");
+                    let (rows, shortening) = spec.rows((&path, index), (body, dofs, &order), &mut warnings)?;
+                    shortenings.push(shortening);
+                    rows
+                }
                 TieSpec::Equation(spec) => vec![of_equation(spec, &path, body, dofs)?],
             };
             let first = rows.len();
@@ -122,7 +99,7 @@ impl Scene {
             of_tie.push(first..rows.len());
         }
         let matrix = SparseMatrix::from_triplets(rows.len(), unknowns.count(), &entries)?;
-        let ties = Ties { rows, of_tie, matrix, values, warnings };
+        let ties = Ties { rows, of_tie, matrix, values, shortenings, warnings };
         Ok(if ties.of_tie.len() > 1 { ties.without_repeated() } else { ties })
     }
 
@@ -130,6 +107,7 @@ impl Scene {
     pub(crate) fn tied_surfaces(&self) -> impl Iterator<Item = [&str; 2]> {
         self.ties.iter().filter_map(|tie| match tie {
             TieSpec::Surfaces(TiedSurfacesSpec { boundary, to, .. }) => Some([boundary.as_str(), to.as_str()]),
+            TieSpec::Preload(PreloadSpec { boundary, to, .. }) => Some([boundary.as_str(), to.as_str()]),
             TieSpec::Equation(_) => None,
         })
     }
@@ -139,62 +117,13 @@ impl Scene {
 fn of_surfaces(
     spec: &TiedSurfacesSpec,
     path: &str,
-    (body, dofs, order): (&ElasticBody, &DofMap, &SideOrder),
+    place: (&ElasticBody, &DofMap, &SideOrder),
     warnings: &mut Vec<Warning>,
 ) -> Result<Vec<TieRow>, Error> {
-    let path = format!("{path}.surfaces");
-    let (mesh, dimension) = (body.mesh(), body.dimension());
-    let one = boundary(mesh, &spec.boundary, &format!("{path}.boundary"))?;
-    let other = boundary(mesh, &spec.to, &format!("{path}.to"))?;
-    let sides = if order.carries_other(body, [one, other]) { [other, one] } else { [one, other] };
-    let facet = facet_size(body, &[sides[0]]).powf(1.0 / (dimension as f64 - 1.0));
-    let reach = match spec.reach {
-        Some(reach) => positive(&format!("{path}.reach"), reach)?,
-        None => facet,
-    };
-    let of_carriers = |carries: &dyn Fn(usize) -> bool| means((body, dofs), sides, (reach, None), carries, &path);
-    let found = of_carriers(&|_| true)?;
-    if found.rows.is_empty() {
-        let message = format!(
-            "no facet of `{}` faces `{}` within {}; check the boundaries, or give a larger `reach`",
-            spec.boundary,
-            spec.to,
-            number(reach)
-        );
-        return Err(wrong(path, message));
-    }
-    let [boundary, to] = sides.map(|side| side.name.clone());
-    let apart = found.rows.iter().map(|row| row.gap.abs()).fold(0.0, f64::max);
-    if apart > APART * facet {
-        let (boundary, to) = (boundary.clone(), to.clone());
-        warnings.push(Warning::TiedApart { tie: path.clone(), boundary, to, apart });
-    }
-    let [share, of_other] = found.covered;
-    if share < COVERED && of_other < COVERED {
-        warnings.push(Warning::PartlyTied { tie: path.clone(), boundary, to, share, of_other });
-    }
-    // Where supports hold both surfaces along an axis, an equation would bind their neighbours: it goes to these.
-    let is_held = |node: usize, axis: usize| dofs.number(dimension * node + axis).is_none();
-    let mut rows = Vec::with_capacity(dimension * found.rows.len());
-    for axis in 0..dimension {
-        let faces_held = |row: &&MortarRow| {
-            let nearest = row.master.iter().max_by(|a, b| a.1.total_cmp(&b.1));
-            is_held(row.node, axis) && nearest.is_some_and(|nearest| is_held(nearest.0, axis))
-        };
-        let held: HashSet<usize> = found.rows.iter().filter(faces_held).map(|row| row.node).collect();
-        let handed_over = match held.is_empty() {
-            true => None,
-            false => Some(of_carriers(&|node| !held.contains(&node))?),
-        };
-        for row in &handed_over.as_ref().unwrap_or(&found).rows {
-            let ends = ends(row, &dofs.basis);
-            let own = ends.iter().take_while(|end| body.region_at(end.0) == body.region_at(row.node)).count();
-            let along = dofs.axes(row.node)[axis];
-            let terms = ends.into_iter().map(|(node, share)| (node, along.map(|part| share * part))).collect();
-            rows.push(TieRow { terms, own: 0..own, at: Some(dofs.basis.place(mesh.nodes(), row.node)), value: 0.0 });
-        }
-    }
-    Ok(rows)
+    let facing = Facing::of([&spec.boundary, &spec.to], spec.reach, &format!("{path}.surfaces"), place, warnings)?;
+    let dofs = facing.dofs;
+    let rows = |axis: usize| facing.rows(|node| dofs.axes(node)[axis]);
+    Ok((0..facing.body.dimension()).map(rows).collect::<Result<Vec<_>, Error>>()?.concat())
 }
 
 /// The row of an equation.

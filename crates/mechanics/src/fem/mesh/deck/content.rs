@@ -23,7 +23,11 @@ pub(crate) struct Deck {
     pub elements: Numbered,
     pub element_list: Vec<DeckElement>,
     /// The nodes of all elements, by their places from 0.
-    connectivity: Vec<usize>,
+    pub(super) connectivity: Vec<usize>,
+    /// The nodes that cuts have doubled, each with its double.
+    pub doubled: Vec<(usize, usize)>,
+    /// The surfaces on both sides of each cut.
+    pub cuts: Vec<[String; 2]>,
     pub node_sets: Sets,
     pub element_sets: Sets,
     pub surfaces: Surfaces,
@@ -42,7 +46,7 @@ pub(crate) struct DeckElement {
     pub kind: ElementKind,
     pub place: Place,
     /// The place of its first node in the connectivity.
-    start: usize,
+    pub(super) start: usize,
 }
 
 impl Deck {
@@ -63,6 +67,8 @@ impl Deck {
             elements: Numbered::default(),
             element_list: Vec::new(),
             connectivity: Vec::new(),
+            doubled: Vec::new(),
+            cuts: Vec::new(),
             node_sets: Sets::new("node"),
             element_sets: Sets::new("element"),
             surfaces: Surfaces::default(),
@@ -93,6 +99,9 @@ impl Deck {
         }
         for (index, card) in cards.iter().enumerate().filter(|(_, card)| card.is("DLOAD")) {
             deck.read_pressures(index, card)?;
+        }
+        for card in cards.iter().filter(|card| card.is("PRE-TENSIONSECTION")) {
+            deck.cut(card)?;
         }
         deck.find_bodies();
         deck.source.cards = cards;

@@ -62,7 +62,7 @@ impl Deck {
     }
 
     /// The nodes of a face, by their places.
-    fn nodes_of_face(&self, (element, face): (usize, usize)) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn nodes_of_face(&self, (element, face): (usize, usize)) -> impl Iterator<Item = usize> + '_ {
         let nodes = self.nodes_of(element);
         self.element_list[element].kind.reference().faces[face].iter().map(move |&local| nodes[local])
     }

@@ -11,6 +11,7 @@ mod body;
 mod boundaries;
 mod card;
 mod content;
+mod cut;
 mod faces;
 mod fields;
 mod kinds;

@@ -41,6 +41,29 @@ pub(super) fn names_of_surface(deck: &Deck, surface: &Surface) -> Vec<(usize, St
     bodies.into_iter().map(|body| (body, name_in(body, &surface.name))).collect()
 }
 
+/// The body of a surface and its name in the scene.
+///
+/// # Errors
+/// A sentence if it does not exist, consists of nodes that are no faces, or has faces of several bodies.
+pub(super) fn side(deck: &Deck, name: &str) -> Result<(usize, String), String> {
+    let surface = deck.surface_or(name)?;
+    if let Some(&node) = surface.bare.first() {
+        let number = deck.nodes.numbers[node];
+        return Err(format!(
+            "node {number} of the surface `{}` is on no face that has only nodes of it; name faces (TYPE=ELEMENT), or the nodes of \
+             whole faces",
+            surface.name
+        ));
+    }
+    match &names_of_surface(deck, surface)[..] {
+        [(body, name)] => Ok((*body, name.clone())),
+        several => {
+            let message = "has faces of several bodies; name a surface of each body";
+            Err(format!("the surface `{}` {message}, of which there are {}", surface.name, several.len()))
+        }
+    }
+}
+
 /// A body of the scene: its keys, each with the place in the deck that it comes from.
 pub(super) struct Body {
     pub name: String,

@@ -4,8 +4,9 @@ use std::collections::HashMap;
 
 use serde_json::{Value, json};
 
+use super::bodies::side;
 use super::scene_text::Entry;
-use super::ties::{side, surfaces};
+use super::ties::surfaces;
 use crate::error::{Error, nearly};
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
 

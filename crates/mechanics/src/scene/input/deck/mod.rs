@@ -4,6 +4,7 @@
 
 mod amplitudes;
 mod bodies;
+mod bolts;
 mod contacts;
 mod keywords;
 mod loads;
@@ -82,6 +83,7 @@ impl DeckScene {
         let loads = Loads::of(&deck, &amplitudes, &mut rigid_bodies, &transforms)?;
         let mut contacts = contacts(&deck, permits.contains(&"friction"))?;
         contacts.ties.extend(ties(&deck, &transforms)?);
+        contacts.ties.extend(rigid_bodies.bolts.entries());
         let mut noted = nearest_elements(&deck);
         noted.extend(large_displacements(&deck));
         noted.extend(contacts.warnings);

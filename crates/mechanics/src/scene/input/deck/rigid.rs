@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use serde_json::{Value, json};
 
 use super::bodies::names_of_nodes;
+use super::bolts::Bolts;
 use super::scene_text::Entry;
 use crate::error::Error;
 use crate::fem::mesh::deck::{Card, Deck, Place};
@@ -27,6 +28,7 @@ pub(super) struct RigidBodies {
     all: Vec<RigidBody>,
     /// The body of a node, and the first of its motions that the directions 1, 2, ... of the node name.
     by_node: HashMap<usize, (usize, usize)>,
+    pub bolts: Bolts,
     dimension: usize,
 }
 
@@ -35,7 +37,7 @@ impl RigidBodies {
     /// An error with the line for a rigid body without a set of nodes of one body, or without a reference node of its own.
     pub fn of(deck: &Deck) -> Result<Self, Error> {
         let dimension = deck.element_list.first().map_or(3, |element| element.kind.dimension());
-        let mut bodies = RigidBodies { all: Vec::new(), by_node: HashMap::new(), dimension };
+        let mut bodies = RigidBodies { all: Vec::new(), by_node: HashMap::new(), bolts: Bolts::of(deck)?, dimension };
         for card in deck.source.cards.iter().filter(|card| card.is("RIGIDBODY")) {
             bodies.add(deck, card).map_err(|message| deck.source.fault(card.place, message))?;
         }
@@ -83,7 +85,7 @@ impl RigidBodies {
 
     /// Returns `true` for a node that moves a rigid body.
     pub fn is_reference(&self, node: usize) -> bool {
-        self.by_node.contains_key(&node)
+        self.by_node.contains_key(&node) || self.bolts.is_reference(node)
     }
 
     /// The motion that a direction of a node, from 1, names; `None` for a node that is no reference.
@@ -102,6 +104,9 @@ impl RigidBodies {
 
     /// Prescribes a direction of a node; `false` for a node that is no reference. What a plane model does not have may be prescribed as 0.
     pub fn prescribe(&mut self, node: usize, direction: usize, value: f64) -> Result<bool, String> {
+        if self.bolts.prescribe(node, direction, value)? {
+            return Ok(true);
+        }
         match self.motion(node, direction) {
             Ok(Some((body, kind))) => body.prescribed[kind] = Some(value),
             Ok(None) => return Ok(false),
@@ -113,6 +118,9 @@ impl RigidBodies {
 
     /// Adds a force or a moment at a direction of a node; `false` for a node that is no reference.
     pub fn press(&mut self, node: usize, direction: usize, force: f64) -> Result<bool, String> {
+        if self.bolts.press(node, direction, force)? {
+            return Ok(true);
+        }
         let Some((body, kind)) = self.motion(node, direction)? else { return Ok(false) };
         body.load[kind] += force;
         Ok(true)

@@ -68,5 +68,6 @@ fn set(deck: &Deck, card: &Card, factor: f64, temperatures: &mut [f64]) -> Resul
         let nodes = deck.node_sets.members(&target, &deck.nodes).map_err(|message| fields.fault(message))?;
         nodes.into_iter().for_each(|node| temperatures[node] = value);
     }
+    deck.doubled.iter().for_each(|&(node, double)| temperatures[double] = temperatures[node]);
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::bodies::{name_of_node, names_of_surface};
+use super::bodies::{name_of_node, side};
 use super::scene_text::Entry;
 use super::transforms::{AXES, Transforms};
 use crate::error::Error;
@@ -40,29 +40,6 @@ pub(super) fn surfaces(deck: &Deck, pair: &[String; 2], reach: Option<f64>, plac
         tied["reach"] = reach.into();
     }
     Ok(Entry::new(json!({"surfaces": tied}), place))
-}
-
-/// The body of a surface and its name in the scene.
-///
-/// # Errors
-/// A sentence if it does not exist, consists of nodes that are no faces, or has faces of several bodies.
-pub(super) fn side(deck: &Deck, name: &str) -> Result<(usize, String), String> {
-    let surface = deck.surface_or(name)?;
-    if let Some(&node) = surface.bare.first() {
-        let number = deck.nodes.numbers[node];
-        return Err(format!(
-            "node {number} of the surface `{}` is on no face that has only nodes of it; name faces (TYPE=ELEMENT), or the nodes of \
-             whole faces",
-            surface.name
-        ));
-    }
-    match &names_of_surface(deck, surface)[..] {
-        [(body, name)] => Ok((*body, name.clone())),
-        several => {
-            let message = "has faces of several bodies; name a surface of each body";
-            Err(format!("the surface `{}` {message}, of which there are {}", surface.name, several.len()))
-        }
-    }
 }
 
 /// The distance within which *TIE ties.

@@ -30,7 +30,7 @@ pub use part::PartSpec;
 pub use rigid_face::RigidFaceSpec;
 pub use spring::SpringSpec;
 pub use symmetry::SymmetryPlane;
-pub use tie::{EquationSpec, TieSpec, TiedSurfacesSpec};
+pub use tie::{EquationSpec, PreloadSpec, TieSpec, TiedSurfacesSpec};
 
 use std::path::PathBuf;
 

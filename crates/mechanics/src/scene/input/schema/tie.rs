@@ -13,6 +13,8 @@ pub enum TieSpec {
     Surfaces(TiedSurfacesSpec),
     /// One linear equation between displacements of nodes.
     Equation(EquationSpec),
+    /// Two faces of a bolt that is cut across: they move together along the faces, and are drawn together.
+    Preload(PreloadSpec),
 }
 
 /// Two surfaces that stay together, in the mean over the area of each node of one of them. Their meshes need not match. The softer body, or
@@ -28,6 +30,26 @@ pub struct TiedSurfacesSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub reach: Option<f64>,
+}
+
+/// The preload of a bolt that is cut across: the two faces of the cut move together along themselves, and towards each other by one
+/// shortening. Their meshes need not match. Give a force or a shortening.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PreloadSpec {
+    /// The face of the cut on one part of the bolt.
+    pub boundary: String,
+    /// The face on the other part, at the same place.
+    pub to: String,
+    /// The tension in the bolt, positive if it draws the parts together, in force; of the modelled part.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force: Option<f64>,
+    /// The length by which the bolt is shortened.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shortening: Option<f64>,
+    /// The direction from the first part to the other, of any length; the mean outward normal of the face if it is left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub direction: Option<Vec<f64>>,
 }
 
 /// An equation: the sum of the terms is the value.

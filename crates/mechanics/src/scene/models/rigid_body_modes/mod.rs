@@ -9,7 +9,7 @@ use signorini_qp as qp;
 use super::parts::Parts;
 use super::rigid_face::{Motion, RigidFace};
 use super::rows::ContactRow;
-use super::ties::TieRow;
+use super::tie_row::TieRow;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::COORDINATES;

@@ -1,0 +1,131 @@
+//! Preloads of bolts: the cards *PRE-TENSION SECTION, with the tension or the shortening at their reference nodes.
+
+use serde_json::json;
+
+use super::bodies::side;
+use super::scene_text::{Entry, object};
+use crate::error::Error;
+use crate::fem::mesh::deck::{Card, Deck, Place};
+
+/// A cut through a bolt.
+struct Bolt {
+    /// The node whose direction 1 is the shortening.
+    reference: usize,
+    /// The names of the two faces in the scene.
+    faces: [String; 2],
+    direction: Option<[f64; 3]>,
+    force: f64,
+    shortening: Option<f64>,
+    place: Place,
+}
+
+/// The bolts of a deck.
+pub(super) struct Bolts {
+    all: Vec<Bolt>,
+    dimension: usize,
+}
+
+impl Bolts {
+    /// # Errors
+    /// An error with the line for a cut without a reference node of its own, and for a direction that is not read.
+    pub fn of(deck: &Deck) -> Result<Self, Error> {
+        let dimension = deck.element_list.first().map_or(3, |element| element.kind.dimension());
+        let mut bolts = Bolts { all: Vec::new(), dimension };
+        let cards = deck.source.cards.iter().filter(|card| card.is("PRE-TENSIONSECTION"));
+        for (card, names) in cards.zip(&deck.cuts) {
+            let reference = reference(deck, card).map_err(|message| deck.source.fault(card.place, message))?;
+            if bolts.is_reference(reference) {
+                let number = deck.nodes.numbers[reference];
+                return Err(deck.source.fault(card.place, format!("node {number} is the reference of two bolts")));
+            }
+            let [one, other] = names.each_ref().map(|name| side(deck, name));
+            let fault = |message: String| deck.source.fault(card.place, message);
+            let faces = [one.map_err(fault)?.1, other.map_err(fault)?.1];
+            let direction = direction(deck, card)?;
+            bolts.all.push(Bolt { reference, faces, direction, force: 0.0, shortening: None, place: card.place });
+        }
+        Ok(bolts)
+    }
+
+    /// Returns `true` for a node whose direction 1 is the shortening of a bolt.
+    pub fn is_reference(&self, node: usize) -> bool {
+        self.all.iter().any(|bolt| bolt.reference == node)
+    }
+
+    /// Prescribes the shortening; `false` for a node that is no reference of a bolt. Its other directions may be prescribed as 0.
+    ///
+    /// # Errors
+    /// A sentence for another direction.
+    pub fn prescribe(&mut self, node: usize, direction: usize, value: f64) -> Result<bool, String> {
+        let Some(bolt) = self.all.iter_mut().find(|bolt| bolt.reference == node) else { return Ok(false) };
+        match direction {
+            1 => bolt.shortening = Some(value),
+            _ if value == 0.0 => {}
+            _ => {
+                return Err(format!(
+                    "direction {direction} of this node is none of a bolt, which has direction 1 alone"
+                ));
+            }
+        }
+        Ok(true)
+    }
+
+    /// Adds a tension; `false` for a node that is no reference of a bolt.
+    ///
+    /// # Errors
+    /// A sentence for another direction than 1.
+    pub fn press(&mut self, node: usize, direction: usize, force: f64) -> Result<bool, String> {
+        let Some(bolt) = self.all.iter_mut().find(|bolt| bolt.reference == node) else { return Ok(false) };
+        if direction != 1 {
+            return Err(format!("direction {direction} of this node is none of a bolt, which has direction 1 alone"));
+        }
+        bolt.force += force;
+        Ok(true)
+    }
+
+    /// The preloads of the scene. A tension does nothing where the shortening is prescribed.
+    pub fn entries(&self) -> Vec<Entry> {
+        let entry = |bolt: &Bolt| {
+            let [boundary, to] = &bolt.faces;
+            let mut preload = json!({"boundary": boundary, "to": to});
+            match bolt.shortening {
+                Some(shortening) => preload["shortening"] = shortening.into(),
+                None => preload["force"] = bolt.force.into(),
+            }
+            if let Some(direction) = bolt.direction {
+                preload["direction"] = direction[..self.dimension].into();
+            }
+            Entry::new(object("preload", preload), bolt.place)
+        };
+        self.all.iter().map(entry).collect()
+    }
+}
+
+/// The node of a card, which belongs to no element.
+fn reference(deck: &Deck, card: &Card) -> Result<usize, String> {
+    let Some(value) = card.value("NODE") else {
+        return Err("*PRE-TENSION SECTION has no reference node; write NODE=NUMBER".into());
+    };
+    let number = value.parse().map_err(|_| format!("NODE={value} is not the number of a node"))?;
+    let node = deck.nodes.place(number).ok_or_else(|| format!("the deck has no node {number}"))?;
+    match deck.body_of_node[node] {
+        None => Ok(node),
+        Some(_) => Err(format!("node {number} belongs to an element; the reference node of a bolt belongs to none")),
+    }
+}
+
+/// The direction of a card, from the elements of its surface to those behind.
+fn direction(deck: &Deck, card: &Card) -> Result<Option<[f64; 3]>, Error> {
+    let Some(line) = card.lines.first() else { return Ok(None) };
+    let mut fields = deck.source.fields(line);
+    let mut direction = [0.0; 3];
+    for (part, what) in direction.iter_mut().zip(["x", "y", "z"]) {
+        *part = fields.finite_or_zero(format_args!("the {what} of the direction"))?;
+    }
+    fields.end()?;
+    match (direction == [0.0; 3], card.lines.get(1)) {
+        (false, None) => Ok(Some(direction)),
+        (true, _) => Err(fields.fault("the direction of the bolt has no length")),
+        (_, Some(line)) => Err(deck.source.fault(line.place, "*PRE-TENSION SECTION has one line, with the direction")),
+    }
+}

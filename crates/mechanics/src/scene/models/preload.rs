@@ -1,0 +1,128 @@
+//! Preloads of bolts: two faces of a cut that move together along themselves, and towards each other by one shortening q.
+//!
+//! Each mean over the cut holds t . (u - u') = 0 along the faces. Along the direction n of the bolt, either all hold n . (u - u') = q with
+//! a prescribed q, or they are equal to each other, and the tension F does the work F q.
+
+use std::ops::Range;
+
+use super::facing::Facing;
+use super::tie_row::TieRow;
+use super::unknowns::Unknowns;
+use crate::error::Error;
+use crate::fem::assembly::DofMap;
+use crate::fem::body::ElasticBody;
+use crate::fem::geometry::{cross, dot, length, unit};
+use crate::scene::Warning;
+use crate::scene::input::entry::{finite, vector, wrong};
+use crate::scene::input::obstacle::SideOrder;
+use crate::scene::input::schema::PreloadSpec;
+
+/// The shortening of a bolt: the sum of `vector . u` over its terms.
+#[derive(Clone, Debug)]
+pub(crate) struct Shortening {
+    /// The number of its tie.
+    pub tie: usize,
+    /// Nodes with their vectors, as in [`TieRow`].
+    pub terms: Vec<(usize, [f64; 3])>,
+    /// The nodes of its first side.
+    pub own: Range<usize>,
+    /// The tension along it; 0 if it is prescribed.
+    pub force: f64,
+}
+
+impl Shortening {
+    fn of_row(row: &TieRow, tie: usize, force: f64) -> Self {
+        Shortening { tie, terms: row.terms.clone(), own: row.own.clone(), force }
+    }
+
+    /// Its value at values of the unknowns, in length.
+    pub fn value(&self, (dofs, unknowns): (&DofMap, &Unknowns), dimension: usize, values: &[f64]) -> f64 {
+        let of_term = |(node, vector): &(usize, [f64; 3])| {
+            let (entries, prescribed) = unknowns.along(dofs, *node, &vector[..dimension]);
+            entries.iter().fold(prescribed, |sum, &(unknown, part)| sum + part * values[unknown])
+        };
+        self.terms.iter().map(of_term).sum()
+    }
+}
+
+impl PreloadSpec {
+    /// The rows of the cut at `path`, tie number `tie`, and its shortening.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for boundaries that do not face each other, for a preload without a force or a shortening or with both, a direction
+    /// along the faces, and for supports that hold the cut against the force.
+    pub(super) fn rows(
+        &self,
+        (path, tie): (&str, usize),
+        place: (&ElasticBody, &DofMap, &SideOrder),
+        warnings: &mut Vec<Warning>,
+    ) -> Result<(Vec<TieRow>, Shortening), Error> {
+        let facing = Facing::of([&self.boundary, &self.to], None, path, place, warnings)?;
+        let (dofs, dimension) = (facing.dofs, facing.body.dimension());
+        let towards = self.direction(&facing, path)?;
+        let mut rows = Vec::new();
+        for number in 0..dimension - 1 {
+            rows.extend(facing.rows(|node| across(towards, dofs.axes(node), dimension)[number])?);
+        }
+        let along = facing.rows(|_| towards)?.into_iter().map(|row| TieRow { at: None, ..row });
+        let mut along: Vec<TieRow> = along.collect();
+        let shortening = match (self.force, self.shortening) {
+            (Some(force), None) => {
+                finite(format!("{path}.force"), force)?;
+                let is_free = |row: &TieRow| {
+                    row.terms.iter().any(|(node, vector)| !dofs.along(*node, &vector[..dimension]).free.is_empty())
+                };
+                let Some(place) = along.iter().position(is_free) else {
+                    let message = "supports hold all nodes of the cut along the bolt, so that no force can act there";
+                    return Err(wrong(format!("{path}.force"), message));
+                };
+                let first = along.remove(place);
+                along.iter_mut().for_each(|row| *row = row.minus(&first));
+                Shortening::of_row(&first, tie, force)
+            }
+            (None, Some(shortening)) => {
+                finite(format!("{path}.shortening"), shortening)?;
+                along.iter_mut().for_each(|row| row.value = shortening);
+                Shortening::of_row(&along[0], tie, 0.0)
+            }
+            _ => return Err(wrong(path, "needs one of `force` and `shortening`")),
+        };
+        rows.extend(along);
+        Ok((rows, shortening))
+    }
+
+    /// The unit vector from the side that takes the means to the other.
+    fn direction(&self, facing: &Facing, path: &str) -> Result<[f64; 3], Error> {
+        let mut outward = [0.0; 3];
+        for row in &facing.found.rows {
+            outward.iter_mut().zip(row.normal).for_each(|(sum, part)| *sum += row.area * part);
+        }
+        let outward = unit(outward);
+        let Some(given) = &self.direction else { return Ok(outward) };
+        let path = format!("{path}.direction");
+        let given = unit(vector(&path, given, facing.body.dimension())?);
+        let given = if facing.is_swapped { given.map(|part| 0.0 - part) } else { given };
+        // A direction along the faces would shear them.
+        match dot(given, outward).abs() > LEAST {
+            true => Ok(given),
+            false => Err(wrong(path, "lies along the faces of the cut; it must lead from one part to the other")),
+        }
+    }
+}
+
+/// The least cosine between the direction of a bolt and the normal of its cut.
+const LEAST: f64 = 1e-3;
+
+/// Two unit vectors at right angles to `towards`, one in the plane: along axes of the node where these are at right angles.
+fn across(towards: [f64; 3], axes: &[[f64; 3]; 3], dimension: usize) -> [[f64; 3]; 2] {
+    if dimension == 2 {
+        return [[0.0 - towards[1], towards[0], 0.0], [0.0; 3]];
+    }
+    let projected = axes.map(|axis| {
+        let part = dot(axis, towards);
+        [0, 1, 2].map(|k| axis[k] - part * towards[k])
+    });
+    let longest = projected.into_iter().max_by(|a, b| length(*a).total_cmp(&length(*b))).unwrap_or_default();
+    let first = unit(longest);
+    [first, cross(towards, first)]
+}

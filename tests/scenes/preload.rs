@@ -1,0 +1,175 @@
+//! Preloads of bolts, compared with bars and springs in closed form.
+
+use serde_json::{Value, json};
+use signorini::Error;
+use signorini::scene::{Answer, Resultant};
+use support::scenes::{answer, build};
+
+/// Rounding of a solve with some hundred unknowns, relative to the largest value.
+const ROUNDING: f64 = 1e-11;
+
+/// As [`ROUNDING`], where surfaces with other meshes are integrated.
+const INTEGRATED: f64 = 1e-9;
+
+const YOUNG: f64 = 200.0;
+
+fn cells(from: f64, to: f64, count: usize) -> Value {
+    json!({"points": [from, to], "divisions": [count]})
+}
+
+fn tie(answer: &Answer) -> Resultant {
+    answer.resultants().unwrap().iter().find(|one| one.of == "ties[0]").unwrap().clone()
+}
+
+/// A bar of length 5 along the last axis, cut at 2, held at both ends; its cross-section is 1 x 1.
+fn bar(element: &str, counts: [usize; 2], poisson: f64, preload: &Value) -> Value {
+    let body = |[from, to]: [f64; 2], count: usize| match element.len() {
+        2 => json!({"rectangle": {"x": cells(0.0, 1.0, count), "y": cells(from, to, 3), "element": element}}),
+        _ => {
+            json!({"box": {"x": cells(0.0, 1.0, count), "y": cells(0.0, 1.0, 2), "z": cells(from, to, 2), "element": element}})
+        }
+    };
+    let (model, held) = if element.len() == 2 {
+        ("plane-stress", json!({"x": 0, "y": 0}))
+    } else {
+        ("space", json!({"x": 0, "y": 0, "z": 0}))
+    };
+    let material = json!({"young": YOUNG, "poisson": poisson});
+    let support = |name: &str| {
+        let mut support = held.clone();
+        support["on"] = json!({"boundary": name});
+        support
+    };
+    json!({
+        "model": model, "body": body([0.0, 2.0], counts[0]), "material": material,
+        "further-bodies": [{"name": "far", "body": body([2.0, 5.0], counts[1]), "material": material}],
+        "supports": [support("bottom"), support("far.top")],
+        "ties": [{"preload": preload}], "loads": [],
+    })
+}
+
+fn preload(key: &str, value: f64) -> Value {
+    json!({"boundary": "top", "to": "far.bottom", key: value})
+}
+
+#[test]
+fn a_bar_between_walls_has_the_tension_and_the_shortening_of_closed_form() {
+    let elements = ["t3", "q4", "t6", "q8", "tet4", "hex8", "tet10", "hex20"];
+    for (element, counts) in elements.into_iter().flat_map(|element| [(element, [2, 2]), (element, [2, 3])]) {
+        // A tension of 3 draws 2 + 3 together by 3 (2 + 3) / E.
+        let exact = 3.0 * 5.0 / YOUNG;
+        for (key, value) in [("force", 3.0), ("shortening", exact)] {
+            let answer = answer(&bar(element, counts, 0.0, &preload(key, value)));
+            let (mesh, far) = (answer.model().mesh(), answer.model().body().regions()[1].nodes().start);
+            let dimension = mesh.dimension();
+            for (node, at) in mesh.nodes().iter().enumerate() {
+                let along = if node < far { at[dimension - 1] } else { at[dimension - 1] - 5.0 };
+                for axis in 0..dimension {
+                    let value = if axis + 1 == dimension { 3.0 / YOUNG * along } else { 0.0 };
+                    let away = (answer.displacement()[dimension * node + axis] - value).abs();
+                    assert!(away < INTEGRATED * exact, "{element} {counts:?} {key}: {away:e} at {at:?}");
+                }
+            }
+            let tie = tie(&answer);
+            assert!((tie.shortening.unwrap() - exact).abs() < INTEGRATED * exact, "{element} {counts:?}: {tie:?}");
+            // The force on the side that takes the means leads to the other side.
+            let sense = if tie.on.as_deref() == Some("far") { -1.0 } else { 1.0 };
+            assert!((tie.force[dimension - 1] - sense * 3.0).abs() < 3.0 * INTEGRATED, "{element} {counts:?}: {tie:?}");
+            assert!(answer.forces().unwrap().balance < INTEGRATED);
+        }
+    }
+}
+
+/// A bar that may not widen at its ends: nothing is uniform, but the answers to a force and to its shortening are one answer, that
+/// depends neither on the order of the sides nor on the length of the direction.
+#[test]
+fn a_force_and_its_shortening_give_one_answer() {
+    for element in ["q8", "hex8", "tet10"] {
+        let by_force = answer(&bar(element, [2, 2], 0.3, &preload("force", 3.0)));
+        let shortening = tie(&by_force).shortening.unwrap();
+        let mut others = vec![preload("shortening", shortening)];
+        others.push(json!({"boundary": "far.bottom", "to": "top", "force": 3}));
+        let direction = if element == "q8" { json!([0, -7]) } else { json!([0, 0, -7]) };
+        others.push(json!({"boundary": "far.bottom", "to": "top", "force": 3, "direction": direction}));
+        let largest = by_force.displacement().iter().fold(0.0, |largest: f64, part| largest.max(part.abs()));
+        for other in others {
+            let answer = answer(&bar(element, [2, 2], 0.3, &other));
+            for (one, two) in by_force.displacement().iter().zip(answer.displacement()) {
+                assert!((one - two).abs() < ROUNDING * largest, "{element}: {one} and {two}");
+            }
+            assert!((tie(&answer).shortening.unwrap() - shortening).abs() < ROUNDING * shortening);
+        }
+    }
+}
+
+/// A column (stiffness 1 x E / 2) stands on the ground and carries a cap, which a bolt beside it (stiffness 1 x E / 2 in two halves) draws
+/// down; a load pulls the column up. In the plane, without widening.
+fn joint(preload: &Value, load: f64) -> Value {
+    let body = |x: [f64; 2], y: [f64; 2]| json!({"rectangle": {"x": cells(x[0], x[1], 1), "y": cells(y[0], y[1], 2)}});
+    let material = json!({"young": YOUNG, "poisson": 0});
+    let level = |x: f64| json!({"equation": {"terms": [{"on": {"point": [x, 2]}, "y": 1}, {"on": {"point": [0, 2]}, "y": -1}]}});
+    json!({
+        "body": body([0.0, 1.0], [0.0, 2.0]), "material": material,
+        "further-bodies": [
+            {"name": "low", "body": body([2.0, 3.0], [0.0, 0.5]), "material": material},
+            {"name": "high", "body": body([2.0, 3.0], [0.5, 2.0]), "material": material},
+        ],
+        "supports": [
+            {"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "low.bottom"}, "x": 0, "y": 0},
+        ],
+        "obstacles": [{"boundary": "bottom", "approach": "-y", "shape": {"plane": {"point": [0, 0], "normal": [0, -1]}}}],
+        "ties": [{"preload": preload}, level(1.0), level(2.0), level(3.0)],
+        "loads": [{"traction": {"boundary": "top", "value": [0, load]}}],
+    })
+}
+
+#[test]
+fn a_bolted_joint_carries_a_load_until_its_seat_opens() {
+    let (column, bolt) = (YOUNG / 2.0, YOUNG / 2.0);
+    let drawn = |key: &str, value: f64| json!({"boundary": "low.top", "to": "high.bottom", key: value});
+    let seat =
+        |answer: &Answer| answer.resultants().unwrap().iter().find(|one| one.of == "obstacles[0]").unwrap().force[1];
+    let near = |one: f64, two: f64| assert!((one - two).abs() < 3.0 * INTEGRATED, "{one} instead of {two}");
+    // A tension of 3: the load takes its part of the pressure on the seat.
+    for load in [0.0, 1.0, 2.9] {
+        let answer = answer(&joint(&drawn("force", 3.0), load));
+        near(seat(&answer), 3.0 - load);
+        near(tie(&answer).shortening.unwrap(), 3.0 / bolt + (3.0 - load) / column);
+    }
+    // A shortening that gives 3 without a load: the load is shared until the seat opens, and then the bolt has all of it.
+    let shortening = 3.0 / bolt + 3.0 / column;
+    for load in [0.0, 2.0, 5.9, 6.5, 9.0] {
+        let answer = answer(&joint(&drawn("shortening", shortening), load));
+        let on_seat = (3.0 - load * column / (column + bolt)).max(0.0);
+        near(seat(&answer), on_seat);
+        near(tie(&answer).force[1].abs(), on_seat + load);
+    }
+}
+
+#[test]
+fn a_preload_that_describes_no_bolt_is_refused() {
+    let refused = |preload: &Value, change: &dyn Fn(&mut Value)| {
+        let mut scene = bar("hex8", [2, 2], 0.3, preload);
+        change(&mut scene);
+        match build(&scene) {
+            Err(Error::Scene { path, message }) => format!("{path}: {message}"),
+            other => panic!("{other:?}"),
+        }
+    };
+    let none = |_: &mut Value| ();
+    for (preload, phrase) in [
+        (json!({"boundary": "top", "to": "far.bottom"}), "ties[0].preload: needs one of `force` and `shortening`"),
+        (json!({"boundary": "top", "to": "far.bottom", "force": 1, "shortening": 1}), "needs one of `force`"),
+        (json!({"boundary": "top", "to": "far.top", "force": 1}), "no facet of `top` faces `far.top`"),
+        (json!({"boundary": "top", "to": "far.bottom", "force": 1, "direction": [1, 0, 0]}), "lies along the faces"),
+        (json!({"boundary": "top", "to": "far.bottom", "force": 1, "direction": [0, 1]}), "must have 3"),
+    ] {
+        let message = refused(&preload, &none);
+        assert!(message.contains(phrase), "{message}");
+    }
+    let held = refused(&preload("force", 1.0), &|scene| {
+        let cut = ["top", "far.bottom"].map(|name| json!({"on": {"boundary": name}, "z": 0}));
+        scene["supports"].as_array_mut().unwrap().extend(cut);
+    });
+    assert!(held.contains("supports hold all nodes of the cut along the bolt"), "{held}");
+}
