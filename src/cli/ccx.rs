@@ -78,7 +78,7 @@ fn answered(options: &Ccx, [file, stem]: [PathBuf; 2], watch: &Watch, text: &mut
     remove_files(&folder, &["report.html", "report.json"])?;
     let limits = &options.limits;
     let Some(solve) = options.solve(file.clone(), folder) else { return unfit("ccx", "no options of `solve`") };
-    let requests = Requests::of_deck(&file, &limits.permits())?;
+    let requests = Requests::of_deck(&file, &limits.deck.permits())?;
     let scene = scene_of(&file, limits)?;
     assembly_seconds(&scene, &solve, watch)?;
     let input = Input::of_scene(&scene, &file, limits, clock.elapsed().as_secs_f64())?;

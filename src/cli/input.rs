@@ -139,11 +139,11 @@ pub(super) fn rests(scene: &Scene) -> Result<(), Error> {
 pub(super) fn scene_of(path: &Path, limits: &Limits) -> Result<Scene, Error> {
     // A scene from a pipe has the working folder of the program as its folder.
     let scene = match path == Path::new(STANDARD_INPUT) {
-        false if Scene::is_deck(path) => Scene::read_deck(path, &limits.permits())?,
+        false if Scene::is_deck(path) => Scene::read_deck(path, &limits.deck.permits())?,
         true => Scene { folder: Some(PathBuf::new()), ..Scene::read("/dev/stdin")? },
         false => Scene::read(path)?,
     };
-    Ok(Scene { reads_outside: limits.allow_outside, ..scene })
+    Ok(Scene { reads_outside: limits.deck.allow_outside, ..scene })
 }
 
 /// Reads a scene and makes sure that it fits into these `limits`.

@@ -1,6 +1,6 @@
 //! `signorini new`: a first scene for a mesh, or the scene of a deck.
 
-use super::options::{New, permits};
+use super::options::New;
 use super::outcome::Outcome;
 use crate::Error;
 use crate::output::write_atomically;
@@ -15,7 +15,7 @@ pub(super) fn run(options: &New) -> Result<Outcome, Error> {
     };
     let is_deck = Scene::is_deck(&options.mesh);
     let text = match is_deck {
-        true => Scene::text_of_deck(&options.mesh, &named, &permits(options.allow_outside, options.without_friction))?,
+        true => Scene::text_of_deck(&options.mesh, &named, &options.deck.permits())?,
         false => Scene::start(&options.mesh, &named)?,
     };
     match &options.out {

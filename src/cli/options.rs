@@ -274,12 +274,8 @@ pub(super) struct Solve {
 pub(super) struct New {
     /// Mesh (a .msh file of Gmsh), or an input deck of CalculiX (a .inp file)
     pub mesh: PathBuf,
-    /// Let a deck include files that lie outside its own folder
-    #[arg(long)]
-    pub allow_outside: bool,
-    /// Translate a deck with friction without it
-    #[arg(long)]
-    pub without_friction: bool,
+    #[command(flatten)]
+    pub deck: DeckOptions,
     /// File for the scene; standard output if it is left out
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
@@ -408,10 +404,26 @@ fn parse_threads(text: &str) -> Result<usize, String> {
     allowed(text, |threads| (1..=MOST_THREADS).contains(threads), || format!("a whole number from 1 to {MOST_THREADS}"))
 }
 
-/// The names of the permissions for the reading of a deck.
-pub(super) fn permits(allow_outside: bool, without_friction: bool) -> Vec<&'static str> {
-    let named = [("outside", allow_outside), ("friction", without_friction)];
-    named.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name).collect()
+/// What a scene or a deck may do, and what of a deck is answered all the same.
+#[derive(Clone, Debug, Args)]
+pub(super) struct DeckOptions {
+    /// Let a scene or a deck read files that lie outside its own folder
+    #[arg(long)]
+    pub allow_outside: bool,
+    /// Take a deck with friction without it: the answer is that of a frictionless contact
+    #[arg(long)]
+    pub without_friction: bool,
+    /// Answer a deck that asks for large displacements (NLGEOM) with small ones, also where strains or rotations exceed 5 %
+    #[arg(long)]
+    pub linear: bool,
+}
+
+impl DeckOptions {
+    /// The names of the permissions for the reading of a deck.
+    pub fn permits(&self) -> Vec<&'static str> {
+        let named = [("outside", self.allow_outside), ("friction", self.without_friction), ("linear", self.linear)];
+        named.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name).collect()
+    }
 }
 
 /// Limits of memory and files for a scene or a problem.
@@ -420,20 +432,11 @@ pub(super) struct Limits {
     /// Refuse a problem that needs more memory, such as 500MB or 1.5GB [default: what the machine has available]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<f64>,
-    /// Let the scene read files of meshes and surfaces that lie outside its own folder
-    #[arg(long)]
-    pub allow_outside: bool,
-    /// Solve a deck with friction without it: the answer is that of a frictionless contact
-    #[arg(long)]
-    pub without_friction: bool,
+    #[command(flatten)]
+    pub deck: DeckOptions,
 }
 
 impl Limits {
-    /// The permissions for the reading of a deck.
-    pub fn permits(&self) -> Vec<&'static str> {
-        permits(self.allow_outside, self.without_friction)
-    }
-
     /// The memory, in bytes.
     pub fn most_memory(&self) -> f64 {
         most_memory(self.max_memory)

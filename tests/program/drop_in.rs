@@ -565,3 +565,38 @@ fn strains_are_printed_at_the_points_of_calculix_in_its_order() {
         }
     }
 }
+
+/// The ends of a block follow a field, and its middle with them: a rotation about z by an angle, or a stretch along x.
+#[test]
+fn large_displacements_are_answered_up_to_five_percent() {
+    let desk = Desk::new();
+    let mesh = Block { element: "C3D8", low: [0.0; 3], high: [2.0, 1.0, 1.0], cells: [2, 1, 1], after: 0 }.mesh();
+    let section = "*MATERIAL, NAME=M\n*ELASTIC\n200., 0.\n*SOLID SECTION, ELSET=PART, MATERIAL=M\n*STEP, NLGEOM\n*STATIC\n*BOUNDARY\n";
+    for (is_turned, size, size_in_words) in [
+        (true, 0.04, Some("the largest strain is 0.00 %, the largest rotation 4.00 % (2.29 degrees)")),
+        (false, 0.048, Some("the largest strain is 4.80 %, the largest rotation 0.00 % (0.00 degrees)")),
+        (true, -0.06, None),
+        (false, 0.051, None),
+    ] {
+        let mut deck = mesh.cards("PART") + section;
+        for (number, [x, y, _]) in mesh.nodes.iter().filter(|(_, at)| at[0] != 1.0) {
+            let [along, across] = if is_turned { [-size * y, size * x] } else { [size * x, 0.0] };
+            deck += &format!("{number}, 1, 1, {along:e}\n{number}, 2, 2, {across:e}\n{number}, 3\n");
+        }
+        desk.write("part.inp", deck + "*END STEP\n");
+        let Some(words) = size_in_words else {
+            let run = desk.run(&["solve", "part.inp", "--json"]).ends_with(2);
+            let report: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+            assert_eq!(report["code"], "large-displacements", "{report}");
+            let run = desk.run(&["ccx", "part"]).ends_with(2);
+            assert!(run.stdout.contains("*ERROR") && run.stdout.contains("above 5 % of either"), "{}", run.stdout);
+            assert!(!desk.path("part.frd").exists());
+            let run = desk.run(&["ccx", "part", "--linear"]).ends_with(0);
+            assert!(run.stdout.contains("part.inp:22: NLGEOM is answered with small displacements"), "{}", run.stdout);
+            continue;
+        };
+        let run = desk.run(&["solve", "part.inp"]).ends_with(0);
+        let said: Vec<&str> = run.stdout.split_whitespace().collect();
+        assert!(said.join(" ").contains(words), "{}", run.stdout);
+    }
+}

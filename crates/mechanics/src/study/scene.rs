@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::exact_path::ExactPath;
 use super::kept_answers::{KeptAnswers, points};
 use super::summary::{LargestDisplacement, OF_MESHED_PART};
-use super::warnings::{AnswerWarning, check_approach, initial_overlap, of_scene, point_support};
+use super::warnings::{AnswerWarning, check_approach, check_deformation, initial_overlap, of_scene, point_support};
 use super::{ModelSize, Summary, obstacles::contact_on_obstacles};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
@@ -41,7 +41,7 @@ impl Summary {
     /// The numbers of `solution`, the solution behind `answer`: with pressures, the width of the contact, and the balance of all forces.
     ///
     /// # Errors
-    /// [`Error::Refused`] for an obstacle that pulls; as [`Model::reactions`].
+    /// [`Error::Refused`] for an obstacle that pulls, and for large displacements that a deck asks for; as [`Model::reactions`].
     pub fn of_answer(
         answer: &Answer,
         solution: Solution,
@@ -50,6 +50,7 @@ impl Summary {
     ) -> Result<Summary, Error> {
         let (model, closed) = (answer.model(), answer.contact_set());
         check_approach(model, &solution.multiplier)?;
+        check_deformation(answer)?;
         let segments = answer.segments();
         let warnings = of_scene(answer, &solution, &segments);
         let mesh = model.mesh();

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::fem::body::{BodyElement, ElasticBody};
-use crate::fem::geometry::{along_axis, dot};
+use crate::fem::body::BodyElement;
+use crate::fem::geometry::{along_axis, dot, length};
 use crate::scene::models::overlap::Overlap;
-use crate::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, refused};
+use crate::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, Warning, refused};
 use signorini_qp::{Certificate, ContactProblem, Solution};
 
 /// Overlaps below this share of the size of the mesh are rounding of coordinates.
@@ -16,6 +16,9 @@ const ROUNDING_OF_PLACES: f64 = 1e-12;
 
 /// Strains above this are no longer small, as the equations assume.
 const LARGE_STRAIN: f64 = 0.1;
+
+/// Strains or rotations above this change the answer to a deck with large displacements by some percent.
+const LARGE_DEFORMATION: f64 = 0.05;
 
 /// Forces of a row below this share of the largest force of its obstacle are rounding.
 const NO_FORCE: f64 = 1e-9;
@@ -95,8 +98,7 @@ pub(super) fn opposite_sign(certificate: &Certificate, multiplier: &[f64], toler
 /// The warnings about an answer to a scene.
 pub(super) fn of_scene(answer: &Answer, solution: &Solution, segments: &[Segment]) -> Vec<AnswerWarning> {
     let model = answer.model();
-    let of_model =
-        model.warnings().iter().map(|warning| AnswerWarning { code: warning.code(), message: warning.to_string() });
+    let of_model = model.warnings().iter().map(|warning| of_model(answer, warning));
     let of_answer = [
         nothing_touches(model, solution),
         large_strain(answer),
@@ -138,6 +140,7 @@ fn overlap(answer: &Answer) -> Option<AnswerWarning> {
 /// [`Error::Refused`] for an obstacle that pulls.
 pub(super) fn of_refined(answer: &Answer, solution: &Solution) -> Result<Vec<AnswerWarning>, Error> {
     check_approach(answer.model(), &solution.multiplier)?;
+    check_deformation(answer)?;
     let warnings = of_scene(answer, solution, &[]);
     Ok(warnings.into_iter().filter(|warning| !OF_MESH.contains(&warning.code)).collect())
 }
@@ -403,7 +406,7 @@ fn behind(model: &Model, row: &ContactRow) -> String {
 /// Warns that strains are too large for the equations of small strains.
 fn large_strain(answer: &Answer) -> Option<AnswerWarning> {
     let (model, body) = (answer.model(), answer.model().body());
-    let (element, strain) = largest_strain(body, answer.displacement())?;
+    let Deformation { element, strain, .. } = Deformation::largest(answer)?;
     if strain <= LARGE_STRAIN {
         return None;
     }
@@ -417,15 +420,70 @@ fn large_strain(answer: &Answer) -> Option<AnswerWarning> {
     Some(AnswerWarning { code: "large-strain", message })
 }
 
-/// The largest component of a strain at the centre of an element, by magnitude, and that element.
-fn largest_strain(body: &ElasticBody, displacement: &[f64]) -> Option<(usize, f64)> {
-    let tables = body.tabulated();
-    let of_element = |BodyElement { nodes, kind, cell, .. }: BodyElement| {
-        let strain =
-            body.point(&cell, &tables.at(kind).centroid).strain(&body.gather(displacement, nodes), cell.unit());
-        strain.iter().fold(0.0, |largest: f64, component| largest.max(component.abs()))
+/// The deformation at the centres of elements.
+struct Deformation {
+    /// The element with the largest strain.
+    element: usize,
+    /// The largest component of a strain, by magnitude.
+    strain: f64,
+    /// The largest rotation, in radians if it is small.
+    rotation: f64,
+}
+
+impl Deformation {
+    /// The largest of all elements; `None` without elements.
+    fn largest(answer: &Answer) -> Option<Self> {
+        let (body, displacement) = (answer.model().body(), answer.displacement());
+        let tables = body.tabulated();
+        let of_element = |(element, of): (usize, BodyElement)| {
+            let (point, own) =
+                (body.point(&of.cell, &tables.at(of.kind).centroid), body.gather(displacement, of.nodes));
+            let strain = point.strain(&own, of.cell.unit());
+            let strain = strain.iter().fold(0.0, |largest: f64, component| largest.max(component.abs()));
+            Deformation { element, strain, rotation: length(point.rotation(&own, of.cell.unit())) }
+        };
+        body.elements().enumerate().map(of_element).reduce(|one, other| {
+            let rotation = one.rotation.max(other.rotation);
+            Deformation { rotation, ..if other.strain > one.strain { other } else { one } }
+        })
+    }
+}
+
+impl std::fmt::Display for Deformation {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let [strain, rotation] = [self.strain, self.rotation].map(|part| 100.0 * part);
+        let degrees = self.rotation.to_degrees();
+        write!(f, "the largest strain is {strain:.2} %, the largest rotation {rotation:.2} % ({degrees:.2} degrees)")
+    }
+}
+
+/// The warning of a model about an answer: one about large displacements has their size.
+fn of_model(answer: &Answer, warning: &Warning) -> AnswerWarning {
+    let deformation = match warning {
+        Warning::Nonlinear { .. } => Deformation::largest(answer),
+        _ => None,
     };
-    body.elements().map(of_element).enumerate().max_by(|a, b| a.1.total_cmp(&b.1))
+    let message = deformation.map_or_else(|| warning.to_string(), |deformation| format!("{warning}: {deformation}"));
+    AnswerWarning { code: warning.code(), message }
+}
+
+/// Refuses an answer with large strains or rotations to a deck that asks for large displacements, unless small ones are wanted.
+///
+/// # Errors
+/// [`Error::Refused`] with the code `large-displacements`.
+pub(super) fn check_deformation(answer: &Answer) -> Result<(), Error> {
+    for warning in answer.model().warnings() {
+        let Warning::Nonlinear { is_wanted: false, .. } = warning else { continue };
+        let Some(deformation) = Deformation::largest(answer) else { continue };
+        if deformation.strain.max(deformation.rotation) > LARGE_DEFORMATION {
+            let message = format!(
+                "{warning}, but {deformation}: above {:.0} % of either large displacements have another answer; `--linear` gives that of small ones",
+                100.0 * LARGE_DEFORMATION
+            );
+            return Err(refused("large-displacements", "body", message));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses an answer with obstacles that pull: at a row that carries force the direction into the obstacle points into the body.

@@ -244,6 +244,14 @@ pub enum Warning {
         /// A sentence on what is answered instead.
         message: String,
     },
+    /// A deck asks for large displacements.
+    #[error("{place}: NLGEOM is answered with small displacements")]
+    Nonlinear {
+        /// The file and the line of the deck, as `part.inp:12`.
+        place: String,
+        /// `true` if they are wanted whatever the strains and rotations are.
+        is_wanted: bool,
+    },
     /// The scheme can gain energy.
     #[error(
         "the scheme `{scheme}` can gain energy at every impact: it is for comparison only; take `midpoint` or \
@@ -290,6 +298,7 @@ impl Warning {
             Warning::FreeSymmetry { .. } => "free-symmetry",
             Warning::CoincidentNodes { .. } => "coincident-nodes",
             Warning::Deck { .. } => "deck",
+            Warning::Nonlinear { .. } => "nonlinear",
             Warning::GainsEnergy { .. } => "gains-energy",
         }
     }

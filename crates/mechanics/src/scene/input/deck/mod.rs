@@ -58,7 +58,7 @@ pub(crate) struct DeckScene {
 
 impl DeckScene {
     /// The scene of the deck `file`, which it calls `named`. Files that the deck includes may lie outside its folder if `permits` has
-    /// `outside`; friction is left out if it has `friction`.
+    /// `outside`; friction is left out if it has `friction`; small displacements are wanted if it has `linear`.
     ///
     /// # Errors
     /// As [`Deck::read`]; [`qp::Error::FileSyntax`] with the line for what changes the answer and is not read.
@@ -85,7 +85,6 @@ impl DeckScene {
         contacts.ties.extend(ties(&deck, &transforms)?);
         contacts.ties.extend(rigid_bodies.bolts.entries());
         let mut noted = nearest_elements(&deck);
-        noted.extend(large_displacements(&deck));
         noted.extend(contacts.warnings);
         let mut text = SceneText::new(&deck, &comments(&deck, named, &noted, &passed));
         text.plain("title", &title(&deck).into());
@@ -107,11 +106,12 @@ impl DeckScene {
             let (file, line) = deck.source.position(place);
             (file.to_path_buf(), line)
         };
-        let warning = |(place, message): (Place, String)| {
-            let (file, line) = position(place);
-            Warning::Deck { place: format!("{}:{line}", file.display()), message }
-        };
-        let warnings = noted.into_iter().map(warning).collect();
+        let warning = |(place, message): (Place, String)| Warning::Deck { place: named_line(position(place)), message };
+        let nonlinear = large_displacements(&deck).map(|place| Warning::Nonlinear {
+            place: named_line(position(place)),
+            is_wanted: permits.contains(&"linear"),
+        });
+        let warnings = nonlinear.into_iter().chain(noted.into_iter().map(warning)).collect();
         let places = std::iter::once(whole).chain(places).map(|(path, place)| (path, position(place))).collect();
         Ok(DeckScene { text, warnings, places })
     }
@@ -144,7 +144,8 @@ impl DeckScene {
 
 impl Scene {
     /// Reads a deck of CalculiX as a scene; relative names of files start in its folder. Files that it includes may lie outside its folder
-    /// if `permits` has `outside`, and friction is left out with a warning if it has `friction`.
+    /// if `permits` has `outside`, friction is left out with a warning if it has `friction`, and a step with NLGEOM has an answer with large
+    /// strains or rotations too if it has `linear`.
     ///
     /// # Errors
     /// [`qp::Error::File`] for a file that cannot be read; [`qp::Error::FileSyntax`] with the line for what is wrong, and for what changes
@@ -171,10 +172,22 @@ impl Scene {
     }
 }
 
+/// A file with a line, as `part.inp:12`.
+fn named_line((file, line): (PathBuf, usize)) -> String {
+    format!("{}:{line}", file.display())
+}
+
 /// The comments before the scene.
 fn comments(deck: &Deck, named: &str, noted: &[(Place, String)], passed: &[(String, Place)]) -> Vec<String> {
     let mut comments = vec![format!("The scene of {named}; each entry names the line of the deck that it comes from.")];
-    comments.extend(noted.iter().map(|(place, message)| format!("Warning, {}: {message}", deck.source.named(*place))));
+    let nonlinear =
+        large_displacements(deck).map(|place| (place, "NLGEOM is answered with small displacements".into()));
+    comments.extend(
+        nonlinear
+            .iter()
+            .chain(noted)
+            .map(|(place, message)| format!("Warning, {}: {message}", deck.source.named(*place))),
+    );
     if !passed.is_empty() {
         let names: Vec<&str> = passed.iter().map(|(name, _)| name.as_str()).collect();
         comments.push(format!("Passed over, because it changes no answer: {}.", names.join(", ")));
@@ -248,10 +261,8 @@ fn nearest_elements(deck: &Deck) -> Vec<(Place, String)> {
     noted
 }
 
-/// The warning for a step with large displacements.
-fn large_displacements(deck: &Deck) -> Option<(Place, String)> {
-    let step = deck.source.cards.iter().find(|card| card.is("STEP"))?;
-    let is_nonlinear = step.has("NLGEOM") && !step.says("NLGEOM", "NO");
-    let message = "NLGEOM is answered with small displacements: rotations and strains must stay below some percent";
-    is_nonlinear.then(|| (step.place, message.into()))
+/// The first step with large displacements.
+fn large_displacements(deck: &Deck) -> Option<Place> {
+    let mut steps = deck.source.cards.iter().filter(|card| card.is("STEP"));
+    steps.find(|step| step.has("NLGEOM") && !step.says("NLGEOM", "NO")).map(|step| step.place)
 }
