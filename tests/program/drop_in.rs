@@ -585,14 +585,14 @@ fn large_displacements_are_answered_up_to_five_percent() {
         }
         desk.write("part.inp", deck + "*END STEP\n");
         let Some(words) = size_in_words else {
-            let run = desk.run(&["solve", "part.inp", "--json"]).ends_with(2);
+            let run = desk.run(&["solve", "part.inp", "--format", "json"]).ends_with(1);
             let report: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
             assert_eq!(report["code"], "large-displacements", "{report}");
-            let run = desk.run(&["ccx", "part"]).ends_with(2);
+            let run = desk.run(&["ccx", "part"]).ends_with(1);
             assert!(run.stdout.contains("*ERROR") && run.stdout.contains("above 5 % of either"), "{}", run.stdout);
             assert!(!desk.path("part.frd").exists());
             let run = desk.run(&["ccx", "part", "--linear"]).ends_with(0);
-            assert!(run.stdout.contains("part.inp:22: NLGEOM is answered with small displacements"), "{}", run.stdout);
+            assert!(run.stdout.contains("NLGEOM is answered with small displacements"), "{}", run.stdout);
             continue;
         };
         let run = desk.run(&["solve", "part.inp"]).ends_with(0);
