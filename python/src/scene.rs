@@ -68,7 +68,7 @@ fn built(scene: &signorini::Scene, file: Option<PathBuf>) -> Result<Model, Error
     let most = Settings::default().with_available_memory().memory;
     scene.check_size_without_factor(most.unwrap_or(f64::INFINITY))?;
     scene.build().map_err(|error| match &file {
-        Some(file) => signorini::Scene::located(error, file),
+        Some(file) => signorini::Scene::located(error, file, None),
         None => error,
     })
 }
@@ -92,7 +92,7 @@ impl Scene {
                 (scene, None)
             }
             (false, Ok(path)) if allow_outside && signorini::Scene::is_deck(&path) => {
-                (signorini::Scene::read_deck(&path, &["outside"]), Some(path))
+                (signorini::Scene::read_deck(&path, &["outside"], None), Some(path))
             }
             (false, Ok(path)) => (signorini::Scene::read(&path), Some(path)),
             (false, Err(_)) => {

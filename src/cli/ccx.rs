@@ -17,7 +17,7 @@ use super::solve::{assembly_seconds, reported};
 use crate::Error;
 use crate::output::{CalculixFiles, remove_files};
 use crate::qp::{Start, Watch};
-use crate::scene::{Requests, Scene};
+use crate::scene::{Answer, Requests, Scene};
 
 /// Programs take the first number for the version of CalculiX.
 const VERSION: &str = concat!(
@@ -70,25 +70,58 @@ fn with_ending(stem: &Path, ending: &str) -> PathBuf {
     name.into()
 }
 
-/// Solves the deck in `file` and writes the files of its name `stem`; `text` gets warnings and the report. The files of an earlier run are
-/// gone from the start, and fields are written last, of a certified answer only.
+/// Solves the steps of the deck in `file` and writes the files of its name `stem`; `text` gets warnings and reports. The files of an
+/// earlier run are gone from the start, and fields are written last, of certified answers only.
 fn answered(options: &Ccx, [file, stem]: [PathBuf; 2], watch: &Watch, text: &mut String) -> Result<Ending, Error> {
-    let (clock, folder) = (Instant::now(), with_ending(&stem, ".signorini"));
+    let folder = with_ending(&stem, ".signorini");
     CalculixFiles::remove(&stem)?;
     remove_files(&folder, &["report.html", "report.json"])?;
-    let limits = &options.limits;
-    let Some(solve) = options.solve(file.clone(), folder) else { return unfit("ccx", "no options of `solve`") };
-    let requests = Requests::of_deck(&file, &limits.deck.permits())?;
-    let scene = scene_of(&file, limits)?;
+    let deck = &options.limits.deck;
+    let steps = match deck.step {
+        Some(step) => step..=step,
+        None => 1..=Requests::of_deck(&file, &deck.permits(), None)?.steps.max(1),
+    };
+    let is_one = steps.clone().count() == 1;
+    let mut answers = Vec::new();
+    for step in steps {
+        let folder = if is_one { folder.clone() } else { folder.join(format!("step-{step}")) };
+        let requests = Requests::of_deck(&file, &deck.permits(), Some(step))?;
+        let mut options = options.clone();
+        options.limits.deck.step = Some(step);
+        let (ending, answer) = solved(&options, &file, folder, &requests, watch, text)?;
+        if ending != Ending::Certified || watch.is_stopped() {
+            return Ok(ending);
+        }
+        answers.push((answer, requests));
+    }
+    CalculixFiles::new(&answers)?.write(&stem)?;
+    Ok(Ending::Certified)
+}
+
+/// Solves one step of a deck, and writes page and report into a folder.
+fn solved(
+    options: &Ccx,
+    file: &Path,
+    folder: PathBuf,
+    requests: &Requests,
+    watch: &Watch,
+    text: &mut String,
+) -> Result<(Ending, Answer), Error> {
+    let (clock, limits) = (Instant::now(), &options.limits);
+    let Some(solve) = options.solve(file.to_path_buf(), folder) else { return unfit("ccx", "no options of `solve`") };
+    let scene = scene_of(file, limits)?;
     assembly_seconds(&scene, &solve, watch)?;
-    let input = Input::of_scene(&scene, &file, limits, clock.elapsed().as_secs_f64())?;
+    let input = Input::of_scene(&scene, file, limits, clock.elapsed().as_secs_f64())?;
+    if requests.steps > 1 {
+        *text += &format!("Step {} of {}\n", requests.step, requests.steps);
+    }
     *text += &input.warnings().replace("warning: ", " *WARNING: ");
-    let missing = CalculixFiles::not_given(&requests);
+    let missing = CalculixFiles::not_given(requests);
     if !missing.is_empty() {
         *text += &format!(" *WARNING: these results are not written: {}\n", missing.join(", "));
     }
     let settings = settings(solve.method, &solve.common, watch);
-    let about = about(&input.title, "solve", &file, solve.common.out.as_ref(), solve.common.threads);
+    let about = about(&input.title, "solve", file, solve.common.out.as_ref(), solve.common.threads);
     let solved = input.problem().solve_from(&Start::default(), &settings).map_err(|error| input.explain(error))?;
     let Some(answer) = input.answer(&solved)? else { return unfit("ccx", "the deck has no mesh") };
     // The stress is part of all files: it is computed once.
@@ -96,8 +129,5 @@ fn answered(options: &Ccx, [file, stem]: [PathBuf; 2], watch: &Watch, text: &mut
     let outcome = reported(&input, (solved, Some(answer.clone())), settings.goal(), (about, &solve), watch)?;
     outcome.pictures.map_or(Ok(()), |pictures| pictures())?;
     *text += &outcome.text;
-    if outcome.ending == Ending::Certified && !watch.is_stopped() {
-        CalculixFiles::new(&answer, &requests)?.write(&stem)?;
-    }
-    Ok(outcome.ending)
+    Ok((outcome.ending, answer))
 }

@@ -139,7 +139,7 @@ pub(super) fn rests(scene: &Scene) -> Result<(), Error> {
 pub(super) fn scene_of(path: &Path, limits: &Limits) -> Result<Scene, Error> {
     // A scene from a pipe has the working folder of the program as its folder.
     let scene = match path == Path::new(STANDARD_INPUT) {
-        false if Scene::is_deck(path) => Scene::read_deck(path, &limits.deck.permits())?,
+        false if Scene::is_deck(path) => Scene::read_deck(path, &limits.deck.permits(), limits.deck.step)?,
         true => Scene { folder: Some(PathBuf::new()), ..Scene::read("/dev/stdin")? },
         false => Scene::read(path)?,
     };
@@ -155,7 +155,7 @@ pub(super) fn read_scene(path: &Path, limits: &Limits) -> Result<Scene, Error> {
 
 /// Builds the scene of a file; an error names the line and column of the wrong value.
 pub(super) fn build(scene: &Scene, path: &Path, limits: &Limits) -> Result<Model, Error> {
-    scene.build_within(limits.most_memory()).map_err(|error| Scene::located(error, path))
+    scene.build_within(limits.most_memory()).map_err(|error| Scene::located(error, path, limits.deck.step))
 }
 
 /// The title of a scene, or its file if it has none.

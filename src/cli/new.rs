@@ -15,7 +15,7 @@ pub(super) fn run(options: &New) -> Result<Outcome, Error> {
     };
     let is_deck = Scene::is_deck(&options.mesh);
     let text = match is_deck {
-        true => Scene::text_of_deck(&options.mesh, &named, &options.deck.permits())?,
+        true => Scene::text_of_deck(&options.mesh, &named, &options.deck.permits(), options.deck.step)?,
         false => Scene::start(&options.mesh, &named)?,
     };
     match &options.out {

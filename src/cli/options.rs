@@ -416,6 +416,9 @@ pub(super) struct DeckOptions {
     /// Answer a deck that asks for large displacements (NLGEOM) with small ones, also where strains or rotations exceed 5 %
     #[arg(long)]
     pub linear: bool,
+    /// Step of a deck, from 1 [default: the last one]
+    #[arg(long, value_name = "N")]
+    pub step: Option<usize>,
 }
 
 impl DeckOptions {
@@ -508,7 +511,7 @@ pub(super) struct Tradeoff {
     pub format: Format,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(super) struct Ccx {
     /// Name of the deck, with or without its ending .inp
     #[arg(short = 'i', value_name = "NAME", conflicts_with = "deck")]

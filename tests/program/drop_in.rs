@@ -600,3 +600,44 @@ fn large_displacements_are_answered_up_to_five_percent() {
         assert!(said.join(" ").contains(words), "{}", run.stdout);
     }
 }
+
+/// Fields, tables and increments of all steps are in one file each; a request of a later step replaces those before it.
+#[test]
+fn the_steps_of_a_deck_are_solved_in_turn() {
+    let desk = Desk::new();
+    let steps = "*NODE PRINT, NSET=X0, TOTALS=ONLY\nRF\n*END STEP\n\
+                 *STEP\n*STATIC\n*DSLOAD\nEND, P, -6.\n*NODE FILE\nRF\n*END STEP\n\
+                 *STEP\n*STATIC\n0.1, 0.25\n*DSLOAD, OP=NEW\n*NODE PRINT, NSET=X0\nU\n*CLOAD\n103, 1, 1.\n*END STEP\n";
+    desk.write("brick.inp", format!("{BRICK}{steps}"));
+    let run = desk.run(&["ccx", "brick"]).ends_with(0);
+    assert_eq!(run.stdout.matches("certified to").count(), 3, "{}", run.stdout);
+    let dat = read(&desk, "brick.dat");
+    let titles: Vec<&str> = dat.lines().filter(|line| line.contains("and time")).collect();
+    assert_eq!(
+        titles,
+        [
+            " total force (fx,fy,fz) for set X0 and time  0.2000000E+01",
+            " total force (fx,fy,fz) for set X0 and time  0.3000000E+01",
+            " displacements (vx,vy,vz) for set X0 and time  0.3250000E+01",
+        ]
+    );
+    assert!(dat.contains("      -3.000000E+00") && dat.contains("      -6.000000E+00"), "{dat}");
+    let frd = read(&desk, "brick.frd");
+    let heads: Vec<&str> = frd.lines().filter(|line| line.starts_with("  100CL")).collect();
+    assert_eq!(heads[0], "  100CL  101 2.000000000           8                     0    1           1");
+    assert_eq!(heads[3], "  100CL  102 3.000000000           8                     0    2           1");
+    assert_eq!(heads.last(), Some(&"  100CL  103 3.250000000           8                     0    3           1"));
+    assert!(frd.contains("    1PSTEP                         4           1           2          \n"), "{frd}");
+    // Two fields in the first step, three in the others.
+    assert_eq!((heads.len(), frd.matches(" 9999").count(), frd.matches("    2C").count()), (8, 1, 1));
+    let sta: Vec<String> = read(&desk, "brick.sta").lines().skip(2).map(str::to_string).collect();
+    assert_eq!(sta.len(), 3);
+    assert_eq!(sta[2], "     3          1     1     1  0.325000E+01  0.250000E+00  0.250000E+00");
+    for step in 1..=3 {
+        assert!(desk.path(&format!("brick.signorini/step-{step}/report.json")).exists());
+    }
+    // One step, as `solve` answers it.
+    let run = desk.run(&["solve", "brick.inp", "--step", "2"]).ends_with(0);
+    assert!(run.stdout.contains("largest 6.000000e-2 along x"), "{}", run.stdout);
+    desk.run(&["solve", "brick.inp", "--step", "4"]).fails_with(1, &["the deck has no step 4; its steps are 1 to 3"]);
+}

@@ -19,8 +19,8 @@ pub fn read(files: &[(&str, &str)], permits: &[&str]) -> Result<Scene, Error> {
         fs::write(desk.path().join(name), text).unwrap();
     }
     let file = desk.path().join(files[0].0);
-    let scene = Scene::read_deck(&file, permits)?;
-    scene.build().map_err(|error| Scene::located(error, &file))?;
+    let scene = Scene::read_deck(&file, permits, None)?;
+    scene.build().map_err(|error| Scene::located(error, &file, None))?;
     // The folder of the deck is gone when the scene is built again.
     let kept = desk.keep();
     Ok(Scene { folder: Some(kept), ..scene })
@@ -326,7 +326,7 @@ fn the_scene_of_a_deck_poses_the_problem_of_the_deck() {
     let desk = tempfile::tempdir().unwrap();
     let (deck, file) = (desk.path().join("deck.inp"), desk.path().join("scene.json"));
     fs::write(&deck, stack(&pair, 0.01)).unwrap();
-    fs::write(&file, Scene::text_of_deck(&deck, "deck.inp", &[]).unwrap()).unwrap();
+    fs::write(&file, Scene::text_of_deck(&deck, "deck.inp", &[], None).unwrap()).unwrap();
     let [one, other] = [&deck, &file].map(|file| Scene::read(file).unwrap().build().unwrap());
     assert_eq!(format!("{:?}", one.problem()), format!("{:?}", other.problem()));
 }

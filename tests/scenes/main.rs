@@ -6,6 +6,7 @@ mod contacts_found;
 mod decks;
 mod decks_bolted;
 mod decks_refused;
+mod decks_stepped;
 mod decks_tied;
 mod dimensions;
 mod every_shape;

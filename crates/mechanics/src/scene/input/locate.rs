@@ -15,11 +15,12 @@ use signorini_qp::file::read_text_capped;
 pub(super) const MOST_OF_SCENE: u64 = 256 << 20;
 
 impl Scene {
-    /// An error of a value with its line and column, if the scene was read from a file that can be read again.
-    pub fn located(error: Error, file: &Path) -> Error {
+    /// An error of a value with its line and column, if the scene was read from a file that can be read again: a scene, or the deck of a
+    /// `step` (the last one without it).
+    pub fn located(error: Error, file: &Path, step: Option<usize>) -> Error {
         if is_deck(file) {
             // Only the lines of its entries are wanted.
-            return match DeckScene::read(file, "", &["outside", "friction"]) {
+            return match DeckScene::read(file, "", (&["outside", "friction"], step)) {
                 Ok(deck) => deck.located(error),
                 Err(_) => error,
             };

@@ -41,7 +41,7 @@ impl Scene {
             return Err(qp::Error::File { action: "read", path: path.into(), source }.into());
         }
         if is_deck(path) {
-            return Scene::read_deck(path, &[]);
+            return Scene::read_deck(path, &[], None);
         }
         let text = read_text_capped(path, MOST_OF_SCENE)?;
         let scene = Self::from_json(&text, &path.display().to_string())?;

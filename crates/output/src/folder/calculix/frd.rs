@@ -91,8 +91,8 @@ impl<'a> Fields<'a> {
         Ok(Fields { content, coordinates, fields })
     }
 
-    /// Writes the file.
-    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+    /// Writes nodes and elements.
+    pub fn write_mesh(&self, out: &mut dyn Write) -> io::Result<()> {
         let Content { answer, nodes, elements, numbers, .. } = self.content;
         let mesh = answer.model().mesh();
         let title: String = answer.model().title().chars().take(TITLE).map(ascii).collect();
@@ -110,18 +110,24 @@ impl<'a> Fields<'a> {
                 writeln!(out, " -2{line}")?;
             }
         }
-        writeln!(out, " -3")?;
-        for (index, field) in self.fields.iter().enumerate() {
-            self.field(out, index + 1, field)?;
+        writeln!(out, " -3")
+    }
+
+    /// Writes the fields; `written` counts those of all steps.
+    pub fn write(&self, out: &mut dyn Write, written: &mut usize) -> io::Result<()> {
+        for field in &self.fields {
+            *written += 1;
+            self.field(out, *written, field)?;
         }
-        writeln!(out, " 9999")
+        Ok(())
     }
 
     fn field(&self, out: &mut dyn Write, index: usize, field: &Field) -> io::Result<()> {
-        let (count, time) = (self.content.nodes.len(), self.content.requests.time);
+        let (count, step) = (self.content.nodes.len(), self.content.requests.step);
+        let time = self.content.requests.time;
         let time = if (1.0..1e9).contains(&time) { format!("{time:.9}") } else { wide(time, DIGITS) };
-        writeln!(out, "    1PSTEP{index:>26}{:>12}{:>12}          ", 1, 1)?;
-        writeln!(out, "  100CL{:>5}{:>12.12}{count:>12}{:>22}{:>5}{:>12}", 101, &time, 0, 1, 1)?;
+        writeln!(out, "    1PSTEP{index:>26}{:>12}{step:>12}          ", 1)?;
+        writeln!(out, "  100CL{:>5}{:>12.12}{count:>12}{:>22}{step:>5}{:>12}", 100 + step, &time, 0, 1)?;
         let is_vector = field.components[0].1[0] == 2;
         writeln!(out, " -4  {:<8}{:>5}{:>5}", field.name, field.components.len() + usize::from(is_vector), 1)?;
         for (name, [kind, row, column]) in field.components {

@@ -1,4 +1,4 @@
-//! The files of an answer to a deck, in the form of CalculiX: `NAME.frd` with fields, `NAME.dat` with tables, `NAME.sta` with the step.
+//! The files of an answer to a deck, in the form of CalculiX: `NAME.frd` with fields, `NAME.dat` with tables, `NAME.sta` with the steps.
 //!
 //! # Source
 //! G. Dhondt, *CalculiX CrunchiX User's Manual*, and K. Wittig, *CalculiX GraphiX User's Manual*, version 2.20, chapter "Result Format";
@@ -20,19 +20,23 @@ use frd::Fields;
 use signorini_mechanics::Error;
 use signorini_mechanics::scene::{Answer, Requests};
 
-/// An answer to a deck, with what the deck asks for, to be written as the files of CalculiX.
-pub struct CalculixFiles<'a>(Content<'a>);
+/// The answers to the steps of a deck, with what the deck asks for, to be written as the files of CalculiX.
+pub struct CalculixFiles<'a>(Vec<Content<'a>>);
 
 /// The endings of the files of a run; `frd` is the last one to be written.
 const ENDINGS: [&str; 3] = ["dat", "sta", "frd"];
 
 impl<'a> CalculixFiles<'a> {
-    /// The files of an answer to a deck.
+    /// The files of the answers to the steps of a deck, in their order.
     ///
     /// # Errors
-    /// [`Error::Mesh`] if the mesh of the answer does not come from a deck.
-    pub fn new(answer: &'a Answer, requests: &'a Requests) -> Result<Self, Error> {
-        Content::new(answer, requests).map(CalculixFiles)
+    /// [`Error::Mesh`] if the mesh of an answer does not come from a deck.
+    pub fn new(steps: &'a [(Answer, Requests)]) -> Result<Self, Error> {
+        steps
+            .iter()
+            .map(|(answer, requests)| Content::new(answer, requests))
+            .collect::<Result<_, _>>()
+            .map(CalculixFiles)
     }
 
     /// Removes `NAME.dat`, `NAME.sta` and `NAME.frd` of an earlier run; `stem` is NAME with its folder.
@@ -52,13 +56,26 @@ impl<'a> CalculixFiles<'a> {
     /// [`qp::Error::File`](signorini_qp::Error::File) if the system refuses, [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) for a
     /// value that the form cannot hold, and those of the recovery of stresses.
     pub fn write(&self, stem: &Path) -> Result<(), Error> {
-        let (tables, fields, time) = (dat::tables(&self.0)?, Fields::of(&self.0)?, self.0.requests.time);
+        let mut tables = Vec::with_capacity(self.0.len());
+        let mut fields = Vec::with_capacity(self.0.len());
+        for step in &self.0 {
+            tables.push((dat::tables(step)?, step.requests.time));
+            fields.push(Fields::of(step)?);
+        }
         let write = |ending: &str, contents: &dyn Fn(&mut dyn Write) -> io::Result<()>| {
             streamed_atomically(&with_ending(stem, ending), contents)
         };
-        write(ENDINGS[0], &|out| tables.iter().try_for_each(|table| table.write(out, time)))?;
-        write(ENDINGS[1], &|out| sta::write(out, time))?;
-        write(ENDINGS[2], &|out| fields.write(out))
+        write(ENDINGS[0], &|out| {
+            let mut all = tables.iter().flat_map(|(tables, time)| tables.iter().map(move |table| (table, *time)));
+            all.try_for_each(|(table, time)| table.write(out, time))
+        })?;
+        write(ENDINGS[1], &|out| sta::write(out, self.0.iter().map(|step| step.requests)))?;
+        write(ENDINGS[2], &|out| {
+            let mut written = 0;
+            fields.first().map_or(Ok(()), |first| first.write_mesh(out))?;
+            fields.iter().try_for_each(|step| step.write(out, &mut written))?;
+            writeln!(out, " 9999")
+        })
     }
 
     /// What the deck asks for and the files do not have, each with its place if it is known: `PEEQ`, `*SECTION PRINT (line 7)`.

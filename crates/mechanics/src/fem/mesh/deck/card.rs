@@ -26,6 +26,8 @@ pub(crate) struct Card {
     /// In capitals, with the value as it is written; `None` without one.
     pub parameters: Vec<(String, Option<String>)>,
     pub lines: Vec<Line>,
+    /// The step in which it stands, from 1; 0 before all steps.
+    pub step: usize,
 }
 
 /// A name in capitals, without blanks: names that differ only so are one name.
@@ -44,7 +46,14 @@ impl Card {
             None => (key(part), None),
         };
         let parameters = parts.filter(|part| !part.is_empty()).map(parameter).collect();
-        Card { place, name: words.join(" "), key: key(name.trim_start_matches('*')), parameters, lines: Vec::new() }
+        Card {
+            place,
+            name: words.join(" "),
+            key: key(name.trim_start_matches('*')),
+            parameters,
+            lines: Vec::new(),
+            step: 0,
+        }
     }
 
     /// Returns `true` for the card of this keyword, given in capitals.

@@ -1,5 +1,6 @@
 //! The content of a deck: nodes, elements, sets, surfaces.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use super::card::{Card, Place, key};
@@ -33,6 +34,13 @@ pub(crate) struct Deck {
     pub surfaces: Surfaces,
     /// The faces that the cards *DLOAD press.
     pub pressures: Vec<FacePressure>,
+    /// The lines of *DSLOAD whose faces a later step presses anew, or frees.
+    pub replaced: HashSet<Place>,
+    /// The step whose loads act, from 1, and the number of steps.
+    pub step: usize,
+    pub steps: usize,
+    /// The cards of later steps.
+    pub later: Vec<Card>,
     /// The body of each element and of each node, from 0; `None` for a node without elements.
     pub body_of_element: Vec<usize>,
     pub body_of_node: Vec<Option<usize>>,
@@ -50,15 +58,16 @@ pub(crate) struct DeckElement {
 }
 
 impl Deck {
-    /// Reads a deck. The files that it includes must lie in the folder `within` or below it; anywhere without one.
+    /// Reads a deck up to the end of a step, from 1, or of the last one. The files that it includes must lie in the folder `within` or below
+    /// it; anywhere without one.
     ///
     /// # Errors
     /// [`qp::Error::File`](signorini_qp::Error::File) for a file that cannot be read;
     /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a value of the wrong kind, a number that is given twice
-    /// or does not exist, an element that is not read, a deck without elements.
-    pub fn read(path: &Path, within: Option<&Path>) -> Result<Self, Error> {
+    /// or does not exist, an element that is not read, a deck without elements or without that step.
+    pub fn read(path: &Path, within: Option<&Path>, step: Option<usize>) -> Result<Self, Error> {
         let mut source = Source::read(path, within)?;
-        let cards = std::mem::take(&mut source.cards);
+        let mut cards = std::mem::take(&mut source.cards);
         let mut deck = Deck {
             source,
             nodes: Numbered::default(),
@@ -73,10 +82,24 @@ impl Deck {
             element_sets: Sets::new("element"),
             surfaces: Surfaces::default(),
             pressures: Vec::new(),
+            replaced: HashSet::new(),
+            step: 0,
+            steps: 0,
+            later: Vec::new(),
             body_of_element: Vec::new(),
             body_of_node: Vec::new(),
             bodies: 0,
         };
+        for card in &mut cards {
+            deck.steps += usize::from(card.is("STEP"));
+            card.step = deck.steps;
+        }
+        deck.step = step.unwrap_or(deck.steps);
+        if step.is_some_and(|step| !(1..=deck.steps).contains(&step)) {
+            let message = format!("the deck has no step {}; its steps are 1 to {}", deck.step, deck.steps);
+            return Err(deck.source.fault(Place { file: 0, line: 1 }, message));
+        }
+        deck.later = cards.split_off(cards.partition_point(|card| card.step <= deck.step));
         for card in &cards {
             if card.is("NODE") {
                 deck.read_nodes(card)?;
@@ -99,6 +122,9 @@ impl Deck {
         }
         for (index, card) in cards.iter().enumerate().filter(|(_, card)| card.is("DLOAD")) {
             deck.read_pressures(index, card)?;
+        }
+        if deck.step > 1 {
+            deck.replace_pressures(&cards)?;
         }
         for card in cards.iter().filter(|card| card.is("PRE-TENSIONSECTION")) {
             deck.cut(card)?;

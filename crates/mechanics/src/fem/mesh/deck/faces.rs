@@ -164,6 +164,50 @@ impl Deck {
         Ok(())
     }
 
+    /// Takes the faces of pressures away that a later step presses anew, or frees by OP=NEW.
+    ///
+    /// # Errors
+    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line of a load on a surface of which a part is pressed anew.
+    pub(super) fn replace_pressures(&mut self, cards: &[Card]) -> Result<(), Error> {
+        let is_distributed = |card: &&Card| card.is("DLOAD") || card.is("DSLOAD");
+        let first =
+            cards.iter().filter(is_distributed).filter(|card| card.says("OP", "NEW")).map(|card| card.step).max();
+        let of_surfaces: Vec<(usize, Place, String)> = cards
+            .iter()
+            .filter(|card| card.is("DSLOAD"))
+            .flat_map(|card| card.lines.iter().map(|line| (card.step, line)))
+            .filter_map(|(step, line)| Some((step, line.place, self.source.fields(line).text()?)))
+            .collect();
+        let of_faces = self.pressures.iter().map(|one| (cards[one.card].step, one.place, one.surface.clone()));
+        let pressed: Vec<(usize, Place, String)> = of_faces.chain(of_surfaces).collect();
+        let mut last: HashMap<Face, usize> = HashMap::new();
+        for (step, _, name) in &pressed {
+            for &face in self.surfaces.named(name).into_iter().flat_map(|surface| &surface.faces) {
+                let own = last.entry(face).or_default();
+                *own = (*own).max(*step);
+            }
+        }
+        for (index, (step, place, name)) in pressed.iter().enumerate() {
+            let Some(surface) = self.surfaces.named_mut(name) else { continue };
+            let acts = |face: &Face| last[face] == *step && first.is_none_or(|first| first <= *step);
+            if index < self.pressures.len() {
+                surface.faces.retain(acts);
+                continue;
+            }
+            match surface.faces.iter().filter(|face| acts(face)).count() {
+                0 => _ = self.replaced.insert(*place),
+                count if count < surface.faces.len() => {
+                    let message = format!(
+                        "a later step presses a part of `{name}` anew; press the whole surface, or its parts in both steps"
+                    );
+                    return Err(self.source.fault(*place, message));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
     /// The surface of this name, or a sentence without one.
     pub fn surface_or(&self, name: &str) -> Result<&Surface, String> {
         self.surfaces.named(name).ok_or_else(|| {

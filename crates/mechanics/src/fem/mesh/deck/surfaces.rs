@@ -27,6 +27,10 @@ impl Surfaces {
         self.places.get(&key(name)).map(|&place| &self.all[place])
     }
 
+    pub fn named_mut(&mut self, name: &str) -> Option<&mut Surface> {
+        self.places.get(&key(name)).map(|&place| &mut self.all[place])
+    }
+
     pub fn add(&mut self, surface: Surface) {
         self.places.insert(key(&surface.name), self.all.len());
         self.all.push(surface);

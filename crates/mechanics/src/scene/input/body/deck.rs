@@ -26,6 +26,9 @@ pub struct DeckSpec {
     #[serde(default, with = "names", skip_serializing_if = "Vec::is_empty")]
     #[schemars(schema_with = "names::schema")]
     pub group: Vec<String>,
+    /// The step up to which the deck is read, from 1: pressures of its cards are surfaces. The last step if it is left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step: Option<usize>,
     /// The integration of the stiffness.
     #[serde(default)]
     pub integration: Integration,
@@ -40,7 +43,7 @@ impl BodyShape for DeckSpec {
 
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
         let file = site.files.named(&self.file, format!("{}.file", site.path))?;
-        let deck = Deck::read(&file, Some(site.files.folder).filter(|_| !site.files.reads_outside))?;
+        let deck = Deck::read(&file, Some(site.files.folder).filter(|_| !site.files.reads_outside), self.step)?;
         if self.group.is_empty() && deck.bodies > 1 {
             let message = format!(
                 "the deck has {} bodies that share no node; name one by `group`: {}",

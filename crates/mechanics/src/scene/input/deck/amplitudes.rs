@@ -12,7 +12,7 @@ impl Amplitudes {
     /// # Errors
     /// An error with the line for an amplitude without a name or without values, and for times that do not increase.
     pub fn of(deck: &Deck) -> Result<Self, Error> {
-        let end = period(deck)?;
+        let [end, total] = times(deck)?;
         let mut factors = HashMap::new();
         for card in deck.source.cards.iter().filter(|card| card.is("AMPLITUDE")) {
             let Some(name) = card.value("NAME") else {
@@ -32,7 +32,8 @@ impl Amplitudes {
             if points.is_empty() {
                 return Err(deck.source.fault(card.place, format!("the amplitude `{name}` has no values")));
             }
-            factors.insert(key(name), at(&points, end));
+            let time = if card.says("TIME", "TOTALTIME") { total } else { end };
+            factors.insert(key(name), at(&points, time));
         }
         Ok(Amplitudes(factors))
     }
@@ -48,17 +49,29 @@ impl Amplitudes {
     }
 }
 
-/// The time at the end of the step: the second value of *STATIC, 1 if it is left out.
-pub(super) fn period(deck: &Deck) -> Result<f64, Error> {
-    let line = deck.source.cards.iter().find(|card| card.is("STATIC")).and_then(|card| card.lines.first());
-    let Some(line) = line else { return Ok(1.0) };
-    let mut fields = deck.source.fields(line);
-    fields.finite_or_zero("the first increment")?;
-    match fields.finite_or_zero("the period of the step")? {
-        period if period < 0.0 => Err(fields.fault(format!("the period of the step is {period}; it must be positive"))),
-        0.0 => Ok(1.0),
-        period => Ok(period),
+/// The time at the end of the step, since its start and since that of the first step: the period of a step is the second value of
+/// *STATIC, 1 if it is left out.
+pub(super) fn times(deck: &Deck) -> Result<[f64; 2], Error> {
+    let (mut last, mut total) = (1.0, 0.0);
+    for card in deck.source.cards.iter().filter(|card| card.is("STATIC")) {
+        last = match card.lines.first() {
+            None => 1.0,
+            Some(line) => {
+                let mut fields = deck.source.fields(line);
+                fields.finite_or_zero("the first increment")?;
+                match fields.finite_or_zero("the period of the step")? {
+                    period if period < 0.0 => {
+                        let message = format!("the period of the step is {period}; it must be positive");
+                        return Err(fields.fault(message));
+                    }
+                    0.0 => 1.0,
+                    period => period,
+                }
+            }
+        };
+        total += last;
     }
+    Ok([last, total])
 }
 
 /// The value at a time: linear between the points, constant beyond them.

@@ -87,10 +87,13 @@ impl Body {
         temperatures: &Temperatures,
     ) -> Result<Self, Error> {
         let name = Deck::body_name(index);
-        let body = match deck.bodies {
-            1 => json!({"deck": {"file": named}}),
-            _ => json!({"deck": {"file": named, "group": name}}),
-        };
+        let mut body = json!({"deck": {"file": named}});
+        if deck.bodies > 1 {
+            body["deck"]["group"] = name.as_str().into();
+        }
+        if deck.step < deck.steps {
+            body["deck"]["step"] = deck.step.into();
+        }
         let temperature = temperatures.of_body(deck, index)?;
         let mut is_used = vec![false; sections.all.len()];
         let own = (0..deck.elements.len()).filter(|&element| deck.body_of_element[element] == index);

@@ -124,10 +124,10 @@ const BARE: [&str; 5] = ["MATERIAL", "STEP", "ENDSTEP", "CLEARANCE", "RIGIDBODY"
 /// The cards that stand only in a step.
 const OF_STEP: [&str; 6] = ["CLOAD", "DLOAD", "DSLOAD", "TEMPERATURE", "STATIC", "ENDSTEP"];
 
-/// Checks every card of a deck and the order of its step; returns the names of what is passed over, each once with its first place.
+/// Checks every card of a deck and the order of its steps; returns the names of what is passed over, each once with its first place.
 ///
 /// # Errors
-/// An error with the line for a keyword or a parameter that changes the answer and is not read, and for a deck without one whole step.
+/// An error with the line for a keyword or a parameter that changes the answer and is not read, and for a deck without a whole step.
 pub(super) fn judged(deck: &Deck) -> Result<Vec<(String, Place)>, Error> {
     let mut passed: Vec<(String, Place)> = Vec::new();
     let mut pass = |name: String, place: Place| {
@@ -135,8 +135,9 @@ pub(super) fn judged(deck: &Deck) -> Result<Vec<(String, Place)>, Error> {
             passed.push((name, place));
         }
     };
-    let (mut step, mut end): (Option<&Card>, Option<&Card>) = (None, None);
-    for card in &deck.source.cards {
+    // The open step, and whether it has *STATIC.
+    let (mut open, mut is_static): (Option<&Card>, bool) = (None, false);
+    for card in deck.source.cards.iter().chain(&deck.later) {
         let fault = |message: String| Err(deck.source.fault(card.place, message));
         if PASSED.iter().any(|keyword| card.is(keyword)) {
             pass(card.name.clone(), card.place);
@@ -161,32 +162,33 @@ pub(super) fn judged(deck: &Deck) -> Result<Vec<(String, Place)>, Error> {
                 .source
                 .fault(line.place, format!("this line does not belong to {}; a keyword may be missing", card.name)));
         }
-        if card.is("STEP") {
-            if let Some(first) = step {
-                let first = deck.source.named(first.place);
-                return fault(format!(
-                    "there is a second *STEP after that of {first}; one step is solved: write a deck for each"
-                ));
+        match open {
+            None if card.is("STEP") => (open, is_static) = (Some(card), false),
+            None if OF_STEP.iter().any(|keyword| card.is(keyword)) => {
+                return fault(format!("{} stands outside of the steps, but belongs into one", card.name));
             }
-            step = Some(card);
-        } else if let Some(end) = end {
-            return fault(format!("{} follows the *END STEP of {}", card.name, deck.source.named(end.place)));
-        } else if step.is_none() && OF_STEP.iter().any(|keyword| card.is(keyword)) {
-            return fault(format!("{} stands before *STEP, but belongs into the step", card.name));
-        }
-        if card.is("ENDSTEP") {
-            end = Some(card);
+            None if card.step > 0 => {
+                return fault(format!("{} follows an *END STEP; only a *STEP may follow one", card.name));
+            }
+            None => {}
+            Some(step) if card.is("STEP") => return Err(without_end(deck, step)),
+            Some(step) if card.is("ENDSTEP") && !is_static => {
+                return Err(deck.source.fault(step.place, "the step has no *STATIC; only an equilibrium is solved"));
+            }
+            Some(_) if card.is("ENDSTEP") => open = None,
+            Some(_) => is_static |= card.is("STATIC"),
         }
     }
     let whole = Place { file: 0, line: 1 };
-    let Some(step) = step else { return Err(deck.source.fault(whole, "the deck has no *STEP: it asks for no answer")) };
-    if end.is_none() {
-        return Err(deck.source.fault(step.place, "the step has no *END STEP"));
+    match open {
+        Some(step) => Err(without_end(deck, step)),
+        None if deck.steps == 0 => Err(deck.source.fault(whole, "the deck has no *STEP: it asks for no answer")),
+        None => Ok(passed),
     }
-    match deck.source.cards.iter().any(|card| card.is("STATIC")) {
-        true => Ok(passed),
-        false => Err(deck.source.fault(step.place, "the step has no *STATIC; only an equilibrium is solved")),
-    }
+}
+
+fn without_end(deck: &Deck, step: &Card) -> Error {
+    deck.source.fault(step.place, "the step has no *END STEP")
 }
 
 /// The sentence about a keyword that is not read.

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::amplitudes::Amplitudes;
 use super::bodies::{is_new, name_of_node, names_of_nodes, names_of_surface};
+use super::forces::Forces;
 use super::rigid::RigidBodies;
 use super::scene_text::{Entry, object};
 use super::transforms::Transforms;
@@ -15,6 +16,9 @@ use crate::fem::mesh::deck::{Card, Deck, Fields, Place, Space, key};
 
 /// A load on the volume: it acts on all bodies.
 struct OnVolume {
+    /// The step that gives it, and its elements, kind and direction: a later step replaces a load with the same.
+    step: usize,
+    name: (String, String, Vec<f64>),
     value: Value,
     place: Place,
     elements: Vec<bool>,
@@ -25,6 +29,7 @@ pub(super) struct Loads<'a> {
     deck: &'a Deck,
     rigid_bodies: &'a mut RigidBodies,
     transforms: &'a Transforms,
+    forces: Forces,
     loads: Vec<Entry>,
     on_volume: Vec<OnVolume>,
 }
@@ -38,14 +43,24 @@ impl<'a> Loads<'a> {
         rigid_bodies: &'a mut RigidBodies,
         transforms: &'a Transforms,
     ) -> Result<Vec<Entry>, Error> {
-        let mut loads = Loads { deck, rigid_bodies, transforms, loads: Vec::new(), on_volume: Vec::new() };
+        let mut loads = Loads {
+            deck,
+            rigid_bodies,
+            transforms,
+            forces: Forces::of(deck),
+            loads: Vec::new(),
+            on_volume: Vec::new(),
+        };
         for keyword in ["CLOAD", "DLOAD", "DSLOAD"] {
             let cards = deck.source.cards.iter().enumerate().filter(|(_, card)| card.is(keyword));
-            for (count, (index, card)) in cards.enumerate() {
-                if is_new(card) && count > 0 {
+            // The step of the card before.
+            let mut before = 0;
+            for (index, card) in cards {
+                if is_new(card) && before == card.step {
                     let message = format!("OP=NEW must stand on the first {} of the step", card.name);
                     return Err(deck.source.fault(card.place, message));
                 }
+                before = card.step;
                 let factor = amplitudes.factor(deck, card)?;
                 match keyword {
                     "CLOAD" => loads.add_nodal(card, factor)?,
@@ -62,19 +77,22 @@ impl<'a> Loads<'a> {
         self.deck.element_list.first().map_or(3, |element| element.kind.dimension())
     }
 
-    /// Forces on nodes: node, direction, force.
+    /// Forces on nodes: node, direction, force. A later step replaces them, node by node and direction by direction, or all by OP=NEW.
     fn add_nodal(&mut self, card: &Card, factor: f64) -> Result<(), Error> {
         let dimension = self.dimension();
         let mut forces: BTreeMap<String, Vec<f64>> = BTreeMap::new();
         for line in &card.lines {
             let mut fields = self.deck.source.fields(line);
-            let (target, nodes) = self.nodes(&mut fields)?;
+            let (target, mut nodes) = self.nodes(&mut fields)?;
             let direction = fields.whole("the direction")?;
             let force = factor * fields.finite("the force")?;
             fields.end()?;
             if !(1..=6).contains(&direction) {
                 return Err(fields.fault(format!("{direction} is no direction; there are 1 to 6")));
             }
+            let all = nodes.len();
+            nodes.retain(|&node| self.forces.acts(card.step, (node, direction)));
+            let is_part = nodes.len() < all;
             let mut on_bodies = Vec::with_capacity(nodes.len());
             for node in nodes {
                 if !self.rigid_bodies.press(node, direction, force).map_err(|message| fields.fault(message))? {
@@ -93,19 +111,19 @@ impl<'a> Loads<'a> {
                 let number = self.deck.nodes.numbers[loose];
                 return Err(fields.fault(format!("node {number} belongs to no element and carries no force")));
             }
-            let (mut plain, mut is_turned) = (Vec::with_capacity(nodes.len()), false);
+            let (mut plain, mut is_part) = (Vec::with_capacity(nodes.len()), is_part);
             for node in nodes {
                 let axes = self.transforms.axes(self.deck, node).map_err(|message| fields.fault(message))?;
                 match (axes, name_of_node(self.deck, node)) {
                     (Some(axes), Some(name)) => {
                         let sum = forces.entry(name).or_insert_with(|| vec![0.0; dimension]);
                         sum.iter_mut().zip(axes[direction - 1]).for_each(|(sum, part)| *sum += force * part);
-                        is_turned = true;
+                        is_part = true;
                     }
                     _ => plain.push(node),
                 }
             }
-            let names = match is_turned {
+            let names = match is_part {
                 true => plain.iter().filter_map(|&node| name_of_node(self.deck, node)).collect(),
                 false => names_of_nodes(self.deck, &target, &plain),
             };
@@ -127,6 +145,9 @@ impl<'a> Loads<'a> {
 
     /// Pressures on faces, and loads on the volume.
     fn add_distributed(&mut self, index: usize, card: &Card, factor: f64) -> Result<(), Error> {
+        if is_new(card) {
+            self.on_volume.clear();
+        }
         for pressure in self.deck.pressures.iter().filter(|pressure| pressure.card == index) {
             self.add_pressure(&pressure.surface, factor * pressure.value, pressure.place)?;
         }
@@ -134,6 +155,7 @@ impl<'a> Loads<'a> {
             let mut fields = self.deck.source.fields(line);
             let target = fields.text().unwrap_or_default();
             let label = fields.text().map(|label| key(&label)).unwrap_or_default();
+            let along = along(fields.clone());
             let value = match label.as_str() {
                 "GRAV" => self.gravity(&mut fields, factor)?,
                 "CENTRIF" => self.centrifugal(&mut fields, factor)?,
@@ -146,15 +168,21 @@ impl<'a> Loads<'a> {
             };
             fields.end()?;
             let deck = self.deck;
+            let name = (key(&target), label, along);
+            self.on_volume.retain(|other| other.step == card.step || other.name != name);
             let members =
                 deck.element_sets.members(&target, &deck.elements).map_err(|message| fields.fault(message))?;
             let mut elements = vec![false; deck.elements.len()];
             members.into_iter().for_each(|element| elements[element] = true);
             // Lines for disjoint sets are one load on all of them.
             let is_apart = |other: &[bool]| other.iter().zip(&elements).all(|(other, own)| !(*other && *own));
-            match self.on_volume.iter_mut().find(|other| other.value == value && is_apart(&other.elements)) {
+            match self
+                .on_volume
+                .iter_mut()
+                .find(|other| other.step == card.step && other.value == value && is_apart(&other.elements))
+            {
                 Some(other) => other.elements.iter_mut().zip(elements).for_each(|(other, own)| *other |= own),
-                None => self.on_volume.push(OnVolume { value, place: line.place, elements }),
+                None => self.on_volume.push(OnVolume { step: card.step, name, value, place: line.place, elements }),
             }
         }
         Ok(())
@@ -208,7 +236,7 @@ impl<'a> Loads<'a> {
 
     /// Pressures on surfaces: surface, P, pressure.
     fn add_on_surfaces(&mut self, card: &Card, factor: f64) -> Result<(), Error> {
-        for line in &card.lines {
+        for line in card.lines.iter().filter(|line| !self.deck.replaced.contains(&line.place)) {
             let mut fields = self.deck.source.fields(line);
             let surface = fields.text().unwrap_or_default();
             let label = fields.text().map(|label| key(&label)).unwrap_or_default();
@@ -238,7 +266,7 @@ impl<'a> Loads<'a> {
 
     /// All loads; those on the volume must act on all elements.
     fn end(mut self) -> Result<Vec<Entry>, Error> {
-        for OnVolume { value, place, elements } in self.on_volume {
+        for OnVolume { value, place, elements, .. } in self.on_volume {
             if let Some(element) = elements.iter().position(|is_in| !is_in) {
                 let number = self.deck.elements.numbers[element];
                 let message = format!(
@@ -250,4 +278,19 @@ impl<'a> Loads<'a> {
         }
         Ok(self.loads)
     }
+}
+
+/// The direction of a load on the volume, and before it its point if it has one: all numbers behind its size.
+fn along(mut fields: Fields) -> Vec<f64> {
+    fields.next();
+    let number = |fields: &mut Fields| {
+        fields.clone().next()?;
+        Some(fields.finite_or_zero("a component").unwrap_or(0.0))
+    };
+    let mut all: Vec<f64> = std::iter::from_fn(|| number(&mut fields)).collect();
+    let start = all.len().saturating_sub(3);
+    let direction = [0, 1, 2].map(|axis| all.get(start + axis).copied().unwrap_or(0.0));
+    all.truncate(start);
+    all.extend(unit(direction));
+    all
 }

@@ -6,6 +6,7 @@ mod amplitudes;
 mod bodies;
 mod bolts;
 mod contacts;
+mod forces;
 mod keywords;
 mod loads;
 mod materials;
@@ -62,9 +63,9 @@ impl DeckScene {
     ///
     /// # Errors
     /// As [`Deck::read`]; [`qp::Error::FileSyntax`] with the line for what changes the answer and is not read.
-    pub fn read(file: &Path, named: &str, permits: &[&str]) -> Result<Self, Error> {
+    pub fn read(file: &Path, named: &str, (permits, step): (&[&str], Option<usize>)) -> Result<Self, Error> {
         let within = file.parent().filter(|_| !permits.contains(&"outside"));
-        let deck = Deck::read(file, within)?;
+        let deck = Deck::read(file, within, step)?;
         let passed = keywords::judged(&deck)?;
         if deck.bodies > MOST_BODIES {
             let message = format!(
@@ -143,17 +144,17 @@ impl DeckScene {
 }
 
 impl Scene {
-    /// Reads a deck of CalculiX as a scene; relative names of files start in its folder. Files that it includes may lie outside its folder
+    /// Reads a deck of CalculiX as a scene, at the end of a step from 1, or of the last one; relative names of files start in its folder. Files that it includes may lie outside its folder
     /// if `permits` has `outside`, friction is left out with a warning if it has `friction`, and a step with NLGEOM has an answer with large
     /// strains or rotations too if it has `linear`.
     ///
     /// # Errors
     /// [`qp::Error::File`] for a file that cannot be read; [`qp::Error::FileSyntax`] with the line for what is wrong, and for what changes
     /// the answer and is not modelled.
-    pub fn read_deck(path: impl AsRef<Path>, permits: &[&str]) -> Result<Scene, Error> {
+    pub fn read_deck(path: impl AsRef<Path>, permits: &[&str], step: Option<usize>) -> Result<Scene, Error> {
         let path = path.as_ref();
         let named = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let deck = DeckScene::read(path, &named, permits)?;
+        let deck = DeckScene::read(path, &named, (permits, step))?;
         let scene = Scene::from_json(&deck.text, &named)?;
         Ok(Scene { folder: path.parent().map(Path::to_path_buf), noted: deck.warnings, ..scene })
     }
@@ -162,8 +163,8 @@ impl Scene {
     ///
     /// # Errors
     /// As [`Scene::read_deck`].
-    pub fn text_of_deck(file: &Path, named: &str, permits: &[&str]) -> Result<String, Error> {
-        DeckScene::read(file, named, permits).map(|scene| scene.text)
+    pub fn text_of_deck(file: &Path, named: &str, permits: &[&str], step: Option<usize>) -> Result<String, Error> {
+        DeckScene::read(file, named, (permits, step)).map(|scene| scene.text)
     }
 
     /// Returns `true` for the name of an input deck, which ends with `.inp`: such a file is read by [`Scene::read_deck`].

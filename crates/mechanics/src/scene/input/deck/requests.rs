@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
-use super::amplitudes::{Amplitudes, period};
+use super::amplitudes::{Amplitudes, times};
 use super::rigid::RigidBodies;
 use super::temperatures::Temperatures;
 use super::transforms::Transforms;
@@ -23,8 +23,14 @@ pub struct Requests {
     pub temperatures: Vec<(usize, f64)>,
     /// The local axes of nodes by their numbers, each of unit length.
     pub axes: HashMap<usize, [[f64; 3]; 3]>,
-    /// The time at the end of the step.
+    /// The step, from 1.
+    pub step: usize,
+    /// Number of steps of the deck.
+    pub steps: usize,
+    /// The time at the end of the step, since the start of the first one.
     pub time: f64,
+    /// The time that the step takes.
+    pub period: f64,
 }
 
 /// One result of the nodes or elements of a set, or of contacts, in rows.
@@ -51,34 +57,56 @@ pub struct RequestedTable {
 /// The cards that ask for fields.
 const FIELDS: [&str; 6] = ["NODEFILE", "ELFILE", "CONTACTFILE", "NODEOUTPUT", "ELEMENTOUTPUT", "CONTACTOUTPUT"];
 
+/// The cards that ask for tables.
+const TABLES: [&str; 3] = ["NODEPRINT", "ELPRINT", "CONTACTPRINT"];
+
+/// The kinds of requests.
+const KINDS: [&[&str]; 6] = [
+    &["NODEFILE", "NODEOUTPUT"],
+    &["ELFILE", "ELEMENTOUTPUT"],
+    &["CONTACTFILE", "CONTACTOUTPUT"],
+    &["NODEPRINT"],
+    &["ELPRINT"],
+    &["CONTACTPRINT"],
+];
+
 /// The cards that ask for results of another kind.
 const OTHERS: [&str; 4] = ["FACEPRINT", "SECTIONPRINT", "SECTIONFILE", "ENERGYPRINT"];
 
 impl Requests {
-    /// Reads what a deck asks for. Files that it includes may lie outside its folder if `permits` has `outside`.
+    /// Reads what a deck asks for at the end of a step, from 1, or of the last one. Files that it includes may lie outside its folder if `permits` has `outside`.
     ///
     /// # Errors
     /// [`qp::Error::File`](signorini_qp::Error::File) for a file that cannot be read;
     /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a set that does not exist, and for what is not read.
-    pub fn of_deck(file: impl AsRef<Path>, permits: &[&str]) -> Result<Self, Error> {
+    pub fn of_deck(file: impl AsRef<Path>, permits: &[&str], step: Option<usize>) -> Result<Self, Error> {
         let file = file.as_ref();
-        let deck = Deck::read(file, file.parent().filter(|_| !permits.contains(&"outside")))?;
+        let deck = Deck::read(file, file.parent().filter(|_| !permits.contains(&"outside")), step)?;
         let end = Temperatures::of(&deck, &Amplitudes::of(&deck)?)?.end;
         let temperatures = deck.nodes.numbers.iter().copied().zip(end).collect();
         let transforms = Transforms::of(&deck, &RigidBodies::of(&deck)?)?;
         let (fields, tables, others) = (BTreeSet::new(), Vec::new(), Vec::new());
-        let (axes, time) = (transforms.by_number(&deck), period(&deck)?);
-        let mut requests = Requests { fields, tables, others, temperatures, axes, time };
-        for card in &deck.source.cards {
-            let is_one_of = |keywords: &[&str]| keywords.iter().any(|keyword| card.is(keyword));
-            if is_one_of(&FIELDS) {
+        let (axes, [period, time]) = (transforms.by_number(&deck), times(&deck)?);
+        let (step, steps) = (deck.step, deck.steps);
+        let mut requests = Requests { fields, tables, others, temperatures, axes, step, steps, time, period };
+        let is_one_of = |card: &Card, keywords: &[&str]| keywords.iter().any(|keyword| card.is(keyword));
+        for (index, card) in deck.source.cards.iter().enumerate() {
+            // The requests of a kind in a later step replace those of the steps before it.
+            let of_kind = KINDS.iter().find(|keywords| is_one_of(card, keywords));
+            let is_replaced = |keywords: &&[&str]| {
+                deck.source.cards[index..].iter().any(|other| other.step > card.step && is_one_of(other, keywords))
+            };
+            if of_kind.is_some_and(is_replaced) {
+                continue;
+            }
+            if is_one_of(card, &FIELDS) {
                 requests.fields.extend(labels(&deck, card).into_iter().map(|(label, _)| label));
                 if card.says("GLOBAL", "NO") && !requests.axes.is_empty() {
                     requests.others.push(format!("GLOBAL=NO of {} ({})", card.name, deck.source.named(card.place)));
                 }
-            } else if is_one_of(&OTHERS) {
+            } else if is_one_of(card, &OTHERS) {
                 requests.others.push(format!("{} ({})", card.name, deck.source.named(card.place)));
-            } else if is_one_of(&["NODEPRINT", "ELPRINT", "CONTACTPRINT"]) {
+            } else if is_one_of(card, &TABLES) {
                 requests.add_tables(&deck, card)?;
             }
         }

@@ -25,6 +25,8 @@ struct Prescribed {
     card: usize,
     target: String,
     nodes: Vec<usize>,
+    /// `true` if these are a part of the nodes of the target.
+    is_part: bool,
     values: [Option<f64>; 3],
     /// Rotations, which only reference nodes of rigid bodies have.
     turns: [Option<f64>; 3],
@@ -61,7 +63,7 @@ impl Merged {
 /// The supports of a scene.
 ///
 /// # Errors
-/// An error with the line for a dof that is not a displacement, a node without elements, a line of which a later line replaces a part.
+/// An error with the line for a dof that is not a displacement, a node without elements.
 pub(super) fn supports(
     deck: &Deck,
     amplitudes: &Amplitudes,
@@ -72,11 +74,11 @@ pub(super) fn supports(
     for line in in_force(deck, amplitudes)? {
         lines.extend(off_rigid_bodies(deck, line, rigid_bodies)?);
     }
-    replace(deck, &mut lines)?;
+    replace(&mut lines);
     let (mut supports, mut turned): (Vec<Merged>, Vec<Entry>) = (Vec::new(), Vec::new());
     for line in lines.iter().filter(|line| line.values.iter().any(Option::is_some)) {
         let in_axes = in_local_axes(deck, line, transforms)?;
-        let targets = match in_axes.is_empty() {
+        let targets = match in_axes.is_empty() && !line.is_part {
             true => names_of_nodes(deck, &line.target, &line.nodes),
             false => {
                 let plain = line.nodes.iter().filter(|node| !in_axes.iter().any(|one| one.node == **node));
@@ -171,7 +173,7 @@ fn off_rigid_bodies(
 /// All lines that OP=NEW does not remove.
 fn in_force(deck: &Deck, amplitudes: &Amplitudes) -> Result<Vec<Prescribed>, Error> {
     let mut lines: Vec<Prescribed> = Vec::new();
-    // The number of lines before the step, once it has begun.
+    // The number of lines before the last step that has begun.
     let mut of_model = None;
     for (index, card) in deck.source.cards.iter().enumerate() {
         if card.is("STEP") {
@@ -252,7 +254,7 @@ fn read(deck: &Deck, card: &Card, index: usize, factor: f64) -> Result<Vec<Presc
         if names_z_of_plane(deck, &mut values) {
             return Err(fields.fault("a plane model has no displacement along z"));
         }
-        lines.push(Prescribed { card: index, target, nodes, values, turns, place: line.place });
+        lines.push(Prescribed { card: index, target, nodes, is_part: false, values, turns, place: line.place });
     }
     Ok(lines)
 }
@@ -263,34 +265,37 @@ fn names_z_of_plane(deck: &Deck, values: &mut [Option<f64>; 3]) -> bool {
     is_plane && values[2].take().is_some_and(|value| value != 0.0)
 }
 
-/// A later line replaces the displacements of its nodes in earlier lines.
-fn replace(deck: &Deck, lines: &mut [Prescribed]) -> Result<(), Error> {
+/// A later line replaces the displacements of its nodes in earlier lines: these keep their other nodes.
+fn replace(lines: &mut Vec<Prescribed>) {
     let mut last: HashMap<(usize, usize), usize> = HashMap::new();
     for (index, line) in lines.iter().enumerate() {
         for axis in (0..3).filter(|&axis| line.values[axis].is_some()) {
             line.nodes.iter().for_each(|&node| _ = last.insert((node, axis), index));
         }
     }
-    for index in 0..lines.len() {
-        for (axis, name) in AXES.iter().enumerate() {
-            let line = &lines[index];
-            let Some(own) = line.values[axis] else { continue };
-            let by = |node: &usize| last.get(&(*node, axis)).filter(|&&by| lines[by].values[axis] != Some(own));
-            let count = line.nodes.iter().filter(|node| by(node).is_some()).count();
-            if count > 0 && count < line.nodes.len() {
-                let first = line.nodes.iter().find_map(|node| Some((deck.nodes.numbers[*node], *by(node)?)));
-                let (number, by) = first.unwrap_or_default();
-                let message = format!(
-                    "{} prescribes another displacement along {name} for node {number}, not for all nodes of `{}`; give each node one value",
-                    deck.source.named(lines[by].place),
-                    line.target
-                );
-                return Err(deck.source.fault(line.place, message));
-            }
-            if count > 0 {
-                lines[index].values[axis] = None;
+    let mut left = Vec::with_capacity(lines.len());
+    for (index, mut line) in std::mem::take(lines).into_iter().enumerate() {
+        let mut parts = Vec::new();
+        for axis in 0..3 {
+            let nodes: Vec<usize> =
+                line.nodes.iter().copied().filter(|&node| last.get(&(node, axis)) == Some(&index)).collect();
+            if nodes.len() < line.nodes.len() {
+                let mut values = [None; 3];
+                values[axis] = line.values[axis].take();
+                let (target, place) = (line.target.clone(), line.place);
+                parts.push(Prescribed {
+                    nodes,
+                    values,
+                    target,
+                    place,
+                    is_part: true,
+                    turns: [None; 3],
+                    card: line.card,
+                });
             }
         }
+        left.push(line);
+        left.extend(parts.into_iter().filter(|part| !part.nodes.is_empty()));
     }
-    Ok(())
+    *lines = left;
 }

@@ -1,6 +1,7 @@
 //! Temperatures of a deck: those of the step above those at the start.
 
 use super::amplitudes::Amplitudes;
+use super::bodies::is_new;
 use crate::error::Error;
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
 
@@ -27,6 +28,9 @@ impl Temperatures {
         }
         let (mut end, mut last) = (start.clone(), None);
         for card in deck.source.cards.iter().filter(|card| card.is("TEMPERATURE")) {
+            if is_new(card) {
+                end.clone_from(&start);
+            }
             set(deck, card, amplitudes.factor(deck, card)?, &mut end)?;
             last = card.lines.last().map(|line| line.place).or(last);
         }
