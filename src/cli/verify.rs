@@ -1,16 +1,16 @@
 //! `signorini verify`: the certificate of an answer that came from elsewhere.
 
-use super::options::{Verify, most_memory};
+use super::options::Verify;
 use super::outcome::{Outcome, Report, unfit, warn};
 use crate::Error;
 use crate::output::InWords;
-use crate::qp::{Settings, Watch, read_problem, read_vector};
+use crate::qp::{Settings, Watch, memory, read_problem, read_vector};
 use crate::scene::Units;
 use crate::study::{ModelSize, Verification};
 
 pub(super) fn run(options: &Verify, watch: &Watch) -> Result<Outcome, Error> {
     // The available memory is asked for before the problem takes its own.
-    let memory = Some(most_memory(options.max_memory));
+    let memory = Some(memory::allowed(options.max_memory));
     let displacement = read_vector(&options.displacement)?;
     let multiplier = read_vector(&options.multiplier)?;
     let problem = read_problem(&options.directory)?;

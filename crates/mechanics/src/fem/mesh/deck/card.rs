@@ -71,6 +71,11 @@ impl Card {
         self.parameters.iter().find(|(own, _)| own == name).and_then(|(_, value)| value.as_deref())
     }
 
+    /// Returns `true` if it removes those before it.
+    pub fn is_new(&self) -> bool {
+        self.says("OP", "NEW")
+    }
+
     /// Returns `true` if a parameter has this value, given in capitals.
     pub fn says(&self, name: &str, value: &str) -> bool {
         self.value(name).is_some_and(|own| key(own) == value)

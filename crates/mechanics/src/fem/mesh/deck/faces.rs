@@ -170,8 +170,7 @@ impl Deck {
     /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line of a load on a surface of which a part is pressed anew.
     pub(super) fn replace_pressures(&mut self, cards: &[Card]) -> Result<(), Error> {
         let is_distributed = |card: &&Card| card.is("DLOAD") || card.is("DSLOAD");
-        let first =
-            cards.iter().filter(is_distributed).filter(|card| card.says("OP", "NEW")).map(|card| card.step).max();
+        let first = cards.iter().filter(is_distributed).filter(|card| card.is_new()).map(|card| card.step).max();
         let of_surfaces: Vec<(usize, Place, String)> = cards
             .iter()
             .filter(|card| card.is("DSLOAD"))

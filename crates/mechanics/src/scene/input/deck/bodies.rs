@@ -8,12 +8,7 @@ use super::materials::{Section, Sections};
 use super::scene_text::{Entry, object};
 use super::temperatures::Temperatures;
 use crate::error::Error;
-use crate::fem::mesh::deck::{Card, Deck, Place, Surface, key};
-
-/// Returns `true` for a card that removes those before it.
-pub(super) fn is_new(card: &Card) -> bool {
-    card.value("OP").is_some_and(|value| key(value) == "NEW")
-}
+use crate::fem::mesh::deck::{Deck, Place, Surface};
 
 /// The name of a node set or a surface of a body: in a further body it begins with the name of the body.
 fn name_in(body: usize, name: &str) -> String {

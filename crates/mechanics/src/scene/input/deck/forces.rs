@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 
-use super::bodies::is_new;
 use crate::fem::mesh::deck::Deck;
 
 /// The step whose force acts at each node in each direction, from 1.
@@ -19,7 +18,7 @@ impl Forces {
             return forces;
         }
         for card in deck.source.cards.iter().filter(|card| card.is("CLOAD")) {
-            if is_new(card) {
+            if card.is_new() {
                 forces.first = card.step;
             }
             for line in &card.lines {

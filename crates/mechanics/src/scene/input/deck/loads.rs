@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 use super::amplitudes::Amplitudes;
-use super::bodies::{is_new, name_of_node, names_of_nodes, names_of_surface};
+use super::bodies::{name_of_node, names_of_nodes, names_of_surface};
 use super::forces::Forces;
 use super::rigid::RigidBodies;
 use super::scene_text::{Entry, object};
@@ -56,7 +56,7 @@ impl<'a> Loads<'a> {
             // The step of the card before.
             let mut before = 0;
             for (index, card) in cards {
-                if is_new(card) && before == card.step {
+                if card.is_new() && before == card.step {
                     let message = format!("OP=NEW must stand on the first {} of the step", card.name);
                     return Err(deck.source.fault(card.place, message));
                 }
@@ -145,7 +145,7 @@ impl<'a> Loads<'a> {
 
     /// Pressures on faces, and loads on the volume.
     fn add_distributed(&mut self, index: usize, card: &Card, factor: f64) -> Result<(), Error> {
-        if is_new(card) {
+        if card.is_new() {
             self.on_volume.clear();
         }
         for pressure in self.deck.pressures.iter().filter(|pressure| pressure.card == index) {

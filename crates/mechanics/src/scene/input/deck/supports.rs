@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use serde_json::{Value, json};
 
 use super::amplitudes::Amplitudes;
-use super::bodies::{is_new, name_of_node, names_of_nodes};
+use super::bodies::{name_of_node, names_of_nodes};
 use super::rigid::RigidBodies;
 use super::scene_text::Entry;
 use super::transforms::Transforms;
@@ -185,7 +185,7 @@ fn in_force(deck: &Deck, amplitudes: &Amplitudes) -> Result<Vec<Prescribed>, Err
         if card.value("TYPE").is_some_and(|value| key(value) != "DISPLACEMENT") {
             return Err(deck.source.fault(card.place, "only displacements are prescribed in an equilibrium"));
         }
-        if is_new(card) {
+        if card.is_new() {
             if of_model.is_some_and(|before| lines.len() > before) {
                 return Err(deck.source.fault(card.place, "OP=NEW must stand on the first *BOUNDARY of the step"));
             }

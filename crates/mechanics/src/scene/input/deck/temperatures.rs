@@ -1,7 +1,6 @@
 //! Temperatures of a deck: those of the step above those at the start.
 
 use super::amplitudes::Amplitudes;
-use super::bodies::is_new;
 use crate::error::Error;
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
 
@@ -28,7 +27,7 @@ impl Temperatures {
         }
         let (mut end, mut last) = (start.clone(), None);
         for card in deck.source.cards.iter().filter(|card| card.is("TEMPERATURE")) {
-            if is_new(card) {
+            if card.is_new() {
                 end.clone_from(&start);
             }
             set(deck, card, amplitudes.factor(deck, card)?, &mut end)?;

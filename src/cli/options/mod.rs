@@ -1,5 +1,7 @@
 //! The arguments. Types of the argument parser are used only here and in `shell`, which describes them to shells and manuals.
 
+mod limits;
+
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -10,8 +12,10 @@ use clap_complete::Shell;
 use super::line::{Line, parse_line};
 use super::memory::parse_size;
 use crate::output::{Medium, Pictures, Wanted};
-use crate::qp::{Method, Precision, memory};
+use crate::qp::{Method, Precision};
 use crate::study::TotalErrorGoal;
+use limits::DeckOptions;
+pub(super) use limits::Limits;
 
 /// Frictionless contact of elastic bodies with obstacles: a convex QP, cross-checked and certified.
 #[derive(Debug, Parser)]
@@ -402,53 +406,6 @@ const MOST_THREADS: usize = 1024;
 
 fn parse_threads(text: &str) -> Result<usize, String> {
     allowed(text, |threads| (1..=MOST_THREADS).contains(threads), || format!("a whole number from 1 to {MOST_THREADS}"))
-}
-
-/// What a scene or a deck may do, and what of a deck is answered all the same.
-#[derive(Clone, Debug, Args)]
-pub(super) struct DeckOptions {
-    /// Let a scene or a deck read files that lie outside its own folder
-    #[arg(long)]
-    pub allow_outside: bool,
-    /// Take a deck with friction without it: the answer is that of a frictionless contact
-    #[arg(long)]
-    pub without_friction: bool,
-    /// Answer a deck that asks for large displacements (NLGEOM) with small ones, also where strains or rotations exceed 5 %
-    #[arg(long)]
-    pub linear: bool,
-    /// Step of a deck, from 1 [default: the last one]
-    #[arg(long, value_name = "N")]
-    pub step: Option<usize>,
-}
-
-impl DeckOptions {
-    /// The names of the permissions for the reading of a deck.
-    pub fn permits(&self) -> Vec<&'static str> {
-        let named = [("outside", self.allow_outside), ("friction", self.without_friction), ("linear", self.linear)];
-        named.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name).collect()
-    }
-}
-
-/// Limits of memory and files for a scene or a problem.
-#[derive(Clone, Debug, Args)]
-pub(super) struct Limits {
-    /// Refuse a problem that needs more memory, such as 500MB or 1.5GB [default: what the machine has available]
-    #[arg(long, value_name = "SIZE", value_parser = parse_size)]
-    pub max_memory: Option<f64>,
-    #[command(flatten)]
-    pub deck: DeckOptions,
-}
-
-impl Limits {
-    /// The memory, in bytes.
-    pub fn most_memory(&self) -> f64 {
-        most_memory(self.max_memory)
-    }
-}
-
-/// The memory in bytes: `allowed`, or else what is available, within the address space.
-pub(super) fn most_memory(allowed: Option<f64>) -> f64 {
-    memory::allowed(allowed)
 }
 
 /// The options of every solving command.
