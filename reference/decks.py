@@ -146,16 +146,20 @@ def sums(dat: pathlib.Path) -> dict[str, dict[int, list[float]]]:
     """Returns the last sum of forces of each set, as a field of one node."""
     text = dat.read_text() if dat.exists() else ""
     found = re.findall(r"total force \(fx,fy,fz\) for set (\S+) and time.*\n\n(.*)", text)
+    found += [("contact", line) for line in re.findall(r"total surface force \(fx,fy,fz\) and moment.*\n\n(.*)", text)]
     return {f"sum {name}": {0: [float(word) for word in line.split()]} for name, line in found}
 
 
-def run(command: list[str], deck: pathlib.Path) -> tuple[float, str, dict]:
-    """Returns the seconds of a program in a copy of the folder of a deck, its last error, or else its last warning, and its fields."""
+def run(command: list[str], deck: pathlib.Path, limit: float | None = None) -> tuple[float, str, dict]:
+    """Returns the seconds of a program in a copy of the folder of a deck, its last error, or else its last warning, and its fields.
+
+    A program that takes longer than the limit in seconds raises `subprocess.TimeoutExpired`.
+    """
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name) / "deck"
         shutil.copytree(deck.parent, folder, ignore=shutil.ignore_patterns("*.frd", "*.dat", "*.signorini"))
         start = time.perf_counter()
-        ended = subprocess.run([*command, "-i", deck.stem], cwd=folder, capture_output=True, text=True, errors="replace")
+        ended = subprocess.run([*command, "-i", deck.stem], cwd=folder, capture_output=True, text=True, errors="replace", timeout=limit)
         seconds = time.perf_counter() - start
         lines = [line.strip() for line in ended.stdout.splitlines()]
         said = [line for word in ("*WARNING", "*ERROR") for line in lines if line.startswith(word)]

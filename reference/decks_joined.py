@@ -13,18 +13,27 @@ import re
 import subprocess
 import sys
 import tempfile
+import typing
 
 import decks
+
+Map = typing.Callable[[float, float, float], tuple[float, float, float]]
+"""From the place of a node in a block to its place in a body."""
 
 TIE = ["*TIE, NAME=GLUE", "LOWER_SIDE, UPPER_SIDE"]
 PRESSED = ["*DSLOAD", "TOP, P, 3.", "*CLOAD", "CORNER, 1, 0.5"]
 PLATE = ["*NODE, NSET=REFERENCES", "200001, 0.5, 0.5, 2.", "200002, 0.5, 0.5, 2.", "*RIGID BODY, NSET=END, REF NODE=200001, ROT NODE=200002"]
 
 
-class Block:
-    """A block [0, 1] x [0, 1] above a height, of one type."""
+def same(x: float, y: float, z: float) -> tuple[float, float, float]:
+    """Returns the place itself."""
+    return x, y, z
 
-    def __init__(self, element: str, cells: tuple[int, int, int], height: float, first: int) -> None:
+
+class Block:
+    """A block [0, 1] x [0, 1] above a height, of one type, whose nodes are then mapped to other places."""
+
+    def __init__(self, element: str, cells: tuple[int, int, int], height: float, first: int, mapped: Map = same) -> None:
         self.element, self.first, self.height = element, first, height
         count = int(re.sub("[IR]$", "", element[3:]))
         form = "tetrahedron" if count in (4, 10) else "brick"
@@ -43,12 +52,18 @@ class Block:
                 if count > len(own):
                     own += [self.middle(own[a], own[b]) for a, b in mid_sides]
                 self.elements.append(own)
+        self.lattice = self.nodes
+        self.nodes = [mapped(*at) for at in self.lattice]
 
     node, middle = decks.Bar.node, decks.Bar.middle
 
+    def where(self, condition: typing.Callable[..., bool]) -> list[int]:
+        """Returns the numbers of the nodes whose places before the map fulfil a condition."""
+        return [self.first + node for node, at in enumerate(self.lattice) if condition(*at)]
+
     def at_height(self, height: float) -> list[int]:
-        """Returns the numbers of the nodes at a height."""
-        return [self.first + node for node, at in enumerate(self.nodes) if abs(at[2] - height) < 1e-9]
+        """Returns the numbers of the nodes at a height before the map."""
+        return self.where(lambda x, y, z: abs(z - height) < 1e-9)
 
     def cards(self, name: str) -> list[str]:
         """Returns nodes and elements."""
@@ -60,12 +75,17 @@ class Block:
             lines += [", ".join(words[at : at + 11]) + ("," if at + 11 < len(words) else "") for at in range(0, len(words), 11)]
         return lines
 
-    def surface(self, name: str, height: float) -> list[str]:
-        """Returns the surface of the faces at a height."""
-        is_there = set(self.at_height(height))
+    def surface(self, name: str, nodes: list[int]) -> list[str]:
+        """Returns the surface of the faces whose corners are among the nodes."""
+        is_there = set(nodes)
         found = itertools.product(enumerate(self.elements), enumerate(self.faces))
         own = [(number, face) for (number, nodes), (face, corners) in found if all(self.first + nodes[at] in is_there for at in corners)]
         return [f"*SURFACE, NAME={name}", *(f"{self.first + number}, S{face + 1}" for number, face in own)]
+
+
+def sets(nodes: dict[str, list[int]]) -> list[str]:
+    """Returns the cards of sets of nodes."""
+    return [line for name, numbers in nodes.items() for line in (f"*NSET, NSET={name}", *(f"{number}," for number in numbers))]
 
 
 def deck(elements: tuple[str, str], cells: tuple[int, int], joined: list[str], equations: bool, loads: list[str]) -> str:
@@ -73,10 +93,9 @@ def deck(elements: tuple[str, str], cells: tuple[int, int], joined: list[str], e
     below = Block(elements[0], (cells[0], cells[0], max(cells[0] // 2, 2)), 0.0, 1)
     above = Block(elements[1], (cells[1], cells[1], max(cells[1] // 3, 2)), 1.0, 100001)
     lines = ["*HEADING", "Two blocks", *below.cards("BELOW"), *above.cards("ABOVE")]
-    lines += [*below.surface("UPPER_SIDE", 1.0), *above.surface("LOWER_SIDE", 1.0), *above.surface("TOP", 2.0)]
+    lines += [*below.surface("UPPER_SIDE", below.at_height(1.0)), *above.surface("LOWER_SIDE", above.at_height(1.0))]
     end = above.at_height(2.0)
-    for name, numbers in {"BASE": below.at_height(0.0), "END": end, "CORNER": [end[-1]]}.items():
-        lines += [f"*NSET, NSET={name}", *(f"{number}," for number in numbers)]
+    lines += [*above.surface("TOP", end), *sets({"BASE": below.at_height(0.0), "END": end, "CORNER": [end[-1]]})]
     lines += ["*MATERIAL, NAME=SOFT", "*ELASTIC", "1000., .3"]
     lines += [f"*SOLID SECTION, ELSET={name}, MATERIAL=SOFT" for name in ("BELOW", "ABOVE")]
     lines += [*TIE, *joined]
