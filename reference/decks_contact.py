@@ -3,12 +3,14 @@
     python3 reference/decks_contact.py target/release/signorini
     python3 reference/decks_contact.py target/release/signorini NAME [NAME ...]
 
-A body stands on another one or hangs above it. The stiffness of contact (`PRESSURE-OVERCLOSURE=LINEAR`) takes the values E/h, 10 E/h, 100 E/h,
-and so on, where h is an edge of the slave surface; CalculiX, whose command is ccx, solves each deck. Both programs get the same deck, in
-which the program answers LINEAR by hard contact. A line has the number of unknowns, the hardest stiffness at which CalculiX converges over
-E/h, the largest displacement, the largest difference of displacements over it, the same for the answers of CalculiX at this stiffness and
-at the next lower one at which it converges, the difference of the contact force over this force, and the seconds of both programs as whole commands, the median
-of three runs.
+A body stands on another one or hangs above it. The stiffness of contact (`PRESSURE-OVERCLOSURE=LINEAR`) takes values of 100 E/h to 1e8 E/h,
+ten or a hundred times as large each, where h is an edge of the slave surface; CalculiX, whose command is ccx, solves each deck. Both
+programs get the same deck; signorini answers it by hard contact. Strains are at most 1e-3, because CalculiX moves the contact surfaces
+in each increment.
+
+A line says whether nodes of both surfaces coincide. It has the number of unknowns, the hardest stiffness at which CalculiX converges over
+E/h, the largest displacement, the largest difference over it, the same between CalculiX at this stiffness and at the next lower one, the
+difference of the contact force over its largest component, and the seconds of both programs as whole commands, the median of three runs.
 """
 
 import pathlib
@@ -22,9 +24,10 @@ import decks
 from decks_joined import Block, Map, sets
 
 YOUNG = 1000.0
-SECONDS = 300.0
+SECONDS = 150.0
 """The limit of a run of CalculiX."""
 SURFACES, NODES = "SURFACE TO SURFACE", "NODE TO SURFACE"
+FORCE = "sum contact"
 FACE = 1e-9
 FEW = (2, 4, 6)
 """The powers of ten for decks that take long."""
@@ -128,9 +131,8 @@ def cases() -> dict[str, Case]:
         "blocks, C3D10, large": blocks(tetra, (7, 7))._replace(exponents=FEW),
         "layer, C3D8, large": layer(hexa, (14, 14))._replace(exponents=FEW),
         "blocks, C3D8 on C3D8": blocks(hexa, (6, 8)),
-        "blocks, C3D10 on C3D8": blocks(("C3D8", "C3D10"), (6, 4)),
+        "blocks, C3D10 on C3D8": blocks(("C3D8", "C3D10"), (4, 5))._replace(exponents=FEW),
         "blocks, C3D20 on C3D20": blocks(twenty, (3, 4))._replace(exponents=FEW),
-        "layer, C3D8 on C3D8": layer(hexa, (8, 10))._replace(exponents=FEW),
         "layer, C3D8 on C3D8, large": layer(hexa, (14, 16))._replace(exponents=FEW),
         "punch, C3D10 on C3D10": punch(tetra, (5, 4))._replace(exponents=FEW),
         "punch, C3D20 on C3D20": punch(twenty, (4, 4))._replace(exponents=FEW),
@@ -152,9 +154,9 @@ def answered(command: list[str], text: str, limit: float) -> Answer | None:
 
 
 def difference(one: Answer, other: Answer, field: str = "DISP") -> float:
-    """Returns the largest difference of the values of a field over the largest value."""
+    """Returns the largest difference of the values of a field over the largest value of the first answer."""
     pairs = [pair for node, own in one.values[field].items() for pair in zip(own[:3], other.values[field][node][:3], strict=True)]
-    return max(abs(a - b) for a, b in pairs) / max(abs(b) for _, b in pairs)
+    return max(abs(a - b) for a, b in pairs) / max(abs(a) for a, _ in pairs)
 
 
 def median(command: list[str], text: str, first: Answer) -> float:
@@ -168,20 +170,15 @@ def line(program: str, name: str, case: Case) -> str:
     texts = {10.0**exponent: case.deck(10.0**exponent * YOUNG / case.edge) for exponent in case.exponents}
     found = {times: answered(["ccx"], text, SECONDS) for times, text in texts.items()}
     theirs = {times: answer for times, answer in found.items() if answer}
-    print({k: v and v.seconds for k, v in found.items()}, file=sys.stderr)
-    own = [program, "ccx"]
-    ours = answered(own, texts[max(theirs, default=1.0)], SECONDS)
-    words = [name, "yes" if case.is_matching() else "no", f"{case.unknowns():,}"]
+    *lower, hardest = sorted(theirs) or [min(texts)]
+    words, own = [name, "yes" if case.is_matching() else "no", f"{case.unknowns():,}"], [program, "ccx"]
+    ours = answered(own, texts[hardest], SECONDS)
     if ours is None or not theirs:
-        return " | ".join([*words, "no answer" if ours else "no answer of signorini"])
-    for times, answer in theirs.items():
-        print(f"  {times:.0e} {difference(answer, ours):.2e}", answer.values.get("sum contact"), file=sys.stderr)
-    print(ours.values.get("sum contact"), ours.said, file=sys.stderr)
-    *lower, hardest = sorted(theirs)
+        return " | ".join([*words, f"no answer of {'CalculiX' if ours else 'signorini'}"])
     answer = theirs[hardest]
     words += [f"{hardest:.0e}", f"{max(abs(value) for at in ours.values['DISP'].values() for value in at[:3]):.4e}"]
     words += [f"{difference(answer, ours):.1e}", f"{difference(answer, theirs[lower[-1]]):.1e}" if lower else "-"]
-    words += [f"{difference(answer, ours, 'sum contact'):.1e}" if case.kind == SURFACES else "-"]
+    words += [f"{difference(answer, ours, FORCE):.1e}" if case.kind == SURFACES else "-"]
     words += [f"{median(own, texts[hardest], ours):.2f}", f"{median(['ccx'], texts[hardest], answer):.2f}"]
     return " | ".join(words)
 
