@@ -186,6 +186,7 @@ fn fields_tables_and_step_of_a_brick_are_those_of_calculix() {
     desk.write("brick.inp", format!("{BRICK}{asked}"));
     let run = desk.run(&["ccx", "-i", "brick"]).ends_with(0);
     assert!(run.stderr.is_empty() && run.stdout.contains("certified"), "{}{}", run.stdout, run.stderr);
+    assert!(!run.stdout.contains("nothing touches"), "{}", run.stdout);
     let frd = read(&desk, "brick.frd");
     let expected = FIELDS.replace("VERSION\n", &format!("{}\n", env!("CARGO_PKG_VERSION")));
     assert_eq!(&frd[..expected.len()], expected);

@@ -93,6 +93,50 @@ fn a_cut_without_a_shortening_changes_nothing() {
     }
 }
 
+/// A square ring of eight cubes, cut at one place, with its hole around the origin: it stays one body, whose faces of the cut are drawn
+/// over each other by the shortening, without a warning of nodes at one place.
+#[test]
+fn a_ring_is_drawn_together_at_its_cut() {
+    let lattice: Vec<[usize; 3]> =
+        (0..2).flat_map(|k| (0..4).flat_map(move |j| (0..4).map(move |i| [i, j, k]))).collect();
+    let number = |at: [usize; 3]| 1 + lattice.iter().position(|own| *own == at).unwrap();
+    let mut deck = String::from("*NODE, NSET=ALL\n");
+    for at in &lattice {
+        let [x, y, z] = at.map(|part| part as f64 - 1.5);
+        deck += &format!("{}, {x:e}, {y:e}, {z:e}\n", number(*at));
+    }
+    deck += "*NODE\n5000, 0., 0., 0.\n*ELEMENT, TYPE=C3D8, ELSET=PART\n";
+    for (element, [i, j]) in [[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2], [0, 1]].into_iter().enumerate() {
+        let around = |k: usize| [[i, j, k], [i + 1, j, k], [i + 1, j + 1, k], [i, j + 1, k]].map(number);
+        let nodes: Vec<String> = around(0).into_iter().chain(around(1)).map(|node| node.to_string()).collect();
+        deck += &format!("{}, {}\n", element + 1, nodes.join(", "));
+    }
+    // The cut lies between the cubes 1 and 2, at x = -0.5; the cube on the other side is held.
+    deck += "*SURFACE, NAME=CUT\n1, S4\n*MATERIAL, NAME=STEEL\n*ELASTIC\n200., 0.3\n*SOLID SECTION, ELSET=PART, MATERIAL=STEEL\n";
+    deck += &format!(
+        "*NSET, NSET=HELD\n{}, {}, {}, {}\n*BOUNDARY\nHELD, 1, 3\n",
+        number([3, 3, 0]),
+        number([3, 3, 1]),
+        number([3, 2, 0]),
+        number([3, 2, 1])
+    );
+    let answer = answer(&(deck + PRELOAD + &step("*BOUNDARY\n5000, 1, 1, 0.01\n")));
+    assert!(answer.model().warnings().is_empty(), "{:?}", answer.model().warnings());
+    let (mesh, numbers) = (answer.model().mesh(), answer.model().mesh().node_numbers().unwrap());
+    let at = |number: usize| &answer.displacement()[3 * numbers.iter().position(|own| *own == number).unwrap()..][..3];
+    let mut doubles = 0;
+    for (node, &number) in numbers.iter().enumerate().filter(|(_, number)| **number > 5000) {
+        let other =
+            (0..numbers.len()).find(|&other| other != node && mesh.nodes()[other] == mesh.nodes()[node]).unwrap();
+        let (own, across) = (at(number), at(numbers[other]));
+        for (axis, drawn) in [0.01, 0.0, 0.0].into_iter().enumerate() {
+            assert!((own[axis] - across[axis] - drawn).abs() < 1e-13, "{number}: {own:?} and {across:?}");
+        }
+        doubles += 1;
+    }
+    assert_eq!(doubles, 4);
+}
+
 #[test]
 fn bolts_that_cannot_be_read_are_refused_with_their_line() {
     let deck = bar("C3D8");

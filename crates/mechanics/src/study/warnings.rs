@@ -385,6 +385,8 @@ fn nothing_touches(model: &Model, solution: &Solution) -> Option<AnswerWarning> 
             let nearest = format!("the smallest remaining gap is {gap} {unit} at {node}").replace("  ", " ");
             format!("nothing touches; {nearest}{}", behind(model, row))
         }
+        // A deck without contact asks for none.
+        None if model.obstacles().is_empty() && model.mesh().node_numbers().is_some() => return None,
         None if model.obstacles().is_empty() => "nothing touches: the scene has no obstacle".to_string(),
         None => "nothing touches: no obstacle faces a node of its boundary".to_string(),
     };

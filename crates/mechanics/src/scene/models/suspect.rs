@@ -1,12 +1,12 @@
 //! Legal but rarely intended parts of a scene: supports, loads, obstacles and meshes without the expected effect.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::parts::Parts;
 use super::rows::ContactRow;
 use crate::error::Error;
 use crate::fem::geometry::dot;
-use crate::fem::{DofMap, ElasticBody};
+use crate::fem::{Boundary, DofMap, ElasticBody};
 use crate::scene::Warning;
 use crate::scene::input::entry::COORDINATE_ROUNDING;
 use crate::scene::input::schema::{Place, Scene, SupportSpec, SymmetryPlane};
@@ -27,7 +27,8 @@ impl Scene {
     /// As [`Scene::build`].
     pub(crate) fn suspect(&self, body: &ElasticBody, dofs: &DofMap) -> Result<Vec<Warning>, Error> {
         let mut warnings = self.free_symmetries(body);
-        warnings.extend(coincident_nodes(body));
+        let tied = self.tied_surfaces().flatten().filter_map(|name| body.mesh().boundary(name));
+        warnings.extend(coincident_nodes(body, &tied.flat_map(Boundary::nodes).collect()));
         for index in 0..self.loads.len() {
             let mut load = vec![0.0; body.nodal_dofs()];
             self.add_load(body, index, &mut load)?;
@@ -66,8 +67,8 @@ fn is_on_one_node(load: &[f64], dimension: usize) -> bool {
     load.chunks(dimension).filter(|force| force.iter().any(|&component| component != 0.0)).count() == 1
 }
 
-/// Nodes of one body at the same place: the mesh is connected only in the drawing.
-fn coincident_nodes(body: &ElasticBody) -> Option<Warning> {
+/// Nodes of one body at the same place, unless both are on tied surfaces: the mesh is connected only in the drawing.
+fn coincident_nodes(body: &ElasticBody, tied: &HashSet<usize>) -> Option<Warning> {
     let nodes = body.mesh().nodes();
     let cell = COORDINATE_ROUNDING * body.mesh().size();
     let mut pairs = Vec::new();
@@ -76,7 +77,7 @@ fn coincident_nodes(body: &ElasticBody) -> Option<Warning> {
         for node in region.nodes() {
             let key = nodes[node].map(|coordinate| (coordinate / cell).round() as i64);
             let first = *at.entry(key).or_insert(node);
-            if first != node {
+            if first != node && !(tied.contains(&first) && tied.contains(&node)) {
                 pairs.push((first, node));
             }
         }
