@@ -116,19 +116,16 @@ class Bar:
 
 
 def compared(program: str, deck: str, folder: pathlib.Path, axes: int = 3) -> tuple[float, float]:
-    """Returns the largest displacement of CalculiX, and the largest difference over it; nodes have the order of their numbers."""
-    (folder / "deck.inp").write_text(deck)
-    subprocess.run(["ccx", "deck"], cwd=folder, check=True, capture_output=True)
-    lines = [line.split() for line in (folder / "deck.dat").read_text().splitlines()]
-    by_number = {int(words[0]): [float(word) for word in words[1:]] for words in lines if len(words) == 4 and words[0].isdigit()}
-    printed = [by_number[number] for number in sorted(by_number)]
-    command = [program, "solve", "deck.inp", "--out", "answer", "--pictures", "none"]
-    subprocess.run(command, cwd=folder, check=True, capture_output=True)
-    text = (folder / "answer/solution.vtu").read_text()
-    found = re.search('Name="u"[^>]*>\n(.*?)</DataArray', text, re.DOTALL).group(1).strip().splitlines()
-    largest = max(abs(value) for values in printed for value in values)
-    pairs = ((own, [float(word) for word in line.split()]) for own, line in zip(printed, found, strict=True))
-    return largest, max(abs(a - b) for one, other in pairs for a, b in zip(one[:axes], other[:axes], strict=True)) / largest
+    """Returns the largest displacement that CalculiX prints, and the largest difference over it."""
+    tables = []
+    for command in (["ccx"], [program, "ccx"]):
+        (folder / "deck.inp").write_text(deck)
+        subprocess.run([*command, "deck"], cwd=folder, check=True, capture_output=True)
+        lines = [line.split() for line in (folder / "deck.dat").read_text().splitlines()]
+        tables.append({int(words[0]): [float(word) for word in words[1:4]] for words in lines if words and words[0].isdigit()})
+    largest = max(abs(value) for values in tables[0].values() for value in values)
+    pairs = (zip(tables[0][number][:axes], tables[1][number][:axes], strict=True) for number in tables[0])
+    return largest, max(abs(one - other) for pair in pairs for one, other in pair) / largest
 
 
 def fields(frd: pathlib.Path) -> dict[str, dict[int, list[float]]]:

@@ -1,4 +1,4 @@
-"""Compares decks of two joined blocks with CalculiX: ties, equations, rigid bodies.
+"""Compares decks of two joined blocks with CalculiX: ties, equations, rigid bodies, preloads.
 
     python3 reference/decks_joined.py target/release/signorini
 
@@ -83,6 +83,14 @@ class Block:
         return [f"*SURFACE, NAME={name}", *(f"{self.first + number}, S{face + 1}" for number, face in own)]
 
 
+def cut(block: Block, height: float) -> list[str]:
+    """Returns a preload across a block: a surface of the elements below a height, and its reference node 200003."""
+    name, *faces = block.surface("CUT", block.at_height(height))
+    tops = [max(block.lattice[node][2] for node in nodes) for nodes in block.elements]
+    below = [face for face in faces if tops[int(face.split(",")[0]) - block.first] < height + 1e-9]
+    return [name, *below, "*NODE", "200003, 0., 0., 0.", "*PRE-TENSION SECTION, SURFACE=CUT, NODE=200003"]
+
+
 def sets(nodes: dict[str, list[int]]) -> list[str]:
     """Returns the cards of sets of nodes."""
     return [line for name, numbers in nodes.items() for line in (f"*NSET, NSET={name}", *(f"{number}," for number in numbers))]
@@ -99,6 +107,8 @@ def deck(elements: tuple[str, str], cells: tuple[int, int], joined: list[str], e
     lines += ["*MATERIAL, NAME=SOFT", "*ELASTIC", "1000., .3"]
     lines += [f"*SOLID SECTION, ELSET={name}, MATERIAL=SOFT" for name in ("BELOW", "ABOVE")]
     lines += [*TIE, *joined]
+    if any(line.startswith("200003") for line in loads):
+        lines += cut(below, 0.5)
     if equations:
         lines += ["*EQUATION", *(line for node in end[1:] for line in ("2", f"{node}, 3, 1., {end[0]}, 3, -1."))]
     lines += ["*BOUNDARY", "BASE, 1, 3", "*STEP", "*STATIC", *loads]
@@ -118,6 +128,10 @@ def main() -> None:
     cases.append(("rigid body, moment", deck(hexa, (2, 2), PLATE, False, ["*CLOAD", "200002, 2, 0.3", "200002, 3, 0.2"])))
     turned = ["*BOUNDARY", "200002, 3, 3, 0.001", "200001, 1, 2"]
     cases.append(("rigid body, turned", deck(hexa, (2, 2), PLATE, False, turned)))
+    for element, load in itertools.product(("C3D8", "C3D20"), (["*CLOAD", "200003, 1, 20."], ["*BOUNDARY", "200003, 1, 1, 0.01"])):
+        kind = "force" if load[0] == "*CLOAD" else "shortening"
+        drawn = [*load, "*BOUNDARY", "END, 1, 3", "*CLOAD", "CORNER, 1, 0.5"]
+        cases.append((f"bolt, {kind}, {element}", deck((element, element), (2, 2), [], False, drawn)))
     for name, text in cases:
         with tempfile.TemporaryDirectory() as folder:
             largest, difference = decks.compared(program, text, pathlib.Path(folder))
