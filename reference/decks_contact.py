@@ -24,7 +24,7 @@ import decks
 from decks_joined import Block, Map, sets
 
 YOUNG = 1000.0
-SECONDS = 150.0
+SECONDS = 300.0
 """The limit of a run of CalculiX."""
 SURFACES, NODES = "SURFACE TO SURFACE", "NODE TO SURFACE"
 FORCE = "sum contact"
