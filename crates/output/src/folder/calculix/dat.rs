@@ -164,17 +164,21 @@ impl Content<'_> {
         for row in self.answer.contact_set() {
             let (row, size) = (&model.rows()[row], share * self.answer.multiplier()[row]);
             let obstacle = &model.obstacles()[row.obstacle];
-            let is_on = obstacle.other_body().is_some_and(|(other, _)| is_named(other, master));
-            if !(is_on && is_named(obstacle.boundary(), slave)) {
-                continue;
-            }
+            // The rows stand on the finer surface, which may be the master: the force on the slave is then the opposite one.
+            let Some((other, _)) = obstacle.other_body() else { continue };
+            let is_between = |one: &str, two: &str| is_named(obstacle.boundary(), one) && is_named(other, two);
+            let sense = match () {
+                () if is_between(slave, master) => 1.0,
+                () if is_between(master, slave) => -1.0,
+                () => continue,
+            };
             let own = share * row.tributary_area;
             let at = [0, 1, 2].map(|axis| model.mesh().nodes()[row.node][axis] + displacements[row.node][axis]);
-            let acting = row.normal.map(|part| size * part);
+            let acting = row.normal.map(|part| sense * size * part);
             add(&mut force, acting, 1.0);
             add(&mut moment, cross(at, acting), 1.0);
             add(&mut centre, at, own);
-            add(&mut normal, row.outward, own);
+            add(&mut normal, row.outward, sense * own);
             (area, along) = (area + own, along + size);
         }
         let mean = |sum: [f64; 3]| sum.map(|part| if area > 0.0 { part / area } else { 0.0 });
