@@ -1,4 +1,4 @@
-"""Compares decks of two joined blocks with CalculiX: ties, equations, rigid bodies, preloads.
+"""Compares decks of two joined blocks with CalculiX: ties, equations, rigid bodies, couplings, springs, constraints, preloads.
 
     python3 reference/decks_joined.py target/release/signorini
 
@@ -22,7 +22,19 @@ Map = typing.Callable[[float, float, float], tuple[float, float, float]]
 
 TIE = ["*TIE, NAME=GLUE", "LOWER_SIDE, UPPER_SIDE"]
 PRESSED = ["*DSLOAD", "TOP, P, 3.", "*CLOAD", "CORNER, 1, 0.5"]
-PLATE = ["*NODE, NSET=REFERENCES", "200001, 0.5, 0.5, 2.", "200002, 0.5, 0.5, 2.", "*RIGID BODY, NSET=END, REF NODE=200001, ROT NODE=200002"]
+ALL = ["*CLOAD", "200003, 1, 0.7", "200003, 3, -2.", "200003, 5, 0.3", "200003, 6, 0.2"]
+REFERENCES = ["*NODE, NSET=REFERENCES", "200001, 0.5, 0.5, 2.", "200002, 0.5, 0.5, 2.", "200003, 0.7, 0.4, 2.6"]
+PLATE = [*REFERENCES, "*RIGID BODY, NSET=END, REF NODE=200001, ROT NODE=200002"]
+
+
+def coupled(kind: str, directions: str) -> list[str]:
+    """Returns a coupling of the top with node 200003."""
+    return [*REFERENCES, "*COUPLING, CONSTRAINT NAME=ALL, REF NODE=200003, SURFACE=TOP", f"*{kind}", directions]
+
+
+def springs(element: str, nodes: str, *values: str) -> list[str]:
+    """Returns a spring."""
+    return [*REFERENCES, f"*ELEMENT, TYPE={element}, ELSET=SPRING", f"300001, {nodes}", "*SPRING, ELSET=SPRING", *values]
 
 
 def same(x: float, y: float, z: float) -> tuple[float, float, float]:
@@ -84,11 +96,11 @@ class Block:
 
 
 def cut(block: Block, height: float) -> list[str]:
-    """Returns a preload across a block: a surface of the elements below a height, and its reference node 200003."""
+    """Returns a preload across a block: a surface of the elements below a height, and its reference node 200004."""
     name, *faces = block.surface("CUT", block.at_height(height))
     tops = [max(block.lattice[node][2] for node in nodes) for nodes in block.elements]
     below = [face for face in faces if tops[int(face.split(",")[0]) - block.first] < height + 1e-9]
-    return [name, *below, "*NODE", "200003, 0., 0., 0.", "*PRE-TENSION SECTION, SURFACE=CUT, NODE=200003"]
+    return [name, *below, "*NODE", "200004, 0., 0., 0.", "*PRE-TENSION SECTION, SURFACE=CUT, NODE=200004"]
 
 
 def sets(nodes: dict[str, list[int]]) -> list[str]:
@@ -107,7 +119,7 @@ def deck(elements: tuple[str, str], cells: tuple[int, int], joined: list[str], e
     lines += ["*MATERIAL, NAME=SOFT", "*ELASTIC", "1000., .3"]
     lines += [f"*SOLID SECTION, ELSET={name}, MATERIAL=SOFT" for name in ("BELOW", "ABOVE")]
     lines += [*TIE, *joined]
-    if any(line.startswith("200003") for line in loads):
+    if any(line.startswith("200004") for line in loads):
         lines += cut(below, 0.5)
     if equations:
         lines += ["*EQUATION", *(line for node in end[1:] for line in ("2", f"{node}, 3, 1., {end[0]}, 3, -1."))]
@@ -128,7 +140,24 @@ def main() -> None:
     cases.append(("rigid body, moment", deck(hexa, (2, 2), PLATE, False, ["*CLOAD", "200002, 2, 0.3", "200002, 3, 0.2"])))
     turned = ["*BOUNDARY", "200002, 3, 3, 0.001", "200001, 1, 2"]
     cases.append(("rigid body, turned", deck(hexa, (2, 2), PLATE, False, turned)))
-    for element, load in itertools.product(("C3D8", "C3D20"), (["*CLOAD", "200003, 1, 20."], ["*BOUNDARY", "200003, 1, 1, 0.01"])):
+    for element in ("C3D4", "C3D8", "C3D10", "C3D20"):
+        cases.append((f"distributing, {element}", deck((element, element), (2, 2), coupled("DISTRIBUTING", "1, 6"), False, ALL)))
+    cases.append(("kinematic, 1 to 3", deck(hexa, (2, 2), coupled("KINEMATIC", "1, 3"), False, ALL)))
+    cases.append(("kinematic, 1 and 2", deck(hexa, (2, 2), coupled("KINEMATIC", "1, 2"), False, ["*BOUNDARY", "200003, 4, 5", "*CLOAD", "200003, 1, 0.7", "200003, 6, 0.2"])))
+    held = ["*BOUNDARY", "200003, 3, 3, -0.01", "200003, 4, 4", "200003, 5, 5, 0.001", "200003, 6, 6"]
+    cases.append(("kinematic, 3, moved", deck(hexa, (2, 2), coupled("KINEMATIC", "3"), False, held)))
+    loose = [*REFERENCES, "*EQUATION", "3", "100027, 1, 1., 100019, 1, 0.5, 200001, 1, -1.", "2", "100027, 2, 1., 200001, 1, -0.3"]
+    cases.append(("equations, loose node", deck(hexa, (2, 2), loose, False, ["*CLOAD", "200001, 1, 0.5", "100022, 3, 0.2"])))
+    cases.append(("equations, loose node moved", deck(hexa, (2, 2), loose, False, ["*BOUNDARY", "200001, 1, 1, 0.002"])))
+    small = ["*CLOAD", "100027, 1, 5.e-7", "100022, 3, 2.e-7"]
+    moved = ["*BOUNDARY", "200003, 1, 1, 1.e-6", "200003, 2, 3", *small]
+    cases.append(("SPRINGA, to a node moved a little", deck(hexa, (2, 2), springs("SPRINGA", "100027, 200003", "30."), False, moved)))
+    cases.append(("SPRINGA, two bodies", deck(hexa, (2, 2), springs("SPRINGA", "100027, 5", "30."), False, PRESSED)))
+    cases.append(("SPRING1", deck(hexa, (2, 2), springs("SPRING1", "100027", "1", "30."), False, PRESSED)))
+    cases.append(("SPRING2", deck(hexa, (2, 2), springs("SPRING2", "100027, 100025", "1, 3", "30."), False, PRESSED)))
+    for constraint in ("PLANE, END", "STRAIGHT, 100019, 100026, 100022", "BEAM, 100019, 100027"):
+        cases.append((f"{constraint.split(',')[0]}, small forces", deck(hexa, (2, 2), ["*MPC", constraint], False, small)))
+    for element, load in itertools.product(("C3D8", "C3D20"), (["*CLOAD", "200004, 1, 20."], ["*BOUNDARY", "200004, 1, 1, 0.01"])):
         kind = "force" if load[0] == "*CLOAD" else "shortening"
         drawn = [*load, "*BOUNDARY", "END, 1, 3", "*CLOAD", "CORNER, 1, 0.5"]
         cases.append((f"bolt, {kind}, {element}", deck((element, element), (2, 2), [], False, drawn)))

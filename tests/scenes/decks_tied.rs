@@ -120,7 +120,6 @@ fn ties_that_cannot_be_read_are_refused_with_their_line() {
         ("*EQUATION\n1\n1, 4, 1.\n", 2, "4 is no displacement of a node here; there are 1 to 3"),
         ("*EQUATION\n1\n999, 1, 1.\n", 2, "the deck has no node 999"),
         ("*EQUATION\n0\n", 1, "the equation has no term"),
-        ("*NODE\n2001, 0., 0., 0.\n*EQUATION\n1\n2001, 1, 1.\n", 4, "node 2001 belongs to no element"),
         ("*RIGID BODY, NSET=END\n", 0, "no reference node; write REF NODE=NUMBER"),
         ("*RIGID BODY, NSET=Y0, REF NODE=1\n", 0, "`Y0` has nodes of 2 bodies; a rigid body is read in one body"),
         ("*RIGID BODY, NSET=END, REF NODE=9999\n", 0, "the deck has no node 9999"),

@@ -5,6 +5,7 @@ mod contact_scenes;
 mod contacts_found;
 mod decks;
 mod decks_bolted;
+mod decks_coupled;
 mod decks_refused;
 mod decks_stepped;
 mod decks_tied;

@@ -85,6 +85,28 @@ fn a_foundation_carries_the_contact_force_with_every_element() {
     }
 }
 
+/// A spring of 25 along twice the displacement of the end, beside a bar of stiffness 50: to the ground, or to the held node.
+#[test]
+fn a_spring_of_terms_has_the_stiffness_along_its_elongation() {
+    let bar = |spring: Value| {
+        json!({
+            "model": "bar",
+            "body": {"bar": {"x": {"points": [0, 2], "divisions": [4]}, "area": 0.1}},
+            "material": {"young": 1000, "poisson": 0},
+            "supports": [{"on": {"point": [0]}, "x": 0}],
+            "springs": [spring],
+            "loads": [{"force": {"at": [2], "value": [3]}}],
+        })
+    };
+    let end = json!({"on": {"point": [2]}, "x": 2});
+    let ground = answer(&bar(json!({"terms": [end], "along": 25})));
+    let both = answer(&bar(json!({"terms": [end, {"on": {"point": [0]}, "x": -2}], "along": 25})));
+    for answer in [ground, both] {
+        assert!((answer.displacement()[4] - 3.0 / 150.0).abs() < 1e-14, "{}", answer.displacement()[4]);
+        assert!(answer.forces().unwrap().balance < 1e-12);
+    }
+}
+
 #[test]
 fn invalid_springs_are_refused_at_their_path() {
     let refused = |spring: Value, phrases: &[&str]| {
@@ -102,4 +124,12 @@ fn invalid_springs_are_refused_at_their_path() {
     refused(json!({"on": {"boundary": "roof"}, "y": 1}), &["springs[0].on.boundary", "roof"]);
     refused(json!({"on": {"point": [0, 1]}, "normal": 1}), &["springs[0].normal", "no normal"]);
     refused(json!({"on": {"point": [0, 1]}, "y": 1, "stiffness": "per-area"}), &["springs[0].stiffness", "no area"]);
+    let terms = json!([{"on": {"point": [0, 1]}, "y": 1}, {"on": {"point": [1, 1]}, "y": -1}]);
+    refused(json!({"x": 1}), &["springs[0]", "needs a place `on`, or `terms`"]);
+    refused(json!({"terms": terms}), &["springs[0].along", "is missing"]);
+    refused(json!({"terms": terms, "along": 0}), &["springs[0].along", "0 is not allowed", "positive"]);
+    refused(json!({"terms": terms, "along": 1, "x": 1}), &["springs[0].x", "one stiffness"]);
+    refused(json!({"terms": terms, "along": 1, "stiffness": "per-area"}), &["springs[0].stiffness", "no area"]);
+    refused(json!({"on": {"point": [0, 1]}, "terms": terms, "along": 1, "y": 1}), &["springs[0]", "give one of them"]);
+    refused(json!({"terms": [{"on": {"point": [0, 1]}}], "along": 1}), &["springs[0].terms[0]", "no coefficient"]);
 }

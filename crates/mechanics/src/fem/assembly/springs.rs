@@ -1,26 +1,29 @@
-//! Springs between nodes and the ground: K_ab = integral over a boundary of k N_a N_b n n', or k n n' at a node.
+//! Springs between nodes and the ground: K_ab = integral over a boundary of k N_a N_b n n', or k n n' at a node; and between nodes: with the
+//! elongation e = sum of c_a . u_a, K_ab = k c_a c_b'.
 
 use super::DofMap;
 use super::element_blocks::Block;
 use super::surface::for_each_point;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::COORDINATES;
+use crate::fem::geometry::{COORDINATES, length, unit};
 use crate::fem::mesh::Boundary;
 use signorini_qp as qp;
 use signorini_qp::{SparseMatrix, SymmetricMatrix};
 
-/// Springs to the ground, in force per length.
+/// Springs, in force per length.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Springs {
     /// The force on the first node against the displacement of the second node; every pair in both orders.
     pairs: Vec<(usize, usize, Block)>,
+    /// The nodes of a spring between nodes, each with its vector in the elongation; empty for springs to the ground.
+    elongation: Vec<(usize, [f64; 3])>,
 }
 
 impl Springs {
     /// Springs at a node, a stiffness along each axis.
     pub fn at_node(node: usize, along: [f64; 3]) -> Self {
-        Springs { pairs: vec![(node, node, diagonal(along))] }
+        Springs { pairs: vec![(node, node, diagonal(along))], elongation: Vec::new() }
     }
 
     /// A foundation under a boundary: the stiffness (per area) along each axis and along the normal.
@@ -38,7 +41,18 @@ impl Springs {
                 }
             }
         });
-        Springs { pairs }
+        Springs { pairs, elongation: Vec::new() }
+    }
+
+    /// A spring along an elongation: the sum of the displacements of nodes along vectors.
+    pub fn between(elongation: &[(usize, [f64; 3])], stiffness: f64) -> Self {
+        let mut pairs = Vec::with_capacity(elongation.len() * elongation.len());
+        for (a, of_a) in elongation {
+            for (b, of_b) in elongation {
+                pairs.push((*a, *b, of_a.map(|i| of_b.map(|j| stiffness * i * j))));
+            }
+        }
+        Springs { pairs, elongation: elongation.to_vec() }
     }
 
     /// The forces of the springs on the nodes (length `dim * n_nodes`) at a nodal displacement.
@@ -53,13 +67,18 @@ impl Springs {
         forces
     }
 
-    /// The directions in which nodes are held, as unit vectors, each with its node.
-    pub fn held(&self) -> impl Iterator<Item = (usize, [f64; 3])> + '_ {
+    /// The motions that the springs resist: sums of displacements of nodes along vectors, of which the longest is a unit vector.
+    pub fn resisted(&self) -> Vec<Vec<(usize, [f64; 3])>> {
+        if !self.elongation.is_empty() {
+            let longest = self.elongation.iter().fold(0.0, |longest: f64, (_, vector)| longest.max(length(*vector)));
+            return vec![
+                self.elongation.iter().map(|(node, vector)| (*node, vector.map(|part| part / longest))).collect(),
+            ];
+        }
         let own = self.pairs.iter().filter(|(a, b, _)| a == b);
-        own.flat_map(|(node, _, block)| block.iter().map(move |row| (*node, *row))).filter_map(|(node, row)| {
-            let length = row.iter().fold(0.0, |length: f64, part| length.hypot(*part));
-            (length > 0.0).then(|| (node, row.map(|part| part / length)))
-        })
+        let rows = own.flat_map(|(node, _, block)| block.iter().map(move |row| (*node, *row)));
+        let directions = rows.map(|(node, row)| (node, unit(row))).filter(|(_, direction)| *direction != [0.0; 3]);
+        directions.map(|held| vec![held]).collect()
     }
 
     /// The stiffness of the free dofs with the springs added.

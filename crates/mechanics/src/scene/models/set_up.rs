@@ -1,6 +1,7 @@
 //! Supports, springs, rigid faces and loads of the body, node by node, for pictures.
 
 use super::model::Model;
+use crate::fem::geometry::unit;
 
 /// The way in which a support, a spring or a symmetry keeps a node in its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,8 +39,8 @@ impl Model {
             hold(node, if is_fixed { Hold::Fixed } else { Hold::Guided }, directions);
         }
         for springs in &parts.springs {
-            for (node, direction) in springs.held() {
-                hold(node, Hold::Spring, vec![direction]);
+            for (node, direction) in springs.resisted().into_iter().flatten() {
+                hold(node, Hold::Spring, vec![unit(direction)]);
             }
         }
         for face in &parts.rigid_faces {

@@ -1,9 +1,10 @@
 //! Springs and foundations of a scene, on its nodes.
 
+use super::ties::terms_of;
 use crate::error::Error;
 use crate::fem::assembly::{Springs, tributary_areas};
 use crate::fem::body::ElasticBody;
-use crate::scene::input::entry::{boundary, finite, node_at, number, wrong};
+use crate::scene::input::entry::{boundary, node_at, positive, wrong};
 use crate::scene::input::schema::spring::StiffnessOf;
 use crate::scene::input::schema::{Place, Scene, SpringSpec};
 
@@ -24,6 +25,10 @@ impl Scene {
 impl SpringSpec {
     fn placed(&self, path: &str, body: &ElasticBody) -> Result<Springs, Error> {
         let dimension = body.dimension();
+        let Some(on) = &self.on else { return self.between(path, body) };
+        if !self.terms.is_empty() || self.along.is_some() {
+            return Err(wrong(path, "has both a place `on` and `terms` with `along`; give one of them"));
+        }
         let mut along = [0.0; 3];
         let named = [("x", self.x), ("y", self.y), ("z", self.z), ("normal", self.normal)];
         for (axis, (field, stiffness)) in named.into_iter().enumerate() {
@@ -32,10 +37,7 @@ impl SpringSpec {
             if axis >= dimension && axis < 3 {
                 return Err(wrong(path, format!("the model has no {field}")));
             }
-            finite(path.as_str(), stiffness)?;
-            if stiffness <= 0.0 {
-                return Err(wrong(path, format!("{} is not allowed: a stiffness must be positive", number(stiffness))));
-            }
+            let stiffness = positive(&path, stiffness)?;
             if let Some(along) = along.get_mut(axis) {
                 *along = stiffness;
             }
@@ -44,7 +46,7 @@ impl SpringSpec {
             let names = ["x", "x, y or normal", "x, y, z or normal"][dimension - 1];
             return Err(wrong(path, format!("holds nothing; give a stiffness along {names}")));
         }
-        match &self.on {
+        match on {
             Place::Point(_) if self.normal.is_some() => {
                 Err(wrong(format!("{path}.normal"), "a node alone has no normal; give x, y or z"))
             }
@@ -54,7 +56,7 @@ impl SpringSpec {
             Place::Point(at) => Ok(Springs::at_node(node_at(body.mesh(), at, &format!("{path}.on.point"))?, along)),
             Place::Nodes(_) => Err(wrong(
                 format!("{path}.on.nodes"),
-                "a spring holds a boundary, or the node at a point; give one of them",
+                "a spring holds a boundary, or the node at a point; give one of them, or `terms` with `along`",
             )),
             Place::Boundary(name) => {
                 let boundary = boundary(body.mesh(), name, &format!("{path}.on.boundary"))?;
@@ -68,5 +70,28 @@ impl SpringSpec {
                 Ok(Springs::under(body, boundary, along.map(|stiffness| share * stiffness), normal))
             }
         }
+    }
+    /// A spring along the elongation that its terms give.
+    fn between(&self, path: &str, body: &ElasticBody) -> Result<Springs, Error> {
+        if self.terms.is_empty() {
+            return Err(wrong(path, "needs a place `on`, or `terms` of its elongation with the stiffness `along` it"));
+        }
+        let others = [("x", self.x), ("y", self.y), ("z", self.z), ("normal", self.normal)];
+        if let Some((field, _)) = others.into_iter().find(|(_, stiffness)| stiffness.is_some()) {
+            return Err(wrong(
+                format!("{path}.{field}"),
+                "a spring of `terms` has one stiffness, `along` its elongation",
+            ));
+        }
+        if self.stiffness == StiffnessOf::PerArea {
+            return Err(wrong(
+                format!("{path}.stiffness"),
+                "nodes have no area; `along` is the stiffness of the spring",
+            ));
+        }
+        let Some(along) = self.along else {
+            return Err(wrong(format!("{path}.along"), "is missing: the stiffness along the elongation"));
+        };
+        Ok(Springs::between(&terms_of(&self.terms, path, body)?, positive(&format!("{path}.along"), along)?))
     }
 }

@@ -12,7 +12,7 @@ use crate::fem::body::ElasticBody;
 use crate::scene::Warning;
 use crate::scene::input::entry::{COORDINATE_ROUNDING, boundary, finite, node_at, nodes_named_once, number, wrong};
 use crate::scene::input::obstacle::SideOrder;
-use crate::scene::input::schema::{EquationSpec, Place, PreloadSpec, Scene, TieSpec, TiedSurfacesSpec};
+use crate::scene::input::schema::{EquationSpec, Place, PreloadSpec, Scene, TermSpec, TieSpec, TiedSurfacesSpec};
 use signorini_qp::SparseMatrix;
 
 /// An equation of which less than this share is left by others follows from them: far above the rounding of integrals over facets.
@@ -131,7 +131,23 @@ fn of_equation(spec: &EquationSpec, path: &str, body: &ElasticBody, dofs: &DofMa
     let path = format!("{path}.equation");
     finite(format!("{path}.value"), spec.value)?;
     let (mut terms, mut own) = (Vec::new(), 0);
-    for (index, term) in spec.terms.iter().enumerate() {
+    for (index, (node, vector)) in terms_of(&spec.terms, &path, body)?.into_iter().enumerate() {
+        // The displacement of a node with a coefficient is a sum of coefficients.
+        terms.extend(dofs.basis.values(node).map(|(of, part)| (of, vector.map(|along| part * along))));
+        if index == 0 {
+            own = terms.len();
+        }
+    }
+    Ok(TieRow { terms, own: 0..own, at: None, value: spec.value })
+}
+
+/// The nodes of terms, each with its vector [x, y, z].
+///
+/// # Errors
+/// [`Error::Scene`] for a list without terms, a term without a node or a coefficient, and for a displacement that the model does not have.
+pub(super) fn terms_of(terms: &[TermSpec], path: &str, body: &ElasticBody) -> Result<Vec<(usize, [f64; 3])>, Error> {
+    let mut found = Vec::with_capacity(terms.len());
+    for (index, term) in terms.iter().enumerate() {
         let path = format!("{path}.terms[{index}]");
         let node = node_of(&term.on, &path, body)?;
         let vector = [term.x, term.y, term.z];
@@ -147,15 +163,11 @@ fn of_equation(spec: &EquationSpec, path: &str, body: &ElasticBody, dofs: &DofMa
         if vector == [0.0; 3] {
             return Err(wrong(path, "has no coefficient; give x, y or z"));
         }
-        // The displacement of a node with a coefficient is a sum of coefficients.
-        terms.extend(dofs.basis.values(node).map(|(of, part)| (of, vector.map(|along| part * along))));
-        if index == 0 {
-            own = terms.len();
-        }
+        found.push((node, vector));
     }
-    match terms.is_empty() {
+    match found.is_empty() {
         true => Err(wrong(format!("{path}.terms"), "has no term; give at least one")),
-        false => Ok(TieRow { terms, own: 0..own, at: None, value: spec.value }),
+        false => Ok(found),
     }
 }
 

@@ -8,6 +8,7 @@ use super::card::{Card, Place, key};
 use super::kinds::{DeckElementType, element_type};
 use super::sets::{Numbered, Sets};
 use super::source::Source;
+use super::springs::{SpringElement, SpringElements, SpringType};
 use super::surfaces::{FacePressure, Surfaces};
 use crate::error::Error;
 use crate::fem::element::ElementKind;
@@ -32,6 +33,7 @@ pub(crate) struct Deck {
     pub node_sets: Sets,
     pub element_sets: Sets,
     pub surfaces: Surfaces,
+    pub springs: SpringElements,
     /// The faces that the cards *DLOAD press.
     pub pressures: Vec<FacePressure>,
     /// The lines of *DSLOAD whose faces a later step presses anew, or frees.
@@ -81,6 +83,7 @@ impl Deck {
             node_sets: Sets::new("node"),
             element_sets: Sets::new("element"),
             surfaces: Surfaces::default(),
+            springs: SpringElements::new(),
             pressures: Vec::new(),
             replaced: HashSet::new(),
             step: 0,
@@ -108,9 +111,12 @@ impl Deck {
             }
         }
         deck.replace_numbers()?;
+        cards.iter().filter(|card| card.is("ELEMENT")).try_for_each(|card| deck.read_springs(card))?;
         for card in &cards {
             if card.is("NSET") {
                 deck.node_sets.read(&deck.source, card, &deck.nodes)?;
+            } else if card.is("ELSET") && deck.begins_with_spring(card) {
+                deck.springs.sets.read(&deck.source, card, &deck.springs.numbers)?;
             } else if card.is("ELSET") {
                 deck.element_sets.read(&deck.source, card, &deck.elements)?;
             }
@@ -163,6 +169,9 @@ impl Deck {
         let Some(name) = card.value("TYPE") else {
             return Err(self.source.fault(card.place, "*ELEMENT has no type; write TYPE=C3D10 or another"));
         };
+        if SpringType::named(&key(name)).is_some() {
+            return Ok(());
+        }
         let (of_type, kind) = element_type(&key(name)).map_err(|message| self.source.fault(card.place, message))?;
         let first = self.elements.len();
         // An element may go on in the next lines.
@@ -200,6 +209,37 @@ impl Deck {
         Ok(())
     }
 
+    /// Reads a card *ELEMENT of springs; all nodes are read before.
+    fn read_springs(&mut self, card: &Card) -> Result<(), Error> {
+        let Some(of_type) = card.value("TYPE").and_then(|name| SpringType::named(&key(name))) else { return Ok(()) };
+        let first = self.springs.all.len();
+        for line in &card.lines {
+            let mut fields = self.source.fields(line);
+            let number = fields.whole("the number of an element")?;
+            let mut nodes = Vec::with_capacity(of_type.nodes());
+            for _ in 0..of_type.nodes() {
+                let node = fields.whole(format_args!("a node of element {number}"))?;
+                let missing = || fields.fault(format!("element {number} names node {node}, which does not exist"));
+                nodes.push(self.nodes.place(node).ok_or_else(missing)?);
+            }
+            fields.end()?;
+            if self.elements.place(number).is_some() || !self.springs.numbers.add(number) {
+                return Err(fields.fault(format!("element {number} is given twice")));
+            }
+            self.springs.all.push(SpringElement { of_type, nodes, place: line.place });
+        }
+        if let Some(set) = self.springs.sets.name_in(&self.source, card)? {
+            self.springs.sets.extend(set, first..self.springs.all.len());
+        }
+        Ok(())
+    }
+
+    /// Returns `true` for a card *ELSET that begins with a spring, or with a set of them.
+    fn begins_with_spring(&self, card: &Card) -> bool {
+        let first = card.lines.first().and_then(|line| self.source.fields(line).text());
+        first.is_some_and(|target| self.springs.has(&target))
+    }
+
     /// Replaces the numbers of nodes in elements by their places.
     fn replace_numbers(&mut self) -> Result<(), Error> {
         if self.elements.len() == 0 {
@@ -235,6 +275,11 @@ impl Deck {
         let (bodies, count) = forest.into_trees();
         self.body_of_node = first_at.into_iter().map(|first| first.map(|element| bodies[element])).collect();
         (self.body_of_element, self.bodies) = (bodies, count);
+    }
+
+    /// Number of coordinates of the elements.
+    pub fn dimension(&self) -> usize {
+        self.element_list.first().map_or(3, |element| element.kind.dimension())
     }
 
     /// The nodes of an element, by their places.

@@ -7,6 +7,7 @@
 //! # Source
 //! G. Dhondt, *CalculiX CrunchiX User's Manual*, version 2.20, chapter "Input deck format".
 
+mod areas;
 mod body;
 mod boundaries;
 mod card;
@@ -17,10 +18,12 @@ mod fields;
 mod kinds;
 mod sets;
 mod source;
+mod springs;
 mod surfaces;
 
-pub(crate) use card::{Card, Place, key};
+pub(crate) use card::{Card, Line, Place, key};
 pub(crate) use content::{Deck, DeckElement};
 pub(crate) use fields::Fields;
 pub(crate) use kinds::Space;
+pub(crate) use springs::SpringType;
 pub(crate) use surfaces::Surface;

@@ -16,7 +16,7 @@ const fn read(keyword: &'static str, parameters: &'static [&'static str], passed
     Read { keyword, parameters, passed }
 }
 
-const READ: [Read; 32] = [
+const READ: [Read; 37] = [
     read("HEADING", &[], &[]),
     read("NODE", &["NSET"], &[]),
     read("ELEMENT", &["TYPE", "ELSET"], &[]),
@@ -46,6 +46,11 @@ const READ: [Read; 32] = [
     read("TRANSFORM", &["NSET", "TYPE"], &[]),
     read("RIGIDBODY", &["NSET", "REFNODE", "ROTNODE"], &[]),
     read("PRE-TENSIONSECTION", &["SURFACE", "NODE"], &[]),
+    read("COUPLING", &["REFNODE", "SURFACE"], &["CONSTRAINTNAME"]),
+    read("KINEMATIC", &[], &[]),
+    read("DISTRIBUTING", &[], &[]),
+    read("SPRING", &["ELSET"], &[]),
+    read("MPC", &[], &[]),
     read("STEP", &["NLGEOM"], &["INC", "AMPLITUDE", "NAME"]),
     read("STATIC", &[], &["SOLVER", "DIRECT", "TIMERESET", "TOTALTIMEATSTART"]),
     read("ENDSTEP", &[], &[]),
@@ -78,13 +83,8 @@ const PASSED: [&str; 22] = [
 ];
 
 /// Keywords that change the answer, with the thing that is not modelled.
-const ABSENT: [(&str, &str); 37] = [
-    ("MPC", "constraints between displacements are not modelled"),
-    ("COUPLING", "couplings are not modelled"),
-    ("KINEMATIC", "couplings are not modelled"),
-    ("DISTRIBUTING", "couplings are not modelled"),
-    ("DISTRIBUTINGCOUPLING", "couplings are not modelled"),
-    ("SPRING", "springs of decks are not read yet; in a scene `springs` hold boundaries"),
+const ABSENT: [(&str, &str); 32] = [
+    ("DISTRIBUTINGCOUPLING", "write *COUPLING with *DISTRIBUTING instead, which distributes over areas"),
     ("DASHPOT", "dampers are not modelled"),
     ("GAP", "gap elements are not modelled"),
     ("MASS", "point masses are not modelled"),
@@ -119,7 +119,7 @@ const ABSENT: [(&str, &str); 37] = [
 ];
 
 /// The cards that have no data lines.
-const BARE: [&str; 5] = ["MATERIAL", "STEP", "ENDSTEP", "CLEARANCE", "RIGIDBODY"];
+const BARE: [&str; 6] = ["MATERIAL", "STEP", "ENDSTEP", "CLEARANCE", "RIGIDBODY", "COUPLING"];
 
 /// The cards that stand only in a step.
 const OF_STEP: [&str; 6] = ["CLOAD", "DLOAD", "DSLOAD", "TEMPERATURE", "STATIC", "ENDSTEP"];

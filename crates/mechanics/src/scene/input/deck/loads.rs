@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::amplitudes::Amplitudes;
 use super::bodies::{name_of_node, names_of_nodes, names_of_surface};
 use super::forces::Forces;
-use super::rigid::RigidBodies;
+use super::references::References;
 use super::scene_text::{Entry, object};
 use super::transforms::Transforms;
 use crate::error::Error;
@@ -25,32 +25,26 @@ struct OnVolume {
 }
 
 /// The loads of a scene.
-pub(super) struct Loads<'a> {
+pub(super) struct Loads<'a, 'd> {
     deck: &'a Deck,
-    rigid_bodies: &'a mut RigidBodies,
+    references: &'a mut References<'d>,
     transforms: &'a Transforms,
     forces: Forces,
     loads: Vec<Entry>,
     on_volume: Vec<OnVolume>,
 }
 
-impl<'a> Loads<'a> {
+impl<'a, 'd> Loads<'a, 'd> {
     /// # Errors
     /// An error with the line for a load that is not read.
     pub fn of(
         deck: &'a Deck,
         amplitudes: &Amplitudes,
-        rigid_bodies: &'a mut RigidBodies,
+        references: &'a mut References<'d>,
         transforms: &'a Transforms,
     ) -> Result<Vec<Entry>, Error> {
-        let mut loads = Loads {
-            deck,
-            rigid_bodies,
-            transforms,
-            forces: Forces::of(deck),
-            loads: Vec::new(),
-            on_volume: Vec::new(),
-        };
+        let forces = Forces::of(deck);
+        let mut loads = Loads { deck, references, transforms, forces, loads: Vec::new(), on_volume: Vec::new() };
         for keyword in ["CLOAD", "DLOAD", "DSLOAD"] {
             let cards = deck.source.cards.iter().enumerate().filter(|(_, card)| card.is(keyword));
             // The step of the card before.
@@ -95,7 +89,8 @@ impl<'a> Loads<'a> {
             let is_part = nodes.len() < all;
             let mut on_bodies = Vec::with_capacity(nodes.len());
             for node in nodes {
-                if !self.rigid_bodies.press(node, direction, force).map_err(|message| fields.fault(message))? {
+                let pressed = self.references.press(node, direction, force, line.place);
+                if !pressed.map_err(|message| fields.fault(message))? {
                     on_bodies.push(node);
                 }
             }
@@ -106,10 +101,6 @@ impl<'a> Loads<'a> {
             if direction > dimension {
                 let message = format!("{direction} is no direction of a force here; there are 1 to {dimension}");
                 return Err(fields.fault(message));
-            }
-            if let Some(&loose) = nodes.iter().find(|&&node| self.deck.body_of_node[node].is_none()) {
-                let number = self.deck.nodes.numbers[loose];
-                return Err(fields.fault(format!("node {number} belongs to no element and carries no force")));
             }
             let (mut plain, mut is_part) = (Vec::with_capacity(nodes.len()), is_part);
             for node in nodes {

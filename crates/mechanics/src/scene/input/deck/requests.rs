@@ -23,7 +23,7 @@ pub struct Requests {
     pub temperatures: Vec<(usize, f64)>,
     /// The local axes of nodes by their numbers, each of unit length.
     pub axes: HashMap<usize, [[f64; 3]; 3]>,
-    /// The step, from 1.
+    /// The number of the step whose end it is, from 1.
     pub step: usize,
     /// Number of steps of the deck.
     pub steps: usize,

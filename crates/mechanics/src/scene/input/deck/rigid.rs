@@ -1,11 +1,13 @@
-//! Rigid bodies: the cards *RIGID BODY, with the displacements, rotations, forces and moments of their reference nodes.
+//! Rigid bodies: the cards *RIGID BODY, and *KINEMATIC of all displacements, with the displacements, rotations, forces and moments of their
+//! reference nodes.
 
 use std::collections::HashMap;
 
 use serde_json::{Value, json};
 
-use super::bodies::names_of_nodes;
+use super::bodies::{name_of_node, names_of_nodes, names_of_surface};
 use super::bolts::Bolts;
+use super::coupling::{Coupling, couplings};
 use super::scene_text::Entry;
 use crate::error::Error;
 use crate::fem::mesh::deck::{Card, Deck, Place};
@@ -15,7 +17,8 @@ const MOTIONS: [&str; 6] = ["x", "y", "z", "x", "y", "z"];
 
 /// Nodes that move with a reference node.
 struct RigidBody {
-    nodes: String,
+    /// `nodes` or `boundary` of the scene, with the name.
+    on: (&'static str, Value),
     centre: [f64; 3],
     prescribed: [Option<f64>; 6],
     /// Force and moment.
@@ -29,15 +32,19 @@ pub(super) struct RigidBodies {
     /// The body of a node, and the first of its motions that the directions 1, 2, ... of the node name.
     by_node: HashMap<usize, (usize, usize)>,
     pub bolts: Bolts,
+    /// The couplings that are no rigid bodies yet.
+    pub couplings: Vec<Coupling>,
     dimension: usize,
 }
 
 impl RigidBodies {
     /// # Errors
-    /// An error with the line for a rigid body without a set of nodes of one body, or without a reference node of its own.
+    /// An error with the line for a rigid body without a set of nodes of one body, or without a reference node of its own, and for a coupling
+    /// that is not read.
     pub fn of(deck: &Deck) -> Result<Self, Error> {
-        let dimension = deck.element_list.first().map_or(3, |element| element.kind.dimension());
-        let mut bodies = RigidBodies { all: Vec::new(), by_node: HashMap::new(), bolts: Bolts::of(deck)?, dimension };
+        let dimension = deck.dimension();
+        let (couplings, bolts) = (couplings(deck)?, Bolts::of(deck)?);
+        let mut bodies = RigidBodies { all: Vec::new(), by_node: HashMap::new(), bolts, couplings, dimension };
         for card in deck.source.cards.iter().filter(|card| card.is("RIGIDBODY")) {
             bodies.add(deck, card).map_err(|message| deck.source.fault(card.place, message))?;
         }
@@ -66,26 +73,63 @@ impl RigidBodies {
         let Some(centre) = centre else {
             return Err("*RIGID BODY has no reference node; write REF NODE=NUMBER".into());
         };
-        for (node, first) in [(Some(centre), 0), (rotation, 3)] {
+        let on = ("nodes", Value::from(names.remove(0)));
+        self.add_body(deck, on, [Some(centre), rotation], card.place)
+    }
+
+    /// Makes a coupling a rigid body, if the nodes of its surface belong to one body and all follow in all directions; `false` for another.
+    ///
+    /// # Errors
+    /// An error with the line for a reference node of two rigid bodies.
+    pub fn takes(&mut self, deck: &Deck, coupling: &Coupling) -> Result<bool, Error> {
+        let fault = |message: String| deck.source.fault(coupling.place, message);
+        let surface = deck.surface_or(&coupling.surface).map_err(fault)?;
+        let on = match (&names_of_surface(deck, surface)[..], &surface.bare[..]) {
+            ([(_, name)], []) => ("boundary", Value::from(name.as_str())),
+            (faces, [_, ..]) => {
+                let nodes = deck.nodes_of_surface(surface);
+                let bodies = nodes.iter().map(|&node| deck.body_of_node[node]);
+                let names: Vec<String> = nodes.iter().filter_map(|&node| name_of_node(deck, node)).collect();
+                let is_one =
+                    faces.len() < 2 && bodies.clone().all(|body| body.is_some() && bodies.clone().next() == Some(body));
+                match is_one {
+                    true => ("nodes", names.into()),
+                    false => return Ok(false),
+                }
+            }
+            _ => return Ok(false),
+        };
+        let is_rigid = coupling.is_rigid(deck);
+        if is_rigid {
+            self.add_body(deck, on, [Some(coupling.reference), None], coupling.place).map_err(fault)?;
+        }
+        Ok(is_rigid)
+    }
+
+    /// Adds a body with its reference node and the node of its rotations.
+    fn add_body(
+        &mut self,
+        deck: &Deck,
+        on: (&'static str, Value),
+        [centre, rotation]: [Option<usize>; 2],
+        place: Place,
+    ) -> Result<(), String> {
+        for (node, first) in [(centre, 0), (rotation, 3)] {
             let Some(node) = node else { continue };
             if self.by_node.insert(node, (self.all.len(), first)).is_some() {
                 let message = format!("node {} is the reference of two rigid bodies", deck.nodes.numbers[node]);
                 return Err(message);
             }
         }
-        self.all.push(RigidBody {
-            nodes: names.remove(0),
-            centre: deck.place_of_node(centre),
-            prescribed: [None; 6],
-            load: [0.0; 6],
-            place: card.place,
-        });
+        let centre = centre.map_or([0.0; 3], |centre| deck.place_of_node(centre));
+        self.all.push(RigidBody { on, centre, prescribed: [None; 6], load: [0.0; 6], place });
         Ok(())
     }
 
-    /// Returns `true` for a node that moves a rigid body.
+    /// Returns `true` for a node that moves a rigid body or a coupling.
     pub fn is_reference(&self, node: usize) -> bool {
-        self.by_node.contains_key(&node) || self.bolts.is_reference(node)
+        let is_coupled = || self.couplings.iter().any(|coupling| coupling.reference == node);
+        self.by_node.contains_key(&node) || self.bolts.is_reference(node) || is_coupled()
     }
 
     /// The motion that a direction of a node, from 1, names; `None` for a node that is no reference.
@@ -132,7 +176,7 @@ impl RigidBodies {
     }
 
     fn face(&self, body: &RigidBody) -> Value {
-        let mut face = json!({"nodes": body.nodes, "centre": body.centre[..self.dimension]});
+        let mut face = json!({body.on.0: body.on.1, "centre": body.centre[..self.dimension]});
         for (kind, value) in body.prescribed.iter().enumerate() {
             let Some(value) = value else { continue };
             match kind {

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::amplitudes::Amplitudes;
 use super::bodies::{name_of_node, names_of_nodes};
-use super::rigid::RigidBodies;
+use super::references::References;
 use super::scene_text::Entry;
 use super::transforms::Transforms;
 use crate::error::Error;
@@ -28,7 +28,7 @@ struct Prescribed {
     /// `true` if these are a part of the nodes of the target.
     is_part: bool,
     values: [Option<f64>; 3],
-    /// Rotations, which only reference nodes of rigid bodies have.
+    /// Rotations, which only reference nodes have.
     turns: [Option<f64>; 3],
     place: Place,
 }
@@ -67,12 +67,12 @@ impl Merged {
 pub(super) fn supports(
     deck: &Deck,
     amplitudes: &Amplitudes,
-    rigid_bodies: &mut RigidBodies,
+    references: &mut References,
     transforms: &Transforms,
 ) -> Result<Vec<Entry>, Error> {
     let mut lines = Vec::new();
     for line in in_force(deck, amplitudes)? {
-        lines.extend(off_rigid_bodies(deck, line, rigid_bodies)?);
+        lines.extend(off_references(deck, line, references)?);
     }
     replace(&mut lines);
     let (mut supports, mut turned): (Vec<Merged>, Vec<Entry>) = (Vec::new(), Vec::new());
@@ -86,13 +86,6 @@ pub(super) fn supports(
                 plain.filter_map(|&node| name_of_node(deck, node)).collect()
             }
         };
-        if targets.is_empty() && !in_axes.is_empty() {
-            continue;
-        }
-        if targets.is_empty() {
-            let message = format!("no node of `{}` belongs to an element; nothing is held", line.target);
-            return Err(deck.source.fault(line.place, message));
-        }
         for target in targets {
             if !supports.last_mut().is_some_and(|last| last.takes(line, &target)) {
                 supports.push(Merged {
@@ -144,19 +137,15 @@ fn in_local_axes(deck: &Deck, line: &Prescribed, transforms: &Transforms) -> Res
     Ok(found)
 }
 
-/// A line without the reference nodes of rigid bodies, which it prescribes; `None` if nothing is left.
-fn off_rigid_bodies(
-    deck: &Deck,
-    line: Prescribed,
-    rigid_bodies: &mut RigidBodies,
-) -> Result<Option<Prescribed>, Error> {
+/// A line without reference nodes, which it prescribes; `None` if nothing is left.
+fn off_references(deck: &Deck, line: Prescribed, references: &mut References) -> Result<Option<Prescribed>, Error> {
     let mut nodes = Vec::with_capacity(line.nodes.len());
     for &node in &line.nodes {
         let mut is_reference = false;
         for (axis, value) in line.values.iter().chain(&line.turns).enumerate() {
             if let Some(value) = *value {
                 let fault = |message: String| deck.source.fault(line.place, message);
-                is_reference |= rigid_bodies.prescribe(node, axis + 1, value).map_err(fault)?;
+                is_reference |= references.prescribe(node, axis + 1, value).map_err(fault)?;
             }
         }
         // A reference node that belongs to elements is held with its body.

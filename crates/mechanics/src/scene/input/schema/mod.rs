@@ -30,7 +30,7 @@ pub use part::PartSpec;
 pub use rigid_face::RigidFaceSpec;
 pub use spring::SpringSpec;
 pub use symmetry::SymmetryPlane;
-pub use tie::{EquationSpec, PreloadSpec, TieSpec, TiedSurfacesSpec};
+pub use tie::{EquationSpec, PreloadSpec, TermSpec, TieSpec, TiedSurfacesSpec};
 
 use std::path::PathBuf;
 
@@ -97,7 +97,7 @@ pub struct Scene {
     /// Displacements that are tied to each other.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ties: Vec<TieSpec>,
-    /// Springs between the body and the ground.
+    /// Springs between the bodies and the ground, or between nodes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub springs: Vec<SpringSpec>,
     /// Planes of symmetry: the body is a half, a quarter or an eighth of a whole. Each is supported, and forces and areas in

@@ -4,16 +4,25 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::condition::Place;
+use super::tie::TermSpec;
 
-/// Springs between the body and the ground, which act in tension and compression: at a node, or spread over a boundary as an elastic
-/// foundation.
+/// Springs, which act in tension and compression: between the body and the ground at a node, or spread over a boundary as an elastic
+/// foundation; or between nodes.
 ///
 /// A direction that is left out has no spring.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct SpringSpec {
-    /// The place.
-    pub on: Place,
+    /// The place of a spring to the ground.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on: Option<Place>,
+    /// The elongation of a spring between nodes, instead of `on`: the sum of these terms.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub terms: Vec<TermSpec>,
+    /// Stiffness along the elongation that the terms give, positive.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub along: Option<f64>,
     /// Stiffness along x, positive.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]

@@ -86,10 +86,15 @@ impl RigidBodyModes {
 
     /// The component of each unit motion in the equation of a tie: surfaces are tied at one place, whatever their distance.
     fn in_tie(&self, parts: &Parts, row: &TieRow) -> Vec<f64> {
+        let nodes = parts.body.mesh().nodes();
+        self.in_sum(&row.terms, |node| row.at.unwrap_or_else(|| parts.dofs.basis.place(nodes, node)))
+    }
+
+    /// The component of each unit motion in a sum of displacements of nodes along vectors, `at` the place of each node.
+    fn in_sum(&self, terms: &[(usize, [f64; 3])], at: impl Fn(usize) -> [f64; 3]) -> Vec<f64> {
         let mut components = vec![0.0; 6 * self.bodies.len()];
-        for &(node, vector) in &row.terms {
-            let at = row.at.unwrap_or_else(|| parts.dofs.basis.place(parts.body.mesh().nodes(), node));
-            let of_node = self.along(node, at, vector);
+        for &(node, vector) in terms {
+            let of_node = self.along(node, at(node), vector);
             components.iter_mut().zip(of_node).for_each(|(component, part)| *component += part);
         }
         components
@@ -147,8 +152,11 @@ impl RigidBodyModes {
         let supported = (0..parts.dofs.nodal_count()).filter(|&dof| parts.dofs.number(dof).is_none());
         let of_supports = supported.map(|dof| self.at_dof(parts, dof));
         let of_rows = rows.iter().map(|row| self.in_row(nodes, row));
-        let held = parts.springs.iter().flat_map(|springs| springs.held());
-        let of_springs = held.map(|(node, direction)| self.along(node, nodes[node], direction));
+        let of_springs = parts
+            .springs
+            .iter()
+            .flat_map(|springs| springs.resisted())
+            .map(|sum| self.in_sum(&sum, |node| nodes[node]));
         let of_faces = parts.rigid_faces.iter().flat_map(|face| self.prescribed(face));
         let of_ties = parts.ties.rows.iter().map(|row| self.in_tie(parts, row));
         let mut resisted: Vec<Vec<f64>> =

@@ -1,0 +1,37 @@
+//! The nodes of a surface of a deck, and their areas.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::content::Deck;
+use super::surfaces::Surface;
+use crate::fem::element::{Cell, MAX_NODES, Tabulated};
+use crate::fem::geometry::length;
+
+impl Deck {
+    /// The nodes of a surface, by their places, increasing.
+    pub fn nodes_of_surface(&self, surface: &Surface) -> Vec<usize> {
+        let of_faces = surface.faces.iter().flat_map(|&face| self.nodes_of_face(face));
+        of_faces.chain(surface.bare.iter().copied()).collect::<BTreeSet<_>>().into_iter().collect()
+    }
+
+    /// The nodes of the faces of a surface, each with the integral of its shape function over them: an area, or a length in the plane. At a
+    /// corner of a quadratic face it may be zero or negative.
+    pub fn areas(&self, surface: &Surface) -> BTreeMap<usize, f64> {
+        let mut areas: BTreeMap<usize, f64> = BTreeMap::new();
+        for &face in &surface.faces {
+            let reference = self.element_list[face.0].kind.facet().reference();
+            let nodes: Vec<usize> = self.nodes_of_face(face).collect();
+            let mut coordinates = [[0.0; 3]; MAX_NODES];
+            coordinates.iter_mut().zip(&nodes).for_each(|(at, &node)| *at = self.at[node]);
+            let cell = Cell::new(reference, &coordinates);
+            let unit = cell.unit().powi(reference.dimension as i32);
+            for point in &Tabulated::with_rule(reference, reference.quadrature.to_vec()).points {
+                let area = length(cell.area_vector(&point.derivative)) * point.weight * unit;
+                for (&node, share) in nodes.iter().zip(point.shape) {
+                    *areas.entry(node).or_default() += share * area;
+                }
+            }
+        }
+        areas
+    }
+}

@@ -1,0 +1,205 @@
+//! Couplings: the cards *COUPLING, each followed by *KINEMATIC or *DISTRIBUTING, as equations between the nodes of a surface and the
+//! displacement U and the rotation R of a reference node.
+//!
+//! # Source
+//! G. Dhondt, *CalculiX CrunchiX User's Manual*, version 2.20, keywords *COUPLING, *KINEMATIC, *DISTRIBUTING.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::sums::{Equation, Sum};
+use crate::error::Error;
+use crate::fem::geometry::{COORDINATES, cross, minus};
+use crate::fem::mesh::deck::{Card, Deck, Line, Place, Space};
+
+/// A determinant of the moments of inertia below this share of the cube of their sum is rounding: the nodes lie on a line.
+const ON_LINE: f64 = 1e-12;
+
+/// How a coupling joins the nodes of its surface to the reference node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    /// Displacements along these axes follow the rigid motion of the reference node.
+    Kinematic([bool; 3]),
+    /// The reference node follows the mean motion, in its displacement and in rotations about these axes.
+    Distributing([bool; 3]),
+}
+
+/// A reference node that is joined to the nodes of a surface.
+#[derive(Clone, Debug)]
+pub(super) struct Coupling {
+    pub reference: usize,
+    pub surface: String,
+    pub kind: Kind,
+    pub place: Place,
+}
+
+/// The couplings of a deck.
+///
+/// # Errors
+/// An error with the line for a surface or a node that does not exist, and for directions that are none.
+pub(super) fn couplings(deck: &Deck) -> Result<Vec<Coupling>, Error> {
+    let mut couplings = Vec::new();
+    let mut open: Option<&Card> = None;
+    for card in &deck.source.cards {
+        let is_kind = card.is("KINEMATIC") || card.is("DISTRIBUTING");
+        match open.take() {
+            Some(of) if is_kind => couplings.push(coupling(deck, of, card)?),
+            Some(of) => return Err(deck.source.fault(of.place, "*KINEMATIC or *DISTRIBUTING must follow *COUPLING")),
+            None if is_kind => {
+                let message = format!("{} must follow *COUPLING, which names the nodes", card.name);
+                return Err(deck.source.fault(card.place, message));
+            }
+            None => open = Some(card).filter(|card| card.is("COUPLING")),
+        }
+    }
+    match open {
+        Some(of) => Err(deck.source.fault(of.place, "*KINEMATIC or *DISTRIBUTING must follow *COUPLING")),
+        None => Ok(couplings),
+    }
+}
+
+fn coupling(deck: &Deck, of: &Card, kind: &Card) -> Result<Coupling, Error> {
+    let fault = |message: String| deck.source.fault(of.place, message);
+    let wanted = |name: &str| of.value(name).filter(|value| !value.is_empty());
+    let Some(target) = wanted("REFNODE") else {
+        return Err(fault("*COUPLING has no reference node; write REF NODE=NUMBER".into()));
+    };
+    let [reference] = deck.node_sets.members(target, &deck.nodes).map_err(fault)?[..] else {
+        return Err(fault(format!("the set `{target}` is no reference node: it must have one node")));
+    };
+    let Some(surface) = wanted("SURFACE") else {
+        return Err(fault("*COUPLING has no surface; write SURFACE=NAME".into()));
+    };
+    let found = deck.surface_or(surface).map_err(fault)?;
+    let directions: Vec<[usize; 2]> = kind.lines.iter().map(|line| range(deck, line)).collect::<Result<_, _>>()?;
+    let named = |axis: usize| directions.iter().any(|[first, last]| (*first..=*last).contains(&axis));
+    let fault = |message: &str| Err(deck.source.fault(kind.place, message));
+    let kind = match kind.is("KINEMATIC") {
+        true if directions.is_empty() => Kind::Kinematic([true; 3]),
+        true => Kind::Kinematic([1, 2, 3].map(named)),
+        false if directions.is_empty() => return fault("*DISTRIBUTING names no directions; write 1, 3 or 1, 6"),
+        false => Kind::Distributing([4, 5, 6].map(named)),
+    };
+    match kind {
+        Kind::Kinematic([false, false, false]) => {
+            fault("*KINEMATIC names no direction 1, 2 or 3; nodes of a solid have no rotations that could follow")
+        }
+        Kind::Distributing(_) if !found.bare.is_empty() => {
+            fault("*DISTRIBUTING needs a surface of faces, because forces are distributed over areas")
+        }
+        _ => Ok(Coupling { reference, surface: surface.into(), kind, place: of.place }),
+    }
+}
+
+/// The first and the last direction of a line.
+fn range(deck: &Deck, line: &Line) -> Result<[usize; 2], Error> {
+    let mut fields = deck.source.fields(line);
+    let first = fields.whole("the first direction")?;
+    let last = if fields.clone().text().is_some() { fields.whole("the last direction")? } else { first };
+    match first >= 1 && first <= last && last <= 6 {
+        true => Ok([first, last]),
+        false => Err(fields.fault(format!("directions {first} to {last} are none; there are 1 to 6"))),
+    }
+}
+
+impl Coupling {
+    /// Returns `true` if all displacements of the nodes follow.
+    pub fn is_rigid(&self, deck: &Deck) -> bool {
+        matches!(self.kind, Kind::Kinematic(axes) if axes[..deck.dimension()].iter().all(|follows| *follows))
+    }
+
+    /// Its equations.
+    ///
+    /// # Errors
+    /// An error with the line for a model of revolution, and for a surface whose nodes lie on a line.
+    pub fn equations(&self, deck: &Deck) -> Result<Vec<Equation>, Error> {
+        let fault = |message: String| deck.source.fault(self.place, message);
+        if deck.element_list.first().is_some_and(|element| element.of_type.space == Space::Axisymmetric) {
+            let message = "this coupling is not read in an axisymmetric model; *KINEMATIC with directions 1, 2 is";
+            return Err(fault(message.into()));
+        }
+        let sums = match self.kind {
+            Kind::Kinematic(axes) => self.kinematic(deck, axes).map_err(fault)?,
+            Kind::Distributing(about) => self.distributing(deck, about).map_err(fault)?,
+        };
+        Ok(sums.into_iter().map(|sum| Equation { sum, place: self.place }).collect())
+    }
+
+    /// The rotations of this model.
+    fn turns(deck: &Deck) -> &'static [usize] {
+        if deck.dimension() == 3 { &[0, 1, 2] } else { &[2] }
+    }
+
+    /// u_k = U_k + (R x r)_k at each node, with r from the reference node.
+    fn kinematic(&self, deck: &Deck, axes: [bool; 3]) -> Result<Vec<Sum>, String> {
+        let centre = deck.place_of_node(self.reference);
+        let mut sums = Vec::new();
+        for node in deck.nodes_of_surface(deck.surface_or(&self.surface)?) {
+            let away = minus(deck.place_of_node(node), centre);
+            for axis in (0..deck.dimension()).filter(|&axis| axes[axis]) {
+                let mut sum = Sum::default();
+                sum.add((node, axis), 1.0);
+                sum.add((self.reference, axis), -1.0);
+                for &about in Self::turns(deck) {
+                    sum.add((self.reference, 3 + about), -cross(COORDINATES[about], away)[axis]);
+                }
+                sums.push(sum);
+            }
+        }
+        Ok(sums)
+    }
+
+    /// A force F and a moment M at the reference node become the forces w (F + (T^-1 M') x r) on the nodes, with the share w of a node in
+    /// the area, its distance r from the centre of area, T = sum of w (r.r I - r r'), and the moment M' about the centre. The work of these
+    /// forces is that of F and M, so that U and R are means of the displacements of the nodes.
+    fn distributing(&self, deck: &Deck, about: [bool; 3]) -> Result<Vec<Sum>, String> {
+        let areas = deck.areas(deck.surface_or(&self.surface)?);
+        let whole: f64 = areas.values().sum();
+        let nodes: Vec<(usize, f64, [f64; 3])> =
+            areas.into_iter().map(|(node, area)| (node, area / whole, deck.place_of_node(node))).collect();
+        let mean = |axis: usize| nodes.iter().map(|(_, share, at)| share * at[axis]).sum::<f64>();
+        let centre = [0, 1, 2].map(mean);
+        let mut inertia = Matrix3::zeros();
+        for (_, share, at) in &nodes {
+            let away = Vector3::from(minus(*at, centre));
+            inertia += (Matrix3::from_diagonal_element(away.norm_squared()) - away * away.transpose()) * *share;
+        }
+        if deck.dimension() == 2 {
+            // Only the rotation about z exists.
+            inertia = Matrix3::from_diagonal_element(inertia[(2, 2)]);
+        }
+        let has_extent = inertia.determinant() > ON_LINE * inertia.trace().powi(3);
+        let Some(inverse) = inertia.try_inverse().filter(|_| has_extent) else {
+            return Err(format!(
+                "the nodes of the surface `{}` lie on a line, about which no moment acts",
+                self.surface
+            ));
+        };
+        let lever = minus(deck.place_of_node(self.reference), centre);
+        let mut sums = Vec::new();
+        for kind in 0..6 {
+            let axis = COORDINATES[kind % 3];
+            let is_turn = kind >= 3;
+            let exists = if is_turn {
+                Self::turns(deck).contains(&(kind - 3)) && about[kind - 3]
+            } else {
+                kind < deck.dimension()
+            };
+            if !exists {
+                continue;
+            }
+            let (force, mut moment) = if is_turn { ([0.0; 3], axis) } else { (axis, cross(lever, axis)) };
+            if deck.dimension() == 2 {
+                moment = [0.0, 0.0, moment[2]];
+            }
+            let turn: [f64; 3] = (inverse * Vector3::from(moment)).into();
+            let mut sum = Sum::default();
+            sum.add((self.reference, kind), -1.0);
+            for &(node, share, at) in &nodes {
+                let by_turn = cross(turn, minus(at, centre));
+                sum.add_along(node, [0, 1, 2].map(|axis| share * (force[axis] + by_turn[axis])));
+            }
+            sums.push(sum);
+        }
+        Ok(sums)
+    }
+}
