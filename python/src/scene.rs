@@ -24,8 +24,8 @@ use crate::work::{End, Place, run};
 #[pyclass(frozen, module = "signorini")]
 pub struct Scene {
     pub inner: Arc<signorini::Scene>,
-    /// The file of the scene, for the line and column in messages.
-    file: Option<PathBuf>,
+    /// The file of the scene, for the line and column in messages, and the step if it is a deck.
+    file: Option<(PathBuf, Option<usize>)>,
     model: Mutex<Option<Arc<Model>>>,
 }
 
@@ -64,11 +64,11 @@ impl Scene {
     }
 }
 
-fn built(scene: &signorini::Scene, file: Option<PathBuf>) -> Result<Model, Error> {
+fn built(scene: &signorini::Scene, file: Option<(PathBuf, Option<usize>)>) -> Result<Model, Error> {
     let most = Settings::default().with_available_memory().memory;
     scene.check_size_without_factor(most.unwrap_or(f64::INFINITY))?;
     scene.build().map_err(|error| match &file {
-        Some(file) => signorini::Scene::located(error, file, None),
+        Some((file, step)) => signorini::Scene::located(error, file, *step),
         None => error,
     })
 }
@@ -81,8 +81,15 @@ fn text_of(source: &Bound<'_, PyAny>) -> PyResult<String> {
 #[pymethods]
 impl Scene {
     #[new]
-    #[pyo3(signature = (source, *, folder = None, allow_outside = false))]
-    fn new(source: &Bound<'_, PyAny>, folder: Option<PathBuf>, allow_outside: bool) -> PyResult<Self> {
+    #[pyo3(signature = (source, *, folder = None, allow_outside = false, without_friction = false, linear = false, step = None))]
+    fn new(
+        source: &Bound<'_, PyAny>,
+        folder: Option<PathBuf>,
+        allow_outside: bool,
+        without_friction: bool,
+        linear: bool,
+        step: Option<usize>,
+    ) -> PyResult<Self> {
         let py = source.py();
         let is_mapping = source.cast::<PyDict>().is_ok();
         let (scene, file) = match (is_mapping, source.extract::<PathBuf>()) {
@@ -91,10 +98,12 @@ impl Scene {
                 let scene = scene.map(|scene| signorini::Scene { folder: Some(folder.unwrap_or_default()), ..scene });
                 (scene, None)
             }
-            (false, Ok(path)) if allow_outside && signorini::Scene::is_deck(&path) => {
-                (signorini::Scene::read_deck(&path, &["outside"], None), Some(path))
+            (false, Ok(path)) if signorini::Scene::is_deck(&path) => {
+                let named = [("outside", allow_outside), ("friction", without_friction), ("linear", linear)];
+                let permits: Vec<&str> = named.iter().filter(|(_, is_given)| *is_given).map(|(name, _)| *name).collect();
+                (signorini::Scene::read_deck(&path, &permits, step), Some((path, step)))
             }
-            (false, Ok(path)) => (signorini::Scene::read(&path), Some(path)),
+            (false, Ok(path)) => (signorini::Scene::read(&path), Some((path, None))),
             (false, Err(_)) => {
                 let kind = kind_of(source);
                 return Err(bad_type(py, format!("a scene is made of a file name or a dictionary, not of a {kind}")));

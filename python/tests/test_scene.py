@@ -313,3 +313,50 @@ def test_a_grid_of_pyvista_has_the_mesh_and_the_fields(stands_in: bool, monkeypa
     assert np.array_equal(grid.points, np.pad(answer.scene.nodes, ((0, 0), (0, 1))))
     assert np.array_equal(fields["displacement"], np.pad(answer.displacement, ((0, 0), (0, 1))))
     assert np.array_equal(fields["stress"], answer.stress) and np.array_equal(fields["von_mises"], answer.von_mises)
+
+
+DECK = """*NODE, NSET=ALL
+1, 0., 0., 0.
+2, 1., 0., 0.
+3, 1., 1., 0.
+4, 0., 1., 0.
+5, 0., 0., 1.
+6, 1., 0., 1.
+7, 1., 1., 1.
+8, 0., 1., 1.
+*ELEMENT, TYPE=C3D8, ELSET=E
+1, 1, 2, 3, 4, 5, 6, 7, 8
+*NSET, NSET=BASE
+1, 2, 3, 4
+*NSET, NSET=TOP
+5, 6, 7
+*MATERIAL, NAME=M
+*ELASTIC
+200., 0.
+*SOLID SECTION, ELSET=E, MATERIAL=M
+*BOUNDARY
+BASE, 1, 3
+*STEP
+*STATIC
+*BOUNDARY
+TOP, 3, 3, 0.01
+*END STEP
+*STEP, NLGEOM
+*STATIC
+*BOUNDARY
+TOP, 3, 3, 0.2
+*END STEP
+"""
+
+
+def test_a_deck_is_read_up_to_a_step(tmp_path: Path) -> None:
+    deck = tmp_path / "cube.inp"
+    deck.write_text(DECK)
+    first = sg.Scene(deck, step=1).solve()
+    assert np.abs(first.displacement).max() == pytest.approx(0.01, rel=1e-9)
+    with pytest.raises(sg.BadInput, match="above 5 % of either"):
+        sg.Scene(deck).solve()
+    last = sg.Scene(deck, linear=True).solve()
+    np.testing.assert_allclose(last.displacement, 20 * first.displacement, rtol=1e-9, atol=1e-12)
+    with pytest.raises(sg.BadInput, match="the deck has no step 3; its steps are 1 to 2"):
+        sg.Scene(deck, step=3)

@@ -321,8 +321,10 @@ class Path:
 class Scene:
     """A contact scene: bodies, supports, loads and obstacles.
 
-    source: the name of a JSON file, or a dictionary with the same keys. folder: the folder of the files that a dictionary names.
-    allow_outside: `True` lets the scene read files outside its folder. The mesh and the matrices are built at the first access.
+    source: the name of a JSON file or of a deck of CalculiX (`.inp`), or a dictionary with the same keys. folder: the folder of the files
+    that a dictionary names. allow_outside: `True` lets the scene read files outside its folder. Of a deck: step, from 1, the last one if it
+    is left out; without_friction: `True` leaves friction out; linear: `True` answers NLGEOM with small displacements whatever the strains
+    are. The mesh and the matrices are built at the first access.
 
     Raises `SceneError`, with JSON path, line and column, for a value that is not allowed, and `FileError` for a file that cannot be
     read.
@@ -334,6 +336,9 @@ class Scene:
         *,
         folder: str | PathLike[str] | None = None,
         allow_outside: bool = False,
+        without_friction: bool = False,
+        linear: bool = False,
+        step: int | None = None,
     ) -> Scene: ...
     @property
     def title(self) -> str:
