@@ -27,6 +27,7 @@ WOOD = [
     "11000., 900., 500., 0.4, 0.45, 0.5, 700., 650.,",
     "60., 20.",
 ]
+RINGS = ["*ORIENTATION, NAME=GRAIN, SYSTEM=CYLINDRICAL", "-0.5, 0.2, 0., -0.4, 0.5, 1.", *WOOD[2:]]
 HELD = ["*BOUNDARY", "Z0, 1, 3"]
 WARM = ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", "ALL, 20."]
 BALL = pathlib.Path(__file__).resolve().parent.parent / "tests" / "meshes" / "half-ball-tet10.msh"
@@ -88,6 +89,7 @@ def straight() -> dict[str, str]:
         "centrifugal, half the edges": single(body("C3D10", (6, 4, 4)), HELD, ["*DLOAD", turning]),
         "centrifugal, C3D20": single(brick, HELD, ["*DLOAD", turning]),
         "orthotropic, turned axes": single(tetra, HELD, ["*DSLOAD", "SIDE_X1, P, 0.5", "*CLOAD", "CORNER, 2, 0.4"], WOOD),
+        "orthotropic, axes around a line, C3D20": single(brick, HELD, ["*DSLOAD", "SIDE_X1, P, 0.5", "*CLOAD", "CORNER, 2, 0.4"], RINGS),
         "pressure, gravity, force, temperature": decks.Bar("C3D10").deck("C3D10"),
         "the same with C3D20": decks.Bar("C3D20").deck("C3D20"),
         "prescribed displacement and pressure, C3D20": single(

@@ -100,7 +100,8 @@ impl Scene {
             }
             (false, Ok(path)) if signorini::Scene::is_deck(&path) => {
                 let named = [("outside", allow_outside), ("friction", without_friction), ("linear", linear)];
-                let permits: Vec<&str> = named.iter().filter(|(_, is_given)| *is_given).map(|(name, _)| *name).collect();
+                let permits: Vec<&str> =
+                    named.iter().filter(|(_, is_given)| *is_given).map(|(name, _)| *name).collect();
                 (signorini::Scene::read_deck(&path, &permits, step), Some((path, step)))
             }
             (false, Ok(path)) => (signorini::Scene::read(&path), Some((path, None))),

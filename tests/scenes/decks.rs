@@ -202,6 +202,36 @@ fn material_axes_are_turned_by_an_orientation() {
     }
 }
 
+/// Axes around a line through (0, -5) along z: those of the scene that says so. In the plane the line is across it.
+#[test]
+fn material_axes_turn_around_the_line_of_an_orientation() {
+    const AROUND: &str = "*MATERIAL, NAME=STEEL\n*ELASTIC, TYPE=ENGINEERING CONSTANTS\n\
+                          400., 100., 200., 0.2, 0.1, 0.3, 60., 70.,\n80.\n*ORIENTATION, NAME=O, SYSTEM=CYLINDRICAL\n";
+    for (element, points, around) in [
+        ("C3D10", "0., -5., 1., 0., -5., 4.\n", Some("{\"along\": [0, 0, 3], \"point\": [0, -5, 1]}")),
+        ("CPS4", "0., -5., 0., 0., -5., 1.\n", Some("{\"point\": [0, -5]}")),
+        ("CPS4", "0., -5., 0., 1., -5., 0.\n", None),
+        ("C3D8", "0., -5., 0., 0., -5., 0.\n", None),
+    ] {
+        let deck = block(element)
+            .replace(MATERIAL, &format!("{AROUND}{points}"))
+            .replace("ELSET=PART, MATERIAL=STEEL", "ELSET=PART, MATERIAL=STEEL, ORIENTATION=o");
+        let deck = deck + SYMMETRIC + &step("*DSLOAD\nFACE, P, -3.\n");
+        let Some(around) = around else {
+            let (_, message) = refusal(&deck);
+            assert!(
+                message.contains("across the plane") || message.contains("two points of the axis are one"),
+                "{message}"
+            );
+            continue;
+        };
+        let scene = read(&[("deck.inp", &deck)], &[]).unwrap();
+        let text = Scene::text_of_deck(&scene.folder.clone().unwrap().join("deck.inp"), "deck.inp", &[], None).unwrap();
+        fs::remove_dir_all(scene.folder.unwrap()).unwrap();
+        assert!(text.contains(&format!("\"around\": {around}")), "{text}");
+    }
+}
+
 /// Directions 1, 2, 3 of all nodes are y, -x, z: supports and forces along them stretch along x. Around a line through (-1, 2) along z the
 /// end moves outwards by 0.01.
 #[test]

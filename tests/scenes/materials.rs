@@ -197,6 +197,17 @@ fn invalid_materials_are_refused_at_their_path() {
         ),
         (orthotropic(&[("axes", json!([[1, 0, 0], [0, 1, 0]]))]), at(".orthotropic.axes"), "give an `angle`"),
         (
+            orthotropic(&[("angle", json!(3)), ("around", json!({"point": [0, 0]}))]),
+            at(".orthotropic.around"),
+            "stands beside `angle` or `axes`",
+        ),
+        (
+            orthotropic(&[("around", json!({"point": [0, 0], "along": [0, 0, 1]}))]),
+            at(".orthotropic.around.along"),
+            "is across the plane; leave it out",
+        ),
+        (orthotropic(&[("around", json!({"point": [0]}))]), at(".orthotropic.around.point"), "must have 2"),
+        (
             changed(&orthotropic(&[]), "/materials/0/material/young", json!(3)),
             at(""),
             "`orthotropic` beside `young` or `poisson`",
@@ -259,4 +270,94 @@ fn further_bodies_have_separate_materials() {
     assert_eq!(young, [vec![100.0, 50.0], vec![9.0]]);
     let loads = answer.resultants().unwrap().iter().find(|resultant| resultant.of == "loads").unwrap();
     assert!((loads.force[1] + 110.0).abs() < ROUNDING, "{loads:?}");
+}
+
+/// A quarter of a ring with the radii 1 and 2 of a material whose axes turn around its middle, E1 = 100 along the radius and E2 = 400
+/// around it, under an inner pressure of 3.
+fn turned_ring(cells: usize) -> Value {
+    json!({
+        "model": "plane-stress",
+        "body": {"ring": {"radius": {"points": [1, 2], "divisions": [cells]}, "angle": {"points": [0, 90], "divisions": [2 * cells]},
+                          "element": "q8"}},
+        "material": {"orthotropic": {"young": [100, 400, 150], "poisson": [0.1, 0.2, 0.15], "shear": [60, 50, 40],
+                                     "around": {"point": [0, 0]}}},
+        "supports": [{"on": {"boundary": "start"}, "y": 0}, {"on": {"boundary": "end"}, "x": 0}],
+        "obstacles": [{"boundary": "outer", "approach": "+y", "shape": {"plane": {"point": [0, 9], "normal": [0, 1]}}}],
+        "loads": [{"pressure": {"boundary": "inner", "value": 3}}],
+    })
+}
+
+/// The radial displacement in closed form: sigma_r = A r^(k-1) + B r^(-k-1), sigma_t = k A r^(k-1) - k B r^(-k-1), k^2 = E2/E1.
+///
+/// # Source
+/// S. G. Lekhnitskii, *Anisotropic Plates*, section on rings with cylindrical anisotropy.
+fn of_ring(r: f64) -> f64 {
+    let k = 2.0_f64;
+    let outer = 2.0_f64;
+    let a = -3.0 / (1.0 - outer.powf(2.0 * k));
+    let b = -a * outer.powf(2.0 * k);
+    let radial = a * r.powf(k - 1.0) + b * r.powf(-k - 1.0);
+    let hoop = k * a * r.powf(k - 1.0) - k * b * r.powf(-k - 1.0);
+    r * (hoop / 400.0 - 0.1 / 100.0 * radial)
+}
+
+#[test]
+fn axes_around_a_line_give_the_ring_of_closed_form() {
+    let error = |cells: usize| {
+        let answer = answer(&turned_ring(cells));
+        let nodes = answer.model().mesh().nodes();
+        let exact = of_ring(1.0);
+        let away = nodes.iter().zip(answer.displacement().chunks(2)).map(|(at, found)| {
+            let r = at[0].hypot(at[1]);
+            let own = of_ring(r);
+            (found[0] - own * at[0] / r).hypot(found[1] - own * at[1] / r) / exact
+        });
+        assert!(answer.forces().unwrap().balance < 1e-12);
+        away.fold(0.0, f64::max)
+    };
+    let [coarse, fine] = [4, 8].map(error);
+    // Displacements of quadratic elements converge with the third power of their size.
+    assert!(coarse < 2e-3 && fine < coarse / 7.0, "{coarse:e} {fine:e}");
+}
+
+/// In space the line may have any direction: a ring turned in space has the displacements of the ring. The forces of an answer come from
+/// its strains, and balance; warmer by one temperature, a free body whose expansion is the same along all axes keeps its form.
+#[test]
+fn axes_turn_around_any_line() {
+    let block = |around: Value| {
+        json!({
+            "model": "space",
+            "body": {"box": {"x": {"points": [1, 2], "divisions": [2]}, "y": {"points": [-1, 1], "divisions": [2]},
+                             "z": {"points": [0, 1], "divisions": [2]}, "element": "hex20"}},
+            "material": {"orthotropic": {"young": [100, 400, 150], "poisson": [0.1, 0.2, 0.15], "shear": [60, 50, 40],
+                                         "expansion": [1e-3, 1e-3, 1e-3], "around": around}},
+            "supports": [{"on": {"boundary": "left"}, "x": 0}, {"on": {"point": [1, -1, 0]}, "y": 0, "z": 0}, {"on": {"point": [1, 1, 0]}, "z": 0}],
+            "obstacles": [{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [9, 0, 0], "normal": [1, 0, 0]}}}],
+            "temperature": [{"value": 10}],
+            "loads": [],
+        })
+    };
+    let lines = [
+        json!({"point": [0, 0, 0]}),
+        json!({"point": [0.3, 0.2, -5], "along": [1, -2, 3]}),
+        json!({"point": [1.5, 0, 0], "along": [0, 1, 0]}),
+    ];
+    for line in lines {
+        let answer = answer(&block(line.clone()));
+        for (at, found) in answer.model().mesh().nodes().iter().zip(answer.displacement().chunks(3)) {
+            let exact = [1e-2 * (at[0] - 1.0), 1e-2 * (at[1] + 1.0), 1e-2 * at[2]];
+            assert!(
+                (0..3).all(|axis| (found[axis] - exact[axis]).abs() < 1e-13),
+                "{line}: {found:?} instead of {exact:?}"
+            );
+        }
+        assert!(
+            answer
+                .stress()
+                .unwrap()
+                .nodes
+                .iter()
+                .all(|stress| stress.components().iter().all(|part| part.abs() < 1e-10))
+        );
+    }
 }

@@ -161,7 +161,8 @@ impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
         let mut sums = Sums::default();
         for at in &table.points {
             let point = self.body.point(cell, at);
-            let exact = (self.exact)(cell.place(&at.shape));
+            let place = cell.place(&at.shape);
+            let exact = (self.exact)(place);
             let mut away = exact.displacement;
             for (value, share) in local.iter().zip(at.shape) {
                 away.iter_mut().zip(value).for_each(|(away, component)| *away -= share * component);
@@ -172,7 +173,7 @@ impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
             let weight = point.weight * scale;
             let square = |vector: &[f64; 3]| vector.iter().map(|component| component * component).sum::<f64>();
             let here = Sums {
-                energy: [energy(law, &difference), energy(law, &exact.strain)],
+                energy: [energy(law, &difference, place), energy(law, &exact.strain, place)],
                 l2: [square(&away), square(&exact.displacement)],
             };
             sums = sums.plus(&here, weight);
@@ -202,8 +203,8 @@ impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
     }
 }
 
-/// Twice the density of the strain energy, `sigma : eps`.
-fn energy(law: &Law, strain: &Symmetric) -> f64 {
-    let stress = law.stress(strain, trace(strain));
+/// Twice the density of the strain energy at a place, `sigma : eps`.
+fn energy(law: &Law, strain: &Symmetric, place: [f64; 3]) -> f64 {
+    let stress = law.stress(strain, trace(strain), || place);
     (0..6).map(|axis| if axis < 3 { 1.0 } else { 2.0 } * stress[axis] * strain[axis]).sum()
 }

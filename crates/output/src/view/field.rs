@@ -157,13 +157,17 @@ impl Source<'_> {
     /// at each node; where materials meet, the mean over the elements around the node, each with its own law and stress.
     fn energy_density(&self) -> Result<Values, Error> {
         let (stress, body) = (self.answer.stress()?, self.answer.model().body());
-        let mut sums = vec![(0.0, 0.0); stress.nodes.len()];
+        let (nodes, mut sums) = (body.mesh().nodes(), vec![(0.0, 0.0); stress.nodes.len()]);
         let mut in_elements = Vec::with_capacity(stress.elements.len());
         for (element, own) in body.elements().zip(&stress.elements) {
-            let density = |stress: &Stress| 0.5 * element.phase.law.complementary_energy(&stress.components());
-            in_elements.push(density(own));
+            let density = |stress: &Stress, place: [f64; 3]| {
+                0.5 * element.phase.law.complementary_energy(&stress.components(), || place)
+            };
+            let mean = |axis: usize| element.nodes.iter().map(|&node| nodes[node][axis]).sum::<f64>();
+            let centroid = [0, 1, 2].map(|axis| mean(axis) / element.nodes.len() as f64);
+            in_elements.push(density(own, centroid));
             for &node in element.nodes {
-                sums[node].0 += density(stress.within(node, element.phase_number));
+                sums[node].0 += density(stress.within(node, element.phase_number), nodes[node]);
                 sums[node].1 += 1.0;
             }
         }

@@ -11,7 +11,7 @@ use crate::fem::material::{Lame, Stiffness};
 pub fn element_stiffness(body: &ElasticBody, element: &BodyElement, table: &Tabulated) -> ElementStiffness {
     let blocks = match &element.phase.law.stiffness {
         &Stiffness::Isotropic(lame) => isotropic_stiffness(body, lame, table, element),
-        Stiffness::General(matrices) => general_stiffness(body, &matrices.stiffness, table, &element.cell),
+        Stiffness::General(matrices) => general_stiffness(body, matrices, table, &element.cell),
     };
     ElementStiffness::of(blocks)
 }

@@ -372,7 +372,8 @@ impl BodyElement<'_> {
     /// The stress of a strain at a tabulated point: C (eps - alpha T) + sigma_0. A mean `dilatation` replaces the trace of the strain.
     #[inline]
     pub fn stress(&self, at: &TabulatedPoint, strain: &Symmetric, dilatation: Option<f64>) -> Symmetric {
-        let stress = self.phase.law.stress(strain, dilatation.unwrap_or_else(|| trace(strain)));
+        let stress =
+            self.phase.law.stress(strain, dilatation.unwrap_or_else(|| trace(strain)), || self.cell.place(&at.shape));
         match self.own_stress(at) {
             None => stress,
             Some(own) => [0, 1, 2, 3, 4, 5].map(|component| stress[component] + own[component]),
@@ -382,6 +383,6 @@ impl BodyElement<'_> {
     /// The stress at a tabulated point without any strain, if there is one.
     #[inline]
     pub fn own_stress(&self, at: &TabulatedPoint) -> Option<Symmetric> {
-        self.phase.own.as_ref().map(|own| own.at(self.cell.place(&at.shape)))
+        self.phase.own_stress(self.cell.place(&at.shape))
     }
 }

@@ -4,7 +4,7 @@ use super::integration::Integration;
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::{Symmetric, dot};
-use crate::fem::material::{Law, Material};
+use crate::fem::material::{Law, Material, back, local};
 use signorini_qp as qp;
 
 /// A material and its law in the formulation of the body, and its stress without strain.
@@ -39,7 +39,7 @@ impl Temperature {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OwnStress {
     initial: Symmetric,
-    /// `- C alpha`, the stress per degree.
+    /// `- C alpha`, the stress per degree, along the axes of the law.
     per_degree: Symmetric,
     temperature: Temperature,
 }
@@ -52,11 +52,11 @@ impl OwnStress {
         temperature: Temperature { value: 0.0, gradient: [0.0; 3] },
     };
 
-    /// The stress at a point.
+    /// The stress at a place, where the law has these axes.
     #[inline]
-    pub fn at(&self, place: [f64; 3]) -> Symmetric {
-        let warmer = self.temperature.at(place);
-        [0, 1, 2, 3, 4, 5].map(|component| self.initial[component] + warmer * self.per_degree[component])
+    fn at(&self, place: [f64; 3], axes: &Option<[[f64; 3]; 3]>) -> Symmetric {
+        let (warmer, per_degree) = (self.temperature.at(place), back(self.per_degree, axes));
+        [0, 1, 2, 3, 4, 5].map(|component| self.initial[component] + warmer * per_degree[component])
     }
 }
 
@@ -103,13 +103,19 @@ impl Phase {
         Ok(Phase { own: Some(OwnStress { initial, ..self.own.unwrap_or(OwnStress::NONE) }), ..self })
     }
 
+    /// The stress at a place without any strain, if there is one.
+    #[inline]
+    pub fn own_stress(&self, place: [f64; 3]) -> Option<Symmetric> {
+        self.own.as_ref().map(|own| own.at(place, &self.law.axes(|| place)))
+    }
+
     /// The strain along z that a stress at a place causes, with that of the temperature there.
     pub fn strain_across(&self, stress: &Symmetric, place: [f64; 3]) -> f64 {
         let own = self.own.unwrap_or(OwnStress::NONE);
         let mut elastic = *stress;
         elastic.iter_mut().zip(own.initial).for_each(|(stress, initial)| *stress -= initial);
         let expansion = self.material.expansion().map_or(0.0, |per_degree| per_degree[2]);
-        self.material.strain_across(&elastic) + own.temperature.at(place) * expansion
+        self.material.strain_across(&local(&elastic, &self.law.axes(|| place))) + own.temperature.at(place) * expansion
     }
 
     /// The material.

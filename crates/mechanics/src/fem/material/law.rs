@@ -1,7 +1,8 @@
 //! The law of stress and strain in a formulation: sigma = lambda tr(eps) I + 2 mu eps, or sigma = C eps.
 
+use super::cylinder::Cylinder;
 use crate::fem::formulation::Formulation;
-use crate::fem::geometry::{Symmetric, trace};
+use crate::fem::geometry::{Symmetric, trace, turned};
 
 /// A matrix between components `[xx, yy, zz, xy, yz, zx]` of stress and of engineering strain.
 pub type Matrix = [[f64; 6]; 6];
@@ -31,6 +32,16 @@ pub struct Matrices {
     pub stiffness: Matrix,
     /// From stress to engineering strain, for the components whose strain the formulation has; zero elsewhere.
     pub compliance: Matrix,
+    /// The line around which the axes of both turn; `None` for x, y and z.
+    pub around: Option<Cylinder>,
+}
+
+impl Matrices {
+    /// The axes of the matrices at a place, if they turn.
+    #[inline]
+    pub fn axes(&self, place: impl Fn() -> [f64; 3]) -> Option<[[f64; 3]; 3]> {
+        self.around.map(|line| line.axes_or_any(place()))
+    }
 }
 
 /// The law of a material in a formulation.
@@ -46,9 +57,25 @@ impl Law {
         Law { stiffness, formulation }
     }
 
-    /// The stress of a strain. In an isotropic material `dilatation` replaces the trace; it may be a mean over the element.
+    /// The stress of a strain at a place. In an isotropic material `dilatation` replaces the trace; it may be a mean over the element.
     #[inline]
-    pub fn stress(&self, strain: &Symmetric, dilatation: f64) -> Symmetric {
+    pub fn stress(&self, strain: &Symmetric, dilatation: f64, place: impl Fn() -> [f64; 3]) -> Symmetric {
+        let axes = self.axes(place);
+        back(self.local_stress(&local(strain, &axes), dilatation), &axes)
+    }
+
+    /// The axes of the law at a place; `None` for x, y and z.
+    #[inline]
+    pub fn axes(&self, place: impl Fn() -> [f64; 3]) -> Option<[[f64; 3]; 3]> {
+        match &self.stiffness {
+            Stiffness::Isotropic(_) => None,
+            Stiffness::General(matrices) => matrices.axes(place),
+        }
+    }
+
+    /// The stress of a strain, both along the axes of the law.
+    #[inline]
+    fn local_stress(&self, strain: &Symmetric, dilatation: f64) -> Symmetric {
         match &self.stiffness {
             Stiffness::Isotropic(Lame { lambda, mu }) => {
                 let mut stress = strain.map(|component| 2.0 * mu * component);
@@ -62,22 +89,23 @@ impl Law {
         }
     }
 
-    /// The stress that suppresses a free strain: minus the stress of that strain, without the components that the formulation leaves
-    /// free.
+    /// The stress that suppresses a free strain, both along the axes of the law: minus the stress of that strain, without the components
+    /// that the formulation leaves free.
     pub fn holding(&self, free: &Symmetric) -> Symmetric {
         let mut held = [0.0; 6];
         self.formulation.stresses().iter().for_each(|&component| held[component] = free[component]);
-        self.stress(&held, trace(&held)).map(|component| -component)
+        self.local_stress(&held, trace(&held)).map(|component| -component)
     }
 
-    /// `sigma : C^-1 : sigma`, twice the density of the complementary energy, of the components whose strain the formulation has.
+    /// `sigma : C^-1 : sigma` at a place, twice the density of the complementary energy, of the components whose strain the formulation has.
     ///
     /// In an isotropic material it is (s : s - lambda/(2 mu + n lambda) (tr s)^2)/(2 mu), with n normal components.
-    pub fn complementary_energy(&self, stress: &Symmetric) -> f64 {
+    pub fn complementary_energy(&self, stress: &Symmetric, place: impl Fn() -> [f64; 3]) -> f64 {
         let &Lame { lambda, mu } = match &self.stiffness {
             Stiffness::Isotropic(lame) => lame,
             Stiffness::General(matrices) => {
-                let strain = product(&matrices.compliance, stress);
+                let stress = local(stress, &matrices.axes(place));
+                let strain = product(&matrices.compliance, &stress);
                 return strain.iter().zip(stress).map(|(strain, stress)| strain * stress).sum();
             }
         };
@@ -100,6 +128,18 @@ impl Law {
             Stiffness::General(matrices) => (0..3).map(|axis| matrices.stiffness[axis][axis]).fold(0.0, f64::max),
         }
     }
+}
+
+/// A tensor along axes.
+#[inline]
+pub fn local(tensor: &Symmetric, axes: &Option<[[f64; 3]; 3]>) -> Symmetric {
+    axes.as_ref().map_or(*tensor, |axes| turned(*tensor, axes))
+}
+
+/// A tensor along x, y and z, from one along axes.
+#[inline]
+pub fn back(tensor: Symmetric, axes: &Option<[[f64; 3]; 3]>) -> Symmetric {
+    axes.as_ref().map_or(tensor, |axes| turned(tensor, &[0, 1, 2].map(|i| axes.map(|axis| axis[i]))))
 }
 
 /// Engineering strains: twice the shear components of the tensor.

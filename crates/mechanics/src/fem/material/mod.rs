@@ -1,9 +1,11 @@
 //! Homogeneous linear elasticity: materials, isotropic or orthotropic, with density and thermal expansion.
 
+mod cylinder;
 mod law;
 mod orthotropic;
 
-pub use law::{Lame, Law, Stiffness};
+pub use cylinder::Cylinder;
+pub use law::{Lame, Law, Matrices, Stiffness, back, local};
 use orthotropic::Orthotropic;
 use signorini_qp as qp;
 
@@ -67,6 +69,24 @@ impl Material {
         Ok(Material { elasticity, ..self })
     }
 
+    /// The same material with axes that turn around a line: axis 1 leads away from it, 2 around it, 3 along it. `point` [x, y, z] is on the
+    /// line, in length, and `along` a vector of any length but zero. An isotropic material has no axes, and stays as it is.
+    ///
+    /// # Errors
+    /// [`qp::Error::Setting`] for a point or a vector that is not finite, and for a vector without a length.
+    pub fn around(self, point: [f64; 3], along: [f64; 3]) -> Result<Self, Error> {
+        let (name, allowed) = ("orthotropic.around", "finite, with a direction that has a length");
+        if let Some(&value) = point.iter().chain(&along).find(|part| !part.is_finite()) {
+            return Err(qp::Error::Setting { name, value, allowed }.into());
+        }
+        let line = Cylinder::new(point, along).ok_or(qp::Error::Setting { name, value: 0.0, allowed })?;
+        let elasticity = match self.elasticity {
+            Elasticity::Orthotropic(own) => Elasticity::Orthotropic(own.around(line)),
+            isotropic => isotropic,
+        };
+        Ok(Material { elasticity, ..self })
+    }
+
     /// The same material with a density (mass per volume), which motions and inertia forces need.
     ///
     /// # Errors
@@ -88,7 +108,8 @@ impl Material {
         }
     }
 
-    /// The strain of a body that is one degree warmer, if the material has coefficients of expansion.
+    /// The strain of a body that is one degree warmer, if the material has coefficients of expansion; along its axes if these turn around a
+    /// line.
     pub(crate) fn expansion(&self) -> Option<Symmetric> {
         let along = self.expansion?;
         Some(match &self.elasticity {
@@ -119,7 +140,7 @@ impl Material {
         }
     }
 
-    /// The strain along z of a stress `[xx, yy, zz, xy, yz, zx]`.
+    /// The strain along z of a stress `[xx, yy, zz, xy, yz, zx]`; of one along its axes if these turn around a line along z.
     pub(crate) fn strain_across(&self, stress: &Symmetric) -> f64 {
         match &self.elasticity {
             Elasticity::Isotropic { young, poisson } => (stress[2] - poisson * (stress[0] + stress[1])) / young,

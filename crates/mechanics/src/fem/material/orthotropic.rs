@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 use signorini_qp as qp;
 
+use super::cylinder::Cylinder;
 use super::law::{Matrices, Matrix};
 use crate::error::Error;
 use crate::fem::formulation::{Formulation, positive};
@@ -25,6 +26,8 @@ pub(super) struct Orthotropic {
     shear: [f64; 3],
     /// The axes of the material: unit vectors at right angles.
     axes: [[f64; 3]; 3],
+    /// The line around which they turn instead.
+    around: Option<Cylinder>,
 }
 
 impl Orthotropic {
@@ -58,7 +61,7 @@ impl Orthotropic {
                 qp::Error::Setting { name: "orthotropic.poisson", value: determinant, allowed: DEFINITE }.into()
             );
         }
-        Ok(Orthotropic { young, poisson, shear, axes: COORDINATES })
+        Ok(Orthotropic { young, poisson, shear, axes: COORDINATES, around: None })
     }
 
     /// The same with its first axis along a vector, and its second one in the plane of both and at right angles to it.
@@ -71,7 +74,12 @@ impl Orthotropic {
             return Err(qp::Error::Setting { name: "orthotropic.axes", value: sine, allowed }.into());
         }
         let third = unit(across);
-        Ok(Orthotropic { axes: [first, cross(third, first), third], ..self })
+        Ok(Orthotropic { axes: [first, cross(third, first), third], around: None, ..self })
+    }
+
+    /// The same with axes that turn around a line.
+    pub fn around(self, line: Cylinder) -> Self {
+        Orthotropic { axes: COORDINATES, around: Some(line), ..self }
     }
 
     pub fn young_range(&self) -> [f64; 2] {
@@ -82,7 +90,8 @@ impl Orthotropic {
     /// Stiffness and compliance in a formulation.
     pub fn matrices(&self, formulation: &Formulation) -> Result<Matrices, Error> {
         let is_plane = !matches!(formulation, Formulation::Space | Formulation::Bar { .. });
-        let lean = dot(self.axes[2], self.axes[2]) - self.axes[2][2].powi(2);
+        let third = self.around.map_or(self.axes[2], |line| line.along());
+        let lean = dot(third, third) - third[2].powi(2);
         if is_plane && lean > SAME_DIRECTION * SAME_DIRECTION {
             let allowed = "zero, which is the square of the sine between the third axis and the normal of the plane";
             return Err(qp::Error::Setting { name: "orthotropic.axes", value: lean, allowed }.into());
@@ -94,7 +103,7 @@ impl Orthotropic {
         let strained = if let Formulation::PlaneStrain { .. } = formulation { &[0, 1, 3] } else { stressed };
         let stiffness = inverse(&compliance, stressed).ok_or_else(|| self.overflow())?;
         let compliance = inverse(&stiffness, strained).ok_or_else(|| self.overflow())?;
-        Ok(Matrices { stiffness, compliance })
+        Ok(Matrices { stiffness, compliance, around: self.around })
     }
 
     fn overflow(&self) -> Error {

@@ -61,14 +61,15 @@ impl EstimatedError {
             let mut difference = 0.0;
             for at in &tables.at(element.kind).points {
                 let (point, stress) = strained.at(at);
+                let place = || cell.place(&at.shape);
                 let mut away = stress;
                 for (share, of_node) in at.shape.iter().zip(&recovered) {
                     away.iter_mut().zip(of_node).for_each(|(entry, component)| *entry -= share * component);
                 }
-                difference += volume * point.weight * law.complementary_energy(&away);
-                whole += volume * point.weight * law.complementary_energy(&stress);
+                difference += volume * point.weight * law.complementary_energy(&away, place);
+                whole += volume * point.weight * law.complementary_energy(&stress, place);
                 if let Some(own) = element.own_stress(at) {
-                    unstrained += volume * point.weight * law.complementary_energy(&own);
+                    unstrained += volume * point.weight * law.complementary_energy(&own, place);
                 }
             }
             of_elements.push(difference);

@@ -75,7 +75,8 @@ pub(crate) fn volume_and_energy(body: &ElasticBody, displacement: &[f64]) -> Res
         for at in &tables.at(element.kind).points {
             let (point, stress) = strained.at(at);
             volume += point.weight;
-            energy += point.weight * laws[element.phase_number as usize].complementary_energy(&stress) / 2.0;
+            let law = &laws[element.phase_number as usize];
+            energy += point.weight * law.complementary_energy(&stress, || element.cell.place(&at.shape)) / 2.0;
         }
         let scale = element.cell.unit().powi(body.dimension() as i32);
         [scale * volume, scale * energy]

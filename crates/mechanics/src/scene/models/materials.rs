@@ -134,6 +134,30 @@ impl BodyMaterials<'_> {
         let (in_plane, in_space) = (self.model.dimension() == 2, self.model == ModelSpec::Space);
         let [angle_path, axes_path] = ["angle", "axes"].map(|field| format!("{path}.orthotropic.{field}"));
         let model = self.model.name();
+        if let Some(line) = &spec.around {
+            let around = format!("{path}.orthotropic.around");
+            if spec.angle.is_some() || spec.axes.is_some() {
+                return Err(wrong(around, "stands beside `angle` or `axes`; give one of them"));
+            }
+            if self.model == ModelSpec::Axisymmetric || !(in_plane || in_space) {
+                return Err(wrong(
+                    around,
+                    format!("the axes of the model `{model}` turn around no line; leave it out"),
+                ));
+            }
+            let place = vector(&format!("{around}.point"), &line.point, self.model.dimension())?;
+            let along = match &line.along {
+                Some(_) if in_plane => {
+                    return Err(wrong(
+                        format!("{around}.along"),
+                        "the line of a plane model is across the plane; leave it out",
+                    ));
+                }
+                Some(along) => vector(&format!("{around}.along"), along, 3)?,
+                None => [0.0, 0.0, 1.0],
+            };
+            return material.around(place, along).map_err(at);
+        }
         match (spec.angle, &spec.axes) {
             (None, None) => Ok(material),
             (Some(_), _) if !in_plane => {

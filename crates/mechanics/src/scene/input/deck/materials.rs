@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use serde_json::{Value, json};
 
 use crate::error::{Error, nearly};
+use crate::fem::geometry::minus;
 use crate::fem::mesh::deck::{Card, Deck, Fields, Place, Space, key};
 
 /// A material as it is given.
@@ -140,10 +141,12 @@ impl Given {
     }
 }
 
-/// Material axes: a vector along axis 1, and one in the plane of axes 1 and 2.
+/// Material axes.
 enum Orientation {
+    /// A vector along axis 1, and one in the plane of axes 1 and 2.
     Rectangular([[f64; 3]; 2]),
-    Cylindrical,
+    /// Two points on the line around which the axes turn.
+    Cylindrical([[f64; 3]; 2]),
 }
 
 impl Orientation {
@@ -160,11 +163,22 @@ impl Orientation {
                 }
                 orthotropic["angle"] = y.atan2(*x).to_degrees().into();
             }
-            (Orientation::Cylindrical, _) => {
+            (Orientation::Cylindrical(_), Space::Axisymmetric) => {
                 return Err(
-                    "the axes of an orthotropic material are read as RECTANGULAR, one direction for all elements"
+                    "in an axisymmetric model the axes of the material turn with the section anyway; use RECTANGULAR"
                         .into(),
                 );
+            }
+            (Orientation::Cylindrical([from, to]), _) => {
+                let along = minus(*to, *from);
+                if along == [0.0; 3] {
+                    return Err("the two points of the axis are one".into());
+                }
+                orthotropic["around"] = match space {
+                    Space::Solid => json!({"point": from, "along": along}),
+                    _ if along[0] == 0.0 && along[1] == 0.0 => json!({"point": from[..2]}),
+                    _ => return Err("the axis of a cylinder is across the plane of a plane model".into()),
+                };
             }
         }
         Ok(())
@@ -186,7 +200,7 @@ fn orientations(deck: &Deck) -> Result<HashMap<String, Orientation>, Error> {
         fields.end()?;
         let orientation = match card.value("SYSTEM").map_or_else(|| "RECTANGULAR".into(), key).as_str() {
             "RECTANGULAR" => Orientation::Rectangular(axes),
-            "CYLINDRICAL" => Orientation::Cylindrical,
+            "CYLINDRICAL" => Orientation::Cylindrical(axes),
             other => {
                 let message = format!("SYSTEM={other} is not read; there are RECTANGULAR and CYLINDRICAL");
                 return Err(deck.source.fault(card.place, message));

@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use super::rigid::RigidBodies;
 use crate::error::Error;
-use crate::fem::geometry::{cross, dot, length, minus, unit};
+use crate::fem::geometry::{cross, length, minus, unit};
+use crate::fem::material::Cylinder;
 use crate::fem::mesh::deck::{Card, Deck};
 
 /// The axes of the model, which a node without a transform has.
@@ -17,8 +18,7 @@ const ALONG: f64 = 1e-9;
 enum Transform {
     /// The same axes at all nodes.
     Rectangular([[f64; 3]; 3]),
-    /// A point on an axis and its direction: axis 1 away from it, axis 3 along it.
-    Cylindrical([[f64; 3]; 2]),
+    Cylindrical(Cylinder),
 }
 
 /// The local axes of the nodes of a deck.
@@ -64,19 +64,10 @@ impl Transforms {
         let Some(&number) = self.of_node.get(&node) else { return Ok(None) };
         match &self.all[number] {
             Transform::Rectangular(axes) => Ok(Some(*axes)),
-            Transform::Cylindrical([point, along]) => {
-                let away = minus(deck.place_of_node(node), *point);
-                let height = dot(away, *along);
-                let radial = [0, 1, 2].map(|axis| away[axis] - height * along[axis]);
-                if length(radial) <= ALONG * length(away) {
-                    let number = deck.nodes.numbers[node];
-                    return Err(format!(
-                        "node {number} lies on the axis of its *TRANSFORM, where no direction leads away from it"
-                    ));
-                }
-                let radial = unit(radial);
-                Ok(Some([radial, cross(*along, radial), *along]))
-            }
+            Transform::Cylindrical(line) => line.axes(deck.place_of_node(node)).map(Some).ok_or_else(|| {
+                let number = deck.nodes.numbers[node];
+                format!("node {number} lies on the axis of its *TRANSFORM, where no direction leads away from it")
+            }),
         }
     }
 }
@@ -100,9 +91,9 @@ fn transform(deck: &Deck, card: &Card) -> Result<Transform, Error> {
             let (first, third) = (unit(a), unit(third));
             Ok(Transform::Rectangular([first, cross(third, first), third]))
         }
-        "C" | "c" => match unit(minus(b, a)) {
-            along if along == [0.0; 3] => fault("the two points of the axis are one".into()),
-            along => Ok(Transform::Cylindrical([a, along])),
+        "C" | "c" => match Cylinder::new(a, minus(b, a)) {
+            Some(line) => Ok(Transform::Cylindrical(line)),
+            None => fault("the two points of the axis are one".into()),
         },
         other => fault(format!("TYPE={other} is not read; there are R and C")),
     }

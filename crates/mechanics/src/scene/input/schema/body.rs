@@ -53,6 +53,20 @@ pub struct OrthotropicSpec {
     /// In space a vector along axis 1, and a second one: axis 2 lies in the plane of both vectors, at right angles to axis 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub axes: Option<[Vec<f64>; 2]>,
+    /// A line around which the axes turn: axis 1 leads away from it, 2 around it, 3 along it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub around: Option<LineSpec>,
+}
+
+/// A line in space, or, in the plane, a point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LineSpec {
+    /// A point on it.
+    pub point: Vec<f64>,
+    /// A vector along it, of any length; only in space, z if it is left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub along: Option<Vec<f64>>,
 }
 
 /// The material of a part of a body: of the elements of a group, of the elements with the centroid in a box, or of the elements in both.
