@@ -165,6 +165,15 @@ fn a_warmed_block_expands_freely() {
     let cards = "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nALL, 20.\n";
     let answer = answer(&(block("C3D10") + cards + SYMMETRIC + &step("*TEMPERATURE\nALL, 70.\n")));
     compare(&answer, |at| at.map(|x| 0.05 * x));
+    // Axes 1 and 2 of the material are y and -x.
+    const TURNED: &str = "*MATERIAL, NAME=STEEL\n*EXPANSION, TYPE=ORTHO\n1.E-3, 2.E-3, -3.E-3\n*ELASTIC, TYPE=ENGINEERING CONSTANTS\n\
+                          400., 100., 200., 0.2, 0.1, 0.3, 60., 70.,\n80.\n*ORIENTATION, NAME=O\n0., 1., 0., -1., 0., 0.\n";
+    let turned =
+        block("C3D10").replace(MATERIAL, TURNED).replace("MATERIAL=STEEL\n", "MATERIAL=STEEL, ORIENTATION=O\n");
+    let answer = self::answer(&(turned + cards + SYMMETRIC + &step("*TEMPERATURE\nALL, 30.\n")));
+    compare(&answer, |[x, y, z]| [0.02 * x, 0.01 * y, -0.03 * z]);
+    let isotropic = block("C3D10").replace("*EXPANSION, ZERO=20.\n1.E-3", "*EXPANSION, TYPE=ORTHO\n1., 2., 3.");
+    assert!(refusal(&(isotropic + SYMMETRIC + &step(""))).1.contains("an isotropic material has one expansion"));
 }
 
 /// Along x the block has half the modulus in its second section: springs in series.

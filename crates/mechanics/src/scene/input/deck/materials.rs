@@ -13,7 +13,8 @@ use crate::fem::mesh::deck::{Card, Deck, Fields, Place, Space, key};
 struct Given {
     elastic: Option<Elastic>,
     density: Option<f64>,
-    expansion: Option<f64>,
+    /// Along the axes of the material.
+    expansion: Option<[f64; 3]>,
 }
 
 #[derive(Clone, Debug)]
@@ -64,7 +65,8 @@ impl Sections {
                 let meant = nearly(&key(material), names.iter().copied());
                 return Err(deck.source.fault(card.place, format!("there is no material `{material}`{meant}")));
             };
-            let Some(mut value) = given.value() else {
+            let value = given.value().map_err(|message| deck.source.fault(card.place, message))?;
+            let Some(mut value) = value else {
                 return Err(deck.source.fault(card.place, format!("the material `{material}` has no *ELASTIC")));
             };
             sections.read_thickness(deck, card, space)?;
@@ -123,8 +125,12 @@ impl Sections {
 
 impl Given {
     /// As a scene has it; `None` without elasticity.
-    fn value(&self) -> Option<Value> {
-        let mut value = match self.elastic.as_ref()? {
+    ///
+    /// # Errors
+    /// A sentence for an isotropic material that expands by different amounts.
+    fn value(&self) -> Result<Option<Value>, String> {
+        let Some(elastic) = &self.elastic else { return Ok(None) };
+        let mut value = match elastic {
             Elastic::Isotropic { young, poisson } => json!({"young": young, "poisson": poisson}),
             Elastic::Constants([e1, e2, e3, nu12, nu13, nu23, g12, g13, g23]) => json!({"orthotropic": {
                 "young": [e1, e2, e3], "poisson": [nu12, nu23, nu13], "shear": [g12, g23, g13]}}),
@@ -133,11 +139,16 @@ impl Given {
             value["density"] = density.into();
         }
         match (self.expansion, value.get_mut("orthotropic")) {
-            (Some(expansion), Some(orthotropic)) => orthotropic["expansion"] = vec![expansion; 3].into(),
-            (Some(expansion), None) => value["expansion"] = expansion.into(),
+            (Some(expansion), Some(orthotropic)) => orthotropic["expansion"] = json!(expansion),
+            (Some([x, y, z]), None) if x == y && y == z => value["expansion"] = x.into(),
+            (Some(_), None) => {
+                return Err(
+                    "an isotropic material has one expansion; write ENGINEERING CONSTANTS for one with three".into()
+                );
+            }
             (None, _) => {}
         }
-        Some(value)
+        Ok(Some(value))
     }
 }
 
@@ -238,10 +249,24 @@ fn materials(deck: &Deck) -> Result<HashMap<String, Given>, Error> {
         } else if card.is("DENSITY") {
             material.density.replace(one(deck, card, "the density")?).is_some()
         } else {
-            if card.value("TYPE").is_some_and(|value| !["ISO", "ISOTROPIC"].contains(&key(value).as_str())) {
-                return fault("only *EXPANSION with TYPE=ISO is read: one number for all directions".into());
-            }
-            material.expansion.replace(one(deck, card, "the expansion")?).is_some()
+            let expansion = match card.value("TYPE").map(key).as_deref() {
+                None | Some("ISO" | "ISOTROPIC") => [one(deck, card, "the expansion")?; 3],
+                Some("ORTHO" | "ORTHOTROPIC") => {
+                    let mut fields = only_line(deck, card)?;
+                    let mut along = [0.0; 3];
+                    for (value, axis) in along.iter_mut().zip(1..) {
+                        *value = fields.finite(format_args!("the expansion along axis {axis}"))?;
+                    }
+                    without_temperature(&mut fields)?;
+                    along
+                }
+                Some(_) => {
+                    return fault(
+                        "*EXPANSION is read with TYPE=ISO or TYPE=ORTHO, along the axes of the material".into(),
+                    );
+                }
+            };
+            material.expansion.replace(expansion).is_some()
         };
         if is_twice {
             return fault(format!("the material has {} twice", card.name));
