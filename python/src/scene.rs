@@ -92,13 +92,19 @@ impl Scene {
     ) -> PyResult<Self> {
         let py = source.py();
         let is_mapping = source.cast::<PyDict>().is_ok();
+        let is_deck = source.extract::<PathBuf>().is_ok_and(|path| signorini::Scene::is_deck(path));
+        if !is_deck && (without_friction || linear || step.is_some()) {
+            let message =
+                "`without_friction`, `linear` and `step` are for decks of CalculiX, whose names end with .inp";
+            return Err(plain_exception(py, Error::Scene { path: "source".into(), message: message.into() }));
+        }
         let (scene, file) = match (is_mapping, source.extract::<PathBuf>()) {
             (true, _) => {
                 let scene = signorini::Scene::from_json(&text_of(source)?, "scene");
                 let scene = scene.map(|scene| signorini::Scene { folder: Some(folder.unwrap_or_default()), ..scene });
                 (scene, None)
             }
-            (false, Ok(path)) if signorini::Scene::is_deck(&path) => {
+            (false, Ok(path)) if is_deck => {
                 let named = [("outside", allow_outside), ("friction", without_friction), ("linear", linear)];
                 let permits: Vec<&str> =
                     named.iter().filter(|(_, is_given)| *is_given).map(|(name, _)| *name).collect();

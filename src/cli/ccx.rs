@@ -75,7 +75,10 @@ fn with_ending(stem: &Path, ending: &str) -> PathBuf {
 fn answered(options: &Ccx, [file, stem]: [PathBuf; 2], watch: &Watch, text: &mut String) -> Result<Ending, Error> {
     let folder = with_ending(&stem, ".signorini");
     CalculixFiles::remove(&stem)?;
-    remove_files(&folder, &["report.html", "report.json"])?;
+    let of_steps = (1..).map(|step| folder.join(format!("step-{step}"))).take_while(|folder| folder.exists());
+    std::iter::once(folder.clone())
+        .chain(of_steps)
+        .try_for_each(|folder| remove_files(&folder, &["report.html", "report.json"]))?;
     let deck = &options.limits.deck;
     let steps = match deck.step {
         Some(step) => step..=step,

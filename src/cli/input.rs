@@ -137,6 +137,9 @@ pub(super) fn rests(scene: &Scene) -> Result<(), Error> {
 
 /// Reads a scene of any size.
 pub(super) fn scene_of(path: &Path, limits: &Limits) -> Result<Scene, Error> {
+    if let Some(option) = limits.deck.of_decks_only().filter(|_| !Scene::is_deck(path)) {
+        return unfit(option, "this option is for decks of CalculiX, whose names end with .inp");
+    }
     // A scene from a pipe has the working folder of the program as its folder.
     let scene = match path == Path::new(STANDARD_INPUT) {
         false if Scene::is_deck(path) => Scene::read_deck(path, &limits.deck.permits(), limits.deck.step)?,

@@ -257,11 +257,13 @@ fn a_run_that_fails_leaves_no_file_of_an_earlier_one() {
 fn results_that_are_not_written_are_named_once() {
     let desk = Desk::new();
     let asked = "*EL FILE\nS, PEEQ\n*NODE PRINT, NSET=X0, TOTALS=ONLY\nU\n*EL PRINT, ELSET=PART\nSVF\n\
-                 *SECTION PRINT, SURFACE=END, NAME=N\nSOF\n*END STEP\n";
-    desk.write("brick.inp", format!("{BRICK}{asked}"));
+                 *SECTION PRINT, SURFACE=END, NAME=N\nSOF\n*NODE PRINT, NSET=LOOSE\nU\n*EL PRINT, ELSET=SPRINGS\nS\n*END STEP\n";
+    let loose = "*NODE, NSET=LOOSE\n900, 9., 0., 0.\n*ELEMENT, TYPE=SPRINGA, ELSET=SPRINGS\n901, 4, 900\n*SPRING, ELSET=SPRINGS\n\n1.E-9\n\
+                 *BOUNDARY\nLOOSE, 1, 3\n*STEP\n";
+    desk.write("brick.inp", format!("{BRICK}{asked}").replace("*STEP\n", loose));
     let run = desk.run(&["ccx", "brick"]).ends_with(0);
-    let expected =
-        " *WARNING: these results are not written: PEEQ, U (line 38), SVF (line 40), *SECTION PRINT (line 41)\n";
+    let expected = " *WARNING: these results are not written: PEEQ, U (line 47), SVF (line 49), *SECTION PRINT (line 50), \
+         values of a node without elements (line 52), values of springs (line 54)\n";
     assert!(run.stdout.contains(expected), "{}", run.stdout);
 }
 
@@ -585,8 +587,16 @@ fn large_displacements_are_answered_up_to_five_percent() {
     let mesh = Block { element: "C3D8", low: [0.0; 3], high: [2.0, 1.0, 1.0], cells: [2, 1, 1], after: 0 }.mesh();
     let section = "*MATERIAL, NAME=M\n*ELASTIC\n200., 0.\n*SOLID SECTION, ELSET=PART, MATERIAL=M\n*STEP, NLGEOM\n*STATIC\n*BOUNDARY\n";
     for (is_turned, size, size_in_words) in [
-        (true, 0.04, Some("the largest strain is 0.00 %, the largest rotation 4.00 % (2.29 degrees)")),
-        (false, 0.048, Some("the largest strain is 4.80 %, the largest rotation 0.00 % (0.00 degrees)")),
+        (
+            true,
+            0.04,
+            Some("at the centres of elements the largest strain is 0.00 %, the largest rotation 4.00 % (2.29 degrees)"),
+        ),
+        (
+            false,
+            0.048,
+            Some("at the centres of elements the largest strain is 4.80 %, the largest rotation 0.00 % (0.00 degrees)"),
+        ),
         (true, -0.06, None),
         (false, 0.051, None),
     ] {
@@ -648,8 +658,18 @@ fn the_steps_of_a_deck_are_solved_in_turn() {
     for step in 1..=3 {
         assert!(desk.path(&format!("brick.signorini/step-{step}/report.json")).exists());
     }
+    // A deck of one step leaves no report of the steps before it.
+    desk.write("brick.inp", format!("{BRICK}*END STEP\n"));
+    desk.run(&["ccx", "brick"]).ends_with(0);
+    assert!(
+        !desk.path("brick.signorini/step-1/report.json").exists() && desk.path("brick.signorini/report.json").exists()
+    );
+    desk.write("brick.inp", format!("{BRICK}{steps}"));
     // One step, as `solve` answers it.
     let run = desk.run(&["solve", "brick.inp", "--step", "2"]).ends_with(0);
     assert!(run.stdout.contains("largest 6.000000e-2 along x"), "{}", run.stdout);
+    desk.write("scene.json", "{}");
+    desk.run(&["solve", "scene.json", "--step", "2"])
+        .fails_with(1, &["`--step`: this option is for decks of CalculiX"]);
     desk.run(&["solve", "brick.inp", "--step", "4"]).fails_with(1, &["the deck has no step 4; its steps are 1 to 3"]);
 }

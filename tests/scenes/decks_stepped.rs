@@ -67,7 +67,7 @@ fn answer(deck: &str, step: usize) -> Answer {
 /// The force of the base, as CalculiX 2.20 prints it for these decks.
 #[test]
 fn loads_of_a_later_step_replace_those_before_as_in_calculix() {
-    let cases: [(&str, &str, [[f64; 3]; 2]); 16] = [
+    let cases: [(&str, &str, [[f64; 3]; 2]); 18] = [
         ("*CLOAD\n5, 3, 1.\n5, 3, 1.\n", "*CLOAD\n5, 3, 5.\n6, 3, 1.\n", [[0.0, 0.0, -2.0], [0.0, 0.0, -6.0]]),
         ("*CLOAD\nTOP, 3, 1.\n", "*CLOAD\n5, 3, 5.\n5, 1, 2.\n", [[0.0, 0.0, -4.0], [-2.0, 0.0, -8.0]]),
         ("*CLOAD\n5, 3, 1.\n", "*CLOAD, OP=NEW\n6, 3, 7.\n", [[0.0, 0.0, -1.0], [0.0, 0.0, -7.0]]),
@@ -93,6 +93,12 @@ fn loads_of_a_later_step_replace_those_before_as_in_calculix() {
             "*DLOAD\nE, GRAV, 1., 0., 0., 1.\n",
             "*DLOAD\n1, GRAV, 5., 0., 0., 1.\n",
             [[0.0, 0.0, -1.0], [0.0, 0.0, -6.0]],
+        ),
+        ("*DLOAD\nE, GRAV, 1., 0., 0., 1.\n", "*DSLOAD, OP=NEW\nTOP, P, -2.\n", [[0.0, 0.0, -1.0], [0.0, 0.0, -2.0]]),
+        (
+            "*DSLOAD\nTOP, P, -1.\n",
+            "*DSLOAD, OP=NEW\nTOP, P, -2.\n*DLOAD\nE, GRAV, 1., 0., 0., 1.\n",
+            [[0.0, 0.0, -1.0], [0.0, 0.0, -3.0]],
         ),
         ("*CLOAD, AMPLITUDE=STEPS\n5, 3, 1.\n", "*CLOAD\n6, 3, 0.\n", [[0.0, 0.0, -1.0], [0.0, 0.0, -1.0]]),
         ("*CLOAD, AMPLITUDE=TOTAL\n5, 3, 1.\n", "*CLOAD\n6, 3, 0.\n", [[0.0, 0.0, -1.0], [0.0, 0.0, -4.0]]),
@@ -142,6 +148,29 @@ fn supports_and_temperatures_of_a_step_are_those_of_one_step() {
         // The first step does not know the second.
         let (first_of_two, alone) = (answer(&deck(&[first, second]), 1), answer(&deck(&[first]), 1));
         assert_eq!(first_of_two.displacement(), alone.displacement());
+    }
+}
+
+/// In a later step of another period a load keeps the factor of its own step; total times go on, and temperatures follow the last step.
+#[test]
+fn amplitudes_count_at_the_end_of_the_step_that_names_them() {
+    for (first, factor) in [
+        ("*CLOAD, AMPLITUDE=STEPS\n5, 3, 1.\n", 1.0),
+        ("*CLOAD, AMPLITUDE=TOTAL\n5, 3, 1.\n", 4.0),
+        ("*DLOAD, AMPLITUDE=STEPS\nE, P2, -1.\n", 1.0),
+        ("*DSLOAD, AMPLITUDE=STEPS\nTOP, P, -1.\n", 1.0),
+        ("*DLOAD, AMPLITUDE=STEPS\nE, GRAV, 1., 0., 0., 1.\n", 1.0),
+        ("*BOUNDARY, AMPLITUDE=STEPS\nTOP, 3, 3, 0.01\n", 1.0),
+        ("*TEMPERATURE, AMPLITUDE=STEPS\nALL, 10.\n", 2.5),
+    ] {
+        let longer = deck(&[first, "*CLOAD\n6, 3, 0.\n"]);
+        let at = longer.rfind("*STATIC\n").unwrap() + "*STATIC\n".len();
+        // The second step ends at the time 1.5 of its own, and 2.5 of all.
+        let longer = longer[..at].to_string() + "0.1, 1.5\n" + &longer[at..];
+        let [two, one] = [answer(&longer, 2), answer(&longer, 1)];
+        for (two, one) in two.displacement().iter().zip(one.displacement()) {
+            assert!((two - factor * one).abs() < 1e-14, "{first}: {two} of {one}");
+        }
     }
 }
 

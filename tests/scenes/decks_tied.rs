@@ -108,6 +108,17 @@ fn a_rigid_body_is_pulled_and_turned_at_its_reference_nodes() {
     assert_eq!((motion.displacement, motion.rotation), (vec![0.03, 0.0, 0.0], vec![0.002, 0.0, 0.01]));
 }
 
+/// A loaded set has a node of the part and the reference node of its rigid end, which belongs to the part as well: each carries its force
+/// once.
+#[test]
+fn a_loaded_set_with_a_reference_node_is_loaded_once() {
+    let deck = two(["C3D8", "C3D8"]).replace("X0, 1\nY0, 2\nZ0, 3", "X0, 1, 3")
+        + "*TIE, NAME=T\nSLAVE, MASTER\n*RIGID BODY, NSET=END, REF NODE=1006\n*NSET, NSET=LOADED\n1006, 5\n";
+    let [set, single] = ["LOADED, 1, 1.\n", "1006, 1, 1.\n5, 1, 1.\n"]
+        .map(|lines| answer(&(deck.clone() + &step(&format!("*CLOAD\n{lines}")))));
+    assert_eq!(set.displacement(), single.displacement());
+}
+
 #[test]
 fn ties_that_cannot_be_read_are_refused_with_their_line() {
     let deck = two(["C3D8", "C3D8"]);
@@ -126,7 +137,13 @@ fn ties_that_cannot_be_read_are_refused_with_their_line() {
         (
             "*RIGID BODY, NSET=END, REF NODE=1\n*TRANSFORM, NSET=Z0\n1., 0., 0., 0., 1., 0.\n",
             1,
-            "node 1 moves a rigid body",
+            "node 1 is the reference of a rigid body",
+        ),
+        (
+            "*NODE\n5000, 0., 0., 0.\n*SURFACE, NAME=INNER\n1, S4\n3, S4\n5, S4\n7, S4\n*PRE-TENSION SECTION, SURFACE=INNER, NODE=5000\n\
+             *RIGID BODY, NSET=END, REF NODE=5000\n",
+            8,
+            "node 5000 is the reference of two rigid bodies, or of a bolt too",
         ),
         ("*RIGID BODY, ELSET=LEFT, REF NODE=1\n", 0, "the parameter ELSET, which is not read"),
     ] {

@@ -123,6 +123,27 @@ fn joint(preload: &Value, load: f64) -> Value {
     })
 }
 
+/// Half of a bolt at a plane of symmetry has the answer of supports there; a direction with the rounding of an angle is along the axis.
+#[test]
+fn half_a_bolt_has_the_tension_of_its_half() {
+    for direction in [json!([0, 0, 1]), json!([6.123e-17, 0, 1])] {
+        let mut half = bar("hex8", [2, 2], 0.0, &preload("force", 3.0));
+        half["ties"][0]["preload"]["direction"] = direction;
+        half["supports"]
+            .as_array_mut()
+            .unwrap()
+            .extend(["left", "far.left"].map(|name| json!({"on": {"boundary": name}, "x": 0})));
+        let mut mirrored = half.clone();
+        mirrored["supports"].as_array_mut().unwrap().truncate(2);
+        mirrored["symmetry"] = json!(["x"]);
+        let [held, mirrored] = [half, mirrored].map(|scene| tie(&answer(&scene)));
+        assert!((held.shortening.unwrap() - 3.0 * 5.0 / YOUNG).abs() < INTEGRATED, "{held:?}");
+        assert!((mirrored.shortening.unwrap() - held.shortening.unwrap()).abs() < INTEGRATED, "{mirrored:?}");
+        // The force on the whole bolt is twice that of the modelled half.
+        assert!((mirrored.force[2].abs() - 6.0).abs() < 10.0 * INTEGRATED, "{mirrored:?}");
+    }
+}
+
 #[test]
 fn a_bolted_joint_carries_a_load_until_its_seat_opens() {
     let (column, bolt) = (YOUNG / 2.0, YOUNG / 2.0);
@@ -167,9 +188,26 @@ fn a_preload_that_describes_no_bolt_is_refused() {
         let message = refused(&preload, &none);
         assert!(message.contains(phrase), "{message}");
     }
-    let held = refused(&preload("force", 1.0), &|scene| {
-        let cut = ["top", "far.bottom"].map(|name| json!({"on": {"boundary": name}, "z": 0}));
-        scene["supports"].as_array_mut().unwrap().extend(cut);
+    // The whole cut, or one edge of it, held along the bolt.
+    let cut = |scene: &mut Value, names: [&str; 2]| {
+        let held = names.map(|name| json!({"on": {"boundary": name}, "z": 0}));
+        scene["supports"].as_array_mut().unwrap().extend(held);
+    };
+    for names in [["top", "far.bottom"], ["left", "far.left"]] {
+        let held = refused(&preload("force", 1.0), &|scene| cut(scene, names));
+        assert!(held.contains("fix the distance of the faces along the bolt"), "{held}");
+        let held = refused(&preload("shortening", 0.1), &|scene| cut(scene, names));
+        assert!(held.contains("supports prescribe all its displacements, and miss it by 0.1"), "{held}");
+    }
+    let mut closed = bar("hex8", [2, 2], 0.3, &preload("shortening", 0.0));
+    cut(&mut closed, ["top", "far.bottom"]);
+    assert!(tie(&answer(&closed)).shortening.unwrap().abs() < 1e-15);
+    // Both parts are held across a tilted bolt, which ties them along it too.
+    let mut tilted = preload("force", 1.0);
+    tilted["direction"] = json!([0.3, 0, 1]);
+    let held = refused(&tilted, &|scene| {
+        let sides = ["left", "far.left"].map(|name| json!({"on": {"boundary": name}, "x": 0}));
+        scene["supports"].as_array_mut().unwrap().extend(sides);
     });
-    assert!(held.contains("supports hold all nodes of the cut along the bolt"), "{held}");
+    assert!(held.contains("fix the distance of the faces along the bolt"), "{held}");
 }

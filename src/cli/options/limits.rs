@@ -17,12 +17,19 @@ pub(in crate::cli) struct DeckOptions {
     /// Answer a deck that asks for large displacements (NLGEOM) with small ones, also where strains or rotations exceed 5 %
     #[arg(long)]
     pub linear: bool,
-    /// Step of a deck, from 1 [default: the last one]
+    /// Step of a deck, from 1 [default: the last one; of `ccx`: all in turn]
     #[arg(long, value_name = "N")]
     pub step: Option<usize>,
 }
 
 impl DeckOptions {
+    /// A given option that only decks have.
+    pub fn of_decks_only(&self) -> Option<&'static str> {
+        let named =
+            [("--step", self.step.is_some()), ("--linear", self.linear), ("--without-friction", self.without_friction)];
+        named.into_iter().find(|(_, is_given)| *is_given).map(|(name, _)| name)
+    }
+
     /// The names of the permissions for the reading of a deck.
     pub fn permits(&self) -> Vec<&'static str> {
         let named = [("outside", self.allow_outside), ("friction", self.without_friction), ("linear", self.linear)];

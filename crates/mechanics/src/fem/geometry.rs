@@ -43,6 +43,12 @@ pub(crate) fn unit(vector: [f64; 3]) -> [f64; 3] {
     if length > 0.0 { vector.map(|component| component / length) } else { vector }
 }
 
+/// A unit vector at right angles to a unit vector.
+pub(crate) fn across(vector: [f64; 3]) -> [f64; 3] {
+    let smallest = (0..3).min_by(|&a, &b| vector[a].abs().total_cmp(&vector[b].abs())).unwrap_or(0);
+    unit(cross(vector, COORDINATES[smallest]))
+}
+
 /// A symmetric tensor `[xx, yy, zz, xy, yz, zx]`, dimensionless for strains, in force per area for stresses; in a body of revolution zz is the hoop component.
 ///
 /// Strains have the tensor's shear components, half of the engineering shear strains.

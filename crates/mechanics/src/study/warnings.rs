@@ -455,7 +455,10 @@ impl std::fmt::Display for Deformation {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         let [strain, rotation] = [self.strain, self.rotation].map(|part| 100.0 * part);
         let degrees = self.rotation.to_degrees();
-        write!(f, "the largest strain is {strain:.2} %, the largest rotation {rotation:.2} % ({degrees:.2} degrees)")
+        write!(
+            f,
+            "at the centres of elements the largest strain is {strain:.2} %, the largest rotation {rotation:.2} % ({degrees:.2} degrees)"
+        )
     }
 }
 

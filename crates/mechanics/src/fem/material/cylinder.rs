@@ -1,6 +1,6 @@
 //! Axes around a line: 1 away from it, 2 around it, 3 along it.
 
-use crate::fem::geometry::{COORDINATES, cross, dot, length, minus, unit};
+use crate::fem::geometry::{across, cross, dot, length, minus, unit};
 
 /// Distances from the line below this share of the distance from its point are rounding.
 const ON_LINE: f64 = 1e-9;
@@ -35,10 +35,7 @@ impl Cylinder {
 
     /// The axes at a place; on the line any of those at right angles to it.
     pub fn axes_or_any(&self, place: [f64; 3]) -> [[f64; 3]; 3] {
-        self.axes(place).unwrap_or_else(|| {
-            let smallest = (0..3).min_by(|&a, &b| self.along[a].abs().total_cmp(&self.along[b].abs())).unwrap_or(0);
-            self.with_first(unit(cross(self.along, COORDINATES[smallest])))
-        })
+        self.axes(place).unwrap_or_else(|| self.with_first(across(self.along)))
     }
 
     fn with_first(&self, first: [f64; 3]) -> [[f64; 3]; 3] {

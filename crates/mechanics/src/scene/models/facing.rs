@@ -79,21 +79,29 @@ impl<'a> Facing<'a> {
     ///
     /// Where supports hold both surfaces along it, an equation would bind their neighbours: it goes to these.
     pub fn rows(&self, along: impl Fn(usize) -> [f64; 3]) -> Result<Vec<TieRow>, Error> {
-        let (body, dofs, mesh) = (self.body, self.dofs, self.body.mesh());
+        let dimension = self.body.dimension();
         let is_held =
-            |node: usize, row: &MortarRow| dofs.along(node, &along(row.node)[..body.dimension()]).free.is_empty();
+            |node: usize, row: &MortarRow| self.dofs.along(node, &along(row.node)[..dimension]).free.is_empty();
         let faces_held = |row: &&MortarRow| {
             let nearest = row.master.iter().max_by(|a, b| a.1.total_cmp(&b.1));
             is_held(row.node, row) && nearest.is_some_and(|nearest| is_held(nearest.0, row))
         };
         let held: HashSet<usize> = self.found.rows.iter().filter(faces_held).map(|row| row.node).collect();
-        let handed_over = match held.is_empty() {
-            true => None,
-            false => {
-                let carries = |node: usize| !held.contains(&node);
-                Some(means((body, dofs), self.sides, (self.reach, None), &carries, &self.path)?)
-            }
-        };
+        if held.is_empty() {
+            return Ok(self.rows_along(&self.found, along));
+        }
+        let carries = |node: usize| !held.contains(&node);
+        let handed_over = means((self.body, self.dofs), self.sides, (self.reach, None), &carries, &self.path)?;
+        Ok(self.rows_along(&handed_over, along))
+    }
+
+    /// The rows of all nodes along one unit vector, also where supports hold both surfaces.
+    pub fn all_rows(&self, along: [f64; 3]) -> Vec<TieRow> {
+        self.rows_along(&self.found, |_| along)
+    }
+
+    fn rows_along(&self, found: &Found, along: impl Fn(usize) -> [f64; 3]) -> Vec<TieRow> {
+        let (dofs, mesh) = (self.dofs, self.body.mesh());
         let row = |row: &MortarRow| {
             let ends = ends(row, &dofs.basis);
             let own = row.slave.iter().filter(|end| end.1 != 0.0).count();
@@ -101,6 +109,6 @@ impl<'a> Facing<'a> {
             let terms = ends.into_iter().map(|(node, share)| (node, along.map(|part| share * part))).collect();
             TieRow { terms, own: 0..own, at: Some(dofs.basis.place(mesh.nodes(), row.node)), value: 0.0 }
         };
-        Ok(handed_over.as_ref().unwrap_or(&self.found).rows.iter().map(row).collect())
+        found.rows.iter().map(row).collect()
     }
 }

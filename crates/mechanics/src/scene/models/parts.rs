@@ -27,7 +27,7 @@ pub(crate) struct Parts {
     pub is_part: bool,
     /// External load at all nodes, length `dim * n_nodes`.
     pub load: Vec<f64>,
-    /// Springs to the ground, in the order of the scene.
+    /// Springs, in the order of the scene.
     pub springs: Vec<Springs>,
     pub symmetry: Symmetry,
     /// Boundaries that move as rigid plates, in the order of the scene.
@@ -88,7 +88,7 @@ impl Parts {
         let of_rows = rows.map(|row| (&ties.rows[row].terms, &ties.rows[row].own, of_ties[row]));
         let tensions = ties.shortenings.iter().filter(|of| one.is_none_or(|tie| tie == of.tie));
         let mut forces = vec![0.0; self.dofs.nodal_count()];
-        for (terms, own, size) in of_rows.chain(tensions.map(|of| (&of.terms, &of.own, of.force))) {
+        for (terms, own, size) in of_rows.chain(tensions.filter_map(|of| Some((&of.terms, &of.own, of.force?)))) {
             let own = if one.is_some() { own.clone() } else { 0..terms.len() };
             for (node, vector) in &terms[own] {
                 let entries = &mut forces[dimension * node..dimension * (node + 1)];

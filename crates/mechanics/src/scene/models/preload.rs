@@ -26,22 +26,30 @@ pub(crate) struct Shortening {
     pub terms: Vec<(usize, [f64; 3])>,
     /// The nodes of its first side.
     pub own: Range<usize>,
-    /// The tension along it; 0 if it is prescribed.
-    pub force: f64,
+    /// The tension along it; `None` if it is prescribed.
+    pub force: Option<f64>,
 }
 
 impl Shortening {
-    fn of_row(row: &TieRow, tie: usize, force: f64) -> Self {
+    fn of_row(row: &TieRow, tie: usize, force: Option<f64>) -> Self {
         Shortening { tie, terms: row.terms.clone(), own: row.own.clone(), force }
     }
 
+    /// Its terms in the unknowns, and its prescribed part, in length.
+    pub fn in_unknowns(&self, (dofs, unknowns): (&DofMap, &Unknowns), dimension: usize) -> (Vec<(usize, f64)>, f64) {
+        let (mut entries, mut prescribed) = (Vec::new(), 0.0);
+        for (node, vector) in &self.terms {
+            let (free, part) = unknowns.along(dofs, *node, &vector[..dimension]);
+            entries.extend(free);
+            prescribed += part;
+        }
+        (entries, prescribed)
+    }
+
     /// Its value at values of the unknowns, in length.
-    pub fn value(&self, (dofs, unknowns): (&DofMap, &Unknowns), dimension: usize, values: &[f64]) -> f64 {
-        let of_term = |(node, vector): &(usize, [f64; 3])| {
-            let (entries, prescribed) = unknowns.along(dofs, *node, &vector[..dimension]);
-            entries.iter().fold(prescribed, |sum, &(unknown, part)| sum + part * values[unknown])
-        };
-        self.terms.iter().map(of_term).sum()
+    pub fn value(&self, places: (&DofMap, &Unknowns), dimension: usize, values: &[f64]) -> f64 {
+        let (entries, prescribed) = self.in_unknowns(places, dimension);
+        entries.iter().fold(prescribed, |sum, &(unknown, part)| sum + part * values[unknown])
     }
 }
 
@@ -49,8 +57,8 @@ impl PreloadSpec {
     /// The rows of the cut at `path`, tie number `tie`, and its shortening.
     ///
     /// # Errors
-    /// [`Error::Scene`] for boundaries that do not face each other, for a preload without a force or a shortening or with both, a direction
-    /// along the faces, and for supports that hold the cut against the force.
+    /// [`Error::Scene`] for boundaries that do not face each other, for a preload without a force or a shortening or with both, and for a
+    /// direction along the faces.
     pub(super) fn rows(
         &self,
         (path, tie): (&str, usize),
@@ -64,26 +72,20 @@ impl PreloadSpec {
         for number in 0..dimension - 1 {
             rows.extend(facing.rows(|node| across(towards, dofs.axes(node), dimension)[number])?);
         }
-        let along = facing.rows(|_| towards)?.into_iter().map(|row| TieRow { at: None, ..row });
-        let mut along: Vec<TieRow> = along.collect();
+        let mut along = facing.all_rows(towards);
+        along.iter_mut().for_each(|row| row.at = None);
+        let first = along.remove(0);
         let shortening = match (self.force, self.shortening) {
             (Some(force), None) => {
                 finite(format!("{path}.force"), force)?;
-                let is_free = |row: &TieRow| {
-                    row.terms.iter().any(|(node, vector)| !dofs.along(*node, &vector[..dimension]).free.is_empty())
-                };
-                let Some(place) = along.iter().position(is_free) else {
-                    let message = "supports hold all nodes of the cut along the bolt, so that no force can act there";
-                    return Err(wrong(format!("{path}.force"), message));
-                };
-                let first = along.remove(place);
                 along.iter_mut().for_each(|row| *row = row.minus(&first));
-                Shortening::of_row(&first, tie, force)
+                Shortening::of_row(&first, tie, Some(force))
             }
             (None, Some(shortening)) => {
                 finite(format!("{path}.shortening"), shortening)?;
+                along.insert(0, first.clone());
                 along.iter_mut().for_each(|row| row.value = shortening);
-                Shortening::of_row(&along[0], tie, 0.0)
+                Shortening::of_row(&first, tie, None)
             }
             _ => return Err(wrong(path, "needs one of `force` and `shortening`")),
         };
@@ -101,6 +103,11 @@ impl PreloadSpec {
         let Some(given) = &self.direction else { return Ok(outward) };
         let path = format!("{path}.direction");
         let given = unit(vector(&path, given, facing.body.dimension())?);
+        // Cosines of right angles are rounding, which would couple what supports keep apart.
+        let given = unit(given.map(|part| if part.abs() < ROUNDING { 0.0 } else { part }));
+        if given == [0.0; 3] {
+            return Err(wrong(path, "has no length"));
+        }
         let given = if facing.is_swapped { given.map(|part| 0.0 - part) } else { given };
         // A direction along the faces would shear them.
         match dot(given, outward).abs() > LEAST {
@@ -109,6 +116,9 @@ impl PreloadSpec {
         }
     }
 }
+
+/// Parts of a unit vector below this are rounding of its length and of angles.
+const ROUNDING: f64 = 1e-12;
 
 /// The least cosine between the direction of a bolt and the normal of its cut.
 const LEAST: f64 = 1e-3;

@@ -71,6 +71,7 @@ impl SpringSpec {
             }
         }
     }
+
     /// A spring along the elongation that its terms give.
     fn between(&self, path: &str, body: &ElasticBody) -> Result<Springs, Error> {
         if self.terms.is_empty() {

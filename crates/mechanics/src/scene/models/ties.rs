@@ -99,6 +99,19 @@ impl Scene {
             of_tie.push(first..rows.len());
         }
         let matrix = SparseMatrix::from_triplets(rows.len(), unknowns.count(), &entries)?;
+        for shortening in shortenings.iter().filter(|one| one.force.is_some()) {
+            let own = shortening.in_unknowns((dofs, unknowns), dimension).0;
+            let own = own.into_iter().map(|(column, part)| (rows.len(), column, part));
+            let all: Vec<_> = entries.iter().copied().chain(own).collect();
+            let with_own = SparseMatrix::from_triplets(rows.len() + 1, unknowns.count(), &all)?;
+            // With zeros as values nothing contradicts: what follows from the others is left out.
+            let [before, after] = [&matrix, &with_own].map(|rows| rows.independent_rows(&[], REPEATED).len());
+            if before == after {
+                let message = "supports and ties fix the distance of the faces along the bolt, so that the tension would do nothing; change \
+                               them, or the `direction`";
+                return Err(wrong(format!("ties[{}].preload.force", shortening.tie), message));
+            }
+        }
         let ties = Ties { rows, of_tie, matrix, values, shortenings, warnings };
         Ok(if ties.of_tie.len() > 1 { ties.without_repeated() } else { ties })
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::card::{Card, Place, key};
 
-use super::kinds::{DeckElementType, element_type};
+use super::kinds::{DeckElementType, Space, element_type};
 use super::sets::{Numbered, Sets};
 use super::source::Source;
 use super::springs::{SpringElement, SpringElements, SpringType};
@@ -280,6 +280,11 @@ impl Deck {
     /// Number of coordinates of the elements.
     pub fn dimension(&self) -> usize {
         self.element_list.first().map_or(3, |element| element.kind.dimension())
+    }
+
+    /// Returns `true` for a body of revolution.
+    pub fn is_axisymmetric(&self) -> bool {
+        self.element_list.first().is_some_and(|element| element.of_type.space == Space::Axisymmetric)
     }
 
     /// The nodes of an element, by their places.

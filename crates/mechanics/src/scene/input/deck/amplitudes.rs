@@ -1,19 +1,28 @@
-//! The factors of loads at the end of the step.
+//! The factors of loads at the end of a step.
 
 use std::collections::HashMap;
 
 use crate::error::Error;
 use crate::fem::mesh::deck::{Card, Deck, key};
 
-/// The factor of each amplitude at the end of the step, by its name.
-pub(super) struct Amplitudes(HashMap<String, f64>);
+/// An amplitude: its points, each a time with a factor, and whether the times count from the start of the first step.
+struct Amplitude {
+    points: Vec<[f64; 2]>,
+    is_total: bool,
+}
+
+/// The amplitudes by their names, and the periods of the steps.
+pub(super) struct Amplitudes {
+    all: HashMap<String, Amplitude>,
+    periods: Vec<f64>,
+}
 
 impl Amplitudes {
     /// # Errors
     /// An error with the line for an amplitude without a name or without values, and for times that do not increase.
     pub fn of(deck: &Deck) -> Result<Self, Error> {
-        let [end, total] = times(deck)?;
-        let mut factors = HashMap::new();
+        let periods = periods(deck)?;
+        let mut all = HashMap::new();
         for card in deck.source.cards.iter().filter(|card| card.is("AMPLITUDE")) {
             let Some(name) = card.value("NAME") else {
                 return Err(deck.source.fault(card.place, "*AMPLITUDE has no name; write NAME=NAME"));
@@ -32,46 +41,45 @@ impl Amplitudes {
             if points.is_empty() {
                 return Err(deck.source.fault(card.place, format!("the amplitude `{name}` has no values")));
             }
-            let time = if card.says("TIME", "TOTALTIME") { total } else { end };
-            factors.insert(key(name), at(&points, time));
+            all.insert(key(name), Amplitude { points, is_total: card.says("TIME", "TOTALTIME") });
         }
-        Ok(Amplitudes(factors))
+        Ok(Amplitudes { all, periods })
     }
 
-    /// The factor of a card: 1 without an amplitude.
+    /// The factor of a card: 1 without an amplitude. In a later step a load keeps the factor of the end of its own step, unless the times of
+    /// the amplitude go on; temperatures follow the last step.
     ///
     /// # Errors
     /// An error with the line of the card for an amplitude that does not exist.
     pub fn factor(&self, deck: &Deck, card: &Card) -> Result<f64, Error> {
         let Some(name) = card.value("AMPLITUDE") else { return Ok(1.0) };
         let missing = || deck.source.fault(card.place, format!("there is no amplitude `{name}`"));
-        self.0.get(&key(name)).copied().ok_or_else(missing)
+        let amplitude = self.all.get(&key(name)).ok_or_else(missing)?;
+        let step = if card.is("TEMPERATURE") { deck.step } else { card.step };
+        let time = match amplitude.is_total {
+            true => self.periods.iter().sum(),
+            false => step.checked_sub(1).and_then(|step| self.periods.get(step)).copied().unwrap_or(1.0),
+        };
+        Ok(at(&amplitude.points, time))
     }
 }
 
-/// The time at the end of the step, since its start and since that of the first step: the period of a step is the second value of
-/// *STATIC, 1 if it is left out.
-pub(super) fn times(deck: &Deck) -> Result<[f64; 2], Error> {
-    let (mut last, mut total) = (1.0, 0.0);
+/// The time that each step takes, up to the last one that counts: the second value of *STATIC, 1 if it is left out.
+pub(super) fn periods(deck: &Deck) -> Result<Vec<f64>, Error> {
+    let mut periods = vec![1.0; deck.step];
     for card in deck.source.cards.iter().filter(|card| card.is("STATIC")) {
-        last = match card.lines.first() {
-            None => 1.0,
-            Some(line) => {
-                let mut fields = deck.source.fields(line);
-                fields.finite_or_zero("the first increment")?;
-                match fields.finite_or_zero("the period of the step")? {
-                    period if period < 0.0 => {
-                        let message = format!("the period of the step is {period}; it must be positive");
-                        return Err(fields.fault(message));
-                    }
-                    0.0 => 1.0,
-                    period => period,
-                }
-            }
-        };
-        total += last;
+        let Some(line) = card.lines.first() else { continue };
+        let mut fields = deck.source.fields(line);
+        fields.finite_or_zero("the first increment")?;
+        let period = fields.finite_or_zero("the period of the step")?;
+        if period < 0.0 {
+            return Err(fields.fault(format!("the period of the step is {period}; it must be positive")));
+        }
+        if let Some(own) = card.step.checked_sub(1).and_then(|step| periods.get_mut(step)).filter(|_| period > 0.0) {
+            *own = period;
+        }
     }
-    Ok([last, total])
+    Ok(periods)
 }
 
 /// The value at a time: linear between the points, constant beyond them.

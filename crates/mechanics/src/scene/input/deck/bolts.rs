@@ -29,7 +29,7 @@ impl Bolts {
     /// # Errors
     /// An error with the line for a cut without a reference node of its own, and for a direction that is not read.
     pub fn of(deck: &Deck) -> Result<Self, Error> {
-        let dimension = deck.element_list.first().map_or(3, |element| element.kind.dimension());
+        let dimension = deck.dimension();
         let mut bolts = Bolts { all: Vec::new(), dimension };
         let cards = deck.source.cards.iter().filter(|card| card.is("PRE-TENSIONSECTION"));
         for (card, names) in cards.zip(&deck.cuts) {

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::sums::{Equation, Sum};
 use crate::error::Error;
 use crate::fem::geometry::{COORDINATES, cross, minus};
-use crate::fem::mesh::deck::{Card, Deck, Line, Place, Space};
+use crate::fem::mesh::deck::{Card, Deck, Line, Place};
 
 /// A determinant of the moments of inertia below this share of the cube of their sum is rounding: the nodes lie on a line.
 const ON_LINE: f64 = 1e-12;
@@ -86,6 +86,9 @@ fn coupling(deck: &Deck, of: &Card, kind: &Card) -> Result<Coupling, Error> {
         Kind::Distributing(_) if !found.bare.is_empty() => {
             fault("*DISTRIBUTING needs a surface of faces, because forces are distributed over areas")
         }
+        Kind::Distributing(_) if deck.body_of_node[reference].is_some() => {
+            fault("the reference node of *DISTRIBUTING must belong to no element")
+        }
         _ => Ok(Coupling { reference, surface: surface.into(), kind, place: of.place }),
     }
 }
@@ -113,7 +116,7 @@ impl Coupling {
     /// An error with the line for a model of revolution, and for a surface whose nodes lie on a line.
     pub fn equations(&self, deck: &Deck) -> Result<Vec<Equation>, Error> {
         let fault = |message: String| deck.source.fault(self.place, message);
-        if deck.element_list.first().is_some_and(|element| element.of_type.space == Space::Axisymmetric) {
+        if deck.is_axisymmetric() {
             let message = "this coupling is not read in an axisymmetric model; *KINEMATIC with directions 1, 2 is";
             return Err(fault(message.into()));
         }

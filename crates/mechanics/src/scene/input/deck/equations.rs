@@ -1,8 +1,9 @@
 //! Equations between components of nodes: the cards *EQUATION.
 
 use super::sums::{Equation, Sum};
-use super::transforms::{AXES, Transforms};
+use super::transforms::Transforms;
 use crate::error::Error;
+use crate::fem::geometry::COORDINATES;
 use crate::fem::mesh::deck::{Card, Deck};
 
 /// The component that a direction of a node names, from 1, as a sum: of a node of elements the displacement along its local axis.
@@ -18,7 +19,7 @@ pub(super) fn component(deck: &Deck, transforms: &Transforms, node: usize, direc
     }
     match is_loose {
         true => sum.add((node, direction - 1), 1.0),
-        false => sum.add_along(node, transforms.axes(deck, node)?.unwrap_or(AXES)[direction - 1]),
+        false => sum.add_along(node, transforms.axes(deck, node)?.unwrap_or(COORDINATES)[direction - 1]),
     }
     Ok(sum)
 }

@@ -5,15 +5,15 @@ use std::collections::HashMap;
 use crate::fem::mesh::deck::Deck;
 
 /// The step whose force acts at each node in each direction, from 1.
-pub(super) struct Forces {
+pub(super) struct LastForces {
     last: HashMap<(usize, usize), usize>,
     /// The step that removes all forces of those before it.
     first: usize,
 }
 
-impl Forces {
+impl LastForces {
     pub fn of(deck: &Deck) -> Self {
-        let mut forces = Forces { last: HashMap::new(), first: 0 };
+        let mut forces = LastForces { last: HashMap::new(), first: 0 };
         if deck.step < 2 {
             return forces;
         }

@@ -6,13 +6,13 @@ use serde_json::{Value, json};
 
 use super::amplitudes::Amplitudes;
 use super::bodies::{name_of_node, names_of_nodes, names_of_surface};
-use super::forces::Forces;
+use super::forces::LastForces;
 use super::references::References;
 use super::scene_text::{Entry, object};
 use super::transforms::Transforms;
 use crate::error::Error;
 use crate::fem::geometry::{dot, unit};
-use crate::fem::mesh::deck::{Card, Deck, Fields, Place, Space, key};
+use crate::fem::mesh::deck::{Card, Deck, Fields, Place, key};
 
 /// A load on the volume: it acts on all bodies.
 struct OnVolume {
@@ -29,7 +29,7 @@ pub(super) struct Loads<'a, 'd> {
     deck: &'a Deck,
     references: &'a mut References<'d>,
     transforms: &'a Transforms,
-    forces: Forces,
+    forces: LastForces,
     loads: Vec<Entry>,
     on_volume: Vec<OnVolume>,
 }
@@ -43,7 +43,7 @@ impl<'a, 'd> Loads<'a, 'd> {
         references: &'a mut References<'d>,
         transforms: &'a Transforms,
     ) -> Result<Vec<Entry>, Error> {
-        let forces = Forces::of(deck);
+        let forces = LastForces::of(deck);
         let mut loads = Loads { deck, references, transforms, forces, loads: Vec::new(), on_volume: Vec::new() };
         for keyword in ["CLOAD", "DLOAD", "DSLOAD"] {
             let cards = deck.source.cards.iter().enumerate().filter(|(_, card)| card.is(keyword));
@@ -53,6 +53,10 @@ impl<'a, 'd> Loads<'a, 'd> {
                 if card.is_new() && before == card.step {
                     let message = format!("OP=NEW must stand on the first {} of the step", card.name);
                     return Err(deck.source.fault(card.place, message));
+                }
+                if card.is_new() && keyword != "CLOAD" {
+                    // All loads on bodies of the steps before go, whichever of the two cards says so.
+                    loads.on_volume.retain(|load| load.step >= card.step);
                 }
                 before = card.step;
                 let factor = amplitudes.factor(deck, card)?;
@@ -66,14 +70,9 @@ impl<'a, 'd> Loads<'a, 'd> {
         loads.end()
     }
 
-    /// Number of coordinates of the elements.
-    fn dimension(&self) -> usize {
-        self.deck.element_list.first().map_or(3, |element| element.kind.dimension())
-    }
-
     /// Forces on nodes: node, direction, force. A later step replaces them, node by node and direction by direction, or all by OP=NEW.
     fn add_nodal(&mut self, card: &Card, factor: f64) -> Result<(), Error> {
-        let dimension = self.dimension();
+        let dimension = self.deck.dimension();
         let mut forces: BTreeMap<String, Vec<f64>> = BTreeMap::new();
         for line in &card.lines {
             let mut fields = self.deck.source.fields(line);
@@ -84,9 +83,10 @@ impl<'a, 'd> Loads<'a, 'd> {
             if !(1..=6).contains(&direction) {
                 return Err(fields.fault(format!("{direction} is no direction; there are 1 to 6")));
             }
-            let all = nodes.len();
+            let of_bodies =
+                |nodes: &[usize]| nodes.iter().filter(|&&node| self.deck.body_of_node[node].is_some()).count();
+            let all = of_bodies(&nodes);
             nodes.retain(|&node| self.forces.acts(card.step, (node, direction)));
-            let is_part = nodes.len() < all;
             let mut on_bodies = Vec::with_capacity(nodes.len());
             for node in nodes {
                 let pressed = self.references.press(node, direction, force, line.place);
@@ -97,12 +97,13 @@ impl<'a, 'd> Loads<'a, 'd> {
             if on_bodies.is_empty() {
                 continue;
             }
+            let mut is_part = on_bodies.len() < all;
             let nodes = on_bodies;
             if direction > dimension {
                 let message = format!("{direction} is no direction of a force here; there are 1 to {dimension}");
                 return Err(fields.fault(message));
             }
-            let (mut plain, mut is_part) = (Vec::with_capacity(nodes.len()), is_part);
+            let mut plain = Vec::with_capacity(nodes.len());
             for node in nodes {
                 let axes = self.transforms.axes(self.deck, node).map_err(|message| fields.fault(message))?;
                 match (axes, name_of_node(self.deck, node)) {
@@ -136,9 +137,6 @@ impl<'a, 'd> Loads<'a, 'd> {
 
     /// Pressures on faces, and loads on the volume.
     fn add_distributed(&mut self, index: usize, card: &Card, factor: f64) -> Result<(), Error> {
-        if card.is_new() {
-            self.on_volume.clear();
-        }
         for pressure in self.deck.pressures.iter().filter(|pressure| pressure.card == index) {
             self.add_pressure(&pressure.surface, factor * pressure.value, pressure.place)?;
         }
@@ -194,11 +192,11 @@ impl<'a, 'd> Loads<'a, 'd> {
         if direction == [0.0; 3] {
             return Err(fields.fault("the direction of gravity has no length"));
         }
-        if self.dimension() == 2 && direction[2] != 0.0 {
+        if self.deck.dimension() == 2 && direction[2] != 0.0 {
             return Err(fields.fault("gravity must lie in the plane of a plane model"));
         }
         let vector = direction.map(|part| acceleration * part);
-        Ok(object("gravity", json!(vector[..self.dimension()])))
+        Ok(object("gravity", json!(vector[..self.deck.dimension()])))
     }
 
     fn centrifugal(&self, fields: &mut Fields, factor: f64) -> Result<Value, Error> {
@@ -211,9 +209,8 @@ impl<'a, 'd> Loads<'a, 'd> {
             );
         }
         let omega = square.sqrt();
-        let is_axisymmetric =
-            self.deck.element_list.first().is_some_and(|one| one.of_type.space == Space::Axisymmetric);
-        match self.dimension() {
+        let is_axisymmetric = self.deck.is_axisymmetric();
+        match self.deck.dimension() {
             3 => Ok(object("centrifugal", json!({"omega": omega, "axis": axis, "point": point}))),
             _ if is_axisymmetric && dot(axis, [0.0, 1.0, 0.0]).abs() == 1.0 && point[0] == 0.0 && point[2] == 0.0 => {
                 Ok(object("centrifugal", json!({"omega": omega})))

@@ -7,7 +7,7 @@ use super::equations::along;
 use super::sums::{Equation, Sum};
 use super::transforms::Transforms;
 use crate::error::Error;
-use crate::fem::geometry::{COORDINATES, cross, distance, dot, length, minus, unit};
+use crate::fem::geometry::{across, cross, distance, dot, length, minus, unit};
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
 
 /// Nodes farther from their plane or line than this share of its extent lie outside: far above the digits of coordinates in decks.
@@ -146,7 +146,6 @@ fn axes_across(line: [f64; 3], dimension: usize) -> Vec<[f64; 3]> {
     if dimension == 2 {
         return vec![[-line[1], line[0], 0.0]];
     }
-    let smallest = (0..3).min_by(|&a, &b| line[a].abs().total_cmp(&line[b].abs())).unwrap_or(0);
-    let first = unit(cross(line, COORDINATES[smallest]));
+    let first = across(line);
     vec![first, cross(line, first)]
 }

@@ -70,8 +70,9 @@ impl<'a> References<'a> {
         for (component, place) in terms(&equations, &springs).filter(|one| is_loose(deck, one.0)) {
             if rigid_bodies.is_reference(component.0) {
                 let number = deck.nodes.numbers[component.0];
-                let message =
-                    format!("node {number} moves a rigid body; equations and springs do not contain such a node");
+                let message = format!(
+                    "node {number} is the reference of a rigid body or a bolt; equations and springs do not contain such a node"
+                );
                 return Err(deck.source.fault(place, message));
             }
             joined.insert(component);

@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
-use super::amplitudes::{Amplitudes, times};
+use super::amplitudes::{Amplitudes, periods};
 use super::rigid::RigidBodies;
 use super::temperatures::Temperatures;
 use super::transforms::Transforms;
@@ -86,7 +86,8 @@ impl Requests {
         let temperatures = deck.nodes.numbers.iter().copied().zip(end).collect();
         let transforms = Transforms::of(&deck, &RigidBodies::of(&deck)?)?;
         let (fields, tables, others) = (BTreeSet::new(), Vec::new(), Vec::new());
-        let (axes, [period, time]) = (transforms.by_number(&deck), times(&deck)?);
+        let (axes, periods) = (transforms.by_number(&deck), periods(&deck)?);
+        let (time, period) = (periods.iter().sum(), periods.last().copied().unwrap_or(1.0));
         let (step, steps) = (deck.step, deck.steps);
         let mut requests = Requests { fields, tables, others, temperatures, axes, step, steps, time, period };
         let is_one_of = |card: &Card, keywords: &[&str]| keywords.iter().any(|keyword| card.is(keyword));
@@ -125,8 +126,20 @@ impl Requests {
             let Some(name) = card.value(parameter) else {
                 return Err(fault(format!("{} names no set; write {parameter}=NAME", card.name)));
             };
+            let place = deck.source.named(card.place);
+            if card.is("ELPRINT") && deck.springs.has(name) {
+                self.others.push(format!("values of springs ({place})"));
+                return Ok(());
+            }
             set = key(name);
-            numbers = sets.members(name, of).map_err(fault)?.iter().map(|&place| of.numbers[place]).collect();
+            let members = sets.members(name, of).map_err(fault)?;
+            let loose = members.iter().filter(|&&node| card.is("NODEPRINT") && deck.body_of_node[node].is_none());
+            match loose.count() {
+                0 => {}
+                1 => self.others.push(format!("values of a node without elements ({place})")),
+                count => self.others.push(format!("values of {count} nodes without elements ({place})")),
+            }
+            numbers = members.iter().map(|&member| of.numbers[member]).collect();
         }
         let contact = match [card.value("SLAVE"), card.value("MASTER")] {
             [Some(slave), Some(master)] => Some([slave.to_string(), master.to_string()]),

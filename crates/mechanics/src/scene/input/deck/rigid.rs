@@ -116,9 +116,9 @@ impl RigidBodies {
     ) -> Result<(), String> {
         for (node, first) in [(centre, 0), (rotation, 3)] {
             let Some(node) = node else { continue };
-            if self.by_node.insert(node, (self.all.len(), first)).is_some() {
-                let message = format!("node {} is the reference of two rigid bodies", deck.nodes.numbers[node]);
-                return Err(message);
+            if self.bolts.is_reference(node) || self.by_node.insert(node, (self.all.len(), first)).is_some() {
+                let number = deck.nodes.numbers[node];
+                return Err(format!("node {number} is the reference of two rigid bodies, or of a bolt too"));
             }
         }
         let centre = centre.map_or([0.0; 3], |centre| deck.place_of_node(centre));

@@ -5,7 +5,7 @@ use super::sums::Sum;
 use super::transforms::Transforms;
 use crate::error::Error;
 use crate::fem::geometry::{COORDINATES, minus, unit};
-use crate::fem::mesh::deck::{Card, Deck, Place, Space, SpringType};
+use crate::fem::mesh::deck::{Card, Deck, Place, SpringType};
 
 /// A spring: its energy is half the stiffness times the square of the elongation.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ pub(super) fn springs(deck: &Deck, transforms: &Transforms) -> Result<Vec<Spring
     let mut springs: Vec<Option<Spring>> = vec![None; deck.springs.all.len()];
     for card in deck.source.cards.iter().filter(|card| card.is("SPRING")) {
         let fault = |message: String| deck.source.fault(card.place, message);
-        if deck.element_list.first().is_some_and(|element| element.of_type.space == Space::Axisymmetric) {
+        if deck.is_axisymmetric() {
             return Err(fault("springs are not read in an axisymmetric model".into()));
         }
         let set = card.value("ELSET").ok_or_else(|| fault("*SPRING names no elements; write ELSET=NAME".into()))?;

@@ -63,7 +63,7 @@ impl Merged {
 /// The supports of a scene.
 ///
 /// # Errors
-/// An error with the line for a dof that is not a displacement, a node without elements.
+/// An error with the line for a dof that is not a displacement.
 pub(super) fn supports(
     deck: &Deck,
     amplitudes: &Amplitudes,
@@ -123,7 +123,7 @@ impl Local {
 
 /// The nodes of a line that have local axes. A node that does not move at all needs none.
 fn in_local_axes(deck: &Deck, line: &Prescribed, transforms: &Transforms) -> Result<Vec<Local>, Error> {
-    let dimension = deck.element_list.first().map_or(3, |element| element.kind.dimension());
+    let dimension = deck.dimension();
     let mut found = Vec::new();
     if line.values[..dimension].iter().all(|value| *value == Some(0.0)) {
         return Ok(found);
@@ -137,7 +137,7 @@ fn in_local_axes(deck: &Deck, line: &Prescribed, transforms: &Transforms) -> Res
     Ok(found)
 }
 
-/// A line without reference nodes, which it prescribes; `None` if nothing is left.
+/// The rest of a line after its reference nodes are prescribed; `None` if nothing is left.
 fn off_references(deck: &Deck, line: Prescribed, references: &mut References) -> Result<Option<Prescribed>, Error> {
     let mut nodes = Vec::with_capacity(line.nodes.len());
     for &node in &line.nodes {
@@ -250,7 +250,7 @@ fn read(deck: &Deck, card: &Card, index: usize, factor: f64) -> Result<Vec<Presc
 
 /// Leaves z out of a plane model, in which it is zero; `true` for another value.
 fn names_z_of_plane(deck: &Deck, values: &mut [Option<f64>; 3]) -> bool {
-    let is_plane = deck.element_list.first().is_some_and(|element| element.kind.dimension() == 2);
+    let is_plane = deck.dimension() == 2;
     is_plane && values[2].take().is_some_and(|value| value != 0.0)
 }
 

@@ -8,9 +8,6 @@ use crate::fem::geometry::{cross, length, minus, unit};
 use crate::fem::material::Cylinder;
 use crate::fem::mesh::deck::{Card, Deck};
 
-/// The axes of the model, which a node without a transform has.
-pub(super) const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-
 /// Sines below this are rounding of written coordinates: two vectors along one line.
 const ALONG: f64 = 1e-9;
 
@@ -40,7 +37,7 @@ impl Transforms {
             if let Some(&reference) = nodes.iter().find(|&&node| rigid_bodies.is_reference(node)) {
                 let number = deck.nodes.numbers[reference];
                 return Err(fault(format!(
-                    "node {number} moves a rigid body, whose displacements and forces are read along x, y and z"
+                    "node {number} is the reference of a rigid body, a coupling or a bolt, which is read along x, y and z"
                 )));
             }
             let transform = transform(deck, card)?;
