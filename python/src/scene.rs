@@ -92,7 +92,7 @@ impl Scene {
     ) -> PyResult<Self> {
         let py = source.py();
         let is_mapping = source.cast::<PyDict>().is_ok();
-        let is_deck = source.extract::<PathBuf>().is_ok_and(|path| signorini::Scene::is_deck(path));
+        let is_deck = source.extract::<PathBuf>().is_ok_and(signorini::Scene::is_deck);
         if !is_deck && (without_friction || linear || step.is_some()) {
             let message =
                 "`without_friction`, `linear` and `step` are for decks of CalculiX, whose names end with .inp";
