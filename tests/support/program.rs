@@ -102,7 +102,8 @@ child = os.posix_spawn(sys.argv[1], sys.argv[1:], os.environ, file_actions=silen
 _, status, usage = os.wait4(child, 0)
 print(usage.ru_maxrss)
 sys.exit(os.waitstatus_to_exitcode(status))";
-        let output = self.by_python(script).args(arguments).output().unwrap();
+        // Without it, threads that wait for each other get heaps of their own, a megabyte now and then.
+        let output = self.by_python(script).args(arguments).env("MALLOC_ARENA_MAX", "1").output().unwrap();
         assert!(output.status.success(), "{output:?}");
         1024.0 * String::from_utf8(output.stdout).unwrap().trim().parse::<f64>().unwrap()
     }
