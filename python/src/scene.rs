@@ -264,6 +264,10 @@ impl SceneSolution {
         goal: Goal,
     ) -> PyResult<Py<PyAny>> {
         let answer = Answer::of(model, &solution).map_err(|error| plain_exception(py, error))?;
+        if answer.model().warnings().iter().any(|warning| warning.code() == "nonlinear") {
+            // The report refuses large strains and rotations of a deck that asks for large displacements.
+            Summary::of_answer(&answer, solution.clone(), goal, 0.0).map_err(|error| plain_exception(py, error))?;
+        }
         Self::of(py, scene, answer, solution, goal)
     }
 
