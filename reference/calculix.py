@@ -3,6 +3,9 @@
     python reference/parts.py FOLDER
     python reference/calculix.py target/release/signorini FOLDER NAME [NAME ...]
     python reference/calculix.py --contact target/release/signorini FOLDER NAME [NAME ...]
+    python reference/calculix.py --decks FOLDER [target/release/signorini]
+
+With `--decks`, both programs run on each deck of a folder, as `decks.py` does it.
 
 With `--contact`, parts whose only obstacle is one plane are solved with contact, and the total contact forces are compared. In
 CalculiX the plane is a face of one element whose nodes are fixed, and the contact pressure is a linear function of the overclosure.
@@ -24,6 +27,8 @@ import tempfile
 import meshio
 import numpy as np
 import scipy.io
+
+import decks
 
 CONTACT_STIFFNESS = (10.0, 30.0, 100.0)
 """Contact stiffnesses of CalculiX, as multiples of the modulus of the body over the length of a facet."""
@@ -252,10 +257,14 @@ def contact_table(program: str, folder: pathlib.Path, names: list[str]) -> int:
 
 
 def main(arguments: list[str]) -> int:
+    if arguments[:1] == ["--decks"] and len(arguments) in (2, 3):
+        built = pathlib.Path(__file__).resolve().parent.parent / "target" / "release" / "signorini"
+        decks.side_by_side(str(pathlib.Path(*arguments[2:] or (built,)).resolve()), pathlib.Path(arguments[1]))
+        return 0
     in_contact = arguments[:1] == ["--contact"]
     arguments = arguments[int(in_contact) :]
     if len(arguments) < 3:
-        sys.exit("usage: calculix.py [--contact] PROGRAM FOLDER NAME [NAME ...]")
+        sys.exit("usage: calculix.py [--contact] PROGRAM FOLDER NAME [NAME ...], or calculix.py --decks FOLDER [PROGRAM]")
     if in_contact:
         return contact_table(str(pathlib.Path(arguments[0]).resolve()), pathlib.Path(arguments[1]).resolve(), arguments[2:])
     program, folder = str(pathlib.Path(arguments[0]).resolve()), pathlib.Path(arguments[1]).resolve()
