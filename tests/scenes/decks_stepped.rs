@@ -5,26 +5,11 @@ use std::sync::Arc;
 
 use signorini::scene::Answer;
 use signorini::{Scene, solve_qp};
+use support::decks::Block;
 
 use crate::decks::refusal;
 
-/// A unit cube of one element on a base, E = 200, nu = 0, density 1, expansion 1e-3, and two amplitudes.
-const CUBE: &str = "*NODE, NSET=ALL
-1, 0., 0., 0.
-2, 1., 0., 0.
-3, 1., 1., 0.
-4, 0., 1., 0.
-5, 0., 0., 1.
-6, 1., 0., 1.
-7, 1., 1., 1.
-8, 0., 1., 1.
-*ELEMENT, TYPE=C3D8, ELSET=E
-1, 1, 2, 3, 4, 5, 6, 7, 8
-*NSET, NSET=BASE
-1, 2, 3, 4
-*NSET, NSET=TOP
-5, 6, 7, 8
-*SURFACE, NAME=TOP
+const MODEL: &str = "*SURFACE, NAME=TOP
 E, S2
 *SURFACE, NAME=SIDE
 E, S4
@@ -44,9 +29,15 @@ E, S4
 BASE, 1, 3
 ";
 
+/// A unit cube of one element on a base, E = 200, nu = 0, density 1, expansion 1e-3, and two amplitudes.
+fn cube() -> String {
+    let mesh = Block { element: "C3D8", low: [0.0; 3], high: [1.0; 3], cells: [1; 3], after: 0 }.mesh();
+    mesh.cards("E") + &mesh.set("BASE", |at| at[2] == 0.0) + &mesh.set("TOP", |at| at[2] == 1.0) + MODEL
+}
+
 fn deck(steps: &[&str]) -> String {
     let steps: Vec<String> = steps.iter().map(|cards| format!("*STEP\n*STATIC\n{cards}*END STEP\n")).collect();
-    CUBE.to_string() + &steps.concat()
+    cube() + &steps.concat()
 }
 
 /// The answer at the end of a step, from 1, read as a deck and as the scene that it becomes.
@@ -177,7 +168,7 @@ fn amplitudes_count_at_the_end_of_the_step_that_names_them() {
 #[test]
 fn steps_that_are_not_whole_are_refused_with_their_line() {
     let one = "*STEP\n*STATIC\n*CLOAD\n5, 3, 1.\n*END STEP\n";
-    let last = 1 + CUBE.matches('\n').count();
+    let last = 1 + cube().matches('\n').count();
     for (steps, line, phrase) in [
         (one.to_string() + "*STEP\n*STATIC\n*CLOAD\n5, 3, 1.\n", 5, "the step has no *END STEP"),
         (one.replace("*END STEP\n", "") + one, 0, "the step has no *END STEP"),
@@ -197,7 +188,7 @@ fn steps_that_are_not_whole_are_refused_with_their_line() {
         } else {
             (steps, line)
         };
-        let (at, message) = refusal(&(CUBE.to_string() + &steps));
+        let (at, message) = refusal(&(cube() + &steps));
         assert!(at == last + line && message.contains(phrase), "{steps}: {at} of {last}: {message}");
     }
     let desk = tempfile::tempdir().unwrap();
