@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use super::facing::Facing;
-use super::tie_row::TieRow;
+use super::tie_row::{TieRow, in_unknowns};
 use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
@@ -35,20 +35,9 @@ impl Shortening {
         Shortening { tie, terms: row.terms.clone(), own: row.own.clone(), force }
     }
 
-    /// Its terms in the unknowns, and its prescribed part, in length.
-    pub fn in_unknowns(&self, (dofs, unknowns): (&DofMap, &Unknowns), dimension: usize) -> (Vec<(usize, f64)>, f64) {
-        let (mut entries, mut prescribed) = (Vec::new(), 0.0);
-        for (node, vector) in &self.terms {
-            let (free, part) = unknowns.along(dofs, *node, &vector[..dimension]);
-            entries.extend(free);
-            prescribed += part;
-        }
-        (entries, prescribed)
-    }
-
     /// Its value at values of the unknowns, in length.
     pub fn value(&self, places: (&DofMap, &Unknowns), dimension: usize, values: &[f64]) -> f64 {
-        let (entries, prescribed) = self.in_unknowns(places, dimension);
+        let (entries, prescribed) = in_unknowns(&self.terms, places, dimension);
         entries.iter().fold(prescribed, |sum, &(unknown, part)| sum + part * values[unknown])
     }
 }

@@ -2,6 +2,24 @@
 
 use std::ops::Range;
 
+use super::unknowns::Unknowns;
+use crate::fem::assembly::DofMap;
+
+/// A sum of `vector . u` over nodes in the unknowns, and its prescribed part, in length.
+pub(crate) fn in_unknowns(
+    terms: &[(usize, [f64; 3])],
+    (dofs, unknowns): (&DofMap, &Unknowns),
+    dimension: usize,
+) -> (Vec<(usize, f64)>, f64) {
+    let (mut entries, mut prescribed) = (Vec::new(), 0.0);
+    for (node, vector) in terms {
+        let (free, part) = unknowns.along(dofs, *node, &vector[..dimension]);
+        entries.extend(free);
+        prescribed += part;
+    }
+    (entries, prescribed)
+}
+
 /// One equation: the sum of `vector . u` over its terms is `value`.
 #[derive(Clone, Debug)]
 pub(crate) struct TieRow {

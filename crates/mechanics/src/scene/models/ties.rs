@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::facing::Facing;
 use super::preload::Shortening;
-use super::tie_row::TieRow;
+use super::tie_row::{TieRow, in_unknowns};
 use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
@@ -78,14 +78,10 @@ impl Scene {
             };
             let first = rows.len();
             for row in found {
-                let (mut free, mut left) = (Vec::new(), row.value);
-                for (node, vector) in &row.terms {
-                    let (entries, prescribed) = unknowns.along(dofs, *node, &vector[..dimension]);
-                    left -= prescribed;
-                    free.extend(entries.into_iter().map(|(column, part)| (rows.len(), column, part)));
-                }
+                let (free, prescribed) = in_unknowns(&row.terms, (dofs, unknowns), dimension);
+                let left = row.value - prescribed;
                 if !free.is_empty() {
-                    entries.extend(free);
+                    entries.extend(free.into_iter().map(|(column, part)| (rows.len(), column, part)));
                     values.push(left);
                     rows.push(row);
                 } else if left.abs() > rounding {
@@ -100,7 +96,7 @@ impl Scene {
         }
         let matrix = SparseMatrix::from_triplets(rows.len(), unknowns.count(), &entries)?;
         for shortening in shortenings.iter().filter(|one| one.force.is_some()) {
-            let own = shortening.in_unknowns((dofs, unknowns), dimension).0;
+            let own = in_unknowns(&shortening.terms, (dofs, unknowns), dimension).0;
             let own = own.into_iter().map(|(column, part)| (rows.len(), column, part));
             let all: Vec<_> = entries.iter().copied().chain(own).collect();
             let with_own = SparseMatrix::from_triplets(rows.len() + 1, unknowns.count(), &all)?;
