@@ -86,7 +86,7 @@ impl Options<'_> {
             let (py, given) = (threads.py(), threads.extract::<usize>().ok());
             let fits = given.filter(|given| (1..=most).contains(given));
             let sentence = || format!("threads is {threads}; it must be a whole number from 1 to {most}");
-            settings.threads = fits.ok_or_else(|| bad_input(py, sentence()))?;
+            settings.threads = Some(fits.ok_or_else(|| bad_input(py, sentence()))?);
         }
         settings.condense = if self.condense == Some(false) { Condense::Never } else { Condense::Auto };
         settings.prove = self.proof != Some(false);

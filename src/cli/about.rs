@@ -16,7 +16,13 @@ const PIECE: usize = 1 << 20;
 
 /// The page of `command` on the scene file or problem directory `input`. If there is a folder for the page, the present content of
 /// `input` is hashed.
-pub(super) fn about(title: &str, command: &'static str, input: &Path, out: Option<&PathBuf>, threads: usize) -> About {
+pub(super) fn about(
+    title: &str,
+    command: &'static str,
+    input: &Path,
+    out: Option<&PathBuf>,
+    threads: Option<usize>,
+) -> About {
     let name = input.file_name().map_or_else(|| "-".to_string(), |name| name.to_string_lossy().into_owned());
     About::new(title.to_string(), command, name, out.and_then(|_| hash_of(input)), threads)
 }

@@ -56,6 +56,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let kept = Kept::default();
     interrupt::listen(&watch, &kept);
     watch.step("assembly", 0);
+    if let Some(threads) = arguments.command.threads() {
+        crate::fem::limit_threads(threads);
+    }
     let line = || (!arguments.progress && !arguments.quiet).then(|| Progress::of(&watch));
     let shown = line();
     let format = arguments.command.format();

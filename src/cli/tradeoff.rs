@@ -22,7 +22,7 @@ pub(super) fn run(options: &options::Tradeoff, watch: &Watch) -> Result<Outcome,
         most_full_dofs: options.most_full_dofs,
         seconds: options.time.unwrap_or(f64::INFINITY),
     };
-    let about = |title: &str| about(title, "tradeoff", &options.input, options.out.as_ref(), 1);
+    let about = |title: &str| about(title, "tradeoff", &options.input, options.out.as_ref(), None);
     if options.input.is_dir() {
         let input = Input::read(&options.input, &options.limits)?;
         let measured = Tradeoff::of_problem(input.problem(), &grid, watch)?;

@@ -15,7 +15,8 @@ pub(super) fn run(options: &Verify, watch: &Watch) -> Result<Outcome, Error> {
     let multiplier = read_vector(&options.multiplier)?;
     let problem = read_problem(&options.directory)?;
     let (threads, tolerance) = (options.threads, Some(options.tolerance));
-    let mut settings = Settings::default().with_threads(threads).watched(watch);
+    let mut settings = Settings::default().watched(watch);
+    settings.threads = threads;
     (settings.memory, settings.tolerance) = (memory, tolerance);
     let mut of_rows = multiplier.clone();
     match &options.equality_multiplier {

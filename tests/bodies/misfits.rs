@@ -98,7 +98,7 @@ fn each_setting_out_of_its_range_is_refused_by_name() {
         (|settings| settings.method = penalty(|ladder| ladder.first = 1e9), "it must be at most the last"),
         (|settings| settings.method = penalty(|ladder| ladder.penetration_threshold = -1.0), "threshold is -1"),
         (|settings| settings.method = penalty(|ladder| ladder.penetration_threshold = f64::NAN), "threshold is NaN"),
-        (|settings| settings.threads = 0, "threads is 0"),
+        (|settings| settings.threads = Some(0), "threads is 0"),
         (|settings| settings.max_iterations = 0, "max_iterations is 0"),
         (|settings| settings.accuracy = Some(f64::NAN), "accuracy is NaN"),
     ];

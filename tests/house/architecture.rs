@@ -39,6 +39,7 @@ const WINGS: [(&[&str], &[&str]); 5] = [
     (
         &["fem"],
         &[
+            "threads",
             "formulation",
             "geometry",
             "element",
@@ -174,7 +175,7 @@ fn libraries_stay_in_their_rooms() {
                 "qp/linear/selected_inverse.rs",
             ],
         ),
-        ("rayon::", &["qp/linear/threads.rs"]),
+        ("rayon::", &["qp/linear/threads.rs", "fem/threads.rs"]),
         // The results of a thread that panicked would be lost without a word.
         ("join().ok()", &[]),
         ("nalgebra_sparse::", &["qp/linear/of_nalgebra.rs"]),

@@ -83,7 +83,7 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
         ("NoRoom", ("too-large", solve(&spring_and_wall, &Settings::default().with_memory(1.0)).unwrap_err().into())),
         (
             "Setting",
-            ("setting", solve(&spring_and_wall, &settings(|settings| settings.threads = 0)).unwrap_err().into()),
+            ("setting", solve(&spring_and_wall, &settings(|settings| settings.threads = Some(0))).unwrap_err().into()),
         ),
         ("NotCondensed", ("not-condensed", still.map(drop).unwrap_err().into())),
         ("TooLarge", ("too-large", scene(("[4]", "[4000]"))?.check_size(1e3).unwrap_err())),

@@ -122,15 +122,15 @@ fn body_in_space_has_the_same_answer_and_the_same_search() {
 fn two_threads_give_the_answer_of_one_bit_by_bit() {
     let mut settings = settings(Method::ActiveSet, Condense::Auto);
     for problem in [cube(14), example("indentation")] {
-        settings.threads = 1;
+        settings.threads = Some(1);
         let one = answer(&problem, &settings);
-        settings.threads = 2;
+        settings.threads = Some(2);
         let two = answer(&problem, &settings);
         assert_eq!(one.displacement, two.displacement);
         assert_eq!(one.multiplier, two.multiplier);
         assert_eq!(one.certificate, two.certificate);
     }
-    settings.threads = 0;
+    settings.threads = Some(0);
     assert!(matches!(solve(&example("block"), &settings), Err(Error::Setting { name: "threads", .. })));
 }
 

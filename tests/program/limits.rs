@@ -222,7 +222,7 @@ fn a_scene_of_a_million_million_elements_is_refused_at_once_and_without_memory()
     for (scene, phrase) in cases {
         desk.write("scene.json", scene.to_string());
         for command in ["solve scene.json", "compare scene.json", "export scene.json p", "tradeoff scene.json"] {
-            confined(&desk, kilobytes, command).fails_with(1, &[phrase, "5000000 nodes that are allowed"]);
+            confined(&desk, kilobytes, command).fails_with(1, &[phrase, "100000000 nodes that are allowed"]);
         }
     }
 }

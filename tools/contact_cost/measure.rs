@@ -104,7 +104,7 @@ impl Task {
             }
             Work::Threads(threads) => {
                 let mut settings = active_set();
-                settings.threads = threads;
+                settings.threads = Some(threads);
                 let clock = Instant::now();
                 black_box(signorini::solve(problem, &settings)?);
                 return Ok(clock.elapsed().as_secs_f64());

@@ -151,8 +151,9 @@ pub struct Settings {
     pub method: Method,
     /// The rule for condensing the problem onto its contact dofs.
     pub condense: Condense,
-    /// Threads of the sparse factorisations and of multigrid, at least 1.
-    pub threads: usize,
+    /// Threads of the sparse factorisations and of multigrid, at least 1. With `None` a factorisation has one, and multigrid on 50,000 dofs
+    /// or more those of the machine, 8 at most. They change no bit of an answer.
+    pub threads: Option<usize>,
     /// Precision of the sparse factor.
     pub precision: Precision,
     /// Tolerance of the certificate, relative: what `Ok` promises. With `None` every finite error will do.
@@ -181,7 +182,7 @@ impl Default for Settings {
         Settings {
             method: Method::Auto,
             condense: Condense::Auto,
-            threads: 1,
+            threads: None,
             precision: Precision::Auto,
             tolerance: Some(1e-9),
             accuracy: None,
@@ -254,7 +255,7 @@ impl Settings {
 
     /// The same with a number of threads.
     pub fn with_threads(self, threads: usize) -> Self {
-        Settings { threads, ..self }
+        Settings { threads: Some(threads), ..self }
     }
 
     /// The same with a precision of the factor.
@@ -311,7 +312,7 @@ impl Settings {
             return Err(Error::Setting { name: "memory", value: memory, allowed: "positive" });
         }
         self.method.check()?;
-        if self.threads == 0 {
+        if self.threads == Some(0) {
             return Err(Error::Setting { name: "threads", value: 0.0, allowed: "at least 1" });
         }
         if self.max_iterations == 0 {

@@ -417,9 +417,9 @@ pub(super) struct Common {
     /// Let the methods work on all dofs instead of those of the contact rows
     #[arg(long)]
     pub no_condense: bool,
-    /// Threads of the sparse factorisations and of multigrid
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = parse_threads)]
-    pub threads: usize,
+    /// Threads [default: those of the machine, up to 8, where they pay, and one elsewhere]
+    #[arg(long, value_name = "N", value_parser = parse_threads)]
+    pub threads: Option<usize>,
     #[command(flatten)]
     pub limits: Limits,
     /// Folder for pictures, fields and answers
@@ -535,9 +535,9 @@ pub(super) struct Verify {
     /// Most seconds that a factor of the stiffness may take, by an estimate
     #[arg(long, default_value = "60", value_name = "T", allow_negative_numbers = true, value_parser = parse_seconds)]
     pub factor_time: f64,
-    /// Threads of the factorisation and of multigrid
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = parse_threads)]
-    pub threads: usize,
+    /// Threads of the factorisation and of multigrid [default: as `solve`]
+    #[arg(long, value_name = "N", value_parser = parse_threads)]
+    pub threads: Option<usize>,
     /// Refuse a problem that needs more memory, such as 500MB or 1.5GB [default: what the machine has available]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<f64>,
@@ -557,6 +557,17 @@ impl Command {
             Command::Verify(options) => options.format,
             Command::New(_) | Command::Ccx(_) | Command::Draw(_) | Command::Export(_) => Format::Text,
             Command::Schema | Command::Completions(_) | Command::Man => Format::Text,
+        }
+    }
+
+    /// The number of threads that was asked for.
+    pub fn threads(&self) -> Option<usize> {
+        match self {
+            Command::Solve(Solve { common, .. })
+            | Command::Compare(Compare { common, .. })
+            | Command::Sweep(Sweep { common, .. }) => common.threads,
+            Command::Verify(options) => options.threads,
+            _ => None,
         }
     }
 }

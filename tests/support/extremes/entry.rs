@@ -126,7 +126,8 @@ impl Entry {
     /// Runs Clarabel with its defaults on the unscaled data, which shows why this library scales them.
     fn raw(&self) -> Cell {
         let matrix = |matrix: &SparseMatrix| {
-            let (starts, rows) = (matrix.column_starts().to_vec(), matrix.row_indices().to_vec());
+            let (starts, rows) =
+                (matrix.column_starts().to_vec(), matrix.row_indices().iter().map(|&row| row as usize).collect());
             CscMatrix::new(matrix.rows(), matrix.columns(), starts, rows, matrix.values().to_vec())
         };
         if self.problem.dofs() == 0 {

@@ -12,6 +12,7 @@ pub(crate) mod mortar;
 pub(crate) mod norms;
 pub(crate) mod recovery;
 pub(crate) mod surface;
+mod threads;
 
 pub use assembly::{
     DofMap, Frame, MassForm, add_body_force, add_body_force_field, add_pressure, add_traction, add_traction_field,
@@ -28,3 +29,4 @@ pub use norms::{ErrorNorms, ExactState, error_norms, error_norms_by};
 pub use recovery::along::{PathPiece, PathPoint};
 pub use recovery::{Stress, StressField, discretisation_error, stress};
 pub use surface::ClosedSurface;
+pub use threads::limit_threads;

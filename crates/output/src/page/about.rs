@@ -14,8 +14,8 @@ pub struct About {
     /// SHA-256 of the scene file, or of K.mtx, f.mtx, B.mtx and g.mtx one after another, in hexadecimal digits; `None` for standard
     /// input.
     pub sha256: Option<String>,
-    /// Threads of the sparse factorisations and of multigrid.
-    pub threads: usize,
+    /// The number of threads that was asked for; `None` if the program chose it.
+    pub threads: Option<usize>,
     /// Version of the program.
     pub version: &'static str,
     /// Operating system and processor, as `linux x86_64`.
@@ -24,7 +24,13 @@ pub struct About {
 
 impl About {
     /// Version and machine are those of this program.
-    pub fn new(title: String, command: &'static str, input: String, sha256: Option<String>, threads: usize) -> Self {
+    pub fn new(
+        title: String,
+        command: &'static str,
+        input: String,
+        sha256: Option<String>,
+        threads: Option<usize>,
+    ) -> Self {
         let machine = format!("{} {}", std::env::consts::OS, std::env::consts::ARCH);
         About { title, command, input, sha256, threads, version: env!("CARGO_PKG_VERSION"), machine }
     }

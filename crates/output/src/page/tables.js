@@ -287,7 +287,7 @@ function aboutSection(page, data, notes) {
     ["command", about.command],
     ["input", about.input],
     ["SHA-256 of the input", about.sha256 ?? "none: it came by a pipe"],
-    ["threads", String(about.threads)],
+    ["threads", about.threads === null ? "chosen by the program" : String(about.threads)],
     ["machine", about.machine],
   ]);
   for (const note of notes) remark(own, note);

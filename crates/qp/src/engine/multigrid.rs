@@ -7,6 +7,7 @@ use crate::certificate::Bounding;
 use crate::cost::{Kept, NEAR_CYCLES, bytes, check_memory, check_time, seconds};
 use crate::error::Error;
 use crate::linear::multigrid::{Multigrid, NearNullSpace};
+use crate::linear::threads_of_machine;
 use crate::method::mprgp::{Limits, Mprgp, takes_travels};
 use crate::method::{Solver, Start};
 use crate::plan::{Means, Tried};
@@ -14,6 +15,9 @@ use crate::problem::ContactProblem;
 use crate::settings::{ByFactor, Method, Settings};
 use crate::solution::Seconds;
 use crate::watch::Watch;
+
+/// With fewer dofs a second thread costs about what it saves.
+const WORTH_THREADS: usize = 50_000;
 
 /// A start for another method ends at this relative imbalance of forces.
 const NEAR: f64 = 1e-4;
@@ -50,9 +54,10 @@ impl Hierarchical {
         check_time(watch, estimate + seconds::certificate(problem))?;
         watch.step("multigrid hierarchy", 0);
         let clock = Instant::now();
+        let threads = threads.unwrap_or_else(|| if problem.dofs() < WORTH_THREADS { 1 } else { threads_of_machine() });
         let multigrid = watch.timed(estimate, || match problem.near_null() {
-            Some(near_null) => Multigrid::new(problem.stiffness(), near_null, *threads),
-            None => Multigrid::new(problem.stiffness(), &NearNullSpace::constants(problem.stiffness())?, *threads),
+            Some(near_null) => Multigrid::new(problem.stiffness(), near_null, threads),
+            None => Multigrid::new(problem.stiffness(), &NearNullSpace::constants(problem.stiffness())?, threads),
         })?;
         Ok(Hierarchical { problem: problem.clone(), multigrid, seconds: clock.elapsed().as_secs_f64() })
     }

@@ -66,7 +66,7 @@ impl Factored {
             (Some(_), Some(analysis)) if !keeps_norm => Norm::Again(analysis.clone()),
             (Some(cholesky), _) => Norm::Kept(EnergyNorm::new(cholesky, scaling.equilibration().clone(), last)),
         };
-        let augmented = augmented(condensation.as_ref(), &scaling, analysis)?.with_threads(*threads);
+        let augmented = augmented(condensation.as_ref(), &scaling, analysis)?.with_threads(threads.unwrap_or(1));
         let factor = factor_clock.elapsed().as_secs_f64();
         Ok(Factored {
             problem: problem.clone(),
@@ -183,7 +183,7 @@ fn augmented(
 /// [`Error::OutOfTime`] before the factorisation, [`Error::Numerical`].
 fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], settings: &Settings) -> Result<Option<Cholesky>, Error> {
     let augmented = AugmentedMatrix::with_last(scaling.stiffness(), scaling.contact(), contact_dofs)?;
-    let augmented = augmented.with_threads(settings.threads);
+    let augmented = augmented.with_threads(settings.threads.unwrap_or(1));
     check_time(&settings.watch, seconds::factorisation(augmented.analysis()))?;
     let matrix = augmented.matrix(|_| 1.0, 0.0);
     match augmented.factor(matrix.clone()) {

@@ -65,7 +65,7 @@ impl AugmentedMatrix {
         let products = (squares.iter())
             .map(|&(second, first, product)| {
                 let (start, rows) = (stiffness.column_starts()[first], stiffness.column_rows(first));
-                (start + rows.partition_point(|&row| row < second), product)
+                (start + rows.partition_point(|&row| (row as usize) < second), product)
             })
             .collect();
         let analysis = analyse(&SymmetricMatrix::from_sorted_lower(stiffness.clone()))?;
@@ -113,7 +113,7 @@ impl AugmentedMatrix {
 /// A lower triangle with a place, zero if it had none, for every `(column, row)` of `added` and of the diagonal; the same memory
 /// if nothing was missing.
 fn with_places(lower: &SparseMatrix, added: impl Iterator<Item = (usize, usize)>) -> SparseMatrix {
-    let has = |(column, row): (usize, usize)| lower.column_rows(column).binary_search(&row).is_ok();
+    let has = |(column, row): (usize, usize)| lower.column_rows(column).binary_search(&(row as u32)).is_ok();
     let diagonal = (0..lower.columns()).map(|column| (column, column));
     let mut missing: Vec<(usize, usize)> = added.chain(diagonal).filter(|&place| !has(place)).collect();
     if missing.is_empty() {
@@ -131,8 +131,8 @@ fn with_places(lower: &SparseMatrix, added: impl Iterator<Item = (usize, usize)>
         rows.extend_from_slice(lower.column_rows(column));
         values.extend(lower.column(column).map(|entry| entry.1));
         while let Some((_, row)) = missing.next_if(|place| place.0 == column) {
-            let place = first + rows[first..].partition_point(|&known| known < row);
-            rows.insert(place, row);
+            let place = first + rows[first..].partition_point(|&known| (known as usize) < row);
+            rows.insert(place, row as u32);
             values.insert(place, 0.0);
         }
         starts.push(rows.len());

@@ -4,8 +4,8 @@
 //! r, which was walked before. As c grows, the mirror images of row r come in the order of column r: only a cursor for each column must be
 //! kept.
 
-use super::SparseMatrix;
 use super::columns::{Columns, Taken};
+use super::{SparseMatrix, check_rows};
 use crate::error::Error;
 
 /// Two triangles count as equal if mirrored entries differ by at most this times the larger diagonal entry of their row and column:
@@ -17,7 +17,7 @@ const SYMMETRY_TOLERANCE: f64 = 1e-10;
 pub struct SymmetricLines {
     dim: usize,
     starts: Vec<usize>,
-    rows: Vec<usize>,
+    rows: Vec<u32>,
     values: Vec<f64>,
     /// For each column, the entry below the diagonal with the next mirror image.
     cursor: Vec<usize>,
@@ -26,7 +26,7 @@ pub struct SymmetricLines {
     is_one_sided: bool,
 }
 
-impl<I: Copy + TryInto<usize>> Columns<'_, I> {
+impl<S: Copy + TryInto<usize>, R: Copy + TryInto<usize>> Columns<'_, S, R> {
     /// The lower triangle.
     ///
     /// # Errors
@@ -73,6 +73,7 @@ impl SymmetricLines {
     }
 
     fn new(dim: usize, entries: usize, taken: Taken) -> Result<Self, Error> {
+        check_rows(dim)?;
         let room = entries / 2 + dim;
         let mut starts = with_room(dim + 1)?;
         starts.push(0);
@@ -99,7 +100,7 @@ impl SymmetricLines {
     /// # Errors
     /// [`Error::Pattern`], [`Error::IndexOutOfRange`], [`Error::NotFinite`]; [`Error::NotSymmetric`] for an entry that differs from
     /// its mirror image in a row or column before.
-    pub fn take<I: Copy + TryInto<usize>>(&mut self, rows: &[I], values: &[f64]) -> Result<(), Error> {
+    pub fn take<R: Copy + TryInto<usize>>(&mut self, rows: &[R], values: &[f64]) -> Result<(), Error> {
         let column = self.cursor.len();
         let (start, mut above, mut least) = (self.rows.len(), 0, 0);
         for (&row, &value) in rows.iter().zip(values) {
@@ -114,16 +115,18 @@ impl SymmetricLines {
         }
         // All other entries are taken at once, and checked afterwards.
         let of_rest = &values[above..];
-        self.rows.extend(rows[above..].iter().map(|&row| row.try_into().unwrap_or(usize::MAX)));
+        let short = |row: R| row.try_into().ok().and_then(|row: usize| u32::try_from(row).ok()).unwrap_or(u32::MAX);
+        self.rows.extend(rows[above..].iter().map(|&row| short(row)));
         self.values.extend_from_slice(of_rest);
         let rest = &self.rows[start..];
-        let lies_below = rest.first().is_none_or(|&row| row >= column) && rest.last().is_none_or(|&row| row < self.dim);
+        let lies_below = rest.first().is_none_or(|&row| row as usize >= column)
+            && rest.last().is_none_or(|&row| (row as usize) < self.dim);
         let increases = rest.windows(2).all(|pair| pair[0] < pair[1]);
         if !(lies_below && increases && of_rest.iter().all(|value| value.is_finite())) {
             return self.taken.check((self.dim, self.dim), column, rows, values);
         }
         self.starts.push(self.rows.len());
-        let has_diagonal = self.rows.get(start) == Some(&column);
+        let has_diagonal = self.rows.get(start) == Some(&(column as u32));
         self.cursor.push(start + usize::from(has_diagonal));
         Ok(())
     }
@@ -131,7 +134,7 @@ impl SymmetricLines {
     /// Returns `true` if an entry above the diagonal equals its mirror image; the cursor then passes the mirror image.
     fn is_mirrored(&mut self, row: usize, column: usize, value: f64) -> bool {
         let place = self.cursor[row];
-        let is_next = place < self.starts[row + 1] && self.rows[place] == column;
+        let is_next = place < self.starts[row + 1] && self.rows[place] as usize == column;
         let is_same = is_next && self.values[place].to_bits() == value.to_bits();
         self.cursor[row] += usize::from(is_same);
         is_same
@@ -142,13 +145,13 @@ impl SymmetricLines {
         let end = self.starts[row + 1];
         loop {
             let place = self.cursor[row];
-            if place >= end || self.rows[place] > column {
+            if place >= end || self.rows[place] as usize > column {
                 self.is_one_sided = true;
                 return self.alike((column, row), [0.0, value], diagonal());
             }
             self.cursor[row] += 1;
             let below = self.values[place];
-            if self.rows[place] == column {
+            if self.rows[place] as usize == column {
                 if value.to_bits() == below.to_bits() {
                     return Ok(());
                 }
@@ -175,14 +178,14 @@ impl SymmetricLines {
     /// An entry below the diagonal of `column` that has no mirror image.
     fn alone(&mut self, place: usize, column: usize) -> Result<(), Error> {
         self.is_one_sided = true;
-        let row = self.rows[place];
+        let row = self.rows[place] as usize;
         self.alike((row, column), [self.values[place], 0.0], self.diagonal(row))
     }
 
     /// The size of the diagonal entry of a column that was walked.
     fn diagonal(&self, column: usize) -> f64 {
         let place = self.starts[column];
-        let is_there = place < self.starts[column + 1] && self.rows[place] == column;
+        let is_there = place < self.starts[column + 1] && self.rows[place] as usize == column;
         if is_there { self.values[place].abs() } else { 0.0 }
     }
 

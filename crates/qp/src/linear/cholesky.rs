@@ -8,7 +8,7 @@ use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{self as fc, supernodal};
 use faer::{Par, Side};
 
-use super::factor::{self, Factor, FactorError, Real, Width, call};
+use super::factor::{self, Factor, FactorError, Permuted, Real, Width, call};
 use super::grouped::group_starts;
 use super::{Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, ldexp, ordering};
 use crate::error::Error;
@@ -77,8 +77,9 @@ impl Analysis {
         };
         let symbolic = call(|| {
             let order = fc::SymmetricOrdering::Custom(PermRef::new_checked(&order, &place, order.len()));
-            let (starts, rows) = (lower.column_starts(), lower.row_indices());
-            let structure = SymbolicSparseColMatRef::new_checked(lower.rows(), lower.columns(), starts, None, rows);
+            let rows: Vec<usize> = lower.row_indices().iter().map(|&row| row as usize).collect();
+            let (dim, starts) = (lower.columns(), lower.column_starts());
+            let structure = SymbolicSparseColMatRef::new_checked(dim, dim, starts, None, &rows);
             Ok(fc::factorize_symbolic_cholesky(structure, Side::Lower, order, params)?)
         })?;
         Ok(Analysis { symbolic: Arc::new(symbolic), trailing: last.len(), threads: 1 })
@@ -147,12 +148,12 @@ impl Analysis {
 
     fn factorised<T: Real>(
         &self,
-        (permuted, entries): (SparseMatrix, Vec<T>),
+        permuted: Permuted<T>,
         shared: fn(Arc<Vec<T>>) -> Values,
     ) -> Result<Cholesky, FactorError> {
         let par = if self.threads > 1 { Par::rayon(self.threads) } else { Par::Seq };
         let (values, smallest_pivot) = match self.supernodes() {
-            Some(supernodes) => call(|| factor::factorise(supernodes, &permuted, &entries, par))?,
+            Some(supernodes) => call(|| factor::factorise(supernodes, &permuted, par))?,
             // Only a matrix without columns has no supernodes.
             None => (Vec::new(), f64::INFINITY),
         };
@@ -161,11 +162,7 @@ impl Analysis {
 
     /// The structure of the lower triangle of P A P', rows in no order, and its entries as `entry(row, column, value)`
     /// makes them.
-    fn permuted<T: Real>(
-        &self,
-        lower: &SparseMatrix,
-        entry: impl Fn(usize, usize, f64) -> T,
-    ) -> (SparseMatrix, Vec<T>) {
+    fn permuted<T: Real>(&self, lower: &SparseMatrix, entry: impl Fn(usize, usize, f64) -> T) -> Permuted<T> {
         let place = self.symbolic.perm().map_or(&[][..], |perm| perm.arrays().1);
         let first = |(row, column, _): (usize, usize, f64)| place[column].min(place[row]);
         let starts = group_starts(lower.columns(), lower.triplets().map(first));
@@ -179,7 +176,7 @@ impl Analysis {
                 next[first] += 1;
             }
         }
-        (SparseMatrix::from_parts(lower.rows(), starts, rows, Vec::new()), values)
+        Permuted { starts, rows, values }
     }
 
     fn supernodes(&self) -> Option<&supernodal::SymbolicSupernodalCholesky<usize>> {

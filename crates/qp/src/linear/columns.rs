@@ -4,9 +4,9 @@ use crate::error::Error;
 
 /// Compressed columns with indices of any type, as given.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Columns<'a, I> {
-    pub starts: &'a [I],
-    pub rows: &'a [I],
+pub(super) struct Columns<'a, S, R> {
+    pub starts: &'a [S],
+    pub rows: &'a [R],
     pub values: &'a [f64],
 }
 
@@ -17,12 +17,12 @@ pub(super) enum Taken {
     Upper,
 }
 
-impl<I: Copy + TryInto<usize>> Columns<'_, I> {
+impl<S: Copy + TryInto<usize>, R: Copy + TryInto<usize>> Columns<'_, S, R> {
     /// Calls `take(column, rows, values)` for each column, from the first on.
     ///
     /// # Errors
     /// [`Error::Length`] and [`Error::Pattern`] for arrays that do not fit each other, and those of `take`.
-    pub fn each(self, mut take: impl FnMut(usize, &[I], &[f64]) -> Result<(), Error>) -> Result<(), Error> {
+    pub fn each(self, mut take: impl FnMut(usize, &[R], &[f64]) -> Result<(), Error>) -> Result<(), Error> {
         let (columns, entries) = (self.starts.len().saturating_sub(1), self.values.len());
         if self.rows.len() != entries {
             let (name, found) = ("row indices", self.rows.len());

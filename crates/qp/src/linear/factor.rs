@@ -10,7 +10,7 @@ use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::traits::RealField;
 use faer::{Conj, Mat, MatMut, Par};
 
-use super::{SparseMatrix, exponent, largest, ldexp};
+use super::{exponent, largest, ldexp};
 use crate::error::Error;
 use crate::panics::guarded;
 
@@ -113,14 +113,20 @@ impl Real for f32 {
 /// The values of a factor with its structure.
 pub(super) type Factor<'a, T> = supernodal::SupernodalLltRef<'a, usize, T>;
 
-/// Factorises the lower triangle with the structure of `permuted` and these `entries`, rows in any order.
+/// The lower triangle of a matrix in compressed columns, in the order of elimination; the rows of a column are in any order.
+pub(super) struct Permuted<T> {
+    pub starts: Vec<usize>,
+    pub rows: Vec<usize>,
+    pub values: Vec<T>,
+}
+
+/// Factorises a matrix.
 ///
 /// # Errors
 /// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive, [`FactorError::Failed`] for lack of memory.
 pub(super) fn factorise<T: Real>(
     supernodes: &supernodal::SymbolicSupernodalCholesky<usize>,
-    permuted: &SparseMatrix,
-    entries: &[T],
+    permuted: &Permuted<T>,
     par: Par,
 ) -> Result<(Vec<T>, f64), FactorError> {
     let size = supernodes.len_val();
@@ -132,7 +138,8 @@ pub(super) fn factorise<T: Real>(
     let scratch = supernodal::factorize_supernodal_numeric_llt_scratch::<usize, T>(supernodes, par, Default::default());
     let mut buffer = memory(scratch)?;
     // faer takes columns in any order of their rows.
-    let (dim, starts, rows) = (permuted.columns(), permuted.column_starts(), permuted.row_indices());
+    let Permuted { starts, rows, values: entries } = permuted;
+    let dim = starts.len() - 1;
     let structure = SymbolicSparseColMatRef::new_unsorted_checked(dim, dim, starts, None, rows);
     supernodal::factorize_supernodal_numeric_llt(
         &mut values,

@@ -43,6 +43,7 @@ pub use ordering::Fill;
 pub use orthogonal::inverse_lengths;
 pub use power_of_two::{Equilibration, exponent, ldexp};
 pub use symmetric::SymmetricMatrix;
+pub use threads::threads_of_machine;
 pub use twice::Twice;
 
 use std::sync::Arc;
@@ -74,7 +75,7 @@ pub struct SparseMatrix {
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Pattern {
     column_starts: Vec<usize>,
-    row_indices: Vec<usize>,
+    row_indices: Vec<u32>,
 }
 
 impl SparseMatrix {
@@ -82,8 +83,10 @@ impl SparseMatrix {
     /// entries with the same row and column are added.
     ///
     /// # Errors
-    /// [`Error::IndexOutOfRange`] for an entry outside, [`Error::NotFinite`] for a value that is not finite.
+    /// [`Error::IndexOutOfRange`] for an entry outside, [`Error::NotFinite`] for a value that is not finite, [`Error::Pattern`] for
+    /// 2^32 rows or more.
     pub fn from_triplets(rows: usize, columns: usize, triplets: &[(usize, usize, f64)]) -> Result<Self, Error> {
+        check_rows(rows)?;
         for &(row, column, value) in triplets {
             if row >= rows || column >= columns {
                 return Err(Error::IndexOutOfRange { row, column, rows, columns });
@@ -107,7 +110,7 @@ impl SparseMatrix {
             let of_column = &mut entries[starts[column]..starts[column + 1]];
             of_column.sort_by_key(|entry| entry.0);
             for alike in of_column.chunk_by(|a, b| a.0 == b.0) {
-                row_indices.push(alike[0].0);
+                row_indices.push(alike[0].0 as u32);
                 values.push(alike.iter().map(|entry| entry.1).sum());
             }
             column_starts.push(row_indices.len());
@@ -116,7 +119,7 @@ impl SparseMatrix {
     }
 
     /// The matrix of `rows` rows with given compressed columns: `column_starts` of length `columns + 1`, and for each entry its
-    /// row, from 0 and increasing within a column, and its value. Nothing is copied.
+    /// row, from 0 and increasing within a column, and its value. Starts and values are not copied.
     ///
     /// ```
     /// use signorini_qp::SparseMatrix;
@@ -129,22 +132,25 @@ impl SparseMatrix {
     ///
     /// # Errors
     /// [`Error::Length`] for arrays that do not fit each other, [`Error::Pattern`] for starts that decrease or rows that do not
-    /// increase, [`Error::IndexOutOfRange`] for a row beyond the last, [`Error::NotFinite`] for a value that is not finite.
+    /// increase, or for 2^32 rows or more, [`Error::IndexOutOfRange`] for a row beyond the last, [`Error::NotFinite`] for a value that is
+    /// not finite.
     pub fn from_csc(
         rows: usize,
         column_starts: Vec<usize>,
         row_indices: Vec<usize>,
         values: Vec<f64>,
     ) -> Result<Self, Error> {
+        check_rows(rows)?;
         let shape = (rows, column_starts.len().saturating_sub(1));
         let columns = Columns { starts: &column_starts, rows: &row_indices, values: &values };
         columns.each(|column, rows, values| Taken::Lower.check(shape, column, rows, values))?;
+        let row_indices = row_indices.iter().map(|&row| row as u32).collect();
         Ok(Self::from_parts(rows, column_starts, row_indices, values))
     }
 
     /// The matrix with given compressed columns, which must be sorted and in range: `column_starts` has one entry per column and one more, the
     /// others one entry per value. For the crates of this workspace, which know that; others take [`from_csc`](Self::from_csc).
-    pub fn from_parts(rows: usize, column_starts: Vec<usize>, row_indices: Vec<usize>, values: Vec<f64>) -> Self {
+    pub fn from_parts(rows: usize, column_starts: Vec<usize>, row_indices: Vec<u32>, values: Vec<f64>) -> Self {
         let pattern = Arc::new(Pattern { column_starts, row_indices });
         SparseMatrix { rows, pattern, values: Arc::new(values) }
     }
@@ -183,7 +189,7 @@ impl SparseMatrix {
     }
 
     /// Row of each entry, column by column, from 0, length [`entries`](Self::entries).
-    pub fn row_indices(&self) -> &[usize] {
+    pub fn row_indices(&self) -> &[u32] {
         &self.pattern.row_indices
     }
 
@@ -196,17 +202,17 @@ impl SparseMatrix {
     #[inline]
     pub fn column(&self, column: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let (rows, values) = self.column_slices(column);
-        rows.iter().copied().zip(values.iter().copied())
+        rows.iter().map(|&row| row as usize).zip(values.iter().copied())
     }
 
     /// Rows of the entries of one column.
-    fn column_rows(&self, column: usize) -> &[usize] {
+    fn column_rows(&self, column: usize) -> &[u32] {
         self.column_slices(column).0
     }
 
     /// Rows and values of one column.
     #[inline]
-    fn column_slices(&self, column: usize) -> (&[usize], &[f64]) {
+    fn column_slices(&self, column: usize) -> (&[u32], &[f64]) {
         let range = self.pattern.column_starts[column]..self.pattern.column_starts[column + 1];
         (&self.pattern.row_indices[range.clone()], &self.values[range])
     }
@@ -247,12 +253,12 @@ impl SparseMatrix {
 
     /// The transposed matrix: its columns are the rows of this one.
     pub fn transposed(&self) -> Self {
-        let starts = group_starts(self.rows, self.row_indices().iter().copied());
+        let starts = group_starts(self.rows, self.row_indices().iter().map(|&row| row as usize));
         let mut place = starts.clone();
         let mut row_indices = vec![0; self.entries()];
         let mut values = vec![0.0; self.entries()];
         for (row, column, value) in self.triplets() {
-            row_indices[place[row]] = column;
+            row_indices[place[row]] = column as u32;
             values[place[row]] = value;
             place[row] += 1;
         }
@@ -285,7 +291,7 @@ impl SparseMatrix {
         for column in columns {
             for (row, value) in self.column(column) {
                 if let Some(row) = place(row) {
-                    row_indices.push(row);
+                    row_indices.push(row as u32);
                     values.push(value);
                 }
             }
@@ -300,5 +306,16 @@ impl SparseMatrix {
             let below = self.column(column).filter(move |entry| entry.0 >= first);
             below.map(move |(second, b)| (second, first, a * b))
         })
+    }
+}
+
+/// The rows of a matrix are numbered by 32 bits.
+///
+/// # Errors
+/// [`Error::Pattern`] for more rows.
+fn check_rows(rows: usize) -> Result<(), Error> {
+    match u32::try_from(rows) {
+        Ok(_) => Ok(()),
+        Err(_) => Err(Error::Pattern { message: format!("a matrix has less than 2^32 rows; {rows} are too many") }),
     }
 }

@@ -37,7 +37,7 @@ impl SymmetricMatrix {
             }
             columns_of_row.sort_unstable();
             // The diagonal entry is not in a list: it belongs to the right side.
-            next[row] += usize::from(rows[starts[row]..starts[row + 1]].first() == Some(&row));
+            next[row] += usize::from(rows[starts[row]..starts[row + 1]].first() == Some(&(row as u32)));
             for &column in &columns_of_row {
                 let place = &mut next[column as usize];
                 values_of_row.push(values[*place]);
@@ -47,11 +47,11 @@ impl SymmetricMatrix {
             for &column in &columns_of_row {
                 let place = next[column as usize];
                 if place < starts[column as usize + 1] {
-                    following[column as usize] = std::mem::replace(&mut first_in[rows[place]], column);
+                    following[column as usize] = std::mem::replace(&mut first_in[rows[place] as usize], column);
                 }
             }
             columns_of_row.pop();
-            columns_of_row.extend(rows[starts[row]..starts[row + 1]].iter().map(|&row| row as u32));
+            columns_of_row.extend_from_slice(&rows[starts[row]..starts[row + 1]]);
             values_of_row.extend_from_slice(&values[starts[row]..starts[row + 1]]);
             take(&columns_of_row, &values_of_row)?;
         }

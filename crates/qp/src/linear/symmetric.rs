@@ -126,7 +126,7 @@ impl SymmetricMatrix {
 
     /// Number of entries of both triangles.
     pub fn entries(&self) -> usize {
-        let has_diagonal = |&column: &usize| self.lower.column_rows(column).first() == Some(&column);
+        let has_diagonal = |&column: &usize| self.lower.column_rows(column).first() == Some(&(column as u32));
         2 * self.lower.entries() - (0..self.dim()).filter(has_diagonal).count()
     }
 
@@ -187,7 +187,7 @@ impl SymmetricMatrix {
     /// `entry` makes the entries of A.
     fn product(&self, columns: Range<usize>, x: &[f64], entry: impl Fn(f64) -> f64) -> Vec<f64> {
         let first = columns.start;
-        let end = |column: usize| self.lower.column_rows(column).last().map_or(first, |row| row + 1);
+        let end = |column: usize| self.lower.column_rows(column).last().map_or(first, |&row| row as usize + 1);
         let mut y = vec![0.0; columns.clone().map(end).fold(columns.end, usize::max) - first];
         for column in columns {
             let (mut rows, mut values) = self.lower.column_slices(column);
@@ -195,13 +195,13 @@ impl SymmetricMatrix {
             let mut sum = 0.0;
             // Rows increase: the diagonal entry comes first if there is one.
             if let ([row, rows_below @ ..], [value, values_below @ ..]) = (rows, values)
-                && *row == column
+                && *row as usize == column
             {
                 sum += entry(*value) * at_column;
                 (rows, values) = (rows_below, values_below);
             }
             for (&row, &value) in rows.iter().zip(values) {
-                let value = entry(value);
+                let (row, value) = (row as usize, entry(value));
                 sum += value * x[row];
                 y[row - first] += value * at_column;
             }

@@ -7,6 +7,14 @@ use rayon::prelude::*;
 /// Blocks below which a second thread costs more than it saves.
 const LEAST_BLOCKS: usize = 20_000;
 
+/// More threads share the memory of one machine without being faster.
+const MOST_THREADS: usize = 8;
+
+/// How many processors work on one problem: as many as there are, up to 8, because more share one memory without being faster.
+pub fn threads_of_machine() -> usize {
+    rayon::current_num_threads().min(MOST_THREADS)
+}
+
 /// The results of `work` on each part, in the order of the parts; a panic in one of them is one of the caller.
 pub fn in_order<P: Send, R: Send>(parts: Vec<P>, work: impl Fn(P) -> R + Sync) -> Vec<R> {
     match parts.len() {
@@ -26,12 +34,18 @@ pub struct SharedRows<'a> {
 
 impl SharedRows<'_> {
     /// At most `threads` runs of rows with about the same number of blocks.
-    fn runs(&self) -> Vec<Range<usize>> {
-        let (rows, blocks) = (self.starts.len() - 1, self.starts[self.starts.len() - 1]);
-        let parts = self.threads.min(blocks / LEAST_BLOCKS).max(1);
+    pub fn runs(&self) -> Vec<Range<usize>> {
+        self.runs_of(LEAST_BLOCKS)
+    }
+
+    /// The same with at least this number of blocks each.
+    pub fn runs_of(&self, least: usize) -> Vec<Range<usize>> {
+        let (rows, first) = (self.starts.len() - 1, self.starts[0]);
+        let blocks = self.starts[rows] - first;
+        let parts = self.threads.min(blocks / least).max(1);
         let bound = |part: usize| match part == parts {
             true => rows,
-            false => self.starts.partition_point(|&start| start < blocks / parts * part),
+            false => self.starts.partition_point(|&start| start - first < blocks / parts * part),
         };
         (0..parts).map(|part| bound(part)..bound(part + 1)).collect()
     }

@@ -69,7 +69,7 @@ impl Layout {
                 false => Some(Analysis::with_last(problem.stiffness(), &last)?),
             };
             let Some(analysis) = analysis else { continue };
-            let analysis = analysis.with_threads(settings.threads);
+            let analysis = analysis.with_threads(settings.threads.unwrap_or(1));
             let (multiplications, rows) = (analysis.multiplications(), problem.rows());
             let size = Size { is_condensed, multiplications, rows, is_crowded: is_crowded(problem) };
             let way = with.way(settings.accuracy, size);

@@ -197,7 +197,7 @@ fn dense_triangle(matrix: &[f64], size: usize) -> Result<SparseMatrix, Error> {
         (Vec::with_capacity(size + 1), Vec::with_capacity(entries), Vec::with_capacity(entries));
     starts.push(0);
     for column in 0..size {
-        rows.extend(column..size);
+        rows.extend(column as u32..size as u32);
         values.extend_from_slice(&matrix[column * size + column..(column + 1) * size]);
         starts.push(rows.len());
     }

@@ -4,6 +4,7 @@
 //! `[x_0, x_1, ...]`); vectors of the problem have one entry per free dof, in the same order with the supported dofs left out. At a node
 //! with a [`Frame`], which an inclined support makes, the dofs of the problem run along the axes of the frame.
 
+mod congruent;
 mod dofs;
 mod element_blocks;
 mod element_stiffness;

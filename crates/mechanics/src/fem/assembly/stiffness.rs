@@ -1,11 +1,15 @@
 //! K = sum of the element stiffnesses, in the free dofs, assembled directly into the lower triangle in compressed columns.
 
-use super::element_blocks::Block;
+use std::ops::Range;
+
+use super::congruent::Congruent;
+use super::element_blocks::{Block, ElementStiffness};
 use super::pattern::lower_pattern;
 use super::{DofMap, Frame, element_stiffness};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::element::MAX_NODES;
+use crate::fem::threads::{on_parts, parts};
 use signorini_qp as qp;
 use signorini_qp::{SparseMatrix, SymmetricMatrix};
 
@@ -40,14 +44,80 @@ impl<'a> FreeAxes<'a> {
 /// [`qp::Error::Length`] if `dofs` does not belong to the mesh, [`qp::Error::NotFinite`] if the stiffness overflows.
 pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, Error> {
     body.check_nodal("dof map", dofs.nodal_count())?;
-    let dimension = body.dimension();
     let (starts, rows) = lower_pattern(body.mesh(), dofs);
     let mut values = vec![0.0; rows.len()];
-    let tables = body.tabulated();
-    for placed in body.elements() {
-        let nodes = placed.nodes;
-        let mut element = element_stiffness(body, &placed, tables.at(placed.kind));
-        dofs.basis.change(nodes, &mut element);
+    let parts = parts(body.mesh().element_count());
+    // A part has the columns of whole nodes.
+    let first_node = |part: usize| match part == parts {
+        true => body.mesh().nodes().len(),
+        false => {
+            let column = starts.partition_point(|&start| start < rows.len() / parts * part);
+            dofs.free().get(column).map_or(0, |dof| dof / body.dimension())
+        }
+    };
+    let nodes: Vec<usize> = (0..=parts).map(first_node).collect();
+    let first_column = |&node: &usize| dofs.free().partition_point(|&dof| dof < node * body.dimension());
+    let bounds: Vec<usize> = nodes.iter().map(|node| starts[first_column(node)]).collect();
+    let congruent = Congruent::of(body);
+    on_parts(&mut values, &bounds, |part, values| {
+        let columns =
+            Columns { starts: &starts, rows: &rows, nodes: nodes[part]..nodes[part + 1], first: bounds[part] };
+        columns.add_elements(body, dofs, &congruent, values);
+    });
+    if let Some(entry) = values.iter().position(|value| !value.is_finite()) {
+        let at = format!("row {}", rows[entry]);
+        return Err(qp::Error::NotFinite { name: "stiffness", at, value: values[entry], allowed: "finite" }.into());
+    }
+    Ok(SymmetricMatrix::from_lower(SparseMatrix::from_parts(dofs.free().len(), starts, rows, values))?)
+}
+
+/// The columns of some nodes that follow each other.
+struct Columns<'a> {
+    starts: &'a [usize],
+    rows: &'a [u32],
+    nodes: Range<usize>,
+    /// The place of their first entry.
+    first: usize,
+}
+
+impl Columns<'_> {
+    /// Adds the elements around these nodes, in their order.
+    fn add_elements(&self, body: &ElasticBody, dofs: &DofMap, congruent: &Congruent, values: &mut [f64]) {
+        let tables = body.tabulated();
+        let mut last: Option<(u32, ElementStiffness)> = None;
+        for (element, nodes) in body.mesh().elements().enumerate() {
+            if !nodes.iter().any(|node| self.nodes.contains(node)) {
+                continue;
+            }
+            let representative = congruent.representative(element);
+            let stiffness = match last.take() {
+                Some((of, stiffness)) if of == representative => stiffness,
+                _ => {
+                    let Some(placed) = body.element(representative as usize) else { continue };
+                    element_stiffness(body, &placed, tables.at(placed.kind))
+                }
+            };
+            match dofs.basis.is_nodal() {
+                true => self.add_element(nodes, dofs, body.dimension(), &stiffness, values),
+                false => {
+                    let mut changed = stiffness.clone();
+                    dofs.basis.change(nodes, &mut changed);
+                    self.add_element(nodes, dofs, body.dimension(), &changed, values);
+                }
+            }
+            last = Some((representative, stiffness));
+        }
+    }
+
+    fn add_element(
+        &self,
+        nodes: &[usize],
+        dofs: &DofMap,
+        dimension: usize,
+        element: &ElementStiffness,
+        values: &mut [f64],
+    ) {
+        let Columns { starts, rows, first, .. } = *self;
         let mut free = [FreeAxes::default(); MAX_NODES];
         for (of_node, &node) in free.iter_mut().zip(nodes) {
             *of_node = FreeAxes::of(node, dimension, dofs);
@@ -57,11 +127,11 @@ pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, E
                 // The lower triangle has the later node as its row; free dofs are numbered in the order of the nodes.
                 let mirrored = nodes[a] < nodes[b];
                 let (row, column) = if mirrored { (&free[b], &free[a]) } else { (&free[a], &free[b]) };
-                if row.count == 0 || column.count == 0 {
+                if row.count == 0 || column.count == 0 || !self.nodes.contains(&nodes[a].min(nodes[b])) {
                     continue;
                 }
                 let of_first = &rows[starts[column.first]..starts[column.first + 1]];
-                let Ok(place) = of_first.binary_search(&row.first) else { continue };
+                let Ok(place) = of_first.binary_search(&(row.first as u32)) else { continue };
                 let turned;
                 let block = match (free[a].frame, free[b].frame) {
                     (None, None) => element.block(a, b),
@@ -72,7 +142,7 @@ pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, E
                 };
                 for (j, &along) in column.axes[..column.count].iter().enumerate() {
                     // Each column of a node starts one row further down; rows of one node follow each other.
-                    let start = starts[column.first + j] + place;
+                    let start = starts[column.first + j] - first + place;
                     let skipped = if a == b { j } else { 0 };
                     for i in skipped..row.count {
                         let axis = row.axes[i];
@@ -83,11 +153,6 @@ pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, E
             }
         }
     }
-    if let Some(entry) = values.iter().position(|value| !value.is_finite()) {
-        let at = format!("row {}", rows[entry]);
-        return Err(qp::Error::NotFinite { name: "stiffness", at, value: values[entry], allowed: "finite" }.into());
-    }
-    Ok(SymmetricMatrix::from_lower(SparseMatrix::from_parts(dofs.free().len(), starts, rows, values))?)
 }
 
 /// T_a K_ab T_b'; the rows of T are the axes of a frame.

@@ -73,6 +73,11 @@ impl Law {
         }
     }
 
+    /// Returns `true` if the axes of the law are others at other places.
+    pub fn turns(&self) -> bool {
+        matches!(&self.stiffness, Stiffness::General(matrices) if matrices.around.is_some())
+    }
+
     /// The stress of a strain, both along the axes of the law.
     #[inline]
     fn local_stress(&self, strain: &Symmetric, dilatation: f64) -> Symmetric {

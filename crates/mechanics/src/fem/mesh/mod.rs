@@ -26,9 +26,9 @@ use crate::error::Error;
 use crate::fem::geometry::distance;
 use std::ops::Range;
 
-/// More nodes than this are refused before memory is allocated: a direct factorisation of a plane problem with ten million dofs does not
-/// fit in memory.
-pub const MAX_NODES: usize = 5_000_000;
+/// More nodes than this are refused before memory is allocated: a mesh of Tet4 has some 24 places of elements for each node, and their numbers
+/// fit 32 bits.
+pub const MAX_NODES: usize = 100_000_000;
 
 /// A mesh, checked once, when it is built: elements of one kind, or blocks of them after [`Mesh::beside`].
 #[derive(Clone, Debug, PartialEq)]

@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::element::{MAX_NODES, PerNode, Rule, Tabulated};
 use crate::fem::geometry::Symmetric;
+use crate::fem::threads::each;
 use signorini_qp as qp;
 
 /// Estimates the relative error in energy norm of the nodal displacement `displacement` (length `dim * n_nodes`), whose stress is
@@ -48,9 +49,9 @@ impl EstimatedError {
         let tables = body.per_kind(|reference| Tabulated::new(reference, Rule::Revolved));
         let standard = body.tabulated();
 
-        let mut of_elements = Vec::with_capacity(body.mesh().element_count());
-        let (mut whole, mut unstrained) = (0.0, 0.0);
-        for element in body.elements() {
+        let of_element = |index: usize| {
+            let [mut difference, mut whole, mut unstrained] = [0.0; 3];
+            let Some(element) = body.element(index) else { return [difference, whole, unstrained] };
             let (nodes, cell, law) = (element.nodes, &element.cell, &element.phase.law);
             let strained = body.strained(&standard, displacement, &element);
             let mut recovered: PerNode<Symmetric> = [[0.0; 6]; MAX_NODES];
@@ -58,7 +59,6 @@ impl EstimatedError {
                 *stress = field.within(node, element.phase_number).components();
             }
             let volume = cell.unit().powi(body.dimension() as i32);
-            let mut difference = 0.0;
             for at in &tables.at(element.kind).points {
                 let (point, stress) = strained.at(at);
                 let place = || cell.place(&at.shape);
@@ -72,8 +72,12 @@ impl EstimatedError {
                     unstrained += volume * point.weight * law.complementary_energy(&own, place);
                 }
             }
-            of_elements.push(difference);
-        }
+            [difference, whole, unstrained]
+        };
+        let squares = each(body.mesh().element_count(), of_element);
+        let sum = |which: usize| squares.iter().map(|of_element| of_element[which]).sum();
+        let (whole, unstrained) = (sum(1), sum(2));
+        let of_elements = squares.into_iter().map(|[difference, ..]| difference).collect();
         Ok(EstimatedError { of_elements, whole, unstrained })
     }
 

@@ -7,13 +7,16 @@ pub(crate) mod points;
 pub use discretisation::discretisation_error;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
-use nalgebra::Matrix3;
+use nalgebra::{DMatrix, Matrix3};
 
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
+use crate::fem::element::{MAX_NODES, PerNode, Tabulated, TabulatedPoint};
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::Symmetric;
+use crate::fem::threads::{each, in_order};
 
 /// The stress at a point, in force per area; tension is positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -149,27 +152,27 @@ pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, E
     let mut elements = Vec::with_capacity(body.mesh().element_count());
     let mut sums: Vec<(Symmetric, usize)> = vec![([0.0; 6], 0); node_count];
     let (interfaces, mut sides) = (interfaces(body), BTreeMap::<(usize, u32), (Symmetric, usize)>::new());
-    for element in body.elements() {
-        let (nodes, table, extrapolation) = (element.nodes, tables.at(element.kind), extrapolations.at(element.kind));
+    let of_element = |index: usize| {
+        let element = body.element(index)?;
         let strained = body.strained(&tables, displacement, &element);
-        elements.push(finished(body, strained.at(&table.centroid).1));
-        for (index, at) in table.points.iter().enumerate() {
-            let at_point = strained.at(at).1;
-            for (local, &node) in nodes.iter().enumerate() {
-                let weight = extrapolation[(local, index)];
-                add(&mut sums[node].0, weight, &at_point);
+        let (table, extrapolation) = (tables.at(element.kind), extrapolations.at(element.kind));
+        let of_nodes = carried_to_nodes(table, extrapolation, |at| strained.at(at).1);
+        Some((finished(body, strained.at(&table.centroid).1), element.nodes, element.phase_number, of_nodes))
+    };
+    let of_run = |run: Range<usize>| run.filter_map(of_element).collect::<Vec<_>>();
+    in_order(body.mesh().element_count(), of_run, |of_elements| {
+        for (of_element, nodes, phase, of_nodes) in of_elements {
+            elements.push(of_element);
+            for (&node, stress) in nodes.iter().zip(&of_nodes) {
+                add(&mut sums[node], stress);
                 if interfaces.contains(&node) {
-                    add(&mut sides.entry((node, element.phase_number)).or_default().0, weight, &at_point);
+                    add(sides.entry((node, phase)).or_default(), stress);
                 }
             }
         }
-        for &node in nodes {
-            sums[node].1 += 1;
-            sides.get_mut(&(node, element.phase_number)).into_iter().for_each(|side| side.1 += 1);
-        }
-    }
+    });
     let average = |(sum, count): &(Symmetric, usize)| finished(body, sum.map(|component| component / *count as f64));
-    let nodes = sums.iter().map(average).collect();
+    let nodes = each(node_count, |node| average(&sums[node]));
     Ok(StressField { elements, nodes, sides: sides.iter().map(|(&side, sum)| (side, average(sum))).collect() })
 }
 
@@ -184,18 +187,13 @@ pub(crate) fn stress_at(body: &ElasticBody, displacement: &[f64], nodes: &BTreeS
     nodes.iter().for_each(|&node| is_wanted[node] = true);
     for element in body.elements().filter(|element| element.nodes.iter().any(|&node| is_wanted[node])) {
         let (table, is_quadratic) = (tables.at(element.kind), element.kind.is_quadratic());
-        let extrapolation = extrapolations.at(element.kind);
-        let weight = |local: usize, point: usize| if is_quadratic { extrapolation[(local, point)] } else { 1.0 };
         let strained = body.strained(&tables, displacement, &element);
-        let at_points: Vec<Symmetric> = if is_quadratic {
-            table.points.iter().map(|at| strained.at(at).1).collect()
-        } else {
-            vec![strained.at(&table.centroid).1]
+        let of_nodes = match is_quadratic {
+            true => carried_to_nodes(table, extrapolations.at(element.kind), |at| strained.at(at).1),
+            false => [strained.at(&table.centroid).1; MAX_NODES],
         };
-        for (local, &node) in element.nodes.iter().enumerate().filter(|&(_, &node)| is_wanted[node]) {
-            let (sum, count) = sums.entry(node).or_default();
-            at_points.iter().enumerate().for_each(|(point, stress)| add(sum, weight(local, point), stress));
-            *count += 1;
+        for (node, stress) in element.nodes.iter().zip(&of_nodes).filter(|(node, _)| is_wanted[**node]) {
+            add(sums.entry(*node).or_default(), stress);
         }
     }
     let average = |(sum, count): (Symmetric, usize)| finished(body, sum.map(|component| component / count as f64));
@@ -209,8 +207,25 @@ fn finished(body: &ElasticBody, s: Symmetric) -> Stress {
     }
 }
 
-fn add(sum: &mut Symmetric, weight: f64, stress: &Symmetric) {
-    for (sum, component) in sum.iter_mut().zip(stress) {
-        *sum += weight * component;
+/// The values at the quadrature points of an element, carried to its nodes.
+fn carried_to_nodes(
+    table: &Tabulated,
+    extrapolation: &DMatrix<f64>,
+    value: impl Fn(&TabulatedPoint) -> Symmetric,
+) -> PerNode<Symmetric> {
+    let mut of_nodes = [[0.0; 6]; MAX_NODES];
+    for (point, at) in table.points.iter().enumerate() {
+        let value = value(at);
+        for (local, of_node) in of_nodes.iter_mut().enumerate().take(extrapolation.nrows()) {
+            let weight = extrapolation[(local, point)];
+            of_node.iter_mut().zip(&value).for_each(|(sum, component)| *sum += weight * component);
+        }
     }
+    of_nodes
+}
+
+/// Adds a value to a sum, and counts it.
+fn add((sum, count): &mut (Symmetric, usize), value: &Symmetric) {
+    sum.iter_mut().zip(value).for_each(|(sum, component)| *sum += component);
+    *count += 1;
 }

@@ -1,12 +1,13 @@
 //! Strain and stress at given points of elements, strain at the nodes, volume and energy of elements.
 
-use super::add;
+use super::{add, carried_to_nodes};
 use crate::error::Error;
-use crate::fem::body::{BodyElement, ElasticBody, Phase};
+use crate::fem::body::{ElasticBody, Phase};
 use crate::fem::element::TabulatedPoint;
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::Symmetric;
 use crate::fem::material::Law;
+use crate::fem::threads::each;
 use signorini_qp as qp;
 
 /// The strain at each node, of all elements around it: recovered as the stress of [`super::StressField`].
@@ -18,15 +19,10 @@ pub(crate) fn nodal_strain(body: &ElasticBody, displacement: &[f64]) -> Result<V
     let (tables, extrapolations) = (body.tabulated(), body.extrapolations());
     let mut sums: Vec<(Symmetric, usize)> = vec![([0.0; 6], 0); body.mesh().nodes().len()];
     for element in body.elements() {
-        let (strained, extrapolation) =
-            (body.strained(&tables, displacement, &element), extrapolations.at(element.kind));
-        for (index, at) in tables.at(element.kind).points.iter().enumerate() {
-            let [strain, _] = strained.strain_and_stress(at);
-            for (local, &node) in element.nodes.iter().enumerate() {
-                add(&mut sums[node].0, extrapolation[(local, index)], &strain);
-            }
-        }
-        element.nodes.iter().for_each(|&node| sums[node].1 += 1);
+        let strained = body.strained(&tables, displacement, &element);
+        let strain = |at: &TabulatedPoint| strained.strain_and_stress(at)[0];
+        let of_nodes = carried_to_nodes(tables.at(element.kind), extrapolations.at(element.kind), strain);
+        element.nodes.iter().zip(&of_nodes).for_each(|(&node, strain)| add(&mut sums[node], strain));
     }
     Ok(sums.into_iter().map(|(sum, count)| sum.map(|component| component / count as f64)).collect())
 }
@@ -69,7 +65,8 @@ pub(crate) fn volume_and_energy(body: &ElasticBody, displacement: &[f64]) -> Res
     // An incompressible material has a law in plane stress only, and no stress works across its plane.
     let in_space = |phase: &Phase| phase.material().law(&Formulation::Space).unwrap_or_else(|_| phase.law.clone());
     let laws: Vec<Law> = body.phases().iter().map(in_space).collect();
-    let of_element = |element: BodyElement| {
+    let of_element = |index: usize| {
+        let Some(element) = body.element(index) else { return [0.0; 2] };
         let strained = body.strained(&tables, displacement, &element);
         let (mut volume, mut energy) = (0.0, 0.0);
         for at in &tables.at(element.kind).points {
@@ -81,5 +78,5 @@ pub(crate) fn volume_and_energy(body: &ElasticBody, displacement: &[f64]) -> Res
         let scale = element.cell.unit().powi(body.dimension() as i32);
         [scale * volume, scale * energy]
     };
-    Ok(body.elements().map(of_element).collect())
+    Ok(each(body.mesh().element_count(), of_element))
 }

@@ -4,9 +4,20 @@ use std::ops::Range;
 
 use crate::linear::factor::Real;
 use crate::linear::grouped::group_starts;
-use crate::linear::threads::SharedRows;
+use crate::linear::threads::{SharedRows, in_order};
+
+/// Largest number of parts of a product with the transposed matrix: each has its own vector.
+const MOST_PARTS: usize = 8;
+
+/// Least number of blocks of a matrix in a slab of a Galerkin product.
+const SLAB: usize = 500_000;
+
+/// Largest number of slabs: the sum of the products of all slabs is copied with each.
+const MOST_SLABS: usize = 16;
 
 /// A sparse matrix of blocks of `height` x `width` values, row by row, each block row by row.
+///
+/// Rows may be shared, where those of a lattice repeat: see [`BlockMatrix::shared_rows`].
 #[derive(Clone, Debug)]
 pub struct BlockMatrix<T> {
     /// Rows of a block.
@@ -15,12 +26,14 @@ pub struct BlockMatrix<T> {
     pub width: usize,
     /// Number of block columns.
     pub columns: usize,
-    /// Start of each block row in `indices`, length block rows + 1.
+    /// Start of each block row in `indices`, length block rows + 1; if rows are shared, only the differences count.
     pub starts: Vec<usize>,
-    /// Block column of each block, increasing within a row.
+    /// Block column of each block, increasing within a row; if rows are shared, how far it lies after its row, modulo 2^32.
     pub indices: Vec<u32>,
     /// Values, `height * width` for each block.
     pub values: Vec<T>,
+    /// The first block of each row among `indices`, if rows are shared: several rows then have the same. Empty otherwise.
+    pub shared_rows: Vec<u32>,
 }
 
 /// Calls a function with the block size as constants if it is one of the sizes of bodies.
@@ -57,21 +70,38 @@ impl<T: Real> BlockMatrix<T> {
         &self.values[place * self.block_size()..(place + 1) * self.block_size()]
     }
 
+    /// The places of the blocks of a row, and what their indices lack.
+    #[inline]
+    fn places(&self, row: usize) -> (Range<usize>, u32) {
+        match self.shared_rows.get(row) {
+            None => (self.starts[row]..self.starts[row + 1], 0),
+            Some(&first) => {
+                let first = first as usize;
+                (first..first + self.starts[row + 1] - self.starts[row], row as u32)
+            }
+        }
+    }
+
     /// The blocks `(column, values)` of a row.
     #[inline]
     pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, &[T])> + '_ {
-        (self.starts[row]..self.starts[row + 1]).map(|place| (self.indices[place] as usize, self.block(place)))
+        let (places, shift) = self.places(row);
+        places.map(move |place| (self.indices[place].wrapping_add(shift) as usize, self.block(place)))
     }
 
     /// The place of the diagonal block of a row, if there is one.
     pub fn diagonal_place(&self, row: usize) -> Option<usize> {
-        let range = self.starts[row]..self.starts[row + 1];
-        self.indices[range.clone()].binary_search(&(row as u32)).ok().map(|place| range.start + place)
+        let (places, shift) = self.places(row);
+        let found = self.indices[places.clone()].binary_search_by_key(&row, |index| index.wrapping_add(shift) as usize);
+        found.ok().map(|place| places.start + place)
     }
 
     /// Bytes of memory that it holds.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.starts[..]) + size_of_val(&self.indices[..]) + size_of_val(&self.values[..])
+        size_of_val(&self.starts[..])
+            + size_of_val(&self.indices[..])
+            + size_of_val(&self.values[..])
+            + size_of_val(&self.shared_rows[..])
     }
 
     /// The rows, to be shared out among threads.
@@ -88,7 +118,8 @@ impl<T: Real> BlockMatrix<T> {
 
     /// A matrix without entries, of `rows` by `columns` blocks.
     pub fn empty(rows: usize, columns: usize, (height, width): (usize, usize)) -> Self {
-        BlockMatrix { height, width, columns, starts: vec![0; rows + 1], indices: Vec::new(), values: Vec::new() }
+        let (starts, indices, values, shared_rows) = (vec![0; rows + 1], Vec::new(), Vec::new(), Vec::new());
+        BlockMatrix { height, width, columns, starts, indices, values, shared_rows }
     }
 
     /// Adds a row of `A x` to `sums`.
@@ -101,8 +132,25 @@ impl<T: Real> BlockMatrix<T> {
         }
     }
 
+    /// A row of `A x`, for blocks of H x W.
+    #[inline]
+    pub(super) fn row_product<const H: usize, const W: usize>(&self, row: usize, x: &[T]) -> [T; H] {
+        let (places, shift) = self.places(row);
+        let (parts, mut sum) = (x.as_chunks::<W>().0, [T::default(); H]);
+        let blocks = self.values[places.start * H * W..places.end * H * W].as_chunks::<W>().0;
+        for (index, block) in self.indices[places].iter().zip(blocks.chunks_exact(H)) {
+            let part = &parts[index.wrapping_add(shift) as usize];
+            for i in 0..H {
+                for j in 0..W {
+                    sum[i] += block[i][j] * part[j];
+                }
+            }
+        }
+        sum
+    }
+
     /// The rows with entries, for a matrix with mostly empty rows.
-    fn filled_rows(&self) -> impl Iterator<Item = usize> + '_ {
+    fn filled_rows(&self) -> impl Iterator<Item = usize> + Clone + '_ {
         (0..self.rows()).filter(|&row| self.starts[row] < self.starts[row + 1])
     }
 
@@ -180,12 +228,17 @@ impl<T: Real> BlockMatrix<T> {
 
     /// The transposed matrix.
     pub fn transposed(&self) -> Self {
-        let starts = group_starts(self.columns, self.indices.iter().map(|&column| column as usize));
+        self.transposed_rows(0..self.rows())
+    }
+
+    /// The transposed matrix, of some rows alone.
+    fn transposed_rows(&self, rows: impl Iterator<Item = usize> + Clone) -> Self {
+        let starts = group_starts(self.columns, rows.clone().flat_map(|row| self.row(row).map(|entry| entry.0)));
         let mut next = starts.clone();
-        let mut indices = vec![0; self.indices.len()];
-        let mut values = vec![T::default(); self.values.len()];
         let size = self.block_size();
-        for row in 0..self.rows() {
+        let mut indices = vec![0; starts[self.columns]];
+        let mut values = vec![T::default(); indices.len() * size];
+        for row in rows {
             for (column, block) in self.row(row) {
                 let place = next[column];
                 next[column] += 1;
@@ -198,14 +251,64 @@ impl<T: Real> BlockMatrix<T> {
                 }
             }
         }
-        BlockMatrix { height: self.width, width: self.height, columns: self.rows(), starts, indices, values }
+        let (height, width, columns, shared_rows) = (self.width, self.height, self.rows(), Vec::new());
+        BlockMatrix { height, width, columns, starts, indices, values, shared_rows }
+    }
+
+    /// `y = A' x`. The sums run over parts of the rows that depend on the matrix alone, so that the result does not depend on the threads.
+    pub fn transposed_mul(&self, x: &[T], threads: usize) -> Vec<T> {
+        let parts = SharedRows { starts: &self.starts, threads: MOST_PARTS }.runs();
+        let of_part = |rows: Range<usize>| {
+            let mut y = vec![T::default(); self.columns * self.width];
+            with_block_size!(add_transposed_product, (self.height, self.width), (self, x, rows, &mut y));
+            y
+        };
+        let of_run = |run: &[Range<usize>]| run.iter().cloned().map(of_part).collect::<Vec<_>>();
+        let runs = parts.chunks(parts.len().div_ceil(threads)).collect();
+        let mut sums = in_order(runs, of_run).into_iter().flatten();
+        let mut y = sums.next().unwrap_or_default();
+        for sum in sums {
+            y.iter_mut().zip(&sum).for_each(|(y, &sum)| *y += sum);
+        }
+        y
+    }
+
+    /// The product P' M of this matrix P; rows of M may be empty.
+    pub fn transposed_product(&self, other: &Self, threads: usize) -> Self {
+        self.transposed_rows(other.filled_rows()).product(other, threads)
+    }
+
+    /// The product P' A P of this matrix P, by slabs of rows: A P is never there as a whole.
+    pub fn galerkin_product(&self, matrix: &Self, threads: usize) -> Self {
+        let slabs = SharedRows { starts: &matrix.starts, threads: MOST_SLABS }.runs_of(SLAB);
+        let mut sum: Option<Self> = None;
+        for rows in slabs {
+            let mut moved = matrix.product_rows(self, rows.clone(), threads);
+            // Rows before and after the slab are empty.
+            let (before, last) = (rows.start, moved.indices.len());
+            moved.starts.splice(0..0, vec![0; before]);
+            moved.starts.resize(matrix.rows() + 1, last);
+            let part = self.transposed_rows(rows).product(&moved, threads);
+            sum = Some(match sum {
+                None => part,
+                Some(sum) => sum.plus(1.0, &part),
+            });
+        }
+        sum.unwrap_or_else(|| Self::empty(self.columns, self.columns, (self.width, self.width)))
     }
 
     /// The product A B, row by row: a row of the product is a sum of rows of B, one for each entry in the row of A.
     pub fn product(&self, other: &Self, threads: usize) -> Self {
-        let parts = self
-            .shared(threads)
-            .map(|rows| with_block_size!(product_rows, (self.height, self.width), (self, other, rows)));
+        self.product_rows(other, 0..self.rows(), threads)
+    }
+
+    /// Some rows of the product A B, numbered from 0.
+    fn product_rows(&self, other: &Self, rows: Range<usize>, threads: usize) -> Self {
+        let starts = &self.starts[rows.start..=rows.end];
+        let parts = SharedRows { starts, threads }.map(|part| {
+            let rows = rows.start + part.start..rows.start + part.end;
+            with_block_size!(product_rows, (self.height, self.width), (self, other, rows))
+        });
         let mut product = Self::empty(0, other.columns, (self.height, other.width));
         for (starts, indices, values) in parts {
             let before = product.indices.len();
@@ -234,21 +337,35 @@ fn multiply_rows<T: Real, const H: usize, const W: usize>(
         }
         return;
     }
-    let (parts, _) = x.as_chunks::<W>();
-    let (sums, _) = y.as_chunks_mut::<H>();
-    for (row, of_row) in rows.zip(sums) {
-        let mut sum = [T::default(); H];
-        let range = matrix.starts[row]..matrix.starts[row + 1];
-        let blocks = matrix.values[range.start * H * W..range.end * H * W].as_chunks::<W>().0;
-        for (&column, block) in matrix.indices[range].iter().zip(blocks.chunks_exact(H)) {
-            let part = &parts[column as usize];
-            for i in 0..H {
+    for (row, of_row) in rows.zip(y.as_chunks_mut::<H>().0) {
+        *of_row = matrix.row_product::<H, W>(row, x);
+    }
+}
+
+/// Adds the contribution of some rows to `A' x`.
+fn add_transposed_product<T: Real, const H: usize, const W: usize>(
+    matrix: &BlockMatrix<T>,
+    x: &[T],
+    rows: Range<usize>,
+    y: &mut [T],
+) {
+    for row in rows {
+        let of_row = &x[row * matrix.height..(row + 1) * matrix.height];
+        for (column, block) in matrix.row(row) {
+            let sums = &mut y[column * matrix.width..(column + 1) * matrix.width];
+            if H == 0 {
+                for (line, &x) in block.chunks_exact(matrix.width).zip(of_row) {
+                    sums.iter_mut().zip(line).for_each(|(sum, &a)| *sum += a * x);
+                }
+                continue;
+            }
+            let (Some(sums), lines) = (sums.first_chunk_mut::<W>(), block.as_chunks::<W>().0) else { continue };
+            for (line, &x) in lines.iter().zip(of_row) {
                 for j in 0..W {
-                    sum[i] += block[i][j] * part[j];
+                    sums[j] += line[j] * x;
                 }
             }
         }
-        *of_row = sum;
     }
 }
 

@@ -101,7 +101,7 @@ pub(super) fn lower_part<T: Real>(blocks: &BlockMatrix<T>) -> SymmetricMatrix {
                     let row = other * size + i;
                     let value = block[j * size + i].double();
                     if row >= column && (value != 0.0 || row == column) {
-                        rows.push(row);
+                        rows.push(row as u32);
                         values.push(value);
                     }
                 }

@@ -36,8 +36,7 @@ impl<T: Real> Hierarchy<T> {
         let mut x = vec![T::default(); rest.len()];
         let force = rest.clone();
         operator.subtract_product(&smoother.smooth(&operator, &mut x, &mut rest), &mut rest);
-        let mut restricted = vec![T::default(); level.restriction.rows() * level.restriction.height];
-        level.restriction.mul_into(&rest, &mut restricted, self.threads);
+        let restricted = level.prolongator.transposed_mul(&rest, self.threads);
         let correction = self.descend(depth + 1, restricted, face);
         let mut moved = rest;
         level.prolongator.mul_into(&correction, &mut moved, self.threads);

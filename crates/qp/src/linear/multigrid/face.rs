@@ -90,8 +90,9 @@ fn changes<T: Real>(
     let threads = hierarchy.threads;
     let (mut of_levels, mut steps): (Vec<BlockMatrix<T>>, Vec<BlockMatrix<T>>) = (Vec::new(), Vec::new());
     for level in &hierarchy.levels {
-        let through =
-            |inner: &BlockMatrix<T>| level.restriction.product(&inner.product(&level.prolongator, 1), threads);
+        let through = |inner: &BlockMatrix<T>| {
+            level.prolongator.transposed_product(&inner.product(&level.prolongator, 1), threads)
+        };
         let step = match steps.last() {
             None => {
                 let rows = newly_held.transposed.product(&level.matrix, 1);

@@ -6,9 +6,10 @@ use super::aggregation::{aggregate, strong_connections};
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
 use super::coarsest::Coarsest;
+use super::filling::fill_empty_diagonal;
 use super::lines::Lines;
 use super::near_null::NearNullSpace;
-use super::nodes::{Nodes, fill_empty_diagonal};
+use super::nodes::Nodes;
 use super::prolongator::{Candidates, smoothed, tentative};
 use crate::linear::factor::Real;
 use crate::linear::{FactorError, SymmetricMatrix, ldexp};
@@ -46,7 +47,6 @@ pub(super) struct Level<T> {
     pub matrix: BlockMatrix<T>,
     pub smoother: Chebyshev<T>,
     pub prolongator: BlockMatrix<T>,
-    pub restriction: BlockMatrix<T>,
     /// The near-null space in the unknowns of the next level.
     pub near_null: Candidates,
 }
@@ -71,7 +71,7 @@ impl<T: Real> Hierarchy<T> {
     /// # Errors
     /// [`FactorError`] if the coarsest matrix has a negative eigenvalue, or if memory does not suffice for its factor.
     pub fn new(matrix: &SymmetricMatrix, near_null: &NearNullSpace, threads: usize) -> Result<Self, FactorError> {
-        let (nodes, mut blocks, shift) = Nodes::of::<T>(matrix);
+        let (nodes, mut blocks, shift) = Nodes::of::<T>(matrix, threads);
         let count = near_null.count();
         let mut candidates = Candidates { count, values: vec![0.0; nodes.size * nodes.count * count] };
         for (index, vector) in near_null.vectors().iter().enumerate() {
@@ -97,12 +97,12 @@ impl<T: Real> Hierarchy<T> {
             };
             let prolongator = smoothed(&flat, moved, &smoother, threads);
             drop(flat);
-            let restriction = prolongator.transposed();
-            let mut next = restriction.product(&blocks.product(&prolongator, threads), threads);
+            candidates = coarse;
+            let mut next = prolongator.galerkin_product(&blocks, threads);
             fill_empty_diagonal(&mut next);
-            let near_null = coarse.clone();
-            levels.push(Arc::new(Level { matrix: blocks, smoother, prolongator, restriction, near_null }));
-            (blocks, candidates) = (next, coarse);
+            let near_null = candidates.clone();
+            levels.push(Arc::new(Level { matrix: blocks, smoother, prolongator, near_null }));
+            blocks = next;
             threshold /= 2.0;
         }
         let coarsest = Arc::new(Coarsest::of(&blocks)?);
@@ -136,10 +136,7 @@ impl<T: Real> Hierarchy<T> {
     /// Bytes of memory that it holds.
     pub fn bytes(&self) -> usize {
         let of_level = |level: &Arc<Level<T>>| {
-            level.matrix.bytes()
-                + level.prolongator.bytes()
-                + level.restriction.bytes()
-                + size_of_val(&level.smoother.inverse[..])
+            level.matrix.bytes() + level.prolongator.bytes() + size_of_val(&level.smoother.inverse[..])
         };
         self.levels.iter().map(of_level).sum::<usize>() + size_of::<f64>() * self.coarsest.entries()
     }

@@ -18,6 +18,7 @@ mod conjugate_gradients;
 mod cycle;
 mod dual_norm;
 mod face;
+mod filling;
 mod held;
 mod hierarchy;
 mod lines;
@@ -25,6 +26,7 @@ mod near_null;
 mod nodes;
 mod operator;
 mod prolongator;
+mod repeated;
 
 pub use coarser::Interval;
 pub use conjugate_gradients::Preconditioned;

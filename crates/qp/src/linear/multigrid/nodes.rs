@@ -3,6 +3,7 @@
 use super::super::quotient::Quotient;
 use super::super::{SymmetricMatrix, exponent, ldexp};
 use super::blocks::BlockMatrix;
+use super::filling::Filling;
 use crate::linear::factor::Real;
 
 /// Largest number of dofs of a node; if more have the same neighbours, they count as dofs of several nodes.
@@ -57,7 +58,7 @@ impl Units {
 impl Nodes {
     /// Groups dofs with the same neighbours, and writes the matrix in blocks of these groups, in the unit of each node, times
     /// `2^exponent` so that its diagonal is of order one.
-    pub fn of<T: Real>(matrix: &SymmetricMatrix) -> (Self, BlockMatrix<T>, i32) {
+    pub fn of<T: Real>(matrix: &SymmetricMatrix, threads: usize) -> (Self, BlockMatrix<T>, i32) {
         let graph = Quotient::of(matrix.lower());
         let groups = graph.count() as u32;
         let size = usual_dofs(&graph);
@@ -72,31 +73,10 @@ impl Nodes {
             }
         }
         first_node.push(count as u32);
-        let (mut starts, mut indices) = (Vec::with_capacity(count + 1), Vec::new());
-        starts.push(0);
-        let mut groups_met = Vec::new();
-        for group in 0..groups {
-            groups_met.clear();
-            groups_met.push(group);
-            groups_met.extend_from_slice(graph.neighbours(group));
-            groups_met.sort_unstable();
-            // Groups with dofs that do not follow each other meet from both sides.
-            groups_met.dedup();
-            for _ in first_node[group as usize]..first_node[group as usize + 1] {
-                for &other in &groups_met {
-                    indices.extend(first_node[other as usize]..first_node[other as usize + 1]);
-                }
-                starts.push(indices.len());
-            }
-        }
-        drop(graph);
-        let values = vec![T::default(); indices.len() * size * size];
-        let mut blocks = BlockMatrix { height: size, width: size, columns: count, starts, indices, values };
         let (exponents, shift) = units(&matrix.diagonal(), |dof| place[dof] as usize / size, count);
-        let nodes = Nodes { size, count, place, exponents };
-        nodes.fill(matrix, shift, &mut blocks);
-        fill_empty_diagonal(&mut blocks);
-        (nodes, blocks, shift)
+        let filling = Filling { matrix, graph: &graph, first_node: &first_node, size, exponents: &exponents, shift };
+        let blocks = filling.blocks(threads);
+        (Nodes { size, count, place, exponents }, blocks, shift)
     }
 
     /// `count` nodes of `size` dofs each, one after another.
@@ -113,53 +93,6 @@ impl Nodes {
             graph.members(group).iter().enumerate().for_each(|(place, &dof)| components[dof] = place % size);
         }
         (size, components)
-    }
-
-    /// Fills the blocks on and above the diagonal, row by row, then copies those below from them: both run through memory in
-    /// order. Entries outside the pattern of the graph cost quality, not correctness.
-    fn fill<T: Real>(&self, matrix: &SymmetricMatrix, shift: i32, blocks: &mut BlockMatrix<T>) {
-        let size = self.size;
-        let diagonal: Vec<usize> =
-            (0..self.count).map(|node| blocks.diagonal_place(node).unwrap_or(blocks.starts[node])).collect();
-        for dof in 0..matrix.dim() {
-            let shift = shift + self.exponent(self.place[dof]);
-            let (node, j) = (self.place[dof] as usize / size, self.place[dof] as usize % size);
-            let mut cursor = diagonal[node];
-            for (row, value) in matrix.lower().column(dof) {
-                let (other, i) = (self.place[row] as usize / size, self.place[row] as usize % size);
-                let (first, second, a, b) = if node <= other { (node, other, j, i) } else { (other, node, i, j) };
-                let end = blocks.starts[first + 1];
-                if first != node || cursor >= end || blocks.indices[cursor] as usize > second {
-                    cursor = diagonal[first];
-                }
-                let ahead = &blocks.indices[cursor..end];
-                let place = cursor + ahead.iter().take_while(|&&column| (column as usize) < second).count();
-                if place < end && blocks.indices[place] as usize == second {
-                    let block = &mut blocks.values[place * size * size..(place + 1) * size * size];
-                    block[a * size + b] = T::of(ldexp(value, shift + self.exponents[other]));
-                    if first == second {
-                        block[b * size + a] = block[a * size + b];
-                    }
-                    cursor = if first == node { place } else { diagonal[node] };
-                }
-            }
-        }
-        let mut next: Vec<usize> = diagonal.iter().map(|place| place + 1).collect();
-        for (node, &own) in diagonal.iter().enumerate() {
-            for place in blocks.starts[node]..own {
-                let other = blocks.indices[place] as usize;
-                let mirrored = next[other];
-                if mirrored < blocks.starts[other + 1] && blocks.indices[mirrored] as usize == node {
-                    next[other] += 1;
-                    for i in 0..size {
-                        for j in 0..size {
-                            blocks.values[(place * size + i) * size + j] =
-                                blocks.values[(mirrored * size + j) * size + i];
-                        }
-                    }
-                }
-            }
-        }
     }
 
     /// The node and the unit of each dof.
@@ -212,18 +145,4 @@ fn usual_dofs(graph: &Quotient) -> usize {
         }
     }
     (1..=MOST_DOFS).max_by_key(|&size| (with[size], size)).unwrap_or(1)
-}
-
-/// Places that nothing touches get the diagonal entry one.
-pub fn fill_empty_diagonal<T: Real>(blocks: &mut BlockMatrix<T>) {
-    let size = blocks.height;
-    for node in 0..blocks.rows() {
-        let Some(place) = blocks.diagonal_place(node) else { continue };
-        for i in 0..size {
-            let entry = &mut blocks.values[place * size * size + i * size + i];
-            if *entry == T::default() {
-                *entry = T::of(1.0);
-            }
-        }
-    }
 }

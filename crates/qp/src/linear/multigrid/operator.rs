@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::blocks::BlockMatrix;
 use super::held::Held;
+use super::repeated;
 use crate::linear::factor::Real;
 
 /// A matrix A minus the change by a face: on the finest level the face is the range of E = I - N, on coarser ones A becomes A - C.
@@ -32,7 +33,10 @@ impl<'a, T: Real> Operator<'a, T> {
 
     /// The force of an `x` in the face.
     pub fn mul_into(&self, x: &[T], y: &mut [T]) {
-        self.matrix.mul_into(x, y, self.threads);
+        match self.matrix.shared_rows.is_empty() {
+            true => self.matrix.mul_into(x, y, self.threads),
+            false => repeated::multiply(self.matrix, x, y, self.threads),
+        }
         if let Some(change) = self.change {
             change.subtract_product(x, y);
         }

@@ -59,7 +59,8 @@ pub fn tentative<T: Real>(
     }
     let starts = (0..=of_node.len()).collect();
     let indices = of_node.to_vec();
-    (BlockMatrix { height: size, width: count, columns: aggregates, starts, indices, values }, coarse)
+    let (height, width, columns, shared_rows) = (size, count, aggregates, Vec::new());
+    (BlockMatrix { height, width, columns, starts, indices, values, shared_rows }, coarse)
 }
 
 /// Q R of the rows of `local`, `count` values each, in place: modified Gram-Schmidt, done twice. `triangle` is R, row by row.

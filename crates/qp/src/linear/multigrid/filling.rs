@@ -1,0 +1,139 @@
+//! The rows of blocks of a symmetric matrix, node by node.
+
+use std::ops::Range;
+
+use super::super::quotient::Quotient;
+use super::super::{SymmetricMatrix, ldexp};
+use super::blocks::BlockMatrix;
+use super::repeated::RowByRow;
+use crate::linear::factor::Real;
+use crate::linear::threads::in_order;
+
+/// Groups of dofs whose rows are made at a time.
+const GROUPS: usize = 2048;
+
+/// A matrix whose dofs are put into nodes.
+pub struct Filling<'a> {
+    pub matrix: &'a SymmetricMatrix,
+    /// Groups of dofs with the same neighbours.
+    pub graph: &'a Quotient,
+    /// The first node of each group, and the number of nodes at the end.
+    pub first_node: &'a [u32],
+    /// Places of a node.
+    pub size: usize,
+    /// The exponent of the unit of each node, and that of the whole matrix.
+    pub exponents: &'a [i32],
+    pub shift: i32,
+}
+
+/// Some rows of blocks, one after another.
+struct Rows<T> {
+    /// The blocks of each row.
+    lengths: Vec<usize>,
+    columns: Vec<u32>,
+    values: Vec<T>,
+}
+
+impl Filling<'_> {
+    /// The matrix in blocks; places that nothing touches get the diagonal entry one.
+    pub fn blocks<T: Real>(&self, threads: usize) -> BlockMatrix<T> {
+        let (groups, block) = (self.graph.count(), self.size * self.size);
+        let mut matrix = RowByRow::new(self.size, self.exponents.len());
+        let mut cursors = vec![vec![0; self.matrix.dim()]; threads.min(groups.div_ceil(GROUPS))];
+        let starts: Vec<usize> = (0..groups).step_by(GROUPS).collect();
+        for starts in starts.chunks(threads) {
+            let part = |&start: &usize| start..groups.min(start + GROUPS);
+            let parts: Vec<(Range<usize>, &mut Vec<u32>)> = starts.iter().map(part).zip(&mut cursors).collect();
+            for rows in in_order(parts, |(groups, cursors)| self.rows::<T>(groups, cursors)) {
+                let mut start = 0;
+                for length in rows.lengths {
+                    let end = start + length;
+                    matrix.push(&rows.columns[start..end], &rows.values[start * block..end * block]);
+                    start = end;
+                }
+            }
+        }
+        matrix.finished()
+    }
+
+    /// The rows of the nodes of some groups. `next` is for each column, how far its next entry is thought to lie from its first.
+    fn rows<T: Real>(&self, groups: Range<usize>, next: &mut [u32]) -> Rows<T> {
+        let (size, mut met) = (self.size, Vec::new());
+        let mut rows = Rows { lengths: Vec::new(), columns: Vec::new(), values: Vec::new() };
+        for group in groups.start as u32..groups.end as u32 {
+            met.clear();
+            met.push(group);
+            met.extend_from_slice(self.graph.neighbours(group));
+            met.sort_unstable();
+            // Groups with dofs that do not follow each other meet from both sides.
+            met.dedup();
+            for node in self.nodes(group) {
+                let before = rows.columns.len();
+                for &of_other in &met {
+                    for other in self.nodes(of_other) {
+                        let first = rows.values.len();
+                        rows.columns.push(other);
+                        rows.values.resize(first + size * size, T::default());
+                        let exponent = self.shift + self.exponents[node as usize] + self.exponents[other as usize];
+                        for (i, &row) in self.dofs(node, group).iter().enumerate() {
+                            for (j, &column) in self.dofs(other, of_other).iter().enumerate() {
+                                if let Some(value) = self.entry(row, column, next) {
+                                    rows.values[first + i * size + j] = T::of(ldexp(value, exponent));
+                                }
+                            }
+                        }
+                    }
+                }
+                fill_empty_diagonal_of(node, &rows.columns[before..], size, &mut rows.values[before * size * size..]);
+                rows.lengths.push(rows.columns.len() - before);
+            }
+        }
+        rows
+    }
+
+    fn nodes(&self, group: u32) -> Range<u32> {
+        self.first_node[group as usize]..self.first_node[group as usize + 1]
+    }
+
+    fn dofs(&self, node: u32, group: u32) -> &[usize] {
+        let members = self.graph.members(group);
+        let first = (node - self.first_node[group as usize]) as usize * self.size;
+        &members[first..members.len().min(first + self.size)]
+    }
+
+    /// The entry of a row and a column, if there is one; the next one is found at once.
+    #[inline]
+    fn entry(&self, row: usize, column: usize, next: &mut [u32]) -> Option<f64> {
+        let (row, column) = (row.max(column) as u32, row.min(column));
+        let lower = self.matrix.lower();
+        let range = lower.column_starts()[column]..lower.column_starts()[column + 1];
+        let rows = &lower.row_indices()[range.clone()];
+        let mut place = next[column] as usize;
+        if rows.get(place) != Some(&row) {
+            place = rows.binary_search(&row).ok()?;
+        }
+        next[column] = place as u32 + 1;
+        Some(lower.values()[range.start + place])
+    }
+}
+
+/// Places that nothing touches get the diagonal entry one.
+pub fn fill_empty_diagonal<T: Real>(blocks: &mut BlockMatrix<T>) {
+    for node in 0..blocks.rows() {
+        let range = blocks.starts[node]..blocks.starts[node + 1];
+        let size = blocks.height;
+        let values = &mut blocks.values[range.start * size * size..range.end * size * size];
+        fill_empty_diagonal_of(node as u32, &blocks.indices[range], size, values);
+    }
+}
+
+/// The same in the row of one node.
+fn fill_empty_diagonal_of<T: Real>(node: u32, columns: &[u32], size: usize, values: &mut [T]) {
+    let Ok(place) = columns.binary_search(&node) else { return };
+    for i in 0..size {
+        let entry = &mut values[place * size * size + i * size + i];
+        if *entry == T::default() {
+            *entry = T::of(1.0);
+        }
+    }
+}

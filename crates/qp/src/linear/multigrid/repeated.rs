@@ -1,0 +1,190 @@
+//! Rows of blocks that repeat, as those of a lattice do: each is stored once, and nodes with the same row that follow each other are
+//! multiplied together.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use pulp::{Arch, Simd, WithSimd};
+
+use super::blocks::BlockMatrix;
+use crate::linear::factor::Real;
+
+/// Nodes that are multiplied together.
+const TILE: usize = 16;
+
+/// Rows after which it is known whether they repeat.
+const ENOUGH_ROWS: usize = 4096;
+
+/// Rows are shared if at most this share of their blocks is stored.
+const SHARED: f64 = 0.5;
+
+/// A matrix of square blocks under construction, row by row.
+pub struct RowByRow<T> {
+    matrix: BlockMatrix<T>,
+    /// The first block of the rows with a hash.
+    known: HashMap<u64, Vec<u32>>,
+}
+
+impl<T: Real> RowByRow<T> {
+    /// Before the first row of a matrix of `count` rows of blocks of this size.
+    pub fn new(size: usize, count: usize) -> Self {
+        let mut matrix = BlockMatrix::empty(0, count, (size, size));
+        matrix.starts.reserve_exact(count);
+        matrix.shared_rows.reserve_exact(count);
+        RowByRow { matrix, known: HashMap::new() }
+    }
+
+    /// Takes the next row: its block columns, increasing, and the values of its blocks.
+    pub fn push(&mut self, columns: &[u32], values: &[T]) {
+        let (row, blocks) = (self.matrix.rows(), self.matrix.starts[self.matrix.rows()] + columns.len());
+        if self.matrix.shared_rows.len() < row {
+            self.matrix.indices.extend_from_slice(columns);
+            self.matrix.values.extend_from_slice(values);
+        } else {
+            let first = self.stored(columns, values);
+            self.matrix.shared_rows.push(first);
+        }
+        self.matrix.starts.push(blocks);
+        if row == ENOUGH_ROWS {
+            self.share_or_not();
+        }
+    }
+
+    /// The matrix.
+    pub fn finished(mut self) -> BlockMatrix<T> {
+        self.share_or_not();
+        self.matrix
+    }
+
+    /// The first block of a row, which is stored if it is new.
+    fn stored(&mut self, columns: &[u32], values: &[T]) -> u32 {
+        let matrix = &mut self.matrix;
+        let row = matrix.rows() as u32;
+        let relative = || columns.iter().map(|&column| column.wrapping_sub(row));
+        let is_same = |first: u32| {
+            let first = first as usize;
+            let places = first..first + columns.len();
+            let size = matrix.block_size();
+            matrix.indices.get(places.clone()).is_some_and(|indices| indices.iter().copied().eq(relative()))
+                && matrix.values[places.start * size..places.end * size] == *values
+        };
+        if let Some(&last) = matrix.shared_rows.last().filter(|&&last| is_same(last)) {
+            return last;
+        }
+        let alike = self.known.entry(hash(relative(), values)).or_default();
+        if let Some(&first) = alike.iter().find(|&&first| is_same(first)) {
+            return first;
+        }
+        let first = matrix.indices.len() as u32;
+        alike.push(first);
+        matrix.indices.extend(columns.iter().map(|&column| column.wrapping_sub(row)));
+        matrix.values.extend_from_slice(values);
+        first
+    }
+
+    /// Stores each row by itself if too few repeat.
+    fn share_or_not(&mut self) {
+        let matrix = &mut self.matrix;
+        let rows = matrix.rows();
+        if matrix.shared_rows.len() < rows || matrix.indices.len() as f64 <= SHARED * matrix.starts[rows] as f64 {
+            return;
+        }
+        let mut indices = Vec::with_capacity(matrix.starts[rows]);
+        let mut values = Vec::with_capacity(matrix.starts[rows] * matrix.block_size());
+        for row in 0..rows {
+            for (column, block) in matrix.row(row) {
+                indices.push(column as u32);
+                values.extend_from_slice(block);
+            }
+        }
+        (matrix.indices, matrix.values, matrix.shared_rows) = (indices, values, Vec::new());
+        self.known.clear();
+    }
+}
+
+fn hash<T: Real>(indices: impl Iterator<Item = u32>, values: &[T]) -> u64 {
+    let words = indices.map(u64::from).chain(values.iter().map(|value| value.double().to_bits()));
+    words.fold(0, |hash: u64, word| (hash.rotate_left(5) ^ word).wrapping_mul(0x517c_c1b7_2722_0a95))
+}
+
+/// `y = A x` for a matrix with shared rows.
+pub fn multiply<T: Real>(matrix: &BlockMatrix<T>, x: &[T], y: &mut [T], threads: usize) {
+    match matrix.height {
+        1 => multiply_in::<T, 1>(matrix, x, y, threads),
+        2 => multiply_in::<T, 2>(matrix, x, y, threads),
+        _ => multiply_in::<T, 3>(matrix, x, y, threads),
+    }
+}
+
+fn multiply_in<T: Real, const H: usize>(matrix: &BlockMatrix<T>, x: &[T], y: &mut [T], threads: usize) {
+    let nodes = matrix.columns;
+    // The components one after another, so that those of neighbours follow each other.
+    let mut components = vec![T::default(); x.len()];
+    for (node, of_node) in x.as_chunks::<H>().0.iter().enumerate() {
+        of_node.iter().enumerate().for_each(|(component, &value)| components[component * nodes + node] = value);
+    }
+    let components: [&[T]; H] =
+        std::array::from_fn(|component| &components[component * nodes..(component + 1) * nodes]);
+    let arch = Arch::new();
+    matrix.shared(threads).with_vectors(H, [y], |rows, [part]| {
+        let (first, part) = (rows.start, part.as_chunks_mut::<H>().0);
+        let mut row = rows.start;
+        while row < rows.end {
+            let length = |row: usize| matrix.starts[row + 1] - matrix.starts[row];
+            let of_row = |row: usize| (matrix.shared_rows[row], length(row));
+            let alike = |other: &usize| of_row(*other) == of_row(row);
+            let run = row..row + (row..rows.end).take_while(alike).count();
+            let sums = &mut part[run.start - first..run.end - first];
+            match run.len() < TILE {
+                true => run.clone().zip(sums).for_each(|(row, sums)| *sums = matrix.row_product::<H, H>(row, x)),
+                false => arch.dispatch(Run { matrix, components, rows: run.clone(), sums }),
+            }
+            row = run.end;
+        }
+    });
+}
+
+/// Rows that all have the blocks of the first, at least [`TILE`] of them, and their products.
+struct Run<'a, T, const H: usize> {
+    matrix: &'a BlockMatrix<T>,
+    components: [&'a [T]; H],
+    rows: Range<usize>,
+    sums: &'a mut [[T; H]],
+}
+
+impl<T: Real, const H: usize> WithSimd for Run<'_, T, H> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Run { matrix, components, rows, sums } = self;
+        let first = matrix.shared_rows[rows.start] as usize;
+        let places = first..first + matrix.starts[rows.start + 1] - matrix.starts[rows.start];
+        let blocks = matrix.values[places.start * H * H..places.end * H * H].as_chunks::<H>().0;
+        let indices = &matrix.indices[places];
+        let mut start = rows.start;
+        loop {
+            let mut of_tile = [[T::default(); TILE]; H];
+            for (&index, block) in indices.iter().zip(blocks.chunks_exact(H)) {
+                let from = index.wrapping_add(start as u32) as usize;
+                for (j, component) in components.iter().enumerate() {
+                    let Some(x) = component.get(from..).and_then(|rest| rest.first_chunk::<TILE>()) else { continue };
+                    for i in 0..H {
+                        let a = block[i][j];
+                        for (sum, &x) in of_tile[i].iter_mut().zip(x) {
+                            *sum += a * x;
+                        }
+                    }
+                }
+            }
+            for (node, of_node) in sums[start - rows.start..][..TILE].iter_mut().enumerate() {
+                *of_node = std::array::from_fn(|component| of_tile[component][node]);
+            }
+            if start + TILE == rows.end {
+                return;
+            }
+            // The last tile may overlap the one before.
+            start = (start + TILE).min(rows.end - TILE);
+        }
+    }
+}
