@@ -40,7 +40,7 @@ fn faults_of_version_4_have_the_byte_of_their_record() {
     let (many, nan) = (u64::MAX.to_le_bytes(), f64::NAN.to_le_bytes());
     check("Entities", (0, 8), &many, "18446744073709551615 curves are announced, but at most");
     check("Entities", (32, 36), &nan, "a coordinate of an entity is NaN");
-    check("Nodes", (0, 0), &many, "18446744073709551615 blocks are announced, but at most 50000000 are allowed");
+    check("Nodes", (0, 0), &many, "18446744073709551615 blocks are announced, but at most 1000000000 are allowed");
     check("Nodes", (0, 8), &[5], "5 nodes are announced, but the blocks hold 4");
     check("Nodes", (32, 32), &[7], "the dimension of the entity is 7; it must be at most 3");
     check("Nodes", (32, 32), &[255; 4], "the dimension of the entity is `-1`; it must be a whole number that is not");
