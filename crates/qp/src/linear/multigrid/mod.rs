@@ -16,6 +16,7 @@ mod coarser;
 mod coarsest;
 mod conjugate_gradients;
 mod cycle;
+mod degree;
 mod dual_norm;
 mod face;
 mod held;
@@ -24,6 +25,7 @@ mod lines;
 mod near_null;
 mod nodes;
 mod operator;
+mod patches;
 mod prolongator;
 
 pub use coarser::Interval;
