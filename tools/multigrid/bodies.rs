@@ -69,7 +69,17 @@ pub fn bodies() -> Vec<(&'static str, Value)> {
                        "shape": {"parabola": {"apex": [0.5, 1], "radius": 2}}}],
         "gap": -0.01,
     });
+    let quadratic = |element: &str, poisson: f64| {
+        let cells = if element == "tet10" { 9 } else { 11 };
+        under_sphere([1.0; 3], [cells; 3], element, poisson)
+    };
     vec![
+        ("block of Tet10, nu = 0.3", quadratic("tet10", 0.3)),
+        ("block of Tet10, nu = 0.499", quadratic("tet10", 0.499)),
+        ("block of Tet10, nu = 0.4999", quadratic("tet10", 0.4999)),
+        ("block of Hex20, nu = 0.3", quadratic("hex20", 0.3)),
+        ("block of Hex20, nu = 0.499", quadratic("hex20", 0.499)),
+        ("block of Hex20, nu = 0.4999", quadratic("hex20", 0.4999)),
         ("block, nu = 0.49", under_sphere([1.0; 3], [32; 3], "hex8", 0.49)),
         ("block of Tet4", under_sphere([1.0; 3], [32; 3], "tet4", 0.3)),
         ("plate 1:50, on its face", plate("bottom")),

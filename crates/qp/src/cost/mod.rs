@@ -26,6 +26,9 @@ const SINGULAR: f64 = 2.5;
 /// order by minimum degree is then computed.
 const LOOK: f64 = 12.0;
 
+/// The hierarchy of a stiff volume takes this many times the bytes: patches, and a prolongator of several steps.
+const STIFF_BYTES: f64 = 2.5;
+
 /// Returns `true` if a row has several entries on dofs with stiffness, so that it is a bound only after reflections.
 fn is_turned(problem: &ContactProblem) -> bool {
     let contact = problem.contact();
@@ -120,7 +123,8 @@ impl Estimate {
 
 /// Bytes of the iterative path at its peak, the problem itself included.
 fn multigrid_bytes(problem: &ContactProblem) -> f64 {
-    bytes::START + bytes::of_hierarchy(problem.dofs() as f64, problem.stiffness().entries() as f64)
+    let times = if Smooth::of(problem) == Smooth::GivenStiff { STIFF_BYTES } else { 1.0 };
+    bytes::START + times * bytes::of_hierarchy(problem.dofs() as f64, problem.stiffness().entries() as f64)
 }
 
 /// The data that a solve keeps beside the problem.

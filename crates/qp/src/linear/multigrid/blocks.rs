@@ -82,6 +82,13 @@ impl<T: Real> BlockMatrix<T> {
         }
     }
 
+    /// The columns of the blocks of a row.
+    #[inline]
+    pub fn columns_of(&self, row: usize) -> impl ExactSizeIterator<Item = u32> + '_ {
+        let (places, shift) = self.places(row);
+        self.indices[places].iter().map(move |index| index.wrapping_add(shift))
+    }
+
     /// The blocks `(column, values)` of a row.
     #[inline]
     pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, &[T])> + '_ {

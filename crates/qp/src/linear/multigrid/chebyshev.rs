@@ -1,8 +1,11 @@
-//! The smoother: Chebyshev polynomials of the fourth kind in D^-1 A, D the diagonal blocks.
+//! The smoother: Chebyshev polynomials of the fourth kind in D^-1 A, D the diagonal blocks, or D^-1 the sum of the inverses on patches.
+
+use std::sync::Arc;
 
 use super::blocks::BlockMatrix;
 use super::coarsest::LOST_DIAGONAL;
 use super::operator::Operator;
+use super::patches::Patches;
 use crate::linear::factor::Real;
 use crate::linear::power_iteration::power_iteration;
 
@@ -25,20 +28,42 @@ const SINGULAR_PIVOT: f64 = 1e-6;
 /// algorithm 3.
 #[derive(Clone, Debug)]
 pub struct Chebyshev<T> {
-    degree: usize,
-    /// Blocks of D^-1, one for each node.
-    pub inverse: Vec<T>,
+    pub degree: usize,
+    /// D^-1.
+    pub inverse: BlockMatrix<T>,
+    /// The patches of which D^-1 is the sum of the inverses; `None` if D are the diagonal blocks.
+    patches: Option<Arc<Patches>>,
     /// Upper bound on the eigenvalues of D^-1 A.
     pub largest: f64,
 }
 
 impl<T: Real> Chebyshev<T> {
-    /// The smoother of `matrix`.
+    /// The smoother of `matrix` by its diagonal blocks.
     pub fn new(matrix: &BlockMatrix<T>, degree: usize, threads: usize) -> Self {
-        let inverse = inverse_diagonal(matrix);
-        let mut smoother = Chebyshev { degree, inverse, largest: 1.0 };
+        Self::with(matrix, inverse_diagonal(matrix), None, degree, threads)
+    }
+
+    /// The smoother of `matrix` whose D^-1 is the sum of the inverses on `patches`.
+    pub fn on_patches(matrix: &BlockMatrix<T>, patches: Patches, degree: usize, threads: usize) -> Self {
+        let inverse = patches.inverse(matrix, None, threads);
+        Self::with(matrix, inverse, Some(Arc::new(patches)), degree, threads)
+    }
+
+    fn with(
+        matrix: &BlockMatrix<T>,
+        inverse: BlockMatrix<T>,
+        patches: Option<Arc<Patches>>,
+        degree: usize,
+        threads: usize,
+    ) -> Self {
+        let mut smoother = Chebyshev { degree, inverse, patches, largest: 1.0 };
         smoother.largest = SAFETY * smoother.largest_eigenvalue(&Operator::whole(matrix, threads));
         smoother
+    }
+
+    /// Returns `true` if it works on patches.
+    pub fn has_patches(&self) -> bool {
+        self.patches.is_some()
     }
 
     /// Improves `x` with the residual `rest` = b - A x. Returns the last step, which the residual does not contain yet: that saves a
@@ -46,9 +71,8 @@ impl<T: Real> Chebyshev<T> {
     pub fn smooth(&self, operator: &Operator<T>, x: &mut [T], rest: &mut [T]) -> Vec<T> {
         let (mut step, mut moved) = (vec![T::default(); x.len()], vec![T::default(); x.len()]);
         for k in 1..=self.degree {
-            let k_real = k as f64;
-            let keep = T::of((2.0 * k_real - 3.0) / (2.0 * k_real + 1.0));
-            let gain = T::of((8.0 * k_real - 4.0) / (2.0 * k_real + 1.0) / self.largest);
+            let (keep, gain) = self.weights(k);
+            let (keep, gain) = (T::of(keep), T::of(gain));
             self.precondition(operator, rest, &mut moved);
             operator.in_chunks([&mut step, x], |range, [step, x]| {
                 for ((step, &moved), x) in step.iter_mut().zip(&moved[range]).zip(x) {
@@ -64,27 +88,29 @@ impl<T: Real> Chebyshev<T> {
         step
     }
 
+    /// The weights of step k, from 1 on: that of the last step, and that of `D^-1 r`.
+    pub fn weights(&self, k: usize) -> (f64, f64) {
+        let k = k as f64;
+        ((2.0 * k - 3.0) / (2.0 * k + 1.0), (8.0 * k - 4.0) / (2.0 * k + 1.0) / self.largest)
+    }
+
     /// `D^-1 r`, in the face.
     fn precondition(&self, operator: &Operator<T>, r: &[T], result: &mut [T]) {
-        let size = operator.matrix.height;
-        operator.in_chunks([&mut *result], |range, [result]| {
-            let blocks = self.inverse[range.start * size..range.end * size].chunks_exact(size * size);
-            for ((block, r), result) in blocks.zip(r[range].chunks_exact(size)).zip(result.chunks_exact_mut(size)) {
-                for (row, result) in block.chunks_exact(size).zip(result) {
-                    let mut sum = T::default();
-                    row.iter().zip(r).for_each(|(&a, &r)| sum += a * r);
-                    *result = sum;
-                }
-            }
-        });
+        self.inverse.mul_into(r, result, operator.threads);
         operator.project(result);
     }
 
-    /// The same smoother for the matrix minus `change`; blocks in which `change` has no entry are kept.
+    /// The same smoother for the matrix minus `change`; blocks and patches in which `change` has no diagonal block are kept.
     pub fn changed(&self, matrix: &BlockMatrix<T>, change: &BlockMatrix<T>) -> Self {
+        let largest = CHANGED * self.largest;
+        if let Some(patches) = &self.patches {
+            let touched = patches.touched_by(change);
+            let [old, new] = [None, Some(change)].map(|change| touched.inverse(matrix, change, 1));
+            let inverse = self.inverse.plus(1.0, &new.plus(-1.0, &old));
+            return Chebyshev { inverse, patches: self.patches.clone(), largest, degree: self.degree };
+        }
         let size = matrix.height;
-        let mut smoother = self.clone();
-        smoother.largest *= CHANGED;
+        let mut smoother = Chebyshev { largest, ..self.clone() };
         let (mut work, mut result) = (vec![0.0; size * size], vec![0.0; size * size]);
         for node in 0..matrix.rows() {
             let (Some(own), Some(changed)) = (matrix.diagonal_place(node), change.diagonal_place(node)) else {
@@ -100,7 +126,7 @@ impl<T: Real> Chebyshev<T> {
                 }
             }
             invert(&mut work, size, &mut result);
-            let place = &mut smoother.inverse[node * size * size..(node + 1) * size * size];
+            let place = &mut smoother.inverse.values[node * size * size..(node + 1) * size * size];
             place.iter_mut().zip(&result).for_each(|(place, &value)| *place = T::of(value));
         }
         smoother
@@ -134,7 +160,7 @@ impl<T: Real> Chebyshev<T> {
 }
 
 /// The inverse of each diagonal block.
-fn inverse_diagonal<T: Real>(matrix: &BlockMatrix<T>) -> Vec<T> {
+fn inverse_diagonal<T: Real>(matrix: &BlockMatrix<T>) -> BlockMatrix<T> {
     let size = matrix.height;
     let mut inverse = Vec::with_capacity(matrix.rows() * size * size);
     let (mut work, mut result) = (vec![0.0; size * size], vec![0.0; size * size]);
@@ -146,11 +172,14 @@ fn inverse_diagonal<T: Real>(matrix: &BlockMatrix<T>) -> Vec<T> {
         invert(&mut work, size, &mut result);
         inverse.extend(result.iter().map(|&value| T::of(value)));
     }
-    inverse
+    let rows = matrix.rows();
+    let (starts, indices) = ((0..=rows).collect(), (0..rows as u32).collect());
+    let shared_rows = Vec::new();
+    BlockMatrix { height: size, width: size, columns: rows, starts, indices, values: inverse, shared_rows }
 }
 
 /// The inverse of a symmetric block, row by row, by elimination; directions without a pivot are left out.
-fn invert(work: &mut [f64], size: usize, result: &mut [f64]) {
+pub(super) fn invert(work: &mut [f64], size: usize, result: &mut [f64]) {
     result.fill(0.0);
     let diagonal: Vec<f64> = (0..size).map(|i| work[i * size + i]).collect();
     let mut kept = vec![true; size];

@@ -16,7 +16,7 @@ impl<T: Real> Hierarchy<T> {
         self.nodes.scatter(&moved, self.shift - exponent)
     }
 
-    fn descend(&self, depth: usize, mut rest: Vec<T>, face: Option<&FaceLevels<T>>) -> Vec<T> {
+    pub(super) fn descend(&self, depth: usize, mut rest: Vec<T>, face: Option<&FaceLevels<T>>) -> Vec<T> {
         let Some(level) = self.levels.get(depth) else {
             let force: Vec<f64> = rest.iter().map(|value| value.double()).collect();
             let coarsest = face.map_or(&*self.coarsest, |face| &face.coarsest);

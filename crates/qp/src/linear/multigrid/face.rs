@@ -20,7 +20,7 @@
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
 use super::coarsest::Coarsest;
-use super::held::{Held, Hold};
+use super::held::{Held, Hold, ways};
 use super::hierarchy::{Hierarchy, Level};
 use crate::linear::FactorError;
 use crate::linear::factor::Real;
@@ -29,7 +29,7 @@ use crate::linear::factor::Real;
 #[derive(Debug)]
 pub struct FaceLevels<T> {
     pub held: Held<T>,
-    /// The smoother of the finest level, if a pivot gives way.
+    /// The smoother of the finest level, if a pivot gives way or if it works on patches.
     pub finest: Option<Chebyshev<T>>,
     /// C of each level except the finest.
     pub changes: Vec<BlockMatrix<T>>,
@@ -58,8 +58,13 @@ impl<T: Real> FaceLevels<T> {
             let smoother = level.smoother.changed(&level.matrix, change);
             if gives_way { smoother.measured(&level.matrix, change, hierarchy.threads) } else { smoother }
         };
-        let finest = hierarchy.levels.first().filter(|_| gives_way);
-        let finest = finest.map(|level| smoother(level, &held.change(&level.matrix)));
+        let finest = hierarchy.levels.first().filter(|level| gives_way || level.smoother.has_patches());
+        let finest = finest.map(|level| {
+            let change = held.change(&level.matrix);
+            // What is held must not move with the rest of its patch, and needs a stiffness to be left out of it.
+            let is_kept = !level.smoother.has_patches();
+            smoother(level, &if is_kept { change } else { change.plus(-1.0, &ways(&hierarchy.nodes, holds)) })
+        });
         let matrices = || hierarchy.matrices().skip(1).zip(&changes);
         let smoothers =
             hierarchy.levels.iter().skip(1).zip(&changes).map(|(level, change)| smoother(level, change)).collect();

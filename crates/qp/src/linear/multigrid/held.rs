@@ -62,11 +62,15 @@ impl<T: Real> Held<T> {
         rows.plus(1.0, &rows.transposed()).plus(-1.0, &rows.product(&self.matrix, 1))
     }
 
-    /// `E' A E + W`, for a hierarchy of one level; W is the sum of `d d'` over the ways d of `holds`.
+    /// `E' A E + W`, for a hierarchy of one level, W of [`ways`].
     pub fn held_matrix(&self, matrix: &BlockMatrix<T>, nodes: &Nodes, holds: &[Hold]) -> BlockMatrix<T> {
-        let ways = sum(nodes, holds.iter().map(|hold| (&hold.way, &hold.way)));
-        matrix.plus(-1.0, &self.change(matrix)).plus(1.0, &ways)
+        matrix.plus(-1.0, &self.change(matrix)).plus(1.0, &ways(nodes, holds))
     }
+}
+
+/// W, the sum of `d d'` over the ways d of `holds`: what is held has a stiffness of its own in `E' A E + W`, which is definite.
+pub fn ways<T: Real>(nodes: &Nodes, holds: &[Hold]) -> BlockMatrix<T> {
+    sum(nodes, holds.iter().map(|hold| (&hold.way, &hold.way)))
 }
 
 /// The sum of the products a b' of directions.

@@ -16,6 +16,7 @@ mod coarser;
 mod coarsest;
 mod conjugate_gradients;
 mod cycle;
+mod degree;
 mod dual_norm;
 mod face;
 mod filling;
@@ -25,6 +26,7 @@ mod lines;
 mod near_null;
 mod nodes;
 mod operator;
+mod patches;
 mod prolongator;
 mod repeated;
 

@@ -82,6 +82,29 @@ fn orthonormalise(local: &mut [f64], count: usize, triangle: &mut [f64]) {
     }
 }
 
+/// The tentative prolongator T after the first `steps` of a smoother on patches, which take away the energy at the ends of the aggregates.
+/// `moved` is A T of the `matrix` A.
+pub fn smoothed_in_steps<T: Real>(
+    tentative: BlockMatrix<T>,
+    moved: BlockMatrix<T>,
+    (matrix, smoother): (&BlockMatrix<T>, &Chebyshev<T>),
+    steps: usize,
+    threads: usize,
+) -> BlockMatrix<T> {
+    let (mut prolongator, mut force) = (tentative, moved);
+    let mut step = BlockMatrix::empty(force.rows(), force.columns, (force.height, force.width));
+    for k in 1..=steps {
+        let (keep, gain) = smoother.weights(k);
+        step.values.iter_mut().for_each(|value| *value = T::of(keep) * *value);
+        step = step.plus(-gain, &smoother.inverse.product(&force, threads));
+        prolongator = prolongator.plus(1.0, &step);
+        if k < steps {
+            force = force.plus(1.0, &matrix.product(&step, threads));
+        }
+    }
+    prolongator
+}
+
 /// `T - step D^-1 (A T)` from T and `moved` = A T, with a pattern that contains that of T; `smoother` is that of A.
 pub fn smoothed<T: Real>(
     tentative: &BlockMatrix<T>,
@@ -90,7 +113,7 @@ pub fn smoothed<T: Real>(
     threads: usize,
 ) -> BlockMatrix<T> {
     let (height, width) = (moved.height, moved.width);
-    let (inverse, step) = (&smoother.inverse, T::of(STEP / smoother.largest));
+    let (inverse, step) = (&smoother.inverse.values, T::of(STEP / smoother.largest));
     let BlockMatrix { starts, indices, values, .. } = &mut moved;
     let size = height * width;
     SharedRows { starts, threads }.with_blocks(size, values, |rows, values| {
