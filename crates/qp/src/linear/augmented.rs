@@ -1,5 +1,7 @@
 //! K + t I + B' diag(w) B for many weights w and shifts t: one pattern, one analysis.
 
+use std::sync::OnceLock;
+
 use super::{Analysis, Cholesky, FactorError, SparseMatrix, SymmetricMatrix};
 
 /// A symmetric matrix K and rows B; the weighted squares of the rows are added to K.
@@ -111,6 +113,46 @@ impl AugmentedMatrix {
     }
 }
 
+/// The augmented matrix of a stiffness and rows, joined and analysed at its first use.
+#[derive(Clone, Debug)]
+pub struct Augmented {
+    stiffness: SymmetricMatrix,
+    rows: SparseMatrix,
+    /// The analysis of the stiffness, if it may serve.
+    analysis: Option<Analysis>,
+    threads: usize,
+    matrix: OnceLock<Result<AugmentedMatrix, FactorError>>,
+}
+
+impl Augmented {
+    /// That of K (n x n) and B (m x n), factorised with this number of threads; an `analysis` of K is kept if K has a place for every
+    /// entry.
+    pub fn new(stiffness: &SymmetricMatrix, rows: &SparseMatrix, analysis: Option<Analysis>, threads: usize) -> Self {
+        Augmented { stiffness: stiffness.clone(), rows: rows.clone(), analysis, threads, matrix: OnceLock::new() }
+    }
+
+    /// A matrix that is analysed already.
+    pub fn of(stiffness: &SymmetricMatrix, rows: &SparseMatrix, matrix: AugmentedMatrix) -> Self {
+        Augmented { matrix: OnceLock::from(Ok(matrix)), ..Self::new(stiffness, rows, None, 1) }
+    }
+
+    /// The matrix.
+    ///
+    /// # Errors
+    /// As [`AugmentedMatrix::new`].
+    pub fn matrix(&self) -> Result<&AugmentedMatrix, FactorError> {
+        let Augmented { stiffness, rows, analysis, threads, .. } = self;
+        let made = || {
+            let matrix = match analysis {
+                Some(analysis) => AugmentedMatrix::with_analysis(stiffness, rows, analysis.clone()),
+                None => AugmentedMatrix::new(stiffness, rows),
+            };
+            Ok(matrix?.with_threads(*threads))
+        };
+        self.matrix.get_or_init(made).as_ref().map_err(FactorError::clone)
+    }
+}
+
 /// A lower triangle with a place, zero if it had none, for every `(column, row)` of `added` and of the diagonal; the same memory
 /// if nothing was missing.
 fn with_places(lower: &SparseMatrix, added: impl Iterator<Item = (usize, usize)>) -> SparseMatrix {
@@ -175,8 +217,11 @@ mod tests {
     #[test]
     fn entries_are_found_in_any_order() {
         let rows = [vec![0, 1, 4, 7], vec![], vec![2, 3, 8]];
-        let entries: Vec<_> =
-            rows.iter().enumerate().flat_map(|(column, rows)| rows.iter().map(move |&row| (row, column, 1.0))).collect();
+        let entries: Vec<_> = rows
+            .iter()
+            .enumerate()
+            .flat_map(|(column, rows)| rows.iter().map(move |&row| (row, column, 1.0)))
+            .collect();
         let matrix = SparseMatrix::from_triplets(9, 3, &entries).unwrap();
         let mut search = Search::of(&matrix);
         // Down each column, then every entry after every other.
