@@ -1,8 +1,9 @@
 """Measures the cost of calling the library from Python: `python python/measure.py`, with the package installed.
 
-Four figures are printed: the time to read a stiffness of 8 million entries, compared with the solve by its factor; the time of a solve
+Six figures are printed: the time to read a stiffness of 8 million entries, compared with the solve by its factor; the time of a solve
 of two springs, compared with the time inside the library; the same for the next gap of a block of 131,584 dofs; and the time until an
-interrupt is answered.
+interrupt is answered; the time of small dense problems, beside those solvers of qpsolvers that are installed; and that of 10,000 of them
+at once.
 """
 
 from __future__ import annotations
@@ -120,10 +121,71 @@ def interrupt(cells: int) -> None:
         time.sleep(3.0)
 
 
+def dense(count: int, n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Returns K, f, B and g of random dense problems: K = A A' / n + 0.1 I, n / 2 rows."""
+    rng = np.random.default_rng(n)
+    a = rng.standard_normal((count, n, n))
+    K = a @ a.transpose(0, 2, 1) / n + 0.1 * np.eye(n)
+    K = (K + K.transpose(0, 2, 1)) / 2
+    gaps = rng.uniform(0.1, 0.6, (count, n // 2))
+    return K, rng.standard_normal((count, n)), rng.standard_normal((count, n // 2, n)), gaps
+
+
+def small(sizes: list[int], runs: int) -> None:
+    """Measures the microseconds of a small dense problem from its arrays to its answer, by several solvers."""
+    try:
+        import qpsolvers
+
+        peers = [name for name in PEERS if name in qpsolvers.available_solvers]
+    except ImportError:
+        peers = []
+    for n in sizes:
+        problems = list(zip(*dense(5, n), strict=True))
+        solvers: dict[str, Callable[..., object]] = {
+            "signorini": lambda K, f, B, g: sg.solve(sg.Problem(K, f, B, g)),
+            "signorini.qp": lambda K, f, B, g: sg.qp.solve_qp(K, -f, B, g),
+        }
+        for name in peers:
+            solvers[name] = lambda K, f, B, g, name=name: qpsolvers.solve_qp(K, -f, B, g, solver=name)
+        figures = []
+        for name, solve in solvers.items():
+            seconds = [min(seconds_of(lambda data=data, solve=solve: solve(*data)) for _ in range(runs)) for data in problems]
+            figures.append(f"{name} {1e6 * np.mean(seconds):.0f}")
+        print(f"dense problem of {n} unknowns, {n // 2} rows, microseconds: {', '.join(figures)}")
+
+
+# Solvers of qpsolvers that small dense problems are compared with.
+PEERS = ("daqp", "quadprog", "piqp", "proxqp", "clarabel", "osqp")
+
+
+def seconds_of(work: Callable[[], object]) -> float:
+    """Returns the seconds of one call."""
+    began = time.perf_counter()
+    work()
+    return time.perf_counter() - began
+
+
+def many(count: int, n: int) -> None:
+    """Measures the seconds of many small problems at once."""
+    arrays = dense(count, n)
+    for threads in (1, 2):
+        began = time.perf_counter()
+        answers = sg.solve_many(*arrays, threads=threads)
+        seconds = time.perf_counter() - began
+        certified = int(answers.certified.sum())
+        print(f"{count} dense problems of {n} unknowns, {threads} threads: {seconds:.2f} s, {certified} certified")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--short", action="store_true", help="smaller bodies and fewer calls")
-    short = parser.parse_args().short
+    parser.add_argument("--small", action="store_true", help="small dense problems only")
+    given = parser.parse_args()
+    short = given.short
+    small([10, 30] if short else [10, 30, 100, 200], 10 if short else 50)
+    many(1_000 if short else 10_000, 30)
+    if given.small:
+        return
     two_springs(2_000 if short else 20_000)
     next_gap(64 if short else 256, 10)
     interrupt(200 if short else 400)

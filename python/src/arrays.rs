@@ -141,6 +141,20 @@ pub fn with_table<T>(
     take(slice(&buffer, py).unwrap_or(&[]), [rows, columns])
 }
 
+/// Copies an array of real numbers of any shape, in C order, with its shape.
+pub fn block(name: &str, object: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, Vec<usize>)> {
+    let py = object.py();
+    let array = array_of(name, object, "fiub", "an array of real numbers, preferably float64")?;
+    let shape: Vec<usize> = array.getattr("shape")?.extract()?;
+    let buffer = PyBuffer::<f64>::get(&doubles(&array)?)?;
+    Ok((copied(py, slice(&buffer, py).unwrap_or(&[]))?, shape))
+}
+
+/// Makes a read-only array of truth values.
+pub fn of_truths<'py>(py: Python<'py>, values: &[bool]) -> PyResult<Bound<'py, PyAny>> {
+    array(py, "?", values.iter().map(|&value| [u8::from(value)]))
+}
+
 /// Returns the columns of a two-dimensional array.
 pub fn columns(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<f64>>> {
     with_table(name, object, |values, [_, columns]| {

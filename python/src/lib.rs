@@ -8,6 +8,7 @@ mod answered;
 mod arrays;
 mod errors;
 mod exceptions;
+mod many;
 mod matrices;
 mod mortar;
 mod options;
@@ -39,6 +40,7 @@ fn _signorini(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<total_error::TotalError>()?;
     module.add_function(wrap_pyfunction!(solving::solve, module)?)?;
     module.add_function(wrap_pyfunction!(solving::solve_qp, module)?)?;
+    module.add_function(wrap_pyfunction!(many::solve_many, module)?)?;
     module.add_function(wrap_pyfunction!(solving::prepare, module)?)?;
     module.add_function(wrap_pyfunction!(solving::verify, module)?)?;
     module.add_function(wrap_pyfunction!(study::compare, module)?)?;

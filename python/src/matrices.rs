@@ -313,14 +313,34 @@ fn triplets(
 /// Reads a dense array; zeros are left out.
 fn of_table(name: &str, table: &Bound<'_, PyAny>) -> PyResult<SparseMatrix> {
     let py = table.py();
-    with_table(name, table, |values, [rows, columns]| {
-        let mut entries = Vec::new();
-        for (row, of_row) in values.chunks_exact(columns.max(1)).enumerate() {
-            let in_row = of_row.iter().enumerate().filter(|entry| *entry.1 != 0.0);
-            entries.extend(in_row.map(|(column, &value)| (row, column, value)));
+    with_table(name, table, |values, shape| by_columns(values, shape).map_err(|error| plain_exception(py, error)))
+}
+
+/// The matrix of this shape with these values, row by row; zeros are left out.
+pub fn by_columns(values: &[f64], [rows, columns]: [usize; 2]) -> Result<SparseMatrix, Error> {
+    let (mut starts, mut of_entries, mut kept) = (vec![0], Vec::new(), Vec::new());
+    for column in 0..columns {
+        let in_column = values.iter().skip(column).step_by(columns).enumerate().filter(|entry| *entry.1 != 0.0);
+        for (row, &value) in in_column {
+            of_entries.push(row);
+            kept.push(value);
         }
-        triplets(py, name, [rows, columns], entries)
-    })
+        starts.push(kept.len());
+    }
+    SparseMatrix::from_csc(rows, starts, of_entries, kept)
+}
+
+/// The symmetric matrix with these rows, both triangles; zeros are left out.
+pub fn symmetric(values: &[f64], dim: usize) -> Result<SymmetricMatrix, Error> {
+    let (mut starts, mut of_entries, mut kept) = (vec![0], Vec::new(), Vec::new());
+    for row in values.chunks(dim.max(1)) {
+        for (column, &value) in row.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
+            of_entries.push(column);
+            kept.push(value);
+        }
+        starts.push(kept.len());
+    }
+    SymmetricMatrix::from_csr(&starts, &of_entries, &kept)
 }
 
 /// Returns the arrays `(data, indices, indptr)` of compressed columns, as scipy expects them.

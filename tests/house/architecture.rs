@@ -169,6 +169,7 @@ fn libraries_stay_in_their_rooms() {
             "faer::",
             &[
                 "qp/linear/cholesky.rs",
+                "qp/linear/dense_factor.rs",
                 "qp/linear/factor.rs",
                 "qp/linear/of_faer.rs",
                 "qp/linear/ordering.rs",

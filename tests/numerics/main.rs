@@ -4,6 +4,7 @@ mod certificate;
 mod claims;
 mod condensation;
 mod degenerate;
+mod dense;
 mod dual_active_set;
 mod energy_bound;
 mod equalities;

@@ -102,6 +102,36 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
     run::solved(problem, &Start::default(), settings)
 }
 
+/// Solves many contact problems, each by itself: the answer of each, or its error, in their order. The threads of `settings` are shared
+/// out among the problems, and change no bit; a limit of time holds for each problem.
+///
+/// ```
+/// use signorini_qp::{ContactProblem, Settings, SparseMatrix, SymmetricMatrix, solve_many};
+///
+/// // Springs of stiffness 2, each before a wall at 1, pushed with forces of 1 and 3.
+/// let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]);
+/// let stiffness = SymmetricMatrix::from_lower(one(2.0)?)?;
+/// let pushed = |force| ContactProblem::new(stiffness.clone(), vec![force], one(1.0)?, vec![1.0]);
+/// let answers = solve_many(&[pushed(1.0)?, pushed(3.0)?], &Settings::default());
+///
+/// let moved: Vec<f64> = answers.into_iter().map(|answer| Ok(answer?.displacement[0])).collect::<Result<_, _>>()?;
+/// assert_eq!(moved, [0.5, 1.0]);
+/// # Ok::<(), signorini_qp::Error>(())
+/// ```
+pub fn solve_many(problems: &[ContactProblem], settings: &Settings) -> Vec<Result<Solution, Error>> {
+    each_of_many(problems.len(), settings, |number, settings| solve(&problems[number], settings))
+}
+
+/// The results of `solved` for each number below `count`, as [`solve_many`] shares problems out: for problems that are made one by one.
+#[doc(hidden)]
+pub fn each_of_many<T: Send>(
+    count: usize,
+    settings: &Settings,
+    solved: impl Fn(usize, &Settings) -> T + Sync,
+) -> Vec<T> {
+    run::each(count, settings, solved)
+}
+
 /// Solves a contact problem as a QP by the interior-point method, polished, certified to 1e-9.
 ///
 /// # Errors

@@ -152,7 +152,7 @@ pub struct Settings {
     /// The rule for condensing the problem onto its contact dofs.
     pub condense: Condense,
     /// Threads of the sparse factorisations and of multigrid, at least 1. With `None` a factorisation has one, and multigrid on 50,000 dofs
-    /// or more those of the machine, 8 at most. They change no bit of an answer.
+    /// or more those of the machine, 8 at most, which many problems share as well. They change no bit of an answer.
     pub threads: Option<usize>,
     /// Precision of the sparse factor.
     pub precision: Precision,

@@ -34,6 +34,7 @@ from signorini._errors import (
     Undecided,
     UnderHeld,
 )
+from signorini._many import Solutions, solve_many
 from signorini._mortar import MortarRows, mortar_rows
 from signorini._signorini import (
     Certificate,
@@ -81,6 +82,7 @@ __all__ = [
     "SceneSolution",
     "SignoriniError",
     "Solution",
+    "Solutions",
     "Sweep",
     "TooLarge",
     "TotalError",
@@ -94,6 +96,7 @@ __all__ = [
     "prepare",
     "qp",
     "solve",
+    "solve_many",
     "solve_qp",
     "sweep",
     "total_error",

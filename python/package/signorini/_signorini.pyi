@@ -22,6 +22,7 @@ __all__ = [
     "__version__",
     "_measured",
     "_mortar_rows",
+    "_solve_many",
     "_swept",
     "compare",
     "prepare",
@@ -613,6 +614,18 @@ def _mortar_rows(
     thickness: float,
     direction: ArrayLike | None,
     reach: float | None,
+) -> dict[str, Any]: ...
+def _solve_many(
+    K: ArrayLike,
+    f: ArrayLike,
+    B: ArrayLike,
+    g: ArrayLike,
+    method: str | None,
+    accuracy: float | str | None,
+    time: float | None,
+    threads: int | None,
+    tolerance: float | None,
+    proof: bool,
 ) -> dict[str, Any]: ...
 def _swept(
     scene: Scene, over: str, values: ArrayLike, method: str | None, threads: int | None

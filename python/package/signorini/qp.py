@@ -146,6 +146,22 @@ def _vector(name: str, values: Any) -> NDArray[np.float64]:
     return np.ascontiguousarray(array, dtype=np.float64).reshape(-1)
 
 
+# Up to this number of entries rows of bounds are dense: a sparse matrix of scipy takes longer to make.
+_FEW_ENTRIES = 10_000
+
+
+def _unit_rows(columns: NDArray[np.int64], value: float, unknowns: int) -> Any:
+    """Returns a matrix with one entry in each row, in these columns."""
+    places = np.arange(len(columns))
+    if len(columns) * unknowns > _FEW_ENTRIES:
+        from scipy import sparse
+
+        return sparse.csr_array((np.full(len(columns), value), (places, columns)), shape=(len(columns), unknowns))
+    rows = np.zeros((len(columns), unknowns))
+    rows[places, columns] = value
+    return rows
+
+
 def _is_sparse(matrix: Any) -> bool:
     return hasattr(matrix, "tocsc")
 
@@ -161,6 +177,7 @@ class _Rows:
         self.count = 0
         self.equalities: tuple[Any, Any] = (None, None)
         self.has_box = False
+        self.P: Any = None
         self.lower = self.upper = np.empty(0, dtype=np.int64)
 
     def _append(self, name: str, matrix: Any, gap: NDArray[np.float64]) -> None:
@@ -187,8 +204,6 @@ class _Rows:
 
     def _checked(self, name: str, side_name: str, matrix: Any, side: Any) -> tuple[Any, NDArray[np.float64]] | None:
         """Returns a matrix and its sides if their shapes fit; None if neither is given."""
-        from scipy import sparse
-
         if matrix is None and side is None:
             return None
         if matrix is None or side is None:
@@ -198,7 +213,7 @@ class _Rows:
             matrix = np.asarray(matrix)
             if matrix.dtype.kind not in "fiub":
                 raise BadType(f"{name} is an array of dtype {matrix.dtype}; it must be a matrix of real numbers")
-            matrix = sparse.csr_array(np.atleast_2d(matrix).astype(np.float64))
+            matrix = np.atleast_2d(matrix).astype(np.float64)
         values = _vector(side_name, side)
         if matrix.shape != (len(values), self.unknowns):
             raise BadInput(
@@ -208,8 +223,6 @@ class _Rows:
 
     def add_bounds(self, lb: Any, ub: Any) -> None:
         """Adds one row for each finite bound."""
-        from scipy import sparse
-
         self.has_box = lb is not None or ub is not None
         for name, bound, sign in (("ub", ub, 1.0), ("lb", lb, -1.0)):
             if bound is None:
@@ -219,9 +232,7 @@ class _Rows:
                 raise BadInput(f"{name} has length {len(values)}; there are {self.unknowns} unknowns")
             values = _gaps(name, sign * values)
             bounded = np.flatnonzero(np.isfinite(values))
-            one = np.full(len(bounded), sign)
-            matrix = sparse.csr_array((one, (np.arange(len(bounded)), bounded)), shape=(len(bounded), self.unknowns))
-            self._append(name, matrix, values[bounded])
+            self._append(name, _unit_rows(bounded, sign, self.unknowns), values[bounded])
             if name == "ub":
                 self.upper = bounded
             else:
@@ -229,12 +240,17 @@ class _Rows:
 
     def problem(self, P: Any, load: NDArray[np.float64]) -> _signorini.Problem:
         """Returns the contact problem with these rows."""
-        from scipy import sparse
-
         E, e = self.equalities
+        self.P = P
         if self.count == 0:
             return _signorini.Problem(P, load, E=E, e=e)
-        B = sparse.csc_array(sparse.vstack(self.matrices, format="csc"))
+        B: Any
+        if any(_is_sparse(matrix) for matrix in self.matrices):
+            from scipy import sparse
+
+            B = sparse.csc_array(sparse.vstack([sparse.csr_array(matrix) for matrix in self.matrices], format="csc"))
+        else:
+            B = np.concatenate(self.matrices)
         return _signorini.Problem(P, load, B, np.concatenate(self.gaps), E=E, e=e)
 
     def _of(self, name: str, multiplier: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -261,7 +277,11 @@ class _Rows:
                 z_box[self.upper] += self._of("ub", multiplier)
             if "lb" in self.groups:
                 z_box[self.lower] -= self._of("lb", multiplier)
-        objective = float(0.5 * x @ (problem.K @ x) - problem.f @ x)
+        if isinstance(self.P, np.ndarray):
+            force = np.asarray(self.P) @ x
+        else:
+            force = (self.P if _is_sparse(self.P) else problem.K) @ x
+        objective = float(0.5 * x @ force - problem.f @ x)
         return QPSolution(True, x, z, y, z_box, objective, certificate, unique, "")
 
 

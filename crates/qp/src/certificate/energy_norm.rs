@@ -5,7 +5,8 @@ use std::sync::Arc;
 use super::springs::Springs;
 use crate::error::Error;
 use crate::linear::{
-    Analysis, Cholesky, Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, generic, if_definite, ldexp,
+    Analysis, Cholesky, Compliance, Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, generic,
+    if_definite, ldexp,
 };
 use crate::watch::Watch;
 
@@ -82,19 +83,19 @@ impl EnergyNorm {
         }
         let equilibration = Equilibration::of(stiffness);
         let scaled = equilibration.apply(stiffness);
-        let dofs = Self::last_dofs(contact);
+        let dofs = Self::last_dofs(&scaled, contact);
         let factor = Analysis::with_last(&scaled, &dofs).and_then(|analysis| analysis.factor(&scaled));
         let definite = if_definite(factor)?.filter(|cholesky| cholesky.is_definite(&scaled));
         Ok(definite.map(|cholesky| Self::new(cholesky, equilibration, dofs)))
     }
 
     /// The dofs to eliminate last, so that the contact boundary is known: those that appear in the rows `contact`, or none if
-    /// that is most of the body.
-    pub fn last_dofs(contact: &SparseMatrix) -> Vec<usize> {
+    /// that is most of the body and the factor is not a whole triangle anyway.
+    pub fn last_dofs(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Vec<usize> {
         let dofs: Vec<usize> =
             (0..contact.columns()).filter(|&dof| contact.column(dof).any(|entry| entry.1 != 0.0)).collect();
         let most = FEW_DOFS.max((LARGEST_SHARE * contact.columns() as f64) as usize);
-        if dofs.len() > most { Vec::new() } else { dofs }
+        if dofs.len() > most && !Analysis::is_dense_for(stiffness) { Vec::new() } else { dofs }
     }
 
     /// The energy norm from an available factor of the equilibrated stiffness `c D K D`, with `last` as its last columns.
@@ -104,6 +105,11 @@ impl EnergyNorm {
         let boundary = worth.then(|| Arc::new(Boundary { block: cholesky.trailing_block(), dofs: last }));
         let watch = Watch::default();
         EnergyNorm { cholesky, equilibration, boundary, widening: 1.0, springs: None, loose: None, watch }
+    }
+
+    /// The compliance of scaled rows by this factor, if it serves balances of forces.
+    pub fn compliance(&self, contact: &SparseMatrix) -> Option<Compliance> {
+        Compliance::of(&self.cholesky, contact)
     }
 
     /// The energy norm of the equilibrated stiffness itself.
@@ -149,6 +155,11 @@ impl EnergyNorm {
     pub(super) fn rounding(&self) -> f64 {
         let share = SWEEP_ROUNDING * self.loss();
         if share < LOST { ROUNDED_BOUND + share } else { f64::INFINITY }
+    }
+
+    /// Returns `true` if the rounding of a sweep is no more than what every bound is widened by anyway.
+    pub(super) fn is_sharp(&self) -> bool {
+        SWEEP_ROUNDING * self.loss() <= ROUNDED_BOUND - 1.0
     }
 
     /// Amplification of the rounding of a force by a sweep, on a diagonal of order one: one over the smallest pivot, at least
@@ -220,7 +231,11 @@ impl EnergyNorm {
         counts: impl Fn(usize) -> bool,
     ) -> Option<Vec<Vec<(usize, f64)>>> {
         let is_entry = |entry: &(usize, f64)| entry.1 != 0.0 && counts(entry.0);
-        let rows = self.rows_at(&self.boundary.as_ref()?.dofs, contact, is_entry);
+        let dofs = &self.boundary.as_ref()?.dofs;
+        let rows = self.rows_at(dofs, contact, is_entry);
+        if dofs.len() == contact.columns() {
+            return Some(rows);
+        }
         let count: usize = rows.iter().map(Vec::len).sum();
         let whole = (0..contact.columns()).flat_map(|dof| contact.column(dof)).filter(is_entry).count();
         (count == whole).then_some(rows)
@@ -237,7 +252,9 @@ impl EnergyNorm {
         contact: &SparseMatrix,
         is_entry: impl Fn(&(usize, f64)) -> bool,
     ) -> Vec<Vec<(usize, f64)>> {
-        let mut rows = vec![Vec::new(); contact.rows()];
+        let mut lengths = vec![0; contact.rows()];
+        contact.row_indices().iter().for_each(|&row| lengths[row as usize] += 1);
+        let mut rows: Vec<_> = lengths.into_iter().map(Vec::with_capacity).collect();
         for (place, &dof) in dofs.iter().enumerate() {
             for (row, value) in contact.column(dof).filter(&is_entry) {
                 rows[row].push((place, ldexp(value, self.equilibration.diagonal[dof])));

@@ -14,7 +14,7 @@ use super::energy_norm::{Boundary, ROUNDED_BOUND};
 use super::units::ldexp_root;
 use crate::error::Error;
 use crate::linear::multigrid::Multigrid;
-use crate::linear::{Dependence, SparseMatrix, dot, inverse_lengths};
+use crate::linear::{Dependence, SparseMatrix, dot, inverse_lengths, inverse_lengths_by_products};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, ProvenSet};
 use crate::watch::Watch;
@@ -27,6 +27,9 @@ const MOST_CYCLES: usize = 20;
 
 /// Multiplications that the compliance of the rows in question may cost; beyond this, one dof of each row is moved alone.
 const MOST_WORK: f64 = 2e9;
+
+/// Rows that are swept at once.
+const AT_ONCE: usize = 128;
 
 /// An answer whose rows are to be proven.
 pub(crate) struct WithEvidence<'a> {
@@ -229,6 +232,24 @@ impl<'a> ComplianceFactor<'a> {
         }
     }
 
+    /// The columns of these rows, swept at once; `None` if there is no time, or without a boundary.
+    fn columns(&self, rows: &[usize]) -> Option<Vec<Vec<f64>>> {
+        let block = &self.boundary?.block;
+        let size = block.size();
+        let mut columns = Vec::with_capacity(rows.len());
+        for some in rows.chunks(AT_ONCE) {
+            if self.norm.is_over() {
+                return None;
+            }
+            let mut forces = vec![0.0; some.len() * size];
+            for (column, &row) in forces.chunks_mut(size.max(1)).zip(some) {
+                self.rows[row].iter().for_each(|&(place, b)| column[place] += b);
+            }
+            columns.extend(block.forward_all(forces).chunks(size.max(1)).map(<[f64]>::to_vec));
+        }
+        Some(columns)
+    }
+
     /// `sqrt(G_ii)`: the distance by which a displacement of unit energy norm moves the row.
     pub(super) fn reach(&self, row: usize) -> f64 {
         if self.norm.is_over() {
@@ -262,6 +283,13 @@ impl<'a> ComplianceFactor<'a> {
     /// `sqrt((G_CC^-1)_ii)` of the rows C of `contact`; infinite for those that take part in a dependence.
     fn moved_together(&self, contact: &SparseMatrix, rows: &[usize]) -> Vec<f64> {
         let none = || vec![f64::INFINITY; rows.len()];
+        let of_reciprocal = |reciprocal: f64| ldexp_root(reciprocal, -self.norm.equilibration.factor, 0);
+        if self.norm.is_sharp()
+            && let Some(columns) = self.columns(rows)
+            && let Some(reciprocals) = inverse_lengths_by_products(&columns)
+        {
+            return reciprocals.into_iter().map(of_reciprocal).collect();
+        }
         let Some(Dependence { independent, takes_part }) = Dependence::of(contact, rows, || self.norm.is_over()) else {
             return none();
         };
@@ -271,7 +299,7 @@ impl<'a> ComplianceFactor<'a> {
         let Some(reciprocals) = inverse_lengths(columns, || self.norm.is_over()) else { return none() };
         let mut lengths = none();
         for (&index, reciprocal) in basis.iter().zip(reciprocals).filter(|entry| !takes_part[*entry.0]) {
-            lengths[index] = ldexp_root(reciprocal, -self.norm.equilibration.factor, 0);
+            lengths[index] = of_reciprocal(reciprocal);
         }
         lengths
     }

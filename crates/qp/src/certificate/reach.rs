@@ -96,8 +96,8 @@ impl ContactProblem {
     /// energy norm of a single dof moves it.
     pub(super) fn least_reach(&self) -> Vec<f64> {
         let (roots, mut least) = (&self.diagonal().roots, vec![0.0_f64; self.rows()]);
-        for (row, dof, b) in self.contact().triplets().filter(|entry| roots[entry.1] > 0.0) {
-            least[row] = least[row].max(b.abs() / roots[dof]);
+        for (dof, &root) in roots.iter().enumerate().filter(|entry| *entry.1 > 0.0) {
+            self.contact().column(dof).for_each(|(row, b)| least[row] = least[row].max(b.abs() / root));
         }
         least
     }
@@ -105,8 +105,9 @@ impl ContactProblem {
     /// The sum over the entries b of each row of `of_entry(b^2, K_jj)`, the compliance of a row if its dofs stand alone.
     pub(super) fn compliance_of_rows(&self, of_entry: impl Fn(f64, f64) -> f64) -> Vec<f64> {
         let mut compliance = vec![0.0; self.rows()];
-        for (row, dof, b) in self.contact().triplets().filter(|entry| entry.2 != 0.0) {
-            compliance[row] += of_entry(b * b, self.diagonal().values[dof]);
+        for (dof, &stiffness) in self.diagonal().values.iter().enumerate() {
+            let entries = self.contact().column(dof).filter(|entry| entry.1 != 0.0);
+            entries.for_each(|(row, b)| compliance[row] += of_entry(b * b, stiffness));
         }
         compliance
     }

@@ -9,7 +9,7 @@ use super::step::ScaledStep;
 use crate::certificate::{Bounding, EnergyNorm};
 use crate::cost::{bytes, check_time, seconds};
 use crate::error::Error;
-use crate::linear::{AugmentedMatrix, Equilibration, dot, ldexp};
+use crate::linear::{Augmented, Compliance, Equilibration, dot, ldexp};
 use crate::method::{Ending, Outcome, ScaledProblem, active_set};
 use crate::plan::{Means, Step, Tried, Way};
 use crate::problem::ContactProblem;
@@ -28,7 +28,9 @@ pub(crate) struct Factored {
     pub(super) reduction: Reduction,
     /// The smallest pivot of the scaled stiffness, if it is below [`LOST_PIVOT`](super::preparation::LOST_PIVOT).
     pub(super) lost_pivot: Option<f64>,
-    pub(super) augmented: AugmentedMatrix,
+    pub(super) augmented: Augmented,
+    /// The compliance of the rows, if balances by it cost less than by factors of the augmented matrix.
+    pub(super) compliance: Option<Compliance>,
     /// Energy norm of the condensed stiffness, if it is definite, made at its first use.
     pub(super) condensed_norm: OnceLock<Option<EnergyNorm>>,
     /// The choice of method and means, if it was left to the program.
@@ -119,7 +121,10 @@ impl Engine for Factored {
         let of_factor = |values: usize| bytes::of_factor(values as f64, size_of::<f64>());
         match &self.reduction.condensation {
             Some(condensed) => of_factor(condensed.factor_entries()) + bytes::of_dense(self.condensed_dofs() as f64),
-            None => of_factor(self.augmented.analysis().factor_entries()),
+            None => match &self.compliance {
+                Some(compliance) => compliance.bytes(),
+                None => of_factor(self.augmented.matrix().map_or(0, |matrix| matrix.analysis().factor_entries())),
+            },
         }
     }
 
@@ -195,7 +200,7 @@ impl Factored {
         let method = self.chosen(task.method, settings);
         let watch = self.watch_of_loop(method, &settings.watch)?;
         let (problem, unit) = self.scaled(&loading, &gap)?;
-        let scaled = ScaledProblem::new(&problem, &self.augmented, self.reduction.definiteness()).watched(&watch);
+        let scaled = self.scaled_problem(&problem).watched(&watch);
         let start = task.start.contact_set.as_ref().map(|set| self.reduction.selection.restrict_set(set));
         let bound = |displacement: &[f64], multiplier: &[f64]| {
             let by = self.condensed_bounding(&problem, &settings.watch);
@@ -209,6 +214,12 @@ impl Factored {
         let outcome = made.outcome(step)?;
         let factor_seconds = scaled.factor_seconds();
         Ok(outcome.map(|outcome| Reduced { loading, gap, problem, unit, outcome, factor_seconds, refined: None }))
+    }
+
+    /// The scaled problem with its means.
+    fn scaled_problem<'a>(&'a self, problem: &'a ContactProblem) -> ScaledProblem<'a> {
+        let scaled = ScaledProblem::new(problem, &self.augmented, self.reduction.definiteness());
+        scaled.with_compliance(self.compliance.as_ref())
     }
 
     /// The means of a certificate of the problem that the methods work on.
@@ -282,7 +293,7 @@ impl Factored {
         if watch.time_left().is_none() {
             return Ok(watch.clone());
         }
-        let analysis = self.augmented.analysis();
+        let analysis = self.augmented.matrix()?.analysis();
         // If K is not definite, the start and the test of uniqueness factorise too.
         let factors = if self.reduction.is_definite() { 1.0 } else { SINGULAR };
         let of_loop = factors * seconds::factorisation(analysis);
@@ -303,7 +314,10 @@ impl Factored {
         }
         let of_boundary = || {
             let unscaled = Equilibration::none(problem.dofs());
-            let factor = self.augmented.factor(self.augmented.matrix(|_| 0.0, 0.0)).ok()?;
+            let factor = {
+                let augmented = self.augmented.matrix().ok()?;
+                augmented.factor(augmented.matrix(|_| 0.0, 0.0)).ok()?
+            };
             Some(EnergyNorm::new(factor, unscaled, (0..problem.dofs()).collect()))
         };
         self.condensed_norm.get_or_init(of_boundary).clone()
@@ -322,7 +336,7 @@ impl Factored {
         let gap = self.reduction.selection.gap(self.problem.gap());
         let loading = Loading::of(&self.reduction, self.problem.load().to_vec(), &gap);
         let (problem, unit) = self.scaled(&loading, self.problem.gap()).ok()?;
-        let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.definiteness());
+        let task = self.scaled_problem(&problem);
         let held = active_set::with_contact_set(&task, &self.reduction.selection.restrict_set(closed)).ok()??;
         Some((self.expand(&loading, unit, &held.displacement), self.expand_multiplier(&held.multiplier, unit)))
     }

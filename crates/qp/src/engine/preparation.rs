@@ -9,7 +9,7 @@ use crate::certificate::EnergyNorm;
 use crate::cost::seconds::factor_seconds;
 use crate::cost::{Kept, check_memory, check_time, seconds};
 use crate::error::Error;
-use crate::linear::{Analysis, AugmentedMatrix, Cholesky, FactorError, Width, largest};
+use crate::linear::{Analysis, Augmented, AugmentedMatrix, Cholesky, FactorError, Width, largest};
 use crate::plan::{Layout, WithFactor};
 use crate::problem::ContactProblem;
 use crate::settings::Settings;
@@ -66,13 +66,21 @@ impl Factored {
             (Some(_), Some(analysis)) if !keeps_norm => Norm::Again(analysis.clone()),
             (Some(cholesky), _) => Norm::Kept(EnergyNorm::new(cholesky, scaling.equilibration().clone(), last)),
         };
-        let augmented = augmented(condensation.as_ref(), &scaling, analysis)?.with_threads(threads.unwrap_or(1));
+        let compliance = match (&norm, &condensation) {
+            (Norm::Kept(norm), None) => norm.compliance(scaling.contact()),
+            _ => None,
+        };
+        let augmented = augmented(condensation.as_ref(), &scaling, analysis, threads.unwrap_or(1))?;
+        if compliance.is_none() {
+            augmented.matrix()?;
+        }
         let factor = factor_clock.elapsed().as_secs_f64();
         Ok(Factored {
             problem: problem.clone(),
             reduction: Reduction { selection, scaling, stiffest, norm, condensation },
             lost_pivot: least_pivot.filter(|&pivot| pivot < LOST_PIVOT),
             augmented,
+            compliance,
             way,
             multiplications: size.multiplications,
             proof_seconds,
@@ -165,15 +173,17 @@ fn augmented(
     condensation: Option<&Condensation>,
     scaling: &Scaling,
     analysis: Option<Analysis>,
-) -> Result<AugmentedMatrix, FactorError> {
-    match (condensation, analysis) {
-        (Some(condensed), _) => {
+    threads: usize,
+) -> Result<Augmented, FactorError> {
+    match condensation {
+        Some(condensed) => {
             // The condensed matrix is dense: any order gives the same factor, and its last block is the whole factor.
             let all: Vec<usize> = (0..condensed.stiffness().dim()).collect();
-            AugmentedMatrix::with_last(condensed.stiffness(), condensed.contact(), &all)
+            let (stiffness, contact) = (condensed.stiffness(), condensed.contact());
+            let matrix = AugmentedMatrix::with_last(stiffness, contact, &all)?.with_threads(threads);
+            Ok(Augmented::of(stiffness, contact, matrix))
         }
-        (None, Some(analysis)) => AugmentedMatrix::with_analysis(scaling.stiffness(), scaling.contact(), analysis),
-        (None, None) => AugmentedMatrix::new(scaling.stiffness(), scaling.contact()),
+        None => Ok(Augmented::new(scaling.stiffness(), scaling.contact(), analysis, threads)),
     }
 }
 

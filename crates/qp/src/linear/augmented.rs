@@ -1,5 +1,7 @@
 //! K + t I + B' diag(w) B for many weights w and shifts t: one pattern, one analysis.
 
+use std::sync::OnceLock;
+
 use super::{Analysis, Cholesky, FactorError, SparseMatrix, SymmetricMatrix};
 
 /// A symmetric matrix K and rows B; the weighted squares of the rows are added to K.
@@ -62,10 +64,11 @@ impl AugmentedMatrix {
             row_starts.push(squares.len());
         }
         let stiffness = with_places(stiffness.lower(), squares.iter().map(|&(second, first, _)| (first, second)));
+        let mut search = Search::of(&stiffness);
         let products = (squares.iter())
             .map(|&(second, first, product)| {
-                let (start, rows) = (stiffness.column_starts()[first], stiffness.column_rows(first));
-                (start + rows.partition_point(|&row| (row as usize) < second), product)
+                let (Ok(place) | Err(place)) = search.place(first, second);
+                (stiffness.column_starts()[first] + place, product)
             })
             .collect();
         let analysis = analyse(&SymmetricMatrix::from_sorted_lower(stiffness.clone()))?;
@@ -110,12 +113,53 @@ impl AugmentedMatrix {
     }
 }
 
+/// The augmented matrix of a stiffness and rows, joined and analysed at its first use.
+#[derive(Clone, Debug)]
+pub struct Augmented {
+    stiffness: SymmetricMatrix,
+    rows: SparseMatrix,
+    /// The analysis of the stiffness, if it may serve.
+    analysis: Option<Analysis>,
+    threads: usize,
+    matrix: OnceLock<Result<AugmentedMatrix, FactorError>>,
+}
+
+impl Augmented {
+    /// That of K (n x n) and B (m x n), factorised with this number of threads; an `analysis` of K is kept if K has a place for every
+    /// entry.
+    pub fn new(stiffness: &SymmetricMatrix, rows: &SparseMatrix, analysis: Option<Analysis>, threads: usize) -> Self {
+        Augmented { stiffness: stiffness.clone(), rows: rows.clone(), analysis, threads, matrix: OnceLock::new() }
+    }
+
+    /// A matrix that is analysed already.
+    pub fn of(stiffness: &SymmetricMatrix, rows: &SparseMatrix, matrix: AugmentedMatrix) -> Self {
+        Augmented { matrix: OnceLock::from(Ok(matrix)), ..Self::new(stiffness, rows, None, 1) }
+    }
+
+    /// The matrix.
+    ///
+    /// # Errors
+    /// As [`AugmentedMatrix::new`].
+    pub fn matrix(&self) -> Result<&AugmentedMatrix, FactorError> {
+        let Augmented { stiffness, rows, analysis, threads, .. } = self;
+        let made = || {
+            let matrix = match analysis {
+                Some(analysis) => AugmentedMatrix::with_analysis(stiffness, rows, analysis.clone()),
+                None => AugmentedMatrix::new(stiffness, rows),
+            };
+            Ok(matrix?.with_threads(*threads))
+        };
+        self.matrix.get_or_init(made).as_ref().map_err(FactorError::clone)
+    }
+}
+
 /// A lower triangle with a place, zero if it had none, for every `(column, row)` of `added` and of the diagonal; the same memory
 /// if nothing was missing.
 fn with_places(lower: &SparseMatrix, added: impl Iterator<Item = (usize, usize)>) -> SparseMatrix {
-    let has = |(column, row): (usize, usize)| lower.column_rows(column).binary_search(&(row as u32)).is_ok();
+    let mut search = Search::of(lower);
     let diagonal = (0..lower.columns()).map(|column| (column, column));
-    let mut missing: Vec<(usize, usize)> = added.chain(diagonal).filter(|&place| !has(place)).collect();
+    let is_missing = |&(column, row): &(usize, usize)| search.place(column, row).is_err();
+    let mut missing: Vec<(usize, usize)> = added.chain(diagonal).filter(is_missing).collect();
     if missing.is_empty() {
         return lower.clone();
     }
@@ -138,4 +182,53 @@ fn with_places(lower: &SparseMatrix, added: impl Iterator<Item = (usize, usize)>
         starts.push(rows.len());
     }
     SparseMatrix::from_parts(lower.rows(), starts, rows, values)
+}
+
+/// A search for entries of a matrix, which are mostly asked for in their order: down a column, one after the other.
+struct Search<'a> {
+    matrix: &'a SparseMatrix,
+    /// The entry that was asked for last, and the place after it in its column.
+    last: Option<(usize, usize)>,
+    next: usize,
+}
+
+impl<'a> Search<'a> {
+    fn of(matrix: &'a SparseMatrix) -> Self {
+        Search { matrix, last: None, next: 0 }
+    }
+
+    /// The place of an entry within its column, or the place that it would have.
+    fn place(&mut self, column: usize, row: usize) -> Result<usize, usize> {
+        let rows = self.matrix.column_rows(column);
+        let from = if self.last.is_some_and(|last| last.0 == column && last.1 < row) { self.next } else { 0 };
+        let place = match rows.get(from) {
+            Some(&next) if next as usize == row => Ok(from),
+            _ => rows[from..].binary_search(&(row as u32)).map(|place| from + place).map_err(|place| from + place),
+        };
+        (self.last, self.next) = (Some((column, row)), place.map_or_else(|place| place, |place| place + 1));
+        place
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_are_found_in_any_order() {
+        let rows = [vec![0, 1, 4, 7], vec![], vec![2, 3, 8]];
+        let entries: Vec<_> = rows
+            .iter()
+            .enumerate()
+            .flat_map(|(column, rows)| rows.iter().map(move |&row| (row, column, 1.0)))
+            .collect();
+        let matrix = SparseMatrix::from_triplets(9, 3, &entries).unwrap();
+        let mut search = Search::of(&matrix);
+        // Down each column, then every entry after every other.
+        let all: Vec<_> = (0..3).flat_map(|column| (0..9).map(move |row| (column, row))).collect();
+        let pairs = all.iter().flat_map(|&first| all.iter().flat_map(move |&second| [first, second]));
+        for (column, row) in all.iter().copied().chain(pairs) {
+            assert_eq!(search.place(column, row), rows[column].binary_search(&row), "{column} {row}");
+        }
+    }
 }

@@ -2,23 +2,45 @@
 
 use std::sync::Arc;
 
+use faer::Side;
 use faer::perm::PermRef;
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{self as fc, supernodal};
-use faer::{Par, Side};
 
 use super::factor::{self, Factor, FactorError, Permuted, Real, Width, call};
 use super::grouped::group_starts;
-use super::{Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, ldexp, ordering};
+use super::{Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dense_factor, dot, ldexp, ordering};
 use crate::error::Error;
+
+/// From this share of all entries on, a lower triangle is dense: no order saves anything.
+const DENSE: f64 = 0.6;
 
 /// Fill-reducing ordering and structure of the factor, for all matrices of one sparsity pattern.
 #[derive(Clone, Debug)]
 pub struct Analysis {
-    symbolic: Arc<fc::SymbolicCholesky<usize>>,
+    structure: Structure,
     trailing: usize,
     threads: usize,
+}
+
+/// The structure of a factor.
+#[derive(Clone, Debug)]
+enum Structure {
+    /// Block columns.
+    Sparse(Arc<fc::SymbolicCholesky<usize>>),
+    /// A whole triangle, with the columns in the order of elimination.
+    Dense(Arc<Vec<usize>>),
+}
+
+impl Structure {
+    /// The columns in the order of elimination.
+    fn order(&self) -> &[usize] {
+        match self {
+            Structure::Sparse(symbolic) => symbolic.perm().map_or(&[], |perm| perm.arrays().0),
+            Structure::Dense(order) => order,
+        }
+    }
 }
 
 /// The factor L of a symmetric positive definite matrix K = L L', sparse, its unknowns in an order with little fill-in.
@@ -34,20 +56,23 @@ pub struct Cholesky {
 enum Values {
     Double(Arc<Vec<f64>>),
     Single(Arc<Vec<f32>>),
+    /// A whole triangle, in double precision.
+    Dense(LowerTriangle),
 }
 
-/// Calls a function of the factor in its precision; gives `None` for a matrix without columns.
+/// Calls a function of a sparse factor in its precision; gives `None` for a matrix without columns, and for a dense factor.
 macro_rules! by_precision {
     ($cholesky:expr, $factor:ident => $call:expr) => {
-        $cholesky.supernodes().map(|nodes| match &$cholesky.values {
+        $cholesky.supernodes().and_then(|nodes| match &$cholesky.values {
             Values::Double(values) => {
                 let $factor = Factor::new(nodes, values);
-                $call
+                Some($call)
             }
             Values::Single(values) => {
                 let $factor = Factor::new(nodes, values);
-                $call
+                Some($call)
             }
+            Values::Dense(_) => None,
         })
     };
 }
@@ -67,6 +92,27 @@ impl Analysis {
     /// # Errors
     /// As [`Analysis::of`].
     pub fn with_last(matrix: &SymmetricMatrix, last: &[usize]) -> Result<Self, FactorError> {
+        if !Self::is_dense_for(matrix) {
+            return Self::sparse_with_last(matrix, last);
+        }
+        let mut comes_last = vec![false; matrix.dim()];
+        last.iter().for_each(|&column| comes_last[column] = true);
+        let before = (0..matrix.dim()).filter(|&column| !comes_last[column]);
+        let order = before.chain(last.iter().copied()).collect();
+        Ok(Analysis { structure: Structure::Dense(Arc::new(order)), trailing: last.len(), threads: 1 })
+    }
+
+    /// Returns `true` if the factor of `matrix` is stored as a whole triangle.
+    pub fn is_dense_for(matrix: &SymmetricMatrix) -> bool {
+        let dim = matrix.dim() as f64;
+        dim > 0.0 && matrix.lower().entries() as f64 >= DENSE * dim * (dim + 1.0) / 2.0
+    }
+
+    /// As [`Analysis::with_last`], for a factor in block columns, which may be in single precision.
+    ///
+    /// # Errors
+    /// As [`Analysis::of`].
+    pub fn sparse_with_last(matrix: &SymmetricMatrix, last: &[usize]) -> Result<Self, FactorError> {
         let lower = matrix.lower();
         let order = call(|| ordering::order(lower, last))?;
         let mut place = vec![0; order.len()];
@@ -82,7 +128,7 @@ impl Analysis {
             let structure = SymbolicSparseColMatRef::new_checked(dim, dim, starts, None, &rows);
             Ok(fc::factorize_symbolic_cholesky(structure, Side::Lower, order, params)?)
         })?;
-        Ok(Analysis { symbolic: Arc::new(symbolic), trailing: last.len(), threads: 1 })
+        Ok(Analysis { structure: Structure::Sparse(Arc::new(symbolic)), trailing: last.len(), threads: 1 })
     }
 
     /// The same analysis, for factorisations with this number of threads.
@@ -92,11 +138,18 @@ impl Analysis {
 
     /// Number of values of the factor, zeros inside supernodes included.
     pub fn factor_entries(&self) -> usize {
-        self.symbolic.len_val()
+        match &self.structure {
+            Structure::Sparse(symbolic) => symbolic.len_val(),
+            Structure::Dense(order) => order.len() * order.len(),
+        }
     }
 
     /// Number of multiplications of a factorisation, counted as if each column were eliminated by itself.
     pub fn multiplications(&self) -> f64 {
+        if let Structure::Dense(order) = &self.structure {
+            let dim = order.len() as f64;
+            return dim * (dim + 1.0) * (2.0 * dim + 1.0) / 12.0;
+        }
         let Some(nodes) = self.supernodes() else { return 0.0 };
         let (starts, below) = (nodes.supernode_begin(), nodes.col_ptr_for_row_idx());
         (0..nodes.n_supernodes())
@@ -121,13 +174,17 @@ impl Analysis {
     /// # Errors
     /// As [`Analysis::factor`].
     pub fn factor_last(&self, matrix: SymmetricMatrix) -> Result<Cholesky, FactorError> {
-        let permuted = self.permuted(matrix.lower(), |_, _, value| value);
+        let value = |_, _, value| value;
+        if let Structure::Dense(order) = &self.structure {
+            return self.factorised_densely(order, matrix.lower(), value);
+        }
+        let permuted = self.permuted(matrix.lower(), value);
         drop(matrix);
         self.factorised(permuted, Values::Double)
     }
 
     /// Factorises the equilibrated `c D A D` of `matrix` without building it, in double precision or, with half the
-    /// memory and some seven digits of each entry, if that is the `width`.
+    /// memory and some seven digits of each entry, if that is the `width` and the factor is in block columns.
     ///
     /// # Errors
     /// As [`Analysis::factor`]; in single precision a pivot may also be lost to rounding.
@@ -139,6 +196,9 @@ impl Analysis {
     ) -> Result<Cholesky, FactorError> {
         let scale = &equilibration.diagonal;
         let entry = |row: usize, column: usize, value| ldexp(value, equilibration.factor + scale[row] + scale[column]);
+        if let Structure::Dense(order) = &self.structure {
+            return self.factorised_densely(order, matrix.lower(), entry);
+        }
         if width == Width::Single {
             let rounded = |row: usize, column: usize, value| entry(row, column, value) as f32;
             return self.factorised(self.permuted(matrix.lower(), rounded), Values::Single);
@@ -146,14 +206,44 @@ impl Analysis {
         self.factorised(self.permuted(matrix.lower(), entry), Values::Double)
     }
 
+    /// The dense factor of the matrix with this lower triangle, of which `entry(row, column, value)` makes the entries.
+    fn factorised_densely(
+        &self,
+        order: &[usize],
+        lower: &SparseMatrix,
+        entry: impl Fn(usize, usize, f64) -> f64,
+    ) -> Result<Cholesky, FactorError> {
+        let dim = order.len();
+        let mut place = vec![0; dim];
+        order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
+        let mut values: Vec<f64> = Vec::new();
+        values.try_reserve_exact(dim * dim).map_err(|_| FactorError::Failed("out of memory".into()))?;
+        values.resize(dim * dim, 0.0);
+        for (column, &to) in place.iter().enumerate() {
+            for (row, value) in lower.column(column) {
+                let (first, second) = (to.min(place[row]), to.max(place[row]));
+                values[first * dim + second] = entry(row, column, value);
+            }
+        }
+        let triangle = dense_factor::factorise(dim, values, self.threads)?;
+        let (mut smallest_pivot, mut finite) = (f64::INFINITY, true);
+        for pivot in (0..dim).map(|column| triangle.diagonal(column)) {
+            smallest_pivot = smallest_pivot.min(pivot * pivot);
+            finite &= pivot.is_finite();
+        }
+        if !finite {
+            return Err(FactorError::NotPositiveDefinite);
+        }
+        Ok(Cholesky { analysis: self.clone(), values: Values::Dense(triangle), smallest_pivot })
+    }
+
     fn factorised<T: Real>(
         &self,
         permuted: Permuted<T>,
         shared: fn(Arc<Vec<T>>) -> Values,
     ) -> Result<Cholesky, FactorError> {
-        let par = if self.threads > 1 { Par::rayon(self.threads) } else { Par::Seq };
         let (values, smallest_pivot) = match self.supernodes() {
-            Some(supernodes) => call(|| factor::factorise(supernodes, &permuted, par))?,
+            Some(supernodes) => call(|| factor::factorise(supernodes, &permuted, dense_factor::par(self.threads)))?,
             // Only a matrix without columns has no supernodes.
             None => (Vec::new(), f64::INFINITY),
         };
@@ -163,7 +253,9 @@ impl Analysis {
     /// The structure of the lower triangle of P A P', rows in no order, and its entries as `entry(row, column, value)`
     /// makes them.
     fn permuted<T: Real>(&self, lower: &SparseMatrix, entry: impl Fn(usize, usize, f64) -> T) -> Permuted<T> {
-        let place = self.symbolic.perm().map_or(&[][..], |perm| perm.arrays().1);
+        let order = self.structure.order();
+        let mut place = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
         let first = |(row, column, _): (usize, usize, f64)| place[column].min(place[row]);
         let starts = group_starts(lower.columns(), lower.triplets().map(first));
         let mut next = starts.clone();
@@ -180,7 +272,8 @@ impl Analysis {
     }
 
     fn supernodes(&self) -> Option<&supernodal::SymbolicSupernodalCholesky<usize>> {
-        match self.symbolic.raw() {
+        let Structure::Sparse(symbolic) = &self.structure else { return None };
+        match symbolic.raw() {
             fc::SymbolicCholeskyRaw::Supernodal(inner) => Some(inner),
             fc::SymbolicCholeskyRaw::Simplicial(_) => None,
         }
@@ -203,7 +296,12 @@ impl Cholesky {
 
     /// Number of rows and of columns.
     pub fn dim(&self) -> usize {
-        self.analysis.symbolic.nrows()
+        self.order().len()
+    }
+
+    /// Returns `true` if it is stored as a whole triangle.
+    pub fn is_dense(&self) -> bool {
+        matches!(self.values, Values::Dense(_))
     }
 
     /// Number of values of the factor, zeros inside supernodes included.
@@ -232,12 +330,27 @@ impl Cholesky {
     /// were put last.
     pub fn forward(&self, b: &[f64]) -> Vec<f64> {
         let ordered: Vec<f64> = self.order().iter().map(|&column| b.get(column).copied().unwrap_or(f64::NAN)).collect();
-        by_precision!(self, factor => factor::forward(factor, &ordered)).unwrap_or_default()
+        match &self.values {
+            Values::Dense(triangle) => triangle.forward(ordered),
+            _ => by_precision!(self, factor => factor::forward(factor, &ordered)).unwrap_or_default(),
+        }
+    }
+
+    /// `L^-1 Z` of columns Z (n x m, column by column), in the order of elimination before and after.
+    pub(super) fn forward_ordered(&self, columns: Vec<f64>) -> Vec<f64> {
+        let one = |column: &[f64]| by_precision!(self, factor => factor::forward(factor, column)).unwrap_or_default();
+        match &self.values {
+            Values::Dense(triangle) => triangle.forward_all(columns),
+            _ => columns.chunks(self.dim().max(1)).flat_map(one).collect(),
+        }
     }
 
     /// The sweep L' P x = y, `y` in the order of elimination, `x` in that of the matrix.
     pub fn backward(&self, y: Vec<f64>) -> Vec<f64> {
-        let ordered = by_precision!(self, factor => factor::backward(factor, &y)).unwrap_or_default();
+        let ordered = match &self.values {
+            Values::Dense(triangle) => triangle.backward(y),
+            _ => by_precision!(self, factor => factor::backward(factor, &y)).unwrap_or_default(),
+        };
         let mut x = vec![0.0; ordered.len()];
         self.order().iter().zip(&ordered).for_each(|(&column, &value)| x[column] = value);
         x
@@ -247,6 +360,9 @@ impl Cholesky {
     /// complement.
     pub fn trailing_block(&self) -> LowerTriangle {
         let size = self.analysis.trailing;
+        if let Values::Dense(triangle) = &self.values {
+            return triangle.last(size);
+        }
         let block = by_precision!(self, factor => factor::trailing_block(factor, size));
         LowerTriangle::new(size, block.unwrap_or_default())
     }
@@ -268,7 +384,7 @@ impl Cholesky {
 
     /// The columns of the matrix in the order of elimination.
     pub(super) fn order(&self) -> &[usize] {
-        self.analysis.symbolic.perm().map_or(&[], |perm| perm.arrays().0)
+        self.analysis.structure.order()
     }
 
     /// The smallest pivot, min over j of L_jj^2: small relative to the diagonal of A if A is close to singular.

@@ -1,5 +1,8 @@
 //! Dense vectors and triangles.
 
+use std::sync::Arc;
+
+use super::dense_factor;
 use crate::error::Error;
 
 /// The maximum norm: the entry farthest from zero, by its magnitude; 0 for an empty slice. For the crates of this workspace.
@@ -11,6 +14,27 @@ pub fn largest(values: &[f64]) -> f64 {
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
+
+/// The same for long vectors: in sums side by side, which a processor forms at once.
+pub(super) fn wide_dot(a: &[f64], b: &[f64]) -> f64 {
+    wide_product(a, b, |value| value)
+}
+
+/// The same, of which `entry` makes the entries of `a`.
+#[inline]
+pub(super) fn wide_product(a: &[f64], b: &[f64], entry: impl Fn(f64) -> f64) -> f64 {
+    let (of_a, rest_of_a) = a.as_chunks::<WIDTH>();
+    let (of_b, rest_of_b) = b.as_chunks::<WIDTH>();
+    let mut sums = [0.0; WIDTH];
+    for (a, b) in of_a.iter().zip(of_b) {
+        sums.iter_mut().zip(a).zip(b).for_each(|((sum, &a), b)| *sum += entry(a) * b);
+    }
+    let rest: f64 = rest_of_a.iter().zip(rest_of_b).map(|(&a, b)| entry(a) * b).sum();
+    sums.iter().sum::<f64>() + rest
+}
+
+/// Sums that are formed side by side.
+const WIDTH: usize = 8;
 
 /// The Euclidean length.
 pub fn norm(x: &[f64]) -> f64 {
@@ -49,18 +73,38 @@ pub fn check_vector(
     }
 }
 
-/// A lower triangle L (n x n), such as the last block of a Cholesky factor.
+/// A lower triangle L (n x n), such as the last block of a Cholesky factor. Clones share their memory.
 #[derive(Clone, Debug)]
 pub struct LowerTriangle {
     size: usize,
     /// Column by column, n x n.
-    values: Vec<f64>,
+    values: Arc<Vec<f64>>,
 }
 
 impl LowerTriangle {
     /// The triangle of `size` columns of `size` values each; values above the diagonal are not read.
     pub fn new(size: usize, values: Vec<f64>) -> Self {
-        LowerTriangle { size, values }
+        LowerTriangle { size, values: Arc::new(values) }
+    }
+
+    /// The values, column by column, n x n; those above the diagonal have no meaning.
+    pub(super) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// An entry of the diagonal.
+    pub fn diagonal(&self, place: usize) -> f64 {
+        self.values[place * self.size + place]
+    }
+
+    /// The block of the last `size` rows and columns.
+    pub fn last(&self, size: usize) -> Self {
+        if size == self.size {
+            return self.clone();
+        }
+        let first = self.size - size;
+        let rows = |column: usize| &self.values[column * self.size + first..(column + 1) * self.size];
+        LowerTriangle::new(size, (first..self.size).flat_map(rows).copied().collect())
     }
 
     /// Number of columns n.
@@ -75,6 +119,17 @@ impl LowerTriangle {
 
     /// `L^-1 b`.
     pub fn forward(&self, mut b: Vec<f64>) -> Vec<f64> {
+        self.sweep(&mut b);
+        b
+    }
+
+    /// `L^-1 Z` of columns Z (n x m, column by column).
+    pub fn forward_all(&self, columns: Vec<f64>) -> Vec<f64> {
+        dense_factor::forward(self, columns)
+    }
+
+    /// `L^-1 b`, in place.
+    pub(super) fn sweep(&self, b: &mut [f64]) {
         let first = b.iter().position(|&value| value != 0.0).unwrap_or(self.size);
         for j in first..self.size {
             let column = self.column(j);
@@ -82,14 +137,13 @@ impl LowerTriangle {
             let value = b[j];
             subtract(&mut b[j + 1..], value, &column[1..]);
         }
-        b
     }
 
     /// `L'^-1 y`.
     pub fn backward(&self, mut y: Vec<f64>) -> Vec<f64> {
         for j in (0..self.size).rev() {
             let column = self.column(j);
-            y[j] = (y[j] - dot(&column[1..], &y[j + 1..])) / column[0];
+            y[j] = (y[j] - wide_dot(&column[1..], &y[j + 1..])) / column[0];
         }
         y
     }

@@ -5,9 +5,11 @@ mod augmented;
 mod both_triangles;
 mod cholesky;
 mod columns;
+mod compliance;
 mod conjugate_gradients;
 mod definite;
 mod dense;
+mod dense_factor;
 mod dependence;
 mod factor;
 mod forest;
@@ -30,19 +32,22 @@ mod threads;
 pub mod twice;
 
 pub use accumulator::Accumulator;
-pub use augmented::AugmentedMatrix;
+pub use augmented::{Augmented, AugmentedMatrix};
 pub use both_triangles::SymmetricLines;
 pub use cholesky::{Analysis, Cholesky};
+pub use compliance::Compliance;
 pub use conjugate_gradients::{Blocks, Iterate};
+use dense::wide_dot;
 pub use dense::{LowerTriangle, UpperTriangle, check_vector, dot, largest, norm, subtract, take_out, turned};
 pub use dependence::Dependence;
 pub use factor::{FactorError, Width, if_definite};
 pub use forest::Forest;
 pub use null_space::{NullSpace, generic};
 pub use ordering::Fill;
-pub use orthogonal::inverse_lengths;
+pub use orthogonal::{inverse_lengths, inverse_lengths_by_products};
 pub use power_of_two::{Equilibration, exponent, ldexp};
 pub use symmetric::SymmetricMatrix;
+pub(crate) use threads::in_order;
 pub use threads::threads_of_machine;
 pub use twice::Twice;
 
@@ -224,23 +229,37 @@ impl SparseMatrix {
 
     /// The product A x, length `rows`; `x` has length `columns`.
     pub fn mul(&self, x: &[f64]) -> Vec<f64> {
-        let mut y = vec![0.0; self.rows];
-        for (row, column, value) in self.triplets() {
-            y[row] += value * x[column];
-        }
-        y
+        self.product(x, |value| value)
     }
 
     /// The product A' y, length `columns`; `y` has length `rows`.
     pub fn mul_transposed(&self, y: &[f64]) -> Vec<f64> {
-        (0..self.columns()).map(|column| self.column(column).map(|(row, value)| value * y[row]).sum()).collect()
+        (0..self.columns())
+            .map(|column| {
+                let (rows, values) = self.column_slices(column);
+                match rows.len() == y.len() {
+                    true => wide_dot(values, y),
+                    false => rows.iter().zip(values).map(|(&row, value)| value * y[row as usize]).sum(),
+                }
+            })
+            .collect()
     }
 
     /// The product |A| |x|, length `rows`, entry by entry: the scale of rounding in A x; `x` has length `columns`.
     pub fn mul_abs(&self, x: &[f64]) -> Vec<f64> {
+        let magnitude: Vec<f64> = x.iter().map(|value| value.abs()).collect();
+        self.product(&magnitude, f64::abs)
+    }
+
+    /// The product A x, of which `entry` makes the entries of A.
+    fn product(&self, x: &[f64], entry: impl Fn(f64) -> f64) -> Vec<f64> {
         let mut y = vec![0.0; self.rows];
-        for (row, column, value) in self.triplets() {
-            y[row] += value.abs() * x[column].abs();
+        for (column, &at_column) in x.iter().enumerate() {
+            let (rows, values) = self.column_slices(column);
+            match rows.len() == y.len() {
+                true => y.iter_mut().zip(values).for_each(|(y, &value)| *y += entry(value) * at_column),
+                false => rows.iter().zip(values).for_each(|(&row, &value)| y[row as usize] += entry(value) * at_column),
+            }
         }
         y
     }

@@ -1,7 +1,8 @@
 //! The distance of vectors from the span of the others, by orthogonal directions: products of vectors would lose half the
 //! digits.
 
-use super::{UpperTriangle, dot, norm, take_out};
+use super::dense::wide_dot;
+use super::{UpperTriangle, dense_factor, dot, norm, take_out};
 
 /// The component of a vector orthogonal to the others is rounding if it is below this share of the terms that cancel.
 const CANCELLED_VECTOR: f64 = 64.0 * f64::EPSILON;
@@ -25,6 +26,28 @@ pub fn inverse_lengths(columns: Vec<Vec<f64>>, is_over: impl Fn() -> bool) -> Op
         lengths[column] = triangle.inverse_length(place) / sizes[column];
     }
     Some(lengths)
+}
+
+/// The largest number of lengths of a column that one over its distance from the span of the others may be, so that products of columns
+/// leave it more digits than a bound needs.
+const CLEAR: f64 = 1e3;
+
+/// As [`inverse_lengths`], from the products of the columns; `None` if they are not clearly independent.
+pub fn inverse_lengths_by_products(columns: &[Vec<f64>]) -> Option<Vec<f64>> {
+    let (count, size) = (columns.len(), columns.first().map_or(0, Vec::len));
+    let sizes: Vec<f64> = columns.iter().map(|column| wide_dot(column, column).sqrt()).collect();
+    if sizes.iter().any(|size| !size.is_normal()) {
+        return None;
+    }
+    let scaled = columns.iter().zip(&sizes).flat_map(|(column, size)| column.iter().map(move |value| value / size));
+    let products = dense_factor::products(size, &scaled.collect::<Vec<_>>());
+    let triangle = dense_factor::factorise(count, products, 1).ok()?;
+    let mut units = vec![0.0; count * count];
+    (0..count).for_each(|place| units[place * count + place] = 1.0);
+    let inverse = triangle.forward_all(units);
+    let lengths: Vec<f64> = inverse.chunks(count.max(1)).map(|column| wide_dot(column, column).sqrt()).collect();
+    let is_clear = lengths.iter().all(|&length| length <= CLEAR);
+    is_clear.then(|| lengths.iter().zip(&sizes).map(|(length, size)| length / size).collect())
 }
 
 /// R of the columns, each of length one, ordered so that the farthest from the span of those before it comes first.
@@ -117,6 +140,21 @@ mod tests {
         let close = |found: f64, exact: f64| (found / exact - 1.0).abs() < 1e-3;
         let lengths = lengths.unwrap();
         assert!(close(lengths[0], 1e3) && close(lengths[1], 1e3) && close(lengths[2], 0.25), "{lengths:?}");
+    }
+
+    #[test]
+    fn products_give_the_lengths_of_clearly_independent_columns_and_of_no_others() {
+        let columns =
+            |off: f64| vec![vec![2.0, 1.0, 0.0, 0.5], vec![2.0, 1.0 + off, 0.0, 0.5], vec![0.0, 1.0, 4.0, 0.0]];
+        for off in [1.0, 0.1] {
+            let exact = inverse_lengths(columns(off), || false).unwrap();
+            for (found, exact) in inverse_lengths_by_products(&columns(off)).unwrap().iter().zip(exact) {
+                assert!((found / exact - 1.0).abs() < 1e-9, "{found} {exact}");
+            }
+        }
+        for off in [0.0, 1e-9, 1e-4] {
+            assert_eq!(inverse_lengths_by_products(&columns(off)), None, "{off}");
+        }
     }
 
     #[test]

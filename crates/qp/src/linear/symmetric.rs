@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::SparseMatrix;
 use super::columns::Columns;
+use super::dense::wide_product;
 use super::threads::in_order;
 use crate::error::Error;
 
@@ -200,10 +201,17 @@ impl SymmetricMatrix {
                 sum += entry(*value) * at_column;
                 (rows, values) = (rows_below, values_below);
             }
-            for (&row, &value) in rows.iter().zip(values) {
-                let (row, value) = (row as usize, entry(value));
-                sum += value * x[row];
-                y[row - first] += value * at_column;
+            if rows.len() + column + 1 == self.dim() {
+                // Every row below the diagonal.
+                sum += wide_product(values, &x[column + 1..], &entry);
+                let below = &mut y[column + 1 - first..];
+                below.iter_mut().zip(values).for_each(|(y, &value)| *y += entry(value) * at_column);
+            } else {
+                for (&row, &value) in rows.iter().zip(values) {
+                    let (row, value) = (row as usize, entry(value));
+                    sum += value * x[row];
+                    y[row - first] += value * at_column;
+                }
             }
             y[column - first] += sum;
         }

@@ -14,10 +14,11 @@
 //! J. J. Júdice and F. M. Pires, *A block principal pivoting algorithm for large-scale strictly monotone linear
 //! complementarity problems*, Computers & Operations Research 21 (1994) 587-596.
 
+use std::cell::LazyCell;
 use std::collections::HashSet;
 
 use super::earlier_factor::{EarlierFactor, TRIAL, steps_for_a_factor};
-use super::equilibrium::{Equilibrium, WEIGHT, equilibrium, reach};
+use super::equilibrium::{Equilibrium, WEIGHT, by_compliance, equilibrium, reach};
 use super::{Ending, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start};
 use crate::error::Error;
 use crate::linear::largest;
@@ -26,6 +27,9 @@ use crate::solution::{ContactSet, Iteration};
 
 /// Rounding of a multiplier, in units of the last place of the forces that balance it.
 const FORCE_ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// A row that is wrong by this share of the largest displacement or multiplier is wrong whatever corrections follow.
+const CLEARLY: f64 = 1e-6;
 
 /// Number of block exchanges that may fail to reduce the number of violations before a single pivot.
 const PATIENCE: usize = 3;
@@ -53,7 +57,7 @@ impl Solver for ActiveSet<'_> {
         let mut seen = HashSet::new();
         let mut rule = Rule::Exchange;
         let mut ending = Ending::Unsettled;
-        let mut earlier = earlier_factor(scaled);
+        let mut earlier = earlier_factor(scaled)?;
         let is_over = |done: usize| done > 0 && scaled.watch().is_over();
         while ending == Ending::Unsettled && history.len() < self.most_iterations && !is_over(history.len()) {
             scaled.watch().step("active set", history.len() + 1);
@@ -68,8 +72,8 @@ impl Solver for ActiveSet<'_> {
             if !balance.consistent {
                 break;
             }
+            let wrong = wrong_rows(scaled.problem, &balance, &closed, SIGN_TOLERANCE);
             (displacement, multiplier) = (balance.displacement, balance.multiplier);
-            let wrong = wrong_rows(scaled.problem, &displacement, &multiplier, &closed);
             if wrong.is_empty() {
                 ending = Ending::Settled;
             } else {
@@ -91,14 +95,20 @@ impl Solver for ActiveSet<'_> {
 }
 
 /// The factor of an earlier set for the steps of a loop, if K is definite, every row bounds one dof, and a factor is expensive.
-fn earlier_factor<'a>(scaled: &ScaledProblem<'a>) -> Option<EarlierFactor<'a>> {
-    let most_steps = steps_for_a_factor(scaled.augmented.analysis());
-    let pays = scaled.is_definite() && most_steps >= TRIAL;
-    if pays { EarlierFactor::of(scaled.problem, most_steps) } else { None }
+///
+/// # Errors
+/// [`Error::Numerical`] for lack of memory.
+fn earlier_factor<'a>(scaled: &ScaledProblem<'a>) -> Result<Option<EarlierFactor<'a>>, Error> {
+    if !scaled.is_definite() || scaled.compliance.is_some() {
+        return Ok(None);
+    }
+    let most_steps = steps_for_a_factor(scaled.augmented()?.analysis());
+    Ok(if most_steps >= TRIAL { EarlierFactor::of(scaled.problem, most_steps) } else { None })
 }
 
 /// The balance of `closed`, from a displacement `near` it, once the rows that hold the body have joined the set: by the factor of an
-/// `earlier` set if that takes few steps, otherwise by its own. The ending of the loop if there is none.
+/// `earlier` set if that takes few steps, or by the compliance of the rows if they do not follow from each other, otherwise by its own.
+/// The ending of the loop if there is none.
 ///
 /// # Errors
 /// As [`ScaledProblem::hold_with_more`].
@@ -109,6 +119,11 @@ fn balance(
     near: &[f64],
 ) -> Result<Result<Equilibrium, Ending>, Error> {
     if let Some(balance) = earlier.as_mut().and_then(|earlier| earlier.balance(closed, near)) {
+        return Ok(Ok(balance));
+    }
+    let is_near = |balance: &Equilibrium| wrong_rows(scaled.problem, balance, closed, CLEARLY).is_empty();
+    let by_compliance = |compliance| by_compliance(scaled.problem, compliance, closed, is_near);
+    if let Some(balance) = scaled.compliance.and_then(by_compliance) {
         return Ok(Ok(balance));
     }
     Ok(scaled.hold_with_more(closed, WEIGHT, near)?.map(|cholesky| {
@@ -126,8 +141,14 @@ fn balance(
 /// # Errors
 /// [`Error::Numerical`] for lack of memory.
 pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Option<Equilibrium>, Error> {
-    let Some(cholesky) = scaled.hold(closed, WEIGHT)? else { return Ok(None) };
-    let balance = equilibrium(scaled.problem, &cholesky, closed);
+    let by_compliance = |compliance| by_compliance(scaled.problem, compliance, closed, |_| true);
+    let balance = match scaled.compliance.and_then(by_compliance) {
+        Some(balance) => balance,
+        None => {
+            let Some(cholesky) = scaled.hold(closed, WEIGHT)? else { return Ok(None) };
+            equilibrium(scaled.problem, &cholesky, closed)
+        }
+    };
     Ok(Some(balance).filter(|balance| balance.consistent))
 }
 
@@ -172,17 +193,20 @@ impl Rule {
     }
 }
 
-/// The misclassified rows: open and penetrating, or closed and pulling, beyond rounding.
-fn wrong_rows(problem: &ContactProblem, u: &[f64], multiplier: &[f64], closed: &ContactSet) -> Vec<usize> {
-    let reach = reach(problem, u);
-    let mut forces = problem.stiffness().mul_abs(u);
-    forces.iter_mut().zip(problem.load()).for_each(|(sum, f)| *sum += f.abs());
-    let (forces, strongest) = (problem.contact().mul_abs(&forces), SIGN_TOLERANCE * largest(multiplier));
-    let violation = problem.violation(u);
+/// The misclassified rows: open and penetrating, or closed and pulling, beyond rounding and beyond a share of the largest displacement or
+/// multiplier.
+fn wrong_rows(problem: &ContactProblem, balance: &Equilibrium, closed: &ContactSet, share: f64) -> Vec<usize> {
+    let Equilibrium { displacement: u, multiplier, along_rows: along, .. } = balance;
+    let (gap, reach, strongest) = (problem.gap(), reach(problem, along), share * largest(multiplier));
+    let forces = LazyCell::new(|| {
+        let mut forces = problem.stiffness().mul_abs(u);
+        forces.iter_mut().zip(problem.load()).for_each(|(sum, f)| *sum += f.abs());
+        problem.contact().mul_abs(&forces)
+    });
     (0..problem.rows())
         .filter(|&row| match closed.contains(row) {
-            false => violation[row] > SIGN_TOLERANCE * (reach + problem.gap()[row].abs()),
-            true => multiplier[row] > strongest + FORCE_ROUNDING * forces[row],
+            false => along[row] - gap[row] > share * (reach + gap[row].abs()),
+            true => multiplier[row] > strongest && multiplier[row] > strongest + FORCE_ROUNDING * forces[row],
         })
         .collect()
 }

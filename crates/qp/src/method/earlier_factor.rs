@@ -113,7 +113,8 @@ impl<'a> EarlierFactor<'a> {
             let (dof, coefficient) = self.of_rows[row];
             multiplier[row] = -force[dof] / coefficient;
         }
-        Some(Equilibrium { displacement: u, multiplier, consistent: true })
+        let along_rows = problem.contact().mul(&u);
+        Some(Equilibrium { displacement: u, multiplier, along_rows, consistent: true })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Balance of forces with the rows of a contact set held at their gaps.
 
-use crate::linear::{Cholesky, largest};
+use crate::linear::{Cholesky, Compliance, largest};
 use crate::problem::ContactProblem;
 use crate::solution::ContactSet;
 
@@ -10,6 +10,9 @@ pub const WEIGHT: f64 = 65536.0;
 
 /// Corrections of the multipliers; four or five suffice if the closed rows are consistent.
 const CORRECTIONS: usize = 25;
+
+/// A correction by the compliance below this is the last: a factor that is safely definite makes the next one its square, or less.
+const SQUARED: f64 = 1e-9;
 
 /// Closed rows that still miss their gap by this, relative to the displacement, contradict each other.
 const CONTRADICTION: f64 = 1e-9;
@@ -21,14 +24,16 @@ pub struct Equilibrium {
     pub displacement: Vec<f64>,
     /// Multiplier, one entry per row, zero on open rows, of either sign on closed ones.
     pub multiplier: Vec<f64>,
+    /// The displacement of each row, `B u`.
+    pub along_rows: Vec<f64>,
     /// `true` if all rows of the set could be closed together.
     pub consistent: bool,
 }
 
 /// The size of the displacements that matter: those of the contact rows or, if all of these are zero except for rounding, the
-/// displacement by the load of a stiffness of order one.
-pub fn reach(problem: &ContactProblem, u: &[f64]) -> f64 {
-    largest(&problem.contact().mul(u)).max(largest(problem.load()))
+/// displacement by the load of a stiffness of order one. `along_rows` is the displacement of the rows.
+pub fn reach(problem: &ContactProblem, along_rows: &[f64]) -> f64 {
+    largest(along_rows).max(largest(problem.load()))
 }
 
 /// Solves the saddle-point system of the closed rows by corrections with the factorised K + w B_C'B_C:
@@ -39,33 +44,89 @@ pub fn reach(problem: &ContactProblem, u: &[f64]) -> f64 {
 ///
 /// The residuals are those of the exact system, so that neither the weight nor redundant rows reduce the accuracy.
 pub fn equilibrium(problem: &ContactProblem, cholesky: &Cholesky, closed: &ContactSet) -> Equilibrium {
-    let (rows, contact, gap) = (problem.rows(), problem.contact(), problem.gap());
-    let mut u = vec![0.0; problem.dofs()];
-    let mut multiplier = vec![0.0; rows];
+    let contact = problem.contact();
+    let correct = |force: &[f64], distance: &[f64]| {
+        let du = cholesky.solve(force);
+        let along = contact.mul(&du);
+        let on_row = |row: usize| if closed.contains(row) { WEIGHT * (distance[row] - along[row]) } else { 0.0 };
+        let dl = (0..distance.len()).map(on_row).collect();
+        (du, dl)
+    };
+    let is_near = |_: &Equilibrium| true;
+    corrected(problem, closed, Correcting { weight: WEIGHT, enough: f64::EPSILON, correct, is_near })
+}
+
+/// The same by the compliance of the rows, which solves the saddle-point system itself; `None` if closed rows follow from others. A
+/// balance that is not the one sought, because it `is_near` no answer, is left as it is after the first correction.
+pub fn by_compliance(
+    problem: &ContactProblem,
+    compliance: &Compliance,
+    closed: &ContactSet,
+    is_near: impl Fn(&Equilibrium) -> bool,
+) -> Option<Equilibrium> {
+    let held = compliance.held(closed.iter().collect())?;
+    let correct = |force: &[f64], distance: &[f64]| {
+        let on_closed: Vec<f64> = closed.iter().map(|row| distance[row]).collect();
+        let (du, forces) = held.solve(force, &on_closed);
+        let mut dl = vec![0.0; distance.len()];
+        closed.iter().zip(forces).for_each(|(row, force)| dl[row] = force);
+        (du, dl)
+    };
+    let balance = corrected(problem, closed, Correcting { weight: 0.0, enough: SQUARED, correct, is_near });
+    balance.consistent.then_some(balance)
+}
+
+/// The way to correct a balance.
+struct Correcting<C, N> {
+    /// The weight of the distances in the force that is left.
+    weight: f64,
+    /// A correction below this is the last.
+    enough: f64,
+    /// The correction of displacement and multiplier for a force that is left, and for distances of the closed rows.
+    correct: C,
+    /// Returns `true` for a balance that is worth another correction.
+    is_near: N,
+}
+
+/// The balance of the closed rows, corrected until a correction is small enough, or rounding.
+fn corrected<C, N>(problem: &ContactProblem, closed: &ContactSet, by: Correcting<C, N>) -> Equilibrium
+where
+    C: Fn(&[f64], &[f64]) -> (Vec<f64>, Vec<f64>),
+    N: Fn(&Equilibrium) -> bool,
+{
+    let Correcting { weight, enough, correct, is_near } = by;
+    let (contact, gap) = (problem.contact(), problem.gap());
+    let (mut unbalanced, displacement) = (problem.load().to_vec(), vec![0.0; problem.dofs()]);
+    let [multiplier, along_rows] = [(); 2].map(|()| vec![0.0; problem.rows()]);
+    let mut balance = Equilibrium { displacement, multiplier, along_rows, consistent: true };
     let on_closed = |values: Vec<f64>| -> Vec<f64> {
         values.into_iter().enumerate().map(|(row, value)| if closed.contains(row) { value } else { 0.0 }).collect()
     };
-    let missing = |u: &[f64]| on_closed(contact.mul(u).iter().zip(gap).map(|(b, g)| g - b).collect());
+    let missing = |along: &[f64]| on_closed(along.iter().zip(gap).map(|(b, g)| g - b).collect());
     let load = largest(problem.load());
     let mut last_step = f64::INFINITY;
     for _ in 0..CORRECTIONS {
-        let distance = missing(&u);
-        let push: Vec<f64> = multiplier.iter().zip(&distance).map(|(l, d)| l + WEIGHT * d).collect();
-        let (elastic, contact_force) = (problem.stiffness().mul(&u), contact.mul_transposed(&push));
-        let force: Vec<f64> = (0..u.len()).map(|dof| problem.load()[dof] - elastic[dof] + contact_force[dof]).collect();
-        let du = cholesky.solve(&force);
-        let dl: Vec<f64> = on_closed(contact.mul(&du).iter().zip(&distance).map(|(b, d)| WEIGHT * (d - b)).collect());
+        let distance = missing(&balance.along_rows);
+        let push: Vec<f64> = balance.multiplier.iter().zip(&distance).map(|(l, d)| l + weight * d).collect();
+        if largest(&push) > 0.0 {
+            unbalanced.iter_mut().zip(contact.mul_transposed(&push)).for_each(|(force, push)| *force += push);
+        }
+        let (du, dl) = correct(&unbalanced, &distance);
+        let Equilibrium { displacement: u, multiplier, along_rows, .. } = &mut balance;
         u.iter_mut().zip(&du).for_each(|(u, du)| *u += du);
         multiplier.iter_mut().zip(&dl).for_each(|(l, dl)| *l += dl);
-        let step = relative_size(&du, largest(&u).max(load)) + relative_size(&dl, largest(&multiplier).max(load));
-        if step <= f64::EPSILON || step > 0.5 * last_step {
+        *along_rows = contact.mul(u);
+        let step = relative_size(&du, largest(u).max(load)) + relative_size(&dl, largest(multiplier).max(load));
+        if step <= enough || step > 0.5 * last_step || !is_near(&balance) {
             break;
         }
         last_step = step;
+        let elastic = problem.stiffness().mul(&balance.displacement);
+        unbalanced = problem.load().iter().zip(elastic).map(|(load, elastic)| load - elastic).collect();
     }
-    let reach = reach(problem, &u).max(largest(&on_closed(gap.to_vec())));
-    let consistent = largest(&missing(&u)) <= CONTRADICTION * reach;
-    Equilibrium { displacement: u, multiplier, consistent }
+    let reach = reach(problem, &balance.along_rows).max(largest(&on_closed(gap.to_vec())));
+    let consistent = largest(&missing(&balance.along_rows)) <= CONTRADICTION * reach;
+    Equilibrium { consistent, ..balance }
 }
 
 fn relative_size(step: &[f64], size: f64) -> f64 {

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::start::Start;
 use crate::error::Error;
-use crate::linear::{AugmentedMatrix, Cholesky, SymmetricMatrix, if_definite};
+use crate::linear::{Augmented, AugmentedMatrix, Cholesky, Compliance, SymmetricMatrix, if_definite};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 use crate::watch::Watch;
@@ -38,15 +38,23 @@ pub struct ScaledProblem<'a> {
     /// The data, dimensionless and of order one.
     pub problem: &'a ContactProblem,
     definiteness: Definiteness,
-    pub(super) augmented: &'a AugmentedMatrix,
+    augmented: &'a Augmented,
+    /// The compliance of the rows, if balances by it cost less than by factors of the augmented matrix.
+    pub(super) compliance: Option<&'a Compliance>,
     factor_seconds: Cell<f64>,
     watch: Watch,
 }
 
 impl<'a> ScaledProblem<'a> {
-    /// The problem with the analysed pattern of its K + B'B.
-    pub fn new(problem: &'a ContactProblem, augmented: &'a AugmentedMatrix, definiteness: Definiteness) -> Self {
-        ScaledProblem { problem, definiteness, augmented, factor_seconds: Cell::new(0.0), watch: Watch::default() }
+    /// The problem with its K + B'B.
+    pub fn new(problem: &'a ContactProblem, augmented: &'a Augmented, definiteness: Definiteness) -> Self {
+        let (factor_seconds, watch) = (Cell::new(0.0), Watch::default());
+        ScaledProblem { problem, definiteness, augmented, compliance: None, factor_seconds, watch }
+    }
+
+    /// The same problem, balanced by the compliance of its rows.
+    pub fn with_compliance(self, compliance: Option<&'a Compliance>) -> Self {
+        ScaledProblem { compliance, ..self }
     }
 
     /// The same problem, with loops that end with the answer so far when `watch` says so.
@@ -69,9 +77,20 @@ impl<'a> ScaledProblem<'a> {
         self.factor_seconds.get()
     }
 
+    /// The analysed pattern of K + B'B.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] for lack of memory.
+    pub(super) fn augmented(&self) -> Result<&AugmentedMatrix, Error> {
+        Ok(self.augmented.matrix()?)
+    }
+
     /// The matrix K + shift I + weight B_C' B_C of the closed rows C.
-    pub(super) fn matrix(&self, closed: &ContactSet, weight: f64, shift: f64) -> SymmetricMatrix {
-        self.augmented.matrix(|row| if closed.contains(row) { weight } else { 0.0 }, shift)
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] for lack of memory.
+    pub(super) fn matrix(&self, closed: &ContactSet, weight: f64, shift: f64) -> Result<SymmetricMatrix, Error> {
+        Ok(self.augmented()?.matrix(|row| if closed.contains(row) { weight } else { 0.0 }, shift))
     }
 
     /// The factor of such a matrix; `None` if it is not positive definite.
@@ -80,7 +99,7 @@ impl<'a> ScaledProblem<'a> {
     /// [`Error::Numerical`] for lack of memory.
     pub(super) fn factor(&self, matrix: SymmetricMatrix) -> Result<Option<Cholesky>, Error> {
         let clock = Instant::now();
-        let factor = if_definite(self.augmented.factor(matrix));
+        let factor = if_definite(self.augmented()?.factor(matrix));
         self.factor_seconds.set(self.factor_seconds.get() + clock.elapsed().as_secs_f64());
         factor
     }

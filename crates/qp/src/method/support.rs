@@ -45,7 +45,7 @@ impl ScaledProblem<'_> {
         if self.is_definite() {
             return Ok(Some(nothing_closed));
         }
-        if self.factor(self.matrix(&nothing_closed, 0.0, SHIFTS[SHIFTS.len() - 1]))?.is_none() {
+        if self.factor(self.matrix(&nothing_closed, 0.0, SHIFTS[SHIFTS.len() - 1])?)?.is_none() {
             return Ok(None);
         }
         let Some(cholesky) = self.hold(&ContactSet::closed(rows), 1.0)? else { return Ok(None) };
@@ -60,7 +60,7 @@ impl ScaledProblem<'_> {
     /// # Errors
     /// [`Error::Numerical`] for lack of memory.
     pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Option<Cholesky>, Error> {
-        let matrix = self.matrix(closed, weight, 0.0);
+        let matrix = self.matrix(closed, weight, 0.0)?;
         // If K is definite by itself, this is not checked again.
         let looked_at = (!self.is_definite()).then(|| matrix.clone());
         let holds = |cholesky: &Cholesky| looked_at.is_none_or(|matrix| cholesky.is_definite(&matrix));
@@ -98,14 +98,14 @@ impl ScaledProblem<'_> {
         // A weight does not change the null vectors, and a large one hides the shift in its rounding.
         let weight = weight.min(1.0);
         for shift in SHIFTS {
-            let Some(cholesky) = self.factor(self.matrix(closed, weight, shift))? else { continue };
+            let Some(cholesky) = self.factor(self.matrix(closed, weight, shift)?)? else { continue };
             let mut projected = self.problem.load().to_vec();
             for _ in 0..STEPS {
                 projected = cholesky.solve(&projected);
                 projected.iter_mut().for_each(|value| *value *= shift);
             }
             let projected = normalised(projected);
-            let still = self.matrix(closed, weight, 0.0).mul(&projected);
+            let still = self.matrix(closed, weight, 0.0)?.mul(&projected);
             let driven = largest(&still) <= NOISE && self.problem.share_of_work(&projected) > WORK_TOLERANCE;
             let direction = if driven { projected } else { normalised(cholesky.softest_vector()) };
             return Ok(Some(FreeMode { direction, driven }));

@@ -52,7 +52,7 @@ impl Layout {
                     (last, dense)
                 }
                 Arrangement::RowsLast => {
-                    let last = EnergyNorm::last_dofs(scaling.contact());
+                    let last = EnergyNorm::last_dofs(problem.stiffness(), scaling.contact());
                     let boundary = Kept::boundary(last.len());
                     if last.is_empty() { continue } else { (last, boundary) }
                 }

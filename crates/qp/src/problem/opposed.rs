@@ -38,6 +38,13 @@ impl OpposedRows {
     pub fn of(contact: &SparseMatrix) -> Self {
         let by_row = contact.transposed();
         let entries = |row: usize| by_row.column(row).filter(|entry| entry.1 != 0.0);
+        // Only rows that are alike in this may be opposed: number of entries, the last of them, and its quotient.
+        let likeness = |row: usize| {
+            let (first, last) = (entries(row).next()?, entries(row).last()?);
+            Some((entries(row).count(), last.0, (last.1 / first.1).to_bits()))
+        };
+        let mut alike: HashMap<_, usize> = HashMap::new();
+        (0..contact.rows()).for_each(|row| *alike.entry(likeness(row)).or_default() += 1);
         let mut unmoved = Vec::new();
         let mut directions: HashMap<Direction, Sides> = HashMap::new();
         for row in 0..contact.rows() {
@@ -45,6 +52,9 @@ impl OpposedRows {
                 unmoved.push(row);
                 continue;
             };
+            if alike[&likeness(row)] == 1 {
+                continue;
+            }
             // Opposed rows are equal after division by their first entry, except for the sign of that entry.
             let direction = entries(row).map(|(dof, value)| (dof, (value / first).to_bits())).collect();
             directions.entry(direction).or_default()[usize::from(first < 0.0)].push((row, first.abs()));

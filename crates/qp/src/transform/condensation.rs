@@ -48,13 +48,13 @@ impl Condensation {
     /// The analysis of `stiffness` with the contact dofs last, or `None` if condensing onto this number of dofs does not pay.
     ///
     /// # Errors
-    /// As [`Analysis::with_last`].
+    /// As [`Analysis::sparse_with_last`].
     pub fn analyse(stiffness: &SymmetricMatrix, contact_dofs: &[usize]) -> Result<Option<Analysis>, FactorError> {
         let (dim, count) = (stiffness.dim() as f64, contact_dofs.len() as f64);
         if count == 0.0 || count > LARGEST_SHARE * dim {
             return Ok(None);
         }
-        let analysis = Analysis::with_last(stiffness, contact_dofs)?;
+        let analysis = Analysis::sparse_with_last(stiffness, contact_dofs)?;
         // The work of the interior is at least the square of its entries over its columns.
         let interior_entries = (analysis.factor_entries() as f64 - count * count / 2.0).max(0.0);
         let interior_work = interior_entries * interior_entries / (dim - count);

@@ -28,7 +28,7 @@ impl RowSelection {
 
     /// The selected rows alone.
     pub fn contact(&self, contact: &SparseMatrix) -> SparseMatrix {
-        contact.select_rows(&self.kept)
+        if self.kept.len() == self.rows { contact.clone() } else { contact.select_rows(&self.kept) }
     }
 
     /// The gaps of the selected rows.

@@ -23,6 +23,9 @@ const CANCELLED: f64 = 4.0 * f64::EPSILON;
 /// rounding of its length.
 const COUNTS: f64 = 3.0;
 
+/// Rows that are swept at once.
+const BLOCK: usize = 128;
+
 /// The force `alpha r + B' x`, x in the units of normalised rows.
 pub(super) struct Force {
     pub alpha: f64,
@@ -119,11 +122,33 @@ impl<'a> Repair<'a> {
     }
 
     pub fn half(&self, row: usize) -> &[f64] {
-        self.halves[row].get_or_init(|| {
-            let mut unit = vec![0.0; self.rows.len()];
-            unit[row] = 1.0;
-            self.spread(&unit)
-        })
+        self.find_halves(&[row]);
+        self.halves[row].get().map_or(&[], Vec::as_slice)
+    }
+
+    /// Makes the halves of these rows in one sweep.
+    fn find_halves(&self, rows: &[usize]) {
+        let missing: Vec<usize> = rows.iter().copied().filter(|&row| self.halves[row].get().is_none()).collect();
+        let size = self.boundary.dofs.len();
+        let mut columns = vec![0.0; missing.len() * size];
+        for (column, &row) in columns.chunks_mut(size.max(1)).zip(&missing) {
+            self.rows[row].iter().for_each(|&(place, b)| column[place] += b);
+        }
+        let swept = self.boundary.block.forward_all(columns);
+        for (column, &row) in swept.chunks(size.max(1)).zip(&missing) {
+            self.halves[row].get_or_init(|| column.to_vec());
+        }
+    }
+
+    /// The halves of these rows; `None` if there is no time.
+    pub fn halves(&self, rows: &[usize]) -> Option<Vec<&[f64]>> {
+        for block in rows.chunks(BLOCK) {
+            if self.norm.is_over() {
+                return None;
+            }
+            self.find_halves(block);
+        }
+        Some(rows.iter().map(|&row| self.half(row)).collect())
     }
 
     /// The sweep of a force on the boundary.

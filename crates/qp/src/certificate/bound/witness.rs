@@ -133,8 +133,7 @@ impl Repair<'_> {
 
     /// The multipliers that put the rows of `set` at their gaps beside the force `base`; `None` if there is no time.
     fn fit(&self, set: &[usize], base: &Force) -> Option<Fitted> {
-        let half = |&row: &usize| if self.norm.is_over() { None } else { Some(self.half(row)) };
-        let columns: Vec<&[f64]> = set.iter().map(half).collect::<Option<_>>()?;
+        let columns = self.halves(set)?;
         let triangle = triangle_of(&columns, || self.norm.is_over())?;
         let independent = triangle.independent();
         let (mut change, mut steps) = (vec![0.0; self.rows.len()], vec![0.0; self.rows.len()]);

@@ -26,7 +26,7 @@ use std::collections::HashSet;
 
 use super::{Definiteness, Ending, Outcome, ScaledProblem, Solver, Start};
 use crate::error::Error;
-use crate::linear::{AugmentedMatrix, norm};
+use crate::linear::{Augmented, norm};
 use crate::problem::ContactProblem;
 use pass::{Closed, Pass, Passed};
 use polyhedron::{Contradiction, Polyhedron};
@@ -56,7 +56,7 @@ const ROW_MET: f64 = 4.0 * f64::EPSILON;
 
 /// As [`ContactProblem::dual_active_set`].
 pub(crate) fn dual_active_set(problem: &ContactProblem, is_definite: bool) -> Result<Outcome, Error> {
-    let augmented = AugmentedMatrix::new(problem.stiffness(), problem.contact())?;
+    let augmented = Augmented::new(problem.stiffness(), problem.contact(), None, 1);
     let definiteness = if is_definite { Definiteness::Definite } else { Definiteness::Semidefinite };
     let scaled = ScaledProblem::new(problem, &augmented, definiteness);
     let Some(method) = DualActiveSet::of(&scaled)? else {
