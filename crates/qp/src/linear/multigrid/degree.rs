@@ -17,7 +17,7 @@ const CYCLES: (usize, usize) = (5, 10);
 const GOOD_SHARE: f64 = 0.4;
 
 /// The degree for the share s of the energy that the last cycle takes, at degree 3, is this number over s^(3/2). Measured: s is about 0.09 at
-/// nu = 0.499, where degree 8 takes the least time, and 0.03 at nu = 0.4999, where higher degrees take fewer cycles.
+/// nu = 0.499, where half the degree takes half as many cycles more in about the same time, and 0.03 at nu = 0.4999.
 const DEGREE: f64 = 0.35;
 
 /// The largest degree: beyond it a cycle costs more than it saves.
