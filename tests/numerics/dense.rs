@@ -166,7 +166,7 @@ fn many_problems_have_the_answers_of_each_in_their_order_on_any_number_of_thread
     assert!(alone[17].is_err() && alone.iter().filter(|answer| answer.is_err()).count() == 1);
     for threads in [1, 2, 5, 64] {
         let mut settings = proven();
-        settings.threads = threads;
+        settings.threads = Some(threads);
         let together: Vec<_> = solve_many(&problems, &settings).iter().map(bits).collect();
         assert_eq!(together, alone, "{threads} threads");
     }
@@ -178,7 +178,7 @@ fn two_threads_give_the_answer_of_one_bit_by_bit() {
     let problem = dense(&mut Draws::new(13), 300, 60).problem().unwrap();
     let [one, two] = [1, 2].map(|threads| {
         let mut settings = proven();
-        settings.threads = threads;
+        settings.threads = Some(threads);
         solve(&problem, &settings).unwrap()
     });
     assert_eq!((one.displacement, one.multiplier, one.proven), (two.displacement, two.multiplier, two.proven));

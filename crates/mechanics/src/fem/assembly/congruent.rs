@@ -48,3 +48,35 @@ fn are_congruent(body: &ElasticBody, one: usize, other: usize) -> bool {
         })
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fem::element::ElementKind;
+    use crate::fem::formulation::Formulation;
+    use crate::fem::material::Material;
+    use crate::fem::mesh::Mesh;
+
+    /// The representatives of a row of unit squares whose corners lie at `place(x, y)`.
+    fn representatives(formulation: Formulation, place: impl Fn(f64, f64) -> [f64; 2]) -> Vec<u32> {
+        let node = |index: usize| place((index / 2) as f64, (index % 2) as f64);
+        let nodes = (0..12).map(|index| [node(index)[0], node(index)[1], 0.0]).collect();
+        let connectivity = (0..5).flat_map(|cell| [0, 2, 3, 1].map(|corner| 2 * cell + corner)).collect();
+        let mesh = Mesh::new(nodes, ElementKind::Q4, connectivity, Vec::new()).unwrap();
+        let body = ElasticBody::new(mesh, Material::new(1.0, 0.3).unwrap(), formulation).unwrap();
+        let soft = Material::new(0.5, 0.3).unwrap();
+        let body = body.with_material(&[4], soft).unwrap();
+        Congruent::of(&body).representative
+    }
+
+    #[test]
+    fn cells_of_a_lattice_have_one_stiffness_and_others_their_own() {
+        let plane = || Formulation::PlaneStrain { thickness: 1.0 };
+        // A tenth is no binary number: cells differ by rounding.
+        assert_eq!(representatives(plane(), |x, y| [0.1 * x + 3.0, 0.1 * y]), [0, 0, 0, 0, 4]);
+        let stretched = |x: f64, y: f64| [x + if x > 2.5 { 1e-9 } else { 0.0 }, y];
+        assert_eq!(representatives(plane(), stretched), [0, 0, 2, 3, 4]);
+        let around_the_axis = Formulation::Axisymmetric;
+        assert_eq!(representatives(around_the_axis, |x, y| [x, y]), [0, 1, 2, 3, 4]);
+    }
+}

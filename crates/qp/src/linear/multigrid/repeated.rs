@@ -188,3 +188,82 @@ impl<T: Real, const H: usize> WithSimd for Run<'_, T, H> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The rows of a lattice of `lines` lines of `length` nodes: each node is coupled with those beside it and with those on the lines beside its
+    /// own. `blocks(a, b)` are the values of a block.
+    fn lattice(length: usize, lines: usize, blocks: impl Fn(usize, usize) -> [f32; 9]) -> Vec<(Vec<u32>, Vec<f32>)> {
+        let is_near = |a: usize, b: usize| a.abs_diff(b) <= 1;
+        let row = |node: usize| {
+            let near = (0..length * lines)
+                .filter(|other| is_near(node % length, other % length) && is_near(node / length, other / length));
+            let columns: Vec<u32> = near.map(|other| other as u32).collect();
+            let values = columns.iter().flat_map(|&other| blocks(node, other as usize)).collect();
+            (columns, values)
+        };
+        (0..length * lines).map(row).collect()
+    }
+
+    /// The matrix of some rows, and the same with each row stored by itself.
+    fn both(rows: &[(Vec<u32>, Vec<f32>)]) -> [BlockMatrix<f32>; 2] {
+        let mut shared = RowByRow::new(3, rows.len());
+        let mut plain = BlockMatrix::empty(0, rows.len(), (3, 3));
+        for (columns, values) in rows {
+            shared.push(columns, values);
+            plain.indices.extend_from_slice(columns);
+            plain.values.extend_from_slice(values);
+            plain.starts.push(plain.indices.len());
+        }
+        [shared.finished(), plain]
+    }
+
+    fn check(rows: &[(Vec<u32>, Vec<f32>)], is_shared: bool) {
+        let [found, plain] = both(rows);
+        assert_eq!(!found.shared_rows.is_empty(), is_shared);
+        for row in 0..rows.len() {
+            assert!(found.row(row).eq(plain.row(row)), "row {row}");
+            assert_eq!(found.diagonal_place(row).is_some(), plain.diagonal_place(row).is_some());
+        }
+        let x: Vec<f32> = (0..3 * rows.len()).map(|index| (index as f32 * 0.37).sin()).collect();
+        let mut expected = vec![0.0; x.len()];
+        plain.mul_into(&x, &mut expected, 1);
+        for threads in [1, 2, 3] {
+            let mut y = vec![1.0; x.len()];
+            match is_shared {
+                true => multiply(&found, &x, &mut y, threads),
+                false => found.mul_into(&x, &mut y, threads),
+            }
+            assert_eq!(y, expected, "{threads} threads");
+        }
+    }
+
+    #[test]
+    fn rows_of_a_lattice_are_shared_and_multiplied_bit_by_bit_as_single_rows_are() {
+        let block = |a: usize, b: usize| {
+            let step = (b as f32 - a as f32).rem_euclid(7.0);
+            std::array::from_fn(|entry| (step + 1.3 * entry as f32).sin())
+        };
+        // Lines as long as a tile, between two tiles, and shorter than one; enough rows for a second thread.
+        for (length, lines) in [(TILE + 2, 9), (2 * TILE + 7, 160), (5, 40)] {
+            check(&lattice(length, lines, block), true);
+        }
+    }
+
+    #[test]
+    fn rows_that_differ_are_stored_one_by_one() {
+        let block = |a: usize, b: usize| std::array::from_fn(|entry| ((a * 31 + b * 17 + entry) as f32).sin());
+        check(&lattice(9, 6, block), false);
+        // More rows than are waited for.
+        check(&lattice(5, ENOUGH_ROWS / 4, block), false);
+    }
+
+    #[test]
+    fn a_row_that_begins_as_a_longer_one_has_its_own_length() {
+        let block = |_: usize, b: usize| if b == 0 { [2.0; 9] } else { [1.0; 9] };
+        // The last node of a line alone has the first blocks of the nodes before it.
+        check(&lattice(40, 1, |a, b| block(a, usize::from(a != b))), true);
+    }
+}
