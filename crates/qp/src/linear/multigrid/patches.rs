@@ -50,9 +50,9 @@ impl Patches {
         let mut patches = Patches { starts: vec![0], members: Vec::new() };
         let mut is_in_one = vec![false; rows];
         let mut found = inner.chunk_by(|a, b| a.0 == b.0).peekable();
-        for centre in 0..rows {
+        for (centre, &is_inner) in is_inner.iter().enumerate() {
             let own = found.next_if(|own| own[0].0 as usize == centre).unwrap_or_default();
-            if is_inner[centre] {
+            if is_inner {
                 continue;
             }
             let fits = (own.len() + 1) * matrix.height <= most_unknowns;
