@@ -182,7 +182,7 @@ fn arrays_of<'py>(py: Python<'py>, mut kept: Vec<Kept>, dofs: usize, rows: usize
         }
     }
     let table = |of: fn(&Kept) -> &[f64], columns: usize| {
-        let values: Vec<f64> = kept.iter().flat_map(|kept| of(kept)).copied().collect();
+        let values: Vec<f64> = kept.iter().flat_map(of).copied().collect();
         of_table(py, &values, columns)?.call_method1("reshape", (kept.len(), columns))
     };
     let proven = |of: fn(&qp::ProvenSet) -> &ContactSet| {

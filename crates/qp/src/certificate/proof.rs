@@ -14,7 +14,7 @@ use super::energy_norm::{Boundary, ROUNDED_BOUND};
 use super::units::ldexp_root;
 use crate::error::Error;
 use crate::linear::multigrid::Multigrid;
-use crate::linear::{Dependence, SparseMatrix, dot, inverse_lengths, inverse_lengths_by_products};
+use crate::linear::{Dependence, SparseMatrix, dot, forward_all, inverse_lengths, inverse_lengths_by_products};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, ProvenSet};
 use crate::watch::Watch;
@@ -245,7 +245,7 @@ impl<'a> ComplianceFactor<'a> {
             for (column, &row) in forces.chunks_mut(size.max(1)).zip(some) {
                 self.rows[row].iter().for_each(|&(place, b)| column[place] += b);
             }
-            columns.extend(block.forward_all(forces).chunks(size.max(1)).map(<[f64]>::to_vec));
+            columns.extend(forward_all(block, forces).chunks(size.max(1)).map(<[f64]>::to_vec));
         }
         Some(columns)
     }

@@ -340,7 +340,7 @@ impl Cholesky {
     pub(super) fn forward_ordered(&self, columns: Vec<f64>) -> Vec<f64> {
         let one = |column: &[f64]| by_precision!(self, factor => factor::forward(factor, column)).unwrap_or_default();
         match &self.values {
-            Values::Dense(triangle) => triangle.forward_all(columns),
+            Values::Dense(triangle) => dense_factor::forward_all(triangle, columns),
             _ => columns.chunks(self.dim().max(1)).flat_map(one).collect(),
         }
     }

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::dense_factor;
 use crate::error::Error;
 
 /// The maximum norm: the entry farthest from zero, by its magnitude; 0 for an empty slice. For the crates of this workspace.
@@ -121,11 +120,6 @@ impl LowerTriangle {
     pub fn forward(&self, mut b: Vec<f64>) -> Vec<f64> {
         self.sweep(&mut b);
         b
-    }
-
-    /// `L^-1 Z` of columns Z (n x m, column by column).
-    pub fn forward_all(&self, columns: Vec<f64>) -> Vec<f64> {
-        dense_factor::forward(self, columns)
     }
 
     /// `L^-1 b`, in place.

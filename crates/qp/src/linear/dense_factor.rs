@@ -59,7 +59,7 @@ fn column_by_column(size: usize, values: &mut [f64]) -> Result<(), FactorError> 
 }
 
 /// `L^-1 Z` of columns Z (n x m, column by column); every entry is NaN if faer fails.
-pub(super) fn forward(triangle: &LowerTriangle, mut columns: Vec<f64>) -> Vec<f64> {
+pub fn forward_all(triangle: &LowerTriangle, mut columns: Vec<f64>) -> Vec<f64> {
     let size = triangle.size();
     let count = columns.len().checked_div(size).unwrap_or(0);
     if count <= FEW_COLUMNS {

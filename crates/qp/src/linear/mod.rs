@@ -39,6 +39,7 @@ pub use compliance::Compliance;
 pub use conjugate_gradients::{Blocks, Iterate};
 use dense::wide_dot;
 pub use dense::{LowerTriangle, UpperTriangle, check_vector, dot, largest, norm, subtract, take_out, turned};
+pub use dense_factor::forward_all;
 pub use dependence::Dependence;
 pub use factor::{FactorError, Width, if_definite};
 pub use forest::Forest;

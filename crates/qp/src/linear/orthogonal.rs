@@ -44,7 +44,7 @@ pub fn inverse_lengths_by_products(columns: &[Vec<f64>]) -> Option<Vec<f64>> {
     let triangle = dense_factor::factorise(count, products, 1).ok()?;
     let mut units = vec![0.0; count * count];
     (0..count).for_each(|place| units[place * count + place] = 1.0);
-    let inverse = triangle.forward_all(units);
+    let inverse = dense_factor::forward_all(&triangle, units);
     let lengths: Vec<f64> = inverse.chunks(count.max(1)).map(|column| wide_dot(column, column).sqrt()).collect();
     let is_clear = lengths.iter().all(|&length| length <= CLEAR);
     is_clear.then(|| lengths.iter().zip(&sizes).map(|(length, size)| length / size).collect())

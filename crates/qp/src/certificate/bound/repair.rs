@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 
 use super::super::energy_norm::Boundary;
 use super::{Answer, EnergyNorm, ErrorBound};
-use crate::linear::{dot, exponent, ldexp};
+use crate::linear::{dot, exponent, forward_all, ldexp};
 use crate::problem::ContactProblem;
 
 /// The multipliers of a repair.
@@ -134,7 +134,7 @@ impl<'a> Repair<'a> {
         for (column, &row) in columns.chunks_mut(size.max(1)).zip(&missing) {
             self.rows[row].iter().for_each(|&(place, b)| column[place] += b);
         }
-        let swept = self.boundary.block.forward_all(columns);
+        let swept = forward_all(&self.boundary.block, columns);
         for (column, &row) in swept.chunks(size.max(1)).zip(&missing) {
             self.halves[row].get_or_init(|| column.to_vec());
         }
