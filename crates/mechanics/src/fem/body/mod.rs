@@ -22,6 +22,7 @@ use crate::fem::formulation::Formulation;
 use crate::fem::geometry::{Symmetric, trace};
 use crate::fem::material::{Material, Stiffness};
 use crate::fem::mesh::{Boundary, Mesh, fail};
+use crate::fem::threads::in_order;
 
 /// Radii of a body of revolution that are negative by less than this times its size are rounding of zero.
 const ON_THE_AXIS: f64 = 1e-12;
@@ -78,12 +79,14 @@ impl ElasticBody {
         let (regions, of_elements) = (vec![Region::whole(&mesh)], vec![0; mesh.element_count()]);
         let body = ElasticBody { mesh, formulation, regions, phases: vec![phase], of_elements };
         let tables = body.tabulated();
-        for (index, BodyElement { nodes, kind, cell, .. }) in body.elements().enumerate() {
-            if let Err(reason) = cell.check(tables.at(kind)) {
-                return fail(format!("element {index} (nodes {nodes:?}, from 0): {reason}"));
-            }
-        }
-        Ok(body)
+        let fault = |index: usize| {
+            let BodyElement { nodes, kind, cell, .. } = body.element(index)?;
+            let reason = cell.check(tables.at(kind)).err()?;
+            Some(format!("element {index} (nodes {nodes:?}, from 0): {reason}"))
+        };
+        let mut first: Option<String> = None;
+        in_order(body.mesh.element_count(), |mut run| run.find_map(fault), |found| first = first.take().or(found));
+        first.map_or(Ok(body), fail)
     }
 
     /// The same body with another integration of its stiffness.
