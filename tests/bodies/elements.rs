@@ -260,7 +260,11 @@ fn bodies_of_any_two_elements_and_integrations_side_by_side_keep_their_forces_an
         let [of_own, of_other_body, of_both] = [own, other, &both].map(|body| {
             let displacement = nodal_of(body.mesh(), field);
             let dofs = DofMap::new(vec![None; displacement.len()]).unwrap();
-            let product = fem::stiffness(body, &dofs).unwrap().mul(&displacement);
+            // Entry by entry: the sums of a product of a dense matrix have an order of their own.
+            let mut product = vec![0.0; displacement.len()];
+            for (row, column, value) in fem::stiffness(body, &dofs).unwrap().lower().triplets() {
+                product[row] += value * displacement[column];
+            }
             let stress = fem::stress(body, &displacement).unwrap();
             (fem::internal_force(body, &displacement).unwrap(), product, stress.elements, stress.nodes)
         });

@@ -100,13 +100,9 @@ struct RowSums(Vec<f64>);
 
 impl RowSums {
     fn of(stiffness: &SymmetricMatrix) -> Self {
-        let diagonal = stiffness.diagonal();
-        let mut sums = vec![0.0; diagonal.len()];
-        for (row, column, value) in stiffness.lower().triplets().filter(|entry| entry.0 != entry.1) {
-            sums[row] += value.abs();
-            sums[column] += value.abs();
-        }
-        RowSums(sums.iter().zip(&diagonal).map(|(sum, own)| if *sum == 0.0 { 0.0 } else { sum / own }).collect())
+        let sums = stiffness.mul_abs(&vec![1.0; stiffness.dim()]);
+        let of_row = |(sum, own): (&f64, f64)| if *sum > own { (sum - own) / own } else { 0.0 };
+        RowSums(sums.iter().zip(stiffness.diagonal()).map(of_row).collect())
     }
 
     fn share_above(&self, limit: f64) -> f64 {

@@ -157,7 +157,7 @@ impl<T: Real> BlockMatrix<T> {
     }
 
     /// The rows with entries, for a matrix with mostly empty rows.
-    fn filled_rows(&self) -> impl Iterator<Item = usize> + Clone + '_ {
+    pub fn filled_rows(&self) -> impl Iterator<Item = usize> + Clone + '_ {
         (0..self.rows()).filter(|&row| self.starts[row] < self.starts[row + 1])
     }
 
@@ -171,13 +171,13 @@ impl<T: Real> BlockMatrix<T> {
         }
     }
 
-    /// `y -= A y`, for a matrix with mostly empty rows.
-    pub fn subtract_from(&self, y: &mut [T]) {
-        let mut sums = vec![T::default(); self.filled_rows().count() * self.height];
-        for (row, sums) in self.filled_rows().zip(sums.chunks_exact_mut(self.height)) {
+    /// `y -= A y`, for a matrix that has entries in some `rows` alone.
+    pub fn subtract_from(&self, rows: &[usize], y: &mut [T]) {
+        let mut sums = vec![T::default(); rows.len() * self.height];
+        for (&row, sums) in rows.iter().zip(sums.chunks_exact_mut(self.height)) {
             self.add_row_product(row, y, sums);
         }
-        for (row, sums) in self.filled_rows().zip(sums.chunks_exact(self.height)) {
+        for (&row, sums) in rows.iter().zip(sums.chunks_exact(self.height)) {
             y[row * self.height..][..self.height].iter_mut().zip(sums).for_each(|(y, &sum)| *y -= sum);
         }
     }

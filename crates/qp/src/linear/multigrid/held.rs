@@ -31,29 +31,36 @@ pub struct Held<T> {
     pub matrix: BlockMatrix<T>,
     /// N'.
     pub transposed: BlockMatrix<T>,
+    /// The nodes that have entries in N, and in N'.
+    rows: [Vec<usize>; 2],
 }
 
 impl<T: Real> Held<T> {
     /// The projection of `holds`.
     pub fn of(nodes: &Nodes, holds: &[Hold]) -> Self {
         let matrix = sum(nodes, holds.iter().map(|hold| (&hold.way, &hold.row)));
-        Held { matrix, transposed: sum(nodes, holds.iter().map(|hold| (&hold.row, &hold.way))) }
+        Self::with(matrix, sum(nodes, holds.iter().map(|hold| (&hold.row, &hold.way))))
+    }
+
+    fn with(matrix: BlockMatrix<T>, transposed: BlockMatrix<T>) -> Self {
+        let rows = [&matrix, &transposed].map(|matrix| matrix.filled_rows().collect());
+        Held { matrix, transposed, rows }
     }
 
     /// `x = E x` for displacements.
     pub fn project(&self, x: &mut [T]) {
-        self.matrix.subtract_from(x);
+        self.matrix.subtract_from(&self.rows[0], x);
     }
 
     /// `f = E' f` for forces.
     pub fn project_force(&self, f: &mut [T]) {
-        self.transposed.subtract_from(f);
+        self.transposed.subtract_from(&self.rows[1], f);
     }
 
     /// What is held beyond `last`.
     pub fn beyond(&self, last: &Self) -> Self {
         let minus = |own: &BlockMatrix<T>, last: &BlockMatrix<T>| own.plus(-1.0, last).without_zeros();
-        Held { matrix: minus(&self.matrix, &last.matrix), transposed: minus(&self.transposed, &last.transposed) }
+        Self::with(minus(&self.matrix, &last.matrix), minus(&self.transposed, &last.transposed))
     }
 
     /// `A - E' A E`.
