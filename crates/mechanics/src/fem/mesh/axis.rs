@@ -3,7 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::MAX_NODES;
+/// More lines than this are refused before memory is allocated.
+const MAX_LINES: usize = 5_000_000;
 
 /// One axis of a structured mesh: intervals between breakpoints, each cut into cells of equal or graded size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -39,7 +40,7 @@ impl Axis {
     ///
     /// # Errors
     /// `AxisError` for fewer than two points, points that do not increase, lengths that do not fit, zero
-    /// divisions, a ratio that is not positive, more than `MAX_NODES` lines, cells so small that two lines fall
+    /// divisions, a ratio that is not positive, more than 5,000,000 lines, cells so small that two lines fall
     /// together.
     pub fn coordinates(&self) -> Result<Vec<f64>, AxisError> {
         let lines = self.check()?;
@@ -128,8 +129,8 @@ impl Axis {
                 return fail(format!("divisions[{index}]"), "0 cells; an interval needs at least 1".into());
             }
             lines = lines.saturating_add(cells);
-            if lines > MAX_NODES {
-                let message = format!("{cells} cells make more than the {MAX_NODES} nodes that are allowed");
+            if lines > MAX_LINES {
+                let message = format!("{cells} cells make more than the {MAX_LINES} lines that an axis may have");
                 return fail(format!("divisions[{index}]"), message);
             }
         }
