@@ -331,6 +331,7 @@ impl Cholesky {
     pub fn forward(&self, b: &[f64]) -> Vec<f64> {
         let ordered: Vec<f64> = self.order().iter().map(|&column| b.get(column).copied().unwrap_or(f64::NAN)).collect();
         match &self.values {
+            Values::Dense(_) if b.len() != self.dim() => vec![f64::NAN; self.dim()],
             Values::Dense(triangle) => triangle.forward(ordered),
             _ => by_precision!(self, factor => factor::forward(factor, &ordered)).unwrap_or_default(),
         }
@@ -348,6 +349,7 @@ impl Cholesky {
     /// The sweep L' P x = y, `y` in the order of elimination, `x` in that of the matrix.
     pub fn backward(&self, y: Vec<f64>) -> Vec<f64> {
         let ordered = match &self.values {
+            Values::Dense(_) if y.len() != self.dim() => vec![f64::NAN; self.dim()],
             Values::Dense(triangle) => triangle.backward(y),
             _ => by_precision!(self, factor => factor::backward(factor, &y)).unwrap_or_default(),
         };

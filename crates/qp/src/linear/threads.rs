@@ -10,7 +10,7 @@ const LEAST_BLOCKS: usize = 20_000;
 /// More threads share the memory of one machine without being faster.
 const MOST_THREADS: usize = 8;
 
-/// How many processors work on one problem: as many as there are, up to 8, because more share one memory without being faster.
+/// Number of processors for one problem: all of the machine, at most 8, because more would wait for the same memory.
 pub fn threads_of_machine() -> usize {
     rayon::current_num_threads().min(MOST_THREADS)
 }

@@ -62,7 +62,8 @@ mod tests {
         let node = |index: usize| place((index / 2) as f64, (index % 2) as f64);
         let nodes = (0..12).map(|index| [node(index)[0], node(index)[1], 0.0]).collect();
         let connectivity = (0..5).flat_map(|cell| [0, 2, 3, 1].map(|corner| 2 * cell + corner)).collect();
-        let mesh = Mesh::new(nodes, ElementKind::Q4, connectivity, Vec::new()).unwrap();
+        let bilinear = ElementKind::ALL.into_iter().find(|kind| kind.dimension() == 2 && kind.nodes() == 4).unwrap();
+        let mesh = Mesh::new(nodes, bilinear, connectivity, Vec::new()).unwrap();
         let body = ElasticBody::new(mesh, Material::new(1.0, 0.3).unwrap(), formulation).unwrap();
         let soft = Material::new(0.5, 0.3).unwrap();
         let body = body.with_material(&[4], soft).unwrap();

@@ -22,6 +22,7 @@ mod face;
 mod filling;
 mod held;
 mod hierarchy;
+mod inverse;
 mod lines;
 mod near_null;
 mod nodes;

@@ -10,7 +10,7 @@
 //! solves on patches that contain the local motions without change of volume.
 
 use super::blocks::BlockMatrix;
-use super::chebyshev::invert;
+use super::inverse::invert;
 use crate::linear::factor::Real;
 use crate::linear::grouped::group_starts;
 use crate::linear::threads::SharedRows;
