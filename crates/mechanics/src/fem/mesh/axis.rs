@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// More lines than this are refused before memory is allocated.
-const MAX_LINES: usize = 5_000_000;
+pub(super) const MAX_LINES: usize = 5_000_000;
 
 /// One axis of a structured mesh: intervals between breakpoints, each cut into cells of equal or graded size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use signorini_qp as qp;
 
-use super::MAX_NODES;
+use super::axis::MAX_LINES;
 use crate::error::Error;
 use crate::fem::formulation::positive;
 
@@ -44,7 +44,7 @@ impl Zone {
             return fail("zone.growth", self.growth, "from 1 to 10 (each cell over its neighbour)");
         }
         let cells = self.divisions as f64;
-        if self.divisions == 0 || self.divisions > MAX_NODES || self.width / cells < SMALLEST * radius {
+        if self.divisions == 0 || self.divisions > MAX_LINES || self.width / cells < SMALLEST * radius {
             return fail("zone.divisions", cells, "at least 1, with cells of at least 1e-8 of the radius");
         }
         Ok(())
@@ -83,7 +83,7 @@ impl Zone {
             next *= self.growth;
             total += next;
             growing.push(next);
-            if growing.len() > MAX_NODES {
+            if growing.len() > MAX_LINES {
                 let (name, allowed) = ("zone.growth", "larger: the cells are more than the nodes that are allowed");
                 return Err(qp::Error::Setting { name, value: self.growth, allowed }.into());
             }
