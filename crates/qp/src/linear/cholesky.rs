@@ -16,6 +16,9 @@ use crate::error::Error;
 /// From this share of all entries on, a lower triangle is dense: no order saves anything.
 const DENSE: f64 = 0.6;
 
+/// Smaller matrices are one block column of a sparse factor, which is a whole triangle as well.
+const LEAST_DENSE: usize = 8;
+
 /// Fill-reducing ordering and structure of the factor, for all matrices of one sparsity pattern.
 #[derive(Clone, Debug)]
 pub struct Analysis {
@@ -105,7 +108,7 @@ impl Analysis {
     /// Returns `true` if the factor of `matrix` is stored as a whole triangle.
     pub fn is_dense_for(matrix: &SymmetricMatrix) -> bool {
         let dim = matrix.dim() as f64;
-        dim > 0.0 && matrix.lower().entries() as f64 >= DENSE * dim * (dim + 1.0) / 2.0
+        matrix.dim() >= LEAST_DENSE && matrix.lower().entries() as f64 >= DENSE * dim * (dim + 1.0) / 2.0
     }
 
     /// As [`Analysis::with_last`], for a factor in block columns, which may be in single precision.
