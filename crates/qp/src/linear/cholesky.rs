@@ -16,7 +16,7 @@ use crate::error::Error;
 /// From this share of all entries on, a lower triangle is dense: no order saves anything.
 const DENSE: f64 = 0.6;
 
-/// Smaller matrices are one block column of a sparse factor, which is a whole triangle as well.
+/// Smaller matrices keep the sparse factor: its one block column is a whole triangle as well, and no time is gained.
 const LEAST_DENSE: usize = 8;
 
 /// Fill-reducing ordering and structure of the factor, for all matrices of one sparsity pattern.
