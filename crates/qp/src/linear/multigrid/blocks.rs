@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::linear::Spare;
 use crate::linear::factor::Real;
 use crate::linear::grouped::group_starts;
 use crate::linear::threads::{SharedRows, in_order};
@@ -34,6 +35,8 @@ pub struct BlockMatrix<T> {
     pub values: Vec<T>,
     /// The first block of each row among `indices`, if rows are shared: several rows then have the same. Empty otherwise.
     pub shared_rows: Vec<u32>,
+    /// `true` if only the blocks up to the diagonal of a symmetric matrix are stored: see [`BlockMatrix::keep_half`].
+    pub is_half: bool,
 }
 
 /// Calls a function with the block size as constants if it is one of the sizes of bodies.
@@ -126,7 +129,7 @@ impl<T: Real> BlockMatrix<T> {
     /// A matrix without entries, of `rows` by `columns` blocks.
     pub fn empty(rows: usize, columns: usize, (height, width): (usize, usize)) -> Self {
         let (starts, indices, values, shared_rows) = (vec![0; rows + 1], Vec::new(), Vec::new(), Vec::new());
-        BlockMatrix { height, width, columns, starts, indices, values, shared_rows }
+        BlockMatrix { height, width, columns, starts, indices, values, shared_rows, is_half: false }
     }
 
     /// Adds a row of `A x` to `sums`.
@@ -259,14 +262,14 @@ impl<T: Real> BlockMatrix<T> {
             }
         }
         let (height, width, columns, shared_rows) = (self.width, self.height, self.rows(), Vec::new());
-        BlockMatrix { height, width, columns, starts, indices, values, shared_rows }
+        BlockMatrix { height, width, columns, starts, indices, values, shared_rows, is_half: false }
     }
 
     /// `y = A' x`. The sums run over parts of the rows that depend on the matrix alone, so that the result does not depend on the threads.
-    pub fn transposed_mul(&self, x: &[T], threads: usize) -> Vec<T> {
+    pub fn transposed_mul(&self, x: &[T], threads: usize, spare: &Spare<T>) -> Vec<T> {
         let parts = SharedRows { starts: &self.starts, threads: MOST_PARTS }.runs();
         let of_part = |rows: Range<usize>| {
-            let mut y = vec![T::default(); self.columns * self.width];
+            let mut y = spare.zeros(self.columns * self.width);
             with_block_size!(add_transposed_product, (self.height, self.width), (self, x, rows, &mut y));
             y
         };
@@ -276,6 +279,7 @@ impl<T: Real> BlockMatrix<T> {
         let mut y = sums.next().unwrap_or_default();
         for sum in sums {
             y.iter_mut().zip(&sum).for_each(|(y, &sum)| *y += sum);
+            spare.give(sum);
         }
         y
     }
@@ -285,12 +289,13 @@ impl<T: Real> BlockMatrix<T> {
         self.transposed_rows(other.filled_rows()).product(other, threads)
     }
 
-    /// The product P' A P of this matrix P, by slabs of rows: A P is never there as a whole.
+    /// The product P' A P of this matrix P and a symmetric one, `A = H + H'` with half of the diagonal blocks in H: `P' H P` and its
+    /// transposed. By slabs of rows, so that H P is never there as a whole.
     pub fn galerkin_product(&self, matrix: &Self, threads: usize) -> Self {
         let slabs = SharedRows { starts: &matrix.starts, threads: MOST_SLABS }.runs_of(SLAB);
         let mut sum: Option<Self> = None;
         for rows in slabs {
-            let mut moved = matrix.product_rows(self, rows.clone(), threads);
+            let mut moved = matrix.product_rows(Part::Half, self, rows.clone(), threads);
             // Rows before and after the slab are empty.
             let (before, last) = (rows.start, moved.indices.len());
             moved.starts.splice(0..0, vec![0; before]);
@@ -301,20 +306,23 @@ impl<T: Real> BlockMatrix<T> {
                 Some(sum) => sum.plus(1.0, &part),
             });
         }
-        sum.unwrap_or_else(|| Self::empty(self.columns, self.columns, (self.width, self.width)))
+        match sum {
+            Some(sum) => sum.plus(1.0, &sum.transposed()),
+            None => Self::empty(self.columns, self.columns, (self.width, self.width)),
+        }
     }
 
     /// The product A B, row by row: a row of the product is a sum of rows of B, one for each entry in the row of A.
     pub fn product(&self, other: &Self, threads: usize) -> Self {
-        self.product_rows(other, 0..self.rows(), threads)
+        self.product_rows(Part::Whole, other, 0..self.rows(), threads)
     }
 
-    /// Some rows of the product A B, numbered from 0.
-    fn product_rows(&self, other: &Self, rows: Range<usize>, threads: usize) -> Self {
+    /// Some rows of the product of a part of A with B, numbered from 0.
+    fn product_rows(&self, of: Part, other: &Self, rows: Range<usize>, threads: usize) -> Self {
         let starts = &self.starts[rows.start..=rows.end];
         let parts = SharedRows { starts, threads }.map(|part| {
             let rows = rows.start + part.start..rows.start + part.end;
-            with_block_size!(product_rows, (self.height, self.width), (self, other, rows))
+            with_block_size!(product_rows, (self.height, self.width), ((self, of), other, rows))
         });
         let mut product = Self::empty(0, other.columns, (self.height, other.width));
         for (starts, indices, values) in parts {
@@ -376,11 +384,19 @@ fn add_transposed_product<T: Real, const H: usize, const W: usize>(
     }
 }
 
+/// The part of a matrix that is multiplied.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Part {
+    Whole,
+    /// The blocks before the diagonal, and half of those on it.
+    Half,
+}
+
 type Rows<T> = (Vec<usize>, Vec<u32>, Vec<T>);
 
 /// The rows of a product: the ends of the rows, columns and values.
 fn product_rows<T: Real, const H: usize, const W: usize>(
-    left: &BlockMatrix<T>,
+    (left, part): (&BlockMatrix<T>, Part),
     right: &BlockMatrix<T>,
     rows: Range<usize>,
 ) -> Rows<T> {
@@ -389,11 +405,19 @@ fn product_rows<T: Real, const H: usize, const W: usize>(
     let (mut ends, mut indices, mut values) = (Vec::with_capacity(rows.len()), Vec::new(), Vec::new());
     let mut place_of = vec![u32::MAX; right.columns];
     let (mut found, mut sums): (Vec<u32>, Vec<T>) = (Vec::new(), Vec::new());
-    let mut order: Vec<u32> = Vec::new();
+    let (mut order, mut half): (Vec<u32>, Vec<T>) = (Vec::new(), Vec::new());
     for row in rows {
         found.clear();
         sums.clear();
-        for (k, a) in left.row(row) {
+        for (k, mut a) in left.row(row) {
+            if part == Part::Half && k > row {
+                break;
+            }
+            if part == Part::Half && k == row {
+                half.clear();
+                half.extend(a.iter().map(|&value| T::of(0.5) * value));
+                a = &half;
+            }
             for (column, b) in right.row(k) {
                 let mut place = place_of[column] as usize;
                 if place == u32::MAX as usize {

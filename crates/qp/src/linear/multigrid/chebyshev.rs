@@ -7,6 +7,7 @@ use super::coarsest::LOST_DIAGONAL;
 use super::inverse::invert;
 use super::operator::Operator;
 use super::patches::Patches;
+use crate::linear::Spare;
 use crate::linear::factor::Real;
 use crate::linear::power_iteration::power_iteration;
 
@@ -55,7 +56,7 @@ impl<T: Real> Chebyshev<T> {
         threads: usize,
     ) -> Self {
         let mut smoother = Chebyshev { degree, inverse, patches, largest: 1.0 };
-        smoother.largest = SAFETY * smoother.largest_eigenvalue(&Operator::whole(matrix, threads));
+        smoother.largest = SAFETY * smoother.largest_eigenvalue(&Operator::whole(matrix, threads, &Spare::default()));
         smoother
     }
 
@@ -67,7 +68,7 @@ impl<T: Real> Chebyshev<T> {
     /// Improves `x` with the residual `rest` = b - A x. Returns the last step, which the residual does not contain yet: that saves a
     /// product if it is not used any more.
     pub fn smooth(&self, operator: &Operator<T>, x: &mut [T], rest: &mut [T]) -> Vec<T> {
-        let (mut step, mut moved) = (vec![T::default(); x.len()], vec![T::default(); x.len()]);
+        let (mut step, mut moved) = (operator.spare.zeros(x.len()), operator.spare.take(x.len()));
         for k in 1..=self.degree {
             let (keep, gain) = self.weights(k);
             let (keep, gain) = (T::of(keep), T::of(gain));
@@ -83,6 +84,7 @@ impl<T: Real> Chebyshev<T> {
                 operator.subtract(&moved, rest);
             }
         }
+        operator.spare.give(moved);
         step
     }
 
@@ -132,8 +134,9 @@ impl<T: Real> Chebyshev<T> {
 
     /// The same smoother with the largest eigenvalue measured where `change` has changed the matrix, if that is larger.
     pub fn measured(mut self, matrix: &BlockMatrix<T>, change: &BlockMatrix<T>, threads: usize) -> Self {
-        let near = matrix.within(change).plus(-1.0, change);
-        self.largest = self.largest.max(SAFETY * self.largest_eigenvalue(&Operator::whole(&near, threads)));
+        let near = matrix.with_rows(change.filled_rows()).within(change).plus(-1.0, change);
+        self.largest =
+            self.largest.max(SAFETY * self.largest_eigenvalue(&Operator::whole(&near, threads, &Spare::default())));
         self
     }
 
@@ -173,5 +176,14 @@ fn inverse_diagonal<T: Real>(matrix: &BlockMatrix<T>) -> BlockMatrix<T> {
     let rows = matrix.rows();
     let (starts, indices) = ((0..=rows).collect(), (0..rows as u32).collect());
     let shared_rows = Vec::new();
-    BlockMatrix { height: size, width: size, columns: rows, starts, indices, values: inverse, shared_rows }
+    BlockMatrix {
+        height: size,
+        width: size,
+        columns: rows,
+        starts,
+        indices,
+        values: inverse,
+        shared_rows,
+        is_half: false,
+    }
 }

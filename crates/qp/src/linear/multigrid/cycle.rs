@@ -8,14 +8,18 @@ use crate::linear::factor::Real;
 impl<T: Real> Hierarchy<T> {
     /// Approximately `A^-1` of a force, by one V-cycle, in the given face.
     pub fn cycle(&self, force: &[f64], face: Option<&FaceLevels<T>>) -> Vec<f64> {
-        let (mut rest, exponent) = self.nodes.gather::<T>(force);
+        let mut rest = self.spare.zeros(self.nodes.size * self.nodes.count);
+        let exponent = self.nodes.gather(force, &mut rest);
         if let Some(face) = face {
             face.held.project_force(&mut rest);
         }
         let moved = self.descend(0, rest, face);
-        self.nodes.scatter(&moved, self.shift - exponent)
+        let displacement = self.nodes.scatter(&moved, self.shift - exponent);
+        self.spare.give(moved);
+        displacement
     }
 
+    /// The unknowns of a level under the forces `rest`.
     pub(super) fn descend(&self, depth: usize, mut rest: Vec<T>, face: Option<&FaceLevels<T>>) -> Vec<T> {
         let Some(level) = self.levels.get(depth) else {
             let force: Vec<f64> = rest.iter().map(|value| value.double()).collect();
@@ -31,21 +35,25 @@ impl<T: Real> Hierarchy<T> {
             held: face.filter(|_| depth == 0).map(|face| &face.held),
             change: face.and_then(|face| face.changes.get(depth.wrapping_sub(1))),
             threads: self.threads,
+            spare: &self.spare,
         };
         let smoother = face.and_then(|face| face.smoother(depth)).unwrap_or(&level.smoother);
-        let mut x = vec![T::default(); rest.len()];
-        let force = rest.clone();
-        operator.subtract_product(&smoother.smooth(&operator, &mut x, &mut rest), &mut rest);
-        let restricted = level.prolongator.transposed_mul(&rest, self.threads);
+        let (mut x, force) = (self.spare.zeros(rest.len()), self.spare.copy(&rest));
+        let step = smoother.smooth(&operator, &mut x, &mut rest);
+        operator.subtract_product(&step, &mut rest);
+        self.spare.give(step);
+        let restricted = level.prolongator.transposed_mul(&rest, self.threads, &self.spare);
         let correction = self.descend(depth + 1, restricted, face);
         let mut moved = rest;
         level.prolongator.mul_into(&correction, &mut moved, self.threads);
+        self.spare.give(correction);
         operator.project(&mut moved);
         operator.add(&moved, &mut x);
         operator.mul_into(&x, &mut moved);
         let mut rest = force;
         operator.subtract(&moved, &mut rest);
-        smoother.smooth(&operator, &mut x, &mut rest);
+        let step = smoother.smooth(&operator, &mut x, &mut rest);
+        [moved, rest, step].into_iter().for_each(|vector| self.spare.give(vector));
         x
     }
 }

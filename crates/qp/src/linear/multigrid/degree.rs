@@ -40,13 +40,13 @@ impl<T: Real> Hierarchy<T> {
     /// The share of the energy of an error that the last of `cycles` takes.
     fn share_taken(&self, cycles: usize) -> f64 {
         let Some(level) = self.levels.first() else { return 1.0 };
-        let operator = Operator::whole(&level.matrix, self.threads);
+        let operator = Operator::whole(&level.matrix, self.threads, &self.spare);
         let product = |x: &[T], y: &[T]| x.iter().zip(y).map(|(x, y)| x.double() * y.double()).sum::<f64>();
         let mut force = vec![T::default(); operator.dim()];
         let mut share = 1.0;
         power_iteration(operator.dim(), -0.5, cycles, |error| {
             operator.mul_into(error, &mut force);
-            let taken = self.descend(0, force.clone(), None);
+            let taken = self.descend(0, self.spare.copy(&force), None);
             let (energy, of_taken) = (product(error, &force), product(&taken, &force));
             if energy.is_nan() || energy <= 0.0 || !of_taken.is_finite() {
                 return None;

@@ -100,7 +100,7 @@ fn changes<T: Real>(
         };
         let step = match steps.last() {
             None => {
-                let rows = newly_held.transposed.product(&level.matrix, 1);
+                let rows = newly_held.forces(&level.matrix);
                 let one_side = match last {
                     Some(last) => through(&rows.plus(-1.0, &rows.product(&last.held.matrix, 1))),
                     None => through(&rows),

@@ -63,9 +63,15 @@ impl<T: Real> Held<T> {
         Self::with(minus(&self.matrix, &last.matrix), minus(&self.transposed, &last.transposed))
     }
 
+    /// `N' A`.
+    pub fn forces(&self, matrix: &BlockMatrix<T>) -> BlockMatrix<T> {
+        let of_rows = self.rows[1].iter().flat_map(|&row| self.transposed.row(row));
+        self.transposed.product(&matrix.with_rows(of_rows.map(|entry| entry.0)), 1)
+    }
+
     /// `A - E' A E`.
     pub fn change(&self, matrix: &BlockMatrix<T>) -> BlockMatrix<T> {
-        let rows = self.transposed.product(matrix, 1);
+        let rows = self.forces(matrix);
         rows.plus(1.0, &rows.transposed()).plus(-1.0, &rows.product(&self.matrix, 1))
     }
 

@@ -13,7 +13,7 @@ use super::nodes::Nodes;
 use super::patches::Patches;
 use super::prolongator::{Candidates, smoothed, smoothed_in_steps, tentative};
 use crate::linear::factor::Real;
-use crate::linear::{FactorError, SymmetricMatrix, ldexp};
+use crate::linear::{FactorError, Spare, SymmetricMatrix, ldexp};
 
 /// Strength of connection on the finest level; it is halved from level to level, as in the source.
 const THRESHOLD: f64 = 0.02;
@@ -56,6 +56,8 @@ pub struct Hierarchy<T> {
     pub(super) coarsest_matrix: Arc<BlockMatrix<T>>,
     pub(super) coarsest: Arc<Coarsest>,
     pub(super) threads: usize,
+    /// Work vectors of the cycle.
+    pub(super) spare: Spare<T>,
 }
 
 #[derive(Debug)]
@@ -149,6 +151,9 @@ impl<T: Real> Hierarchy<T> {
                 false => smoothed(&flat, moved, &smoother, threads),
             };
             candidates = coarse;
+            if levels.is_empty() && blocks.shared_rows.is_empty() {
+                blocks.keep_half();
+            }
             let mut next = prolongator.galerkin_product(&blocks, threads);
             fill_empty_diagonal(&mut next);
             let near_null = candidates.clone();
@@ -157,7 +162,8 @@ impl<T: Real> Hierarchy<T> {
             threshold /= 2.0;
         }
         let coarsest = Arc::new(Coarsest::of(&blocks)?);
-        Ok(Hierarchy { nodes, shift, levels, coarsest_matrix: Arc::new(blocks), coarsest, threads })
+        let (coarsest_matrix, spare) = (Arc::new(blocks), Spare::default());
+        Ok(Hierarchy { nodes, shift, levels, coarsest_matrix, coarsest, threads, spare })
     }
 
     /// The hierarchy of the second level, which shares the levels; `None` if there is only one.
@@ -171,6 +177,7 @@ impl<T: Real> Hierarchy<T> {
             coarsest_matrix: Arc::clone(&self.coarsest_matrix),
             coarsest: Arc::clone(&self.coarsest),
             threads: self.threads,
+            spare: Spare::default(),
         })
     }
 

@@ -20,6 +20,7 @@ mod degree;
 mod dual_norm;
 mod face;
 mod filling;
+mod half;
 mod held;
 mod hierarchy;
 mod inverse;

@@ -106,17 +106,16 @@ impl Nodes {
         self.exponents[place as usize / self.size]
     }
 
-    /// The forces on the dofs in the units of the nodes, times `2^exponent`, and that exponent: they are then of order one, because
-    /// single precision has a small range.
-    pub fn gather<T: Real>(&self, forces: &[f64]) -> (Vec<T>, i32) {
+    /// Puts the forces on the dofs into their places in `gathered`, in the units of the nodes, times `2^exponent`. Returns that
+    /// exponent: they are then of order one, because single precision has a small range.
+    pub fn gather<T: Real>(&self, forces: &[f64], gathered: &mut [T]) -> i32 {
         let exponents = || self.place.iter().map(|&place| self.exponent(place)).zip(forces);
         let largest = exponents().filter(|entry| *entry.1 != 0.0).map(|(unit, &force)| exponent(force) + unit).max();
         let scale = -largest.unwrap_or(0);
-        let mut gathered = vec![T::default(); self.size * self.count];
         for (&place, (unit, &force)) in self.place.iter().zip(exponents()) {
             gathered[place as usize] = T::of(ldexp(force, scale + unit));
         }
-        (gathered, scale)
+        scale
     }
 
     /// The displacements of the dofs, of unknowns in the units of the nodes, times `2^exponent`.

@@ -3,8 +3,10 @@
 use std::ops::Range;
 
 use super::blocks::BlockMatrix;
+use super::half;
 use super::held::Held;
 use super::repeated;
+use crate::linear::Spare;
 use crate::linear::factor::Real;
 
 /// A matrix A minus the change by a face: on the finest level the face is the range of E = I - N, on coarser ones A becomes A - C.
@@ -18,12 +20,14 @@ pub struct Operator<'a, T> {
     pub change: Option<&'a BlockMatrix<T>>,
     /// Threads of a product.
     pub threads: usize,
+    /// Its work vectors.
+    pub spare: &'a Spare<T>,
 }
 
 impl<'a, T: Real> Operator<'a, T> {
     /// The matrix in all dofs.
-    pub fn whole(matrix: &'a BlockMatrix<T>, threads: usize) -> Self {
-        Operator { matrix, held: None, change: None, threads }
+    pub fn whole(matrix: &'a BlockMatrix<T>, threads: usize, spare: &'a Spare<T>) -> Self {
+        Operator { matrix, held: None, change: None, threads, spare }
     }
 
     /// Number of unknowns.
@@ -33,9 +37,12 @@ impl<'a, T: Real> Operator<'a, T> {
 
     /// The force of an `x` in the face.
     pub fn mul_into(&self, x: &[T], y: &mut [T]) {
-        match self.matrix.shared_rows.is_empty() {
-            true => self.matrix.mul_into(x, y, self.threads),
-            false => repeated::multiply(self.matrix, x, y, self.threads),
+        if self.matrix.is_half {
+            half::multiply(self.matrix, x, y, self.threads, self.spare);
+        } else if self.matrix.shared_rows.is_empty() {
+            self.matrix.mul_into(x, y, self.threads);
+        } else {
+            repeated::multiply(self.matrix, x, y, self.threads, self.spare);
         }
         if let Some(change) = self.change {
             change.subtract_product(x, y);
@@ -47,9 +54,10 @@ impl<'a, T: Real> Operator<'a, T> {
 
     /// `y -= A x` with an `x` in the face.
     pub fn subtract_product(&self, x: &[T], y: &mut [T]) {
-        let mut product = vec![T::default(); y.len()];
+        let mut product = self.spare.take(y.len());
         self.mul_into(x, &mut product);
         self.subtract(&product, y);
+        self.spare.give(product);
     }
 
     /// Brings a displacement into the face.

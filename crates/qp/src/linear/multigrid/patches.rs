@@ -97,6 +97,7 @@ impl Patches {
         change: Option<&BlockMatrix<T>>,
         threads: usize,
     ) -> BlockMatrix<T> {
+        let matrix = &matrix.with_rows(self.members.iter().map(|&node| node as usize));
         // The start of the inverse of each patch, in blocks.
         let mut starts = vec![0];
         starts.extend((0..self.count()).scan(0, |sum, patch| {

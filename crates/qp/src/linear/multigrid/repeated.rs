@@ -7,6 +7,7 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::blocks::BlockMatrix;
+use crate::linear::Spare;
 use crate::linear::factor::Real;
 
 /// Nodes that are multiplied together.
@@ -108,23 +109,29 @@ fn hash<T: Real>(indices: impl Iterator<Item = u32>, values: &[T]) -> u64 {
 }
 
 /// `y = A x` for a matrix with shared rows.
-pub fn multiply<T: Real>(matrix: &BlockMatrix<T>, x: &[T], y: &mut [T], threads: usize) {
+pub fn multiply<T: Real>(matrix: &BlockMatrix<T>, x: &[T], y: &mut [T], threads: usize, spare: &Spare<T>) {
     match matrix.height {
-        1 => multiply_in::<T, 1>(matrix, x, y, threads),
-        2 => multiply_in::<T, 2>(matrix, x, y, threads),
-        _ => multiply_in::<T, 3>(matrix, x, y, threads),
+        1 => multiply_in::<T, 1>(matrix, x, y, threads, spare),
+        2 => multiply_in::<T, 2>(matrix, x, y, threads, spare),
+        _ => multiply_in::<T, 3>(matrix, x, y, threads, spare),
     }
 }
 
-fn multiply_in<T: Real, const H: usize>(matrix: &BlockMatrix<T>, x: &[T], y: &mut [T], threads: usize) {
+fn multiply_in<T: Real, const H: usize>(
+    matrix: &BlockMatrix<T>,
+    x: &[T],
+    y: &mut [T],
+    threads: usize,
+    spare: &Spare<T>,
+) {
     let nodes = matrix.columns;
     // The components one after another, so that those of neighbours follow each other.
-    let mut components = vec![T::default(); x.len()];
+    let mut by_component = spare.take(x.len());
     for (node, of_node) in x.as_chunks::<H>().0.iter().enumerate() {
-        of_node.iter().enumerate().for_each(|(component, &value)| components[component * nodes + node] = value);
+        of_node.iter().enumerate().for_each(|(component, &value)| by_component[component * nodes + node] = value);
     }
     let components: [&[T]; H] =
-        std::array::from_fn(|component| &components[component * nodes..(component + 1) * nodes]);
+        std::array::from_fn(|component| &by_component[component * nodes..(component + 1) * nodes]);
     let arch = Arch::new();
     matrix.shared(threads).with_vectors(H, [y], |rows, [part]| {
         let (first, part) = (rows.start, part.as_chunks_mut::<H>().0);
@@ -142,6 +149,7 @@ fn multiply_in<T: Real, const H: usize>(matrix: &BlockMatrix<T>, x: &[T], y: &mu
             row = run.end;
         }
     });
+    spare.give(by_component);
 }
 
 /// Rows that all have the blocks of the first, at least [`TILE`] of them, and their products.
@@ -233,7 +241,7 @@ mod tests {
         for threads in [1, 2, 3] {
             let mut y = vec![1.0; x.len()];
             match is_shared {
-                true => multiply(&found, &x, &mut y, threads),
+                true => multiply(&found, &x, &mut y, threads, &Spare::default()),
                 false => found.mul_into(&x, &mut y, threads),
             }
             assert_eq!(y, expected, "{threads} threads");
