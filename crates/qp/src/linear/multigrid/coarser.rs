@@ -7,7 +7,7 @@ use super::coarsest::lower_part;
 use super::hierarchy::{Hierarchy, Level};
 use super::{Levels, Multigrid};
 use crate::linear::factor::Real;
-use crate::linear::{SymmetricMatrix, ldexp};
+use crate::linear::{Spare, SymmetricMatrix, ldexp};
 
 /// An unknown starts at its bound if more than this share of the unknowns that it is interpolated from is at their bounds.
 const CLOSED_SHARE: f64 = 0.7;
@@ -55,7 +55,7 @@ fn coarser_of<T: Real>(hierarchy: &Hierarchy<T>, levels: fn(Hierarchy<T>) -> Lev
     let matrix = below.levels.first().map_or(&*below.coarsest_matrix, |level| &level.matrix);
     Some(Coarser {
         matrix: lower_part(matrix),
-        multigrid: Multigrid { levels: levels(below) },
+        multigrid: Multigrid { levels: levels(below), work: Spare::default() },
         place: hierarchy.nodes.place.clone(),
         shift: hierarchy.shift,
         starts: first.prolongator.starts.clone(),

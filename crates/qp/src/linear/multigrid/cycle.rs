@@ -3,18 +3,20 @@
 use super::face::FaceLevels;
 use super::hierarchy::Hierarchy;
 use super::operator::Operator;
+use crate::linear::Spare;
 use crate::linear::factor::Real;
 
 impl<T: Real> Hierarchy<T> {
-    /// Approximately `A^-1` of a force, by one V-cycle, in the given face.
-    pub fn cycle(&self, force: &[f64], face: Option<&FaceLevels<T>>) -> Vec<f64> {
+    /// Approximately `A^-1` of a force, by one V-cycle, in the given face; a vector of `work`.
+    pub fn cycle(&self, force: &[f64], face: Option<&FaceLevels<T>>, work: &Spare<f64>) -> Vec<f64> {
         let mut rest = self.spare.zeros(self.nodes.size * self.nodes.count);
         let exponent = self.nodes.gather(force, &mut rest);
         if let Some(face) = face {
             face.held.project_force(&mut rest);
         }
         let moved = self.descend(0, rest, face);
-        let displacement = self.nodes.scatter(&moved, self.shift - exponent);
+        let mut displacement = work.take(force.len());
+        self.nodes.scatter(&moved, self.shift - exponent, &mut displacement);
         self.spare.give(moved);
         displacement
     }

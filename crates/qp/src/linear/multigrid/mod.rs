@@ -39,7 +39,7 @@ pub use near_null::NearNullSpace;
 pub use nodes::Units;
 
 pub use super::Width;
-use super::{FactorError, SymmetricMatrix};
+use super::{FactorError, Spare, SymmetricMatrix};
 use crate::error::Error;
 use face::FaceLevels;
 use hierarchy::Hierarchy;
@@ -48,6 +48,8 @@ use hierarchy::Hierarchy;
 #[derive(Debug)]
 pub struct Multigrid {
     levels: Levels,
+    /// Work vectors of the iteration around the cycles.
+    work: Spare<f64>,
 }
 
 /// The levels in the precision in which they are stored; the iteration around them is always in double precision.
@@ -100,12 +102,12 @@ impl Multigrid {
             Width::Single => Hierarchy::new(matrix, near_null, threads).map(Levels::Single),
             Width::Double => Hierarchy::new(matrix, near_null, threads).map(Levels::Double),
         };
-        Ok(Multigrid { levels: levels.map_err(located)? })
+        Ok(Multigrid { levels: levels.map_err(located)?, work: Spare::default() })
     }
 
     /// One cycle: approximately the solution x of A x = b, linear in b and symmetric.
     pub fn cycle(&self, b: &[f64]) -> Vec<f64> {
-        by_precision!(self.levels, hierarchy => hierarchy.cycle(b, None))
+        by_precision!(self.levels, hierarchy => hierarchy.cycle(b, None, &self.work))
     }
 
     /// The node and the unit of each dof.
@@ -130,7 +132,12 @@ impl Multigrid {
                 FaceLevels::new(hierarchy, holds, last).map(|face| LevelsInFace::Double(hierarchy, face))
             }
         };
-        Ok(Face { levels: levels.map_err(located)? })
+        Ok(Face { levels: levels.map_err(located)?, work: &self.work })
+    }
+
+    /// Work vectors for the iteration around the cycles; what a cycle returns is one of them.
+    pub(crate) fn work(&self) -> &Spare<f64> {
+        &self.work
     }
 
     /// Number of threads that a cycle takes; they change no bit of it.
@@ -158,6 +165,7 @@ impl Multigrid {
 #[derive(Debug)]
 pub struct Face<'a> {
     levels: LevelsInFace<'a>,
+    work: &'a Spare<f64>,
 }
 
 #[derive(Debug)]
@@ -170,8 +178,8 @@ impl Face<'_> {
     /// One cycle: approximately the x in the face with A x - b orthogonal to it.
     pub fn cycle(&self, b: &[f64]) -> Vec<f64> {
         match &self.levels {
-            LevelsInFace::Single(hierarchy, face) => hierarchy.cycle(b, Some(face)),
-            LevelsInFace::Double(hierarchy, face) => hierarchy.cycle(b, Some(face)),
+            LevelsInFace::Single(hierarchy, face) => hierarchy.cycle(b, Some(face), self.work),
+            LevelsInFace::Double(hierarchy, face) => hierarchy.cycle(b, Some(face), self.work),
         }
     }
 

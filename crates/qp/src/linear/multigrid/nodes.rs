@@ -118,10 +118,11 @@ impl Nodes {
         scale
     }
 
-    /// The displacements of the dofs, of unknowns in the units of the nodes, times `2^exponent`.
-    pub fn scatter<T: Real>(&self, gathered: &[T], exponent: i32) -> Vec<f64> {
-        let of_place = |&place: &u32| ldexp(gathered[place as usize].double(), exponent + self.exponent(place));
-        self.place.iter().map(of_place).collect()
+    /// Puts the displacements of the dofs, of unknowns in the units of the nodes, times `2^exponent`, into `displacements`.
+    pub fn scatter<T: Real>(&self, gathered: &[T], exponent: i32, displacements: &mut [f64]) {
+        for (&place, displacement) in self.place.iter().zip(displacements) {
+            *displacement = ldexp(gathered[place as usize].double(), exponent + self.exponent(place));
+        }
     }
 }
 

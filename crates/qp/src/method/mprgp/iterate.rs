@@ -1,7 +1,9 @@
 //! The state of MPRGP, and the steps that it takes.
 
-use crate::linear::multigrid::{Face, Hold};
-use crate::linear::{dot, largest};
+use std::cell::OnceCell;
+
+use crate::linear::multigrid::{Face, Hold, Multigrid};
+use crate::linear::{Spare, dot, largest};
 use crate::method::Start;
 use crate::method::bounds::{Bound, Bounds};
 use crate::problem::ContactProblem;
@@ -36,7 +38,10 @@ pub struct Iterate<'a> {
     pub x: Vec<f64>,
     pub gradient: Vec<f64>,
     pub at: Vec<At>,
+    /// An upper bound on the eigenvalues of D^-1 K, once it is asked for.
+    largest_eigenvalue: OnceCell<f64>,
     threads: usize,
+    pub work: &'a Spare<f64>,
 }
 
 /// A direction p with its product K p.
@@ -56,6 +61,7 @@ impl Conjugate {
         if let Some(last) = last {
             let share = dot(&p, &last.moved) / last.energy;
             p.iter_mut().zip(&last.p).for_each(|(p, before)| *p -= share * before);
+            [last.p, last.moved].into_iter().for_each(|vector| iterate.work.give(vector));
         }
         let slope = dot(gradient, &p);
         if slope < 0.0 {
@@ -73,7 +79,7 @@ impl Conjugate {
 }
 
 impl<'a> Iterate<'a> {
-    pub fn new(problem: &'a ContactProblem, bounds: &'a Bounds, start: Start, threads: usize) -> Self {
+    pub fn new(problem: &'a ContactProblem, bounds: &'a Bounds, start: Start, multigrid: &'a Multigrid) -> Self {
         let mut load = problem.load().to_vec();
         bounds.turn_forces(&mut load);
         let is_unknown = start.displacement.is_none();
@@ -81,7 +87,10 @@ impl<'a> Iterate<'a> {
         bounds.turn(&mut x);
         let diagonal = bounds.turned_diagonal(problem.stiffness().diagonal());
         let at = vec![At::Free; bounds.bounds.len()];
-        let mut iterate = Iterate { problem, bounds, load, diagonal, x, gradient: Vec::new(), at, threads };
+        let (gradient, largest_eigenvalue) = (Vec::new(), OnceCell::new());
+        let (threads, work) = (multigrid.threads(), multigrid.work());
+        let mut iterate =
+            Iterate { problem, bounds, load, diagonal, x, gradient, at, largest_eigenvalue, threads, work };
         if is_unknown {
             iterate.travel_along_load();
         }
@@ -141,15 +150,17 @@ impl<'a> Iterate<'a> {
     }
 
     pub fn product(&self, v: &[f64]) -> Vec<f64> {
-        let mut u = v.to_vec();
+        let mut u = self.work.copy(v);
         self.bounds.turn_back(&mut u);
-        let mut moved = self.problem.stiffness().mul_on(self.threads, &u);
+        let mut moved = self.problem.stiffness().mul_with(self.threads, &u, self.work);
+        self.work.give(u);
         self.bounds.turn_forces(&mut moved);
         moved
     }
 
     pub fn refresh_gradient(&mut self) {
-        self.gradient = self.product(&self.x);
+        let moved = self.product(&self.x);
+        self.work.give(std::mem::replace(&mut self.gradient, moved));
         self.gradient.iter_mut().zip(&self.load).for_each(|(g, f)| *g -= f);
     }
 
@@ -196,10 +207,13 @@ impl<'a> Iterate<'a> {
         }
     }
 
-    pub fn free_gradient(&self) -> Vec<f64> {
-        let mut free = self.gradient.clone();
+    /// What `read` finds in the gradient of the unknowns that may move; it is zero at all others.
+    pub fn of_free_gradient<R>(&self, read: impl FnOnce(&[f64]) -> R) -> R {
+        let mut free = self.work.copy(&self.gradient);
         self.keep_free(&mut free);
-        free
+        let found = read(&free);
+        self.work.give(free);
+        found
     }
 
     pub fn keep_free(&self, values: &mut [f64]) {
@@ -229,14 +243,15 @@ impl<'a> Iterate<'a> {
         let bounds = 0..self.at.len();
         let held = bounds.clone().map(|index| self.held_gradient(index).abs()).fold(0.0, f64::max);
         let chopped = bounds.map(|index| self.chopped_gradient(index).abs()).fold(0.0, f64::max);
-        let wrong = largest(&self.free_gradient()).max(chopped);
+        let wrong = self.of_free_gradient(largest).max(chopped);
         if wrong == 0.0 { 0.0 } else { wrong / held.max(largest(&self.load)) }
     }
 
     /// Returns `true` if the chopped gradient is larger than the free one.
     pub fn is_disproportionate(&self) -> bool {
         let weighted = |value: f64, unknown: usize| value * value / self.diagonal[unknown];
-        let free: f64 = self.free_gradient().iter().enumerate().map(|(unknown, &g)| weighted(g, unknown)).sum();
+        let sum = |free: &[f64]| free.iter().enumerate().map(|(unknown, &g)| weighted(g, unknown)).sum::<f64>();
+        let free = self.of_free_gradient(sum);
         let chopped = |(index, bound): (usize, &Bound)| weighted(self.chopped_gradient(index), bound.unknown);
         self.bounds.bounds.iter().enumerate().map(chopped).sum::<f64>() > free
     }
@@ -318,12 +333,14 @@ impl<'a> Iterate<'a> {
                 self.step_to_bounds(&direction, room);
             }
         }
-        let share = 1.0 / self.largest_eigenvalue();
-        let mut free = self.free_gradient();
+        let share = 1.0 / self.largest_eigenvalue.get_or_init(|| self.largest_eigenvalue());
+        let mut free = self.work.copy(&self.gradient);
+        self.keep_free(&mut free);
         self.bounds.travels.iter().for_each(|&travel| free[travel] = 0.0);
         for ((x, g), d) in self.x.iter_mut().zip(&free).zip(&self.diagonal) {
             *x -= share * g / d;
         }
+        self.work.give(free);
         self.project();
         self.refresh_gradient();
         None
@@ -362,9 +379,10 @@ impl<'a> Iterate<'a> {
 
     /// One cycle in a face, in which nothing travels and no bound opens.
     pub fn preconditioned(&self, face: &Face, gradient: &[f64]) -> Vec<f64> {
-        let mut force = gradient.to_vec();
+        let mut force = self.work.copy(gradient);
         self.bounds.turn_forces_back(&mut force);
         let mut step = face.cycle(&force);
+        self.work.give(force);
         self.bounds.turn(&mut step);
         self.keep_free(&mut step);
         step

@@ -177,7 +177,7 @@ impl Mprgp<'_> {
 
 /// The iterate at the start; if a displacement is given that is not near the answer, the better one of that and none.
 fn started<'a>(mprgp: &Mprgp<'a>, bounds: &'a Bounds, start: Start) -> Iterate<'a> {
-    let at = |start: Start| Iterate::new(mprgp.problem, bounds, start, mprgp.multigrid.threads());
+    let at = |start: Start| Iterate::new(mprgp.problem, bounds, start, mprgp.multigrid);
     let from_nothing = || at(nested(mprgp, bounds).unwrap_or_default());
     if start.is_unknown() {
         return from_nothing();
@@ -280,7 +280,6 @@ impl Steps<'_> {
             iterate.proportion();
             return Ok(true);
         }
-        let gradient = iterate.free_gradient();
         let face = match self.face.take() {
             Some(face) if !self.is_old => face,
             old => {
@@ -291,11 +290,14 @@ impl Steps<'_> {
             }
         };
         self.is_old = false;
-        let step = self.travels.preconditioned(iterate, &face, &gradient);
+        let last = self.last.take();
+        let direction = iterate.of_free_gradient(|gradient| {
+            let step = self.travels.preconditioned(iterate, &face, gradient);
+            self.cycles += 1;
+            self.watch.step("MPRGP", self.cycles);
+            Conjugate::of(step, last, gradient, iterate)
+        });
         self.face = Some(face);
-        self.cycles += 1;
-        self.watch.step("MPRGP", self.cycles);
-        let direction = Conjugate::of(step, self.last.take(), &gradient, iterate);
         if direction.is_free || direction.energy < 0.0 {
             return Ok(false);
         }

@@ -92,7 +92,7 @@ impl Travels {
             let work = dot(&free.way, gradient).signum();
             return free.way.iter().map(|way| work * way).collect();
         }
-        let mut rest = gradient.to_vec();
+        let mut rest = iterate.work.copy(gradient);
         let held = || self.moves.iter().filter(|held| held.energy > 0.0);
         let shares: Vec<f64> = held().map(|held| dot(&held.way, gradient) / held.energy).collect();
         for (held, share) in held().zip(&shares) {
@@ -100,6 +100,7 @@ impl Travels {
         }
         iterate.keep_free(&mut rest);
         let mut step = iterate.preconditioned(face, &rest);
+        iterate.work.give(rest);
         for (held, share) in held().zip(&shares) {
             let share = share - dot(&held.force, &step) / held.energy;
             step.iter_mut().zip(&held.way).for_each(|(step, way)| *step += share * way);
