@@ -3,12 +3,18 @@
 /// Connected components by union and find: each unknown points towards the first of its tree. For the crates of this workspace.
 pub struct Forest {
     parent: Vec<usize>,
+    trees: usize,
 }
 
 impl Forest {
     /// A tree for each unknown.
     pub fn new(unknowns: usize) -> Self {
-        Forest { parent: (0..unknowns).collect() }
+        Forest { parent: (0..unknowns).collect(), trees: unknowns }
+    }
+
+    /// Returns `true` if nothing is left to join.
+    pub fn is_one_tree(&self) -> bool {
+        self.trees <= 1
     }
 
     fn root(&mut self, mut unknown: usize) -> usize {
@@ -25,6 +31,7 @@ impl Forest {
             return;
         }
         let (a, b) = (self.root(a), self.root(b));
+        self.trees -= usize::from(a != b);
         self.parent[a.max(b)] = a.min(b);
     }
 

@@ -36,27 +36,36 @@ pub(super) struct OpposedRows {
 impl OpposedRows {
     /// The rows of `contact` (m x n).
     pub fn of(contact: &SparseMatrix) -> Self {
-        let by_row = contact.transposed();
-        let entries = |row: usize| by_row.column(row).filter(|entry| entry.1 != 0.0);
+        // Number, first value, and last dof and value of the entries of each row.
+        let mut ends = vec![(0_usize, 0.0_f64, 0_usize, 0.0_f64); contact.rows()];
+        for (row, dof, value) in contact.triplets().filter(|entry| entry.2 != 0.0) {
+            let (count, first, ..) = ends[row];
+            ends[row] = (count + 1, if count == 0 { value } else { first }, dof, value);
+        }
+        let unmoved = (0..contact.rows()).filter(|&row| ends[row].0 == 0).collect();
         // Only rows that are alike in this may be opposed: number of entries, the last of them, and its quotient.
-        let likeness = |row: usize| {
-            let (first, last) = (entries(row).next()?, entries(row).last()?);
-            Some((entries(row).count(), last.0, (last.1 / first.1).to_bits()))
+        let likeness = |row: &usize| {
+            let (count, first, last, value) = ends[*row];
+            (count, last, (value / first).to_bits())
         };
-        let mut alike: HashMap<_, usize> = HashMap::new();
-        (0..contact.rows()).for_each(|row| *alike.entry(likeness(row)).or_default() += 1);
-        let mut unmoved = Vec::new();
+        let mut moved: Vec<usize> = (0..contact.rows()).filter(|&row| ends[row].0 > 0).collect();
+        moved.sort_by_cached_key(likeness);
+        let alike: Vec<usize> = moved
+            .chunk_by(|a, b| likeness(a) == likeness(b))
+            .filter(|rows| rows.len() > 1)
+            .flatten()
+            .copied()
+            .collect();
+        if alike.is_empty() {
+            return OpposedRows { unmoved, directions: Vec::new(), by_row: None };
+        }
+        let by_row = contact.transposed();
         let mut directions: HashMap<Direction, Sides> = HashMap::new();
-        for row in 0..contact.rows() {
-            let Some((_, first)) = entries(row).next() else {
-                unmoved.push(row);
-                continue;
-            };
-            if alike[&likeness(row)] == 1 {
-                continue;
-            }
+        for row in alike {
+            let first = ends[row].1;
+            let entries = by_row.column(row).filter(|entry| entry.1 != 0.0);
             // Opposed rows are equal after division by their first entry, except for the sign of that entry.
-            let direction = entries(row).map(|(dof, value)| (dof, (value / first).to_bits())).collect();
+            let direction = entries.map(|(dof, value)| (dof, (value / first).to_bits())).collect();
             directions.entry(direction).or_default()[usize::from(first < 0.0)].push((row, first.abs()));
         }
         let is_opposed = |sides: &Sides| sides.iter().all(|side| !side.is_empty());

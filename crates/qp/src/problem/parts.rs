@@ -25,6 +25,9 @@ impl Parts {
         let roots = &diagonal.roots;
         let mut forest = Forest::new(roots.len());
         for (column, &own) in roots.iter().enumerate() {
+            if forest.is_one_tree() {
+                break;
+            }
             for (row, value) in stiffness.lower().column(column) {
                 if row != column && value.abs() > WEAK_COUPLING * own * roots[row] {
                     forest.join(column, row);
@@ -32,7 +35,7 @@ impl Parts {
             }
         }
         let mut first: Vec<Option<usize>> = vec![None; contact.rows()];
-        for dof in 0..roots.len() {
+        for dof in 0..if forest.is_one_tree() { 0 } else { roots.len() } {
             let bounded = |entry: &(usize, f64)| entry.1 != 0.0 && gap[entry.0].is_finite();
             for (row, _) in contact.column(dof).filter(bounded) {
                 forest.join(*first[row].get_or_insert(dof), dof);
@@ -40,7 +43,9 @@ impl Parts {
         }
         let (of_dof, count) = forest.into_trees();
         let mut of_row = vec![0; contact.rows()];
-        contact.triplets().filter(|entry| entry.2 != 0.0).for_each(|(row, dof, _)| of_row[row] = of_dof[dof]);
+        if count > 1 {
+            contact.triplets().filter(|entry| entry.2 != 0.0).for_each(|(row, dof, _)| of_row[row] = of_dof[dof]);
+        }
         Parts { of_dof, of_row, count }
     }
 

@@ -12,7 +12,7 @@
 //! # Source
 //! The choice of pivots: I. S. Duff, A. M. Erisman, J. K. Reid, *Direct Methods for Sparse Matrices*, Oxford University Press (1986), ch. 7.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 
 use crate::error::Error;
 use crate::linear::multigrid::NearNullSpace;
@@ -35,8 +35,14 @@ const FILL: usize = 4;
 /// Entries that are not worth counting.
 const FEW: usize = 2_000_000;
 
-/// Sparse numbers by their places.
-type Sparse = BTreeMap<usize, Twice>;
+/// Sparse numbers with their places, which increase.
+type Sparse = Vec<(usize, Twice)>;
+
+/// Takes the number at a place out, if there is one.
+fn taken_out(values: &mut Sparse, place: usize) -> Option<Twice> {
+    let found = values.binary_search_by_key(&place, |entry| entry.0);
+    found.ok().map(|found| values.remove(found).1)
+}
 
 /// A sum with the magnitudes of its terms.
 #[derive(Clone, Copy, Debug, Default)]
@@ -51,6 +57,12 @@ impl Sum {
         self.terms += term.rounded().abs();
     }
 
+    /// Adds a multiple of another sum, with the terms of that.
+    fn add_share(&mut self, share: Twice, of: Sum) {
+        self.value = self.value + share * of.value;
+        self.terms += share.rounded().abs() * of.terms;
+    }
+
     /// Zero if the terms cancel.
     fn settled(self) -> Twice {
         self.beyond(CANCELLED)
@@ -59,6 +71,34 @@ impl Sum {
     /// Zero if at most this share of the terms is left.
     fn beyond(self, share: f64) -> Twice {
         if self.value.rounded().abs() > share * self.terms { self.value } else { Twice::ZERO }
+    }
+}
+
+/// Sums by their places, in memory that serves one vector after another.
+#[derive(Default)]
+struct Sums {
+    of_places: Vec<Option<Sum>>,
+    /// The places with a sum, in the order of their first terms.
+    places: Vec<usize>,
+}
+
+impl Sums {
+    /// The sum at a place, which begins with none.
+    fn at(&mut self, place: usize) -> &mut Sum {
+        if place >= self.of_places.len() {
+            self.of_places.resize(place + 1, None);
+        }
+        if self.of_places[place].is_none() {
+            self.places.push(place);
+        }
+        self.of_places[place].get_or_insert_default()
+    }
+
+    /// All sums, in the order of their places; none is left.
+    fn taken(&mut self) -> impl Iterator<Item = (usize, Sum)> + '_ {
+        self.places.sort_unstable();
+        let of_places = &mut self.of_places;
+        self.places.drain(..).map(|place| (place, of_places[place].take().unwrap_or_default()))
     }
 }
 
@@ -73,12 +113,17 @@ struct Pivot {
     weights: Sparse,
 }
 
+/// The largest magnitude.
+fn largest(values: &Sparse) -> f64 {
+    values.iter().map(|entry| entry.1.rounded().abs()).fold(0.0, f64::max)
+}
+
 impl Pivot {
     /// The dof with the least rank among those of large coefficients.
     fn best<R: Ord>(&self, rank: impl Fn(usize) -> R) -> Option<usize> {
-        let largest = self.others.values().map(|a| a.rounded().abs()).fold(0.0, f64::max);
-        let may_be = |entry: &(&usize, &Twice)| entry.1.rounded().abs() >= PIVOT * largest;
-        self.others.iter().filter(may_be).map(|entry| *entry.0).min_by_key(|&dof| rank(dof))
+        let largest = largest(&self.others);
+        let may_be = |entry: &&(usize, Twice)| entry.1.rounded().abs() >= PIVOT * largest;
+        self.others.iter().filter(may_be).map(|entry| entry.0).min_by_key(|&dof| rank(dof))
     }
 }
 
@@ -182,45 +227,33 @@ impl Elimination {
     /// # Errors
     /// As [`ContactProblem::new`].
     pub fn problem(&self, problem: &ContactProblem) -> Result<ContactProblem, Error> {
-        let count = self.dofs.len();
         let (stiffness, load) = (self.stiffness(problem)?, self.load(problem));
-        let mut sums: BTreeMap<(usize, usize), Sum> = BTreeMap::new();
-        let mut gaps: Vec<Sum> = vec![Sum::default(); self.rows.len()];
-        let mut place_of_row = vec![None; problem.rows()];
-        for (place, &row) in self.rows.iter().enumerate() {
-            place_of_row[row] = Some(place);
-            gaps[place].add(problem.gap()[row].into());
-        }
-        for (row, dof, b) in problem.contact().triplets() {
-            let Some(row) = place_of_row[row] else { continue };
-            match self.place[dof] {
-                Ok(place) => sums.entry((row, place)).or_default().add(b.into()),
-                Err(pivot) => {
-                    let Pivot { constant, others, .. } = &self.pivots[pivot];
-                    let add = |(dof, &a): (&usize, &Twice)| {
-                        let place = self.place[*dof].unwrap_or(0);
-                        sums.entry((row, place)).or_default().add(Twice::from(b) * a);
-                    };
-                    others.iter().for_each(add);
-                    gaps[row].add(-(Twice::from(b) * *constant));
+        let (by_row, mut sums) = (problem.contact().transposed(), Sums::default());
+        let (mut entries, mut gap) = (Vec::with_capacity(by_row.entries()), Vec::with_capacity(self.rows.len()));
+        for (number, &row) in self.rows.iter().enumerate() {
+            let mut distance = Sum::default();
+            distance.add(problem.gap()[row].into());
+            for (dof, b) in by_row.column(row) {
+                let b = Twice::from(b);
+                self.staying_for(dof).for_each(|(place, a)| sums.at(place).add(b * a));
+                if let Err(pivot) = self.place[dof] {
+                    distance.add(-(b * self.pivots[pivot].constant));
                 }
             }
+            // What is left within the rounding of the entries of a row is no row of its own.
+            let mut is_empty = true;
+            for (place, sum) in sums.taken() {
+                let value = sum.beyond(FOLLOWS).rounded();
+                is_empty &= value == 0.0;
+                entries.push((number, place, value));
+            }
+            gap.push(match (distance.terms.is_finite(), is_empty) {
+                (false, _) => f64::INFINITY,
+                (true, true) => distance.beyond(FOLLOWS).rounded(),
+                (true, false) => distance.settled().rounded(),
+            });
         }
-        // What is left within the rounding of the entries of a row is no row of its own.
-        let mut is_empty = vec![true; self.rows.len()];
-        let mut entries = Vec::with_capacity(sums.len());
-        for ((row, place), sum) in sums {
-            let value = sum.beyond(FOLLOWS).rounded();
-            is_empty[row] &= value == 0.0;
-            entries.push((row, place, value));
-        }
-        let contact = SparseMatrix::from_triplets(self.rows.len(), count, &entries)?;
-        let gap = |(sum, is_empty): (Sum, bool)| match (sum.terms.is_finite(), is_empty) {
-            (false, _) => f64::INFINITY,
-            (true, true) => sum.beyond(FOLLOWS).rounded(),
-            (true, false) => sum.settled().rounded(),
-        };
-        let gap: Vec<f64> = gaps.into_iter().zip(is_empty).map(gap).collect();
+        let contact = SparseMatrix::from_triplets(self.rows.len(), self.dofs.len(), &entries)?;
         let reduced = ContactProblem::new(stiffness, load, contact, gap)?;
         let Some(modes) = problem.near_null() else { return Ok(reduced) };
         let moves = |mode: &Vec<f64>| mode.iter().any(|&value| value != 0.0);
@@ -230,53 +263,39 @@ impl Elimination {
         }
     }
 
-    /// The dofs that stay on which a dof depends, with their places and coefficients.
-    fn in_staying(&self, dof: usize) -> Vec<(usize, Twice)> {
-        match self.place[dof] {
-            Ok(place) => vec![(place, 1.0.into())],
-            Err(pivot) => {
-                let place = |(other, &a): (&usize, &Twice)| (self.place[*other].unwrap_or(0), a);
-                self.pivots[pivot].others.iter().map(place).collect()
-            }
-        }
+    /// The dofs that stay on which a dof depends, itself if it stays: their places and coefficients, a row of Z.
+    fn staying_for(&self, dof: usize) -> impl Iterator<Item = (usize, Twice)> + '_ {
+        let own = self.place[dof].ok().map(|place| (place, 1.0.into()));
+        let others = self.place[dof].err().map_or(&[][..], |pivot| &self.pivots[pivot].others);
+        own.into_iter().chain(others.iter().map(|&(other, a)| (self.place[other].unwrap_or(0), a)))
     }
 
-    /// `Z'K Z`; entries between dofs that no equality joins stay bit by bit.
+    /// `Z'K Z`, column by column; entries between dofs that no equality joins stay bit by bit.
     fn stiffness(&self, problem: &ContactProblem) -> Result<SymmetricMatrix, Error> {
-        let mut sums: HashMap<(usize, usize), Sum> = HashMap::new();
-        let mut entries = Vec::with_capacity(problem.stiffness().entries());
-        for (row, column, value) in problem.stiffness().lower().triplets() {
-            if let (Ok(row), Ok(column)) = (self.place[row], self.place[column]) {
-                entries.push((row.max(column), row.min(column), value));
-                continue;
-            }
-            let value = Twice::from(value);
-            let [of_row, of_column] = [row, column].map(|dof| self.in_staying(dof));
-            for &(a, of_a) in &of_row {
-                for &(b, of_b) in &of_column {
-                    // An entry beside the diagonal stands for two, which meet where both dofs depend on the same one.
-                    let times = match (row == column, a == b) {
-                        (true, _) if a < b => continue,
-                        (false, true) => 2.0,
-                        _ => 1.0,
-                    };
-                    let term = value * of_a * of_b * times.into();
-                    sums.entry((a.max(b), a.min(b))).or_default().add(term);
-                }
-            }
+        let (lower, upper) = (problem.stiffness().lower(), problem.stiffness().upper());
+        let mut columns: Vec<Sparse> = vec![Sparse::new(); self.dofs.len()];
+        for dof in 0..problem.dofs() {
+            self.staying_for(dof).for_each(|(place, a)| columns[place].push((dof, a)));
         }
-        // One rounding of each sum, with the entry of K itself.
-        for (row, column, value) in &mut entries {
-            if let Some(mut sum) = sums.remove(&(*row, *column)) {
-                sum.add((*value).into());
-                *value = sum.settled().rounded();
+        let (mut forces, mut sums) = (Sums::default(), Sums::default());
+        let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+        for (column, moved) in columns.into_iter().enumerate() {
+            // K z, then Z' times that.
+            for (dof, a) in moved {
+                let above = upper.column(dof).filter(|entry| entry.0 != dof);
+                lower.column(dof).chain(above).for_each(|(row, k)| forces.at(row).add(Twice::from(k) * a));
             }
+            for (dof, force) in forces.taken() {
+                let below = self.staying_for(dof).filter(|entry| entry.0 >= column);
+                below.for_each(|(place, a)| sums.at(place).add_share(a, force));
+            }
+            for (row, sum) in sums.taken() {
+                rows.push(row);
+                values.push(sum.settled().rounded());
+            }
+            starts.push(rows.len());
         }
-        let mut added: Vec<(usize, usize, f64)> =
-            sums.into_iter().map(|((row, column), sum)| (row, column, sum.settled().rounded())).collect();
-        added.sort_unstable_by_key(|entry| (entry.1, entry.0));
-        entries.extend(added);
-        SymmetricMatrix::from_lower(SparseMatrix::from_triplets(self.dofs.len(), self.dofs.len(), &entries)?)
+        SymmetricMatrix::from_lower(SparseMatrix::from_csc(self.dofs.len(), starts, rows, values)?)
     }
 
     /// `Z'(f - K u_0)`.
@@ -293,8 +312,8 @@ impl Elimination {
         }
         let mut load: Vec<Sum> = self.dofs.iter().map(|&dof| forces[dof]).collect();
         for pivot in &self.pivots {
-            for (dof, &a) in &pivot.others {
-                load[self.place[*dof].unwrap_or(0)].add(a * forces[pivot.dof].value);
+            for &(dof, a) in &pivot.others {
+                load[self.place[dof].unwrap_or(0)].add(a * forces[pivot.dof].value);
             }
         }
         load.into_iter().map(|sum| sum.settled().rounded()).collect()
@@ -313,7 +332,7 @@ impl Elimination {
     /// The displacement of all dofs, length n, from that of those that stay.
     fn displacement(&self, y: &[f64]) -> Vec<f64> {
         let given = |pivot: &Pivot| {
-            let of = |(dof, &a): (&usize, &Twice)| a * y[self.place[*dof].unwrap_or(0)].into();
+            let of = |&(dof, a): &(usize, Twice)| a * y[self.place[dof].unwrap_or(0)].into();
             pivot.others.iter().map(of).fold(pivot.constant, |sum, term| sum + term).rounded()
         };
         let value = |place: &Result<usize, usize>| match *place {
@@ -327,8 +346,8 @@ impl Elimination {
     fn balancing(&self, force: &[f64]) -> Vec<f64> {
         let mut multipliers = vec![Twice::ZERO; self.equalities.len()];
         for pivot in &self.pivots {
-            for (number, &weight) in &pivot.weights {
-                multipliers[*number] = multipliers[*number] + weight * force[pivot.dof].into();
+            for &(number, weight) in &pivot.weights {
+                multipliers[number] = multipliers[number] + weight * force[pivot.dof].into();
             }
         }
         multipliers.into_iter().map(Twice::rounded).collect()
@@ -372,7 +391,7 @@ impl Elimination {
 
 /// The rows of the pairs, each on the side of its weight, with their magnitudes.
 fn signed(equalities: &[Equality], weights: &Sparse) -> (Vec<usize>, Vec<f64>) {
-    let of = |(&number, weight): (&usize, &Twice)| {
+    let of = |&(number, weight): &(usize, Twice)| {
         let Equality { row, opposed, ratio } = equalities[number];
         let weight = weight.rounded();
         if weight >= 0.0 { (row, weight) } else { (opposed, -weight / ratio) }
@@ -398,32 +417,33 @@ struct Found {
     by_dof: HashMap<usize, usize>,
     /// The pivots that depend on a dof that stays.
     depending: HashMap<usize, Vec<usize>>,
+    sums: Sums,
 }
 
 impl Found {
     /// The equality `entries u = right` of a number with the pivots put in; it follows from them if less than this share of it is left.
-    fn reduced(&self, entries: &Sparse, right: Twice, (number, follows): (usize, f64)) -> Reduced {
-        let mut sums: BTreeMap<usize, Sum> = BTreeMap::new();
-        let mut weights: BTreeMap<usize, Sum> = BTreeMap::new();
+    fn reduced(&mut self, entries: &Sparse, right: Twice, (number, follows): (usize, f64)) -> Reduced {
+        let Found { pivots, by_dof, sums, .. } = self;
+        let in_pivots: Vec<(&Pivot, Twice)> =
+            entries.iter().filter_map(|&(dof, b)| Some((&pivots[*by_dof.get(&dof)?], b))).collect();
         let mut constant = Sum::default();
         constant.add(-right);
-        weights.entry(number).or_default().add(1.0.into());
-        for (dof, &b) in entries {
-            let Some(&pivot) = self.by_dof.get(dof) else {
-                sums.entry(*dof).or_default().add(b);
-                continue;
-            };
-            let pivot = &self.pivots[pivot];
-            pivot.others.iter().for_each(|(dof, &a)| sums.entry(*dof).or_default().add(b * a));
+        sums.at(number).add(1.0.into());
+        for &(pivot, b) in &in_pivots {
             constant.add(b * pivot.constant);
             // The row of a pivot is `u_dof - others = constant`.
-            pivot.weights.iter().for_each(|(number, &weight)| weights.entry(*number).or_default().add(-(b * weight)));
+            pivot.weights.iter().for_each(|&(number, weight)| sums.at(number).add(-(b * weight)));
         }
-        let terms = sums.values().map(|sum| sum.terms).fold(0.0, f64::max);
-        let weights: Sparse = weights.into_iter().map(|(number, sum)| (number, sum.settled())).collect();
-        let others: Sparse = sums.into_iter().map(|(dof, sum)| (dof, sum.settled())).collect();
-        let others: Sparse = others.into_iter().filter(|entry| entry.1 != Twice::ZERO).collect();
-        let largest = others.values().map(|a| a.rounded().abs()).fold(0.0, f64::max);
+        let weights: Sparse = sums.taken().map(|(number, sum)| (number, sum.settled())).collect();
+        let stays = entries.iter().filter(|entry| !by_dof.contains_key(&entry.0));
+        stays.for_each(|&(dof, b)| sums.at(dof).add(b));
+        for &(pivot, b) in &in_pivots {
+            pivot.others.iter().for_each(|&(dof, a)| sums.at(dof).add(b * a));
+        }
+        let of_dofs: Vec<(usize, Sum)> = sums.taken().collect();
+        let terms = of_dofs.iter().map(|entry| entry.1.terms).fold(0.0, f64::max);
+        let settled = of_dofs.into_iter().map(|(dof, sum)| (dof, sum.settled()));
+        let others: Sparse = settled.filter(|entry| entry.1 != Twice::ZERO).collect();
         let (left, size) = (constant.settled(), constant.terms);
         match (others.is_empty(), left == Twice::ZERO) {
             (true, true) => Reduced::Follows,
@@ -433,7 +453,7 @@ impl Found {
                     weights.into_iter().map(|(number, weight)| (number, weight * sign.into())).collect(),
                 )
             }
-            _ if largest > follows * terms => Reduced::Row(Pivot { dof: 0, constant: left, others, weights }),
+            _ if largest(&others) > follows * terms => Reduced::Row(Pivot { dof: 0, constant: left, others, weights }),
             // The entries are rounded, and so is the right-hand side.
             _ if left.rounded().abs() <= follows * size => Reduced::Follows,
             _ => Reduced::Unclear,
@@ -443,32 +463,30 @@ impl Found {
     /// Solves a row for one of its dofs, and puts it into the pivots before.
     fn solve_for(&mut self, dof: usize, row: Pivot) {
         let Pivot { constant, mut others, weights, .. } = row;
-        let Some(own) = others.remove(&dof) else { return };
+        let Some(own) = taken_out(&mut others, dof) else { return };
         let divided =
             |values: Sparse, by: Twice| -> Sparse { values.into_iter().map(|(at, a)| (at, a / by)).collect() };
         let pivot =
             Pivot { dof, constant: -(constant / own), others: divided(others, -own), weights: divided(weights, own) };
         let number = self.pivots.len();
-        for before in self.depending.remove(&dof).unwrap_or_default() {
-            let earlier = &mut self.pivots[before];
-            let Some(share) = earlier.others.remove(&dof) else { continue };
-            for (other, &a) in &pivot.others {
-                let before_it = earlier.others.get(other);
-                if before_it.is_none() {
-                    self.depending.entry(*other).or_default().push(before);
+        let Found { pivots, depending, sums, .. } = self;
+        for before in depending.remove(&dof).unwrap_or_default() {
+            let earlier = &mut pivots[before];
+            let Some(share) = taken_out(&mut earlier.others, dof) else { continue };
+            earlier.others.iter().for_each(|&(other, a)| sums.at(other).add(a));
+            for &(other, a) in &pivot.others {
+                if sums.of_places.get(other).is_none_or(Option::is_none) {
+                    depending.entry(other).or_default().push(before);
                 }
-                let mut sum = Sum::default();
-                sum.add(before_it.copied().unwrap_or_default());
-                sum.add(share * a);
-                earlier.others.insert(*other, sum.settled());
+                sums.at(other).add(share * a);
             }
+            earlier.others = sums.taken().map(|(other, sum)| (other, sum.settled())).collect();
             earlier.constant = earlier.constant + share * pivot.constant;
-            for (equality, &weight) in &pivot.weights {
-                let sum = earlier.weights.entry(*equality).or_insert(Twice::ZERO);
-                *sum = *sum + share * weight;
-            }
+            earlier.weights.iter().for_each(|&(equality, weight)| sums.at(equality).add(weight));
+            pivot.weights.iter().for_each(|&(equality, weight)| sums.at(equality).add(share * weight));
+            earlier.weights = sums.taken().map(|(equality, sum)| (equality, sum.value)).collect();
         }
-        pivot.others.keys().for_each(|other| self.depending.entry(*other).or_default().push(number));
+        pivot.others.iter().for_each(|&(other, _)| depending.entry(other).or_default().push(number));
         self.by_dof.insert(dof, number);
         self.pivots.push(pivot);
     }
