@@ -158,7 +158,7 @@ pub fn solve_many<'py>(
     let condense = Some(true);
     let options =
         Options { method, accuracy, tolerance, time, threads, proof: Some(proof), condense, ..Options::default() };
-    let settings = options.settings(None)?;
+    let settings = options.settings_for(Some(dofs * (dofs + 1) / 2))?;
     let family = Family { dofs, rows, stiffness, load, contact, gap, shared };
     let work = move |watch: &Watch| {
         each_of_many(count, &settings.watched(watch), |number, settings| {

@@ -318,7 +318,9 @@ fn of_table(name: &str, table: &Bound<'_, PyAny>) -> PyResult<SparseMatrix> {
 
 /// The matrix of this shape with these values, row by row; zeros are left out.
 pub fn by_columns(values: &[f64], [rows, columns]: [usize; 2]) -> Result<SparseMatrix, Error> {
-    let (mut starts, mut of_entries, mut kept) = (vec![0], Vec::new(), Vec::new());
+    let mut starts = Vec::with_capacity(columns + 1);
+    let (mut of_entries, mut kept) = (Vec::with_capacity(values.len()), Vec::with_capacity(values.len()));
+    starts.push(0);
     for column in 0..columns {
         let in_column = values.iter().skip(column).step_by(columns).enumerate().filter(|entry| *entry.1 != 0.0);
         for (row, &value) in in_column {
@@ -332,7 +334,9 @@ pub fn by_columns(values: &[f64], [rows, columns]: [usize; 2]) -> Result<SparseM
 
 /// The symmetric matrix with these rows, both triangles; zeros are left out.
 pub fn symmetric(values: &[f64], dim: usize) -> Result<SymmetricMatrix, Error> {
-    let (mut starts, mut of_entries, mut kept) = (vec![0], Vec::new(), Vec::new());
+    let mut starts = Vec::with_capacity(dim + 1);
+    let (mut of_entries, mut kept) = (Vec::with_capacity(values.len()), Vec::with_capacity(values.len()));
+    starts.push(0);
     for row in values.chunks(dim.max(1)) {
         for (column, &value) in row.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
             of_entries.push(column);

@@ -60,6 +60,11 @@ impl Options<'_> {
     /// Returns the settings. The defaults are those of the program: rows are proven, and all available memory may be
     /// used.
     pub fn settings(&self, problem: Option<&ContactProblem>) -> PyResult<Settings> {
+        self.settings_for(problem.map(|problem| problem.stiffness().lower().entries()))
+    }
+
+    /// The same for a stiffness with this number of entries in its lower triangle.
+    pub fn settings_for(&self, entries: Option<usize>) -> PyResult<Settings> {
         let mut settings = Settings::default().with_proof();
         if let Some(method) = &self.method {
             settings.method = word("method", method, &METHODS)?;
@@ -92,7 +97,7 @@ impl Options<'_> {
         settings.prove = self.proof != Some(false);
         match &self.memory {
             Some(memory) => settings.memory = Some(number("memory", memory)?),
-            None if problem.is_some_and(|problem| problem.stiffness().lower().entries() < FEW_ENTRIES) => {}
+            None if entries.is_some_and(|entries| entries < FEW_ENTRIES) => {}
             None => settings = settings.with_available_memory(),
         }
         Ok(settings)
