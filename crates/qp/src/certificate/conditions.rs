@@ -51,6 +51,8 @@ pub(crate) struct Evidence {
     pub(super) error: f64,
     /// Numbers that cycles have measured, if the bound comes from cycles.
     pub(super) measured: Option<Measured>,
+    /// The norm of a factor that was made for the certificate, if it is that of K itself.
+    pub(super) norm: Option<EnergyNorm>,
 }
 
 fn worst(values: impl IntoIterator<Item = f64>) -> f64 {
@@ -107,8 +109,14 @@ impl ContactProblem {
             return Ok(self.recomputed(by, displacement, multiplier));
         }
         let (two_sided, of_rows) = self.two_sided(multiplier);
-        let norm = two_sided.energy_norm(displacement, &of_rows)?;
-        Ok(self.recomputed(&norm.map_or(Bounding::Nothing, Bounding::Factor), displacement, multiplier))
+        let Some(norm) = two_sided.energy_norm(displacement, &of_rows)? else {
+            return Ok(self.recomputed(&Bounding::Nothing, displacement, multiplier));
+        };
+        let mut examined = self.recomputed(&Bounding::Factor(norm.clone()), displacement, multiplier);
+        if let Some(evidence) = examined.evidence.as_mut().filter(|_| norm.is_of_stiffness_alone()) {
+            evidence.norm = Some(norm);
+        }
+        Ok(examined)
     }
 
     /// The scales of a displacement, without forces.
@@ -195,7 +203,7 @@ impl ContactProblem {
         certificate.cancellation = self.cancellation(&forces, &elastic, part);
         let Answer { residual, violation, .. } = answer;
         let has_bound = !matches!(bounding, Bounding::Nothing);
-        let evidence = has_bound.then_some(Evidence { residual, violation, error: bound.whole, measured });
+        let evidence = has_bound.then_some(Evidence { residual, violation, error: bound.whole, measured, norm: None });
         Examined { certificate, evidence, may_rest: scales.may_rest(&bound) }
     }
 
@@ -263,7 +271,8 @@ impl ContactProblem {
         for (dof, &load) in self.load.iter().enumerate() {
             sums.add_product(dof, load, -1.0);
             for lambda in multipliers {
-                self.contact.column(dof).for_each(|(row, b)| sums.add_product(dof, b, -lambda[row]));
+                let pressed = self.contact.column(dof).filter(|entry| lambda[entry.0] != 0.0);
+                pressed.for_each(|(row, b)| sums.add_product(dof, b, -lambda[row]));
             }
         }
         Balance { residual: sums.sums().map(|sum| -sum).collect(), elastic, strain, terms }

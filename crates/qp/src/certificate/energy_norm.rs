@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::springs::Springs;
 use crate::error::Error;
 use crate::linear::{
-    Analysis, Cholesky, Compliance, Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, generic,
-    if_definite, ldexp,
+    Analysis, Cholesky, Compliance, Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, exponent,
+    generic, if_definite, ldexp,
 };
 use crate::watch::Watch;
 
@@ -43,6 +43,8 @@ pub(crate) struct EnergyNorm {
     pub(super) equilibration: Equilibration,
     /// The contact boundary, if it is known.
     pub(super) boundary: Option<Arc<Boundary>>,
+    /// Rows whose compliance the method knows.
+    pub(super) known: Option<Arc<Known>>,
     /// Factor by which a bound in this norm is multiplied, because the factor is not exactly that of K.
     pub(super) widening: f64,
     /// The springs that made a singular K definite.
@@ -69,6 +71,38 @@ pub(super) struct Boundary {
     pub dofs: Vec<usize>,
     /// L_tt, t x t.
     pub block: LowerTriangle,
+}
+
+/// Rows on the contact boundary, normalised by powers of two.
+#[derive(Clone, Debug)]
+pub(super) struct RowsOnBoundary {
+    /// Each row, a column: the coefficients times D, by places on the boundary; the largest is near one.
+    pub by_row: SparseMatrix,
+    /// Exponent by which each row was multiplied.
+    pub shift: Vec<i32>,
+    /// Their compliance, if the method knows it.
+    pub compliance: Option<Arc<Compliance>>,
+}
+
+impl RowsOnBoundary {
+    /// Normalises rows, each a column.
+    pub fn of(by_row: &SparseMatrix) -> Self {
+        let entries = |row: usize| by_row.column(row).map(|entry| entry.1);
+        let largest = |row: usize| entries(row).fold(0.0, |largest: f64, b| largest.max(b.abs()));
+        let shift: Vec<i32> = (0..by_row.columns()).map(|row| -exponent(largest(row))).collect();
+        let values = (0..by_row.columns()).flat_map(|row| {
+            let shift = shift[row];
+            entries(row).map(move |b| ldexp(b, shift))
+        });
+        RowsOnBoundary { by_row: by_row.with_values(values.collect()), shift, compliance: None }
+    }
+}
+
+/// The rows of a contact matrix, as a method has them.
+#[derive(Debug)]
+pub(super) struct Known {
+    contact: SparseMatrix,
+    rows: RowsOnBoundary,
 }
 
 impl EnergyNorm {
@@ -104,12 +138,24 @@ impl EnergyNorm {
         let worth = !last.is_empty() && values <= FEW_VALUES.max(cholesky.entries());
         let boundary = worth.then(|| Arc::new(Boundary { block: cholesky.trailing_block(), dofs: last }));
         let watch = Watch::default();
-        EnergyNorm { cholesky, equilibration, boundary, widening: 1.0, springs: None, loose: None, watch }
+        EnergyNorm { cholesky, equilibration, boundary, known: None, widening: 1.0, springs: None, loose: None, watch }
     }
 
-    /// The compliance of scaled rows by this factor, if it serves balances of forces.
-    pub fn compliance(&self, contact: &SparseMatrix) -> Option<Compliance> {
-        Compliance::of(&self.cholesky, contact)
+    /// The same norm with the compliance of the rows `contact`, if it serves balances of forces: the rows are `scaled` by D and by powers
+    /// of two with the exponents `shift`.
+    pub fn with_rows(self, contact: &SparseMatrix, scaled: &SparseMatrix, shift: &[i32]) -> Self {
+        let last = self.boundary.as_ref().map_or(&[][..], |boundary| &boundary.dofs);
+        let known = Compliance::of(&self.cholesky, last, scaled).map(|compliance| {
+            let (by_row, shift) = (compliance.by_row().clone(), shift.to_vec());
+            let rows = RowsOnBoundary { by_row, shift, compliance: Some(Arc::new(compliance)) };
+            Arc::new(Known { contact: contact.clone(), rows })
+        });
+        EnergyNorm { known, ..self }
+    }
+
+    /// The compliance of the scaled rows, if it serves balances of forces.
+    pub fn compliance(&self) -> Option<&Compliance> {
+        self.known.as_ref()?.rows.compliance.as_deref()
     }
 
     /// The energy norm of the equilibrated stiffness itself.
@@ -120,6 +166,11 @@ impl EnergyNorm {
     /// The same norm, with bounds that are cut short when `watch` says so: then a weaker bound, or none, is left.
     pub fn watched(&self, watch: &Watch) -> Self {
         EnergyNorm { watch: watch.clone(), ..self.clone() }
+    }
+
+    /// Returns `true` if no spring and no stiffness on a loose dof was added.
+    pub(super) fn is_of_stiffness_alone(&self) -> bool {
+        self.springs.is_none() && self.loose.is_none()
     }
 
     /// Returns `true` if the time for a bound is over.
@@ -223,26 +274,26 @@ impl EnergyNorm {
         ldexp(square, self.equilibration.factor).sqrt()
     }
 
-    /// The entries of each row of `contact` that `counts`, on the boundary: place among its dofs, coefficient times D; `None`
-    /// if the boundary is not known, or if such a row reaches beyond it.
+    /// The rows of `contact` that `counts`, on the boundary, and no entry of the others; `None` if the boundary is not known, or if such
+    /// a row reaches beyond it.
     pub(super) fn rows_on_boundary(
         &self,
         contact: &SparseMatrix,
         counts: impl Fn(usize) -> bool,
-    ) -> Option<Vec<Vec<(usize, f64)>>> {
-        let is_entry = |entry: &(usize, f64)| entry.1 != 0.0 && counts(entry.0);
+    ) -> Option<RowsOnBoundary> {
         let dofs = &self.boundary.as_ref()?.dofs;
-        let rows = self.rows_at(dofs, contact, is_entry);
-        if dofs.len() == contact.columns() {
-            return Some(rows);
+        if let Some(known) = self.known.as_ref().filter(|known| known.contact.is_shared_with(contact)) {
+            return Some(known.rows.clone());
         }
-        let count: usize = rows.iter().map(Vec::len).sum();
-        let whole = (0..contact.columns()).flat_map(|dof| contact.column(dof)).filter(is_entry).count();
-        (count == whole).then_some(rows)
+        let is_entry = |entry: &(usize, f64)| entry.1 != 0.0 && counts(entry.0);
+        let rows = self.rows_at(dofs, contact, is_entry);
+        let is_whole = dofs.len() == contact.columns()
+            || rows.entries() == (0..contact.columns()).flat_map(|dof| contact.column(dof)).filter(is_entry).count();
+        is_whole.then(|| RowsOnBoundary::of(&rows))
     }
 
-    /// The entries of each row of `contact` in the whole body: dof, coefficient times D.
-    pub(super) fn rows_in_body(&self, contact: &SparseMatrix) -> Vec<Vec<(usize, f64)>> {
+    /// The rows of `contact` in the whole body, each a column: dof, coefficient times D.
+    pub(super) fn rows_in_body(&self, contact: &SparseMatrix) -> SparseMatrix {
         self.rows_at(&(0..contact.columns()).collect::<Vec<_>>(), contact, |entry| entry.1 != 0.0)
     }
 
@@ -251,16 +302,21 @@ impl EnergyNorm {
         dofs: &[usize],
         contact: &SparseMatrix,
         is_entry: impl Fn(&(usize, f64)) -> bool,
-    ) -> Vec<Vec<(usize, f64)>> {
-        let mut lengths = vec![0; contact.rows()];
-        contact.row_indices().iter().for_each(|&row| lengths[row as usize] += 1);
-        let mut rows: Vec<_> = lengths.into_iter().map(Vec::with_capacity).collect();
-        for (place, &dof) in dofs.iter().enumerate() {
-            for (row, value) in contact.column(dof).filter(&is_entry) {
-                rows[row].push((place, ldexp(value, self.equilibration.diagonal[dof])));
-            }
+    ) -> SparseMatrix {
+        let entries = || {
+            let of_dof = |(place, &dof): (usize, &usize)| contact.column(dof).map(move |(row, b)| (place, dof, row, b));
+            dofs.iter().enumerate().flat_map(of_dof).filter(|&(.., row, b)| is_entry(&(row, b)))
+        };
+        let mut starts = vec![0; contact.rows() + 1];
+        entries().for_each(|(.., row, _)| starts[row + 1] += 1);
+        (0..contact.rows()).for_each(|row| starts[row + 1] += starts[row]);
+        let (mut next, count) = (starts.clone(), starts[contact.rows()]);
+        let (mut places, mut values) = (vec![0; count], vec![0.0; count]);
+        for (place, dof, row, b) in entries() {
+            (places[next[row]], values[next[row]]) = (place as u32, ldexp(b, self.equilibration.diagonal[dof]));
+            next[row] += 1;
         }
-        rows
+        SparseMatrix::from_parts(dofs.len(), starts, places, values)
     }
 
     fn scaled(&self, force: &[f64]) -> Vec<f64> {

@@ -10,11 +10,13 @@
 use super::EnergyNorm;
 use super::bound::Answer;
 use super::conditions::{Bounding, Evidence};
-use super::energy_norm::{Boundary, ROUNDED_BOUND};
+use super::energy_norm::{Boundary, ROUNDED_BOUND, RowsOnBoundary};
 use super::units::ldexp_root;
 use crate::error::Error;
 use crate::linear::multigrid::Multigrid;
-use crate::linear::{Dependence, SparseMatrix, dot, forward_all, inverse_lengths, inverse_lengths_by_products};
+use crate::linear::{
+    Dependence, SparseMatrix, dot, forward_all, inverse_lengths, inverse_lengths_by_products, ldexp, products,
+};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, ProvenSet};
 use crate::watch::Watch;
@@ -57,8 +59,18 @@ impl ContactProblem {
     pub fn prove(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Option<ProvenSet>, Error> {
         let multiplier = &*self.of_all_rows(multiplier);
         self.check_answer(displacement, multiplier)?;
-        let norm = EnergyNorm::of(&self.stiffness, &self.contact)?;
-        let answer = WithEvidence { displacement, multiplier, evidence: None };
+        self.prove_alone(WithEvidence { displacement, multiplier, evidence: None })
+    }
+
+    /// The same for vectors that fit, with the factor of the certificate that gave the evidence, or with one of its own.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::certify`].
+    pub(crate) fn prove_alone(&self, mut answer: WithEvidence) -> Result<Option<ProvenSet>, Error> {
+        let norm = match answer.evidence.as_mut().and_then(|evidence| evidence.norm.take()) {
+            Some(norm) => Some(norm),
+            None => EnergyNorm::of(&self.stiffness, &self.contact)?,
+        };
         Ok(norm.and_then(|norm| self.prove_by(&Bounding::Factor(norm), answer)))
     }
 
@@ -132,7 +144,7 @@ impl ContactProblem {
         if multigrid.is_shifted() || !self.without_stiffness().is_empty() {
             return None;
         }
-        let Evidence { residual, violation, error, measured } = evidence?.bounded()?;
+        let Evidence { residual, violation, error, measured, .. } = evidence?.bounded()?;
         let answer = Answer { displacement, multiplier, residual, violation, rounding: 0.0 };
         let stiffness = multigrid.preconditioning(&self.stiffness);
         let reach = self.monotone_reach(|s| stiffness.solve(s, ROUGH, MOST_CYCLES).ok().map(|found| found.solution));
@@ -204,8 +216,8 @@ struct Unbalanced {
 /// The columns of `L^-1 B'`; their products are the compliance of the rows.
 pub(super) struct ComplianceFactor<'a> {
     norm: &'a EnergyNorm,
-    /// The entries of each row, in the dofs that are swept: on the boundary, or in the whole body.
-    rows: Vec<Vec<(usize, f64)>>,
+    /// The rows in the dofs that are swept: on the boundary, or in the whole body.
+    rows: RowsOnBoundary,
     /// The boundary, if all rows are on it.
     boundary: Option<&'a Boundary>,
 }
@@ -214,7 +226,10 @@ impl<'a> ComplianceFactor<'a> {
     pub(super) fn of(problem: &ContactProblem, norm: &'a EnergyNorm) -> Self {
         match norm.rows_on_boundary(&problem.contact, |_| true) {
             Some(rows) => ComplianceFactor { norm, rows, boundary: norm.boundary.as_deref() },
-            None => ComplianceFactor { norm, rows: norm.rows_in_body(&problem.contact), boundary: None },
+            None => {
+                let rows = RowsOnBoundary::of(&norm.rows_in_body(&problem.contact));
+                ComplianceFactor { norm, rows, boundary: None }
+            }
         }
     }
 
@@ -225,29 +240,37 @@ impl<'a> ComplianceFactor<'a> {
 
     fn column(&self, row: usize) -> Vec<f64> {
         let mut column = vec![0.0; self.length()];
-        self.rows[row].iter().for_each(|&(place, b)| column[place] += b);
+        self.rows.by_row.column(row).for_each(|(place, b)| column[place] = b);
         match self.boundary {
             Some(boundary) => boundary.block.forward(column),
             None => self.norm.cholesky.forward(&column),
         }
     }
 
-    /// The columns of these rows, swept at once; `None` if there is no time, or without a boundary.
-    fn columns(&self, rows: &[usize]) -> Option<Vec<Vec<f64>>> {
+    /// The lower triangle of the products of the columns of these rows, column by column; `None` if there is no time, or without a
+    /// boundary.
+    fn products(&self, rows: &[usize]) -> Option<Vec<f64>> {
+        let count = rows.len();
+        if let Some(compliance) = &self.rows.compliance {
+            let of_column = |j: usize| {
+                rows.iter().enumerate().map(move |(i, &row)| if i < j { 0.0 } else { compliance.product(row, rows[j]) })
+            };
+            return Some((0..count).flat_map(of_column).collect());
+        }
         let block = &self.boundary?.block;
         let size = block.size();
-        let mut columns = Vec::with_capacity(rows.len());
+        let mut columns = Vec::with_capacity(count * size);
         for some in rows.chunks(AT_ONCE) {
             if self.norm.is_over() {
                 return None;
             }
             let mut forces = vec![0.0; some.len() * size];
             for (column, &row) in forces.chunks_mut(size.max(1)).zip(some) {
-                self.rows[row].iter().for_each(|&(place, b)| column[place] += b);
+                self.rows.by_row.column(row).for_each(|(place, b)| column[place] = b);
             }
-            columns.extend(forward_all(block, forces).chunks(size.max(1)).map(<[f64]>::to_vec));
+            columns.append(&mut forward_all(block, forces));
         }
-        Some(columns)
+        Some(products(size, &columns))
     }
 
     /// `sqrt(G_ii)`: the distance by which a displacement of unit energy norm moves the row.
@@ -255,16 +278,25 @@ impl<'a> ComplianceFactor<'a> {
         if self.norm.is_over() {
             return f64::INFINITY;
         }
-        let column = self.column(row);
-        self.norm.length(dot(&column, &column))
+        let square = match &self.rows.compliance {
+            Some(compliance) => compliance.product(row, row),
+            None => {
+                let column = self.column(row);
+                dot(&column, &column)
+            }
+        };
+        ldexp(self.norm.length(square), -self.rows.shift[row])
     }
 
-    /// Upper bounds on the reach of all rows by one sweep, if the contact boundary is known: the length of a column is at most
-    /// the sum of its magnitudes.
+    /// The reach of all rows, if their compliance is known; otherwise upper bounds by one sweep, if the contact boundary is known: the
+    /// length of a column is at most the sum of its magnitudes.
     fn reach_at_once(&self) -> Option<Vec<f64>> {
-        let sums = self.boundary?.block.sums_of_inverse();
-        let of_row = |row: &Vec<(usize, f64)>| row.iter().map(|&(place, b)| b.abs() * sums[place]).sum::<f64>();
-        Some(self.rows.iter().map(|row| self.norm.length(of_row(row).powi(2))).collect())
+        let all = 0..self.rows.shift.len();
+        if self.rows.compliance.is_some() {
+            return Some(all.map(|row| self.reach(row)).collect());
+        }
+        let sums = self.rows.by_row.mul_abs_transposed(&self.boundary?.block.sums_of_inverse());
+        Some(all.map(|row| ldexp(self.norm.length(sums[row].powi(2)), -self.rows.shift[row])).collect())
     }
 
     /// Multiplications of one sweep.
@@ -283,12 +315,13 @@ impl<'a> ComplianceFactor<'a> {
     /// `sqrt((G_CC^-1)_ii)` of the rows C of `contact`; infinite for those that take part in a dependence.
     fn moved_together(&self, contact: &SparseMatrix, rows: &[usize]) -> Vec<f64> {
         let none = || vec![f64::INFINITY; rows.len()];
-        let of_reciprocal = |reciprocal: f64| ldexp_root(reciprocal, -self.norm.equilibration.factor, 0);
+        let of_reciprocal =
+            |row: usize, reciprocal: f64| ldexp_root(reciprocal, -self.norm.equilibration.factor, self.rows.shift[row]);
         if self.norm.is_sharp()
-            && let Some(columns) = self.columns(rows)
-            && let Some(reciprocals) = inverse_lengths_by_products(&columns)
+            && let Some(products) = self.products(rows)
+            && let Some(reciprocals) = inverse_lengths_by_products(rows.len(), products)
         {
-            return reciprocals.into_iter().map(of_reciprocal).collect();
+            return rows.iter().zip(reciprocals).map(|(&row, reciprocal)| of_reciprocal(row, reciprocal)).collect();
         }
         let Some(Dependence { independent, takes_part }) = Dependence::of(contact, rows, || self.norm.is_over()) else {
             return none();
@@ -299,7 +332,7 @@ impl<'a> ComplianceFactor<'a> {
         let Some(reciprocals) = inverse_lengths(columns, || self.norm.is_over()) else { return none() };
         let mut lengths = none();
         for (&index, reciprocal) in basis.iter().zip(reciprocals).filter(|entry| !takes_part[*entry.0]) {
-            lengths[index] = of_reciprocal(reciprocal);
+            lengths[index] = of_reciprocal(rows[index], reciprocal);
         }
         lengths
     }
@@ -337,6 +370,31 @@ mod tests {
         for (open, balance) in [([false, true], 0.0), ([false, false], 1.0)] {
             let left = problem.unbalanced(&answer, &open.into_iter().collect());
             assert_eq!((left.is_residual, &left.force[..]), (!open[1], &[balance][..]));
+        }
+    }
+
+    #[test]
+    fn the_compliance_that_a_method_knows_gives_the_reach_and_the_shifts_that_sweeps_give() {
+        // A dense K of twelve dofs with sizes from 1/8 to 8, and four dense rows of sizes from 1 to 1/512.
+        let (dofs, size) = (12, |dof: usize| 2.0_f64.powi(dof as i32 % 7 - 3));
+        let coupling = |i: usize, j: usize| if i == j { 4.0 } else { 1.0 / (1.0 + (i - j) as f64) };
+        let lower = (0..dofs).flat_map(|j| (j..dofs).map(move |i| (i, j)));
+        let entries: Vec<_> = lower.map(|(i, j)| (i, j, coupling(i, j) * size(i) * size(j))).collect();
+        let of_row =
+            |row: usize, dof: usize| (1.0 + ((row + 2) * (dof + 1) % 5) as f64) * size(dof) / 8.0_f64.powi(row as i32);
+        let rows: Vec<_> = (0..4).flat_map(|row| (0..dofs).map(move |dof| (row, dof, of_row(row, dof)))).collect();
+        let problem = ContactProblem::of_entries(&entries, &vec![1.0; dofs], &rows, &[1.0; 4]);
+        let alone = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
+        let RowsOnBoundary { by_row, shift, .. } = alone.rows_on_boundary(problem.contact(), |_| true).unwrap();
+        let known = alone.clone().with_rows(problem.contact(), &by_row.transposed(), &shift);
+        let [alone, known] = [&alone, &known].map(|norm| ComplianceFactor::of(&problem, norm));
+        assert!(known.rows.compliance.is_some() && alone.rows.compliance.is_none());
+        let all: Vec<usize> = (0..4).collect();
+        let lengths = [&alone, &known].map(|of| of.moved_together(problem.contact(), &all));
+        let reach = known.reach_at_once().unwrap();
+        for row in all {
+            assert!((reach[row] / alone.reach(row) - 1.0).abs() < 1e-14, "{row}: {reach:?}");
+            assert!((lengths[1][row] / lengths[0][row] - 1.0).abs() < 1e-12, "{row}: {lengths:?}");
         }
     }
 

@@ -97,7 +97,7 @@ impl ContactProblem {
     pub(super) fn least_reach(&self) -> Vec<f64> {
         let (roots, mut least) = (&self.diagonal().roots, vec![0.0_f64; self.rows()]);
         for (dof, &root) in roots.iter().enumerate().filter(|entry| *entry.1 > 0.0) {
-            self.contact().column(dof).for_each(|(row, b)| least[row] = least[row].max(b.abs() / root));
+            self.contact().with_rows(dof, &mut least, |least, b| *least = least.max(b.abs() / root));
         }
         least
     }
@@ -106,8 +106,11 @@ impl ContactProblem {
     pub(super) fn compliance_of_rows(&self, of_entry: impl Fn(f64, f64) -> f64) -> Vec<f64> {
         let mut compliance = vec![0.0; self.rows()];
         for (dof, &stiffness) in self.diagonal().values.iter().enumerate() {
-            let entries = self.contact().column(dof).filter(|entry| entry.1 != 0.0);
-            entries.for_each(|(row, b)| compliance[row] += of_entry(b * b, stiffness));
+            self.contact().with_rows(dof, &mut compliance, |sum, b| {
+                if b != 0.0 {
+                    *sum += of_entry(b * b, stiffness);
+                }
+            });
         }
         compliance
     }
@@ -125,7 +128,8 @@ impl ContactProblem {
         let inverse = if one_by_one { None } else { norm.cholesky.selected_inverse() };
         let inverse = inverse.map(|inverse| (inverse, norm.rows_in_body(self.contact())));
         let reach = |row: usize| {
-            let square = inverse.as_ref().and_then(|(inverse, entries)| inverse.product(&entries[row]));
+            let square =
+                inverse.as_ref().and_then(|(inverse, by_row)| inverse.product(&by_row.column(row).collect::<Vec<_>>()));
             let of_square = |square: f64| norm.length(norm.rounding() * square.max(0.0));
             square.map_or_else(|| compliance.reach(row), of_square)
         };

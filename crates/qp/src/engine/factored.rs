@@ -9,7 +9,7 @@ use super::step::ScaledStep;
 use crate::certificate::{Bounding, EnergyNorm};
 use crate::cost::{bytes, check_time, seconds};
 use crate::error::Error;
-use crate::linear::{Augmented, Compliance, Equilibration, dot, ldexp};
+use crate::linear::{Augmented, Equilibration, dot, ldexp};
 use crate::method::{Ending, Outcome, ScaledProblem, active_set};
 use crate::plan::{Means, Step, Tried, Way};
 use crate::problem::ContactProblem;
@@ -29,8 +29,6 @@ pub(crate) struct Factored {
     /// The smallest pivot of the scaled stiffness, if it is below [`LOST_PIVOT`](super::preparation::LOST_PIVOT).
     pub(super) lost_pivot: Option<f64>,
     pub(super) augmented: Augmented,
-    /// The compliance of the rows, if balances by it cost less than by factors of the augmented matrix.
-    pub(super) compliance: Option<Compliance>,
     /// Energy norm of the condensed stiffness, if it is definite, made at its first use.
     pub(super) condensed_norm: OnceLock<Option<EnergyNorm>>,
     /// The choice of method and means, if it was left to the program.
@@ -121,7 +119,7 @@ impl Engine for Factored {
         let of_factor = |values: usize| bytes::of_factor(values as f64, size_of::<f64>());
         match &self.reduction.condensation {
             Some(condensed) => of_factor(condensed.factor_entries()) + bytes::of_dense(self.condensed_dofs() as f64),
-            None => match &self.compliance {
+            None => match self.reduction.compliance() {
                 Some(compliance) => compliance.bytes(),
                 None => of_factor(self.augmented.matrix().map_or(0, |matrix| matrix.analysis().factor_entries())),
             },
@@ -219,7 +217,7 @@ impl Factored {
     /// The scaled problem with its means.
     fn scaled_problem<'a>(&'a self, problem: &'a ContactProblem) -> ScaledProblem<'a> {
         let scaled = ScaledProblem::new(problem, &self.augmented, self.reduction.definiteness());
-        scaled.with_compliance(self.compliance.as_ref())
+        scaled.with_compliance(self.reduction.compliance())
     }
 
     /// The means of a certificate of the problem that the methods work on.

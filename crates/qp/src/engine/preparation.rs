@@ -33,7 +33,8 @@ impl Factored {
         watch.step("ordering", 0);
         seconds::learn(watch);
         let selection = RowSelection::of(problem.contact(), problem.gap());
-        let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
+        let contact = selection.contact(problem.contact());
+        let scaling = Scaling::of(problem.stiffness(), &contact)?;
         let stiffest = largest(&problem.stiffness().diagonal());
         let factor_clock = Instant::now();
         let layout = Layout::within(problem, &scaling, with, settings)?;
@@ -64,23 +65,22 @@ impl Factored {
         let norm = match (cholesky, &analysis) {
             (None, _) => Norm::Missing,
             (Some(_), Some(analysis)) if !keeps_norm => Norm::Again(analysis.clone()),
-            (Some(cholesky), _) => Norm::Kept(EnergyNorm::new(cholesky, scaling.equilibration().clone(), last)),
-        };
-        let compliance = match (&norm, &condensation) {
-            (Norm::Kept(norm), None) => norm.compliance(scaling.contact()),
-            _ => None,
+            (Some(cholesky), _) => {
+                let norm = EnergyNorm::new(cholesky, scaling.equilibration().clone(), last);
+                Norm::Kept(norm.with_rows(&contact, scaling.contact(), scaling.row_exponents()))
+            }
         };
         let augmented = augmented(condensation.as_ref(), &scaling, analysis, threads.unwrap_or(1))?;
-        if compliance.is_none() {
+        let reduction = Reduction { selection, scaling, stiffest, norm, condensation };
+        if reduction.compliance().is_none() {
             augmented.matrix()?;
         }
         let factor = factor_clock.elapsed().as_secs_f64();
         Ok(Factored {
             problem: problem.clone(),
-            reduction: Reduction { selection, scaling, stiffest, norm, condensation },
+            reduction,
             lost_pivot: least_pivot.filter(|&pivot| pivot < LOST_PIVOT),
             augmented,
-            compliance,
             way,
             multiplications: size.multiplications,
             proof_seconds,

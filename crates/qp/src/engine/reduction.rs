@@ -1,7 +1,7 @@
 //! A problem reduced to the unknowns of the methods.
 
 use crate::certificate::EnergyNorm;
-use crate::linear::Analysis;
+use crate::linear::{Analysis, Compliance};
 use crate::method::Definiteness;
 use crate::transform::{Condensation, RowSelection, Scaling};
 
@@ -38,6 +38,11 @@ impl Reduction {
     /// Returns `true` if the stiffness is definite by itself.
     pub fn is_definite(&self) -> bool {
         self.definiteness() == Definiteness::Definite
+    }
+
+    /// The compliance of the rows, if balances by it cost less than by factors of the augmented matrix.
+    pub fn compliance(&self) -> Option<&Compliance> {
+        if let Norm::Kept(norm) = &self.norm { norm.compliance() } else { None }
     }
 
     /// Returns `true` if the energy norm costs no factorisation.

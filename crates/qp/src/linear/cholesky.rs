@@ -340,15 +340,6 @@ impl Cholesky {
         }
     }
 
-    /// `L^-1 Z` of columns Z (n x m, column by column), in the order of elimination before and after.
-    pub(super) fn forward_ordered(&self, columns: Vec<f64>) -> Vec<f64> {
-        let one = |column: &[f64]| by_precision!(self, factor => factor::forward(factor, column)).unwrap_or_default();
-        match &self.values {
-            Values::Dense(triangle) => dense_factor::forward_all(triangle, columns),
-            _ => columns.chunks(self.dim().max(1)).flat_map(one).collect(),
-        }
-    }
-
     /// The sweep L' P x = y, `y` in the order of elimination, `x` in that of the matrix.
     pub fn backward(&self, y: Vec<f64>) -> Vec<f64> {
         let ordered = match &self.values {

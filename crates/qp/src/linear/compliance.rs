@@ -6,7 +6,8 @@
 //! K du - B_C' dl = r,     B_C du = d:     W_C'W_C dl = d - W_C' L^-1 r,     L' du = L^-1 r + W_C dl
 //! ```
 //!
-//! W depends on neither load nor gap nor set: a set costs a factor of its own rows alone.
+//! W depends on neither load nor gap nor set: a set costs a factor of its own rows alone, and the bound of an answer and its proof take
+//! the same W.
 
 use std::sync::OnceLock;
 
@@ -23,15 +24,18 @@ const SETS: f64 = 5.0;
 /// Multiplications of a factorisation in blocks that take the time of one product of two entries of a row, which is put in its place.
 const OF_PRODUCT: f64 = 10.0;
 
-/// The rows B of a dense definite K.
+/// The rows B of a dense definite K, on the columns that its factor eliminates last.
 #[derive(Clone, Debug)]
 pub struct Compliance {
     cholesky: Cholesky,
-    rows: SparseMatrix,
+    /// The last block of the factor: B is zero in all other columns, and so is W.
+    block: LowerTriangle,
+    /// The rows, each a column.
+    by_row: SparseMatrix,
     halves: OnceLock<Halves>,
 }
 
-/// W, in the order of elimination (n x m, column by column), and the lower triangle of W'W (m x m, column by column).
+/// W (n x m, column by column), and the lower triangle of W'W (m x m, column by column).
 #[derive(Clone, Debug)]
 struct Halves {
     columns: Vec<f64>,
@@ -47,49 +51,65 @@ pub struct Held<'a> {
 }
 
 impl Compliance {
-    /// The rows B of the matrix K with this factor; `None` if the factor is not dense or not safely definite, or if factors of
-    /// `K + w B_C'B_C` cost less.
-    pub fn of(cholesky: &Cholesky, rows: &SparseMatrix) -> Option<Self> {
+    /// The rows B of the matrix K with this factor, which eliminates the columns of B last; `None` if the factor is not dense or not
+    /// safely definite, or if factors of `K + w B_C'B_C` cost less.
+    pub fn of(cholesky: &Cholesky, last: &[usize], rows: &SparseMatrix) -> Option<Self> {
         let (size, count) = (rows.columns() as f64, rows.rows() as f64);
         let own = size * size * count / 2.0 + size * count * count / 2.0;
         let mut lengths = vec![0.0; rows.rows()];
         rows.row_indices().iter().for_each(|&row| lengths[row as usize] += 1.0);
         let products: f64 = lengths.iter().map(|length| length * length / 2.0).sum();
         let pays = own <= OF_PRODUCT * products + SETS * cholesky.multiplications();
-        let fits = cholesky.is_dense() && cholesky.is_safely_definite() && pays;
-        fits.then(|| Compliance { cholesky: cholesky.clone(), rows: rows.clone(), halves: OnceLock::new() })
+        let is_last = !last.is_empty() || rows.entries() == 0;
+        if !(cholesky.is_dense() && cholesky.is_safely_definite() && pays && is_last) {
+            return None;
+        }
+        let by_row = match last.len() == rows.columns() {
+            true => rows.transposed(),
+            false => rows.select(rows.rows(), Some, last.iter().copied()).transposed(),
+        };
+        let (cholesky, block) = (cholesky.clone(), cholesky.trailing_block());
+        Some(Compliance { cholesky, block, by_row, halves: OnceLock::new() })
     }
 
     /// Memory of the values, in bytes.
     pub fn bytes(&self) -> f64 {
-        let [size, count] = [self.rows.columns(), self.rows.rows()].map(|count| count as f64);
-        (size * size + size * count + count * count) * size_of::<f64>() as f64
+        let [size, count] = [self.by_row.rows(), self.by_row.columns()].map(|count| count as f64);
+        (self.cholesky.entries() as f64 + size * count + count * count) * size_of::<f64>() as f64
+    }
+
+    /// The rows, each a column, on the columns that are eliminated last.
+    pub fn by_row(&self) -> &SparseMatrix {
+        &self.by_row
     }
 
     fn halves(&self) -> &Halves {
         self.halves.get_or_init(|| {
-            let size = self.rows.columns();
-            let mut columns = vec![0.0; size * self.rows.rows()];
-            for (place, &column) in self.cholesky.order().iter().enumerate() {
-                self.rows.column(column).for_each(|(row, value)| columns[row * size + place] += value);
-            }
-            let columns = self.cholesky.forward_ordered(columns);
+            let (size, count) = (self.by_row.rows(), self.by_row.columns());
+            let mut columns = vec![0.0; size * count];
+            self.by_row.triplets().for_each(|(place, row, value)| columns[row * size + place] = value);
+            let columns = dense_factor::forward_all(&self.block, columns);
             Halves { products: dense_factor::products(size, &columns), columns }
         })
     }
 
+    /// The column of W of a row.
+    pub fn half(&self, row: usize) -> &[f64] {
+        let size = self.by_row.rows();
+        &self.halves().columns[row * size..(row + 1) * size]
+    }
+
+    /// An entry of W'W.
+    pub fn product(&self, a: usize, b: usize) -> f64 {
+        self.halves().products[a.min(b) * self.by_row.columns() + a.max(b)]
+    }
+
     /// These rows, held; `None` if some follow from others to a good part of the digits.
     pub fn held(&self, rows: Vec<usize>) -> Option<Held<'_>> {
-        let (count, all) = (rows.len(), self.rows.rows());
+        let count = rows.len();
         let mut products = vec![0.0; count * count];
-        if count > 0 {
-            let known = &self.halves().products;
-            for (j, &column) in rows.iter().enumerate() {
-                rows[j..]
-                    .iter()
-                    .enumerate()
-                    .for_each(|(i, &row)| products[j * count + j + i] = known[column * all + row]);
-            }
+        for (j, &column) in rows.iter().enumerate() {
+            rows[j..].iter().enumerate().for_each(|(i, &row)| products[j * count + j + i] = self.product(column, row));
         }
         let own: Vec<f64> = (0..count).map(|row| products[row * count + row]).collect();
         let triangle = dense_factor::factorise(count, products, 1).ok()?;
@@ -107,12 +127,13 @@ impl Held<'_> {
         if self.rows.is_empty() {
             return (cholesky.backward(swept), Vec::new());
         }
-        let (columns, size) = (&self.compliance.halves().columns, swept.len());
-        let half = |row: usize| &columns[row * size..(row + 1) * size];
+        let half = |row: usize| self.compliance.half(row);
+        let first = swept.len() - self.compliance.by_row.rows();
+        let last = &mut swept[first..];
         let missing =
-            self.rows.iter().zip(distances).map(|(&row, distance)| distance - wide_dot(half(row), &swept)).collect();
+            self.rows.iter().zip(distances).map(|(&row, distance)| distance - wide_dot(half(row), last)).collect();
         let on_rows = self.triangle.backward(self.triangle.forward(missing));
-        self.rows.iter().zip(&on_rows).for_each(|(&row, &force)| subtract(&mut swept, -force, half(row)));
+        self.rows.iter().zip(&on_rows).for_each(|(&row, &force)| subtract(last, -force, half(row)));
         (cholesky.backward(swept), on_rows)
     }
 }

@@ -38,9 +38,9 @@ pub use both_triangles::SymmetricLines;
 pub use cholesky::{Analysis, Cholesky};
 pub use compliance::Compliance;
 pub use conjugate_gradients::{Blocks, Iterate};
-use dense::wide_dot;
+use dense::wide_product;
 pub use dense::{LowerTriangle, UpperTriangle, check_vector, dot, largest, norm, subtract, take_out, turned};
-pub use dense_factor::forward_all;
+pub use dense_factor::{forward_all, products};
 pub use dependence::Dependence;
 pub use factor::{FactorError, Width, if_definite};
 pub use forest::Forest;
@@ -213,6 +213,15 @@ impl SparseMatrix {
         rows.iter().map(|&row| row as usize).zip(values.iter().copied())
     }
 
+    /// Calls `take(of_row, value)` for each entry of a column, with the item of its row: a column of all rows is walked as one run.
+    pub(crate) fn with_rows<T>(&self, column: usize, of_rows: &mut [T], mut take: impl FnMut(&mut T, f64)) {
+        let (rows, values) = self.column_slices(column);
+        match rows.len() == of_rows.len() {
+            true => of_rows.iter_mut().zip(values).for_each(|(of_row, &value)| take(of_row, value)),
+            false => rows.iter().zip(values).for_each(|(&row, &value)| take(&mut of_rows[row as usize], value)),
+        }
+    }
+
     /// Rows of the entries of one column.
     fn column_rows(&self, column: usize) -> &[u32] {
         self.column_slices(column).0
@@ -223,6 +232,11 @@ impl SparseMatrix {
     fn column_slices(&self, column: usize) -> (&[u32], &[f64]) {
         let range = self.pattern.column_starts[column]..self.pattern.column_starts[column + 1];
         (&self.pattern.row_indices[range.clone()], &self.values[range])
+    }
+
+    /// Returns `true` for the same matrix in the same memory.
+    pub(crate) fn is_shared_with(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.pattern, &other.pattern) && Arc::ptr_eq(&self.values, &other.values)
     }
 
     /// All entries `(row, column, value)`, column by column.
@@ -237,15 +251,19 @@ impl SparseMatrix {
 
     /// The product A' y, length `columns`; `y` has length `rows`.
     pub fn mul_transposed(&self, y: &[f64]) -> Vec<f64> {
-        (0..self.columns())
-            .map(|column| {
-                let (rows, values) = self.column_slices(column);
-                match rows.len() == y.len() {
-                    true => wide_dot(values, y),
-                    false => rows.iter().zip(values).map(|(&row, value)| value * y[row as usize]).sum(),
-                }
-            })
-            .collect()
+        self.transposed_product(y, |value| value)
+    }
+
+    /// The product A' y, of which `entry` makes the entries of A.
+    fn transposed_product(&self, y: &[f64], entry: impl Fn(f64) -> f64) -> Vec<f64> {
+        let of_column = |column: usize| {
+            let (rows, values) = self.column_slices(column);
+            match rows.len() == y.len() {
+                true => wide_product(values, y, &entry),
+                false => rows.iter().zip(values).map(|(&row, &value)| entry(value) * y[row as usize]).sum(),
+            }
+        };
+        (0..self.columns()).map(of_column).collect()
     }
 
     /// The product |A| |x|, length `rows`, entry by entry: the scale of rounding in A x; `x` has length `columns`.
@@ -257,20 +275,16 @@ impl SparseMatrix {
     /// The product A x, of which `entry` makes the entries of A.
     fn product(&self, x: &[f64], entry: impl Fn(f64) -> f64) -> Vec<f64> {
         let mut y = vec![0.0; self.rows];
-        for (column, &at_column) in x.iter().enumerate() {
-            let (rows, values) = self.column_slices(column);
-            match rows.len() == y.len() {
-                true => y.iter_mut().zip(values).for_each(|(y, &value)| *y += entry(value) * at_column),
-                false => rows.iter().zip(values).for_each(|(&row, &value)| y[row as usize] += entry(value) * at_column),
-            }
+        for (column, &at_column) in x.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
+            self.with_rows(column, &mut y, |y, value| *y += entry(value) * at_column);
         }
         y
     }
 
     /// The product |A|' |y|, length `columns`; `y` has length `rows`.
     pub fn mul_abs_transposed(&self, y: &[f64]) -> Vec<f64> {
-        let term = |(row, value): (usize, f64)| value.abs() * y[row].abs();
-        (0..self.columns()).map(|column| self.column(column).map(term).sum()).collect()
+        let magnitude: Vec<f64> = y.iter().map(|value| value.abs()).collect();
+        self.transposed_product(&magnitude, f64::abs)
     }
 
     /// The transposed matrix: its columns are the rows of this one.

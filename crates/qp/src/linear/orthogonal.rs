@@ -32,15 +32,16 @@ pub fn inverse_lengths(columns: Vec<Vec<f64>>, is_over: impl Fn() -> bool) -> Op
 /// leave it more digits than a bound needs.
 const CLEAR: f64 = 1e3;
 
-/// As [`inverse_lengths`], from the products of the columns; `None` if they are not clearly independent.
-pub fn inverse_lengths_by_products(columns: &[Vec<f64>]) -> Option<Vec<f64>> {
-    let (count, size) = (columns.len(), columns.first().map_or(0, Vec::len));
-    let sizes: Vec<f64> = columns.iter().map(|column| wide_dot(column, column).sqrt()).collect();
-    if sizes.iter().any(|size| !size.is_normal()) {
+/// As [`inverse_lengths`], from the lower triangle of the products of this number of columns (column by column); `None` if they are not
+/// clearly independent.
+pub fn inverse_lengths_by_products(count: usize, mut products: Vec<f64>) -> Option<Vec<f64>> {
+    let sizes: Vec<f64> = (0..count).map(|place| products[place * count + place].sqrt()).collect();
+    if sizes.iter().any(|size| !(size * size).is_normal()) {
         return None;
     }
-    let scaled = columns.iter().zip(&sizes).flat_map(|(column, size)| column.iter().map(move |value| value / size));
-    let products = dense_factor::products(size, &scaled.collect::<Vec<_>>());
+    for (column, size) in products.chunks_mut(count.max(1)).zip(&sizes) {
+        column.iter_mut().zip(&sizes).for_each(|(product, other)| *product /= size * other);
+    }
     let triangle = dense_factor::factorise(count, products, 1).ok()?;
     let mut units = vec![0.0; count * count];
     (0..count).for_each(|place| units[place * count + place] = 1.0);
@@ -146,14 +147,15 @@ mod tests {
     fn products_give_the_lengths_of_clearly_independent_columns_and_of_no_others() {
         let columns =
             |off: f64| vec![vec![2.0, 1.0, 0.0, 0.5], vec![2.0, 1.0 + off, 0.0, 0.5], vec![0.0, 1.0, 4.0, 0.0]];
+        let by_products = |off: f64| inverse_lengths_by_products(3, dense_factor::products(4, &columns(off).concat()));
         for off in [1.0, 0.1] {
             let exact = inverse_lengths(columns(off), || false).unwrap();
-            for (found, exact) in inverse_lengths_by_products(&columns(off)).unwrap().iter().zip(exact) {
+            for (found, exact) in by_products(off).unwrap().iter().zip(exact) {
                 assert!((found / exact - 1.0).abs() < 1e-9, "{found} {exact}");
             }
         }
         for off in [0.0, 1e-9, 1e-4] {
-            assert_eq!(inverse_lengths_by_products(&columns(off)), None, "{off}");
+            assert_eq!(by_products(off), None, "{off}");
         }
     }
 

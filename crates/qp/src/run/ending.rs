@@ -133,12 +133,13 @@ impl Run<'_> {
     }
 
     /// The same for an answer without prepared data, with a factor of its own.
-    fn proven_alone(&self, best: &Best) -> (Option<ProvenSet>, f64) {
+    fn proven_alone(&self, best: &mut Best) -> (Option<ProvenSet>, f64) {
         let clock = Instant::now();
         let is_due = !self.problem.equalities().is_empty() && !self.settings.watch.is_over();
-        let Solution { displacement, multiplier, .. } = &best.solution;
-        let proven = || self.problem.prove(displacement, multiplier).ok().flatten();
-        (if is_due { proven() } else { None }, clock.elapsed().as_secs_f64())
+        let Best { solution: Solution { displacement, multiplier, .. }, evidence, .. } = best;
+        let answer = WithEvidence { displacement, multiplier, evidence: evidence.take() };
+        let proven = if is_due { self.problem.prove_alone(answer).ok().flatten() } else { None };
+        (proven, clock.elapsed().as_secs_f64())
     }
 
     /// The attempts that did not give the best answer, each with the ending of its own best.

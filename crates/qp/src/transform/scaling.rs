@@ -68,6 +68,11 @@ impl Scaling {
         &self.contact
     }
 
+    /// The exponent of each entry of R.
+    pub fn row_exponents(&self) -> &[i32] {
+        &self.rows
+    }
+
     /// The scaled load for u0 = `2^unit`.
     pub fn load(&self, load: &[f64], unit: i32) -> Vec<f64> {
         let exponent = self.equilibration.factor - unit;

@@ -2,9 +2,9 @@
 
 use std::cell::OnceCell;
 
-use super::super::energy_norm::Boundary;
+use super::super::energy_norm::{Boundary, RowsOnBoundary};
 use super::{Answer, EnergyNorm, ErrorBound};
-use crate::linear::{dot, exponent, forward_all, ldexp};
+use crate::linear::{SparseMatrix, dot, forward_all, ldexp};
 use crate::problem::ContactProblem;
 
 /// The multipliers of a repair.
@@ -73,13 +73,10 @@ pub(super) struct Repair<'a> {
     pub norm: &'a EnergyNorm,
     boundary: &'a Boundary,
     answer: &'a Answer<'a>,
-    /// The entries of each row: place on the boundary, coefficient.
-    pub rows: Vec<Vec<(usize, f64)>>,
-    /// Exponent by which each row was multiplied.
-    shift: Vec<i32>,
+    rows: RowsOnBoundary,
     pub violation: Vec<f64>,
     pub multiplier: Vec<f64>,
-    /// `L_tt^-1 B_i'` of each row that was used.
+    /// `L_tt^-1 B_i'` of each row that was used, unless the compliance of all rows is known.
     halves: Vec<OnceCell<Vec<f64>>>,
     /// The sweep of the residual: squares of the interior, and the boundary.
     interior: f64,
@@ -92,28 +89,29 @@ impl<'a> Repair<'a> {
         let boundary = norm.boundary.as_deref()?;
         // A row without obstacle and without force may reach beyond the boundary.
         let counts = |row: usize| problem.gap[row].is_finite() || answer.multiplier[row] != 0.0;
-        let mut rows = norm.rows_on_boundary(&problem.contact, counts)?;
-        let largest = |row: &Vec<(usize, f64)>| row.iter().fold(0.0, |largest: f64, entry| largest.max(entry.1.abs()));
-        let shift: Vec<i32> = rows.iter().map(|row| -exponent(largest(row))).collect();
-        for (row, &shift) in rows.iter_mut().zip(&shift) {
-            row.iter_mut().for_each(|entry| entry.1 = ldexp(entry.1, shift));
-        }
+        let rows = norm.rows_on_boundary(&problem.contact, counts)?;
         let scaled = |values: &[f64], sign: i32, unit: i32| -> Vec<f64> {
-            values.iter().zip(&shift).map(|(&value, &shift)| ldexp(value, sign * shift - unit)).collect()
+            values.iter().zip(&rows.shift).map(|(&value, &shift)| ldexp(value, sign * shift - unit)).collect()
         };
         let unit = norm.equilibration.factor;
         let (violation, multiplier) = (scaled(&answer.violation, 1, unit), scaled(answer.multiplier, -1, 0));
         let (interior, swept) = norm.sweep(&answer.residual);
-        let halves = vec![OnceCell::new(); rows.len()];
-        Some(Repair { problem, norm, boundary, answer, rows, shift, violation, multiplier, halves, interior, swept })
+        let halves = vec![OnceCell::new(); if rows.compliance.is_some() { 0 } else { rows.shift.len() }];
+        Some(Repair { problem, norm, boundary, answer, rows, violation, multiplier, halves, interior, swept })
+    }
+
+    /// Number of rows.
+    pub fn count(&self) -> usize {
+        self.rows.shift.len()
+    }
+
+    /// The rows, each a column.
+    pub fn by_row(&self) -> &SparseMatrix {
+        &self.rows.by_row
     }
 
     pub fn spread(&self, weights: &[f64]) -> Vec<f64> {
-        let mut sum = vec![0.0; self.boundary.dofs.len()];
-        for (row, &weight) in self.rows.iter().zip(weights).filter(|entry| *entry.1 != 0.0) {
-            row.iter().for_each(|&(place, b)| sum[place] += weight * b);
-        }
-        self.boundary.block.forward(sum)
+        self.boundary.block.forward(self.rows.by_row.mul(weights))
     }
 
     /// `L_tt'^-1 y`.
@@ -122,8 +120,21 @@ impl<'a> Repair<'a> {
     }
 
     pub fn half(&self, row: usize) -> &[f64] {
-        self.find_halves(&[row]);
-        self.halves[row].get().map_or(&[], Vec::as_slice)
+        match &self.rows.compliance {
+            Some(compliance) => compliance.half(row),
+            None => {
+                self.find_halves(&[row]);
+                self.halves[row].get().map_or(&[], Vec::as_slice)
+            }
+        }
+    }
+
+    /// The product of two halves.
+    pub fn product(&self, a: usize, b: usize) -> f64 {
+        match &self.rows.compliance {
+            Some(compliance) => compliance.product(a, b),
+            None => dot(self.half(a), self.half(b)),
+        }
     }
 
     /// Makes the halves of these rows in one sweep.
@@ -132,7 +143,7 @@ impl<'a> Repair<'a> {
         let size = self.boundary.dofs.len();
         let mut columns = vec![0.0; missing.len() * size];
         for (column, &row) in columns.chunks_mut(size.max(1)).zip(&missing) {
-            self.rows[row].iter().for_each(|&(place, b)| column[place] += b);
+            self.rows.by_row.column(row).for_each(|(place, b)| column[place] = b);
         }
         let swept = forward_all(&self.boundary.block, columns);
         for (column, &row) in swept.chunks(size.max(1)).zip(&missing) {
@@ -142,7 +153,7 @@ impl<'a> Repair<'a> {
 
     /// The halves of these rows; `None` if there is no time.
     pub fn halves(&self, rows: &[usize]) -> Option<Vec<&[f64]>> {
-        for block in rows.chunks(BLOCK) {
+        for block in rows.chunks(BLOCK).filter(|_| self.rows.compliance.is_none()) {
             if self.norm.is_over() {
                 return None;
             }
@@ -169,8 +180,7 @@ impl<'a> Repair<'a> {
         if self.norm.is_over() {
             return f64::INFINITY;
         }
-        let half = self.half(row);
-        self.norm.length(dot(half, half))
+        self.norm.length(self.product(row, row))
     }
 
     /// The shift of the whole body that a force causes, length n.
@@ -226,9 +236,9 @@ impl<'a> Repair<'a> {
     /// The sum of `cancelled_on` over all rows and the residual.
     fn cancelled(&self, witness: &Witness) -> f64 {
         let alpha = witness.error.alpha.abs() + witness.left.alpha.abs();
-        let residual = self.length(&Force::new(alpha, vec![0.0; self.rows.len()]));
+        let residual = self.length(&Force::new(alpha, vec![0.0; self.count()]));
         let of_residual = CANCELLED * self.norm.loss() * residual;
-        (0..self.rows.len()).map(|row| self.cancelled_on(witness, row)).fold(of_residual, |sum, of_row| sum + of_row)
+        (0..self.count()).map(|row| self.cancelled_on(witness, row)).fold(of_residual, |sum, of_row| sum + of_row)
     }
 
     /// The part of a bound that another repair can make smaller: rounding of forces that cancel each other, and of the way to the
@@ -239,7 +249,7 @@ impl<'a> Repair<'a> {
 
     /// Forces on the rows in the units of the problem.
     pub fn expanded(&self, multiplier: &[f64]) -> Vec<f64> {
-        multiplier.iter().zip(&self.shift).map(|(&mu, &shift)| ldexp(mu, shift)).collect()
+        multiplier.iter().zip(&self.rows.shift).map(|(&mu, &shift)| ldexp(mu, shift)).collect()
     }
 }
 

@@ -24,25 +24,29 @@ const TURNS: usize = 2;
 /// R from the products of the columns of Z. If some are nearly parallel, such as rows on a part much softer than the others,
 /// the products have lost their difference, and the columns themselves are made orthogonal.
 ///
-/// `None` if it `is_over` before R is found.
-pub(super) fn triangle_of(columns: &[&[f64]], is_over: impl Fn() -> bool) -> Option<Triangle> {
-    let found = of_products(columns, &is_over)?;
+/// `product` gives the product of two of the columns. `None` if it `is_over` before R is found.
+pub(super) fn triangle_of(
+    columns: &[&[f64]],
+    product: impl Fn(usize, usize) -> f64,
+    is_over: impl Fn() -> bool,
+) -> Option<Triangle> {
+    let found = of_products(columns.len(), product, &is_over)?;
     if found.kept.len() < columns.len() { of_columns(columns, &is_over) } else { Some(found) }
 }
 
-fn of_products(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Triangle> {
+fn of_products(count: usize, product: impl Fn(usize, usize) -> f64, is_over: &impl Fn() -> bool) -> Option<Triangle> {
     let mut found = Triangle::default();
-    let lengths: Vec<f64> = columns.iter().map(|column| norm(column)).collect();
-    for column in columns {
+    let lengths: Vec<f64> = (0..count).map(|column| product(column, column).sqrt()).collect();
+    for column in 0..count {
         if is_over() {
             return None;
         }
         let mut entries: Vec<f64> = Vec::with_capacity(found.kept.len() + 1);
         for (k, &place) in found.kept.iter().enumerate() {
             let before = found.r.column(k);
-            entries.push((dot(column, columns[place]) - dot(&before[..k], &entries)) / before[k]);
+            entries.push((product(column, place) - dot(&before[..k], &entries)) / before[k]);
         }
-        let pivot = dot(column, column) - dot(&entries, &entries);
+        let pivot = product(column, column) - dot(&entries, &entries);
         found.take(entries, &lengths, |terms| (pivot > PARALLEL * terms * terms).then(|| pivot.sqrt()));
     }
     Some(found)
@@ -127,6 +131,10 @@ mod tests {
     /// Rounding of a handful of operations on nearly orthogonal columns.
     const ROUNDING: f64 = 1e-13;
 
+    fn of(columns: &[&[f64]], is_over: bool) -> Option<Triangle> {
+        triangle_of(columns, |a, b| dot(columns[a], columns[b]), || is_over)
+    }
+
     #[test]
     fn what_cancels_in_a_column_are_the_lengths_of_its_parts_whatever_their_signs() {
         let mut found = Triangle::default();
@@ -150,7 +158,7 @@ mod tests {
             // The third is twice the first less three times the second.
             let columns = [[1.0, 0.0, 2.0], [0.0, 1.0, -1.0], [2.0, -3.0, 7.0], [1.0, 1.0, 0.0]].map(column);
             let columns: Vec<&[f64]> = columns.iter().map(|column| &column[..]).collect();
-            let found = triangle_of(&columns, || false).unwrap();
+            let found = of(&columns, false).unwrap();
             assert_eq!(found.independent(), [true, true, false, true], "{unit:e}");
             let off = found.weights[2].iter().zip([2.0, -3.0]).map(|(weight, exact)| (weight - exact).abs());
             assert!(off.fold(0.0, f64::max) < ROUNDING, "{unit:e}: {:?}", found.weights);
@@ -160,14 +168,14 @@ mod tests {
                 let exact = dot(columns[found.kept[a]], columns[found.kept[b]]);
                 assert!((product - exact).abs() < ROUNDING * unit * unit * 6.0, "{unit:e}, {a}, {b}");
             }
-            assert!(triangle_of(&columns, || true).is_none());
+            assert!(of(&columns, true).is_none());
         }
     }
 
     #[test]
     fn copies_of_a_column_take_no_room_in_the_triangle() {
         let columns = vec![&[3.0, 4.0][..]; 20_000];
-        let found = triangle_of(&columns, || false).unwrap();
+        let found = of(&columns, false).unwrap();
         assert_eq!((found.r.size(), found.weights().map(Iterator::count).max()), (1, Some(1)));
         assert_eq!(found.solve_normal(&[50.0; 20_000])[..2], [2.0, 0.0]);
     }

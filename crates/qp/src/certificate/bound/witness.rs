@@ -40,7 +40,7 @@ impl Repair<'_> {
 
     /// A feasible point at which the closed rows are at their gaps, with these multipliers.
     pub fn settle(&self, closed: &[bool], multipliers: Multipliers) -> Option<Witness> {
-        let rows = self.rows.len();
+        let rows = self.count();
         let mut closed = closed.to_vec();
         // The exchange that put a row first; 0 if none did.
         let mut first = vec![0; rows];
@@ -123,7 +123,7 @@ impl Repair<'_> {
     /// least 64 units in the last place if the triangle keeps the row: rounding of its column changes the lengths by a small
     /// share.
     fn rest(&self, set: &[usize], fitted: &Fitted) -> Vec<f64> {
-        let mut rest = vec![0.0; self.rows.len()];
+        let mut rest = vec![0.0; self.count()];
         for (&row, length) in set.iter().zip(fitted.triangle.lengths_of_inverse()) {
             let shift = (fitted.distance[row].abs() + fitted.tolerance[row]) * length;
             rest[row] = self.norm.length(shift * shift);
@@ -134,21 +134,19 @@ impl Repair<'_> {
     /// The multipliers that put the rows of `set` at their gaps beside the force `base`; `None` if there is no time.
     fn fit(&self, set: &[usize], base: &Force) -> Option<Fitted> {
         let columns = self.halves(set)?;
-        let triangle = triangle_of(&columns, || self.norm.is_over())?;
+        let triangle = triangle_of(&columns, |a, b| self.product(set[a], set[b]), || self.norm.is_over())?;
         let independent = triangle.independent();
-        let (mut change, mut steps) = (vec![0.0; self.rows.len()], vec![0.0; self.rows.len()]);
+        let (mut change, mut steps) = (vec![0.0; self.count()], vec![0.0; self.count()]);
         let mut moved = self.backward(self.sweep(base));
         // The magnitudes of the shifts whose sum is `moved`: that keeps the rounding of each.
         let mut magnitude: Vec<f64> = moved.iter().map(|shift| shift.abs()).collect();
         let mut correction = 0;
         loop {
-            let along = |row: usize| self.rows[row].iter().map(|&(place, b)| b * moved[place]).sum::<f64>();
-            let distance: Vec<f64> = (0..self.rows.len()).map(|row| self.violation[row] + along(row)).collect();
-            let rounding = |row: usize| {
-                let terms = self.rows[row].iter().map(|&(place, b)| b.abs() * magnitude[place]).sum::<f64>();
-                DISTANCE_ROUNDING * (self.violation[row].abs() + terms)
-            };
-            let mut tolerance: Vec<f64> = (0..self.rows.len()).map(rounding).collect();
+            let terms = self.by_row().mul_abs_transposed(&magnitude);
+            let distance: Vec<f64> =
+                self.violation.iter().zip(self.by_row().mul_transposed(&moved)).map(|(v, along)| v + along).collect();
+            let mut tolerance: Vec<f64> =
+                self.violation.iter().zip(terms).map(|(v, terms)| DISTANCE_ROUNDING * (v.abs() + terms)).collect();
             // A row that follows from others is at its gap as precisely as they are.
             for (&row, weights) in set.iter().zip(triangle.weights()) {
                 let of_others = weights.map(|(other, weight)| weight.abs() * tolerance[set[other]]);
@@ -161,7 +159,7 @@ impl Repair<'_> {
             correction += 1;
             let back: Vec<f64> = set.iter().map(|&row| -distance[row]).collect();
             let step = triangle.solve_normal(&back);
-            let mut added = vec![0.0; self.rows.len()];
+            let mut added = vec![0.0; self.count()];
             set.iter().zip(step).for_each(|(&row, step)| added[row] = step);
             change.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step);
             // The shifts are those of the forces, except for the rounding of each step, even if the steps cancel each other.
