@@ -159,7 +159,7 @@ impl SymmetricMatrix {
         self.mul_with(threads, x, &Spare::default())
     }
 
-    /// The same with these work vectors; the product is one of them.
+    /// The same; the product is one of these work vectors.
     pub(crate) fn mul_with(&self, threads: usize, x: &[f64], spare: &Spare<f64>) -> Vec<f64> {
         let starts = self.lower.column_starts();
         let entries = self.lower.entries();
@@ -173,15 +173,12 @@ impl SymmetricMatrix {
         let columns: Vec<Range<usize>> = bounds.windows(2).map(|pair| pair[0]..pair[1]).collect();
         let runs = columns.chunks(parts.div_ceil(threads.clamp(1, parts))).collect();
         let of_run = |run: &[Range<usize>]| -> Vec<Vec<f64>> {
-            run.iter()
-                .map(|columns| self.product_in(columns.clone(), x, |value| value, |length| spare.zeros(length)))
-                .collect()
+            run.iter().map(|columns| self.product(columns.clone(), x, |value| value)).collect()
         };
         let sums: Vec<Vec<f64>> = in_order(runs, of_run).into_iter().flatten().collect();
         let mut y = spare.zeros(self.dim());
         for (columns, sum) in columns.iter().zip(sums) {
-            y[columns.start..].iter_mut().zip(&sum).for_each(|(y, sum)| *y += sum);
-            spare.give(sum);
+            y[columns.start..].iter_mut().zip(sum).for_each(|(y, sum)| *y += sum);
         }
         y
     }
@@ -195,20 +192,9 @@ impl SymmetricMatrix {
     /// The contribution of some columns, and of the rows with the same numbers, to A x, from the first column on as far as they reach;
     /// `entry` makes the entries of A.
     fn product(&self, columns: Range<usize>, x: &[f64], entry: impl Fn(f64) -> f64) -> Vec<f64> {
-        self.product_in(columns, x, entry, |length| vec![0.0; length])
-    }
-
-    /// The same in a vector of zeros that is given.
-    fn product_in(
-        &self,
-        columns: Range<usize>,
-        x: &[f64],
-        entry: impl Fn(f64) -> f64,
-        zeros: impl FnOnce(usize) -> Vec<f64>,
-    ) -> Vec<f64> {
         let first = columns.start;
         let end = |column: usize| self.lower.column_rows(column).last().map_or(first, |&row| row as usize + 1);
-        let mut y = zeros(columns.clone().map(end).fold(columns.end, usize::max) - first);
+        let mut y = vec![0.0; columns.clone().map(end).fold(columns.end, usize::max) - first];
         for column in columns {
             let (mut rows, mut values) = self.lower.column_slices(column);
             let at_column = x[column];

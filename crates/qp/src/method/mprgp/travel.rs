@@ -92,6 +92,9 @@ impl Travels {
             let work = dot(&free.way, gradient).signum();
             return free.way.iter().map(|way| work * way).collect();
         }
+        if self.moves.is_empty() {
+            return iterate.preconditioned(face, gradient);
+        }
         let mut rest = iterate.work.copy(gradient);
         let held = || self.moves.iter().filter(|held| held.energy > 0.0);
         let shares: Vec<f64> = held().map(|held| dot(&held.way, gradient) / held.energy).collect();
