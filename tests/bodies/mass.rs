@@ -122,6 +122,22 @@ fn redistributed_mass_is_zero_at_contact_nodes_and_definite_at_the_others() {
     }
 }
 
+/// Neither the density nor the unit of mass decides which mesh is too coarse: this body is as light as 1e-20 of the one above.
+#[test]
+fn redistributed_mass_scales_bit_for_bit_with_the_density() {
+    let of = |body: &ElasticBody, side| {
+        mass(body, &all_free(body), MassForm::Redistributed, &contact_nodes(body, side)).unwrap()
+    };
+    let scale = 2.0_f64.powi(-66);
+    let light = Material::new(7.0, 0.3).unwrap().with_density(scale * DENSITY).unwrap();
+    for (body, side) in bodies() {
+        let same = ElasticBody::new(body.mesh().clone(), light, *body.formulation()).unwrap();
+        let expected =
+            of(&body, side).lower().triplets().map(|(i, j, value)| (i, j, scale * value)).collect::<Vec<_>>();
+        assert!(of(&same, side).lower().triplets().eq(expected), "{}", body.mesh().kind_of(0).name());
+    }
+}
+
 #[test]
 fn lumped_mass_is_diagonal_and_positive() {
     for (body, _) in bodies() {

@@ -42,6 +42,7 @@ const WINGS: [(&[&str], &[&str]); 5] = [
             "threads",
             "formulation",
             "geometry",
+            "dense",
             "element",
             "surface",
             "material",
@@ -160,7 +161,7 @@ fn sources() -> Vec<(PathBuf, String)> {
 
 #[test]
 fn libraries_stay_in_their_rooms() {
-    let rules: [(&str, &[&str]); 9] = [
+    let rules: [(&str, &[&str]); 10] = [
         // The settings of this library apply to the whole process.
         ("set_infinity", &[]),
         ("catch_unwind", &["qp/panics.rs"]),
@@ -179,6 +180,7 @@ fn libraries_stay_in_their_rooms() {
         ("rayon::", &["qp/linear/threads.rs", "fem/threads.rs"]),
         // The results of a thread that panicked would be lost without a word.
         ("join().ok()", &[]),
+        ("nalgebra::", &[]),
         ("nalgebra_sparse::", &["qp/linear/of_nalgebra.rs"]),
         ("feral_metis::", &["qp/linear/ordering.rs"]),
         ("println!", &["cli", "main.rs"]),

@@ -17,14 +17,21 @@ fn allowed() -> Vec<String> {
     list.split('"').skip(1).step_by(2).map(str::to_string).collect()
 }
 
-/// The packages that the lock file names.
-fn packages() -> Vec<Value> {
+/// What cargo says of the workspace.
+fn metadata(arguments: &[&str]) -> Value {
     let mut cargo = Command::new(env::var("CARGO").unwrap_or_else(|_| "cargo".into()));
-    cargo.args(["metadata", "--format-version", "1", "--locked", "--manifest-path"]).arg(root().join("Cargo.toml"));
+    cargo
+        .args(["metadata", "--format-version", "1", "--locked", "--manifest-path"])
+        .arg(root().join("Cargo.toml"))
+        .args(arguments);
     let found = cargo.output().unwrap();
     assert!(found.status.success(), "{}", String::from_utf8_lossy(&found.stderr));
-    let metadata: Value = serde_json::from_slice(&found.stdout).unwrap();
-    metadata["packages"].as_array().unwrap().clone()
+    serde_json::from_slice(&found.stdout).unwrap()
+}
+
+/// The packages that the lock file names.
+fn packages() -> Vec<Value> {
+    metadata(&[])["packages"].as_array().unwrap().clone()
 }
 
 /// Returns `true` if one of the choices of an expression such as `(MIT OR Apache-2.0) AND Unicode-3.0` is allowed.
@@ -128,19 +135,33 @@ fn each_crate_has_at_most_ten_dependencies_outside_the_workspace_and_that_of_the
     }
 }
 
-/// Cargo refuses an older compiler with a sentence, in place of an error somewhere in a dependency.
+/// Cargo refuses an older compiler with a sentence, in place of an error somewhere in a dependency, also one of a feature.
 #[test]
 fn the_oldest_compiler_is_the_newest_that_a_dependency_asks_for() {
     let version = |package: &Value| -> Option<Vec<u32>> {
         package["rust_version"].as_str().map(|text| text.split('.').map(|part| part.parse().unwrap()).take(2).collect())
     };
-    let all = packages();
-    let of_ours: Vec<_> = published().iter().map(|(_, package, _)| version(package)).collect();
-    let outside: Vec<String> = published().into_iter().flat_map(|one| one.2).collect();
-    let direct = all.iter().filter(|package| outside.iter().any(|name| package["name"] == name.as_str()));
-    let newest = direct.filter_map(version).max().unwrap();
-    for of_crate in of_ours {
-        assert_eq!(of_crate.as_ref(), Some(&newest));
+    let (ours, all) = (published(), metadata(&["--all-features"]));
+    let list = |of: &Value| of.as_array().unwrap().clone();
+    let built = |one: &Value| list(&one["dep_kinds"]).iter().any(|kind| kind["kind"].is_null());
+    let nodes = list(&all["resolve"]["nodes"]);
+    let mut reached: Vec<Value> = ours.iter().map(|(_, package, _)| package["id"].clone()).collect();
+    let mut place = 0;
+    while place < reached.len() {
+        let node = nodes.iter().find(|node| node["id"] == reached[place]).unwrap();
+        for one in list(&node["deps"]).into_iter().filter(built) {
+            if !reached.contains(&one["pkg"]) {
+                reached.push(one["pkg"].clone());
+            }
+        }
+        place += 1;
+    }
+    let outside = list(&all["packages"]).into_iter().filter(|package| !package["source"].is_null());
+    let newest =
+        outside.filter(|package| reached.contains(&package["id"])).filter_map(|package| version(&package)).max();
+    assert!(reached.len() > 100, "{} packages", reached.len());
+    for (_, package, _) in &ours {
+        assert_eq!(version(package), newest);
     }
 }
 

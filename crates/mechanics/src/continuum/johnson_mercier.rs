@@ -7,11 +7,10 @@
 
 use std::sync::OnceLock;
 
-use nalgebra::{Cholesky, Const, SMatrix, SVector};
-
 use super::problem::{PlaneProblem, Tensor, work};
 use super::system::{Block, LOCAL};
 use super::triangulation::{MIDDLES, Point, outward, slopes, twice_area};
+use signorini_qp::dot;
 
 /// Stresses without divergence.
 pub const FREE: usize = 9;
@@ -25,17 +24,16 @@ const REFERENCE: [Point; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
 /// The nine stresses without divergence on a triangle, with their tractions and energies.
 #[derive(Clone, Debug)]
 pub struct Element {
+    /// Each has the complementary energy one, and none with the others.
     stresses: [PartStress; FREE],
     /// A stress in balance with the body force.
     particular: PartStress,
     /// Works of the tractions of each stress with the twelve unknowns of the sides.
-    tractions: SMatrix<f64, FREE, LOCAL>,
+    tractions: [[f64; LOCAL]; FREE],
     /// The same of the particular stress.
-    particular_tractions: SVector<f64, LOCAL>,
-    /// The factor of the complementary energies.
-    factor: Cholesky<f64, Const<FREE>>,
+    particular_tractions: [f64; LOCAL],
     /// The complementary energies of each stress with the particular one.
-    particular_energies: SVector<f64, FREE>,
+    particular_energies: [f64; FREE],
 }
 
 /// The corners of part k: the centre, then corners k+1 and k+2.
@@ -63,23 +61,27 @@ pub fn traction(stress: Tensor, normal: Point) -> Point {
 impl Element {
     /// The element on a triangle with these corners.
     pub fn new(problem: &PlaneProblem, corners: [Point; 3]) -> Self {
-        let stresses = reference().map(|stress| mapped(&stress, corners));
+        let mut stresses = reference().map(|stress| mapped(&stress, corners));
         let particular = balancing(problem.body_force, corners);
         let volume = problem.thickness * twice_area(corners) / 2.0;
         let energy = |a: &PartStress, b: &PartStress| {
             volume * mean_over_parts(|k, weights| work(at(a, k, weights), problem.compliance(at(b, k, weights))))
         };
-        // The factor needs the lower triangle only.
-        let lower = |row: usize, column: usize| match column <= row {
-            true => energy(&stresses[row], &stresses[column]),
-            false => 0.0,
-        };
-        let works = stresses.map(|stress| tractions(&stress, corners, problem.thickness));
+        // Gram and Schmidt's method in the energy.
+        for index in 0..FREE {
+            let (before, rest) = stresses.split_at_mut(index);
+            let own = &mut rest[0];
+            for other in before.iter() {
+                let share = energy(other, own);
+                add(own, -share, other);
+            }
+            let length = energy(own, own).sqrt();
+            own.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|value| *value /= length);
+        }
         Element {
-            tractions: SMatrix::from_fn(|row, unknown| works[row][unknown]),
-            particular_tractions: tractions(&particular, corners, problem.thickness).into(),
-            factor: Cholesky::new_unchecked(SMatrix::from_fn(lower)),
-            particular_energies: SVector::from_fn(|row, _| energy(&stresses[row], &particular)),
+            tractions: stresses.map(|stress| tractions(&stress, corners, problem.thickness)),
+            particular_tractions: tractions(&particular, corners, problem.thickness),
+            particular_energies: stresses.map(|stress| energy(&stress, &particular)),
             stresses,
             particular,
         }
@@ -87,29 +89,38 @@ impl Element {
 
     /// The stiffness at the sides.
     pub fn block(&self) -> Block {
-        let mut halves = self.tractions;
-        self.factor.l_dirty().solve_lower_triangular_unchecked_mut(&mut halves);
-        halves.tr_mul(&halves).into()
+        let mut block = [[0.0; LOCAL]; LOCAL];
+        for works in &self.tractions {
+            for (line, one) in block.iter_mut().zip(works) {
+                line.iter_mut().zip(works).for_each(|(entry, other)| *entry += one * other);
+            }
+        }
+        block
     }
 
     /// The load of the body force on the sides.
     pub fn load(&self) -> [f64; LOCAL] {
-        let amounts = self.factor.solve(&self.particular_energies);
-        (self.tractions.tr_mul(&amounts) - self.particular_tractions).into()
+        let mut load = self.particular_tractions.map(|work| -work);
+        for (amount, works) in self.particular_energies.iter().zip(&self.tractions) {
+            load.iter_mut().zip(works).for_each(|(load, work)| *load += amount * work);
+        }
+        load
     }
 
     /// The stress under displacements of the sides.
     pub fn stress(&self, sides: [f64; LOCAL]) -> PartStress {
-        let pulled = self.tractions * SVector::from(sides) - self.particular_energies;
-        let amounts = self.factor.solve(&pulled);
         let mut stress = self.particular;
-        for (amount, of_amount) in amounts.iter().zip(&self.stresses) {
-            for (values, parts) in stress.iter_mut().flatten().zip(of_amount.iter().flatten()) {
-                (0..3).for_each(|entry| values[entry] += amount * parts[entry]);
-            }
+        for ((works, energy), own) in self.tractions.iter().zip(self.particular_energies).zip(&self.stresses) {
+            add(&mut stress, dot(works, &sides) - energy, own);
         }
         stress
     }
+}
+
+/// Adds `amount` times another stress.
+fn add(stress: &mut PartStress, amount: f64, other: &PartStress) {
+    let values = stress.as_flattened_mut().as_flattened_mut().iter_mut();
+    values.zip(other.as_flattened().as_flattened()).for_each(|(value, part)| *value += amount * part);
 }
 
 /// The works of the tractions with the unknowns of the sides: for each side, opposite to corner k, at its ends k+1 and k+2 along x and y.

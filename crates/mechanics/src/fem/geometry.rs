@@ -67,6 +67,57 @@ pub(crate) fn turned([xx, yy, zz, xy, yz, zx]: Symmetric, axes: &[[f64; 3]; 3]) 
     [along(0, 0), along(1, 1), along(2, 2), along(0, 1), along(1, 2), along(2, 0)]
 }
 
+/// The moments of inertia of a unit mass about the coordinate axes through the end of its arm: `r.r I - r r'`.
+pub(crate) fn inertia([x, y, z]: [f64; 3]) -> Symmetric {
+    [y * y + z * z, z * z + x * x, x * x + y * y, -x * y, -y * z, -z * x]
+}
+
+/// Most sweeps over the three pairs of axes; four reach rounding.
+const MOST_SWEEPS: usize = 20;
+
+/// The principal values of a symmetric tensor, decreasing, each with its axis, a unit vector; `None` if a component is not finite.
+pub(crate) fn principal(tensor: &Symmetric) -> Option<[(f64, [f64; 3]); 3]> {
+    let [xx, yy, zz, xy, yz, zx] = *tensor;
+    // The shear of each axis is that between the other two.
+    let (mut values, mut shears, mut axes) = ([xx, yy, zz], [yz, zx, xy], COORDINATES);
+    let largest = tensor.iter().fold(0.0, |largest: f64, component| largest.max(component.abs()));
+    if !tensor.iter().all(|component| component.is_finite()) {
+        return None;
+    }
+    for _ in 0..MOST_SWEEPS {
+        if shears.iter().all(|shear| shear.abs() <= f64::EPSILON / 4.0 * largest) {
+            break;
+        }
+        for axis in 0..3 {
+            let (first, second, shear) = ((axis + 1) % 3, (axis + 2) % 3, shears[axis]);
+            if shear != 0.0 {
+                let (cosine, sine) = rotation(values[first], values[second], shear);
+                let turn = |x: f64, y: f64| (cosine * x - sine * y, sine * x + cosine * y);
+                values[first] -= sine / cosine * shear;
+                values[second] += sine / cosine * shear;
+                (shears[second], shears[first]) = turn(shears[second], shears[first]);
+                shears[axis] = 0.0;
+                let [one, other] = [axes[first], axes[second]];
+                (0..3).for_each(|k| (axes[first][k], axes[second][k]) = turn(one[k], other[k]));
+            }
+        }
+    }
+    let mut principal = [0, 1, 2].map(|axis| (values[axis], axes[axis]));
+    principal.sort_by(|a, b| b.0.total_cmp(&a.0));
+    Some(principal)
+}
+
+/// Cosine c and sine s of the rotation that makes `[[a, both], [both, b]]` diagonal: (x, y) becomes (c x - s y, s x + c y).
+///
+/// # Source
+/// G. H. Golub, C. F. Van Loan, *Matrix Computations*, 4th edition (2013), section 8.5: the smaller of the two angles.
+pub(crate) fn rotation(a: f64, b: f64, both: f64) -> (f64, f64) {
+    let cotangent = (b - a) / (2.0 * both);
+    let tangent = 1.0_f64.copysign(cotangent) / (cotangent.abs() + (1.0 + cotangent * cotangent).sqrt());
+    let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
+    (cosine, tangent * cosine)
+}
+
 /// The key of an edge: its two nodes, increasing.
 pub(crate) fn key(a: usize, b: usize) -> [usize; 2] {
     [a.min(b), a.max(b)]
@@ -103,5 +154,37 @@ impl Around {
     /// The cells around a point, increasing.
     pub fn at(&self, point: usize) -> &[u32] {
         &self.cells[self.starts[point] as usize..self.starts[point + 1] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Along its principal axes a tensor is diagonal, whatever its size; equal values and zero included.
+    #[test]
+    fn a_tensor_along_its_principal_axes_has_its_principal_values_and_no_shear() {
+        let tensors = [
+            [3.0, -1.0, 2.0, 0.5, -4.0, 1.0],
+            [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 1.0, 1.0, 1.0],
+            [2.0, 2.0, 2.0, 0.0, 0.0, 0.0],
+            [1e8, 1.0, -1.0, 1e-3, 1e4, 1e-9],
+            [1.0, 1.0 + 1e-15, 1.0, 1e-16, 1e-12, 0.0],
+            [0.0; 6],
+        ];
+        for scale in [1.0, 2.0_f64.powi(500), 2.0_f64.powi(-500)] {
+            for tensor in tensors.map(|tensor| tensor.map(|component| scale * component)) {
+                let principal = principal(&tensor).unwrap();
+                let rounding = 1e-15 * tensor.iter().fold(0.0, |largest: f64, part| largest.max(part.abs()));
+                let [xx, yy, zz, rest @ ..] = turned(tensor, &principal.map(|entry| entry.1));
+                let values = principal.map(|entry| entry.0);
+                let off = [xx - values[0], yy - values[1], zz - values[2], rest[0], rest[1], rest[2]];
+                assert!(off.iter().all(|off| off.abs() <= 4.0 * rounding), "{tensor:?} {principal:?}");
+                assert!(values.is_sorted_by(|a, b| a >= b), "{values:?}");
+            }
+        }
+        assert_eq!(principal(&[0.0, f64::NAN, 0.0, 0.0, 0.0, 0.0]), None);
+        assert_eq!(principal(&[0.0, 0.0, 0.0, f64::INFINITY, 0.0, 0.0]), None);
     }
 }

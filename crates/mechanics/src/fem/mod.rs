@@ -3,6 +3,7 @@
 
 pub(crate) mod assembly;
 pub(crate) mod body;
+pub(crate) mod dense;
 pub(crate) mod element;
 pub(crate) mod formulation;
 pub mod geometry;

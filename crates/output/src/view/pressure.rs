@@ -4,9 +4,11 @@ use std::collections::HashMap;
 
 use crate::plots::plot::{Plot, Series};
 use crate::plots::ticks::Quantity;
+use signorini_mechanics::fem::geometry::cross;
 use signorini_mechanics::fem::{Boundary, Formulation};
 use signorini_mechanics::scene::{Answer, ContactRow, Model};
 use signorini_mechanics::study::Summary;
+use signorini_qp::dot;
 
 /// The part of the boundary that is shown reaches beyond the contact by this share of its length.
 const BEYOND: f64 = 0.4;
@@ -188,16 +190,24 @@ fn parabola(points: &[[f64; 2]]) -> Option<(f64, f64)> {
     // Least squares in the Legendre polynomials of the interval: three equations.
     let basis = |at: f64| {
         let x = (at - middle) / half;
-        nalgebra::Vector3::new(1.0, x, 1.5 * x * x - 0.5)
+        [1.0, x, 1.5 * x * x - 0.5]
     };
-    let (mut matrix, mut right) = (nalgebra::Matrix3::zeros(), nalgebra::Vector3::zeros());
+    let (mut rows, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
     for &[at, gap] in points {
-        let row = basis(at);
-        matrix += row * row.transpose();
-        right += gap * row;
+        let values = basis(at);
+        for (i, value) in values.into_iter().enumerate() {
+            (0..3).for_each(|j| rows[i][j] += value * values[j]);
+            right[i] += value * gap;
+        }
     }
-    let found = matrix.lu().solve(&right)?;
-    let off = points.iter().map(|&[at, gap]| (basis(at).dot(&found) - gap).abs()).fold(0.0, f64::max);
+    // Cramer's rule, with determinants as products of rows, which are the columns too.
+    let [a, b, c] = rows;
+    let determinant = dot(&a, &cross(b, c));
+    if determinant.is_nan() || determinant <= 0.0 {
+        return None;
+    }
+    let found = [cross(b, c), cross(c, a), cross(a, b)].map(|across| dot(&across, &right) / determinant);
+    let off = points.iter().map(|&[at, gap]| (dot(&basis(at), &found) - gap).abs()).fold(0.0, f64::max);
     let depth = points
         .iter()
         .map(|point| point[1])

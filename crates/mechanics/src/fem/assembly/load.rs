@@ -2,14 +2,12 @@
 
 use std::borrow::Cow;
 
-use nalgebra::{Matrix3, Vector3};
-
 use super::surface::{FacetPoint, for_each_point, for_each_point_of};
 use super::{DofMap, internal_force};
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::element::{PerKind, Tabulated, between_levels};
-use crate::fem::geometry::{cross, dot, minus};
+use crate::fem::geometry::{cross, dot, inertia, length, minus, principal};
 use crate::fem::mesh::Boundary;
 
 /// A moment of inertia of a boundary below this times the largest is rounding: the boundary is a straight line about that axis.
@@ -88,27 +86,21 @@ pub(crate) fn add_moment(body: &ElasticBody, boundary: &Boundary, moment: [f64; 
         (0..3).for_each(|axis| sum[axis] += point.area * away[axis]);
     });
     let centre = [0, 1, 2].map(|axis| first[axis] + sum[axis] / area);
-    let mut inertia = Matrix3::zeros();
+    let mut of_area = [0.0; 6];
     visit(&mut |point| {
-        let away = Vector3::from(minus(point.at, centre));
-        inertia += (Matrix3::identity() * away.norm_squared() - away * away.transpose()) * point.area;
+        let of_point = inertia(minus(point.at, centre));
+        of_area.iter_mut().zip(of_point).for_each(|(sum, part)| *sum += point.area * part);
     });
-    // The eigenvalue iteration does not end if an entry is not a number.
-    if !inertia.iter().all(|entry| entry.is_finite()) {
-        return None;
-    }
-    let principal = inertia.symmetric_eigen();
-    let (moment, largest) = (Vector3::from(moment), principal.eigenvalues.max());
-    let mut omega = Vector3::zeros();
-    for (axis, &about) in principal.eigenvectors.column_iter().zip(&principal.eigenvalues) {
-        let part = axis.dot(&moment);
-        if about > NO_INERTIA * largest {
-            omega += axis * (part / about);
-        } else if part.abs() > NO_INERTIA * moment.norm() {
+    let principal = principal(&of_area)?;
+    let mut omega = [0.0; 3];
+    for (about, axis) in principal {
+        let part = dot(axis, moment);
+        if about > NO_INERTIA * principal[0].0 {
+            omega.iter_mut().zip(axis).for_each(|(sum, component)| *sum += part / about * component);
+        } else if part.abs() > NO_INERTIA * length(moment) {
             return None;
         }
     }
-    let omega = [omega.x, omega.y, omega.z];
     visit(&mut |point| add_share(body, point, cross(omega, minus(point.at, centre)), load));
     Some(())
 }

@@ -83,8 +83,8 @@ pub(crate) fn nodal_mass(body: &ElasticBody, form: MassForm, contact_nodes: &[us
                         triplets.extend(nodes.iter().zip(lumped(element)).map(|(&a, mass)| (a, a, mass)))
                     }
                     _ => {
-                        for (&row, of_row) in nodes.iter().zip(element.column_iter()) {
-                            triplets.extend(nodes.iter().zip(&of_row).map(|(&column, &mass)| (row, column, mass)));
+                        for (&row, of_row) in nodes.iter().zip(element.columns()) {
+                            triplets.extend(nodes.iter().zip(of_row).map(|(&column, &mass)| (row, column, mass)));
                         }
                     }
                 }
@@ -105,7 +105,7 @@ fn element_masses(body: &ElasticBody) -> Result<Vec<ElementMass>, Error> {
         let scale = density * cell.unit().powi(body.dimension() as i32);
         for at in &tables.at(kind).points {
             let weight = body.point(&cell, at).weight * scale;
-            for (mut column, share) in mass.column_iter_mut().zip(at.shape) {
+            for (column, share) in mass.columns_mut().zip(at.shape) {
                 column.iter_mut().zip(at.shape).for_each(|(mass, other)| *mass += weight * share * other);
             }
         }
@@ -116,11 +116,12 @@ fn element_masses(body: &ElasticBody) -> Result<Vec<ElementMass>, Error> {
 
 /// The lumped mass of an element, node by node.
 fn lumped(element: &ElementMass) -> Vec<f64> {
-    let (sums, own) = (element.row_sum(), element.diagonal());
+    let sums: Vec<f64> = element.columns().map(|column| column.iter().sum()).collect();
+    let own: Vec<f64> = (0..sums.len()).map(|node| element[(node, node)]).collect();
     let is_small = |&sum: &f64| sum <= 1e-12 * own[0].abs();
-    let (total, trace) = (sums.sum(), own.sum());
+    let [total, trace] = [&sums, &own].map(|masses| masses.iter().sum::<f64>());
     let scaled = own.iter().map(|mass| mass * total / trace);
-    if sums.iter().any(is_small) { scaled.collect() } else { sums.iter().copied().collect() }
+    if sums.iter().any(is_small) { scaled.collect() } else { sums }
 }
 
 /// The mass of the free dofs from that of the nodes, as [`nodal_mass`].

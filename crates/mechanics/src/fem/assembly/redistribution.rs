@@ -1,10 +1,9 @@
 //! Moves the mass of contact nodes to their neighbours and applies the smallest linear correction of the density that
 //! preserves mass and centre of mass.
 
-use nalgebra::{DMatrix, DVector};
-
 use crate::error::Error;
 use crate::fem::body::{ElasticBody, Region};
+use crate::fem::dense::DenseMatrix;
 
 /// Largest allowed change of the mass and of the centre of mass, relative to the mass and the size of the body.
 const MASS_TOLERANCE: f64 = 1e-10;
@@ -13,7 +12,7 @@ const MASS_TOLERANCE: f64 = 1e-10;
 const LEAST_FACTOR: f64 = 0.1;
 
 /// The mass of one element: each column has the masses that a node shares with all nodes.
-pub(super) type ElementMass = DMatrix<f64>;
+pub(super) type ElementMass = DenseMatrix;
 
 /// The nodes that take over the mass of each contact node, and the factor on the density of each element.
 pub(super) struct Redistribution {
@@ -43,8 +42,8 @@ impl Redistribution {
     pub fn triplets(&self, body: &ElasticBody, elements: &[ElementMass]) -> Vec<(usize, usize, f64)> {
         let mut triplets = Vec::new();
         for ((nodes, element), factor) in body.mesh().elements().zip(elements).zip(&self.factors) {
-            for (&a, row) in nodes.iter().zip(element.column_iter()) {
-                for (&b, &mass) in nodes.iter().zip(&row) {
+            for (&a, row) in nodes.iter().zip(element.columns()) {
+                for (&b, &mass) in nodes.iter().zip(row) {
                     match self.loser(a, b) {
                         None => triplets.push((a, b, factor * mass)),
                         Some(node) => {
@@ -82,14 +81,14 @@ impl Redistribution {
             }),
         };
         let count = dimension + 1;
-        let (mut matrix, mut missing) = (DMatrix::<f64>::zeros(count, count), DVector::<f64>::zeros(count));
+        let (mut matrix, mut missing) = (DenseMatrix::zeros(count, count), vec![0.0; count]);
         let mut middles = Vec::with_capacity(region.elements().len());
         let mut total = 0.0;
         for element in region.elements() {
             let of_element = body.mesh().element(element);
             let (mut moment, mut redistributed) = ([0.0; 4], [0.0; 4]);
-            for (&a, row) in of_element.iter().zip(elements[element].column_iter()) {
-                for (&b, &mass) in of_element.iter().zip(&row) {
+            for (&a, row) in of_element.iter().zip(elements[element].columns()) {
+                for (&b, &mass) in of_element.iter().zip(row) {
                     let (was, is) = (place(nodes[a]), at_node(self.loser(a, b).unwrap_or(a)));
                     for axis in 0..4 {
                         moment[axis] += mass * was[axis];
@@ -110,8 +109,9 @@ impl Redistribution {
                       nodes behind the contact nodes; take smaller cells, or a consistent or lumped mass"
                 .into(),
         };
-        let correction = matrix.clone().svd(true, true).solve(&missing, 1e-12).map_err(|_| too_coarse())?;
-        if (&matrix * &correction - missing).amax() > MASS_TOLERANCE * total {
+        let correction = matrix.clone().singular_values().solve(&missing, 1e-12);
+        let off = matrix.mul(&correction).into_iter().zip(missing).map(|(kept, missing)| (kept - missing).abs());
+        if off.fold(0.0, f64::max) > MASS_TOLERANCE * total {
             return Err(too_coarse());
         }
         for (element, middle) in region.elements().zip(middles) {
@@ -133,8 +133,8 @@ fn heirs(body: &ElasticBody, elements: &[ElementMass], massless: &[usize]) -> Re
     massless.iter().filter(|&&node| node < count).for_each(|&node| waiting[node] = true);
     let mut shared: Vec<Vec<(usize, f64)>> = vec![Vec::new(); count];
     for (nodes, element) in body.mesh().elements().zip(elements) {
-        for (&a, row) in nodes.iter().zip(element.column_iter()).filter(|(a, _)| waiting[**a]) {
-            shared[a].extend(nodes.iter().zip(&row).filter(|(b, _)| **b != a).map(|(&b, mass)| (b, mass.abs())));
+        for (&a, row) in nodes.iter().zip(element.columns()).filter(|(a, _)| waiting[**a]) {
+            shared[a].extend(nodes.iter().zip(row).filter(|(b, _)| **b != a).map(|(&b, mass)| (b, mass.abs())));
         }
     }
     let mut heirs: Vec<Vec<(usize, f64)>> = vec![Vec::new(); count];

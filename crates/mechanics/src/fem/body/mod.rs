@@ -11,10 +11,10 @@ pub use phase::{Phase, Temperature};
 pub(crate) use point::LocalPoint;
 pub use region::Region;
 
-use nalgebra::DMatrix;
 use signorini_qp as qp;
 
 use crate::error::Error;
+use crate::fem::dense::DenseMatrix;
 use crate::fem::element::{
     Cell, ElementKind, MAX_NODES, PerKind, PerNode, ReferenceElement, Rule, Tabulated, TabulatedPoint,
 };
@@ -213,7 +213,7 @@ impl ElasticBody {
     }
 
     /// The [weights](Tabulated::extrapolation) that carry values at these points to the nodes.
-    pub(crate) fn extrapolations(&self) -> PerKind<DMatrix<f64>> {
+    pub(crate) fn extrapolations(&self) -> PerKind<DenseMatrix> {
         self.per_kind(|reference| Tabulated::new(reference, self.rule()).extrapolation())
     }
 

@@ -1,8 +1,7 @@
 //! Shape functions tabulated once, for all elements of a mesh; extrapolation from quadrature points to nodes.
 
-use nalgebra::DMatrix;
-
 use super::{Part, PerNode, QuadraturePoint, ReferenceElement, Shape, quadrature};
+use crate::fem::dense::DenseMatrix;
 
 /// The shape functions at one reference point.
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +78,7 @@ impl Tabulated {
 
     /// The weights that carry values at the quadrature points to the nodes, n_nodes x n_points: the least-squares fit of a linear
     /// function (multilinear on a product of intervals; a constant if there is only one point).
-    pub fn extrapolation(&self) -> DMatrix<f64> {
+    pub fn extrapolation(&self) -> DenseMatrix {
         let basis = |at: [f64; 3]| -> Vec<f64> {
             let dimension = self.reference.dimension;
             match self.reference.form {
@@ -92,13 +91,17 @@ impl Tabulated {
         };
         let rows = |points: Vec<[f64; 3]>| {
             let rows: Vec<Vec<f64>> = points.into_iter().map(basis).collect();
-            DMatrix::from_fn(rows.len(), rows.first().map_or(0, Vec::len), |i, j| rows[i][j])
+            DenseMatrix::from_fn(rows.len(), rows.first().map_or(0, Vec::len), |i, j| rows[i][j])
         };
         let at_points = rows(self.rule.iter().map(|point| point.at).collect());
         let at_nodes = rows(self.reference.nodes.to_vec());
-        // The basis is independent on every rule here; if the inverse failed, the mean value would be used.
-        let mean = || DMatrix::from_element(at_nodes.nrows(), at_points.nrows(), 1.0 / at_points.nrows() as f64);
-        let normal = at_points.transpose() * &at_points;
-        normal.try_inverse().map_or_else(mean, |inverse| &at_nodes * inverse * at_points.transpose())
+        let (points, fit) = (self.rule.len(), at_points.singular_values());
+        let of_point = |point: usize| {
+            let mut one = vec![0.0; points];
+            one[point] = 1.0;
+            at_nodes.mul(&fit.solve(&one, f64::EPSILON))
+        };
+        let weights: Vec<Vec<f64>> = (0..points).map(of_point).collect();
+        DenseMatrix::from_fn(self.reference.nodes.len(), points, |node, point| weights[point][node])
     }
 }

@@ -1,11 +1,11 @@
 //! Orthotropic elasticity: three planes of symmetry, eps = S sigma along the axes of the material.
 
-use nalgebra::DMatrix;
 use signorini_qp as qp;
 
 use super::cylinder::Cylinder;
 use super::law::{Matrices, Matrix};
 use crate::error::Error;
+use crate::fem::dense::DenseMatrix;
 use crate::fem::formulation::{Formulation, positive};
 use crate::fem::geometry::{COORDINATES, Symmetric, cross, dot, length, turned, unit};
 
@@ -155,8 +155,11 @@ impl Orthotropic {
 /// The inverse of a symmetric matrix in some components, symmetric, zero in the others; `None` if it is singular.
 fn inverse(of: &Matrix, components: &[usize]) -> Option<Matrix> {
     let count = components.len();
-    let own = DMatrix::from_fn(count, count, |i, j| of[components[i]][components[j]]);
-    let inverse = own.try_inverse().filter(|inverse| inverse.iter().all(|entry| entry.is_finite()))?;
+    let own = DenseMatrix::from_fn(count, count, |i, j| of[components[i]][components[j]]);
+    let inverse = own.solve(DenseMatrix::identity(count))?;
+    if !inverse.columns().flatten().all(|entry| entry.is_finite()) {
+        return None;
+    }
     let mut all = [[0.0; 6]; 6];
     for (i, &row) in components.iter().enumerate() {
         for (j, &column) in components.iter().enumerate() {

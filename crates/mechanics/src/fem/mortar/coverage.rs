@@ -1,9 +1,8 @@
 //! The covered part of a surface, facet by facet, and the functions of the multipliers on it.
 
-use nalgebra::DMatrix;
-
 use super::facet::Facet;
 use super::shared::{MOST, Shared, keep_nearest};
+use crate::fem::dense::DenseMatrix;
 use crate::fem::element::PerNode;
 
 /// A node with less than this share of its area covered carries no row.
@@ -83,18 +82,18 @@ impl<'a> Covered<'a> {
     /// to the kept nodes of the facet, in equal parts.
     ///
     /// Without dropped nodes `integral psi_j phi_k = delta_jk integral phi_j`, and `sum_j psi_j = 1` always.
-    fn dual(&self, is_kept: &[bool]) -> DMatrix<f64> {
+    fn dual(&self, is_kept: &[bool]) -> DenseMatrix {
         let count = is_kept.len();
         let kept: Vec<usize> = (0..count).filter(|&j| is_kept[j]).collect();
-        let mut weights = DMatrix::zeros(count, count);
+        let mut weights = DenseMatrix::zeros(count, count);
         if let [only] = kept[..] {
-            weights.row_mut(only).fill(1.0);
+            (0..count).for_each(|k| weights[(only, k)] = 1.0);
             return weights;
         }
-        let products = DMatrix::from_fn(count, count, |j, k| self.products[j][k]);
-        let scaled = DMatrix::from_fn(count, count, |j, k| if j == k { self.functions[j] } else { 0.0 });
+        let products = DenseMatrix::from_fn(count, count, |j, k| self.products[j][k]);
+        let scaled = DenseMatrix::from_fn(count, count, |j, k| if j == k { self.functions[j] } else { 0.0 });
         // Products are symmetric: the transposed weights solve products * weights' = diagonal of the integrals.
-        let Some(transposed) = products.full_piv_lu().solve(&scaled) else { return weights };
+        let Some(transposed) = products.solve(scaled) else { return weights };
         for k in 0..count {
             let dropped: f64 = (0..count).filter(|&d| !is_kept[d]).map(|d| transposed[(k, d)]).sum();
             kept.iter().for_each(|&j| weights[(j, k)] = transposed[(k, j)] + dropped / kept.len() as f64);

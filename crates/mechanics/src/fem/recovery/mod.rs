@@ -9,13 +9,12 @@ pub use discretisation::discretisation_error;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use nalgebra::{DMatrix, Matrix3};
-
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
+use crate::fem::dense::DenseMatrix;
 use crate::fem::element::{MAX_NODES, PerNode, Tabulated, TabulatedPoint};
 use crate::fem::formulation::Formulation;
-use crate::fem::geometry::Symmetric;
+use crate::fem::geometry::{Symmetric, principal};
 use crate::fem::threads::{each, in_order};
 
 /// The stress at a point, in force per area; tension is positive.
@@ -57,13 +56,10 @@ impl Stress {
     }
 
     /// The stress with the components `[xx, yy, zz, xy, yz, zx]` in space, in force per area, tension positive.
-    pub fn in_space([sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx]: Symmetric) -> Self {
-        let tensor =
-            Matrix3::new(sigma_xx, sigma_xy, sigma_zx, sigma_xy, sigma_yy, sigma_yz, sigma_zx, sigma_yz, sigma_zz);
-        let finite = tensor.iter().all(|component| component.is_finite());
-        let mut principal: [f64; 3] = if finite { tensor.symmetric_eigenvalues().into() } else { [f64::NAN; 3] };
-        principal.sort_by(|a, b| b.total_cmp(a));
-        let [sigma_1, sigma_2, sigma_3] = principal;
+    pub fn in_space(components: Symmetric) -> Self {
+        let [sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx] = components;
+        let values = principal(&components).map(|principal| principal.map(|(value, _)| value));
+        let [sigma_1, sigma_2, sigma_3] = values.unwrap_or([f64::NAN; 3]);
         let normal = (sigma_xx - sigma_yy).hypot(sigma_yy - sigma_zz).hypot(sigma_zz - sigma_xx) / 2_f64.sqrt();
         let shear = sigma_xy.hypot(sigma_yz).hypot(sigma_zx) * 3_f64.sqrt();
         let von_mises = normal.hypot(shear);
@@ -210,14 +206,13 @@ fn finished(body: &ElasticBody, s: Symmetric) -> Stress {
 /// The values at the quadrature points of an element, carried to its nodes.
 fn carried_to_nodes(
     table: &Tabulated,
-    extrapolation: &DMatrix<f64>,
+    extrapolation: &DenseMatrix,
     value: impl Fn(&TabulatedPoint) -> Symmetric,
 ) -> PerNode<Symmetric> {
     let mut of_nodes = [[0.0; 6]; MAX_NODES];
-    for (point, at) in table.points.iter().enumerate() {
+    for (at, weights) in table.points.iter().zip(extrapolation.columns()) {
         let value = value(at);
-        for (local, of_node) in of_nodes.iter_mut().enumerate().take(extrapolation.nrows()) {
-            let weight = extrapolation[(local, point)];
+        for (of_node, weight) in of_nodes.iter_mut().zip(weights) {
             of_node.iter_mut().zip(&value).for_each(|(sum, component)| *sum += weight * component);
         }
     }

@@ -10,14 +10,14 @@
 
 use std::borrow::Cow;
 
-use nalgebra::{DMatrix, DVector};
 use signorini_qp as qp;
 
 use super::rigid_face::RigidFace;
 use crate::error::Error;
 use crate::fem::assembly::{Along, DofMap};
+use crate::fem::dense::DenseMatrix;
 use crate::scene::input::obstacle::PlacedObstacle;
-use signorini_qp::{SparseMatrix, SymmetricMatrix};
+use signorini_qp::{SparseMatrix, SymmetricMatrix, dot};
 
 /// The meaning of the unknowns by their order.
 #[derive(Clone, Debug)]
@@ -291,12 +291,10 @@ impl FaceMotions {
                 column
             };
             let columns: Vec<Vec<f64>> = unknowns.iter().map(|&unknown| column(unknown)).collect();
-            let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-            let matrix = DMatrix::from_fn(columns.len(), columns.len(), |i, j| product(&columns[i], &columns[j]));
-            let right = DVector::from_fn(columns.len(), |i, _| product(&columns[i], of_free));
-            if let Ok(found) = matrix.svd(true, true).solve(&right, 1e-12) {
-                unknowns.iter().zip(&found).for_each(|(&unknown, &value)| values[unknown] = value);
-            }
+            let matrix = DenseMatrix::from_fn(columns.len(), columns.len(), |i, j| dot(&columns[i], &columns[j]));
+            let right: Vec<f64> = columns.iter().map(|column| dot(column, of_free)).collect();
+            let found = matrix.singular_values().solve(&right, 1e-12);
+            unknowns.iter().zip(found).for_each(|(&unknown, value)| values[unknown] = value);
         }
         values
     }

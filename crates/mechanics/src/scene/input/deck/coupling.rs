@@ -4,11 +4,9 @@
 //! # Source
 //! G. Dhondt, *CalculiX CrunchiX User's Manual*, version 2.20, keywords *COUPLING, *KINEMATIC, *DISTRIBUTING.
 
-use nalgebra::{Matrix3, Vector3};
-
 use super::sums::{Equation, Sum};
 use crate::error::Error;
-use crate::fem::geometry::{COORDINATES, cross, minus};
+use crate::fem::geometry::{COORDINATES, cross, dot, inertia, minus, principal, trace};
 use crate::fem::mesh::deck::{Card, Deck, Line, Place};
 
 /// A determinant of the moments of inertia below this share of the cube of their sum is rounding: the nodes lie on a line.
@@ -161,17 +159,18 @@ impl Coupling {
             areas.into_iter().map(|(node, area)| (node, area / whole, deck.place_of_node(node))).collect();
         let mean = |axis: usize| nodes.iter().map(|(_, share, at)| share * at[axis]).sum::<f64>();
         let centre = [0, 1, 2].map(mean);
-        let mut inertia = Matrix3::zeros();
+        let mut of_area = [0.0; 6];
         for (_, share, at) in &nodes {
-            let away = Vector3::from(minus(*at, centre));
-            inertia += (Matrix3::from_diagonal_element(away.norm_squared()) - away * away.transpose()) * *share;
+            let of_node = inertia(minus(*at, centre));
+            of_area.iter_mut().zip(of_node).for_each(|(sum, part)| *sum += share * part);
         }
         if deck.dimension() == 2 {
             // Only the rotation about z exists.
-            inertia = Matrix3::from_diagonal_element(inertia[(2, 2)]);
+            of_area = [of_area[2], of_area[2], of_area[2], 0.0, 0.0, 0.0];
         }
-        let has_extent = inertia.determinant() > ON_LINE * inertia.trace().powi(3);
-        let Some(inverse) = inertia.try_inverse().filter(|_| has_extent) else {
+        let determinant = |of: &[(f64, [f64; 3]); 3]| of.iter().map(|(about, _)| about).product::<f64>();
+        let has_extent = |of: &_| determinant(of) > ON_LINE * trace(&of_area).powi(3);
+        let Some(principal) = principal(&of_area).filter(has_extent) else {
             return Err(format!(
                 "the nodes of the surface `{}` lie on a line, about which no moment acts",
                 self.surface
@@ -194,7 +193,8 @@ impl Coupling {
             if deck.dimension() == 2 {
                 moment = [0.0, 0.0, moment[2]];
             }
-            let turn: [f64; 3] = (inverse * Vector3::from(moment)).into();
+            let part = |(about, along): (f64, [f64; 3]), axis: usize| dot(along, moment) / about * along[axis];
+            let turn = [0, 1, 2].map(|axis| principal.iter().map(|&one| part(one, axis)).sum::<f64>());
             let mut sum = Sum::default();
             sum.add((self.reference, kind), -1.0);
             for &(node, share, at) in &nodes {

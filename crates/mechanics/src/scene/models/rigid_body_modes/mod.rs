@@ -3,7 +3,6 @@
 mod advice;
 mod unit;
 
-use nalgebra::DMatrix;
 use signorini_qp as qp;
 
 use super::parts::Parts;
@@ -12,6 +11,7 @@ use super::rows::ContactRow;
 use super::tie_row::TieRow;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
+use crate::fem::dense::DenseMatrix;
 use crate::fem::geometry::COORDINATES;
 use signorini_qp::dot;
 use unit::{NAMED, Sense, UnitMotions};
@@ -159,19 +159,16 @@ impl RigidBodyModes {
             .map(|sum| self.in_sum(&sum, |node| nodes[node]));
         let of_faces = parts.rigid_faces.iter().flat_map(|face| self.prescribed(face));
         let of_ties = parts.ties.rows.iter().map(|row| self.in_tie(parts, row));
-        let mut resisted: Vec<Vec<f64>> =
+        let resisted: Vec<Vec<f64>> =
             of_supports.chain(of_rows).chain(of_springs).chain(of_faces).chain(of_ties).collect();
         let (modes, amplitudes) = (self.modes(), 6 * self.bodies.len());
-        // At least one row for each motion; otherwise the decomposition would omit part of the null space.
-        resisted.resize(resisted.len().max(modes.len()), vec![0.0; amplitudes]);
-        let matrix = DMatrix::from_fn(resisted.len(), modes.len(), |row, column| resisted[row][modes[column]]);
-        let svd = matrix.svd(false, true);
-        let Some(right) = svd.v_t else { return Vec::new() };
-        let largest = svd.singular_values.max();
+        let matrix = DenseMatrix::from_fn(resisted.len(), modes.len(), |row, column| resisted[row][modes[column]]);
+        let svd = matrix.triangle().singular_values();
+        let largest = svd.values.first().copied().unwrap_or(0.0);
         let mut null: Vec<Vec<f64>> = Vec::new();
-        for row in (0..modes.len()).filter(|&row| svd.singular_values[row] <= HELD * largest) {
+        for (of_modes, _) in svd.right.columns().zip(&svd.values).filter(|(_, value)| **value <= HELD * largest) {
             let mut motion = vec![0.0; amplitudes];
-            modes.iter().enumerate().for_each(|(column, &mode)| motion[mode] = right[(row, column)]);
+            modes.iter().zip(of_modes).for_each(|(&mode, &amount)| motion[mode] = amount);
             null.push(motion);
         }
         // Rotate the basis towards the unit motions, then add the rest.
@@ -207,7 +204,7 @@ impl RigidBodyModes {
         let (mut amplitudes, mut rest) = (Vec::new(), 0.0_f64);
         for body in &self.bodies {
             let target = &motion[self.dimension * body.nodes.start..self.dimension * body.nodes.end];
-            let (fitted, away) = body.fit(&nodes[body.nodes.clone()], target)?;
+            let (fitted, away) = body.fit(&nodes[body.nodes.clone()], target);
             amplitudes.extend(fitted);
             rest = rest.hypot(away);
         }
@@ -265,12 +262,9 @@ impl RigidBodyModes {
 /// A basis of the same space of motions with translations before rotations: orthonormal before and after.
 fn translations_first(motions: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let amplitudes = motions.first().map_or(0, Vec::len);
-    let turning = |row: usize, part: usize| if part % 6 < 3 { 0.0 } else { motions[row][part] };
-    let turning = DMatrix::from_fn(motions.len(), amplitudes, turning);
-    let mix = if motions.len() > 1 { turning.svd(true, false).u } else { None };
-    let Some(mix) = mix else { return motions.to_vec() };
-    let part = |column: usize, part: usize| (0..motions.len()).map(|row| mix[(row, column)] * motions[row][part]).sum();
-    let mixed = |column: usize| (0..amplitudes).map(|place| part(column, place)).collect();
+    let turning = |part: usize, motion: usize| if part % 6 < 3 { 0.0 } else { motions[motion][part] };
+    let mix = DenseMatrix::from_fn(amplitudes, motions.len(), turning).singular_values().right;
+    let all = DenseMatrix::from_fn(amplitudes, motions.len(), |part, motion| motions[motion][part]);
     // Singular values decrease: the motion with the least rotation comes last.
-    (0..motions.len()).rev().map(mixed).collect()
+    (0..motions.len()).rev().map(|column| all.mul(mix.column(column))).collect()
 }

@@ -2,9 +2,8 @@
 
 use std::ops::Range;
 
-use nalgebra::DMatrix;
-
 use crate::fem::body::{ElasticBody, Region};
+use crate::fem::dense::DenseMatrix;
 use crate::fem::geometry::{COORDINATES, cross};
 use crate::fem::mesh::extent;
 use crate::scene::input::entry::{point, six_digits};
@@ -91,15 +90,16 @@ impl UnitMotions {
     }
 
     /// The amplitudes closest to a motion of `nodes` (`dim` entries each) by least squares, and the length of the rest.
-    pub fn fit(&self, nodes: &[[f64; 3]], motion: &[f64]) -> Option<(Amplitudes, f64)> {
+    pub fn fit(&self, nodes: &[[f64; 3]], motion: &[f64]) -> (Amplitudes, f64) {
         let of_dof = |dof: usize| self.along(nodes[dof / self.dimension], COORDINATES[dof % self.dimension]);
         let components: Vec<Amplitudes> = (0..motion.len()).map(of_dof).collect();
-        let design = DMatrix::from_fn(motion.len(), self.modes.len(), |dof, mode| components[dof][self.modes[mode]]);
-        let target = DMatrix::from_column_slice(motion.len(), 1, motion);
-        let fitted = design.clone().svd(true, true).solve(&target, f64::EPSILON).ok()?;
+        let design =
+            DenseMatrix::from_fn(motion.len(), self.modes.len(), |dof, mode| components[dof][self.modes[mode]]);
+        let fitted = design.clone().singular_values().solve(motion, f64::EPSILON);
         let mut amplitudes = [0.0; 6];
-        self.modes.iter().enumerate().for_each(|(row, &mode)| amplitudes[mode] = fitted[(row, 0)]);
-        Some((amplitudes, (design * &fitted - &target).norm()))
+        self.modes.iter().zip(&fitted).for_each(|(&mode, &amount)| amplitudes[mode] = amount);
+        let off: Vec<f64> = design.mul(&fitted).iter().zip(motion).map(|(fitted, own)| fitted - own).collect();
+        (amplitudes, dot(&off, &off).sqrt())
     }
 
     /// The name of a motion.
