@@ -162,10 +162,11 @@ mod tests {
 
     use super::super::bound::Side;
     use super::super::displacement::Displacements;
-    use super::super::problem::{Condition, Distance, Enclosure, Facing, PlaneProblem};
+    use super::super::problem::{Condition, Distance, Enclosure, Facing, PlaneProblem, Tensor, work};
     use super::super::system::Row;
     use super::super::triangulation::{Point, Triangulation};
     use super::*;
+    use crate::fem::geometry::minus;
     use crate::fem::material::Lame;
     use signorini_qp::{Method, Settings};
 
@@ -227,6 +228,32 @@ mod tests {
         assert!(bracket.defect < 1e-12, "{}", bracket.defect);
         assert!(bracket.force() > 0.0 && bracket.contact_share > 0.0);
         assert!(bracket.energy_of_stress() < bracket.energy_of_displacement());
+    }
+
+    /// A displacement of one strain everywhere, judged by the ball, has the distances that integrals by another rule give.
+    #[test]
+    fn a_displacement_is_judged_by_its_distance_from_the_centre_and_the_radius() {
+        let (problem, mesh) = square();
+        let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+        let own = [0.01, -0.02, 0.005];
+        let size = |strain: Tensor| work(problem.stress(strain), strain);
+        let length = |square: &dyn Fn(Tensor, Tensor) -> f64| {
+            (0..mesh.triangles.len()).map(|triangle| bracket.integral(triangle, square)).sum::<f64>().sqrt()
+        };
+        let from_centre = length(&|strain, stress| {
+            let balanced = problem.compliance(stress);
+            size(minus(own, [0, 1, 2].map(|entry| (strain[entry] + balanced[entry]) / 2.0)))
+        });
+        let judged = bracket.judged(|_| move |_: Point| own);
+        // The square has the area one.
+        let exact = [
+            (judged.norm, (problem.thickness * size(own)).sqrt()),
+            (judged.from_displacement, length(&|strain, _| size(minus(own, strain)))),
+            (judged.bound, from_centre + bracket.square_of_radius().sqrt()),
+        ];
+        for (found, exact) in exact {
+            assert!(exact > 0.0 && (found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
+        }
     }
 
     #[test]

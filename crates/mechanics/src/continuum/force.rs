@@ -127,12 +127,7 @@ impl Bracket<'_> {
         }
         let (length, radius) = (square.sqrt(), self.square_of_radius().max(0.0).sqrt());
         let beta = test.ratios.iter().flatten().fold(0.0, |beta: f64, &ratio| beta.max(ratio));
-        // The largest x |r| + beta (rho^2 - x^2).
-        let most = if length >= 2.0 * beta * radius {
-            radius * length
-        } else {
-            beta * radius * radius + length * length / (4.0 * beta)
-        };
+        let most = most_within(radius, length, beta);
         ([(low - radius * length) / (1.0 + test.beyond), high + most], length / (2.0 * radius))
     }
 
@@ -255,7 +250,47 @@ fn linear(problem: &ContactProblem) -> Option<Vec<f64>> {
     Some(solution)
 }
 
+/// The largest `x length + beta (radius^2 - x^2)` over x from zero to the radius.
+fn most_within(radius: f64, length: f64, beta: f64) -> f64 {
+    if length >= 2.0 * beta * radius {
+        radius * length
+    } else {
+        beta * radius * radius + length * length / (4.0 * beta)
+    }
+}
+
 /// A ratio with a displacement of order one as numerator: zero if that is rounding, infinite if only the denominator is zero.
 fn over(value: f64, size: f64) -> f64 {
     if value <= ROUNDING { 0.0 } else { value / size.max(0.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps of x; the function is quadratic, so that they miss its maximum by at most their square.
+    const STEPS: usize = 1000;
+
+    #[test]
+    fn the_part_of_the_interval_that_the_ball_allows_is_the_maximum_over_the_ball() {
+        for radius in [0.3, 1.0, 40.0] {
+            // Lengths on both sides of `2 beta radius`, where the maximum leaves the end of the interval.
+            for share in [0.0, 0.1, 0.9, 1.1, 1.9, 1.999, 2.0, 2.001, 3.0, 1e3] {
+                for beta in [0.0, 0.2, 5.0] {
+                    let length = if beta == 0.0 { share } else { share * beta * radius };
+                    let value = |step: usize| {
+                        let x = radius * step as f64 / STEPS as f64;
+                        x * length + beta * (radius - x) * (radius + x)
+                    };
+                    let sampled = (0..=STEPS).map(value).fold(0.0, f64::max);
+                    let most = most_within(radius, length, beta);
+                    let missed = 1e-12 * most + beta * (radius / STEPS as f64).powi(2);
+                    assert!(
+                        (0.0..=missed).contains(&(most - sampled + 1e-15 * most)),
+                        "{radius} {length} {beta}: {most} {sampled}"
+                    );
+                }
+            }
+        }
+    }
 }

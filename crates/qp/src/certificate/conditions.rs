@@ -51,7 +51,7 @@ pub(crate) struct Evidence {
     pub(super) error: f64,
     /// Numbers that cycles have measured, if the bound comes from cycles.
     pub(super) measured: Option<Measured>,
-    /// The norm of a factor that was made for the certificate, if it is that of K itself.
+    /// The norm of a factor that was made for the certificate, if the proof needs it and it is that of K itself.
     pub(super) norm: Option<EnergyNorm>,
 }
 
@@ -113,7 +113,9 @@ impl ContactProblem {
             return Ok(self.recomputed(&Bounding::Nothing, displacement, multiplier));
         };
         let mut examined = self.recomputed(&Bounding::Factor(norm.clone()), displacement, multiplier);
-        if let Some(evidence) = examined.evidence.as_mut().filter(|_| norm.is_of_stiffness_alone()) {
+        // Only the proof of a problem with equalities has no factor of its own.
+        let is_for_proof = !self.equalities().is_empty() && norm.is_of_stiffness_alone();
+        if let Some(evidence) = examined.evidence.as_mut().filter(|_| is_for_proof) {
             evidence.norm = Some(norm);
         }
         Ok(examined)

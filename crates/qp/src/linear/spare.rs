@@ -1,15 +1,19 @@
-//! Work vectors that are kept for the next use: the system clears each page of new memory, and that takes longer than the work on it.
+//! Long work vectors that are kept for the next use. Up to some length an allocator keeps freed memory itself; beyond it the system clears
+//! every page at each use, and that takes longer than the work on it.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Vectors that nobody uses at the moment.
+/// Bytes of a vector that is kept: the largest that the allocator of glibc keeps itself (`DEFAULT_MMAP_THRESHOLD_MAX`).
+const LEAST_BYTES: usize = 32 << 20;
+
+/// Long vectors that nobody uses at the moment.
 #[derive(Debug, Default)]
 pub struct Spare<T> {
     vectors: Mutex<Vec<Vec<T>>>,
 }
 
 impl<T: Copy + Default> Spare<T> {
-    /// A vector of this length, with the values of its last use.
+    /// A vector of this length, with any values.
     pub fn take(&self, length: usize) -> Vec<T> {
         let mut vectors = self.vectors();
         match vectors.iter().position(|vector| vector.len() == length) {
@@ -32,12 +36,33 @@ impl<T: Copy + Default> Spare<T> {
         vector
     }
 
-    /// Keeps a vector for the next use of its length.
+    /// Keeps a long vector for the next use of its length.
     pub fn give(&self, vector: Vec<T>) {
-        self.vectors().push(vector);
+        if size_of_val(&vector[..]) > LEAST_BYTES {
+            self.vectors().push(vector);
+        }
     }
 
     fn vectors(&self) -> MutexGuard<'_, Vec<Vec<T>>> {
         self.vectors.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_vectors_come_back_and_zeros_are_zeros_again() {
+        let (spare, long) = (Spare::<f64>::default(), LEAST_BYTES / 8 + 1);
+        let mut vector = spare.zeros(long);
+        let place = vector.as_ptr();
+        vector.fill(3.0);
+        spare.give(vector);
+        spare.give(vec![3.0; 10]);
+        assert!(spare.take(long - 1) == vec![0.0; long - 1] && spare.take(10) == [0.0; 10]);
+        let again = spare.zeros(long);
+        assert!(again.as_ptr() == place && again.iter().all(|&value| value == 0.0));
+        assert_eq!(spare.copy(&[1.0, 2.0]), [1.0, 2.0]);
     }
 }
