@@ -41,6 +41,7 @@ pub struct Iterate<'a> {
     /// An upper bound on the eigenvalues of D^-1 K, once it is asked for.
     largest_eigenvalue: OnceCell<f64>,
     threads: usize,
+    /// Work vectors of the length of the unknowns.
     pub work: &'a Spare<f64>,
 }
 
