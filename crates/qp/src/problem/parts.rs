@@ -35,7 +35,8 @@ impl Parts {
             }
         }
         let mut first: Vec<Option<usize>> = vec![None; contact.rows()];
-        for dof in 0..if forest.is_one_tree() { 0 } else { roots.len() } {
+        let dofs = if forest.is_one_tree() { 0 } else { roots.len() };
+        for dof in 0..dofs {
             let bounded = |entry: &(usize, f64)| entry.1 != 0.0 && gap[entry.0].is_finite();
             for (row, _) in contact.column(dof).filter(bounded) {
                 forest.join(*first[row].get_or_insert(dof), dof);

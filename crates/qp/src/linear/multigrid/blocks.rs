@@ -261,8 +261,7 @@ impl<T: Real> BlockMatrix<T> {
                 }
             }
         }
-        let (height, width, columns, shared_rows) = (self.width, self.height, self.rows(), Vec::new());
-        BlockMatrix { height, width, columns, starts, indices, values, shared_rows, is_half: false }
+        BlockMatrix { starts, indices, values, ..Self::empty(0, self.rows(), (self.width, self.height)) }
     }
 
     /// `y = A' x`. The sums run over parts of the rows that depend on the matrix alone, so that the result does not depend on the threads.

@@ -175,15 +175,5 @@ fn inverse_diagonal<T: Real>(matrix: &BlockMatrix<T>) -> BlockMatrix<T> {
     }
     let rows = matrix.rows();
     let (starts, indices) = ((0..=rows).collect(), (0..rows as u32).collect());
-    let shared_rows = Vec::new();
-    BlockMatrix {
-        height: size,
-        width: size,
-        columns: rows,
-        starts,
-        indices,
-        values: inverse,
-        shared_rows,
-        is_half: false,
-    }
+    BlockMatrix { starts, indices, values: inverse, ..BlockMatrix::empty(0, rows, (size, size)) }
 }

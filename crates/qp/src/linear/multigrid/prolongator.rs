@@ -59,8 +59,7 @@ pub fn tentative<T: Real>(
     }
     let starts = (0..=of_node.len()).collect();
     let indices = of_node.to_vec();
-    let (height, width, columns, shared_rows) = (size, count, aggregates, Vec::new());
-    (BlockMatrix { height, width, columns, starts, indices, values, shared_rows, is_half: false }, coarse)
+    (BlockMatrix { starts, indices, values, ..BlockMatrix::empty(0, aggregates, (size, count)) }, coarse)
 }
 
 /// Q R of the rows of `local`, `count` values each, in place: modified Gram-Schmidt, done twice. `triangle` is R, row by row.

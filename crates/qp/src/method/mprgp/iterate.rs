@@ -208,10 +208,15 @@ impl<'a> Iterate<'a> {
         }
     }
 
-    /// What `read` finds in the gradient of the unknowns that may move; it is zero at all others.
-    pub fn of_free_gradient<R>(&self, read: impl FnOnce(&[f64]) -> R) -> R {
+    fn free_gradient(&self) -> Vec<f64> {
         let mut free = self.work.copy(&self.gradient);
         self.keep_free(&mut free);
+        free
+    }
+
+    /// What `read` finds in the gradient of the unknowns that may move; it is zero at all others.
+    pub fn of_free_gradient<R>(&self, read: impl FnOnce(&[f64]) -> R) -> R {
+        let free = self.free_gradient();
         let found = read(&free);
         self.work.give(free);
         found
@@ -335,8 +340,7 @@ impl<'a> Iterate<'a> {
             }
         }
         let share = 1.0 / self.largest_eigenvalue.get_or_init(|| self.largest_eigenvalue());
-        let mut free = self.work.copy(&self.gradient);
-        self.keep_free(&mut free);
+        let mut free = self.free_gradient();
         self.bounds.travels.iter().for_each(|&travel| free[travel] = 0.0);
         for ((x, g), d) in self.x.iter_mut().zip(&free).zip(&self.diagonal) {
             *x -= share * g / d;
