@@ -2,14 +2,16 @@
 
     python reference/parts.py FOLDER
     python reference/calculix.py target/release/signorini FOLDER NAME [NAME ...]
-    python reference/calculix.py --contact target/release/signorini FOLDER NAME [NAME ...]
+    python reference/calculix.py --contact [--poisson NU] target/release/signorini FOLDER NAME [NAME ...]
     python reference/calculix.py --decks FOLDER [target/release/signorini]
 
 With `--decks`, both programs run on each deck of a folder, as `decks.py` does it.
 
 With `--contact`, parts whose only obstacle is one plane are solved with contact, and the total contact forces are compared. In
 CalculiX the plane is a face of one element whose nodes are fixed, and the contact pressure is a linear function of the overclosure.
-The contact stiffness takes increasing values: CONTACT_STIFFNESS times the modulus of the body over the length of a facet.
+The contact stiffness takes increasing values: CONTACT_STIFFNESS times the modulus of the body over the length of a facet. Seconds are
+those of whole commands, ours with certificate and proof. `--poisson` gives the bodies another Poisson's ratio. A run of CalculiX that does
+not end within MOST_SECONDS, or ends without contact forces, counts as none.
 
 Without `--contact`, the obstacles are left out, all supports are zero, and a body force acts on the part. CalculiX gets its nodes,
 elements and loads from the files that the program writes. CalculiX is the Debian package calculix-ccx; its command is ccx. Its
@@ -19,10 +21,13 @@ ten-node tetrahedra have four quadrature points, ours have eight: both are exact
 
 import csv
 import json
+import math
 import pathlib
 import subprocess
 import sys
 import tempfile
+import time
+from typing import NamedTuple
 
 import meshio
 import numpy as np
@@ -32,6 +37,9 @@ import decks
 
 CONTACT_STIFFNESS = (10.0, 30.0, 100.0)
 """Contact stiffnesses of CalculiX, as multiples of the modulus of the body over the length of a facet."""
+
+MOST_SECONDS = 300
+"""Time limit of a run of CalculiX with contact."""
 
 WEDGES = 180
 """For an axisymmetric body CalculiX computes a wedge of two degrees, and prints the forces of this wedge."""
@@ -206,23 +214,46 @@ def contact_input(scene: dict, mesh: meshio.Mesh, load: dict, held: dict, candid
     return "\n".join(lines + ["*NODE PRINT, NSET=OBSTACLE, TOTALS=ONLY", "RF", "*END STEP", ""])
 
 
-def contact_forces(program: str, path: pathlib.Path) -> tuple[int, float, list[float]]:
-    """Returns the number of unknowns of a part, our total contact force, and that of CalculiX for each contact stiffness."""
+class Contact(NamedTuple):
+    """A total contact force, and the seconds of the whole command; both are nan if there is no answer."""
+
+    force: float
+    seconds: float
+
+
+def of_calculix(folder: pathlib.Path, deck: str, whole: int) -> Contact:
+    """Runs CalculiX on a deck in contact; `whole` is the number of wedges that make the body."""
+    (folder / "part.inp").write_text(deck)
+    (folder / "part.dat").unlink(missing_ok=True)
+    begun = time.perf_counter()
+    try:
+        solved = subprocess.run(["ccx", "part"], cwd=folder, capture_output=True, text=True, timeout=MOST_SECONDS)
+    except subprocess.TimeoutExpired:
+        return Contact(math.nan, math.nan)
+    seconds = time.perf_counter() - begun
+    printed = (folder / "part.dat").read_text().split() if solved.returncode == 0 else []
+    if len(printed) < 3:
+        return Contact(math.nan, math.nan)
+    return Contact(whole * float(np.linalg.norm([float(word) for word in printed[-3:]])), seconds)
+
+
+def contact_forces(program: str, path: pathlib.Path, poisson: float | None) -> tuple[int, Contact, list[Contact]]:
+    """Returns the number of unknowns of a part, our contact force, and that of CalculiX for each contact stiffness."""
     scene = json.loads(path.read_text())
+    scene["body"]["gmsh"]["file"] = str(path.parent / scene["body"]["gmsh"]["file"])
+    if poisson is not None:
+        scene["material"]["poisson"] = poisson
     dimension = 3 if scene.get("model") == "space" else 2
-    held_at_zero = json.loads(path.read_text())
-    for support in held_at_zero["supports"]:
-        support |= {axis: 0 for axis in ("x", "y", "z", "value") if axis in support}
-    loads = path.with_name(f"{path.stem}-loads.json")
-    loads.write_text(json.dumps(held_at_zero))
+    at_zero = [support | {axis: 0 for axis in ("x", "y", "z", "value") if axis in support} for support in scene["supports"]]
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         run = lambda *words: subprocess.run(words, cwd=folder, check=True, capture_output=True)
-        try:
-            run(program, "export", str(loads), "problem")
-        finally:
-            loads.unlink()
-        run(program, "solve", str(path), "--no-proof", "--out", "answer")
+        (folder / "loads.json").write_text(json.dumps(scene | {"supports": at_zero}))
+        run(program, "export", "loads.json", "problem")
+        (folder / "scene.json").write_text(json.dumps(scene))
+        begun = time.perf_counter()
+        run(program, "solve", "scene.json", "--out", "answer")
+        seconds = time.perf_counter() - begun
         mesh = meshio.read(folder / "answer/solution.vtu")
         displacement = np.asarray(mesh.point_data["u"])
         free = free_dofs(folder / "problem/dofs.csv")
@@ -231,29 +262,25 @@ def contact_forces(program: str, path: pathlib.Path) -> tuple[int, float, list[f
         held = {(node, axis): float(displacement[node, axis]) for node, axis in every - set(free)}
         with (folder / "answer/contact.csv").open() as text:
             rows = list(csv.DictReader(text))
-        ours = sum(abs(float(row["force"])) for row in rows)
+        ours = Contact(sum(abs(float(row["force"])) for row in rows), seconds)
         candidates = {int(row["node"]) for row in rows}
-        theirs = []
-        for stiffness in CONTACT_STIFFNESS:
-            (folder / "part.inp").write_text(contact_input(scene, mesh, load, held, candidates, stiffness))
-            solved = subprocess.run(["ccx", "part"], cwd=folder, capture_output=True, text=True)
-            printed = (folder / "part.dat").read_text().split() if solved.returncode == 0 else []
-            if len(printed) < 3:
-                sys.exit(f"{path.stem}: ccx ends with {solved.returncode}: {solved.stdout[-800:]}")
-            whole = WEDGES if scene.get("model") == "axisymmetric" else 1
-            theirs.append(whole * float(np.linalg.norm([float(word) for word in printed[-3:]])))
-        return len(free), ours, theirs
+        whole = WEDGES if scene.get("model") == "axisymmetric" else 1
+        decks_of = (contact_input(scene, mesh, load, held, candidates, stiffness) for stiffness in CONTACT_STIFFNESS)
+        return len(free), ours, [of_calculix(folder, deck, whole) for deck in decks_of]
 
 
-def contact_table(program: str, folder: pathlib.Path, names: list[str]) -> int:
-    """Prints the contact forces of parts. The closest force of CalculiX counts, because CalculiX fails above some contact stiffness."""
-    print(f"{'part':18} {'unknowns':>9} {'force':>12}" + "".join(f"  ccx at {stiffness:5g}" for stiffness in CONTACT_STIFFNESS))
+def contact_table(program: str, folder: pathlib.Path, names: list[str], poisson: float | None) -> int:
+    """Prints contact forces and seconds. The closest force of CalculiX counts, because CalculiX fails above some contact stiffness."""
+    columns = "".join(f"  ccx at {stiffness:5g} {'seconds':>8}" for stiffness in CONTACT_STIFFNESS)
+    print(f"{'part':18} {'unknowns':>9} {'force':>12} {'seconds':>8}{columns}")
     worst = 0.0
     for name in names:
-        unknowns, ours, theirs = contact_forces(program, folder / f"{name}.json")
-        worst = max(worst, min(abs(force / ours - 1) for force in theirs))
-        print(f"{name:18} {unknowns:9} {ours:12.6g}" + "".join(f" {force / ours - 1:+12.2e}" for force in theirs), flush=True)
-    return int(worst > 0.01)
+        unknowns, ours, theirs = contact_forces(program, folder / f"{name}.json", poisson)
+        off = [contact.force / ours.force - 1 for contact in theirs]
+        worst = max(worst, np.nanmin(np.abs(off)))
+        of_theirs = "".join(f" {share:+12.2e} {contact.seconds:8.2f}" for share, contact in zip(off, theirs))
+        print(f"{name:18} {unknowns:9} {ours.force:12.6g} {ours.seconds:8.2f}{of_theirs}", flush=True)
+    return int(not worst <= 0.01)
 
 
 def main(arguments: list[str]) -> int:
@@ -263,10 +290,14 @@ def main(arguments: list[str]) -> int:
         return 0
     in_contact = arguments[:1] == ["--contact"]
     arguments = arguments[int(in_contact) :]
+    poisson = None
+    if in_contact and arguments[:1] == ["--poisson"] and len(arguments) > 1:
+        poisson, arguments = float(arguments[1]), arguments[2:]
     if len(arguments) < 3:
-        sys.exit("usage: calculix.py [--contact] PROGRAM FOLDER NAME [NAME ...], or calculix.py --decks FOLDER [PROGRAM]")
+        sys.exit("usage: calculix.py [--contact [--poisson NU]] PROGRAM FOLDER NAME [NAME ...], or calculix.py --decks FOLDER [PROGRAM]")
     if in_contact:
-        return contact_table(str(pathlib.Path(arguments[0]).resolve()), pathlib.Path(arguments[1]).resolve(), arguments[2:])
+        program, folder = str(pathlib.Path(arguments[0]).resolve()), pathlib.Path(arguments[1]).resolve()
+        return contact_table(program, folder, arguments[2:], poisson)
     program, folder = str(pathlib.Path(arguments[0]).resolve()), pathlib.Path(arguments[1]).resolve()
     print(f"{'part':18} {'unknowns':>9} {'difference':>11}")
     worst = 0.0

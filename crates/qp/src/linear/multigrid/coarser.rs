@@ -53,9 +53,10 @@ fn coarser_of<T: Real>(hierarchy: &Hierarchy<T>, levels: fn(Hierarchy<T>) -> Lev
         return None;
     }
     let matrix = below.levels.first().map_or(&*below.coarsest_matrix, |level| &level.matrix);
+    let matrix = lower_part(matrix);
     Some(Coarser {
-        matrix: lower_part(matrix),
-        multigrid: Multigrid { levels: levels(below), work: Spare::default() },
+        matrix: matrix.clone(),
+        multigrid: Multigrid { matrix, levels: levels(below), work: Spare::default() },
         place: hierarchy.nodes.place.clone(),
         shift: hierarchy.shift,
         starts: first.prolongator.starts.clone(),

@@ -36,7 +36,7 @@ const LOOKED: usize = 25;
 impl Preconditioned<'_> {
     /// `A p`.
     pub(super) fn product(&self, p: &[f64]) -> Vec<f64> {
-        self.matrix.mul_with(self.multigrid.threads(), p, self.multigrid.work())
+        self.multigrid.product(self.matrix, p)
     }
 
     /// Solves A x = b to `|b - A x| <= tolerance |b|` in the Euclidean norm, in at most `most_cycles` cycles.

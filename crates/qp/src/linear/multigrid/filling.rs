@@ -27,39 +27,48 @@ pub struct Filling<'a> {
 }
 
 /// Some rows of blocks, one after another.
-struct Rows<T> {
+#[derive(Default)]
+struct Rows {
     /// The blocks of each row.
     lengths: Vec<usize>,
     columns: Vec<u32>,
-    values: Vec<T>,
+    values: Vec<f64>,
 }
 
 impl Filling<'_> {
-    /// The matrix in blocks; places that nothing touches get the diagonal entry one.
-    pub fn blocks<T: Real>(&self, threads: usize) -> BlockMatrix<T> {
+    /// The matrix in blocks, and the same not rounded if nearly all rows repeat; places that nothing touches get the diagonal entry one.
+    pub fn blocks<T: Real>(&self, threads: usize) -> (BlockMatrix<T>, Option<BlockMatrix<f64>>) {
         let (groups, block) = (self.graph.count(), self.size * self.size);
         let mut matrix = RowByRow::new(self.size, self.exponents.len());
+        let mut exact = Some(RowByRow::new(self.size, self.exponents.len()));
+        let mut rounded = Vec::new();
         let mut cursors = vec![vec![0; self.matrix.dim()]; threads.min(groups.div_ceil(GROUPS))];
         let starts: Vec<usize> = (0..groups).step_by(GROUPS).collect();
         for starts in starts.chunks(threads) {
             let part = |&start: &usize| start..groups.min(start + GROUPS);
             let parts: Vec<(Range<usize>, &mut Vec<u32>)> = starts.iter().map(part).zip(&mut cursors).collect();
-            for rows in in_order(parts, |(groups, cursors)| self.rows::<T>(groups, cursors)) {
+            for rows in in_order(parts, |(groups, cursors)| self.rows(groups, cursors)) {
                 let mut start = 0;
                 for length in rows.lengths {
                     let end = start + length;
-                    matrix.push(&rows.columns[start..end], &rows.values[start * block..end * block]);
+                    let (columns, values) = (&rows.columns[start..end], &rows.values[start * block..end * block]);
+                    rounded.clear();
+                    rounded.extend(values.iter().map(|&value| T::of(value)));
+                    matrix.push(columns, &rounded);
+                    if let Some(exact) = &mut exact {
+                        exact.push(columns, values);
+                    }
+                    exact = exact.filter(RowByRow::has_few_rows);
                     start = end;
                 }
             }
         }
-        matrix.finished()
+        (matrix.finished(), exact.map(RowByRow::finished).filter(|exact| !exact.shared_rows.is_empty()))
     }
 
     /// The rows of the nodes of some groups. `next` is for each column, how far its next entry is thought to lie from its first.
-    fn rows<T: Real>(&self, groups: Range<usize>, next: &mut [u32]) -> Rows<T> {
-        let (size, mut met) = (self.size, Vec::new());
-        let mut rows = Rows { lengths: Vec::new(), columns: Vec::new(), values: Vec::new() };
+    fn rows(&self, groups: Range<usize>, next: &mut [u32]) -> Rows {
+        let (size, mut met, mut rows) = (self.size, Vec::new(), Rows::default());
         for group in groups.start as u32..groups.end as u32 {
             met.clear();
             met.push(group);
@@ -73,12 +82,12 @@ impl Filling<'_> {
                     for other in self.nodes(of_other) {
                         let first = rows.values.len();
                         rows.columns.push(other);
-                        rows.values.resize(first + size * size, T::default());
+                        rows.values.resize(first + size * size, 0.0);
                         let exponent = self.shift + self.exponents[node as usize] + self.exponents[other as usize];
                         for (i, &row) in self.dofs(node, group).iter().enumerate() {
                             for (j, &column) in self.dofs(other, of_other).iter().enumerate() {
                                 if let Some(value) = self.entry(row, column, next) {
-                                    rows.values[first + i * size + j] = T::of(ldexp(value, exponent));
+                                    rows.values[first + i * size + j] = ldexp(value, exponent);
                                 }
                             }
                         }

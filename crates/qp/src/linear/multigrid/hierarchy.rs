@@ -10,6 +10,7 @@ use super::filling::fill_empty_diagonal;
 use super::lines::Lines;
 use super::near_null::NearNullSpace;
 use super::nodes::Nodes;
+use super::operator::Operator;
 use super::patches::Patches;
 use super::prolongator::{Candidates, smoothed, smoothed_in_steps, tentative};
 use crate::linear::factor::Real;
@@ -51,6 +52,8 @@ pub struct Hierarchy<T> {
     pub(super) nodes: Nodes,
     /// The matrix in the units of the nodes, times `2^shift`, has a diagonal of order one.
     pub(super) shift: i32,
+    /// The finest matrix, not rounded, if nearly all its rows repeat.
+    exact: Option<BlockMatrix<f64>>,
     pub(super) levels: Vec<Arc<Level<T>>>,
     /// The matrix of the coarsest level, and its factor.
     pub(super) coarsest_matrix: Arc<BlockMatrix<T>>,
@@ -119,7 +122,7 @@ impl<T: Real> Hierarchy<T> {
         threads: usize,
         steps: usize,
     ) -> Result<Self, FactorError> {
-        let (nodes, mut blocks, shift) = Nodes::of::<T>(matrix, threads);
+        let (nodes, mut blocks, exact, shift) = Nodes::of::<T>(matrix, threads);
         let count = near_null.count();
         let mut candidates = Candidates { count, values: vec![0.0; nodes.size * nodes.count * count] };
         for (index, vector) in near_null.vectors().iter().enumerate() {
@@ -163,7 +166,22 @@ impl<T: Real> Hierarchy<T> {
         }
         let coarsest = Arc::new(Coarsest::of(&blocks)?);
         let (coarsest_matrix, spare) = (Arc::new(blocks), Spare::default());
-        Ok(Hierarchy { nodes, shift, levels, coarsest_matrix, coarsest, threads, spare })
+        Ok(Hierarchy { nodes, shift, exact, levels, coarsest_matrix, coarsest, threads, spare })
+    }
+
+    /// The product of the matrix of which the hierarchy was built with the displacements `u` of the dofs, in double precision; a vector
+    /// of `work`. `None` if the matrix is better read entry by entry.
+    pub fn product(&self, u: &[f64], work: &Spare<f64>) -> Option<Vec<f64>> {
+        let exact = self.exact.as_ref()?;
+        let places = || self.nodes.place.iter().map(|&place| (place as usize, self.nodes.exponent(place)));
+        let places_of_all = exact.rows() * exact.height;
+        let (mut x, mut y) = (work.zeros(places_of_all), work.take(places_of_all));
+        places().zip(u).for_each(|((place, unit), &u)| x[place] = ldexp(u, -unit));
+        Operator::whole(exact, self.threads, work).mul_into(&x, &mut y);
+        let mut product = work.take(u.len());
+        places().zip(&mut product).for_each(|((place, unit), own)| *own = ldexp(y[place], -unit - self.shift));
+        [x, y].into_iter().for_each(|vector| work.give(vector));
+        Some(product)
     }
 
     /// The hierarchy of the second level, which shares the levels; `None` if there is only one.
@@ -173,6 +191,7 @@ impl<T: Real> Hierarchy<T> {
         Some(Hierarchy {
             nodes: Nodes::in_order(matrix.height, matrix.rows()),
             shift: 0,
+            exact: None,
             levels: rest.to_vec(),
             coarsest_matrix: Arc::clone(&self.coarsest_matrix),
             coarsest: Arc::clone(&self.coarsest),
@@ -195,6 +214,7 @@ impl<T: Real> Hierarchy<T> {
     pub fn bytes(&self) -> usize {
         let of_level =
             |level: &Arc<Level<T>>| level.matrix.bytes() + level.prolongator.bytes() + level.smoother.inverse.bytes();
-        self.levels.iter().map(of_level).sum::<usize>() + size_of::<f64>() * self.coarsest.entries()
+        let of_exact = self.exact.as_ref().map_or(0, BlockMatrix::bytes);
+        self.levels.iter().map(of_level).sum::<usize>() + of_exact + size_of::<f64>() * self.coarsest.entries()
     }
 }

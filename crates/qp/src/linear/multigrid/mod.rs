@@ -47,6 +47,8 @@ use hierarchy::Hierarchy;
 /// The hierarchy of a symmetric positive (semi)definite matrix: one cycle approximates its inverse.
 #[derive(Debug)]
 pub struct Multigrid {
+    /// The matrix.
+    matrix: SymmetricMatrix,
     levels: Levels,
     /// Work vectors of the iteration around the cycles.
     work: Spare<f64>,
@@ -102,7 +104,7 @@ impl Multigrid {
             Width::Single => Hierarchy::new(matrix, near_null, threads).map(Levels::Single),
             Width::Double => Hierarchy::new(matrix, near_null, threads).map(Levels::Double),
         };
-        Ok(Multigrid { levels: levels.map_err(located)?, work: Spare::default() })
+        Ok(Multigrid { matrix: matrix.clone(), levels: levels.map_err(located)?, work: Spare::default() })
     }
 
     /// One cycle: approximately the solution x of A x = b, linear in b and symmetric.
@@ -133,6 +135,14 @@ impl Multigrid {
             }
         };
         Ok(Face { levels: levels.map_err(located)?, work: &self.work })
+    }
+
+    /// The product of `matrix` with `u`, length n; one of the work vectors. It is fast if this is the matrix of the hierarchy, and nearly
+    /// all its rows of blocks repeat.
+    pub(crate) fn product(&self, matrix: &SymmetricMatrix, u: &[f64]) -> Vec<f64> {
+        let of_blocks = || by_precision!(self.levels, hierarchy => hierarchy.product(u, &self.work));
+        let is_own = matrix.lower().is_shared_with(self.matrix.lower());
+        is_own.then(of_blocks).flatten().unwrap_or_else(|| matrix.mul_with(self.threads(), u, &self.work))
     }
 
     /// Work vectors for the iteration around the cycles; what a cycle returns is one of them.
@@ -219,5 +229,64 @@ fn located(error: FactorError) -> Error {
             Error::NotConvex { evidence: "the coarsest matrix of its hierarchy has a negative eigenvalue".into() }
         }
         other => other.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear::{SparseMatrix, generic};
+
+    /// Bars along the lines of a square lattice of nodes with two dofs, which resist shear a little; the upper half is softer by
+    /// `2^-40`, and each node is held by springs. `factor(node)` multiplies the springs of a node.
+    fn lattice(nodes: usize, factor: impl Fn(usize) -> f64) -> SymmetricMatrix {
+        let dofs = 2 * nodes * nodes;
+        let mut entries = Vec::new();
+        for node in 0..nodes * nodes {
+            let stiffness = if node / nodes < nodes / 2 { 1.1 } else { 1.1 * 2_f64.powi(-40) };
+            let (right, above) = (node % nodes + 1 < nodes, node / nodes + 1 < nodes);
+            for (other, along, exists) in [(node + 1, 0, right), (node + nodes, 1, above)] {
+                for component in (0..2).filter(|_| exists) {
+                    let k = if component == along { stiffness } else { 0.4 * stiffness };
+                    let (a, b) = (2 * node + component, 2 * other + component);
+                    entries.extend([(a, a, k), (b, b, k), (b, a, -k)]);
+                }
+            }
+            let shear = 0.1 * stiffness;
+            entries.extend((0..2).map(|c| (2 * node + c, 2 * node + c, 0.3 * stiffness * factor(node))));
+            entries.push((2 * node + 1, 2 * node, shear));
+        }
+        SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap()).unwrap()
+    }
+
+    /// Asserts that the product of the hierarchy is that of the matrix, to the rounding of a sum of ten terms.
+    fn check(multigrid: &Multigrid, matrix: &SymmetricMatrix) {
+        let u = generic(matrix.dim(), 0);
+        let (found, expected, size) = (multigrid.product(matrix, &u), matrix.mul(&u), matrix.mul_abs(&u));
+        for dof in 0..u.len() {
+            let difference = (found[dof] - expected[dof]).abs();
+            assert!(difference <= 10.0 * f64::EPSILON * size[dof], "dof {dof}: {difference:e} of {:e}", size[dof]);
+        }
+    }
+
+    fn is_by_blocks(multigrid: &Multigrid) -> bool {
+        by_precision!(multigrid.levels, levels => levels.product(&vec![0.0; multigrid.matrix.dim()], &Spare::default()))
+            .is_some()
+    }
+
+    #[test]
+    fn the_matrix_of_a_lattice_is_multiplied_by_its_few_rows_and_every_other_by_its_entries() {
+        let build = |matrix: &SymmetricMatrix, precision| {
+            let near_null = NearNullSpace::constants(matrix).unwrap();
+            Multigrid::with_precision(matrix, &near_null, 2, precision).unwrap()
+        };
+        let [even, uneven] = [lattice(90, |_| 1.0), lattice(90, |node| 1.0 + node as f64)];
+        for precision in [Width::Single, Width::Double] {
+            let of_even = build(&even, precision);
+            assert!(is_by_blocks(&of_even) && !is_by_blocks(&build(&uneven, precision)));
+            check(&of_even, &even);
+            // A matrix with the same unknowns that is not that of the hierarchy.
+            check(&of_even, &uneven);
+        }
     }
 }

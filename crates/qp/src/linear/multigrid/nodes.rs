@@ -57,8 +57,11 @@ impl Units {
 
 impl Nodes {
     /// Groups dofs with the same neighbours, and writes the matrix in blocks of these groups, in the unit of each node, times
-    /// `2^exponent` so that its diagonal is of order one.
-    pub fn of<T: Real>(matrix: &SymmetricMatrix, threads: usize) -> (Self, BlockMatrix<T>, i32) {
+    /// `2^exponent` so that its diagonal is of order one; not rounded as well, if nearly all its rows repeat.
+    pub fn of<T: Real>(
+        matrix: &SymmetricMatrix,
+        threads: usize,
+    ) -> (Self, BlockMatrix<T>, Option<BlockMatrix<f64>>, i32) {
         let graph = Quotient::of(matrix.lower());
         let groups = graph.count() as u32;
         let size = usual_dofs(&graph);
@@ -75,8 +78,8 @@ impl Nodes {
         first_node.push(count as u32);
         let (exponents, shift) = units(&matrix.diagonal(), |dof| place[dof] as usize / size, count);
         let filling = Filling { matrix, graph: &graph, first_node: &first_node, size, exponents: &exponents, shift };
-        let blocks = filling.blocks(threads);
-        (Nodes { size, count, place, exponents }, blocks, shift)
+        let (blocks, exact) = filling.blocks(threads);
+        (Nodes { size, count, place, exponents }, blocks, exact, shift)
     }
 
     /// `count` nodes of `size` dofs each, one after another.

@@ -19,6 +19,9 @@ const ENOUGH_ROWS: usize = 4096;
 /// Rows are shared if at most this share of their blocks is stored.
 const SHARED: f64 = 0.5;
 
+/// Rows are few if at most this share of their blocks is stored.
+const FEW: f64 = 1.0 / 16.0;
+
 /// A matrix of square blocks under construction, row by row.
 pub struct RowByRow<T> {
     matrix: BlockMatrix<T>,
@@ -49,6 +52,12 @@ impl<T: Real> RowByRow<T> {
         if row == ENOUGH_ROWS {
             self.share_or_not();
         }
+    }
+
+    /// Returns `false` once it is known that the matrix has more than a few different rows.
+    pub fn has_few_rows(&self) -> bool {
+        let (rows, stored) = (self.matrix.rows(), self.matrix.indices.len() as f64);
+        rows < ENOUGH_ROWS || stored <= FEW * self.matrix.starts[rows] as f64
     }
 
     /// The matrix.

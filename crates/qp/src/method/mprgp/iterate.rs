@@ -40,7 +40,7 @@ pub struct Iterate<'a> {
     pub at: Vec<At>,
     /// An upper bound on the eigenvalues of D^-1 K, once it is asked for.
     largest_eigenvalue: OnceCell<f64>,
-    threads: usize,
+    multigrid: &'a Multigrid,
     /// Work vectors of the length of the unknowns.
     pub work: &'a Spare<f64>,
 }
@@ -89,9 +89,9 @@ impl<'a> Iterate<'a> {
         let diagonal = bounds.turned_diagonal(problem.stiffness().diagonal());
         let at = vec![At::Free; bounds.bounds.len()];
         let (gradient, largest_eigenvalue) = (Vec::new(), OnceCell::new());
-        let (threads, work) = (multigrid.threads(), multigrid.work());
+        let work = multigrid.work();
         let mut iterate =
-            Iterate { problem, bounds, load, diagonal, x, gradient, at, largest_eigenvalue, threads, work };
+            Iterate { problem, bounds, load, diagonal, x, gradient, at, largest_eigenvalue, multigrid, work };
         if is_unknown {
             iterate.travel_along_load();
         }
@@ -153,7 +153,7 @@ impl<'a> Iterate<'a> {
     pub fn product(&self, v: &[f64]) -> Vec<f64> {
         let mut u = self.work.copy(v);
         self.bounds.turn_back(&mut u);
-        let mut moved = self.problem.stiffness().mul_with(self.threads, &u, self.work);
+        let mut moved = self.multigrid.product(self.problem.stiffness(), &u);
         self.work.give(u);
         self.bounds.turn_forces(&mut moved);
         moved
