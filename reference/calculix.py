@@ -23,6 +23,7 @@ import csv
 import json
 import math
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -240,7 +241,6 @@ def of_calculix(folder: pathlib.Path, deck: str, whole: int) -> Contact:
 def contact_forces(program: str, path: pathlib.Path, poisson: float | None) -> tuple[int, Contact, list[Contact]]:
     """Returns the number of unknowns of a part, our contact force, and that of CalculiX for each contact stiffness."""
     scene = json.loads(path.read_text())
-    scene["body"]["gmsh"]["file"] = str(path.parent / scene["body"]["gmsh"]["file"])
     if poisson is not None:
         scene["material"]["poisson"] = poisson
     dimension = 3 if scene.get("model") == "space" else 2
@@ -248,6 +248,7 @@ def contact_forces(program: str, path: pathlib.Path, poisson: float | None) -> t
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         run = lambda *words: subprocess.run(words, cwd=folder, check=True, capture_output=True)
+        shutil.copy(path.parent / scene["body"]["gmsh"]["file"], folder)
         (folder / "loads.json").write_text(json.dumps(scene | {"supports": at_zero}))
         run(program, "export", "loads.json", "problem")
         (folder / "scene.json").write_text(json.dumps(scene))
