@@ -77,6 +77,16 @@ impl Surface for Circle {
         }
     }
 
+    /// The chord: the height is convex in the squared distance. In `w = sqrt(R^2 - s^2)`, which falls from `w0` to `w1`, the chord lies
+    /// `(w0 - w)(w - w1)/(w0 + w1)` above the circle, most in the middle of both.
+    fn enclosed_turned(&self, near: f64, far: f64) -> Option<([f64; 2], [f64; 2])> {
+        let rest = |along: f64| ((self.radius - along) * (self.radius + along)).max(0.0).sqrt();
+        let sum = rest(near) + rest(far);
+        // (far^2 - near^2)/(w0 + w1) is w0 - w1 without the cancellation.
+        let below = if sum > 0.0 { ((far - near) * ((far + near) / sum)).powi(2) / (4.0 * sum) } else { 0.0 };
+        Some(([self.height(near)?, self.height(far)?], [below, 0.0]))
+    }
+
     /// Distance to the centre minus the radius. A node behind the centre has no closest point on the facing half; only if it lies inside
     /// and far from the axis, as a node at the rim of a cup, it is moved out to its side.
     fn closest(&self, [along, towards]: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {
@@ -139,6 +149,11 @@ impl Surface for Hollow {
             (_, spread) if spread < 2.0 * remainder => Some(([first, (first + last) / 2.0, last], [0.0, spread])),
             _ => Some(([first, middle, last], [remainder.min(2.0 * self.0.radius); 2])),
         }
+    }
+
+    fn enclosed_turned(&self, near: f64, far: f64) -> Option<([f64; 2], [f64; 2])> {
+        let (heights, [below, above]) = self.0.enclosed_turned(near, far)?;
+        Some((heights.map(|height| 0.0 - height), [above, below]))
     }
 
     /// The radius minus the distance to the centre, in all directions; from the centre along the approach direction.

@@ -1,5 +1,6 @@
 //! Heights on a grid, bilinear in every cell: h = a + b t1 + c t2 + d t1 t2.
 
+use std::iter;
 use std::sync::Arc;
 
 use schemars::JsonSchema;
@@ -8,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::graph::{Form, Graph, Grid, across};
 use super::patch::{Foot, Patch};
 use super::shape::{About, Geometry, ObstacleShape, Site};
+use super::triangle::{PAIRS, extent};
 use crate::error::Error;
 use crate::fem::geometry::dot;
 use crate::scene::input::entry::{PLACE_TOLERANCE, finite, number, point, wrong};
@@ -94,10 +96,9 @@ impl HeightMap {
 
     /// The coordinate in which the map does not reach a place, if there is one.
     fn beyond(&self, at: [f64; 2]) -> Option<Reach> {
-        let rim = PLACE_TOLERANCE * self.size;
         (0..2).find_map(|axis| {
-            let range = self.range(axis);
-            let inside = (range.0 - rim..=range.1 + rim).contains(&at[axis]);
+            let (range, (first, last)) = (self.range(axis), self.reach(axis));
+            let inside = (first..=last).contains(&at[axis]);
             let (field, name, needed) = (["x", "y"][axis], self.names[axis], at[axis]);
             (!inside).then_some(Reach { field, name, range, needed })
         })
@@ -136,6 +137,12 @@ impl HeightMap {
         (lines[0], lines[lines.len() - 1])
     }
 
+    /// The range, and the tolerance of a place beyond it.
+    fn reach(&self, axis: usize) -> (f64, f64) {
+        let ((first, last), rim) = (self.range(axis), PLACE_TOLERANCE * self.size);
+        (first - rim, last + rim)
+    }
+
     /// The cell over a coordinate; beyond the rim the outermost cell.
     fn cell_at(&self, axis: usize, at: f64) -> usize {
         let lines = &self.lines[axis];
@@ -159,6 +166,44 @@ impl Grid for HeightMap {
             let [i, j] = [0, 1].map(|axis| self.cell_at(axis, at[axis]));
             self.patch(i, j).height(at)
         })
+    }
+
+    /// The bilinear function through the corners of the rectangle around the triangle. Between grid lines its distance from the map is
+    /// bilinear, too, and so largest where lines cross. Over a triangle that reaches beyond the rim it is the lowest height.
+    fn enclosed(&self, places: [[f64; 2]; 3]) -> Option<([f64; 6], [f64; 2])> {
+        let around = [0, 1].map(|axis| extent(places.map(|place| place[axis])));
+        let within = [0, 1].map(|axis| {
+            let ([low, high], (first, last)) = (around[axis], self.reach(axis));
+            [low.max(first), high.min(last)]
+        });
+        if within.iter().any(|[low, high]| low > high) {
+            return None;
+        }
+        let lines = [0, 1].map(|axis| {
+            let [low, high] = within[axis];
+            let inside = self.lines[axis].iter().copied().filter(move |&line| low < line && line < high);
+            iter::once(low).chain(inside).chain([high])
+        });
+        let crossings = lines[0].clone().flat_map(|x| lines[1].clone().map(move |y| [x, y]));
+        if within != around {
+            let lowest = crossings.filter_map(|at| self.height(at)).fold(f64::INFINITY, f64::min);
+            return Some(([lowest; 6], [0.0, f64::INFINITY]));
+        }
+        let [[left, right], [front, back]] = within;
+        let corner = |x: f64, y: f64| self.height([x, y]);
+        let whole = Patch {
+            low: [left, front],
+            // Across a rectangle without width all heights are equal.
+            size: within.map(|[low, high]| if high > low { high - low } else { 1.0 }),
+            corners: [corner(left, front)?, corner(right, front)?, corner(left, back)?, corner(right, back)?],
+        };
+        let mut off = [0.0_f64; 2];
+        for at in crossings {
+            let above = self.height(at)? - whole.height(at);
+            off = [off[0].max(-above), off[1].max(above)];
+        }
+        let height = |i: usize, j: usize| whole.height([places[i][0], places[j][1]]);
+        Some((PAIRS.map(|[i, j]| (height(i, j) + height(j, i)) / 2.0), off))
     }
 
     /// Cells farther away than the best so far are left out. The surface ends at its rim. A node equally close to
@@ -241,4 +286,44 @@ fn check_lines(lines: &[f64], path: &str) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::oracle::{ROUNDING, Random, checked, triangles};
+    use super::*;
+
+    /// Over [-2, 2] x [-1.5, 1.5], with random heights.
+    fn map(random: &mut Random) -> HeightMap {
+        let lines = [vec![-2.0, -1.1, -0.2, 0.0, 0.7, 2.0], vec![-1.5, 0.1, 0.3, 1.5]];
+        let heights = (0..24).map(|_| random.between(-0.5, 0.5)).collect();
+        HeightMap { lines, heights, names: ["x", "y"], size: 4.0 }
+    }
+
+    #[test]
+    fn the_gap_to_a_height_map_over_any_triangle_stays_within_its_enclosure() {
+        let mut random = Random(1);
+        let graph = Graph::upright(Form::Grid(Arc::new(map(&mut random))));
+        let (mut whole, mut part, mut none) = (0, 0, 0);
+        for corners in triangles(&mut random) {
+            match checked(&graph, corners, 0.2, &mut random) {
+                Some([_, above]) if above.is_finite() => whole += 1,
+                Some(_) => part += 1,
+                None => none += 1,
+            }
+        }
+        assert!(whole > 100 && part > 20 && none > 20, "{whole} {part} {none}");
+    }
+
+    #[test]
+    fn the_enclosure_in_one_cell_of_a_height_map_is_exact() {
+        let mut random = Random(2);
+        let graph = Graph::upright(Form::Grid(Arc::new(map(&mut random))));
+        for _ in 0..100 {
+            let corners =
+                [0, 1, 2].map(|_| [random.between(0.0, 0.7), random.between(0.3, 1.5), random.between(-1.0, 1.0)]);
+            let [below, above] = checked(&graph, corners, 0.0, &mut random).unwrap();
+            assert!(below.max(above) <= ROUNDING, "{corners:?}: {below} {above}");
+        }
+    }
 }

@@ -7,6 +7,8 @@ mod facing;
 mod graph;
 mod height_map;
 pub(crate) mod mortar;
+#[cfg(test)]
+mod oracle;
 pub(crate) mod order;
 mod pairs;
 mod parabola;
@@ -21,6 +23,7 @@ mod sphere;
 mod surface;
 mod table;
 mod torus;
+mod triangle;
 mod triangulated;
 mod wedge;
 

@@ -10,6 +10,7 @@ use super::row::ObstacleRow;
 use super::ruled::RigidSurface;
 use super::shape::{About, Geometry, ObstacleShape, Site};
 use super::surface::{Foot, Local, Surface};
+use super::triangle::linear;
 use crate::error::Error;
 use crate::fem::geometry::{dot, length, minus};
 use crate::scene::input::entry::{point, vector, wrong};
@@ -89,13 +90,59 @@ struct HalfSpace {
     approach: [f64; 3],
 }
 
+impl HalfSpace {
+    /// The distance of a node from the plane along its normal, and the cosine between the normal and the approach direction.
+    fn facing(&self, node: [f64; 3]) -> [f64; 2] {
+        [dot(self.normal, minus(self.point, node)), dot(self.normal, self.approach)]
+    }
+}
+
 impl RigidSurface for HalfSpace {
     fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
-        let to_plane = dot(self.normal, minus(self.point, node));
-        let lean = dot(self.normal, self.approach);
+        let [to_plane, lean] = self.facing(node);
         Ok(Some(match rule {
             Rule::Approach => ObstacleRow { normal: self.approach, gap: to_plane / lean + shift },
             Rule::ClosestPoint => ObstacleRow { normal: self.normal, gap: to_plane + shift * lean },
         }))
+    }
+
+    fn gap_over(&self, corners: [[f64; 3]; 3], shift: f64) -> Option<([f64; 6], [f64; 2])> {
+        let gaps = corners.map(|corner| {
+            let [to_plane, lean] = self.facing(corner);
+            to_plane / lean + shift
+        });
+        Some((linear(gaps), [0.0; 2]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::oracle::{Random, checked, triangles};
+    use super::super::row::Obstacle;
+    use super::super::ruled::Ruled;
+    use super::super::triangle::NOT_ENCLOSED;
+    use super::*;
+
+    const SLOPE: HalfSpace =
+        HalfSpace { point: [0.1, 0.2, 1.0], normal: [0.48, -0.6, 0.64], approach: [0.0, 0.0, 1.0] };
+
+    #[test]
+    fn the_gap_to_a_plane_over_a_triangle_is_exact() {
+        let mut random = Random(1);
+        for corners in triangles(&mut random) {
+            assert_eq!(checked(&SLOPE, corners, -0.3, &mut random), Some([0.0; 2]));
+        }
+    }
+
+    #[test]
+    fn rows_along_normals_have_no_enclosure() {
+        let by = |rule| Ruled { surface: SLOPE, rule, approach: SLOPE.approach };
+        let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        assert_eq!(by(Rule::ClosestPoint).gap_over(corners, 0.0), Some(NOT_ENCLOSED));
+        let (coefficients, off) = by(Rule::Approach).gap_over(corners, 0.5).unwrap();
+        // Over the origin the height is 1 + (0.48 * 0.1 - 0.6 * 0.2)/0.64 = 0.8875; its slopes are -0.75 and 0.9375.
+        let exact = [1.3875, 0.6375, 2.325, 1.0125, 1.85625, 1.48125];
+        assert!(coefficients.iter().zip(exact).all(|(found, exact)| (found - exact).abs() < 1e-14), "{coefficients:?}");
+        assert_eq!(off, [0.0; 2]);
     }
 }

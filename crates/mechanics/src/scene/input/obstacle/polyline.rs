@@ -1,5 +1,7 @@
 //! A polyline over the coordinate along it, extended by a ray at each end: wedge and table.
 
+use std::iter;
+
 use super::surface::{Foot, Local, Surface};
 
 /// Knots increasing along the surface, and the slopes of the rays before the first and after the last.
@@ -83,6 +85,27 @@ impl Surface for Polyline {
             off = [off[0].max(chord - height), off[1].max(height - chord)];
         }
         Some(([first, (first + last) / 2.0, last], off))
+    }
+
+    /// The chord, and the largest distances of the pieces from it: each is farthest at an end, or where its slope is that of the chord.
+    fn enclosed_turned(&self, near: f64, far: f64) -> Option<([f64; 2], [f64; 2])> {
+        let [first, last] = [self.height(near)?, self.height(far)?];
+        let chord =
+            |along: f64| first + (last - first) * ((along - near) / (far - near) * ((along + near) / (far + near)));
+        let knots = self.knots.iter().copied().filter(|knot| near < knot[0] && knot[0] < far);
+        let ends: Vec<Local> = iter::once([near, first]).chain(knots).chain([[far, last]]).collect();
+        let mut off = [0.0_f64; 2];
+        for piece in ends.windows(2) {
+            let ([from, start], [to, end]) = (piece[0], piece[1]);
+            let slope = (end - start) / (to - from);
+            let parallel = (near + far) / 2.0 * (slope * (far - near) / (last - first));
+            // A place that is not a number, as on a stretch without length, adds nothing.
+            for along in [to, parallel.clamp(from, to)] {
+                let above = start + slope * (along - from) - chord(along);
+                off = [off[0].max(-above), off[1].max(above)];
+            }
+        }
+        Some(([first, last], off))
     }
 
     fn closest(&self, node: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {

@@ -2,6 +2,8 @@
 
 use std::fmt::Debug;
 
+use super::triangle::NOT_ENCLOSED;
+
 /// The contact row `normal . u <= gap` of a node: the statement of an [`Obstacle`](super::Obstacle) at the place of the
 /// node.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,6 +93,15 @@ pub trait Obstacle: Debug + Send + Sync {
     /// reach there, or cannot give it.
     fn gap_along(&self, _from: [f64; 3], _to: [f64; 3], _shift: f64) -> Option<([f64; 3], [f64; 2])> {
         None
+    }
+
+    /// The gap along the approach direction on the triangle between three points, with the obstacle moved by `shift`: the coefficients
+    /// of a quadratic function in the basis of Bernstein, in the order of `l0^2, l1^2, l2^2, 2 l0 l1, 2 l0 l2, 2 l1 l2` with the
+    /// barycentric coordinates l, and the largest distances `[below, above]` of the gap from this function, `>= 0`, all in length.
+    /// `above` is infinite if the obstacle ends on the triangle; both are infinite if the obstacle cannot give it, or its rows do not
+    /// lie along the approach direction. `None` if the obstacle does not reach any part of the triangle.
+    fn gap_over(&self, _corners: [[f64; 3]; 3], _shift: f64) -> Option<([f64; 6], [f64; 2])> {
+        Some(NOT_ENCLOSED)
     }
 
     /// The surface in the plane as a polyline [x, y] for pictures, in length, moved by `shift`, in `segments` pieces;

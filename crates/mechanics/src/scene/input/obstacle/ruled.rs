@@ -3,6 +3,7 @@
 use std::fmt::Debug;
 
 use super::row::{Obstacle, ObstacleRow};
+use super::triangle::NOT_ENCLOSED;
 use crate::scene::input::schema::approach::Rule;
 
 /// A rigid surface that can make the row of a node by either rule.
@@ -13,6 +14,11 @@ pub(super) trait RigidSurface: Debug + Send + Sync {
     /// As [`Obstacle::gap_along`], by rule `approach`.
     fn gap_along(&self, _from: [f64; 3], _to: [f64; 3], _shift: f64) -> Option<([f64; 3], [f64; 2])> {
         None
+    }
+
+    /// As [`Obstacle::gap_over`], by rule `approach`.
+    fn gap_over(&self, _corners: [[f64; 3]; 3], _shift: f64) -> Option<([f64; 6], [f64; 2])> {
+        Some(NOT_ENCLOSED)
     }
 
     /// As [`Obstacle::outline`].
@@ -50,6 +56,10 @@ impl<S: RigidSurface> Obstacle for Ruled<S> {
 
     fn gap_along(&self, from: [f64; 3], to: [f64; 3], shift: f64) -> Option<([f64; 3], [f64; 2])> {
         if self.rule == Rule::Approach { self.surface.gap_along(from, to, shift) } else { None }
+    }
+
+    fn gap_over(&self, corners: [[f64; 3]; 3], shift: f64) -> Option<([f64; 6], [f64; 2])> {
+        if self.rule == Rule::Approach { self.surface.gap_over(corners, shift) } else { Some(NOT_ENCLOSED) }
     }
 
     fn outline(&self, shift: f64, segments: usize) -> Vec<[f64; 2]> {
