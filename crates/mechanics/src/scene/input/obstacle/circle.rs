@@ -77,8 +77,8 @@ impl Surface for Circle {
         }
     }
 
-    /// The chord: the height is convex in the squared distance. In `w = sqrt(R^2 - s^2)`, which falls from `w0` to `w1`, the chord lies
-    /// `(w0 - w)(w - w1)/(w0 + w1)` above the circle, most in the middle of both.
+    /// The chord: the height is convex in the squared distance. In `w = sqrt(R^2 - s^2)`, which falls from `w0` to
+    /// `w1`, the chord lies `(w0 - w)(w - w1)/(w0 + w1)` above the circle, most in the middle of both.
     fn enclosed_turned(&self, near: f64, far: f64) -> Option<([f64; 2], [f64; 2])> {
         let rest = |along: f64| ((self.radius - along) * (self.radius + along)).max(0.0).sqrt();
         let sum = rest(near) + rest(far);

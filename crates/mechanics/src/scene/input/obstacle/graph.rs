@@ -44,8 +44,8 @@ pub(super) trait Grid: Debug + Send + Sync {
     /// The height at a place, or `None` beyond the rim.
     fn height(&self, at: [f64; 2]) -> Option<f64>;
 
-    /// The heights over a triangle with its corners at these places, as [`Obstacle::gap_over`](super::row::Obstacle::gap_over) gives the
-    /// gap.
+    /// The heights over a triangle with its corners at these places, as
+    /// [`Obstacle::gap_over`](super::row::Obstacle::gap_over) gives the gap.
     fn enclosed(&self, places: [[f64; 2]; 3]) -> Option<([f64; 6], [f64; 2])>;
 
     /// Unit normal into the obstacle at the closest point, and the distance along it; `None` beyond the rim. Lengths
@@ -150,9 +150,9 @@ impl RigidSurface for Graph {
     }
 }
 
-/// The heights of a curve over a stretch, enclosed by a function of which `enclosed` gives the values at both ends and in the middle, and
-/// the distances `[below, above]`. Over a stretch that reaches beyond the curve the function is the lowest height of the curve there, with
-/// an infinite distance above; `None` if the stretch lies beyond the curve.
+/// The heights of a curve over a stretch, enclosed by a function of which `enclosed` gives the values at both ends and
+/// in the middle, and the distances `[below, above]`. Over a stretch that reaches beyond the curve the function is the
+/// lowest height of the curve there, with an infinite distance above; `None` if the stretch lies beyond the curve.
 fn reached(
     curve: &dyn Surface,
     [from, to]: [f64; 2],
@@ -171,7 +171,8 @@ fn reached(
     Some(([lowest; 3], [0.0, f64::INFINITY]))
 }
 
-/// The coefficients, in the basis of Bernstein, of a quadratic function with these values at the start, in the middle and at the end.
+/// The coefficients, in the basis of Bernstein, of a quadratic function with these values at the start, in the middle
+/// and at the end.
 fn bernstein([first, middle, last]: [f64; 3]) -> [f64; 3] {
     [first, 2.0 * middle - (first + last) / 2.0, last]
 }
@@ -189,8 +190,8 @@ fn drawn_out(curve: &dyn Surface, places: [f64; 3]) -> Option<([f64; 6], [f64; 2
     Some((PAIRS.map(polar), off))
 }
 
-/// The heights of a rotated curve over a triangle with its corners at these places around the axis. The squared distance from the axis is
-/// quadratic on the triangle, with the scalar product as its polar form.
+/// The heights of a rotated curve over a triangle with its corners at these places around the axis. The squared
+/// distance from the axis is quadratic on the triangle, with the scalar product as its polar form.
 fn turned(curve: &dyn Surface, places: [[f64; 2]; 3]) -> Option<([f64; 6], [f64; 2])> {
     let [_, far] = extent(places.map(|[t1, t2]| t1.hypot(t2)));
     let near = distance_of_origin(places).min(far);
@@ -317,8 +318,8 @@ mod tests {
         }
     }
 
-    /// The quadratic function is linear in the squared distance of a rotated curve, and quadratic along an extruded one: the distances
-    /// have the order 2, and 3.
+    /// The quadratic function is linear in the squared distance of a rotated curve, and quadratic along an extruded
+    /// one: the distances have the order 2, and 3.
     #[test]
     fn a_quarter_of_a_small_triangle_has_a_quarter_of_the_distances() {
         for (name, form) in forms() {

@@ -168,8 +168,9 @@ impl Grid for HeightMap {
         })
     }
 
-    /// The bilinear function through the corners of the rectangle around the triangle. Between grid lines its distance from the map is
-    /// bilinear, too, and so largest where lines cross. Over a triangle that reaches beyond the rim it is the lowest height.
+    /// The bilinear function through the corners of the rectangle around the triangle. Between grid lines its distance
+    /// from the map is bilinear, too, and so largest where lines cross. Over a triangle that reaches beyond the rim it
+    /// is the lowest height.
     fn enclosed(&self, places: [[f64; 2]; 3]) -> Option<([f64; 6], [f64; 2])> {
         let around = [0, 1].map(|axis| extent(places.map(|place| place[axis])));
         let within = [0, 1].map(|axis| {

@@ -26,8 +26,8 @@ impl Random {
     }
 }
 
-/// 400 triangles of the sizes 0.003 to 3, `[t1, t2, towards]` from -3 to 3: anywhere, around the axis, along one of the axes, along the
-/// approach direction, and of one place.
+/// 400 triangles of the sizes 0.003 to 3, `[t1, t2, towards]` from -3 to 3: anywhere, around the axis, along one of the
+/// axes, along the approach direction, and of one place.
 pub(super) fn triangles(random: &mut Random) -> Vec<[[f64; 3]; 3]> {
     let triangle = |index: usize| {
         let size = 3.0 * 10.0_f64.powf(random.between(-3.0, 0.0));
@@ -50,8 +50,8 @@ pub(super) fn triangles(random: &mut Random) -> Vec<[[f64; 3]; 3]> {
     (0..400).map(triangle).collect()
 }
 
-/// Checks the enclosure of the gap over a triangle, moved by `shift`, against the rows at its points, and returns the distances
-/// `[below, above]` from the quadratic function; `None` if the surface is out of reach.
+/// Checks the enclosure of the gap over a triangle, moved by `shift`, against the rows at its points, and returns the
+/// distances `[below, above]` from the quadratic function; `None` if the surface is out of reach.
 pub(super) fn checked(
     surface: &dyn RigidSurface,
     corners: [[f64; 3]; 3],

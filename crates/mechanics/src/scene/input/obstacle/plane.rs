@@ -91,7 +91,8 @@ struct HalfSpace {
 }
 
 impl HalfSpace {
-    /// The distance of a node from the plane along its normal, and the cosine between the normal and the approach direction.
+    /// The distance of a node from the plane along its normal, and the cosine between the normal and the approach
+    /// direction.
     fn facing(&self, node: [f64; 3]) -> [f64; 2] {
         [dot(self.normal, minus(self.point, node)), dot(self.normal, self.approach)]
     }

@@ -87,7 +87,8 @@ impl Surface for Polyline {
         Some(([first, (first + last) / 2.0, last], off))
     }
 
-    /// The chord, and the largest distances of the pieces from it: each is farthest at an end, or where its slope is that of the chord.
+    /// The chord, and the largest distances of the pieces from it: each is farthest at an end, or where its slope is
+    /// that of the chord.
     fn enclosed_turned(&self, near: f64, far: f64) -> Option<([f64; 2], [f64; 2])> {
         let [first, last] = [self.height(near)?, self.height(far)?];
         let chord =

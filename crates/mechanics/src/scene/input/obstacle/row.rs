@@ -95,11 +95,12 @@ pub trait Obstacle: Debug + Send + Sync {
         None
     }
 
-    /// The gap along the approach direction on the triangle between three points, with the obstacle moved by `shift`: the coefficients
-    /// of a quadratic function in the basis of Bernstein, in the order of `l0^2, l1^2, l2^2, 2 l0 l1, 2 l0 l2, 2 l1 l2` with the
-    /// barycentric coordinates l, and the largest distances `[below, above]` of the gap from this function, `>= 0`, all in length.
-    /// `above` is infinite if the obstacle ends on the triangle; both are infinite if the obstacle cannot give it, or its rows do not
-    /// lie along the approach direction. `None` if the obstacle does not reach any part of the triangle.
+    /// The gap along the approach direction on the triangle between three points, with the obstacle moved by `shift`:
+    /// the coefficients of a quadratic function in the basis of Bernstein, in the order of
+    /// `l0^2, l1^2, l2^2, 2 l0 l1, 2 l0 l2, 2 l1 l2` with the barycentric coordinates l, and the largest distances
+    /// `[below, above]` of the gap from this function, `>= 0`, all in length. `above` is infinite if the obstacle ends
+    /// on the triangle; both are infinite if the obstacle cannot give it, or its rows do not lie along the approach
+    /// direction. `None` if the obstacle does not reach any part of the triangle.
     fn gap_over(&self, _corners: [[f64; 3]; 3], _shift: f64) -> Option<([f64; 6], [f64; 2])> {
         Some(NOT_ENCLOSED)
     }

@@ -25,9 +25,9 @@ pub(crate) trait Surface: Debug + Send + Sync {
         Some((self.heights(from, to)?, [0.0; 2]))
     }
 
-    /// For a curve that is symmetric to its axis, between two distances from it within reach, `0 <= near <= far`: the heights at both of
-    /// a linear function of the squared distance, and the largest distances `[below, above]` of the curve from it, which are zero for a
-    /// curve that is quadratic itself.
+    /// For a curve that is symmetric to its axis, between two distances from it within reach, `0 <= near <= far`: the
+    /// heights at both of a linear function of the squared distance, and the largest distances `[below, above]` of the
+    /// curve from it, which are zero for a curve that is quadratic itself.
     fn enclosed_turned(&self, near: f64, far: f64) -> Option<([f64; 2], [f64; 2])> {
         Some(([self.height(near)?, self.height(far)?], [0.0; 2]))
     }

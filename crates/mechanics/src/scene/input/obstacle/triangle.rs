@@ -1,5 +1,6 @@
-//! Quadratic functions on a triangle by their six Bernstein coefficients, in the order of `l0^2, l1^2, l2^2, 2 l0 l1, 2 l0 l2, 2 l1 l2`
-//! with the barycentric coordinates l. The coefficient of a pair of corners is the polar form of the function there.
+//! Quadratic functions on a triangle by their six Bernstein coefficients, in the order of
+//! `l0^2, l1^2, l2^2, 2 l0 l1, 2 l0 l2, 2 l1 l2` with the barycentric coordinates l. The coefficient of a pair of
+//! corners is the polar form of the function there.
 
 /// The pairs of corners of the six coefficients.
 pub(super) const PAIRS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]];
