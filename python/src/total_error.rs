@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use pyo3::prelude::*;
-use signorini::study::{self, LevelKind, TotalErrorGoal};
+use signorini::study::{self, ContinuumAnswer, LevelKind, TotalErrorGoal};
 use signorini::{Goal, Watch};
 
 use crate::arrays::{of_indices, of_table};
@@ -102,7 +102,7 @@ impl TotalError {
     #[getter]
     fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         match &self.found.guarantee {
-            Some(guarantee) => of_table(py, guarantee.answer.nodes.as_flattened(), 2),
+            Some(guarantee) => of_answer(py, &guarantee.answer, &guarantee.answer.nodes),
             None => self.of_solution(py, &["scene", "nodes"]),
         }
     }
@@ -112,9 +112,9 @@ impl TotalError {
     fn elements<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         match &self.found.guarantee {
             Some(guarantee) => {
-                let triangles = &guarantee.answer.triangles;
-                let nodes = of_indices(py, triangles.as_flattened().iter().copied())?;
-                nodes.call_method1("reshape", (triangles.len(), 6))
+                let elements = &guarantee.answer.elements;
+                let nodes = of_indices(py, elements.iter().flatten().copied())?;
+                nodes.call_method1("reshape", (elements.len(), guarantee.answer.kind.nodes()))
             }
             None => self.of_solution(py, &["scene", "elements"]),
         }
@@ -124,7 +124,7 @@ impl TotalError {
     #[getter]
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         match &self.found.guarantee {
-            Some(guarantee) => of_table(py, guarantee.answer.displacement.as_flattened(), 2),
+            Some(guarantee) => of_answer(py, &guarantee.answer, &guarantee.answer.displacement),
             None => self.of_solution(py, &["displacement"]),
         }
     }
@@ -145,6 +145,11 @@ impl TotalError {
         let said = if error.guaranteed { "guaranteed at most" } else { "estimated" };
         format!("<signorini.TotalError: {said} {:.1e}, {meshes} meshes>", error.bound)
     }
+}
+
+/// Vectors at the nodes of an answer, one row per node.
+fn of_answer<'py>(py: Python<'py>, answer: &ContinuumAnswer, vectors: &[[f64; 3]]) -> PyResult<Bound<'py, PyAny>> {
+    of_table(py, &answer.components(vectors), answer.dimension())
 }
 
 /// Refines the mesh of a scene until its error against the continuum is at most `goal`, relative in the energy norm.

@@ -1,8 +1,9 @@
 //! The guaranteed total error: its bounds, its cost, and the scenes that are refused.
 
 use serde_json::{Value, json};
-use support::plane_scenes::{of_column, shown};
+use support::brackets::{of_column, shown};
 use support::program::Desk;
+use support::{plane_scenes, space_scenes};
 
 /// The classical scene: a block of 1 x 0.5, clamped below, pressed by a parabola 0.01 deep.
 pub fn classical(poisson: f64) -> Value {
@@ -265,22 +266,29 @@ pub fn block(cells: usize) -> Value {
     })
 }
 
+/// The same with rows along the normals of the ball, for which only an estimate exists.
+fn estimated(cells: usize) -> Value {
+    let mut scene = block(cells);
+    scene["obstacles"][0]["rule"] = json!("closest-point");
+    scene
+}
+
 /// Bisection gives fewer unknowns than uniform tetrahedra, refines at the contact, and writes a mesh that another scene
 /// can read.
 #[test]
 fn bisected_tetrahedra_need_fewer_unknowns_than_uniform_ones() {
     let desk = Desk::new();
-    desk.write("scene.json", block(2).to_string());
+    desk.write("scene.json", estimated(2).to_string());
     let run = desk.run(&["solve", "scene.json", "--total-error", "0.2", "--format", "json", "--out", "out"]);
     let found = run.ends_with(0).json();
     let last = found["levels"].as_array().unwrap().last().unwrap().clone();
     assert!(last["total_error"].as_f64().unwrap() <= 0.2 && last["energy_error_bound"].as_f64().unwrap() <= 0.02);
     // With more than 1.5 times as many unknowns, uniform tetrahedra have a larger error.
-    let (_, equal, _) = solved(&block(10), &[]);
+    let (_, equal, _) = solved(&estimated(10), &[]);
     assert!(equal["model"]["dofs"].as_f64().unwrap() > 1.5 * last["dofs"].as_f64().unwrap(), "{equal}");
     assert!(equal["discretisation_error"].as_f64().unwrap() > 1.3 * last["total_error"].as_f64().unwrap(), "{equal}");
 
-    let mut again = block(2);
+    let mut again = estimated(2);
     again["body"] = json!({"gmsh": {"file": "out/mesh.msh"}});
     desk.write("again.json", again.to_string());
     let again = desk.run(&["solve", "again.json", "--format", "json"]).ends_with(0).json();
@@ -298,7 +306,7 @@ fn bisected_tetrahedra_need_fewer_unknowns_than_uniform_ones() {
 #[test]
 fn a_tip_between_nodes_is_found_by_refinement() {
     for element in ["tet4", "hex8"] {
-        let mut scene = block(2);
+        let mut scene = estimated(2);
         scene["body"]["box"]["element"] = json!(element);
         scene["obstacles"][0]["shape"] = json!({"sphere": {"apex": [0.375, 0.375, 0.49], "radius": 0.1}});
         let (code, report, message) = solved(&scene, &["--total-error", "0.4"]);
@@ -317,11 +325,48 @@ fn a_file_of_other_elements_has_no_finer_mesh() {
     let desk = Desk::new();
     let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/meshes/box-hex8.msh");
     desk.write("box.msh", std::fs::read(mesh).unwrap());
-    let mut scene = block(2);
+    let mut scene = estimated(2);
     scene["body"] = json!({"gmsh": {"file": "box.msh"}});
     desk.write("scene.json", scene.to_string());
     let run = desk.run(&["solve", "scene.json", "--total-error", "0.01"]);
     assert!(run.code == 4 && run.stdout.contains("cannot be refined here"), "{} {}", run.stdout, run.stderr);
+}
+
+/// Fewer unknowns than those of the issue that asked for them: 16,000 and 66,000 for 10 %. The bound holds for every element of the
+/// scene's own mesh.
+#[test]
+fn a_block_in_space_has_a_guaranteed_bound() {
+    let mut forces: Vec<[f64; 2]> = Vec::new();
+    for (element, ratio, goal) in [("tet4", 0.3, "0.2"), ("hex20", 0.3, "0.3"), ("tet10", 0.499, "0.4")] {
+        let mut scene = block(2);
+        scene["body"]["box"]["element"] = json!(element);
+        scene["material"]["poisson"] = json!(ratio);
+        let (code, report, message) = solved(&scene, &["--total-error", goal, "--force-error", "0.2"]);
+        assert!(code == 0 && report["total_error"]["guaranteed"] == true, "{code} {message}");
+        let last = report["levels"].as_array().unwrap().last().unwrap();
+        assert!(last["dofs"].as_f64().unwrap() < 8e3 && last["stress_dofs"].as_f64().unwrap() < 3.2e4, "{last}");
+        let [low, high] = [0, 1].map(|end| report["force_interval"][end].as_f64().unwrap());
+        let force = report["contact_force"].as_f64().unwrap();
+        assert!(low < force && force < high && high - low < 0.4 * force, "{report}");
+        let [own, answer] = [&report["own_mesh"], &report["last_mesh"]].map(|of| of["total_error"]["bound"].as_f64());
+        assert!(own.unwrap() > answer.unwrap() && answer.unwrap() < 0.5, "{report}");
+        assert_eq!(report["domain"], "first-polyhedron");
+        if ratio == 0.3 {
+            forces.push([low, high]);
+        }
+    }
+    // The same body by other first meshes.
+    assert!(forces[0][0] <= forces[1][1] && forces[1][0] <= forces[0][1], "{forces:?}");
+}
+
+#[test]
+fn a_surface_without_bounds_between_nodes_has_an_estimate() {
+    let mut scene = block(2);
+    scene["obstacles"][0]["shape"] =
+        json!({"torus": {"centre": [0.5, 0.5, 0.69], "axis": [0, 0, 1], "major": 0.3, "minor": 0.2}});
+    let (code, report, message) = solved(&scene, &["--total-error", "0.5"]);
+    assert!(code == 0 && report["total_error"]["guaranteed"] == false, "{code} {message}");
+    assert!(report["reason"].as_str().unwrap().starts_with("obstacles[0].shape: the distance"), "{report}");
 }
 
 /// A short form of `cargo run --release --example guarantee`.
@@ -329,13 +374,18 @@ fn a_file_of_other_elements_has_no_finer_mesh() {
 fn no_random_scene_violates_the_guarantee() {
     let mut meshes = 0;
     for seed in 1..=24 {
-        let one = shown(seed, 3).unwrap();
-        assert!(one.violations.is_empty(), "{:#?}", one.violations);
-        meshes += one.of_force.len();
+        let in_space = (seed <= 12).then(|| (space_scenes::scene(seed), space_scenes::CLEAR));
+        for (scene, clear) in [(plane_scenes::scene(seed), plane_scenes::CLEAR)].into_iter().chain(in_space) {
+            let one = shown(scene, 3, clear).unwrap();
+            assert!(one.violations.is_empty(), "seed {seed}: {:#?}", one.violations);
+            meshes += one.of_force.len();
+        }
     }
-    assert!(meshes > 60, "{meshes}");
+    assert!(meshes > 90, "{meshes}");
     for seed in 1..=12 {
-        assert_eq!(of_column(seed, 1).unwrap(), Vec::<String>::new());
+        for column in [plane_scenes::column(seed), space_scenes::column(seed)] {
+            assert_eq!(of_column(column, 1).unwrap(), Vec::<String>::new(), "seed {seed}");
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 pub mod bodies;
+pub mod brackets;
 pub mod clock;
 pub mod closed_forms;
 pub mod decks;
@@ -22,6 +23,7 @@ pub mod program;
 pub mod random;
 pub mod rollers;
 pub mod scenes;
+pub mod space_scenes;
 pub mod triangles;
 pub mod verification;
 

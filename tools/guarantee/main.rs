@@ -1,25 +1,36 @@
 //! Searches for violations of the guaranteed bound on the total error:
-//! `cargo run --release --example guarantee [SCENES [LEVELS]]`.
+//! `cargo run --release --example guarantee [-- [--space] [SCENES [LEVELS]]]`.
 //!
-//! Each random plane scene is solved on its own mesh and on finer ones. All intervals of the energy and of the force must
+//! Each random scene, in the plane or in space, is solved on its own mesh and on finer ones. All intervals of the energy and of the force must
 //! overlap, and the distance of each answer to the finest one must not exceed its bound. In addition, one column for every
 //! ten scenes is solved; its energy and force are known in closed form. The exit code is 1 if a guarantee is violated.
 
-use support::plane_scenes::{ELEMENTS, Shown, of_column, shown};
+use signorini::Scene;
+use support::brackets::{Column, Shown, of_column, shown};
+use support::{plane_scenes, space_scenes};
+
+/// The scenes of a dimension: those of a seed, the columns, the names of their elements, and how many times smaller the last bound must be
+/// for an error to be known.
+type Scenes = (fn(u64) -> (Scene, &'static str), fn(u64) -> Column, [&'static str; 4], f64);
 
 fn main() -> std::process::ExitCode {
-    let mut numbers = std::env::args().skip(1).map(|text| text.parse::<u64>());
+    let mut words = std::env::args().skip(1).peekable();
+    let (scene, column, elements, clear): Scenes = match words.next_if(|word| word == "--space") {
+        Some(_) => (space_scenes::scene, space_scenes::column, space_scenes::ELEMENTS, space_scenes::CLEAR),
+        None => (plane_scenes::scene, plane_scenes::column, plane_scenes::ELEMENTS, plane_scenes::CLEAR),
+    };
+    let mut numbers = words.map(|text| text.parse::<u64>());
     let (Some(scenes), Some(levels)) = (numbers.next().unwrap_or(Ok(300)).ok(), numbers.next().unwrap_or(Ok(6)).ok())
     else {
-        eprintln!("usage: guarantee [SCENES [LEVELS]]");
+        eprintln!("usage: guarantee [--space] [SCENES [LEVELS]]");
         return std::process::ExitCode::from(2);
     };
     let (mut all, mut refused, mut meshes): (Vec<Shown>, Vec<String>, usize) = (Vec::new(), Vec::new(), 0);
     for seed in 1..=scenes {
-        match shown(seed, levels as usize) {
+        match shown(scene(seed), levels as usize, clear) {
             Ok(one) => {
                 meshes += levels as usize + 1;
-                one.violations.iter().for_each(|violation| println!("{violation}"));
+                one.violations.iter().for_each(|violation| println!("seed {seed}, {violation}"));
                 all.push(one);
             }
             Err(error) => refused.push(format!("seed {seed}: {error}")),
@@ -30,7 +41,7 @@ fn main() -> std::process::ExitCode {
     println!("{} scenes, {meshes} meshes, {} refused, {violations} violations", all.len(), refused.len());
     let of_displacement = all.iter().flat_map(|one| one.of_displacement.iter().copied()).collect();
     println!("bound / error of v, median: {}", median(of_displacement));
-    for element in ELEMENTS {
+    for element in elements {
         let own = all.iter().filter(|one| one.element == element).filter_map(|one| one.of_own).collect();
         println!("bound / error of the own mesh, {element}, median: {}", median(own));
     }
@@ -38,8 +49,9 @@ fn main() -> std::process::ExitCode {
     println!("half width of the force / bound, both relative, median: {}", median(of_force));
     let mut of_columns = 0;
     for seed in 1..=scenes.div_ceil(10) {
-        let broken = of_column(seed, 1).unwrap_or_else(|error| vec![format!("column {seed} is refused: {error}")]);
-        broken.iter().for_each(|violation| println!("{violation}"));
+        let broken =
+            of_column(column(seed), 1).unwrap_or_else(|error| vec![format!("column {seed} is refused: {error}")]);
+        broken.iter().for_each(|violation| println!("seed {seed}, {violation}"));
         of_columns += broken.len();
     }
     println!("{} columns with exact energy and force, {of_columns} violations", scenes.div_ceil(10));

@@ -2,86 +2,121 @@
 
 use super::bound::Bracket;
 use super::johnson_mercier::at;
-use super::problem::Tensor;
-use super::triangulation::{CENTRE, Point};
+use super::simplex::{Point, Tensor, middle};
 use crate::error::Error;
+use crate::fem::geometry::key;
 use crate::fem::{Boundary, ElementKind, Mesh};
 
-/// The answer on a mesh of triangles of six nodes: the corners, then the middles of the edges.
+/// The answer on a mesh of triangles of six nodes or of tetrahedra of ten, with straight sides.
 #[derive(Clone, Debug)]
-pub struct PlaneAnswer {
+pub struct ContinuumAnswer {
+    /// Six-node triangles or ten-node tetrahedra.
+    pub kind: ElementKind,
     /// The corners of the mesh, then the middles of its edges.
     pub nodes: Vec<Point>,
-    /// The nodes of each triangle: three corners, then the middles of the sides between the first two, the next two and the last and
-    /// the first.
-    pub triangles: Vec<[usize; 6]>,
-    /// The named parts of the outline, and the edges of each: two ends, then the middle.
-    pub boundaries: Vec<(String, Vec<[usize; 3]>)>,
-    /// The displacement of the nodes of the last mesh, `[u_x, u_y]` each, in length.
+    /// The nodes of each element, in the order of its kind.
+    pub elements: Vec<Vec<usize>>,
+    /// The named parts of the surface, and the nodes of the facets of each, in the order of their kind.
+    pub boundaries: Vec<(String, Vec<Vec<usize>>)>,
+    /// The displacement of the nodes of the last mesh, `[u_x, u_y, u_z]` each, in length; in the plane u_z is zero.
     pub displacement: Vec<Point>,
-    /// The mean over each triangle of the stress of the displacement and of the stress in balance.
+    /// The mean over each element of the stress of the displacement and of the stress in balance: `[xx, yy, zz, xy, yz, zx]`, in force per
+    /// area; in the plane those with z are zero.
     pub stress: Vec<Tensor>,
-    /// The contribution of each triangle to half the square of the bound, in force times length.
+    /// The contribution of each element to half the square of the bound, in force times length.
     pub shares: Vec<f64>,
 }
 
-impl PlaneAnswer {
-    /// The mesh of the displacement: triangles of six nodes with straight sides.
+impl ContinuumAnswer {
+    /// Number of axes of the body, 2 or 3.
+    pub fn dimension(&self) -> usize {
+        self.kind.dimension()
+    }
+
+    /// The components of vectors `[x, y, z]` at all nodes along the axes of the body, in their unit: `[x, y]` or `[x, y, z]` of each node,
+    /// in the order of the nodes; length `nodes x dimension`.
+    pub fn components(&self, vectors: &[Point]) -> Vec<f64> {
+        vectors.iter().flat_map(|vector| vector.iter().take(self.dimension())).copied().collect()
+    }
+
+    /// Nodes, elements and boundaries with their names, for a model of its own.
     ///
     /// # Errors
-    /// [`Error::Mesh`] for triangles that form no mesh.
+    /// [`Error::Mesh`] for elements that form no mesh.
     pub fn mesh(&self) -> Result<Mesh, Error> {
-        let kind = ElementKind::QUADRATIC_TRIANGLE;
-        // As a part of itself, a boundary has its edges in the order in which they follow each other.
-        let boundary = |(name, edges): &(String, Vec<[usize; 3]>)| {
-            Boundary::new(name, kind.facet(), edges.concat()).part(name, |_| true)
+        // As a part of itself, a boundary has its facets in the order in which they follow each other.
+        let boundary = |(name, facets): &(String, Vec<Vec<usize>>)| {
+            Boundary::new(name, self.kind.facet(), facets.concat()).part(name, |_| true)
         };
-        let nodes = self.nodes.iter().map(|&[x, y]| [x, y, 0.0]).collect();
-        Mesh::new(nodes, kind, self.triangles.concat(), self.boundaries.iter().map(boundary).collect())
+        let boundaries = self.boundaries.iter().map(boundary).collect();
+        Mesh::new(self.nodes.clone(), self.kind, self.elements.concat(), boundaries)
     }
 }
 
 impl Bracket<'_> {
     /// The displacement and the stresses for a picture or a file.
-    pub fn answer(&self) -> PlaneAnswer {
-        let mesh = self.mesh;
-        let middle = |&[a, b]: &[usize; 2]| [0, 1].map(|axis| (mesh.nodes[a][axis] + mesh.nodes[b][axis]) / 2.0);
-        let values = &self.primal.values;
-        let of = |function: usize| [values[2 * function], values[2 * function + 1]];
+    pub fn answer(&self) -> ContinuumAnswer {
+        let (mesh, dimension) = (self.mesh, self.mesh.dimension);
+        let kind = if dimension == 2 { ElementKind::QUADRATIC_TRIANGLE } else { ElementKind::QUADRATIC_TETRAHEDRON };
+        let half = |a: Point, b: Point| [0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2.0);
+        let of = |function: usize| -> Point {
+            let component =
+                |axis: usize| if axis < dimension { self.primal.values[dimension * function + axis] } else { 0.0 };
+            [0, 1, 2].map(component)
+        };
         let corners = (0..mesh.nodes.len()).map(of);
-        let middles = mesh.edges.iter().enumerate().map(|(edge, &[a, b])| {
-            let [first, own, last] = [of(a), of(mesh.nodes.len() + edge), of(b)];
-            [0, 1].map(|axis| (first[axis] + 2.0 * own[axis] + last[axis]) / 4.0)
-        });
-        let triangles =
-            mesh.triangles.iter().zip(&mesh.sides).map(|(&[a, b, c], &[opposite_a, opposite_b, opposite_c])| {
-                let middle = |edge: usize| mesh.nodes.len() + edge;
-                [a, b, c, middle(opposite_c), middle(opposite_a), middle(opposite_b)]
-            });
+        let middles =
+            mesh.edges.iter().enumerate().map(|(edge, &[a, b])| half(half(of(a), of(b)), of(mesh.nodes.len() + edge)));
+        let elements: Vec<Vec<usize>> = (0..mesh.count()).map(|cell| self.element(kind, cell)).collect();
         let mut boundaries: Vec<_> = self.problem.boundaries.iter().map(|name| (name.clone(), Vec::new())).collect();
-        for (triangle, local, edge, condition) in mesh.outline() {
-            let [from, to] = [1, 2].map(|next| mesh.triangles[triangle][(local + next) % 3]);
-            for &boundary in &self.problem.conditions[condition].boundaries {
-                boundaries[boundary].1.push([from, to, mesh.nodes.len() + edge]);
+        for outer in mesh.surface() {
+            let (element, opposite) = (&elements[outer.cell], mesh.cell(outer.cell)[outer.local]);
+            let on_side = |face: &&&[usize]| face.iter().all(|&local| element[local] != opposite);
+            let Some(face) = kind.reference().faces.iter().find(on_side) else { continue };
+            for &boundary in &self.problem.conditions[outer.condition].boundaries {
+                boundaries[boundary].1.push(face.iter().map(|&local| element[local]).collect());
             }
         }
-        PlaneAnswer {
+        ContinuumAnswer {
+            kind,
             boundaries,
-            nodes: mesh.nodes.iter().copied().chain(mesh.edges.iter().map(middle)).collect(),
+            nodes: mesh
+                .nodes
+                .iter()
+                .copied()
+                .chain(mesh.edges.iter().map(|&[a, b]| half(mesh.nodes[a], mesh.nodes[b])))
+                .collect(),
             displacement: corners.chain(middles).collect(),
-            triangles: triangles.collect(),
-            stress: (0..mesh.triangles.len()).map(|triangle| self.mean_stress(triangle)).collect(),
+            elements,
+            stress: (0..mesh.count()).map(|cell| self.mean_stress(cell)).collect(),
             shares: self.shares.clone(),
         }
     }
 
-    /// The mean over a triangle of both stresses.
-    fn mean_stress(&self, triangle: usize) -> Tensor {
-        let mut mean = [0.0; 3];
-        for k in 0..3 {
-            let of_displacement = self.problem.stress(self.strain(&self.primal.values, triangle, k, CENTRE));
-            let in_balance = at(&self.stress[triangle], k, CENTRE);
-            (0..3).for_each(|entry| mean[entry] += (of_displacement[entry] + in_balance[entry]) / 6.0);
+    /// The nodes of a simplex in the order of a kind.
+    fn element(&self, kind: ElementKind, cell: usize) -> Vec<usize> {
+        let (mesh, mut element) = (self.mesh, self.mesh.cell(cell).to_vec());
+        let edges = mesh.edges_of(cell);
+        if mesh.simplex(cell).oriented_size() < 0.0 {
+            element.swap(0, 1);
+        }
+        for &[from, to] in kind.reference().mid_sides {
+            let ends = key(element[from], element[to]);
+            let edge = edges.iter().find(|&&edge| mesh.edges[edge] == ends);
+            element.extend(edge.map(|edge| mesh.nodes.len() + edge));
+        }
+        element
+    }
+
+    /// The mean over a simplex of both stresses.
+    fn mean_stress(&self, cell: usize) -> Tensor {
+        let parts = self.mesh.dimension + 1;
+        let centre = std::array::from_fn(|corner| if corner < parts { 1.0 / parts as f64 } else { 0.0 });
+        let mut mean = [0.0; 6];
+        for k in 0..parts {
+            let of_displacement = self.problem.stress(self.strain(&self.primal.values, cell, k, centre));
+            let of_part = middle(of_displacement, at(&self.stress[cell], k, centre));
+            mean.iter_mut().zip(of_part).for_each(|(mean, part)| *mean += part / parts as f64);
         }
         mean
     }

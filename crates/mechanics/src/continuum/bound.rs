@@ -10,25 +10,26 @@
 //! unknown constant.
 
 use super::displacement::Displacements;
-use super::johnson_mercier::{PartStress, at, mean_over_parts, traction};
-use super::problem::{PlaneProblem, Tensor, work};
+use super::johnson_mercier::{PartStress, at, corners_of_side};
+use super::mesh::{OuterFacet, SimplexMesh};
+use super::problem::ContinuumProblem;
+use super::simplex::{Point, Simplex, Tensor, Weights, less, mean_over_parts, traction, work};
 use super::stress::{Place, Stresses};
 use super::system::{Row, Unknowns};
-use super::triangulation::{Point, Triangulation, outward, twice_area};
 use crate::error::Error;
-use crate::fem::geometry::minus;
+use crate::fem::geometry::{dot, length};
 use crate::fem::material::Lame;
 use signorini_qp as qp;
 use signorini_qp::{ContactProblem, ContactSet, Prepared, Settings, Solution, solve};
 
-/// The strain from the rounding of a displacement of one on a triangle of size one: some hundred units in the last place.
+/// The strain from the rounding of a displacement of one on a simplex of size one: some hundred units in the last place.
 const NOISE: f64 = 100.0 * f64::EPSILON;
 
 /// A displacement and a stress that enclose the exact answer.
 #[derive(Debug)]
 pub struct Bracket<'a> {
-    pub problem: &'a PlaneProblem,
-    pub mesh: &'a Triangulation,
+    pub problem: &'a ContinuumProblem,
+    pub mesh: &'a SimplexMesh,
     pub displacements: Displacements<'a>,
     pub stresses: Stresses<'a>,
     /// The displacement problem and the stress problem, each with its answer.
@@ -36,9 +37,9 @@ pub struct Bracket<'a> {
     pub dual: Side,
     /// The places at which the rows of the stress act.
     pub places: Vec<Place>,
-    /// The stress on each triangle.
+    /// The stress on each simplex.
     pub stress: Vec<PartStress>,
-    /// The contribution of each triangle to J - D.
+    /// The contribution of each simplex to J - D.
     pub shares: Vec<f64>,
     /// The part of J - D from contact.
     pub contact_share: f64,
@@ -97,8 +98,8 @@ impl<'a> Bracket<'a> {
     /// # Errors
     /// Those of [`solve`]; [`qp::Error::Interrupted`] if no time is left for a bound; [`qp::Error::Numerical`] if the check finds a defect beyond rounding: then there is no guarantee.
     pub fn new(
-        problem: &'a PlaneProblem,
-        mesh: &'a Triangulation,
+        problem: &'a ContinuumProblem,
+        mesh: &'a SimplexMesh,
         touching: Option<&[bool]>,
         settings: &Settings,
     ) -> Result<Self, Error> {
@@ -109,7 +110,7 @@ impl<'a> Bracket<'a> {
         let posed = unknowns.problem(displacements.blocks(), &displacements.load(), &rows)?;
         let start = touching.map(|nodes| {
             let (count, edges) = (mesh.nodes.len(), &mesh.edges);
-            ContactSet::from_fn(rows.len(), |row| match rows[row].unknown / 2 {
+            ContactSet::from_fn(rows.len(), |row| match rows[row].unknown / mesh.dimension {
                 node if node < count => nodes[node],
                 edge => edges[edge - count].iter().all(|&end| nodes[end]),
             })
@@ -118,10 +119,12 @@ impl<'a> Bracket<'a> {
         primal.seconds = clock.elapsed().as_secs_f64();
         let stresses = Stresses::new(problem, mesh);
         let unknowns = stresses.unknowns();
-        let (rows, places) = stresses.rows(&unknowns);
+        let largest = largest(&primal.values);
+        let (rows, places) = stresses.rows(&unknowns, |place, gap| {
+            gap - displacements.approached(&primal.values, &place.on, place.corner, place.obstacle) <= largest
+        });
         let posed = unknowns.problem(stresses.blocks(), &stresses.load(), &rows)?;
-        let start = touching
-            .map(|nodes| ContactSet::from_fn(rows.len(), |row| nodes[mesh.edges[places[row].edge][places[row].end]]));
+        let start = touching.map(|nodes| ContactSet::from_fn(rows.len(), |row| nodes[places[row].node(mesh)]));
         let mut dual = Side::solved(unknowns, rows, &posed, start, settings)?;
         let stress = stresses.stresses(&dual.values);
         dual.seconds = clock.elapsed().as_secs_f64() - primal.seconds;
@@ -150,48 +153,44 @@ impl<'a> Bracket<'a> {
     pub fn touching(&self) -> Vec<bool> {
         let mut nodes = vec![false; self.mesh.nodes.len()];
         for (index, row) in self.primal.rows.iter().enumerate() {
-            if let Some(node) = nodes.get_mut(row.unknown / 2) {
+            if let Some(node) = nodes.get_mut(row.unknown / self.mesh.dimension) {
                 *node |= self.primal.solution.contact_set.contains(index);
             }
         }
         nodes
     }
 
-    /// Volume of a triangle.
-    pub fn volume(&self, triangle: usize) -> f64 {
-        self.problem.thickness * twice_area(self.mesh.corners(triangle)) / 2.0
+    /// Volume of a simplex.
+    pub fn volume(&self, cell: usize) -> f64 {
+        self.problem.thickness * self.mesh.simplex(cell).size()
     }
 
-    /// The strain of a displacement at a point of part k of a triangle, given by the weights of the part's corners.
-    pub fn strain(&self, coefficients: &[f64], triangle: usize, k: usize, weights: [f64; 3]) -> Tensor {
-        let mut place = [weights[0] / 3.0; 3];
-        place[(k + 1) % 3] += weights[1];
-        place[(k + 2) % 3] += weights[2];
-        self.displacements.strain(coefficients, triangle, place)
+    /// The strain of a displacement at a point of part k of a simplex, given by the weights of the part's corners.
+    pub fn strain(&self, coefficients: &[f64], cell: usize, k: usize, weights: Weights) -> Tensor {
+        self.displacements.strain(coefficients, cell, self.mesh.simplex(cell).from_part(k, weights))
     }
 
-    /// The integral over a triangle of a function of the strain of the displacement and the stress.
-    pub fn integral(&self, triangle: usize, product: impl Fn(Tensor, Tensor) -> f64) -> f64 {
-        let mean = mean_over_parts(|k, weights| {
-            let strain = self.strain(&self.primal.values, triangle, k, weights);
-            product(strain, at(&self.stress[triangle], k, weights))
+    /// The integral over a simplex of a function of the strain of the displacement and the stress.
+    pub fn integral(&self, cell: usize, product: impl Fn(Tensor, Tensor) -> f64) -> f64 {
+        let mean = mean_over_parts(self.mesh.dimension, |k, weights| {
+            let strain = self.strain(&self.primal.values, cell, k, weights);
+            product(strain, at(&self.stress[cell], k, weights))
         });
-        self.volume(triangle) * mean
+        self.volume(cell) * mean
     }
 
     /// Computes energy, shares and the share of contact.
     pub(super) fn measure(&mut self) {
         let size = |strain: Tensor| work(self.problem.stress(strain), strain);
-        let triangles = 0..self.mesh.triangles.len();
-        let misfit = |strain: Tensor, stress: Tensor| size(minus(strain, self.problem.compliance(stress))) / 2.0;
-        let mut shares: Vec<f64> = triangles.clone().map(|triangle| self.integral(triangle, misfit)).collect();
-        let energy = triangles.map(|triangle| self.integral(triangle, |strain, _| size(strain))).sum();
+        let cells = 0..self.mesh.count();
+        let misfit = |strain: Tensor, stress: Tensor| size(less(strain, self.problem.compliance(stress))) / 2.0;
+        let mut shares: Vec<f64> = cells.clone().map(|cell| self.integral(cell, misfit)).collect();
+        let energy = cells.map(|cell| self.integral(cell, |strain, _| size(strain))).sum();
         let mut contact_share = 0.0;
-        let mut owner = vec![0; self.mesh.edges.len()];
-        self.mesh.outline().for_each(|(triangle, _, edge, _)| owner[edge] = triangle);
         for (index, place) in self.places.iter().enumerate() {
-            let share = -self.pull(index) * (self.dual.rows[index].gap - self.approached(place));
-            shares[owner[place.edge]] += share;
+            let moved = self.displacements.approached(&self.primal.values, &place.on, place.corner, place.obstacle);
+            let share = -self.pull(index) * (self.dual.rows[index].gap - moved);
+            shares[place.on.cell] += share;
             contact_share += share;
         }
         (self.shares, self.energy, self.contact_share) = (shares, energy, contact_share);
@@ -202,34 +201,21 @@ impl<'a> Bracket<'a> {
         self.dual.solution.multiplier[row].min(0.0)
     }
 
-    /// The weighted mean of the displacement of an edge towards an obstacle, as in a row of the stress.
-    fn approached(&self, place: &Place) -> f64 {
-        let facing = &self.problem.obstacles[place.obstacle];
-        self.mean_on(&self.primal.values, place, facing.axis) * facing.sense
-    }
-
-    /// The mean of a displacement along an axis on an edge, with the weight of one end.
-    pub fn mean_on(&self, coefficients: &[f64], place: &Place, axis: usize) -> f64 {
-        let mut on_edge = self.displacements.on_edge(place.edge, axis).map(|function| coefficients[function]);
-        if place.end == 1 {
-            on_edge.reverse();
-        }
-        on_edge[0] / 2.0 + on_edge[1] / 3.0 + on_edge[2] / 6.0
-    }
-
     /// J - D, half the square of the bound, in force times length.
     pub fn distance(&self) -> f64 {
         self.shares.iter().sum()
     }
 
     /// Returns `true` if the energies of displacement and stress are at most those of the rounding of the displacement, on every
-    /// triangle.
+    /// simplex.
     pub fn is_at_rest(&self) -> bool {
-        let largest = self.primal.values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        let largest = largest(&self.primal.values);
         let Lame { lambda, mu } = self.problem.lame;
-        // The strain on a triangle is the noise over its size, its energy is the square of that times the area: the size cancels.
-        let of_triangle = (lambda + 2.0 * mu) * self.problem.thickness * (NOISE * largest).powi(2);
-        self.energy.max(self.distance()) <= of_triangle * self.mesh.triangles.len() as f64
+        // The strain on a simplex is the noise over its smallest height.
+        let of_cell = |cell: usize| self.volume(cell) * steepest(&self.mesh.simplex(cell)).powi(2);
+        let rounding =
+            (0..self.mesh.count()).map(of_cell).sum::<f64>() * (lambda + 2.0 * mu) * (NOISE * largest).powi(2);
+        self.energy.max(self.distance()) <= rounding
     }
 
     /// The bound on |u - v| / |v|; zero for a body at rest, infinite if only v is at rest.
@@ -259,9 +245,8 @@ impl<'a> Bracket<'a> {
 
     /// D(tau).
     pub fn energy_of_stress(&self) -> f64 {
-        let triangles = 0..self.mesh.triangles.len();
-        let stored: f64 = triangles
-            .map(|triangle| self.integral(triangle, |_, stress| work(stress, self.problem.compliance(stress))))
+        let stored: f64 = (0..self.mesh.count())
+            .map(|cell| self.integral(cell, |_, stress| work(stress, self.problem.compliance(stress))))
             .sum();
         self.work_on_supports(&self.stress) + self.work_on_obstacles() - stored / 2.0
     }
@@ -279,30 +264,44 @@ impl<'a> Bracket<'a> {
 
     /// The work of the tractions of a stress with the prescribed displacements.
     pub fn work_on_supports(&self, stress: &[PartStress]) -> f64 {
-        let at_ends = self.jumps(stress);
+        let pulls = self.jumps(stress);
         let mut sum = 0.0;
-        for (_, _, edge, condition) in self.mesh.outline() {
-            let held = self.problem.conditions[condition].held.map(Option::unwrap_or_default);
-            for pull in at_ends[edge] {
-                sum += self.stresses.half_area(edge) * (pull[0] * held[0] + pull[1] * held[1]);
-            }
+        for outer in self.mesh.surface() {
+            let held = self.problem.conditions[outer.condition].held.map(Option::unwrap_or_default);
+            let share = self.share_of_corner(&outer);
+            sum += pulls[outer.facet].iter().map(|&pull| share * dot(pull, held)).sum::<f64>();
         }
         sum
     }
 
-    /// The sum of the tractions of a stress on both sides of each edge, at both of its ends: on the outline the traction itself.
-    pub(super) fn jumps(&self, stress: &[PartStress]) -> Vec<[Point; 2]> {
-        let mut jumps = vec![[[0.0; 2]; 2]; self.mesh.edges.len()];
-        for (triangle, sides) in self.mesh.sides.iter().enumerate() {
-            for (local, &edge) in sides.iter().enumerate() {
-                let (normal, _) = outward(self.mesh.corners(triangle), local);
-                for next in 1..3 {
-                    let pull = traction(stress[triangle][local][next], normal);
-                    let sum = &mut jumps[edge][self.mesh.end_at(triangle, local, next)];
-                    (0..2).for_each(|axis| sum[axis] += pull[axis]);
+    /// The factor of a traction at a corner of a facet of the surface.
+    pub(super) fn share_of_corner(&self, outer: &OuterFacet) -> f64 {
+        self.problem.share_of_corner(self.mesh.simplex(outer.cell).outward(outer.local).1)
+    }
+
+    /// The sum of the tractions of a stress on both sides of each facet, at each of its corners: on the surface the traction itself.
+    pub(super) fn jumps(&self, stress: &[PartStress]) -> Vec<[Point; 3]> {
+        let mut jumps = vec![[[0.0; 3]; 3]; self.mesh.facet_count()];
+        for (cell, stress) in stress.iter().enumerate() {
+            let simplex = self.mesh.simplex(cell);
+            for (local, &facet) in self.mesh.sides(cell).iter().enumerate() {
+                let (normal, _) = simplex.outward(local);
+                for (sum, corner) in jumps[facet].iter_mut().zip(corners_of_side(self.mesh.dimension, local)) {
+                    let pull = traction(stress[local][corner], normal);
+                    (0..3).for_each(|axis| sum[axis] += pull[axis]);
                 }
             }
         }
         jumps
     }
+}
+
+/// The largest absolute value.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest, value| largest.max(value.abs()))
+}
+
+/// One over the smallest height of a simplex.
+pub(super) fn steepest(simplex: &Simplex) -> f64 {
+    simplex.slopes().into_iter().map(length).fold(0.0, f64::max)
 }

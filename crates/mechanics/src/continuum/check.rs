@@ -1,8 +1,7 @@
 //! The check of a bracket: balance, signs, distances and energies, from the stresses and displacements only.
 
-use super::bound::Bracket;
-use super::johnson_mercier::{part, traction};
-use super::triangulation::{CENTRE, outward, twice_area};
+use super::bound::{Bracket, steepest};
+use super::simplex::{pairs, traction};
 use crate::error::Error;
 use signorini_qp as qp;
 
@@ -19,8 +18,8 @@ const LOST: f64 = 1e-2;
 /// Rounding of a sum of many energies, over the sum of their sizes.
 const ENERGY_ROUNDING: f64 = 1e-10;
 
-/// Places along an edge at which a displacement is compared with the obstacle: ends, middle, and between.
-const SAMPLES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+/// The places at which a displacement is compared with the obstacle divide each edge of a facet into so many parts.
+const PARTS: usize = 4;
 
 /// The relative defect of a property, and the value up to which it is rounding.
 #[derive(Clone, Copy, Debug)]
@@ -63,53 +62,50 @@ impl Bracket<'_> {
 
     /// The largest stress, in balance or of the displacement: the former is rounding if nothing touches yet.
     fn largest_stress(&self) -> f64 {
-        let strain = |triangle: usize| self.displacements.strain(&self.primal.values, triangle, CENTRE);
-        let of_displacement = (0..self.stress.len()).map(|triangle| self.problem.stress(strain(triangle)));
+        let corners = self.mesh.dimension + 1;
+        let centre = std::array::from_fn(|corner| if corner < corners { 1.0 / corners as f64 } else { 0.0 });
+        let strain = |cell: usize| self.displacements.strain(&self.primal.values, cell, centre);
+        let of_displacement = (0..self.stress.len()).map(|cell| self.problem.stress(strain(cell)));
         let in_balance = self.stress.iter().flatten().flatten().copied();
         of_displacement.chain(in_balance).flatten().fold(0.0, |largest: f64, entry| largest.max(entry.abs()))
     }
 
-    /// The largest jump of a traction between triangles, difference of traction and load, and sum of divergence and body force times
+    /// The largest jump of a traction between simplices, difference of traction and load, and sum of divergence and body force times
     /// length, over the largest stress.
     fn imbalance(&self) -> f64 {
         let mut left = self.jumps(&self.stress);
-        let mut worst =
-            (0..self.mesh.triangles.len()).fold(0.0, |worst: f64, triangle| worst.max(self.divergence(triangle)));
-        for (triangle, local, edge, condition) in self.mesh.outline() {
-            let condition = &self.problem.conditions[condition];
-            let pull = condition.pull(outward(self.mesh.corners(triangle), local).0);
-            for axis in 0..2 {
-                let free = condition.held[axis].is_none();
-                left[edge].iter_mut().for_each(|end| end[axis] = if free { end[axis] - pull[axis] } else { 0.0 });
+        let mut worst = (0..self.mesh.count()).fold(0.0, |worst: f64, cell| worst.max(self.divergence(cell)));
+        for outer in self.mesh.surface() {
+            let condition = &self.problem.conditions[outer.condition];
+            let pull = condition.pull(self.mesh.simplex(outer.cell).outward(outer.local).0);
+            for corner in left[outer.facet].iter_mut().take(self.mesh.dimension) {
+                for axis in 0..3 {
+                    let free = condition.held[axis].is_none();
+                    corner[axis] = if free { corner[axis] - pull[axis] } else { 0.0 };
+                }
             }
         }
         for (row, place) in self.places.iter().enumerate() {
             let facing = &self.problem.obstacles[place.obstacle];
-            left[place.edge][place.end][facing.axis] -=
-                facing.sense * self.pull(row) / self.stresses.half_area(place.edge);
+            left[place.on.facet][place.corner][facing.axis] -=
+                facing.sense * self.pull(row) / self.share_of_corner(&place.on);
         }
         worst = left.iter().flatten().flatten().fold(worst, |worst, entry| worst.max(entry.abs()));
         over(worst, self.largest_stress())
     }
 
-    /// The largest sum of divergence and body force on a triangle, times its size.
-    fn divergence(&self, triangle: usize) -> f64 {
+    /// The largest sum of divergence and body force on a simplex, times its smallest height.
+    fn divergence(&self, cell: usize) -> f64 {
+        let (simplex, corners) = (self.mesh.simplex(cell), self.mesh.dimension + 1);
         let mut worst: f64 = 0.0;
-        for k in 0..3 {
-            let corners = part(self.mesh.corners(triangle), k);
-            let mut force = [0.0; 2];
-            let mut size: f64 = 0.0;
-            for corner in 0..3 {
-                let (normal, length) = outward(corners, corner);
-                let pull = traction(self.stress[triangle][k][corner], normal);
-                // The slope of a barycentric coordinate is minus the normal over the height.
-                (0..2).for_each(|axis| force[axis] -= pull[axis] * length);
-                size = size.max(length);
+        for k in 0..corners {
+            let part = simplex.part(k);
+            let mut sum = self.problem.body_force;
+            for (stress, slope) in self.stress[cell][k].iter().zip(part.slopes()).take(corners) {
+                let pull = traction(*stress, slope);
+                (0..3).for_each(|axis| sum[axis] += pull[axis]);
             }
-            let area = twice_area(corners);
-            for (force, of_body) in force.into_iter().zip(self.problem.body_force) {
-                worst = worst.max((force / area + of_body).abs() * area / size);
-            }
+            worst = sum.iter().fold(worst, |worst, part_of| worst.max(part_of.abs() / steepest(&part)));
         }
         worst
     }
@@ -125,14 +121,18 @@ impl Bracket<'_> {
     fn penetration(&self) -> f64 {
         let (mut deepest, values) = (0.0_f64, &self.primal.values);
         let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-        for (edge, [from, to], obstacle) in self.problem.facing(self.mesh) {
-            let facing = &self.problem.obstacles[obstacle];
-            let [first, middle, last] = self.displacements.on_edge(edge, facing.axis).map(|function| values[function]);
-            for s in SAMPLES {
-                let place = [0, 1].map(|axis| from[axis] + s * (to[axis] - from[axis]));
-                let moved = (1.0 - s).powi(2) * first + 2.0 * s * (1.0 - s) * middle + s * s * last;
-                if let Some(gap) = facing.surface.gap(place, place) {
-                    deepest = deepest.max(facing.sense * moved - gap.values[0]);
+        let dimension = self.mesh.dimension;
+        for (outer, obstacle) in self.problem.facing(self.mesh) {
+            let (facing, corners) = (&self.problem.obstacles[obstacle], self.mesh.corners_of_facet(outer.facet));
+            let functions = self.displacements.on_facet(&outer, facing.axis);
+            for weights in samples(dimension) {
+                let place = [0, 1, 2]
+                    .map(|axis| corners.iter().zip(weights).map(|(corner, weight)| weight * corner[axis]).sum());
+                let of_pair = |[i, j]: [usize; 2]| weights[i] * weights[j] * if i == j { 1.0 } else { 2.0 };
+                let moved: f64 =
+                    pairs(dimension).zip(&functions).map(|(pair, &function)| of_pair(pair) * values[function]).sum();
+                if let Some(gap) = facing.surface.gap(&vec![place; dimension]) {
+                    deepest = deepest.max(facing.sense * moved - gap.coefficients[0]);
                 }
             }
         }
@@ -150,6 +150,16 @@ impl Bracket<'_> {
     }
 }
 
+/// The barycentric coordinates of places on a facet.
+fn samples(corners: usize) -> impl Iterator<Item = [f64; 3]> {
+    let share = |parts: usize| parts as f64 / PARTS as f64;
+    (0..=PARTS).flat_map(move |first| {
+        let left = PARTS - first;
+        let seconds = if corners == 2 { left..=left } else { 0..=left };
+        seconds.map(move |second| [share(first), share(second), share(left - second)])
+    })
+}
+
 /// A ratio; 0/0 gives zero.
 fn over(value: f64, size: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value / size }
@@ -162,52 +172,83 @@ mod tests {
 
     use super::super::bound::Side;
     use super::super::displacement::Displacements;
-    use super::super::problem::{Condition, Distance, Enclosure, Facing, PlaneProblem, Tensor, work};
+    use super::super::mesh::SimplexMesh;
+    use super::super::problem::{Condition, ContinuumProblem, Distance, Enclosure, Facing};
+    use super::super::simplex::{Point, Tensor, less, middle, work};
     use super::super::system::Row;
-    use super::super::triangulation::{Point, Triangulation};
     use super::*;
-    use crate::fem::geometry::minus;
     use crate::fem::material::Lame;
     use signorini_qp::{Method, Settings};
 
-    /// The surface `y = 1 - 0.02 + (x - 0.4)^2` over a square of side 1.
+    /// The surface at the height `1 - 0.02 + (x - 0.4)^2` in the plane, `1 - 0.1 + (x - 0.4)^2 + (y - 0.4)^2` in space.
     #[derive(Debug)]
-    struct Bowl;
+    struct Bowl(usize);
 
     impl Distance for Bowl {
-        fn gap(&self, from: Point, to: Point) -> Option<Enclosure> {
-            let gap = |[x, y]: Point| 0.98 + (x - 0.4) * (x - 0.4) - y;
-            let middle = [0, 1].map(|axis| (from[axis] + to[axis]) / 2.0);
-            Some(Enclosure { values: [gap(from), gap(middle), gap(to)], below: 0.0, above: 0.0 })
+        fn gap(&self, corners: &[Point]) -> Option<Enclosure> {
+            let height = self.0 - 1;
+            let lowest = if height == 1 { 0.98 } else { 0.9 };
+            let gap = |at: Point| lowest + at[..height].iter().map(|x| (x - 0.4) * (x - 0.4)).sum::<f64>() - at[height];
+            let of_pair = |[i, j]: [usize; 2]| {
+                let half = [0, 1, 2].map(|axis| (corners[i][axis] + corners[j][axis]) / 2.0);
+                2.0 * gap(half) - (gap(corners[i]) + gap(corners[j])) / 2.0
+            };
+            let coefficients = pairs(corners.len()).map(of_pair).collect();
+            Some(Enclosure { coefficients, below: 0.0, above: 0.0 })
         }
     }
 
-    /// A square on a clamped side, with a traction on the right, a body force, and a bowl above.
-    fn square() -> (PlaneProblem, Triangulation) {
-        let side = |held: [Option<f64>; 2], traction: Point, obstacles: Vec<usize>| Condition {
-            held,
+    /// A square or a cube of side 1 on a clamped side, with a traction on the right, a body force, and a bowl above.
+    fn body(dimension: usize) -> (ContinuumProblem, SimplexMesh) {
+        let side = |held: bool, traction: Point, obstacles: Vec<usize>| Condition {
+            held: [held.then_some(0.0); 3],
             traction,
             obstacles,
             ..Condition::default()
         };
-        let problem = PlaneProblem {
+        let problem = ContinuumProblem {
+            dimension,
             lame: Lame { lambda: 1.5, mu: 1.0 },
-            thickness: 0.5,
-            body_force: [0.01, -0.02],
+            thickness: if dimension == 2 { 0.5 } else { 1.0 },
+            body_force: if dimension == 2 { [0.01, -0.02, 0.0] } else { [0.01, -0.02, 0.015] },
             conditions: vec![
-                side([Some(0.0); 2], [0.0; 2], vec![]),
-                side([None; 2], [0.03, 0.01], vec![]),
-                side([None; 2], [0.0; 2], vec![0]),
-                side([None; 2], [0.0; 2], vec![]),
+                side(true, [0.0; 3], vec![]),
+                side(false, [0.03, 0.01, 0.0], vec![]),
+                side(false, [0.0; 3], vec![0]),
+                side(false, [0.0; 3], vec![]),
             ],
-            obstacles: vec![Facing { axis: 1, sense: 1.0, surface: Arc::new(Bowl) }],
+            obstacles: vec![Facing { axis: dimension - 1, sense: 1.0, surface: Arc::new(Bowl(dimension)) }],
             boundaries: Vec::new(),
         };
-        let outline = HashMap::from([([0, 1], 0), ([1, 2], 1), ([2, 3], 2), ([0, 3], 3)]);
-        let nodes = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-        let mut mesh = Triangulation::new(nodes, vec![[0, 1, 2], [0, 2, 3]], vec![0, 0], &outline).unwrap();
-        for _ in 0..2 {
-            mesh = problem.refined(&mesh, &vec![true; mesh.triangles.len()]);
+        // Each order of the axes is the way of a simplex from the origin to the opposite corner.
+        let nodes: Vec<Point> =
+            (0..1 << dimension).map(|node| [0, 1, 2].map(|axis| f64::from(node >> axis & 1))).collect();
+        let orders: &[&[usize]] = match dimension {
+            2 => &[&[0, 1, 3], &[0, 2, 3]],
+            _ => &[&[0, 1, 3, 7], &[0, 1, 5, 7], &[0, 2, 3, 7], &[0, 2, 6, 7], &[0, 4, 5, 7], &[0, 4, 6, 7]],
+        };
+        let cells: Vec<Vec<usize>> = orders.iter().map(|order| order.to_vec()).collect();
+        let on = |facet: &[usize], axis: usize, at: f64| facet.iter().all(|&node| nodes[node][axis] == at);
+        let condition = |facet: &[usize]| match facet {
+            _ if on(facet, dimension - 1, 0.0) => Some(0),
+            _ if on(facet, 0, 1.0) => Some(1),
+            _ if on(facet, dimension - 1, 1.0) => Some(2),
+            _ => (0..dimension).any(|axis| on(facet, axis, 0.0) || on(facet, axis, 1.0)).then_some(3),
+        };
+        let mut surface = HashMap::new();
+        for cell in &cells {
+            for local in 0..cell.len() {
+                let mut facet = cell.clone();
+                facet.remove(local);
+                if let Some(condition) = condition(&facet) {
+                    surface.insert(facet, condition);
+                }
+            }
+        }
+        let origins = vec![0; cells.len()];
+        let mut mesh = SimplexMesh::new(dimension, nodes.clone(), &cells, origins, &surface).unwrap();
+        for _ in 0..if dimension == 2 { 2 } else { 4 } {
+            mesh = problem.refined(&mesh, &vec![true; mesh.count()]);
         }
         (problem, mesh)
     }
@@ -223,81 +264,88 @@ mod tests {
 
     #[test]
     fn a_right_bracket_passes_the_check_and_touches() {
-        let (problem, mesh) = square();
-        let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
-        assert!(bracket.defect < 1e-12, "{}", bracket.defect);
-        assert!(bracket.force() > 0.0 && bracket.contact_share > 0.0);
-        assert!(bracket.energy_of_stress() < bracket.energy_of_displacement());
+        for (problem, mesh) in [body(2), body(3)] {
+            let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+            assert!(bracket.defect < 1e-11, "{}", bracket.defect);
+            assert!(bracket.force() > 0.0 && bracket.contact_share > 0.0);
+            assert!(bracket.energy_of_stress() < bracket.energy_of_displacement());
+        }
     }
 
     /// A displacement of one strain everywhere, judged by the ball, has the distances that integrals by another rule give.
     #[test]
     fn a_displacement_is_judged_by_its_distance_from_the_centre_and_the_radius() {
-        let (problem, mesh) = square();
-        let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
-        let own = [0.01, -0.02, 0.005];
-        let size = |strain: Tensor| work(problem.stress(strain), strain);
-        let length = |square: &dyn Fn(Tensor, Tensor) -> f64| {
-            (0..mesh.triangles.len()).map(|triangle| bracket.integral(triangle, square)).sum::<f64>().sqrt()
-        };
-        let from_centre = length(&|strain, stress| {
-            let balanced = problem.compliance(stress);
-            size(minus(own, [0, 1, 2].map(|entry| (strain[entry] + balanced[entry]) / 2.0)))
-        });
-        let judged = bracket.judged(|_| move |_: Point| own);
-        // The square has the area one.
-        let exact = [
-            (judged.norm, (problem.thickness * size(own)).sqrt()),
-            (judged.from_displacement, length(&|strain, _| size(minus(own, strain)))),
-            (judged.bound, from_centre + bracket.square_of_radius().sqrt()),
-        ];
-        for (found, exact) in exact {
-            assert!(exact > 0.0 && (found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
+        for (problem, mesh) in [body(2), body(3)] {
+            let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+            let own = if mesh.dimension == 2 {
+                [0.01, -0.02, 0.0, 0.005, 0.0, 0.0]
+            } else {
+                [0.01, -0.02, 0.01, 0.005, 0.01, 0.02]
+            };
+            let size = |strain: Tensor| work(problem.stress(strain), strain);
+            let length = |square: &dyn Fn(Tensor, Tensor) -> f64| {
+                (0..mesh.count()).map(|cell| bracket.integral(cell, square)).sum::<f64>().sqrt()
+            };
+            let from_centre = length(&|strain, stress| size(less(own, middle(strain, problem.compliance(stress)))));
+            let judged = bracket.judged(|_| move |_: Point| own);
+            // The body has the size one.
+            let exact = [
+                (judged.norm, (problem.thickness * size(own)).sqrt()),
+                (judged.from_displacement, length(&|strain, _| size(less(own, strain)))),
+                (judged.bound, from_centre + bracket.square_of_radius().sqrt()),
+            ];
+            for (found, exact) in exact {
+                assert!(exact > 0.0 && (found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
+            }
         }
     }
 
     #[test]
     fn a_lost_traction_is_refused() {
-        let (problem, mesh) = square();
-        let mut without = problem.clone();
-        without.conditions[1].traction = [0.0; 2];
-        let mut bracket = Bracket::new(&without, &mesh, None, &settings()).unwrap();
-        bracket.problem = &problem;
-        assert!(refusal(&bracket).contains("the stress is out of balance"));
+        for (problem, mesh) in [body(2), body(3)] {
+            let mut without = problem.clone();
+            without.conditions[1].traction = [0.0; 3];
+            let mut bracket = Bracket::new(&without, &mesh, None, &settings()).unwrap();
+            bracket.problem = &problem;
+            assert!(refusal(&bracket).contains("the stress is out of balance"));
+        }
     }
 
     #[test]
     fn a_missed_body_force_is_refused() {
-        let (problem, mesh) = square();
-        let weightless = PlaneProblem { body_force: [0.0; 2], ..problem.clone() };
-        let mut bracket = Bracket::new(&weightless, &mesh, None, &settings()).unwrap();
-        bracket.problem = &problem;
-        assert!(refusal(&bracket).contains("the stress is out of balance"));
+        for (problem, mesh) in [body(2), body(3)] {
+            let weightless = ContinuumProblem { body_force: [0.0; 3], ..problem.clone() };
+            let mut bracket = Bracket::new(&weightless, &mesh, None, &settings()).unwrap();
+            bracket.problem = &problem;
+            assert!(refusal(&bracket).contains("the stress is out of balance"));
+        }
     }
 
     #[test]
-    fn a_wrong_sign_on_a_candidate_edge_is_refused() {
-        let (problem, mesh) = square();
-        let mut bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
-        let pressed = bracket.dual.solution.multiplier.iter().position(|force| *force < 0.0).unwrap();
-        bracket.dual.solution.multiplier[pressed] *= -1.0;
-        assert!(!refusal(&bracket).is_empty());
-        assert!(bracket.adhesion() > 0.01, "{}", bracket.adhesion());
+    fn a_wrong_sign_on_a_candidate_facet_is_refused() {
+        for (problem, mesh) in [body(2), body(3)] {
+            let mut bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+            let pressed = bracket.dual.solution.multiplier.iter().position(|force| *force < 0.0).unwrap();
+            bracket.dual.solution.multiplier[pressed] *= -1.0;
+            assert!(!refusal(&bracket).is_empty());
+            assert!(bracket.adhesion() > 0.01, "{}", bracket.adhesion());
+        }
     }
 
     /// Rows at the places of the nodes bound the values there, but not between.
     #[test]
     fn rows_at_nodes_instead_of_coefficients_are_refused() {
-        let (problem, mesh) = square();
-        let mut bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
-        let displacements = Displacements::new(&problem, &mesh);
-        let unknowns = displacements.unknowns();
-        let corners_only = 2 * mesh.nodes.len();
-        let rows: Vec<Row> =
-            displacements.rows(&unknowns).unwrap().into_iter().filter(|row| row.unknown < corners_only).collect();
-        let posed = unknowns.problem(displacements.blocks(), &displacements.load(), &rows).unwrap();
-        bracket.primal = Side::solved(unknowns, rows, &posed, None, &settings()).unwrap();
-        bracket.measure();
-        assert!(refusal(&bracket).contains("the displacement goes into an obstacle"));
+        for (problem, mesh) in [body(2), body(3)] {
+            let mut bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+            let displacements = Displacements::new(&problem, &mesh);
+            let unknowns = displacements.unknowns();
+            let corners_only = mesh.dimension * mesh.nodes.len();
+            let rows: Vec<Row> =
+                displacements.rows(&unknowns).unwrap().into_iter().filter(|row| row.unknown < corners_only).collect();
+            let posed = unknowns.problem(displacements.blocks(), &displacements.load(), &rows).unwrap();
+            bracket.primal = Side::solved(unknowns, rows, &posed, None, &settings()).unwrap();
+            bracket.measure();
+            assert!(refusal(&bracket).contains("the displacement goes into an obstacle"));
+        }
     }
 }

@@ -1,50 +1,70 @@
-//! Displacements that are quadratic on each triangle, in the basis of Bernstein: if the coefficients of a function on an edge are below
+//! Displacements that are quadratic on each simplex, in the basis of Bernstein: if the coefficients of a function on a facet are below
 //! those of a bound, the function is below it everywhere.
 
 use std::collections::BTreeMap;
 
-use super::problem::{PlaneProblem, Tensor, work};
-use super::system::{Block, LOCAL, Row, Unknowns};
-use super::triangulation::{MIDDLES, Point, Triangulation, distance, outward, slopes, twice_area};
+use super::johnson_mercier::corners_of_side;
+use super::mesh::{OuterFacet, SimplexMesh};
+use super::problem::{ContinuumProblem, weighted_mean};
+use super::simplex::{MOST_CORNERS, Point, Tensor, Weights, pairs, quadratic_rule, work};
+use super::system::{Block, Numbers, Row, Unknowns};
 use crate::error::Error;
+use crate::fem::geometry::key;
 use signorini_qp as qp;
 
 /// Displacements on a mesh.
 #[derive(Debug)]
 pub struct Displacements<'a> {
-    problem: &'a PlaneProblem,
-    mesh: &'a Triangulation,
-    /// The six functions of each triangle, along both axes.
-    pub numbers: Vec<[usize; LOCAL]>,
+    problem: &'a ContinuumProblem,
+    mesh: &'a SimplexMesh,
+    /// The functions of each simplex, each along all axes.
+    pub numbers: Numbers,
 }
 
 impl<'a> Displacements<'a> {
-    pub fn new(problem: &'a PlaneProblem, mesh: &'a Triangulation) -> Self {
-        let numbers = (0..mesh.triangles.len()).map(|triangle| {
-            let (nodes, sides) = (mesh.triangles[triangle], mesh.sides[triangle]);
-            let mut numbers = [0; LOCAL];
-            for (local, node) in nodes.into_iter().chain(sides.map(|edge| mesh.nodes.len() + edge)).enumerate() {
-                (numbers[2 * local], numbers[2 * local + 1]) = (2 * node, 2 * node + 1);
-            }
-            numbers
-        });
-        Displacements { problem, mesh, numbers: numbers.collect() }
+    pub fn new(problem: &'a ContinuumProblem, mesh: &'a SimplexMesh) -> Self {
+        let (dimension, nodes) = (mesh.dimension, mesh.nodes.len());
+        let functions = |cell: usize| {
+            mesh.cell(cell).iter().copied().chain(mesh.edges_of(cell).iter().map(move |edge| nodes + edge))
+        };
+        let along_axes = |function: usize| dimension * function..dimension * (function + 1);
+        let numbers = (0..mesh.count()).flat_map(functions).flat_map(along_axes).collect();
+        let of_cell = dimension * (dimension + 1) * (dimension + 2) / 2;
+        Displacements { problem, mesh, numbers: Numbers::new(of_cell, numbers) }
     }
 
-    /// The three functions on an edge along an axis: those of its start, its middle and its end.
-    pub fn on_edge(&self, edge: usize, axis: usize) -> [usize; 3] {
-        let [a, b] = self.mesh.edges[edge];
-        [a, self.mesh.nodes.len() + edge, b].map(|node| 2 * node + axis)
+    /// Number of unknowns, free or held.
+    fn count(&self) -> usize {
+        self.mesh.dimension * (self.mesh.nodes.len() + self.mesh.edges.len())
     }
 
-    /// The unknowns; those on held sides are prescribed.
+    /// The unknowns on a facet of the surface along an axis: those of its corners, then those of their pairs.
+    pub fn on_facet(&self, outer: &OuterFacet, axis: usize) -> Vec<usize> {
+        let (mesh, dimension) = (self.mesh, self.mesh.dimension);
+        let corners: Vec<usize> = corners_of_side(dimension, outer.local).collect();
+        let numbers = self.numbers.of(outer.cell);
+        let place = |pair: [usize; 2]| {
+            let pair = pair.map(|corner| corners[corner]);
+            pairs(dimension + 1).position(|other| other == key(pair[0], pair[1])).unwrap_or(0)
+        };
+        debug_assert!(mesh.sides(outer.cell)[outer.local] == outer.facet);
+        pairs(dimension).map(|pair| numbers[dimension * place(pair) + axis]).collect()
+    }
+
+    /// The mean of a displacement towards an obstacle on a facet of the surface with the weight of a corner, as in a row of the stress.
+    pub fn approached(&self, coefficients: &[f64], outer: &OuterFacet, corner: usize, obstacle: usize) -> f64 {
+        let facing = &self.problem.obstacles[obstacle];
+        let functions = self.on_facet(outer, facing.axis);
+        let on_facet: Vec<f64> = functions.into_iter().map(|function| coefficients[function]).collect();
+        facing.sense * weighted_mean(self.mesh.dimension, corner, &on_facet)
+    }
+
+    /// The unknowns; those on held facets are prescribed.
     pub fn unknowns(&self) -> Unknowns {
-        let mut held = vec![None; 2 * (self.mesh.nodes.len() + self.mesh.edges.len())];
-        for (_, _, edge, condition) in self.mesh.outline() {
-            for (axis, value) in self.problem.conditions[condition].held.into_iter().enumerate() {
-                if value.is_some() {
-                    self.on_edge(edge, axis).into_iter().for_each(|function| held[function] = value);
-                }
+        let mut held = vec![None; self.count()];
+        for outer in self.mesh.surface() {
+            for (axis, value) in self.problem.held(&outer) {
+                self.on_facet(&outer, axis).into_iter().for_each(|function| held[function] = Some(value));
             }
         }
         Unknowns::new(held)
@@ -56,10 +76,10 @@ impl<'a> Displacements<'a> {
     /// [`qp::Error::Infeasible`] if a prescribed displacement leads into an obstacle.
     pub fn rows(&self, unknowns: &Unknowns) -> Result<Vec<Row>, Error> {
         let mut gaps: BTreeMap<(usize, usize), f64> = BTreeMap::new();
-        for (edge, [from, to], number) in self.problem.facing(self.mesh) {
+        for (outer, number) in self.problem.facing(self.mesh) {
             let facing = &self.problem.obstacles[number];
-            let Some(gap) = facing.surface.gap(from, to) else { continue };
-            for (function, bound) in self.on_edge(edge, facing.axis).into_iter().zip(gap.lower()) {
+            let Some(gap) = facing.surface.gap(&self.mesh.corners_of_facet(outer.facet)) else { continue };
+            for (function, bound) in self.on_facet(&outer, facing.axis).into_iter().zip(gap.lower()) {
                 let least = gaps.entry((number, function)).or_insert(f64::INFINITY);
                 *least = least.min(bound);
             }
@@ -80,21 +100,21 @@ impl<'a> Displacements<'a> {
         Ok(rows)
     }
 
-    /// The functions of each triangle, with its stiffness.
-    pub fn blocks(&self) -> impl Iterator<Item = (&[usize; LOCAL], Block)> + '_ {
-        self.numbers.iter().enumerate().map(|(triangle, numbers)| (numbers, self.stiffness(triangle)))
+    /// The functions of each simplex, with its stiffness.
+    pub fn blocks(&self) -> impl Iterator<Item = (&[usize], Block)> + '_ {
+        self.numbers.iter().enumerate().map(|(cell, numbers)| (numbers, self.stiffness(cell)))
     }
 
-    fn stiffness(&self, triangle: usize) -> Block {
-        let corners = self.mesh.corners(triangle);
-        let weight = self.problem.thickness * twice_area(corners) / 6.0;
-        let slopes = slopes(corners);
-        let mut block = [[0.0; LOCAL]; LOCAL];
-        for at in MIDDLES {
-            let strains = strains_of_functions(&slopes, at);
-            let stresses = strains.map(|strain| self.problem.stress(strain));
-            for (line, stress) in block.iter_mut().zip(stresses) {
-                line.iter_mut().zip(strains).for_each(|(entry, strain)| *entry += weight * work(stress, strain));
+    fn stiffness(&self, cell: usize) -> Block {
+        let (simplex, dimension) = (self.mesh.simplex(cell), self.mesh.dimension);
+        let weight = self.problem.thickness * simplex.size() / (dimension + 1) as f64;
+        let (slopes, count) = (simplex.slopes(), self.numbers.of(cell).len());
+        let mut block = vec![0.0; count * count];
+        for at in quadratic_rule(dimension) {
+            let strains: Vec<Tensor> = strains_of_functions(dimension, &slopes, at).collect();
+            for (line, strain) in block.chunks_exact_mut(count).zip(&strains) {
+                let stress = self.problem.stress(*strain);
+                line.iter_mut().zip(&strains).for_each(|(entry, &strain)| *entry += weight * work(stress, strain));
             }
         }
         block
@@ -102,51 +122,53 @@ impl<'a> Displacements<'a> {
 
     /// The work of the loads on each function.
     pub fn load(&self) -> Vec<f64> {
-        let (problem, mesh) = (self.problem, self.mesh);
-        let mut load = vec![0.0; 2 * (mesh.nodes.len() + mesh.edges.len())];
-        for (triangle, numbers) in self.numbers.iter().enumerate() {
-            // All six functions have the same mean.
-            let share = problem.thickness * twice_area(mesh.corners(triangle)) / 12.0;
-            numbers
-                .iter()
-                .enumerate()
-                .for_each(|(place, &number)| load[number] += share * problem.body_force[place % 2]);
+        let (problem, mesh, dimension) = (self.problem, self.mesh, self.mesh.dimension);
+        let mut load = vec![0.0; self.count()];
+        for (cell, numbers) in self.numbers.iter().enumerate() {
+            // All functions have the same mean.
+            let share = problem.thickness * mesh.simplex(cell).size() * dimension as f64 / numbers.len() as f64;
+            let parts = numbers.iter().zip(problem.body_force.iter().take(dimension).cycle());
+            parts.for_each(|(&number, force)| load[number] += share * force);
         }
-        for (triangle, local, edge, condition) in mesh.outline() {
-            let condition = &problem.conditions[condition];
-            let (held, traction) = (condition.held, condition.pull(outward(mesh.corners(triangle), local).0));
-            let [from, to] = mesh.edges[edge].map(|node| mesh.nodes[node]);
-            let share = problem.thickness * distance(from, to) / 3.0;
-            for axis in (0..2).filter(|&axis| held[axis].is_none()) {
-                self.on_edge(edge, axis).into_iter().for_each(|function| load[function] += share * traction[axis]);
+        for outer in mesh.surface() {
+            let condition = &problem.conditions[outer.condition];
+            let (normal, size) = mesh.simplex(outer.cell).outward(outer.local);
+            let (held, traction) = (condition.held, condition.pull(normal));
+            for axis in (0..dimension).filter(|&axis| held[axis].is_none()) {
+                let functions = self.on_facet(&outer, axis);
+                let share = problem.thickness * size / functions.len() as f64;
+                functions.into_iter().for_each(|function| load[function] += share * traction[axis]);
             }
         }
         load
     }
 
-    /// The strain of a displacement at a point of a triangle, given in barycentric coordinates.
-    pub fn strain(&self, coefficients: &[f64], triangle: usize, at: [f64; 3]) -> Tensor {
-        let functions = strains_of_functions(&slopes(self.mesh.corners(triangle)), at);
-        let own = self.numbers[triangle].map(|number| coefficients[number]);
-        let mut strain = [0.0; 3];
-        for (value, of_function) in own.into_iter().zip(functions) {
-            (0..3).for_each(|entry| strain[entry] += value * of_function[entry]);
+    /// The strain of a displacement at a point of a simplex, given in barycentric coordinates.
+    pub fn strain(&self, coefficients: &[f64], cell: usize, at: Weights) -> Tensor {
+        let (dimension, slopes) = (self.mesh.dimension, self.mesh.simplex(cell).slopes());
+        let mut strain = [0.0; 6];
+        for (&number, of_function) in self.numbers.of(cell).iter().zip(strains_of_functions(dimension, &slopes, at)) {
+            strain.iter_mut().zip(of_function).for_each(|(sum, part)| *sum += coefficients[number] * part);
         }
         strain
     }
 }
 
-/// The strains of the twelve functions at a point: `l_k^2` of the corners, then `2 l_i l_j` of the sides, each along x and y.
-fn strains_of_functions(slopes: &[Point; 3], at: [f64; 3]) -> [Tensor; LOCAL] {
-    let mut strains = [[0.0; 3]; LOCAL];
-    for local in 0..3 {
-        let (i, j) = ((local + 1) % 3, (local + 2) % 3);
-        let of_corner = [0, 1].map(|axis| 2.0 * at[local] * slopes[local][axis]);
-        let of_side = [0, 1].map(|axis| 2.0 * (at[i] * slopes[j][axis] + at[j] * slopes[i][axis]));
-        for (function, [x, y]) in [(local, of_corner), (3 + local, of_side)] {
-            strains[2 * function] = [x, 0.0, y / 2.0];
-            strains[2 * function + 1] = [0.0, y, x / 2.0];
-        }
+/// The strains of the functions at a point: `l_i^2` of the corners, then `2 l_i l_j` of the pairs, each along all axes.
+fn strains_of_functions(dimension: usize, slopes: &[Point; MOST_CORNERS], at: Weights) -> impl Iterator<Item = Tensor> {
+    let slope = move |[i, j]: [usize; 2]| -> Point {
+        let twice = |axis: usize| 2.0 * (at[i] * slopes[j][axis] + at[j] * slopes[i][axis]);
+        let along = |axis: usize| if i == j { twice(axis) / 2.0 } else { twice(axis) };
+        [0, 1, 2].map(along)
+    };
+    pairs(dimension + 1).map(slope).flat_map(move |slope| (0..dimension).map(move |axis| strain_along(axis, slope)))
+}
+
+/// The strain of a displacement along an axis with this slope.
+fn strain_along(axis: usize, [x, y, z]: Point) -> Tensor {
+    match axis {
+        0 => [x, 0.0, 0.0, y / 2.0, 0.0, z / 2.0],
+        1 => [0.0, y, 0.0, x / 2.0, z / 2.0, 0.0],
+        _ => [0.0, 0.0, z, 0.0, y / 2.0, x / 2.0],
     }
-    strains
 }

@@ -15,11 +15,11 @@
 use std::collections::BTreeSet;
 
 use super::bound::{Bracket, Side};
-use super::johnson_mercier::{PartStress, at, mean_over_parts};
-use super::problem::work;
+use super::johnson_mercier::{PartStress, at};
+use super::simplex::{Weights, less, mean_over_parts, middle, work};
+use super::stress::Place;
 use super::system::{Block, Unknowns};
 use crate::error::Error;
-use crate::fem::geometry::minus;
 use crate::fem::material::Lame;
 use signorini_qp::{Cholesky, ContactProblem};
 
@@ -32,7 +32,7 @@ const CAPS: [f64; 2] = [f64::INFINITY, 2.0];
 /// Largest number of rounds that change rows of the wrong sign.
 const ROUNDS: usize = 12;
 
-/// The data for every pair: the matrices of the triangles, and the stress of edges at rest.
+/// The data for every pair: the matrices of the simplices, and the stress of facets at rest.
 struct Blocks {
     displacement: Vec<Block>,
     stress: Vec<Block>,
@@ -60,8 +60,8 @@ impl Bracket<'_> {
     /// # Errors
     /// Those of [`ContactProblem::new`].
     pub fn force_interval(&self) -> Result<Option<[f64; 2]>, Error> {
-        let ends: BTreeSet<_> = self.places.iter().map(|place| (place.edge, place.end)).collect();
-        if !self.problem.has_one_direction() || ends.len() != self.places.len() || self.is_at_rest() {
+        let corners: BTreeSet<_> = self.places.iter().map(|place| (place.on.facet, place.corner)).collect();
+        if !self.problem.has_one_direction() || corners.len() != self.places.len() || self.is_at_rest() {
             return Ok(None);
         }
         let closed = &self.primal.solution.contact_set;
@@ -99,29 +99,28 @@ impl Bracket<'_> {
     /// The interval of a pair, and the beta at which its term would reach that of the ball.
     fn interval(&self, test: &Test) -> ([f64; 2], f64) {
         let (mut base, mut square) = (self.work_on_supports(&test.stress), 0.0);
-        for triangle in 0..self.mesh.triangles.len() {
-            let mean = |value: &dyn Fn(usize, [f64; 3]) -> f64| self.volume(triangle) * mean_over_parts(value);
-            let rest = |k: usize, weights: [f64; 3]| {
-                let strain = self.strain(&test.displacement, triangle, k, weights);
-                minus(strain, self.problem.compliance(at(&test.stress[triangle], k, weights)))
+        for cell in 0..self.mesh.count() {
+            let mean =
+                |value: &dyn Fn(usize, Weights) -> f64| self.volume(cell) * mean_over_parts(self.mesh.dimension, value);
+            let rest = |k: usize, weights: Weights| {
+                let strain = self.strain(&test.displacement, cell, k, weights);
+                less(strain, self.problem.compliance(at(&test.stress[cell], k, weights)))
             };
             square += mean(&|k, weights| {
                 let rest = rest(k, weights);
                 work(self.problem.stress(rest), rest)
             });
             base += mean(&|k, weights| {
-                let strain = self.problem.stress(self.strain(&self.primal.values, triangle, k, weights));
-                let stress = at(&self.stress[triangle], k, weights);
-                let middle = [0, 1, 2].map(|entry| (strain[entry] + stress[entry]) / 2.0);
-                work(middle, rest(k, weights))
+                let of_displacement = self.problem.stress(self.strain(&self.primal.values, cell, k, weights));
+                work(middle(of_displacement, at(&self.stress[cell], k, weights)), rest(k, weights))
             });
         }
         let load = self.displacements.load();
         base -= test.displacement.iter().zip(&load).map(|(value, load)| value * load).sum::<f64>();
         let [mut low, mut high] = [base; 2];
         for (place, (&pull, row)) in self.places.iter().zip(test.pulls.iter().zip(&self.dual.rows)) {
-            let [from, to] = self.mesh.edges[place.edge].map(|node| self.mesh.nodes[node]);
-            let gap = self.problem.obstacles[place.obstacle].surface.gap(from, to);
+            let corners = self.mesh.corners_of_facet(place.on.facet);
+            let gap = self.problem.obstacles[place.obstacle].surface.gap(&corners);
             low += pull * row.gap;
             high += pull * (row.gap - gap.map_or(0.0, |gap| gap.below + gap.above));
         }
@@ -146,10 +145,10 @@ impl Bracket<'_> {
             of_rows.push(over(open, row.gap - row.sense * values[row.unknown]));
         }
         // Places that a support holds do not move in the test, and may be touched.
-        for (edge, [from, to], number) in self.problem.facing(self.mesh) {
+        for (outer, number) in self.problem.facing(self.mesh) {
             let facing = &self.problem.obstacles[number];
-            let Some(gap) = facing.surface.gap(from, to) else { continue };
-            for (function, bound) in self.displacements.on_edge(edge, facing.axis).into_iter().zip(gap.lower()) {
+            let Some(gap) = facing.surface.gap(&self.mesh.corners_of_facet(outer.facet)) else { continue };
+            for (function, bound) in self.displacements.on_facet(&outer, facing.axis).into_iter().zip(gap.lower()) {
                 if let Some(held) = primal.unknowns.held[function] {
                     of_rows.push(over(1.0, bound - facing.sense * held));
                 }
@@ -164,7 +163,8 @@ impl Bracket<'_> {
     fn bonded_displacement(&self, bonded: &mut [bool], blocks: &[Block]) -> Result<Option<Vec<f64>>, Error> {
         for _ in 0..ROUNDS {
             let (unknowns, load) = with_contact_held(&self.primal, bonded);
-            let posed = unknowns.problem(self.displacements.numbers.iter().zip(blocks.iter().copied()), &load, &[])?;
+            let cells = self.displacements.numbers.iter().zip(blocks.iter().cloned());
+            let posed = unknowns.problem(cells, &load, &[])?;
             let Some(free) = linear(&posed) else { return Ok(None) };
             let values = unknowns.expanded(&free);
             let wrong: Vec<usize> = (0..bonded.len())
@@ -181,25 +181,27 @@ impl Bracket<'_> {
         Ok(None)
     }
 
-    /// The stress under edges held at -1 where pressed, and its forces there; places with a pulling force are released.
+    /// The stress under facets held at -1 where pressed, and its forces there; places with a pulling force are released.
     fn bonded_stress(&self, pressed: &mut [bool], blocks: &Blocks) -> Result<Option<Pressed>, Error> {
         for _ in 0..ROUNDS {
             let (unknowns, load) = with_contact_held(&self.dual, pressed);
-            let posed =
-                unknowns.problem(self.stresses.numbers.iter().zip(blocks.stress.iter().copied()), &load, &[])?;
+            let cells = self.stresses.numbers.iter().zip(blocks.stress.iter().cloned());
+            let posed = unknowns.problem(cells, &load, &[])?;
             let Some(free) = linear(&posed) else { return Ok(None) };
             let mut stress = self.stresses.stresses(&unknowns.expanded(&free));
             // The difference of two answers under the same body force has no body force.
             for (values, at_rest) in
                 stress.iter_mut().flatten().flatten().zip(blocks.at_rest.iter().flatten().flatten())
             {
-                *values = minus(*values, *at_rest);
+                *values = less(*values, *at_rest);
             }
             let mut pulls = self.pulls(&stress);
             // The force for a displacement of one of a body as wide as high, for comparison: a body that nothing holds moves without
             // force.
             let Lame { lambda, mu } = self.problem.lame;
-            let unit = (lambda + 2.0 * mu) * self.problem.thickness;
+            let volume: f64 = (0..self.mesh.count()).map(|cell| self.volume(cell)).sum();
+            let depth = self.problem.thickness * if self.mesh.dimension == 2 { 1.0 } else { volume.cbrt() };
+            let unit = (lambda + 2.0 * mu) * depth;
             let largest = pulls.iter().fold(unit, |largest: f64, pull| largest.max(pull.abs()));
             let wrong: Vec<usize> =
                 (0..pressed.len()).filter(|&row| pressed[row] && pulls[row] > ROUNDING * largest).collect();
@@ -217,10 +219,10 @@ impl Bracket<'_> {
 
     /// The force of a stress at each place, along the obstacle.
     fn pulls(&self, stress: &[PartStress]) -> Vec<f64> {
-        let at_ends = self.jumps(stress);
-        let pull = |place: &super::stress::Place| {
+        let pulls = self.jumps(stress);
+        let pull = |place: &Place| {
             let facing = &self.problem.obstacles[place.obstacle];
-            facing.sense * at_ends[place.edge][place.end][facing.axis] * self.stresses.half_area(place.edge)
+            facing.sense * pulls[place.on.facet][place.corner][facing.axis] * self.share_of_corner(&place.on)
         };
         self.places.iter().map(pull).collect()
     }

@@ -1,11 +1,9 @@
 //! Judges any other displacement by the ball that contains the exact stress.
 
 use super::bound::Bracket;
-use super::johnson_mercier::{at, part};
-use super::problem::{Tensor, work};
-use super::triangulation::Point;
-use crate::fem::element::{FacetKind, Tabulated};
-use crate::fem::geometry::minus;
+use super::johnson_mercier::at;
+use super::simplex::{Point, Tensor, less, middle, work};
+use crate::fem::element::{ElementKind, Tabulated};
 
 /// The distance of a displacement w from others, in the energy norm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,26 +18,28 @@ pub struct Judged {
 
 impl Bracket<'_> {
     /// Judges a displacement by its strain in an element of the first mesh, at a point. The displacement needs no other property: the
-    /// bound follows from its distance to the centre of the ball and the radius. Integrals are by 25 points on each third of a triangle.
+    /// bound follows from its distance to the centre of the ball and the radius. Integrals are by five points in each direction on each
+    /// part of a simplex.
     pub fn judged<S: Fn(Point) -> Tensor>(&self, strain_in: impl Fn(usize) -> S) -> Judged {
-        let rule = Tabulated::fine(FacetKind::T3.reference()).points;
+        let (dimension, parts) = (self.mesh.dimension, self.mesh.dimension + 1);
+        // On these elements the shape functions are the barycentric coordinates; the weights add up to the size of the reference element.
+        let kind = if dimension == 2 { ElementKind::LINEAR_TRIANGLE } else { ElementKind::LINEAR_TETRAHEDRON };
+        let rule = Tabulated::fine(kind.reference()).points;
+        let reference: f64 = rule.iter().map(|point| point.weight).sum();
         let (mut from_centre, mut from_displacement, mut norm) = (0.0_f64, 0.0_f64, 0.0_f64);
-        for triangle in 0..self.mesh.triangles.len() {
-            // The weights of the rule add up to one half, and the thirds are equal.
-            let volume = self.volume(triangle) / 3.0 * 2.0;
-            let strain = strain_in(self.mesh.origins[triangle]);
-            for k in 0..3 {
-                let corners = part(self.mesh.corners(triangle), k);
+        for cell in 0..self.mesh.count() {
+            let (simplex, strain) = (self.mesh.simplex(cell), strain_in(self.mesh.origins[cell]));
+            let volume = self.volume(cell) / parts as f64 / reference;
+            for k in 0..parts {
+                let part = simplex.part(k);
                 for point in &rule {
-                    let weights = [point.shape[0], point.shape[1], point.shape[2]];
-                    let place = [0, 1].map(|axis| (0..3).map(|corner| weights[corner] * corners[corner][axis]).sum());
-                    let own = strain(place);
-                    let of_bracket = self.strain(&self.primal.values, triangle, k, weights);
-                    let balanced = self.problem.compliance(at(&self.stress[triangle], k, weights));
-                    let centre = [0, 1, 2].map(|entry| (of_bracket[entry] + balanced[entry]) / 2.0);
+                    let weights = std::array::from_fn(|corner| if corner < parts { point.shape[corner] } else { 0.0 });
+                    let own = strain(part.at(weights));
+                    let of_bracket = self.strain(&self.primal.values, cell, k, weights);
+                    let balanced = self.problem.compliance(at(&self.stress[cell], k, weights));
                     let square = |strain: Tensor| point.weight * volume * work(self.problem.stress(strain), strain);
-                    from_centre += square(minus(own, centre));
-                    from_displacement += square(minus(own, of_bracket));
+                    from_centre += square(less(own, middle(of_bracket, balanced)));
+                    from_displacement += square(less(own, of_bracket));
                     norm += square(own);
                 }
             }

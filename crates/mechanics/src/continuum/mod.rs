@@ -1,5 +1,5 @@
-//! The guaranteed error against the continuum, in the plane: from a displacement that stays out of the obstacles between nodes too, a
-//! stress in balance, and the difference of their energies.
+//! The guaranteed error against the continuum, in the plane and in space: from a displacement that stays out of the obstacles between
+//! nodes too, a stress in balance, and the difference of their energies.
 
 mod answer;
 mod bound;
@@ -8,13 +8,15 @@ mod displacement;
 mod force;
 mod johnson_mercier;
 mod judge;
+mod mesh;
 mod problem;
+mod simplex;
 mod stress;
 mod system;
-mod triangulation;
 
-pub use answer::PlaneAnswer;
+pub use answer::ContinuumAnswer;
 pub use bound::Bracket;
 pub use judge::Judged;
-pub use problem::{Circle, Condition, Distance, Enclosure, Facing, PlaneProblem};
-pub use triangulation::{Point, Triangulation};
+pub use mesh::SimplexMesh;
+pub use problem::{Circle, Condition, ContinuumProblem, Distance, Enclosure, Facing};
+pub use simplex::Point;

@@ -1,125 +1,127 @@
-//! Stresses in balance: the stress element of every triangle, coupled by displacements of the edges.
+//! Stresses in balance: the stress element of every simplex, coupled by displacements of the facets.
 //!
-//! The displacements of the edges are the unknowns. On each edge they are coefficients of functions that are dual to a linear traction:
-//! each acts on one end only. So a row of the balance contains the tractions at that end, and a contact row bounds one unknown.
+//! The displacements of the facets are the unknowns. On each facet they are coefficients of functions that are dual to a linear traction:
+//! each acts on one corner only. So a row of the balance contains the tractions at that corner, and a contact row bounds one unknown.
 
 use super::johnson_mercier::{Element, PartStress};
-use super::problem::PlaneProblem;
-use super::system::{Block, LOCAL, Row, Unknowns};
-use super::triangulation::{Triangulation, distance, outward};
+use super::mesh::{OuterFacet, SimplexMesh};
+use super::problem::ContinuumProblem;
+use super::system::{Block, Numbers, Row, Unknowns};
 
 /// Stresses on a mesh.
 #[derive(Debug)]
 pub struct Stresses<'a> {
-    problem: &'a PlaneProblem,
-    mesh: &'a Triangulation,
-    elements: Vec<Element>,
-    /// The unknowns of each triangle.
-    pub numbers: Vec<[usize; LOCAL]>,
+    problem: &'a ContinuumProblem,
+    mesh: &'a SimplexMesh,
+    /// The unknowns of each simplex: of its sides, of their corners, along the axes.
+    pub numbers: Numbers,
 }
 
 /// The place at which a contact row of the stress acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// The edge.
-    pub edge: usize,
-    /// Its end, 0 or 1.
-    pub end: usize,
+    /// The facet.
+    pub on: OuterFacet,
+    /// The number of its corner.
+    pub corner: usize,
     /// The obstacle.
     pub obstacle: usize,
 }
 
 impl<'a> Stresses<'a> {
-    pub fn new(problem: &'a PlaneProblem, mesh: &'a Triangulation) -> Self {
-        let count = mesh.triangles.len();
-        let numbers = (0..count).map(|triangle| {
-            let mut numbers = [0; LOCAL];
-            for side in 0..3 {
-                let edge = mesh.sides[triangle][side];
-                for end in 0..2 {
-                    let of_edge = mesh.end_at(triangle, side, 1 + end);
-                    for axis in 0..2 {
-                        numbers[4 * side + 2 * end + axis] = unknown(edge, of_edge, axis);
-                    }
-                }
-            }
-            numbers
-        });
-        Stresses {
-            problem,
-            mesh,
-            numbers: numbers.collect(),
-            elements: (0..count).map(|triangle| Element::new(problem, mesh.corners(triangle))).collect(),
-        }
+    pub fn new(problem: &'a ContinuumProblem, mesh: &'a SimplexMesh) -> Self {
+        let dimension = mesh.dimension;
+        let of_facet = dimension * dimension;
+        // The corners of a side have the order of the nodes of the facet: both increase.
+        let of_side = |&facet: &usize| of_facet * facet..of_facet * (facet + 1);
+        let numbers = (0..mesh.count()).flat_map(|cell| mesh.sides(cell).iter().flat_map(of_side)).collect();
+        Stresses { problem, mesh, numbers: Numbers::new((dimension + 1) * of_facet, numbers) }
     }
 
-    /// The unknowns; those on held sides are prescribed.
+    /// The number of the unknown of a facet at a corner, along an axis.
+    pub fn unknown(&self, facet: usize, corner: usize, axis: usize) -> usize {
+        (facet * self.mesh.dimension + corner) * self.mesh.dimension + axis
+    }
+
+    /// Number of unknowns, free or held.
+    fn count(&self) -> usize {
+        self.unknown(self.mesh.facet_count(), 0, 0)
+    }
+
+    /// The unknowns; those on held facets are prescribed.
     pub fn unknowns(&self) -> Unknowns {
-        let mut held = vec![None; 4 * self.mesh.edges.len()];
-        for (_, _, edge, condition) in self.mesh.outline() {
-            for (axis, value) in self.problem.conditions[condition].held.into_iter().enumerate() {
-                (0..2).for_each(|end| held[unknown(edge, end, axis)] = value);
+        let mut held = vec![None; self.count()];
+        for outer in self.mesh.surface() {
+            for (axis, value) in self.problem.held(&outer) {
+                let corners = 0..self.mesh.dimension;
+                corners.for_each(|corner| held[self.unknown(outer.facet, corner, axis)] = Some(value));
             }
         }
         Unknowns::new(held)
     }
 
-    /// The contact rows, two for each side and obstacle, and their places. The gaps are upper bounds on the weighted means of the
-    /// distance.
-    pub fn rows(&self, unknowns: &Unknowns) -> (Vec<Row>, Vec<Place>) {
+    /// The contact rows, one for each corner of a facet and obstacle, and their places. The gaps are upper bounds on the weighted means of
+    /// the distance. A row that `may_touch` does not hold for, given its place and gap, is left out: there the stress has no pressure,
+    /// which keeps it in balance.
+    pub fn rows(&self, unknowns: &Unknowns, may_touch: impl Fn(&Place, f64) -> bool) -> (Vec<Row>, Vec<Place>) {
         let (mut rows, mut places) = (Vec::new(), Vec::new());
-        for (edge, [from, to], obstacle) in self.problem.facing(self.mesh) {
+        for (on, obstacle) in self.problem.facing(self.mesh) {
             let facing = &self.problem.obstacles[obstacle];
-            let Some(gap) = facing.surface.gap(from, to).filter(|gap| gap.above.is_finite()) else { continue };
-            for (end, gap) in gap.upper_means().into_iter().enumerate() {
-                let unknown = unknown(edge, end, facing.axis);
-                if unknowns.is_free(unknown) {
+            let gap = facing.surface.gap(&self.mesh.corners_of_facet(on.facet));
+            let Some(gap) = gap.filter(|gap| gap.above.is_finite()) else { continue };
+            for (corner, gap) in gap.upper_means(self.mesh.dimension).into_iter().enumerate() {
+                let (unknown, place) = (self.unknown(on.facet, corner, facing.axis), Place { on, corner, obstacle });
+                if unknowns.is_free(unknown) && may_touch(&place, gap) {
                     rows.push(Row { unknown, sense: facing.sense, gap });
-                    places.push(Place { edge, end, obstacle });
+                    places.push(place);
                 }
             }
         }
         (rows, places)
     }
 
-    /// The unknowns of each triangle, with its stiffness.
-    pub fn blocks(&self) -> impl Iterator<Item = (&[usize; LOCAL], Block)> + '_ {
-        self.numbers.iter().zip(self.elements.iter().map(Element::block))
+    fn elements(&self) -> impl Iterator<Item = Element> + '_ {
+        (0..self.mesh.count()).map(|cell| Element::new(self.problem, &self.mesh.simplex(cell)))
+    }
+
+    /// The unknowns of each simplex, with its stiffness.
+    pub fn blocks(&self) -> impl Iterator<Item = (&[usize], Block)> + '_ {
+        self.numbers.iter().zip(self.elements().map(|element| element.block()))
     }
 
     /// The work of tractions and body force with the unknowns.
     pub fn load(&self) -> Vec<f64> {
         let (problem, mesh) = (self.problem, self.mesh);
-        let mut load = vec![0.0; 4 * mesh.edges.len()];
-        for (numbers, element) in self.numbers.iter().zip(&self.elements) {
-            numbers.iter().zip(element.load()).for_each(|(&number, part)| load[number] += part);
+        let mut load = vec![0.0; self.count()];
+        if problem.body_force != [0.0; 3] {
+            for (numbers, element) in self.numbers.iter().zip(self.elements()) {
+                numbers.iter().zip(element.load()).for_each(|(&number, part)| load[number] += part);
+            }
         }
-        for (triangle, local, edge, condition) in mesh.outline() {
-            let traction = problem.conditions[condition].pull(outward(mesh.corners(triangle), local).0);
-            let share = self.half_area(edge);
-            for axis in 0..2 {
-                (0..2).for_each(|end| load[unknown(edge, end, axis)] += share * traction[axis]);
+        for outer in mesh.surface() {
+            let (normal, size) = mesh.simplex(outer.cell).outward(outer.local);
+            let (traction, share) = (problem.conditions[outer.condition].pull(normal), problem.share_of_corner(size));
+            for corner in 0..mesh.dimension {
+                for (axis, part) in traction.into_iter().enumerate().take(mesh.dimension) {
+                    load[self.unknown(outer.facet, corner, axis)] += share * part;
+                }
             }
         }
         load
     }
 
-    /// Half the area of an edge: the factor of a traction at an end.
-    pub fn half_area(&self, edge: usize) -> f64 {
-        let [from, to] = self.mesh.edges[edge].map(|node| self.mesh.nodes[node]);
-        self.problem.thickness * distance(from, to) / 2.0
-    }
-
-    /// The stress of each triangle under displacements of the edges.
+    /// The stress of each simplex under displacements of the facets.
     pub fn stresses(&self, displacement: &[f64]) -> Vec<PartStress> {
-        let stress = |(numbers, element): (&[usize; LOCAL], &Element)| {
-            element.stress(numbers.map(|number| displacement[number]))
+        let stress = |(numbers, element): (&[usize], Element)| {
+            element.stress(&numbers.iter().map(|&number| displacement[number]).collect::<Vec<_>>())
         };
-        self.numbers.iter().zip(&self.elements).map(stress).collect()
+        self.numbers.iter().zip(self.elements()).map(stress).collect()
     }
 }
 
-/// The number of the unknown of an edge at its end 0 or 1, along an axis.
-pub fn unknown(edge: usize, end: usize, axis: usize) -> usize {
-    4 * edge + 2 * end + axis
+impl Place {
+    /// The node at which the row acts.
+    pub fn node(&self, mesh: &SimplexMesh) -> usize {
+        mesh.facet(self.on.facet)[self.corner]
+    }
 }

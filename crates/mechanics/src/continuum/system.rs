@@ -1,13 +1,34 @@
-//! The contact problem of triangles with twelve unknowns each, some of which are prescribed, with rows of one unknown.
+//! The contact problem of simplices with the same number of unknowns each, some of which are prescribed, with rows of one unknown.
 
 use crate::error::Error;
 use signorini_qp::{ContactProblem, SparseMatrix, SymmetricMatrix};
 
-/// Unknowns of a triangle.
-pub const LOCAL: usize = 12;
+/// The matrix of a simplex, row by row.
+pub type Block = Vec<f64>;
 
-/// The matrix of a triangle.
-pub type Block = [[f64; LOCAL]; LOCAL];
+/// The unknowns of each simplex.
+#[derive(Clone, Debug)]
+pub struct Numbers {
+    of_cell: usize,
+    numbers: Vec<usize>,
+}
+
+impl Numbers {
+    /// The unknowns of all simplices one after another, so many of each.
+    pub fn new(of_cell: usize, numbers: Vec<usize>) -> Self {
+        Numbers { of_cell, numbers }
+    }
+
+    /// The unknowns of a simplex.
+    pub fn of(&self, cell: usize) -> &[usize] {
+        &self.numbers[cell * self.of_cell..(cell + 1) * self.of_cell]
+    }
+
+    /// The unknowns of each simplex.
+    pub fn iter(&self) -> impl Iterator<Item = &[usize]> {
+        self.numbers.chunks_exact(self.of_cell)
+    }
+}
 
 /// A bound on one unknown: `sense x <= gap`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,21 +83,21 @@ impl Unknowns {
         all.iter().zip(&self.numbers).filter(|entry| entry.1.is_some()).map(|entry| *entry.0).collect()
     }
 
-    /// The problem of these triangles, each with its unknowns and its matrix, under a load on all unknowns, with rows on free ones.
+    /// The problem of these simplices, each with its unknowns and its matrix, under a load on all unknowns, with rows on free ones.
     ///
     /// # Errors
     /// As [`ContactProblem::new`].
     pub fn problem<'a>(
         &self,
-        triangles: impl Iterator<Item = (&'a [usize; LOCAL], Block)>,
+        cells: impl Iterator<Item = (&'a [usize], Block)>,
         load: &[f64],
         rows: &[Row],
     ) -> Result<ContactProblem, Error> {
         let (mut entries, mut load) = (Vec::new(), self.reduced(load));
-        for (unknowns, block) in triangles {
-            for (&unknown, line) in unknowns.iter().zip(block) {
+        for (unknowns, block) in cells {
+            for (&unknown, line) in unknowns.iter().zip(block.chunks_exact(unknowns.len())) {
                 let Some(row) = self.numbers[unknown] else { continue };
-                for (&other, value) in unknowns.iter().zip(line) {
+                for (&other, &value) in unknowns.iter().zip(line) {
                     match (self.numbers[other], self.held[other]) {
                         (Some(column), _) if column <= row => entries.push((row, column, value)),
                         (None, Some(held)) => load[row] -= value * held,

@@ -24,8 +24,8 @@ pub use scene::{Sweep, SweepCorner, SweepEvent, SweepPoint};
 pub use summary::ObstacleContact;
 pub use summary::{ContactSummary, ModelSize, RunSeconds, Status, Summary, Verification};
 pub use total_error::{
-    Bound, Domain, Ended, Examined, Guarantee, JudgedMesh, Level, LevelKind, PlaneAnswer, TotalError, TotalErrorGoal,
-    total_error,
+    Bound, ContinuumAnswer, Domain, Ended, Examined, Guarantee, JudgedMesh, Level, LevelKind, TotalError,
+    TotalErrorGoal, total_error,
 };
 pub use tradeoff::{Advice, Tradeoff, TradeoffGrid, TradeoffMesh, TradeoffPoint};
 pub use warnings::AnswerWarning;

@@ -18,7 +18,7 @@ use crate::view::curves::error_plot;
 use signorini_mechanics::Error;
 use signorini_mechanics::fem::{ElasticBody, ElementKind, Mesh};
 use signorini_mechanics::scene::Units;
-use signorini_mechanics::study::{Domain, Ended, Guarantee, Level, LevelKind, PlaneAnswer, Summary, TotalError};
+use signorini_mechanics::study::{ContinuumAnswer, Domain, Ended, Guarantee, Level, LevelKind, Summary, TotalError};
 
 /// The report: the error, the refinement of the mesh, then the answer on the last mesh.
 fn total_error_text(title: &str, found: &TotalError, answer: Option<&Summary>, units: &Units) -> String {
@@ -52,7 +52,7 @@ fn total_error_text(title: &str, found: &TotalError, answer: Option<&Summary>, u
     }
     if let Some(last) = found.levels.last() {
         let meshes = plural(found.levels.len(), "mesh").replace("meshs", "meshes");
-        let elements = if found.guarantee.is_some() { "triangles" } else { "elements" };
+        let elements = found.name_of_elements();
         let of_stress = match last.kind {
             LevelKind::Guaranteed { stress_dofs, .. } => format!(", and {stress_dofs} of the stress"),
             LevelKind::Estimated { .. } => answer.map_or(String::new(), |answer| of_part(answer).to_string()),
@@ -100,6 +100,7 @@ fn of_meshes(guarantee: &Guarantee, no_answer: Option<&String>) -> String {
     let domain = match guarantee.domain {
         Domain::FirstPolygon => "the polygon of the first mesh: a curved side is that of its straight edges",
         Domain::LastPolygon => "the polygon of the last mesh: new nodes lie on the circles of the body",
+        Domain::FirstPolyhedron => "the polyhedron of the first mesh, whose edges are straight",
     };
     text + &entry("domain", domain)
 }
@@ -114,8 +115,8 @@ fn ended_text(found: &TotalError) -> String {
         Ended::Time => "no time for a finer mesh",
         Ended::Memory => "no memory for a finer mesh",
     };
-    let next = found.guarantee.as_ref().and_then(|guarantee| guarantee.next_triangles);
-    let next = next.map_or(String::new(), |count| format!(", of {count} triangles"));
+    let next = found.guarantee.as_ref().and_then(|guarantee| guarantee.next_elements);
+    let next = next.map_or(String::new(), |count| format!(", of {count} {}", found.name_of_elements()));
     let errors: Vec<[f64; 2]> = found.levels.iter().map(|level| [level.dofs as f64, level.total_error]).collect();
     entry("ended", &format!("{short}{next}; {}", needed(&errors, found.goal.total_error)))
 }
@@ -140,13 +141,14 @@ fn of_estimate(level: &Level) -> (usize, &str, [f64; 2]) {
 
 /// The numbers of each mesh for reading.
 fn levels_table(found: &TotalError) -> Vec<Vec<String>> {
+    let elements: Column<Level> = (found.name_of_elements(), &|level| level.elements.to_string());
     let unknowns: Column<Level> = ("unknowns", &|level| level.dofs.to_string());
     let error: Column<Level> = ("total error", &|level| format!("{:.2e}", level.total_error));
     let force: Column<Level> = ("force", &|level| format!("{:.6e}", level.contact_force));
     let seconds: Column<Level> = ("seconds", &|level| format!("{:.3}", level.seconds));
     let columns: &[Column<Level>] = match found.total_error.guaranteed {
         true => &[
-            ("triangles", &|level| level.elements.to_string()),
+            elements,
             unknowns,
             ("of the stress", &|level| of_bound(level).0.to_string()),
             error,
@@ -156,7 +158,7 @@ fn levels_table(found: &TotalError) -> Vec<Vec<String>> {
             seconds,
         ],
         false => &[
-            ("elements", &|level| level.elements.to_string()),
+            elements,
             unknowns,
             ("rows", &|level| of_estimate(level).0.to_string()),
             ("method", &|level| of_estimate(level).1.to_string()),
@@ -258,24 +260,27 @@ fn bodies(body: &ElasticBody) -> String {
     msh(body.mesh(), &named)
 }
 
-/// The fields for ParaView: the displacement at the nodes, mean stress and share of the bound on triangles.
-fn fields(mesh: &Mesh, answer: &PlaneAnswer) -> Result<String, Error> {
+/// The fields for ParaView: the displacement at the nodes, mean stress and share of the bound on elements.
+fn fields(mesh: &Mesh, answer: &ContinuumAnswer) -> Result<String, Error> {
     let elements: Vec<Vec<usize>> = mesh.elements().map(<[usize]>::to_vec).collect();
     let kinds: Vec<ElementKind> = (0..elements.len()).map(|element| mesh.kind_of(element)).collect();
-    let moved: Vec<f64> = answer.displacement.iter().flat_map(|&[x, y]| [x, y, 0.0]).collect();
     let entry = |place: usize| -> Vec<f64> { answer.stress.iter().map(|stress| stress[place]).collect() };
-    let [xx, yy, xy] = [0, 1, 2].map(entry);
+    let [xx, yy, zz, xy, yz, zx] = [0, 1, 2, 3, 4, 5].map(entry);
+    let mut of_cells = vec![Array::Scalars("mean_stress_xx", &xx), Array::Scalars("mean_stress_yy", &yy)];
+    if mesh.dimension() == 3 {
+        of_cells.push(Array::Scalars("mean_stress_zz", &zz));
+    }
+    of_cells.push(Array::Scalars("mean_stress_xy", &xy));
+    if mesh.dimension() == 3 {
+        of_cells.extend([Array::Scalars("mean_stress_yz", &yz), Array::Scalars("mean_stress_zx", &zx)]);
+    }
+    of_cells.push(Array::Scalars("share_of_bound", &answer.shares));
     let data = Unstructured {
         nodes: mesh.nodes(),
         elements: &elements,
         cell_types: &kinds,
-        point_data: &[Array::Vectors("displacement", &moved)],
-        cell_data: &[
-            Array::Scalars("mean_stress_xx", &xx),
-            Array::Scalars("mean_stress_yy", &yy),
-            Array::Scalars("mean_stress_xy", &xy),
-            Array::Scalars("share_of_bound", &answer.shares),
-        ],
+        point_data: &[Array::Vectors("displacement", answer.displacement.as_flattened())],
+        cell_data: &of_cells,
     };
     data.to_vtu()
 }

@@ -49,10 +49,8 @@ pub(crate) fn mesh_series(title: &str, meshes: &[MeshPanel], length: &str) -> Dr
 
 /// The meshes of the levels; `None` for a bar.
 pub(crate) fn meshes_picture(title: &str, found: &TotalError, units: &Units) -> Option<Drawing> {
-    let (elements, words) = match found.total_error.guaranteed {
-        true => ("triangles", "guaranteed"),
-        false => ("elements", "estimated"),
-    };
+    let elements = found.name_of_elements();
+    let words = if found.total_error.guaranteed { "guaranteed" } else { "estimated" };
     let panel = |(cells, level): (&Vec<Vec<[f64; 2]>>, &Level)| MeshPanel {
         heading: format!("{} {elements}, {words} {:.2} %", level.elements, 100.0 * level.total_error),
         cells: cells.clone(),

@@ -150,7 +150,7 @@ mod tests {
         assert!(expected.len() == 2 && expected.iter().all(|volume| *volume > 0.01), "{expected:?}");
         for round in 0..3 {
             let count = cells.parents().len();
-            cells.refine(&(0..count).map(|cell| cell % 5 == round).collect::<Vec<_>>());
+            cells.refine(&(0..count).map(|cell| cell % 5 == round).collect::<Vec<_>>(), 2);
             let finer = body.on(cells.mesh().unwrap(), &cells.parents()).unwrap();
             assert!(finer.mesh().element_count() > count && finer.phases() == body.phases());
             for (found, expected) in volumes(&finer).iter().zip(&expected) {

@@ -68,11 +68,17 @@ pub enum ElementKind {
 }
 
 impl ElementKind {
+    /// The triangle with a linear displacement.
+    pub(crate) const LINEAR_TRIANGLE: ElementKind = ElementKind::T3;
+
     /// The triangle with a quadratic displacement.
     pub(crate) const QUADRATIC_TRIANGLE: ElementKind = ElementKind::T6;
 
-    /// The element that bisection refines in space.
+    /// The tetrahedron with a linear displacement, which bisection refines in space.
     pub(crate) const LINEAR_TETRAHEDRON: ElementKind = ElementKind::Tet4;
+
+    /// The tetrahedron with a quadratic displacement.
+    pub(crate) const QUADRATIC_TETRAHEDRON: ElementKind = ElementKind::Tet10;
 
     /// All nine elements, in the order of the variants.
     pub const ALL: [ElementKind; 9] = [

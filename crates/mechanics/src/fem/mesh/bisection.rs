@@ -6,9 +6,6 @@ use super::{Boundary, ElementKind, Mesh};
 use crate::error::Error;
 use crate::fem::geometry::{cross, distance, dot, key, minus};
 
-/// Number of times that a marked tetrahedron is halved. Measured on a block under a sphere: 1 needs more meshes, and 3 refines too much.
-const GENERATIONS: usize = 2;
-
 /// A mesh of tetrahedra with the data that bisection needs of each.
 ///
 /// Every face has a marked edge, which is halved before its other two, and tetrahedra that share a face agree on it: so halves always
@@ -43,8 +40,6 @@ impl Tetrahedra {
         if !mesh.kinds().eq([ElementKind::LINEAR_TETRAHEDRON]) {
             return None;
         }
-        let nodes = mesh.nodes().to_vec();
-        let cells = mesh.elements().enumerate().map(|(parent, element)| Marked::of(&nodes, element, parent)).collect();
         let mut facets = BTreeMap::<_, Vec<_>>::new();
         for (number, boundary) in mesh.boundaries().iter().enumerate() {
             for facet in boundary.facets() {
@@ -53,7 +48,34 @@ impl Tetrahedra {
             }
         }
         let names = mesh.boundaries().iter().map(|boundary| boundary.name.clone()).collect();
-        Some(Tetrahedra { nodes, cells, facets, names })
+        let elements = mesh.elements().enumerate().map(|(parent, element)| (element, parent));
+        Some(Tetrahedra { names, ..Self::new(mesh.nodes().to_vec(), elements, facets) })
+    }
+
+    /// From tetrahedra by their nodes, each with the cell that it is a part of, and from the facets of boundaries by their nodes,
+    /// increasing: numbers of boundaries with the nodes in any order. The boundaries have no names.
+    pub fn new<'a>(
+        nodes: Vec<[f64; 3]>,
+        cells: impl Iterator<Item = (&'a [usize], usize)>,
+        facets: BTreeMap<[usize; 3], Vec<(usize, [usize; 3])>>,
+    ) -> Self {
+        let cells = cells.map(|(element, parent)| Marked::of(&nodes, element, parent)).collect();
+        Tetrahedra { nodes, cells, facets, names: Vec::new() }
+    }
+
+    /// The vertices.
+    pub fn nodes(&self) -> &[[f64; 3]] {
+        &self.nodes
+    }
+
+    /// The nodes of each tetrahedron, in any order.
+    pub fn cells(&self) -> impl Iterator<Item = [usize; 4]> + '_ {
+        self.cells.iter().map(|cell| cell.nodes)
+    }
+
+    /// The facets of boundaries by their nodes, increasing, each with the number of its boundary.
+    pub fn facets(&self) -> impl Iterator<Item = ([usize; 3], usize)> + '_ {
+        self.facets.iter().flat_map(|(&facet, of)| of.iter().map(move |entry| (facet, entry.0)))
     }
 
     /// For each tetrahedron, the tetrahedron of the first mesh that it is a part of.
@@ -76,11 +98,11 @@ impl Tetrahedra {
         Mesh::new(self.nodes.clone(), kind, connectivity, self.names.iter().enumerate().map(boundary).collect())
     }
 
-    /// Cuts each marked tetrahedron into four, and further tetrahedra with a hanging node. The pieces replace the whole in
-    /// the order.
-    pub fn refine(&mut self, marked: &[bool]) {
-        let mut middles = HashMap::new();
-        let mut left: Vec<usize> = marked.iter().map(|&marked| if marked { GENERATIONS } else { 0 }).collect();
+    /// Halves each marked tetrahedron and its halves so many times, and further tetrahedra with a hanging node. The pieces replace the
+    /// whole in the order. Returns the ends of the edge that each new node halves.
+    pub fn refine(&mut self, marked: &[bool], generations: usize) -> Vec<[usize; 2]> {
+        let (mut middles, before) = (HashMap::new(), self.nodes.len());
+        let mut left: Vec<usize> = marked.iter().map(|&marked| if marked { generations } else { 0 }).collect();
         while left.iter().any(|&left| left > 0) {
             let (mut cells, mut still) = (Vec::with_capacity(2 * self.cells.len()), Vec::new());
             for (cell, left) in std::mem::take(&mut self.cells).into_iter().zip(left) {
@@ -99,6 +121,9 @@ impl Tetrahedra {
             }
             (self.cells, left) = (cells, still);
         }
+        let mut ends = vec![[0; 2]; self.nodes.len() - before];
+        middles.into_iter().for_each(|(edge, middle)| ends[middle - before] = edge);
+        ends
     }
 
     /// Both halves of a tetrahedron; its facets on boundaries are halved too.
@@ -230,7 +255,7 @@ mod tests {
             // The tetrahedra around a corner, and some others.
             let marked: Vec<bool> =
                 mesh.cells.iter().enumerate().map(|(k, cell)| cell.nodes.contains(&0) || k % 41 == step).collect();
-            mesh.refine(&marked);
+            mesh.refine(&marked, 2);
             let [now, shape] = whole(&mesh);
             assert!((now / volume - 1.0).abs() < 1e-12, "{now} {volume}");
             assert!(shape > 0.25 * worst, "{shape} {worst}");

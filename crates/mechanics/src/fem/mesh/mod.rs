@@ -11,8 +11,8 @@ mod group;
 pub(crate) mod lattice;
 mod node_names;
 mod outline;
+pub(crate) mod pieces;
 pub(crate) mod round;
-pub(crate) mod triangle_pieces;
 mod zone;
 
 pub use crate::fem::element::{ElementKind, FacetKind};

@@ -1,14 +1,14 @@
-//! The plane contact problem that a scene describes, before any mesh.
+//! The contact problem of the continuum that a scene describes, before any mesh.
 
 use std::collections::{BTreeMap, HashMap};
 
 use super::load::spread;
 use crate::continuum::{
-    Circle, Condition, Distance, Enclosure, Facing, PlaneAnswer, PlaneProblem, Point, Triangulation,
+    Circle, Condition, ContinuumAnswer, ContinuumProblem, Distance, Enclosure, Facing, Point, SimplexMesh,
 };
 use crate::error::Error;
 use crate::fem::material::Stiffness;
-use crate::fem::mesh::triangle_pieces::TrianglePieces;
+use crate::fem::mesh::pieces::Pieces;
 use crate::fem::{ElasticBody, Formulation, Mesh};
 use crate::scene::Model;
 use crate::scene::input::entry::{boundary, wrong};
@@ -28,7 +28,7 @@ pub(crate) struct NoGuarantee {
     pub message: String,
 }
 
-/// Why there is no plane problem: an answer to the question for a guarantee, or a failure, which answers nothing.
+/// Why there is no problem of the continuum: an answer to the question for a guarantee, or a failure, which answers nothing.
 #[derive(Debug)]
 pub(crate) enum WhyNot {
     /// The scene has no guaranteed bound.
@@ -73,14 +73,20 @@ impl Scene {
         }
     }
 
-    /// Asks for a guaranteed bound: the plane problem of the polygon that the mesh of `model` fills and the initial triangles, or why not.
-    pub(crate) fn plane_problem(&self, model: &Model) -> Result<(PlaneProblem, Triangulation), WhyNot> {
+    /// Asks for a guaranteed bound: the problem of the polygon or polyhedron that the mesh of `model` fills and the initial simplices, or
+    /// why not.
+    pub(crate) fn continuum_problem(&self, model: &Model) -> Result<(ContinuumProblem, SimplexMesh), WhyNot> {
         let body = model.body();
         let formulation = *body.formulation();
-        let (Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness }) = formulation else {
-            let message =
-                format!("{} has no guaranteed bound: only plane strain and plane stress have one", formulation.name());
-            return Err(none("model", message));
+        let thickness = match formulation {
+            Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => thickness,
+            Formulation::Space => 1.0,
+            _ => {
+                let name = formulation.name();
+                let message =
+                    format!("{name} has no guaranteed bound: only plane strain, plane stress and space have one");
+                return Err(none("model", message));
+            }
         };
         for (field, is_there) in [
             ("springs", !self.springs.is_empty()),
@@ -110,7 +116,7 @@ impl Scene {
             let message = "an orthotropic material has no guaranteed bound: only an isotropic one has";
             return Err(none("material.orthotropic", message));
         };
-        let mut body_force = [0.0; 2];
+        let mut body_force = [0.0; 3];
         for load in &self.loads {
             let (force, density) = match load {
                 LoadSpec::BodyForce(force) => (force, 1.0),
@@ -121,13 +127,15 @@ impl Scene {
             body_force.iter_mut().zip(force).for_each(|(sum, part)| *sum += density * part);
         }
         let obstacles = model.obstacles().iter().enumerate();
-        let mut problem = PlaneProblem {
+        let dimension = model.mesh().dimension();
+        let mut problem = ContinuumProblem {
+            dimension,
             lame,
             thickness,
             body_force,
             conditions: Vec::new(),
             obstacles: obstacles
-                .map(|(index, obstacle)| facing(index, obstacle, model.gap()))
+                .map(|(index, obstacle)| facing(dimension, index, obstacle, model.gap()))
                 .collect::<Result<_, _>>()?,
             boundaries: model.mesh().boundaries().iter().map(|boundary| boundary.name.clone()).collect(),
         };
@@ -135,13 +143,26 @@ impl Scene {
             Error::Mesh { message } => none("body", format!("{message}, so that there is no guaranteed bound")),
             other => other.into(),
         };
-        let pieces = TrianglePieces::of(model.mesh()).map_err(at_body)?;
-        let outline = self.outline(model, &pieces, &mut problem.conditions)?;
-        let TrianglePieces { nodes, triangles, elements, .. } = pieces;
+        let pieces = Pieces::of(model.mesh()).map_err(at_body)?;
+        let surface = self.surface(model, &pieces, &mut problem.conditions)?;
+        let Pieces { nodes, cells, elements, .. } = pieces;
         let unmatched = || {
-            none("body", "the triangles of the mesh do not meet in whole edges, so that there is no guaranteed bound")
+            let message = match dimension {
+                2 => "the triangles of the mesh do not meet in whole edges, so that there is no guaranteed bound",
+                _ => {
+                    "the cells of the mesh, cut into tetrahedra, do not meet in whole faces, so that there is no guaranteed bound"
+                }
+            };
+            none("body", message)
         };
-        let mesh = Triangulation::new(nodes, triangles, elements, &outline).ok_or_else(unmatched)?;
+        let mesh = SimplexMesh::new(dimension, nodes, &cells, elements, &surface).ok_or_else(unmatched)?;
+        for (outer, obstacle) in problem.facing(&mesh) {
+            let gap = problem.obstacles[obstacle].surface.gap(&mesh.corners_of_facet(outer.facet));
+            if gap.is_some_and(|gap| gap.below.is_infinite()) {
+                let message = "the distance to a surface of this shape has no bounds between nodes, so that there is no guaranteed bound";
+                return Err(none(format!("obstacles[{obstacle}].shape"), message));
+            }
+        }
         Ok((problem, mesh))
     }
 
@@ -149,7 +170,7 @@ impl Scene {
     ///
     /// # Errors
     /// As [`Scene::build`].
-    pub(crate) fn on_last_mesh(&self, first: &Model, last: &PlaneAnswer) -> Result<Model, Error> {
+    pub(crate) fn on_last_mesh(&self, first: &Model, last: &ContinuumAnswer) -> Result<Model, Error> {
         let body = first.body();
         let [phase] = body.phases() else { return Err(wrong("materials", "only a single one has a guaranteed bound")) };
         let body = ElasticBody::new(last.mesh()?, *phase.material(), *body.formulation())?;
@@ -157,14 +178,15 @@ impl Scene {
         Scene { parts: Vec::new(), ..self.clone() }.build_of(vec![body], &[])
     }
 
-    /// The condition of each edge of the outline.
-    fn outline(
+    /// The condition of each facet of the surface, by its nodes.
+    fn surface(
         &self,
         model: &Model,
-        pieces: &TrianglePieces,
+        pieces: &Pieces,
         conditions: &mut Vec<Condition>,
-    ) -> Result<HashMap<[usize; 2], usize>, WhyNot> {
-        let mut outline = Outline::of(model.mesh(), pieces);
+    ) -> Result<HashMap<Vec<usize>, usize>, WhyNot> {
+        let dimension = model.mesh().dimension();
+        let mut surface = Surface::of(model.mesh(), pieces);
         for (index, support) in self.supports.iter().enumerate() {
             let path = format!("supports[{index}].on");
             let Place::Boundary(name) = &support.on else {
@@ -178,50 +200,54 @@ impl Scene {
                 return Err(none(format!("supports[{index}].profile"), message));
             }
             for component in self.components(index, support)? {
-                let Some(axis) = axis_of(component.direction) else {
-                    let message = "an inclined support has no guaranteed bound: only one along x or y has one";
+                let Some(axis) = axis_of(dimension, component.direction) else {
+                    let axes = if dimension == 2 { "x or y" } else { "x, y or z" };
+                    let message = format!("an inclined support has no guaranteed bound: only one along {axes} has one");
                     return Err(none(format!("supports[{index}].normal"), message));
                 };
                 let value = component.value * component.direction[axis];
-                outline.change(&format!("{path}.boundary"), name, |condition| condition.held[axis] = Some(value))?;
+                surface.change(&format!("{path}.boundary"), name, |condition| condition.held[axis] = Some(value))?;
             }
         }
         for (index, load) in self.loads.iter().enumerate() {
-            let Some((path, boundary, traction, pressure)) = on_outline(model, index, load)? else { continue };
-            outline.change(&path, boundary, |condition| {
-                (0..2).for_each(|axis| condition.traction[axis] += traction[axis]);
+            let Some((path, boundary, traction, pressure)) = on_surface(model, index, load)? else { continue };
+            surface.change(&path, boundary, |condition| {
+                (0..3).for_each(|axis| condition.traction[axis] += traction[axis]);
                 condition.pressure += pressure;
             })?;
         }
         for (index, obstacle) in model.obstacles().iter().enumerate() {
             let path = format!("obstacles[{index}].boundary");
-            outline.change(&path, obstacle.boundary(), |condition| condition.obstacles.push(index))?;
+            surface.change(&path, obstacle.boundary(), |condition| condition.obstacles.push(index))?;
         }
         for (index, boundary) in model.mesh().boundaries().iter().enumerate() {
-            outline.change_outer(&boundary.name, |condition| condition.boundaries.push(index));
+            surface.change_outer(&boundary.name, |condition| condition.boundaries.push(index));
         }
         for (name, centre, radius) in self.body.shape().circles() {
-            outline.change_outer(name, |condition| condition.circle = Some(Circle { centre, radius }));
+            surface.change_outer(name, |condition| {
+                let [x, y] = centre;
+                condition.circle = Some(Circle { centre: [x, y, 0.0], radius });
+            });
         }
-        Ok(outline.numbered(conditions))
+        Ok(surface.numbered(conditions))
     }
 }
 
-/// Path, boundary, traction and pressure of a load on the outline; `None` for another load.
-type OnOutline<'a> = Option<(String, &'a str, Point, f64)>;
+/// Path, boundary, traction and pressure of a load on the surface; `None` for another load.
+type OnSurface<'a> = Option<(String, &'a str, Point, f64)>;
 
-/// The traction and pressure of load number `index` on the outline.
+/// The traction and pressure of load number `index` on the surface.
 ///
 /// # Errors
 /// [`WhyNot::NoGuarantee`] for a load that is not constant.
-fn on_outline<'a>(model: &Model, index: usize, load: &'a LoadSpec) -> Result<OnOutline<'a>, WhyNot> {
+fn on_surface<'a>(model: &Model, index: usize, load: &'a LoadSpec) -> Result<OnSurface<'a>, WhyNot> {
     let path = |field: &str| format!("loads[{index}].{field}");
     let varies = |field: &str, what: &str| {
         let message =
             format!("{what} has no guaranteed bound: only constant tractions, pressures and body forces have one");
         Err(none(path(field), message))
     };
-    let in_plane = |value: &[f64]| [0, 1].map(|axis| value.get(axis).copied().unwrap_or(0.0));
+    let in_space = |value: &[f64]| [0, 1, 2].map(|axis| value.get(axis).copied().unwrap_or(0.0));
     match load {
         LoadSpec::Traction(TractionSpec { profile: Some(_), .. }) => {
             varies("traction.profile", "a traction that changes along a boundary")
@@ -232,81 +258,82 @@ fn on_outline<'a>(model: &Model, index: usize, load: &'a LoadSpec) -> Result<OnO
         LoadSpec::Moment(_) => varies("moment", "the traction of a moment"),
         LoadSpec::NodalForces(_) => varies("nodal-forces", "a force on a node"),
         LoadSpec::Centrifugal(_) => varies("centrifugal", "a force that grows with the distance from an axis"),
-        LoadSpec::Traction(spec) => Ok(Some((path("traction.boundary"), &spec.boundary, in_plane(&spec.value), 0.0))),
-        LoadSpec::Pressure(spec) => Ok(Some((path("pressure.boundary"), &spec.boundary, [0.0; 2], spec.value))),
+        LoadSpec::Traction(spec) => Ok(Some((path("traction.boundary"), &spec.boundary, in_space(&spec.value), 0.0))),
+        LoadSpec::Pressure(spec) => Ok(Some((path("pressure.boundary"), &spec.boundary, [0.0; 3], spec.value))),
         LoadSpec::Force(spec) => {
             let (Some(name), path) = (&spec.boundary, path("force.boundary")) else { return Ok(None) };
-            let [x, y] = in_plane(&spec.value);
-            let traction = spread(model.body(), boundary(model.mesh(), name, &path)?, [x, y, 0.0], &path)?;
-            Ok(Some((path, name, in_plane(&traction), 0.0)))
+            let traction = spread(model.body(), boundary(model.mesh(), name, &path)?, in_space(&spec.value), &path)?;
+            Ok(Some((path, name, traction, 0.0)))
         }
         LoadSpec::BodyForce(_) | LoadSpec::Gravity(_) => Ok(None),
     }
 }
 
-/// The edges that belong to only one triangle, by their nodes, increasing, with the condition of each.
-struct Outline<'a> {
+/// The facets of the pieces of a mesh, by their nodes, increasing: those of one piece with their condition, those inside with none.
+struct Surface<'a> {
     mesh: &'a Mesh,
-    pieces: &'a TrianglePieces,
-    edges: BTreeMap<[usize; 2], Condition>,
+    pieces: &'a Pieces,
+    facets: BTreeMap<Vec<usize>, Option<Condition>>,
 }
 
-impl<'a> Outline<'a> {
-    fn of(mesh: &'a Mesh, pieces: &'a TrianglePieces) -> Self {
-        let mut triangles_at: BTreeMap<[usize; 2], usize> = BTreeMap::new();
-        for &[a, b, c] in &pieces.triangles {
-            for [from, to] in [[a, b], [b, c], [c, a]] {
-                *triangles_at.entry([from.min(to), from.max(to)]).or_default() += 1;
-            }
+impl<'a> Surface<'a> {
+    fn of(mesh: &'a Mesh, pieces: &'a Pieces) -> Self {
+        let mut facets = BTreeMap::new();
+        for facet in pieces.facets() {
+            facets.entry(facet).and_modify(|condition| *condition = None).or_insert(Some(Condition::default()));
         }
-        let outer = triangles_at.into_iter().filter(|entry| entry.1 == 1);
-        Outline { mesh, pieces, edges: outer.map(|(edge, _)| (edge, Condition::default())).collect() }
+        Surface { mesh, pieces, facets }
     }
 
-    /// Changes the condition on each edge of a boundary at a JSON path.
+    /// Changes the condition on each facet of a boundary at a JSON path.
     fn change(&mut self, path: &str, name: &str, change: impl Fn(&mut Condition)) -> Result<(), WhyNot> {
-        for edge in self.pieces.edges_of(self.mesh, name) {
-            let Some(condition) = self.edges.get_mut(&edge) else {
-                let message = format!("`{name}` runs through the body, so that there is no guaranteed bound");
-                return Err(none(path, message));
-            };
-            change(condition);
+        for facet in self.pieces.facets_of(self.mesh, name) {
+            match self.facets.get_mut(&facet) {
+                Some(Some(condition)) => change(condition),
+                Some(None) => {
+                    let message = format!("`{name}` runs through the body, so that there is no guaranteed bound");
+                    return Err(none(path, message));
+                }
+                // A facet of the other diagonal.
+                None => {}
+            }
         }
         Ok(())
     }
 
-    /// Changes the condition on those edges of a boundary that belong to the outline.
+    /// Changes the condition on those facets of a boundary that belong to the surface.
     fn change_outer(&mut self, name: &str, change: impl Fn(&mut Condition)) {
-        for edge in self.pieces.edges_of(self.mesh, name) {
-            self.edges.get_mut(&edge).into_iter().for_each(&change);
+        for facet in self.pieces.facets_of(self.mesh, name) {
+            self.facets.get_mut(&facet).into_iter().flatten().for_each(&change);
         }
     }
 
-    /// The number of the condition of each edge; equal ones have one number.
-    fn numbered(self, conditions: &mut Vec<Condition>) -> HashMap<[usize; 2], usize> {
+    /// The number of the condition of each facet of the surface; equal ones have one number.
+    fn numbered(self, conditions: &mut Vec<Condition>) -> HashMap<Vec<usize>, usize> {
         let mut number = |condition: Condition| {
             conditions.iter().position(|other| *other == condition).unwrap_or_else(|| {
                 conditions.push(condition);
                 conditions.len() - 1
             })
         };
-        self.edges.into_iter().map(|(edge, condition)| (edge, number(condition))).collect()
+        self.facets.into_iter().filter_map(|(facet, condition)| Some((facet, number(condition?)))).collect()
     }
 }
 
 /// The axis of a unit vector, if it lies along one.
-fn axis_of(direction: [f64; 3]) -> Option<usize> {
-    (0..2).find(|&axis| direction[1 - axis].abs() <= ALONG_AXIS)
+fn axis_of(dimension: usize, direction: [f64; 3]) -> Option<usize> {
+    let is_across = |axis: usize| (0..3).all(|other| other == axis || direction[other].abs() <= ALONG_AXIS);
+    (0..dimension).find(|&axis| is_across(axis))
 }
 
 /// An obstacle with rows along one axis.
-fn facing(index: usize, obstacle: &PlacedObstacle, gap: f64) -> Result<Facing, WhyNot> {
+fn facing(dimension: usize, index: usize, obstacle: &PlacedObstacle, gap: f64) -> Result<Facing, WhyNot> {
     let path = format!("obstacles[{index}]");
     if obstacle.force().is_some() {
         let message = "an obstacle that a force presses has no guaranteed bound: one that stands still has";
         return Err(none(format!("{path}.force"), message));
     }
-    match (obstacle.rule(), axis_of(obstacle.approach())) {
+    match (obstacle.rule(), axis_of(dimension, obstacle.approach())) {
         (Some(Rule::Approach), Some(axis)) if obstacle.rigid().is_some() => {
             let (sense, gap) = (obstacle.approach()[axis].signum(), obstacle.shift(gap));
             let surface = Shifted { obstacle: obstacle.clone(), gap };
@@ -328,9 +355,19 @@ struct Shifted {
 }
 
 impl Distance for Shifted {
-    fn gap(&self, from: Point, to: Point) -> Option<Enclosure> {
-        let [from, to] = [from, to].map(|[x, y]| [x, y, 0.0]);
-        let (values, [below, above]) = self.obstacle.rigid()?.gap_along(from, to, self.gap)?;
-        Some(Enclosure { values, below, above })
+    fn gap(&self, corners: &[Point]) -> Option<Enclosure> {
+        let rigid = self.obstacle.rigid()?;
+        match *corners {
+            [from, to] => {
+                let ([first, middle, last], [below, above]) = rigid.gap_along(from, to, self.gap)?;
+                let coefficients = vec![first, last, 2.0 * middle - (first + last) / 2.0];
+                Some(Enclosure { coefficients, below, above })
+            }
+            [first, second, third] => {
+                let (coefficients, [below, above]) = rigid.gap_over([first, second, third], self.gap)?;
+                Some(Enclosure { coefficients: coefficients.to_vec(), below, above })
+            }
+            _ => None,
+        }
     }
 }

@@ -37,7 +37,7 @@ impl Examined {
     /// Those of the total error; [`Error::Scene`] for a scene without a guaranteed bound.
     pub fn of(scene: &Scene, levels: usize) -> Result<Vec<Examined>, Error> {
         let model = Arc::new(scene.build()?);
-        let (problem, mut mesh) = scene.plane_problem(&model)?;
+        let (problem, mut mesh) = scene.continuum_problem(&model)?;
         let settings = Settings::with_method(Method::ActiveSet);
         let own = Answer::of(model.clone(), &solve(model.problem(), &settings)?)?;
         let mut found = Vec::with_capacity(levels + 1);

@@ -7,7 +7,7 @@ use serde::Serialize;
 use signorini_qp::{Settings, Solution};
 
 use super::goal::{Ended, TotalErrorGoal};
-use crate::continuum::PlaneAnswer;
+use crate::continuum::ContinuumAnswer;
 use crate::error::Error;
 use crate::fem::ElementKind;
 use crate::scene::{Answer, Model, Scene};
@@ -25,7 +25,7 @@ pub struct Bound {
 /// The numbers of one mesh on the way to a total error that is small enough.
 #[derive(Clone, Debug, Serialize)]
 pub struct Level {
-    /// Its elements: triangles if the error is guaranteed.
+    /// Its elements: triangles or tetrahedra if the error is guaranteed.
     pub elements: usize,
     /// Unknowns of the displacement.
     pub dofs: usize,
@@ -71,6 +71,17 @@ pub enum LevelKind {
         /// The largest depth in an obstacle between nodes, over the displacement that the obstacles impose.
         depth_between_nodes: f64,
     },
+}
+
+impl TotalError {
+    /// The plural of its elements in a sentence: triangles or tetrahedra if the error is guaranteed.
+    pub fn name_of_elements(&self) -> &'static str {
+        match self.guarantee.as_ref().map(|guarantee| guarantee.answer.dimension()) {
+            Some(2) => "triangles",
+            Some(_) => "tetrahedra",
+            None => "elements",
+        }
+    }
 }
 
 impl Level {
@@ -161,12 +172,12 @@ pub struct Guarantee {
     pub last_mesh: Option<JudgedMesh>,
     /// Warnings about the answer on the scene's own mesh that no finer mesh settles.
     pub warnings: Vec<AnswerWarning>,
-    /// Triangles of the next mesh, if it was not made.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub next_triangles: Option<usize>,
+    /// Triangles or tetrahedra of the next mesh, if it was not made.
+    #[serde(rename = "next_triangles", skip_serializing_if = "Option::is_none")]
+    pub next_elements: Option<usize>,
     /// The displacement and the stresses.
     #[serde(skip)]
-    pub answer: PlaneAnswer,
+    pub answer: ContinuumAnswer,
 }
 
 /// The size of the problem on one mesh, and how far its answer is from the continuum at most.
@@ -204,6 +215,8 @@ pub enum Domain {
     FirstPolygon,
     /// The polygon of the last mesh; its nodes on known circles lie on the circles.
     LastPolygon,
+    /// In space, that of flat faces between the nodes of the first mesh.
+    FirstPolyhedron,
 }
 
 /// What a search for either kind of error is given.

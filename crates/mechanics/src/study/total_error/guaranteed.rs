@@ -6,7 +6,7 @@ use signorini_qp::{Settings, Solution, dot, solve};
 
 use super::found::{Bound, Domain, Guarantee, JudgedMesh, Level, LevelKind, Search as Given, TotalError};
 use super::goal::{Answering, Ended, marked, shortage};
-use crate::continuum::{Bracket, Judged, PlaneAnswer, PlaneProblem, Triangulation};
+use crate::continuum::{Bracket, ContinuumAnswer, ContinuumProblem, Judged, Point, SimplexMesh};
 use crate::error::Error;
 use crate::fem::assembly::internal_force;
 use crate::scene::Answer;
@@ -16,11 +16,11 @@ use crate::study::{AnswerWarning, ModelSize, Status};
 /// The seconds of the next mesh over those of this one, approximately.
 const GROWTH: f64 = 2.2;
 
-/// Refines the mesh of a plane problem until its total error is small enough, or time or memory end.
+/// Refines the mesh of a problem until its total error is small enough, or time or memory end.
 ///
 /// # Errors
 /// Those of [`signorini_qp::solve`] on the first mesh; [`Error::Scene`] for a bound of the force with obstacles from several directions.
-pub(super) fn total_error(given: &Given, problem: &PlaneProblem, mesh: Triangulation) -> Result<TotalError, Error> {
+pub(super) fn total_error(given: &Given, problem: &ContinuumProblem, mesh: SimplexMesh) -> Result<TotalError, Error> {
     if given.goal.force_error.is_some() && !problem.has_one_direction() {
         let message =
             "the contact force has a guaranteed interval only if all obstacles lie in one direction from the body";
@@ -46,16 +46,20 @@ pub(super) fn total_error(given: &Given, problem: &PlaneProblem, mesh: Triangula
 
 /// The answer to the scene on the last mesh, and its distance from the continuum: that of the displacement of the bound, which is `bound`
 /// of its norm, plus the one from that displacement.
-fn on_last_mesh(given: &Given, of_bound: &PlaneAnswer, bound: f64) -> Result<((Answer, Solution), JudgedMesh), Error> {
+fn on_last_mesh(
+    given: &Given,
+    of_bound: &ContinuumAnswer,
+    bound: f64,
+) -> Result<((Answer, Solution), JudgedMesh), Error> {
     let model = Arc::new(given.scene.on_last_mesh(given.model, of_bound)?);
     let solution = solve(model.problem(), given.settings)?;
     let answer = Answer::of(model.clone(), &solution)?;
     let size = |displacement: &[f64]| -> Result<f64, Error> {
         Ok(dot(displacement, &internal_force(model.body(), displacement)?).max(0.0).sqrt())
     };
-    let of_bound = of_bound.displacement.as_flattened();
-    let away: Vec<f64> = answer.displacement().iter().zip(of_bound).map(|(own, other)| own - other).collect();
-    let distance = bound * size(of_bound)? + size(&away)?;
+    let of_bound = of_bound.components(&of_bound.displacement);
+    let away: Vec<f64> = answer.displacement().iter().zip(&of_bound).map(|(own, other)| own - other).collect();
+    let distance = bound * size(&of_bound)? + size(&away)?;
     let judged = JudgedMesh::of(&answer, distance, size(answer.displacement())?)?;
     Ok(((answer, solution), judged))
 }
@@ -63,12 +67,12 @@ fn on_last_mesh(given: &Given, of_bound: &PlaneAnswer, bound: f64) -> Result<((A
 /// The data that stay the same from mesh to mesh.
 struct Search<'a> {
     given: &'a Given<'a>,
-    problem: &'a PlaneProblem,
+    problem: &'a ContinuumProblem,
     settings: Settings,
 }
 
 impl Search<'_> {
-    fn run(&self, first: Triangulation) -> Result<TotalError, Error> {
+    fn run(&self, first: SimplexMesh) -> Result<TotalError, Error> {
         let mut found: Option<TotalError> = None;
         let (mut next, mut own, mut touching) = (first, None, None);
         let (mut before, mut displacement_seconds) = (0.0, 0.0);
@@ -112,8 +116,8 @@ impl Search<'_> {
             let share =
                 answering.share(bracket.bound(), if goal.force_error.is_some() { 0.0 } else { goal.total_error });
             let finer = (!is_met).then(|| self.problem.refined(&mesh, &marked(&bracket.shares, share)));
-            guarantee.next_triangles = finer.as_ref().map(|finer| finer.triangles.len());
-            meshes.push((0..mesh.triangles.len()).map(|triangle| mesh.corners(triangle).to_vec()).collect());
+            guarantee.next_elements = finer.as_ref().map(SimplexMesh::count);
+            meshes.push(self.seen(&mesh));
             let total_error = Bound { bound: level.total_error, guaranteed: true };
             levels.push(level);
             let now = TotalError {
@@ -137,6 +141,20 @@ impl Search<'_> {
         }
     }
 
+    /// The cells of a mesh in the plane; in space the facets that may touch, along the approach direction.
+    fn seen(&self, mesh: &SimplexMesh) -> Vec<Vec<[f64; 2]>> {
+        let across = |axis: usize| [[1, 2], [0, 2], [0, 1]][axis];
+        let along = |corners: &[Point], axes: [usize; 2]| corners.iter().map(|at| axes.map(|axis| at[axis])).collect();
+        if mesh.dimension == 2 {
+            return (0..mesh.count()).map(|cell| along(mesh.simplex(cell).corners(), across(2))).collect();
+        }
+        let facing = self.problem.facing(mesh);
+        let seen = facing.map(|(outer, obstacle)| {
+            along(&mesh.corners_of_facet(outer.facet), across(self.problem.obstacles[obstacle].axis))
+        });
+        seen.collect()
+    }
+
     /// The settings with a deadline that leaves the time for the answer on the last mesh, which takes as long as its displacement.
     fn keeping(&self, displacement_seconds: f64) -> Settings {
         self.settings.clone().watched(&self.settings.watch.keeping(GROWTH * displacement_seconds))
@@ -147,7 +165,11 @@ impl Search<'_> {
         let (own_mesh, warnings) =
             earlier.map_or_else(Default::default, |earlier| (earlier.own_mesh, earlier.warnings));
         Guarantee {
-            domain: if self.problem.has_circles() { Domain::LastPolygon } else { Domain::FirstPolygon },
+            domain: match self.problem.dimension {
+                2 if self.problem.has_circles() => Domain::LastPolygon,
+                2 => Domain::FirstPolygon,
+                _ => Domain::FirstPolyhedron,
+            },
             mean_stress_error: Bound { bound: bracket.bound_of_mean(), guaranteed: true },
             potential_energy: [bracket.energy_of_stress(), bracket.energy_of_displacement()],
             contact_force: level.contact_force,
@@ -157,7 +179,7 @@ impl Search<'_> {
             own_mesh,
             last_mesh: None,
             warnings,
-            next_triangles: None,
+            next_elements: None,
             answer: bracket.answer(),
         }
     }
@@ -180,7 +202,7 @@ impl Search<'_> {
         let is_last = is_near || self.settings.watch.time_left().is_some();
         let force_interval = if is_last { bracket.force_interval()? } else { None };
         Ok(Level {
-            elements: bracket.mesh.triangles.len(),
+            elements: bracket.mesh.count(),
             dofs: bracket.primal.unknowns.free,
             total_error: bracket.bound(),
             contact_force: bracket.force(),
@@ -200,9 +222,11 @@ impl Search<'_> {
 pub(super) fn judged(answer: &Answer, bracket: &Bracket) -> Judged {
     bracket.judged(|element| {
         let strain = answer.model().body().strain_in(answer.displacement(), element);
-        move |[x, y]| {
-            let [xx, yy, _, xy, ..] = strain([x, y, 0.0]);
-            [xx, yy, xy]
+        let in_plane = bracket.problem.dimension == 2;
+        move |at| {
+            let own @ [xx, yy, _, xy, ..] = strain(at);
+            // The strain across the plane belongs to the material.
+            if in_plane { [xx, yy, 0.0, xy, 0.0, 0.0] } else { own }
         }
     })
 }

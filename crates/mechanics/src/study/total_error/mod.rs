@@ -6,7 +6,7 @@ mod found;
 mod goal;
 mod guaranteed;
 
-pub use crate::continuum::PlaneAnswer;
+pub use crate::continuum::ContinuumAnswer;
 pub use examined::Examined;
 pub use found::{Bound, Domain, Guarantee, JudgedMesh, Level, LevelKind, TotalError};
 pub use goal::{Ended, TotalErrorGoal};
@@ -66,7 +66,7 @@ impl TotalError {
         goal.check()?;
         scene.check_continuum()?;
         let search = Search { scene, model, goal, settings, keep, clock: Instant::now() };
-        match scene.plane_problem(model) {
+        match scene.continuum_problem(model) {
             Ok((problem, mesh)) => guaranteed::total_error(&search, &problem, mesh),
             Err(WhyNot::NoGuarantee(NoGuarantee { path, message })) if goal.force_error.is_some() => {
                 let message = format!("{message}; without it the force has no bound: leave out --force-error");

@@ -1,0 +1,374 @@
+//! A mesh of triangles that fills a polygon, or of tetrahedra that fills a polyhedron: its edges and facets, and its refinement by
+//! bisection.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::simplex::{MOST_CORNERS, Point, Simplex, pairs};
+use crate::fem::geometry::{distance, key};
+use crate::fem::mesh::bisection::Tetrahedra;
+use crate::fem::mesh::lattice::Lattice;
+
+/// Corners of a facet in space.
+const OF_FACET: usize = MOST_CORNERS - 1;
+
+/// Stands for a corner that a simplex in the plane does not have, after all others.
+const ABSENT: usize = usize::MAX;
+
+/// If moved nodes leave a simplex less than this share of its size, it is nearly flat or folded.
+const FOLDED: f64 = 0.1;
+
+/// Halvings of a marked tetrahedron; with two, 5 % take a fifth more tetrahedra.
+const GENERATIONS: usize = 1;
+
+/// Simplices that meet in whole facets. The facet or corner of a simplex with a local number is that opposite to it, or itself.
+#[derive(Clone, Debug)]
+pub struct SimplexMesh {
+    /// 2 or 3.
+    pub dimension: usize,
+    /// The vertices.
+    pub nodes: Vec<Point>,
+    /// The nodes of each simplex, increasing.
+    cells: Vec<[usize; MOST_CORNERS]>,
+    /// The two nodes of each edge, increasing.
+    pub edges: Vec<[usize; 2]>,
+    /// The edges of each simplex, in the order of the pairs of its corners.
+    edges_of: Vec<usize>,
+    /// The nodes of each facet, increasing.
+    facets: Vec<[usize; OF_FACET]>,
+    /// The facets of each simplex.
+    sides: Vec<usize>,
+    /// The element of the first mesh that contains each simplex.
+    pub origins: Vec<usize>,
+    /// The number of the condition of each facet of the surface; `None` inside.
+    pub conditions: Vec<Option<usize>>,
+    /// The ends of the edge that each new node halves, for the last nodes; empty in a first mesh.
+    parents: Vec<[usize; 2]>,
+    next: Bisection,
+}
+
+/// A facet of the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OuterFacet {
+    /// Its simplex.
+    pub cell: usize,
+    /// Its local number there.
+    pub local: usize,
+    /// Its number.
+    pub facet: usize,
+    /// The number of its condition.
+    pub condition: usize,
+}
+
+/// What the next bisection needs.
+#[derive(Clone, Debug)]
+enum Bisection {
+    /// The nodes of each triangle; the edge opposite to the first one is bisected first.
+    Triangles(Vec<[usize; 3]>),
+    Tetrahedra(Tetrahedra),
+}
+
+/// The conditions of the facets of the surface, by their nodes.
+type Surface = HashMap<[usize; OF_FACET], usize>;
+
+/// Numbers in increasing order; absent ones stand last.
+fn filled<const N: usize>(nodes: impl IntoIterator<Item = usize>) -> [usize; N] {
+    let mut all = [ABSENT; N];
+    all.iter_mut().zip(nodes).for_each(|(place, node)| *place = node);
+    all.sort_unstable();
+    all
+}
+
+impl SimplexMesh {
+    /// The mesh of these simplices, pieces of the elements `origins`, with the condition of each facet of the surface by its nodes,
+    /// increasing. `None` if a facet of the surface has no condition, or one inside has one.
+    pub fn new(
+        dimension: usize,
+        nodes: Vec<Point>,
+        cells: &[Vec<usize>],
+        origins: Vec<usize>,
+        surface: &HashMap<Vec<usize>, usize>,
+    ) -> Option<Self> {
+        let next = match dimension {
+            2 => {
+                let corners = cells.iter().map(|cell| [cell[0], cell[1], cell[2]]);
+                Bisection::Triangles(corners.map(|triangle| longest_first(&nodes, triangle)).collect())
+            }
+            _ => {
+                let mut facets = BTreeMap::<_, Vec<_>>::new();
+                for (facet, &condition) in surface {
+                    let facet: [usize; OF_FACET] = filled(facet.iter().copied());
+                    facets.entry(facet).or_default().push((condition, facet));
+                }
+                let parts = cells.iter().map(Vec::as_slice).zip(origins.iter().copied());
+                Bisection::Tetrahedra(Tetrahedra::new(nodes.clone(), parts, facets))
+            }
+        };
+        let surface = surface.iter().map(|(facet, &condition)| (filled(facet.iter().copied()), condition)).collect();
+        let mesh =
+            Self::of(dimension, nodes, cells.iter().map(|cell| filled(cell.iter().copied())), origins, &surface, next);
+        let mut cells_at = vec![0_u8; mesh.facets.len()];
+        mesh.sides.iter().for_each(|&facet| cells_at[facet] += 1);
+        let fits = |(at, condition): (&u8, &Option<usize>)| (*at == 1) == condition.is_some();
+        cells_at.iter().zip(&mesh.conditions).all(fits).then_some(mesh)
+    }
+
+    /// Numbers edges and facets.
+    fn of(
+        dimension: usize,
+        nodes: Vec<Point>,
+        cells: impl Iterator<Item = [usize; MOST_CORNERS]>,
+        origins: Vec<usize>,
+        surface: &Surface,
+        next: Bisection,
+    ) -> Self {
+        let cells: Vec<_> = cells.collect();
+        let (mut edges, mut facets) = (Lattice::new(), Lattice::new());
+        let (mut edges_of, mut sides) = (Vec::new(), Vec::new());
+        for cell in &cells {
+            let corners = &cell[..=dimension];
+            let of_pairs = pairs(corners.len()).filter(|[i, j]| i < j);
+            edges_of.extend(of_pairs.map(|[i, j]| edges.node([corners[i], corners[j]])));
+            let facet = |local: usize| filled(corners.iter().copied().filter(|&node| node != corners[local]));
+            sides.extend((0..corners.len()).map(|local| facets.node(facet(local))));
+        }
+        let (edges, facets) = (edges.keys, facets.keys);
+        let conditions = facets.iter().map(|facet| surface.get(facet).copied()).collect();
+        let parents = Vec::new();
+        SimplexMesh { dimension, nodes, cells, edges, edges_of, facets, sides, origins, conditions, parents, next }
+    }
+
+    /// Number of simplices.
+    pub fn count(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// The nodes of a simplex, increasing.
+    pub fn cell(&self, cell: usize) -> &[usize] {
+        &self.cells[cell][..=self.dimension]
+    }
+
+    /// A simplex with its corners in the order of its nodes.
+    pub fn simplex(&self, cell: usize) -> Simplex {
+        Simplex::new(self.dimension, self.cell(cell).iter().map(|&node| self.nodes[node]))
+    }
+
+    /// The edges of a simplex, in the order of the pairs i < j of its corners.
+    pub fn edges_of(&self, cell: usize) -> &[usize] {
+        let count = self.dimension * (self.dimension + 1) / 2;
+        &self.edges_of[cell * count..(cell + 1) * count]
+    }
+
+    /// The facets of a simplex; each lies opposite to the corner with its local number.
+    pub fn sides(&self, cell: usize) -> &[usize] {
+        &self.sides[cell * (self.dimension + 1)..(cell + 1) * (self.dimension + 1)]
+    }
+
+    /// Number of facets.
+    pub fn facet_count(&self) -> usize {
+        self.facets.len()
+    }
+
+    /// The nodes of a facet, increasing.
+    pub fn facet(&self, facet: usize) -> &[usize] {
+        &self.facets[facet][..self.dimension]
+    }
+
+    /// The corners of a facet in the order of its nodes.
+    pub fn corners_of_facet(&self, facet: usize) -> Vec<Point> {
+        self.facet(facet).iter().map(|&node| self.nodes[node]).collect()
+    }
+
+    /// The facets of the surface.
+    pub fn surface(&self) -> impl Iterator<Item = OuterFacet> + '_ {
+        (0..self.count()).flat_map(move |cell| {
+            self.sides(cell).iter().enumerate().filter_map(move |(local, &facet)| {
+                Some(OuterFacet { cell, local, facet, condition: self.conditions[facet]? })
+            })
+        })
+    }
+
+    /// Returns `true` if a simplex has lost most of its size in a mesh of the same simplices with other node positions.
+    pub fn is_folded_beside(&self, other: &SimplexMesh) -> bool {
+        (0..self.count()).any(|cell| {
+            let [own, before] = [self, other].map(|mesh| mesh.simplex(cell).oriented_size());
+            own / before <= FOLDED
+        })
+    }
+
+    /// The mesh in which the marked simplices are refined, with the further bisections that this needs: every edge of a marked triangle
+    /// is halved, a marked tetrahedron is halved once. The surface keeps its conditions, and no angle tends to zero. `placed` moves the
+    /// middle of a side of a polygon, given the number of its condition.
+    pub fn refined(&self, marked: &[bool], placed: impl Fn(usize, Point) -> Point) -> Self {
+        match &self.next {
+            Bisection::Triangles(triangles) => self.refined_triangles(triangles, marked, placed),
+            Bisection::Tetrahedra(cells) => {
+                let mut cells = cells.clone();
+                let parents = cells.refine(marked, GENERATIONS);
+                let (nodes, origins, surface) = (cells.nodes().to_vec(), cells.parents(), cells.facets().collect());
+                let corners: Vec<_> = cells.cells().map(filled).collect();
+                let next = Bisection::Tetrahedra(cells);
+                let mesh = Self::of(self.dimension, nodes, corners.into_iter(), origins, &surface, next);
+                SimplexMesh { parents, ..mesh }
+            }
+        }
+    }
+
+    fn refined_triangles(
+        &self,
+        triangles: &[[usize; 3]],
+        marked: &[bool],
+        placed: impl Fn(usize, Point) -> Point,
+    ) -> Self {
+        let mut halved: HashMap<[usize; 2], Option<usize>> = HashMap::new();
+        let sides = |&[newest, a, b]: &[usize; 3]| [key(a, b), key(b, newest), key(newest, a)];
+        for (triangle, _) in triangles.iter().zip(marked).filter(|entry| *entry.1) {
+            halved.extend(sides(triangle).map(|edge| (edge, None)));
+        }
+        // A triangle with a halved edge halves its first edge too.
+        let mut waiting = true;
+        while waiting {
+            waiting = false;
+            for [first, second, third] in triangles.iter().map(sides) {
+                let hangs = halved.contains_key(&second) || halved.contains_key(&third);
+                if hangs && !halved.contains_key(&first) {
+                    halved.insert(first, None);
+                    waiting = true;
+                }
+            }
+        }
+        let (mut nodes, mut surface, mut parents) = (self.nodes.clone(), Surface::new(), Vec::new());
+        for (facet, &condition) in self.facets.iter().zip(&self.conditions) {
+            let [a, b, _] = *facet;
+            let mut ends = vec![*facet];
+            if let Some(middle) = halved.get_mut(&[a, b]) {
+                let half = [0, 1, 2].map(|axis| (nodes[a][axis] + nodes[b][axis]) / 2.0);
+                ends = vec![filled([a, nodes.len()]), filled([b, nodes.len()])];
+                *middle = Some(nodes.len());
+                nodes.push(condition.map_or(half, |condition| placed(condition, half)));
+                parents.push([a, b]);
+            }
+            surface.extend(condition.into_iter().flat_map(|condition| ends.iter().map(move |&end| (end, condition))));
+        }
+        let (mut pieces, mut origins) = (Vec::with_capacity(2 * triangles.len()), Vec::new());
+        let mut left: Vec<([usize; 3], usize)> =
+            triangles.iter().copied().zip(self.origins.iter().copied()).rev().collect();
+        while let Some(([newest, a, b], origin)) = left.pop() {
+            match halved.get(&key(a, b)).copied().flatten() {
+                Some(middle) => left.extend([([middle, b, newest], origin), ([middle, newest, a], origin)]),
+                None => {
+                    pieces.push([newest, a, b]);
+                    origins.push(origin);
+                }
+            }
+        }
+        let cells = pieces.clone().into_iter().map(filled);
+        SimplexMesh { parents, ..Self::of(2, nodes, cells, origins, &surface, Bisection::Triangles(pieces)) }
+    }
+
+    /// A property of nodes of the previous mesh, carried to this one: a new node has it if both ends of its edge have it.
+    pub fn carried(&self, mut of_nodes: Vec<bool>) -> Vec<bool> {
+        for ends in &self.parents {
+            of_nodes.push(ends.iter().all(|&end| of_nodes[end]));
+        }
+        of_nodes
+    }
+}
+
+/// The corners rotated so that the longest edge is bisected first.
+fn longest_first(nodes: &[Point], mut triangle: [usize; 3]) -> [usize; 3] {
+    let length = |k: usize| distance(nodes[triangle[(k + 1) % 3]], nodes[triangle[(k + 2) % 3]]);
+    let longest = (0..3).max_by(|&a, &b| length(a).total_cmp(&length(b))).unwrap_or(0);
+    triangle.rotate_left(longest);
+    triangle
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The unit square in two triangles, its four sides with the conditions 0 to 3.
+    fn square() -> SimplexMesh {
+        let nodes = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let surface = HashMap::from([(vec![0, 1], 0), (vec![1, 2], 1), (vec![2, 3], 2), (vec![0, 3], 3)]);
+        SimplexMesh::new(2, nodes, &[vec![0, 1, 2], vec![0, 2, 3]], vec![0, 1], &surface).unwrap()
+    }
+
+    /// The unit cube in six tetrahedra, with one condition for each of its six sides.
+    fn cube() -> SimplexMesh {
+        let nodes: Vec<Point> = (0..8).map(|node| [0, 1, 2].map(|axis| f64::from(node >> axis & 1))).collect();
+        let orders = [[1, 2, 4], [1, 4, 2], [2, 1, 4], [2, 4, 1], [4, 1, 2], [4, 2, 1]];
+        let cells: Vec<Vec<usize>> = orders.iter().map(|[a, b, _]| vec![0, *a, a + b, 7]).collect();
+        let mut surface = HashMap::new();
+        for cell in &cells {
+            for local in 0..4 {
+                let facet: Vec<usize> = (0..4).filter(|&other| other != local).map(|other| cell[other]).collect();
+                for axis in 0..3 {
+                    for side in [0.0, 1.0] {
+                        if facet.iter().all(|&node| nodes[node][axis] == side) {
+                            surface.insert(facet.clone(), 2 * axis + usize::from(side > 0.0));
+                        }
+                    }
+                }
+            }
+        }
+        SimplexMesh::new(3, nodes, &cells, (0..6).collect(), &surface).unwrap()
+    }
+
+    #[test]
+    fn bisection_keeps_the_size_the_surface_and_whole_facets() {
+        for (mut mesh, steps, least) in [(square(), 6, 40), (cube(), 9, 100)] {
+            let sides = 2 * mesh.dimension;
+            for step in 0..steps {
+                let marked: Vec<bool> = (0..mesh.count()).map(|index| index % 3 == step % 3).collect();
+                mesh = mesh.refined(&marked, |_, middle| middle);
+                let size: f64 = (0..mesh.count()).map(|cell| mesh.simplex(cell).size()).sum();
+                // Every coordinate is a short binary fraction: there is hardly any rounding.
+                assert!((size - 1.0).abs() < 1e-14, "{size}");
+                let mut cells_at = vec![0; mesh.facet_count()];
+                mesh.sides.iter().for_each(|&facet| cells_at[facet] += 1);
+                for (facet, count) in cells_at.into_iter().enumerate() {
+                    let expected = if mesh.conditions[facet].is_some() { 1 } else { 2 };
+                    assert_eq!(count, expected, "facet {facet} of step {step}");
+                }
+                let mut sizes = vec![0.0; sides];
+                for OuterFacet { cell, local, condition, .. } in mesh.surface() {
+                    sizes[condition] += mesh.simplex(cell).outward(local).1;
+                }
+                assert!(sizes.iter().all(|size| (size - 1.0).abs() < 1e-13), "{sizes:?}");
+                for (cell, &origin) in mesh.origins.iter().enumerate().filter(|_| mesh.dimension == 2) {
+                    // The diagonal separates the two triangles of the square.
+                    let [x, y, _] = mesh.simplex(cell).centre();
+                    assert_eq!(origin, usize::from(y > x));
+                }
+                let at_bottom = vec![true, true, false, false];
+                if mesh.dimension == 2 && step == 0 {
+                    let carried = mesh.carried(at_bottom);
+                    carried.iter().zip(&mesh.nodes).for_each(|(&has, node)| assert_eq!(has, node[1] == 0.0));
+                }
+            }
+            assert!(mesh.count() > least, "{}", mesh.count());
+        }
+    }
+
+    /// Halves of right-angled triangles with two equal sides are such triangles: the smallest angle stays at 45 degrees.
+    #[test]
+    fn bisection_keeps_the_angles() {
+        let mut mesh = square();
+        for _ in 0..8 {
+            let marked: Vec<bool> = (0..mesh.count()).map(|cell| mesh.cell(cell).contains(&0)).collect();
+            mesh = mesh.refined(&marked, |_, middle| middle);
+        }
+        for cell in 0..mesh.count() {
+            let simplex = mesh.simplex(cell);
+            let longest = (0..3).map(|local| simplex.outward(local).1).fold(0.0, f64::max);
+            assert!((2.0 * simplex.size() / longest.powi(2) - 0.5).abs() < 1e-15, "{simplex:?}");
+        }
+    }
+
+    #[test]
+    fn a_surface_without_a_condition_is_no_mesh() {
+        let nodes = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
+        let surface = HashMap::from([(vec![0, 1], 0), (vec![1, 2], 1)]);
+        assert!(SimplexMesh::new(2, nodes, &[vec![0, 1, 2]], vec![0], &surface).is_none());
+    }
+}

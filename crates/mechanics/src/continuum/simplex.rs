@@ -1,0 +1,208 @@
+//! A triangle in the plane or a tetrahedron in space, by its corners. The order of the corners does not matter: sizes are positive.
+
+use crate::fem::geometry::{Symmetric, cross, dot, length, minus};
+
+/// Coordinates or components `[x, y, z]`; in the plane z is zero.
+pub type Point = [f64; 3];
+
+/// Symmetric tensors `[xx, yy, zz, xy, yz, zx]`; in the plane those with z are zero.
+pub type Tensor = Symmetric;
+
+/// Corners of a tetrahedron, the larger simplex.
+pub const MOST_CORNERS: usize = 4;
+
+/// Barycentric coordinates.
+pub type Weights = [f64; MOST_CORNERS];
+
+/// A value for each corner of each part of a simplex.
+pub type OnParts<T> = [[T; MOST_CORNERS]; MOST_CORNERS];
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Simplex {
+    /// 2 or 3.
+    pub dimension: usize,
+    corners: [Point; MOST_CORNERS],
+}
+
+/// The pairs of `count` numbers: first each with itself, then `i < j`. They number the functions of Bernstein's quadratic basis on a
+/// simplex of so many corners.
+pub fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> + Clone {
+    (0..count).map(|i| [i, i]).chain((0..count).flat_map(move |i| (i + 1..count).map(move |j| [i, j])))
+}
+
+/// The barycentric coordinates of points whose mean is that of a quadratic function over the simplex.
+pub fn quadratic_rule(dimension: usize) -> impl Iterator<Item = Weights> + Clone {
+    let corners = dimension + 1;
+    let others = (1.0 - 1.0 / (corners as f64 + 1.0).sqrt()) / corners as f64;
+    (0..corners).map(move |own| {
+        let weight = |corner: usize| match corner {
+            _ if corner == own => 1.0 - dimension as f64 * others,
+            _ if corner <= dimension => others,
+            _ => 0.0,
+        };
+        std::array::from_fn(weight)
+    })
+}
+
+/// The mean over a simplex of the product of two functions that are linear on each part, or of another function of degree two there:
+/// `value(k, weights)` is its value on part k at a point.
+pub fn mean_over_parts(dimension: usize, value: impl Fn(usize, Weights) -> f64) -> f64 {
+    let corners = dimension + 1;
+    let points = (0..corners).flat_map(|k| quadratic_rule(dimension).map(move |weights| (k, weights)));
+    points.map(|(k, weights)| value(k, weights)).sum::<f64>() / (corners * corners) as f64
+}
+
+impl Simplex {
+    pub fn new(dimension: usize, of_corners: impl IntoIterator<Item = Point>) -> Self {
+        let mut corners = [[0.0; 3]; MOST_CORNERS];
+        corners.iter_mut().zip(of_corners).for_each(|(corner, at)| *corner = at);
+        Simplex { dimension, corners }
+    }
+
+    pub fn corners(&self) -> &[Point] {
+        &self.corners[..=self.dimension]
+    }
+
+    /// The edges from the first corner; in the plane the third one is the unit vector along z.
+    fn edges(&self) -> [Point; 3] {
+        let [a, b, c, d] = self.corners;
+        [minus(b, a), minus(c, a), if self.dimension == 2 { [0.0, 0.0, 1.0] } else { minus(d, a) }]
+    }
+
+    /// The determinant of the edges.
+    fn determinant(&self) -> f64 {
+        let [first, second, third] = self.edges();
+        dot(first, cross(second, third))
+    }
+
+    /// Area or volume; negative if the corners stand in the other order.
+    pub fn oriented_size(&self) -> f64 {
+        self.determinant() / if self.dimension == 2 { 2.0 } else { 6.0 }
+    }
+
+    /// Area or volume.
+    pub fn size(&self) -> f64 {
+        self.oriented_size().abs()
+    }
+
+    /// The gradients of the barycentric coordinates.
+    pub fn slopes(&self) -> [Point; MOST_CORNERS] {
+        let ([first, second, third], determinant) = (self.edges(), self.determinant());
+        let mut slopes = [[0.0; 3]; MOST_CORNERS];
+        let others = [cross(second, third), cross(third, first), cross(first, second)];
+        for (corner, normal) in (1..=self.dimension).zip(others) {
+            slopes[corner] = normal.map(|part| part / determinant);
+            slopes[0] = minus(slopes[0], slopes[corner]);
+        }
+        slopes
+    }
+
+    /// The outward unit normal of the side opposite to a corner, and the length or area of the side.
+    pub fn outward(&self, corner: usize) -> (Point, f64) {
+        let slope = self.slopes()[corner];
+        let steepness = length(slope);
+        (slope.map(|part| -part / steepness), self.dimension as f64 * self.size() * steepness)
+    }
+
+    pub fn centre(&self) -> Point {
+        let count = self.corners().len() as f64;
+        [0, 1, 2].map(|axis| self.corners().iter().map(|corner| corner[axis]).sum::<f64>() / count)
+    }
+
+    /// Part k: the simplex with the centre in the place of corner k, next to the side opposite to that corner.
+    pub fn part(&self, k: usize) -> Simplex {
+        let mut part = *self;
+        part.corners[k] = self.centre();
+        part
+    }
+
+    /// The barycentric coordinates in the simplex of a point of part k.
+    pub fn from_part(&self, k: usize, weights: Weights) -> Weights {
+        let share = weights[k] / self.corners().len() as f64;
+        let of_corner = |corner: usize| match corner {
+            _ if corner > self.dimension => 0.0,
+            _ if corner == k => share,
+            _ => weights[corner] + share,
+        };
+        std::array::from_fn(of_corner)
+    }
+
+    /// The point with these barycentric coordinates.
+    pub fn at(&self, weights: Weights) -> Point {
+        [0, 1, 2].map(|axis| self.corners.iter().zip(weights).map(|(corner, weight)| weight * corner[axis]).sum())
+    }
+
+    /// A stress on the simplex of the origin and the unit vectors, carried to this one: the map of Piola, which preserves balance and
+    /// tractions.
+    pub fn carried(&self, [xx, yy, zz, xy, yz, zx]: Tensor) -> Tensor {
+        let (edges, size) = (self.edges(), self.determinant().abs());
+        let rows = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];
+        let along = |axis: usize| edges.map(|edge| edge[axis]);
+        let entry = |i: usize, j: usize| dot(along(i), rows.map(|row| dot(row, along(j)))) / size;
+        [entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(2, 0)]
+    }
+}
+
+/// The traction of a stress on a surface with this normal.
+pub fn traction([xx, yy, zz, xy, yz, zx]: Tensor, normal: Point) -> Point {
+    [dot([xx, xy, zx], normal), dot([xy, yy, yz], normal), dot([zx, yz, zz], normal)]
+}
+
+/// The product of a stress and a strain.
+pub fn work(stress: Tensor, strain: Tensor) -> f64 {
+    let product = |entry: usize| stress[entry] * strain[entry];
+    product(0) + product(1) + product(2) + 2.0 * (product(3) + product(4) + product(5))
+}
+
+/// The difference of two tensors.
+pub fn less(a: Tensor, b: Tensor) -> Tensor {
+    std::array::from_fn(|entry| a[entry] - b[entry])
+}
+
+/// The mean of two tensors.
+pub fn middle(a: Tensor, b: Tensor) -> Tensor {
+    std::array::from_fn(|entry| (a[entry] + b[entry]) / 2.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A triangle and a tetrahedron.
+    fn simplices() -> [Simplex; 2] {
+        let plane = [[0.25, -0.5, 0.0], [2.0, 0.125, 0.0], [0.75, 1.5, 0.0]];
+        let space = [[0.25, -0.5, 0.1], [2.0, 0.125, -0.2], [0.75, 1.5, 0.3], [0.5, 0.4, 1.7]];
+        [Simplex::new(2, plane), Simplex::new(3, space)]
+    }
+
+    #[test]
+    fn the_rule_gives_the_mean_of_products_of_linear_functions() {
+        for dimension in [2, 3] {
+            for [i, j] in pairs(dimension + 1) {
+                let mean = quadratic_rule(dimension).map(|weights| weights[i] * weights[j]).sum::<f64>();
+                let exact = if i == j { 2.0 } else { 1.0 } / ((dimension + 1) * (dimension + 2)) as f64;
+                assert!((mean / (dimension + 1) as f64 - exact).abs() < 1e-16, "{dimension}: {i} {j}");
+            }
+        }
+    }
+
+    #[test]
+    fn normals_point_outwards_and_close_the_surface_and_parts_fill_the_simplex() {
+        for simplex in simplices() {
+            let count = simplex.dimension + 1;
+            let mut sum = [0.0; 3];
+            for corner in 0..count {
+                let (normal, size) = simplex.outward(corner);
+                let on_side = simplex.corners()[(corner + 1) % count];
+                assert!(dot(normal, minus(simplex.corners()[corner], on_side)) < 0.0);
+                (0..3).for_each(|axis| sum[axis] += size * normal[axis]);
+                assert!((simplex.part(corner).size() * count as f64 / simplex.size() - 1.0).abs() < 1e-14);
+                let weights = [0.1, 0.2, 0.3, 0.4].map(|weight| if count == 3 { weight / 0.6 } else { weight });
+                let weights = if count == 3 { [weights[0], weights[1], weights[2], 0.0] } else { weights };
+                let [one, other] = [simplex.part(corner).at(weights), simplex.at(simplex.from_part(corner, weights))];
+                assert!(length(minus(one, other)) < 1e-14, "{one:?} {other:?}");
+            }
+            assert!(length(sum) < 1e-14, "{sum:?}");
+        }
+    }
+}
