@@ -167,7 +167,7 @@ impl<'a> Bracket<'a> {
 
     /// The strain of a displacement at a point of part k of a simplex, given by the weights of the part's corners.
     pub fn strain(&self, coefficients: &[f64], cell: usize, k: usize, weights: Weights) -> Tensor {
-        self.displacements.strain(coefficients, cell, self.mesh.simplex(cell).from_part(k, weights))
+        self.displacements.strain(coefficients, cell, self.mesh.simplex(cell).in_whole(k, weights))
     }
 
     /// The integral over a simplex of a function of the strain of the displacement and the stress.

@@ -145,11 +145,11 @@ fn strains_of(problem: &ContinuumProblem, simplex: &Simplex, stress: &PartStress
 fn tractions(problem: &ContinuumProblem, simplex: &Simplex, stress: &PartStress) -> Vec<f64> {
     let dimension = simplex.dimension;
     let mut works = Vec::with_capacity((dimension + 1) * dimension * dimension);
-    for side in 0..=dimension {
+    for (side, part) in stress.iter().enumerate().take(dimension + 1) {
         let (normal, size) = simplex.outward(side);
         let share = problem.share_of_corner(size);
         for corner in corners_of_side(dimension, side) {
-            let pull = traction(stress[side][corner], normal);
+            let pull = traction(part[corner], normal);
             works.extend(pull.iter().take(dimension).map(|part| share * part));
         }
     }
@@ -219,9 +219,8 @@ fn conditions(dimension: usize) -> Vec<Vec<f64>> {
         let mut divergence = vec![vec![0.0; count]; dimension];
         (0..=dimension).for_each(|corner| add_traction(&mut divergence, k, corner, slopes[corner]));
         conditions.extend(divergence);
-        for other in k + 1..=dimension {
+        for (other, &normal) in slopes.iter().enumerate().take(dimension + 1).skip(k + 1) {
             // The side between both parts lies opposite to corner `other` in part k; both count the centre by their own number.
-            let normal = slopes[other];
             let shared = (0..=dimension).filter(|&corner| corner != k && corner != other);
             for (here, there) in shared.map(|corner| (corner, corner)).chain([(k, other)]) {
                 let mut jump = vec![vec![0.0; count]; dimension];

@@ -302,12 +302,9 @@ mod tests {
         for cell in &cells {
             for local in 0..4 {
                 let facet: Vec<usize> = (0..4).filter(|&other| other != local).map(|other| cell[other]).collect();
-                for axis in 0..3 {
-                    for side in [0.0, 1.0] {
-                        if facet.iter().all(|&node| nodes[node][axis] == side) {
-                            surface.insert(facet.clone(), 2 * axis + usize::from(side > 0.0));
-                        }
-                    }
+                let lies = |side: &usize| facet.iter().all(|&node| node >> (side / 2) & 1 == side % 2);
+                if let Some(side) = (0..6).find(lies) {
+                    surface.insert(facet, side);
                 }
             }
         }

@@ -117,7 +117,7 @@ impl Simplex {
     }
 
     /// The barycentric coordinates in the simplex of a point of part k.
-    pub fn from_part(&self, k: usize, weights: Weights) -> Weights {
+    pub fn in_whole(&self, k: usize, weights: Weights) -> Weights {
         let share = weights[k] / self.corners().len() as f64;
         let of_corner = |corner: usize| match corner {
             _ if corner > self.dimension => 0.0,
@@ -199,7 +199,7 @@ mod tests {
                 assert!((simplex.part(corner).size() * count as f64 / simplex.size() - 1.0).abs() < 1e-14);
                 let weights = [0.1, 0.2, 0.3, 0.4].map(|weight| if count == 3 { weight / 0.6 } else { weight });
                 let weights = if count == 3 { [weights[0], weights[1], weights[2], 0.0] } else { weights };
-                let [one, other] = [simplex.part(corner).at(weights), simplex.at(simplex.from_part(corner, weights))];
+                let [one, other] = [simplex.part(corner).at(weights), simplex.at(simplex.in_whole(corner, weights))];
                 assert!(length(minus(one, other)) < 1e-14, "{one:?} {other:?}");
             }
             assert!(length(sum) < 1e-14, "{sum:?}");

@@ -8,7 +8,7 @@ function levelsSection(page, data, still) {
     // A level without a guarantee has the estimated error of its elements.
     isGuaranteed = report.total_error.guaranteed,
     words = isGuaranteed ? "guaranteed at most" : "estimated",
-    cells = level => (isGuaranteed ? counted(level.elements, "triangle") : counted(level.elements, "element")),
+    cells = level => counted(level.elements, "element"),
     percent = share => `${shown(100 * share, 3)} %`,
     interval = ends => (ends ? ends.map(end => shown(end, 8)).join(" to ") : "-");
   list(own, [
@@ -31,7 +31,7 @@ function levelsSection(page, data, still) {
   const [{ x, ...plot }] = data.plots;
   dataPlot(own, { x: { ...x, name: `${x.name}${part}` }, ...plot }, colours, { words: told, height: 360 });
   const guaranteed = [
-    ["triangles#", level => level.elements],
+    ["elements#", level => level.elements],
     ["unknowns#", level => level.dofs],
     ["of the stress#", level => level.stress_dofs],
     ["total error ≤#", level => percent(level.total_error)],
