@@ -84,13 +84,15 @@ def disc(k):
 
 
 def solid(element, obstacle, cells=(4, 4, 2)):
+    """A block under an obstacle, with rows along its normals: their error is estimated, not guaranteed."""
+
     def scene(k):
         return {
             "model": "space",
             "body": box(cells, k, element),
             "material": {"young": 1e7, "poisson": 0.3},
             "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0}],
-            "obstacles": [{"boundary": "top", "approach": "+z", "shape": obstacle}],
+            "obstacles": [{"boundary": "top", "approach": "+z", "rule": "closest-point", "shape": obstacle}],
         }
 
     return scene

@@ -36,12 +36,13 @@ struct Rows {
 }
 
 impl Filling<'_> {
-    /// The matrix in blocks, and the same not rounded if nearly all rows repeat; places that nothing touches get the diagonal entry one.
+    /// The matrix in blocks, where places that nothing touches get the diagonal entry one, and, if nearly all rows repeat, the matrix as it
+    /// is, without these entries and not rounded.
     pub fn blocks<T: Real>(&self, threads: usize) -> (BlockMatrix<T>, Option<BlockMatrix<f64>>) {
         let (groups, block) = (self.graph.count(), self.size * self.size);
         let mut matrix = RowByRow::new(self.size, self.exponents.len());
         let mut exact = Some(RowByRow::new(self.size, self.exponents.len()));
-        let mut rounded = Vec::new();
+        let (mut rounded, mut node) = (Vec::new(), 0);
         let mut cursors = vec![vec![0; self.matrix.dim()]; threads.min(groups.div_ceil(GROUPS))];
         let starts: Vec<usize> = (0..groups).step_by(GROUPS).collect();
         for starts in starts.chunks(threads) {
@@ -54,7 +55,9 @@ impl Filling<'_> {
                     let (columns, values) = (&rows.columns[start..end], &rows.values[start * block..end * block]);
                     rounded.clear();
                     rounded.extend(values.iter().map(|&value| T::of(value)));
+                    fill_empty_diagonal_of(node, columns, self.size, &mut rounded);
                     matrix.push(columns, &rounded);
+                    node += 1;
                     if let Some(exact) = &mut exact {
                         exact.push(columns, values);
                     }
@@ -93,7 +96,6 @@ impl Filling<'_> {
                         }
                     }
                 }
-                fill_empty_diagonal_of(node, &rows.columns[before..], size, &mut rows.values[before * size * size..]);
                 rows.lengths.push(rows.columns.len() - before);
             }
         }

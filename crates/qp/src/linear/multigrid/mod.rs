@@ -287,6 +287,11 @@ mod tests {
             check(&of_even, &even);
             // A matrix with the same unknowns that is not that of the hierarchy.
             check(&of_even, &uneven);
+            // A dof without stiffness, as the travel of an obstacle, has no force.
+            let travel = even.clone().with_empty(1);
+            let of_travel = build(&travel, precision);
+            assert!(is_by_blocks(&of_travel));
+            check(&of_travel, &travel);
         }
     }
 }
