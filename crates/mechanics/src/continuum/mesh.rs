@@ -17,10 +17,10 @@ const ABSENT: usize = usize::MAX;
 /// If moved nodes leave a simplex less than this share of its size, it is nearly flat or folded.
 const FOLDED: f64 = 0.1;
 
-/// Halvings of a marked tetrahedron; with two, 5 % take a fifth more tetrahedra.
+/// Halvings of a marked tetrahedron.
 const GENERATIONS: usize = 1;
 
-/// Simplices that meet in whole facets. The facet or corner of a simplex with a local number is that opposite to it, or itself.
+/// Simplices that meet in whole facets. A local number k is that of corner k of a simplex, and of the facet opposite to this corner.
 #[derive(Clone, Debug)]
 pub struct SimplexMesh {
     /// 2 or 3.
@@ -43,6 +43,7 @@ pub struct SimplexMesh {
     pub conditions: Vec<Option<usize>>,
     /// The ends of the edge that each new node halves, for the last nodes; empty in a first mesh.
     parents: Vec<[usize; 2]>,
+    /// How it is refined.
     next: Bisection,
 }
 
