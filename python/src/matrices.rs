@@ -352,7 +352,7 @@ pub fn compressed<'py>(
     py: Python<'py>,
     matrix: &SparseMatrix,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-    let indices = crate::arrays::of_indices(py, matrix.row_indices().iter().map(|&row| row as usize))?;
+    let indices = crate::arrays::of_indices(py, matrix.row_indices().map(|row| row as usize))?;
     let starts = crate::arrays::of_indices(py, matrix.column_starts().iter().copied())?;
     Ok((crate::arrays::of_reals(py, matrix.values())?, indices, starts))
 }

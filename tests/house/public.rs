@@ -94,11 +94,10 @@ fn both_triangles_give_the_same_matrix_from_columns_and_from_rows() {
             let lower: Vec<_> = entries.iter().copied().filter(|entry| entry.0 >= entry.1).collect();
             let expected = SparseMatrix::from_triplets(dim, dim, &lower).unwrap();
             let by_columns =
-                (short(full.column_starts()), full.row_indices().iter().map(|&row| row as i32).collect::<Vec<_>>());
+                (short(full.column_starts()), full.row_indices().map(|row| row as i32).collect::<Vec<_>>());
             let of_columns = SymmetricMatrix::from_csc(&by_columns.0, &by_columns.1, full.values()).unwrap();
             let rows = full.transposed();
-            let by_rows =
-                (short(rows.column_starts()), rows.row_indices().iter().map(|&row| row as i32).collect::<Vec<_>>());
+            let by_rows = (short(rows.column_starts()), rows.row_indices().map(|row| row as i32).collect::<Vec<_>>());
             let of_rows = SymmetricMatrix::from_csr(&by_rows.0, &by_rows.1, rows.values()).unwrap();
             for of in [of_columns, of_rows, SymmetricMatrix::from_full(&full).unwrap()] {
                 assert_eq!(of.lower(), &expected, "{dim} {rounding}");

@@ -22,7 +22,7 @@ pub enum Ordering {
 pub fn solve(stiffness: &SymmetricMatrix, load: &[f64], ordering: Ordering) -> Option<(Vec<f64>, usize)> {
     let lower = stiffness.lower();
     let dim = stiffness.dim();
-    let rows: Vec<usize> = lower.row_indices().iter().map(|&row| row as usize).collect();
+    let rows: Vec<usize> = lower.row_indices().map(|row| row as usize).collect();
     let structure = SymbolicSparseColMatRef::new_checked(dim, dim, lower.column_starts(), None, &rows);
     let (forward, inverse);
     let faer_ordering = match ordering {

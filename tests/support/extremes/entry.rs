@@ -127,7 +127,7 @@ impl Entry {
     fn raw(&self) -> Cell {
         let matrix = |matrix: &SparseMatrix| {
             let (starts, rows) =
-                (matrix.column_starts().to_vec(), matrix.row_indices().iter().map(|&row| row as usize).collect());
+                (matrix.column_starts().to_vec(), matrix.row_indices().map(|row| row as usize).collect());
             CscMatrix::new(matrix.rows(), matrix.columns(), starts, rows, matrix.values().to_vec())
         };
         if self.problem.dofs() == 0 {

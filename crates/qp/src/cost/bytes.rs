@@ -14,7 +14,7 @@ const OF_DOF: f64 = 350.0;
 const OF_ENTRY: f64 = 32.0;
 
 /// Bytes of an unknown, and of an entry of the stiffness, with a hierarchy instead of a factor.
-const OF_HIERARCHY: [f64; 2] = [270.0, 20.0];
+const OF_HIERARCHY: [f64; 2] = [270.0, 16.0];
 
 /// Workspace of a factorisation, beside its factor.
 const WORKSPACE: f64 = 1.15;

@@ -126,7 +126,7 @@ impl Analysis {
         };
         let symbolic = call(|| {
             let order = fc::SymmetricOrdering::Custom(PermRef::new_checked(&order, &place, order.len()));
-            let rows: Vec<usize> = lower.row_indices().iter().map(|&row| row as usize).collect();
+            let rows: Vec<usize> = lower.row_indices().map(|row| row as usize).collect();
             let (dim, starts) = (lower.columns(), lower.column_starts());
             let structure = SymbolicSparseColMatRef::new_checked(dim, dim, starts, None, &rows);
             Ok(fc::factorize_symbolic_cholesky(structure, Side::Lower, order, params)?)

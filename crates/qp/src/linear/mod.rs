@@ -79,11 +79,36 @@ pub struct SparseMatrix {
     values: Arc<Vec<f64>>,
 }
 
-/// The positions of the entries, column by column.
+/// The positions of the entries, column by column. A column with the last rows of those before it shares them: of a stiffness, the
+/// columns of a node have one list of rows, which takes a third of the memory in space.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Pattern {
+    /// The first entry of each column, and their number at the end.
     column_starts: Vec<usize>,
-    row_indices: Vec<u32>,
+    /// Where the rows of each column start in `rows`.
+    row_starts: Vec<usize>,
+    rows: Vec<u32>,
+}
+
+impl Pattern {
+    /// The pattern with the rows of all entries.
+    fn of(column_starts: Vec<usize>, mut rows: Vec<u32>) -> Self {
+        let (mut row_starts, mut kept) = (Vec::with_capacity(column_starts.len() - 1), 0);
+        for column in column_starts.windows(2) {
+            let count = column[1] - column[0];
+            match kept >= count && rows[kept - count..kept] == rows[column[0]..column[1]] {
+                true => row_starts.push(kept - count),
+                false => {
+                    rows.copy_within(column[0]..column[1], kept);
+                    row_starts.push(kept);
+                    kept += count;
+                }
+            }
+        }
+        rows.truncate(kept);
+        rows.shrink_to_fit();
+        Pattern { column_starts, row_starts, rows }
+    }
 }
 
 impl SparseMatrix {
@@ -159,8 +184,7 @@ impl SparseMatrix {
     /// The matrix with given compressed columns, which must be sorted and in range: `column_starts` has one entry per column and one more, the
     /// others one entry per value. For the crates of this workspace, which know that; others take [`from_csc`](Self::from_csc).
     pub fn from_parts(rows: usize, column_starts: Vec<usize>, row_indices: Vec<u32>, values: Vec<f64>) -> Self {
-        let pattern = Arc::new(Pattern { column_starts, row_indices });
-        SparseMatrix { rows, pattern, values: Arc::new(values) }
+        SparseMatrix { rows, pattern: Arc::new(Pattern::of(column_starts, row_indices)), values: Arc::new(values) }
     }
 
     /// The matrix with other values in the same pattern.
@@ -173,6 +197,7 @@ impl SparseMatrix {
         let SparseMatrix { rows, pattern, values } = self;
         let mut pattern = Arc::unwrap_or_clone(pattern);
         pattern.column_starts.extend(vec![values.len(); count]);
+        pattern.row_starts.extend(vec![pattern.rows.len(); count]);
         SparseMatrix { rows: rows + count, pattern: Arc::new(pattern), values }
     }
 
@@ -191,14 +216,14 @@ impl SparseMatrix {
         self.values.len()
     }
 
-    /// Start of each column in [`row_indices`](Self::row_indices) and [`values`](Self::values), length `columns + 1`.
+    /// First entry of each column, and [`entries`](Self::entries) at the end, length `columns + 1`.
     pub fn column_starts(&self) -> &[usize] {
         &self.pattern.column_starts
     }
 
-    /// Row of each entry, column by column, from 0, length [`entries`](Self::entries).
-    pub fn row_indices(&self) -> &[u32] {
-        &self.pattern.row_indices
+    /// Row of each entry, column by column, from 0; [`entries`](Self::entries) of them.
+    pub fn row_indices(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..self.columns()).flat_map(|column| self.column_rows(column).iter().copied())
     }
 
     /// Value of each entry, column by column, in the order of [`row_indices`](Self::row_indices).
@@ -230,8 +255,9 @@ impl SparseMatrix {
     /// Rows and values of one column.
     #[inline]
     fn column_slices(&self, column: usize) -> (&[u32], &[f64]) {
-        let range = self.pattern.column_starts[column]..self.pattern.column_starts[column + 1];
-        (&self.pattern.row_indices[range.clone()], &self.values[range])
+        let Pattern { column_starts, row_starts, rows } = &*self.pattern;
+        let values = &self.values[column_starts[column]..column_starts[column + 1]];
+        (&rows[row_starts[column]..][..values.len()], values)
     }
 
     /// Returns `true` for the same matrix in the same memory.
@@ -289,7 +315,7 @@ impl SparseMatrix {
 
     /// The transposed matrix: its columns are the rows of this one.
     pub fn transposed(&self) -> Self {
-        let starts = group_starts(self.rows, self.row_indices().iter().map(|&row| row as usize));
+        let starts = group_starts(self.rows, self.row_indices().map(|row| row as usize));
         let mut place = starts.clone();
         let mut row_indices = vec![0; self.entries()];
         let mut values = vec![0.0; self.entries()];
@@ -353,5 +379,24 @@ fn check_rows(rows: usize) -> Result<(), Error> {
     match u32::try_from(rows) {
         Ok(_) => Ok(()),
         Err(_) => Err(Error::Pattern { message: format!("a matrix has less than 2^32 rows; {rows} are too many") }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_with_the_last_rows_of_those_before_share_them() {
+        // Two nodes of two dofs each that are coupled, an empty column, and a column with rows of its own.
+        let rows = vec![0, 1, 2, 3, 1, 2, 3, 2, 3, 3, 1, 3];
+        let values: Vec<f64> = (1..=12).map(f64::from).collect();
+        let starts = vec![0, 4, 7, 9, 10, 10, 12];
+        let matrix = SparseMatrix::from_parts(4, starts.clone(), rows.clone(), values);
+        assert_eq!(matrix.pattern.rows, [0, 1, 2, 3, 1, 3]);
+        assert!(matrix.row_indices().eq(rows) && matrix.column_starts() == starts);
+        assert!(matrix.column(2).eq([(2, 8.0), (3, 9.0)]) && matrix.column(5).eq([(1, 11.0), (3, 12.0)]));
+        let wider = matrix.with_empty(1);
+        assert!(wider.column(3).eq([(3, 10.0)]) && wider.column(6).count() == 0);
     }
 }

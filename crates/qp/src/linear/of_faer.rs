@@ -18,8 +18,7 @@ use crate::linear::SparseMatrix;
 /// ```
 impl From<&SparseMatrix> for SparseColMat<usize, f64> {
     fn from(matrix: &SparseMatrix) -> Self {
-        let (starts, rows) =
-            (matrix.column_starts().to_vec(), matrix.row_indices().iter().map(|&row| row as usize).collect());
+        let (starts, rows) = (matrix.column_starts().to_vec(), matrix.row_indices().map(|row| row as usize).collect());
         let pattern = SymbolicSparseColMat::new_checked(matrix.rows(), matrix.columns(), starts, None, rows);
         SparseColMat::new(pattern, matrix.values().to_vec())
     }

@@ -23,8 +23,8 @@ impl SymmetricMatrix {
     /// # Errors
     /// Those of `take`.
     pub fn each_row<E>(&self, mut take: impl FnMut(&[u32], &[f64]) -> Result<(), E>) -> Result<(), E> {
-        let (starts, rows, values) = (self.lower().column_starts(), self.lower().row_indices(), self.lower().values());
-        let mut next: Vec<usize> = starts[..self.dim()].to_vec();
+        // The next entry of each column, counted in the column.
+        let mut next = vec![0; self.dim()];
         let (mut first_in, mut following) = (vec![NONE; self.dim()], vec![NONE; self.dim()]);
         let (mut columns_of_row, mut values_of_row) = (Vec::new(), Vec::new());
         for row in 0..self.dim() {
@@ -37,22 +37,22 @@ impl SymmetricMatrix {
             }
             columns_of_row.sort_unstable();
             // The diagonal entry is not in a list: it belongs to the right side.
-            next[row] += usize::from(rows[starts[row]..starts[row + 1]].first() == Some(&(row as u32)));
+            let (rows, values) = self.lower().column_slices(row);
+            next[row] += usize::from(rows.first() == Some(&(row as u32)));
             for &column in &columns_of_row {
                 let place = &mut next[column as usize];
-                values_of_row.push(values[*place]);
+                values_of_row.push(self.lower().column_slices(column as usize).1[*place]);
                 *place += 1;
             }
             columns_of_row.push(row as u32);
             for &column in &columns_of_row {
-                let place = next[column as usize];
-                if place < starts[column as usize + 1] {
-                    following[column as usize] = std::mem::replace(&mut first_in[rows[place] as usize], column);
+                if let Some(&row) = self.lower().column_rows(column as usize).get(next[column as usize]) {
+                    following[column as usize] = std::mem::replace(&mut first_in[row as usize], column);
                 }
             }
             columns_of_row.pop();
-            columns_of_row.extend_from_slice(&rows[starts[row]..starts[row + 1]]);
-            values_of_row.extend_from_slice(&values[starts[row]..starts[row + 1]]);
+            columns_of_row.extend_from_slice(rows);
+            values_of_row.extend_from_slice(values);
             take(&columns_of_row, &values_of_row)?;
         }
         Ok(())

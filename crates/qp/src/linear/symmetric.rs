@@ -28,8 +28,8 @@ impl SymmetricMatrix {
     /// [`Error::Shape`] if not square, [`Error::NotSymmetric`] if the triangles differ.
     pub fn from_full(full: &SparseMatrix) -> Result<Self, Error> {
         square(full)?;
-        let (starts, rows, values) = (full.column_starts(), full.row_indices(), full.values());
-        Ok(SymmetricMatrix { lower: Columns { starts, rows, values }.lower()? })
+        let (starts, values, rows) = (full.column_starts(), full.values(), full.row_indices().collect::<Vec<_>>());
+        Ok(SymmetricMatrix { lower: Columns { starts, rows: &rows, values }.lower()? })
     }
 
     /// From the compressed columns of both triangles, which must be alike as in [`SymmetricMatrix::from_full`]: `column_starts` of

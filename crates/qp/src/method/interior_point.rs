@@ -189,7 +189,7 @@ fn csc(matrix: &SparseMatrix) -> CscMatrix<f64> {
         matrix.rows(),
         matrix.columns(),
         matrix.column_starts().to_vec(),
-        matrix.row_indices().iter().map(|&row| row as usize).collect(),
+        matrix.row_indices().map(|row| row as usize).collect(),
         matrix.values().to_vec(),
     )
 }

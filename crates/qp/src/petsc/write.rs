@@ -79,7 +79,7 @@ fn write_contact(out: &mut dyn Write, contact: &SparseMatrix, layout: &Layout) -
     for column in contact.column_starts().windows(2) {
         out.write_all(&integer(column[1] - column[0])?.to_be_bytes())?;
     }
-    contact.row_indices().iter().try_for_each(|&dof| out.write_all(&layout.place[dof as usize].to_be_bytes()))?;
+    contact.row_indices().try_for_each(|dof| out.write_all(&layout.place[dof as usize].to_be_bytes()))?;
     write_reals(out, contact.values())
 }
 

@@ -76,7 +76,7 @@ impl Ladder {
             |ladder: &Self, method| Attempt { start, ..ladder.attempt(ladder.factor(Some(method)), REQUESTED) };
         match settings.method {
             Method::Auto => {
-                let estimate = Estimate::of(problem).of_many(known.gaps);
+                let estimate = Estimate::of(problem).for_accuracy(settings.accuracy).of_many(known.gaps);
                 let choice = estimate.choose(settings.memory.unwrap_or(f64::INFINITY))?;
                 ladder.by_choice(&choice, start);
                 ladder.choice = Some((estimate, choice));

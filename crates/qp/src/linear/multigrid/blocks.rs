@@ -39,6 +39,26 @@ pub struct BlockMatrix<T> {
     pub is_half: bool,
 }
 
+/// What a product does to the vector that it is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Product {
+    /// `y = A x`.
+    Replaces,
+    /// `y -= A x`.
+    IsSubtracted,
+}
+
+impl Product {
+    /// Brings one of the products into the vector.
+    #[inline(always)]
+    pub fn put<T: Real>(self, y: &mut T, product: T) {
+        match self {
+            Product::Replaces => *y = product,
+            Product::IsSubtracted => *y -= product,
+        }
+    }
+}
+
 /// Calls a function with the block size as constants if it is one of the sizes of bodies.
 macro_rules! with_block_size {
     ($function:ident, $size:expr, $arguments:tt) => {
@@ -121,9 +141,35 @@ impl<T: Real> BlockMatrix<T> {
 
     /// `y = A x`.
     pub fn mul_into(&self, x: &[T], y: &mut [T], threads: usize) {
-        self.shared(threads).with_vectors(self.height, [y], |rows, [part]| {
-            with_block_size!(multiply_rows, (self.height, self.width), (self, x, rows, part));
+        self.multiply(x, y, Product::Replaces, threads);
+    }
+
+    /// `A x`, as `product` says.
+    pub fn multiply(&self, x: &[T], y: &mut [T], product: Product, threads: usize) {
+        self.shared(threads).with_vectors(self.height, [y], |rows, [y]| {
+            with_block_size!(multiply_rows, (self.height, self.width), (self, x, rows, (product, y)));
         });
+    }
+
+    /// `step = keep step + gain A r`, then `x += step`.
+    pub fn step(&self, r: &[T], (keep, gain): (f64, f64), [step, x]: [&mut [T]; 2], threads: usize) {
+        let weights = [T::of(keep), T::of(gain)];
+        self.shared(threads).with_vectors(self.height, [step, x], |rows, vectors| {
+            with_block_size!(step_rows, (self.height, self.width), (self, r, rows, (weights, vectors)));
+        });
+    }
+
+    /// Gives a row with one block, on the diagonal, other values.
+    pub fn replace_diagonal(&mut self, row: usize, values: &[T]) {
+        let size = self.block_size();
+        match self.shared_rows.get_mut(row) {
+            None => self.values[row * size..(row + 1) * size].copy_from_slice(values),
+            Some(first) => {
+                *first = self.indices.len() as u32;
+                self.indices.push(0);
+                self.values.extend_from_slice(values);
+            }
+        }
     }
 
     /// A matrix without entries, of `rows` by `columns` blocks.
@@ -164,13 +210,14 @@ impl<T: Real> BlockMatrix<T> {
         (0..self.rows()).filter(|&row| self.starts[row] < self.starts[row + 1])
     }
 
-    /// `y -= A x`, for a matrix with mostly empty rows.
-    pub fn subtract_product(&self, x: &[T], y: &mut [T]) {
+    /// `y += factor A x`, for a matrix with mostly empty rows.
+    pub fn add_few_products(&self, x: &[T], y: &mut [T], factor: f64) {
+        let factor = T::of(factor);
         let mut sums = vec![T::default(); self.height];
         for row in self.filled_rows() {
             sums.fill(T::default());
             self.add_row_product(row, x, &mut sums);
-            y[row * self.height..][..self.height].iter_mut().zip(&sums).for_each(|(y, &sum)| *y -= sum);
+            y[row * self.height..][..self.height].iter_mut().zip(&sums).for_each(|(y, &sum)| *y += factor * sum);
         }
     }
 
@@ -342,17 +389,46 @@ fn multiply_rows<T: Real, const H: usize, const W: usize>(
     matrix: &BlockMatrix<T>,
     x: &[T],
     rows: Range<usize>,
-    y: &mut [T],
+    (product, y): (Product, &mut [T]),
 ) {
     if H == 0 {
-        for (row, sums) in rows.zip(y.chunks_exact_mut(matrix.height)) {
+        let mut sums = vec![T::default(); matrix.height];
+        for (row, y) in rows.zip(y.chunks_exact_mut(matrix.height)) {
             sums.fill(T::default());
-            matrix.add_row_product(row, x, sums);
+            matrix.add_row_product(row, x, &mut sums);
+            y.iter_mut().zip(&sums).for_each(|(y, &sum)| product.put(y, sum));
         }
         return;
     }
-    for (row, of_row) in rows.zip(y.as_chunks_mut::<H>().0) {
-        *of_row = matrix.row_product::<H, W>(row, x);
+    for (row, y) in rows.zip(y.as_chunks_mut::<H>().0) {
+        let sums = matrix.row_product::<H, W>(row, x);
+        (0..H).for_each(|i| product.put(&mut y[i], sums[i]));
+    }
+}
+
+fn step_rows<T: Real, const H: usize, const W: usize>(
+    matrix: &BlockMatrix<T>,
+    r: &[T],
+    rows: Range<usize>,
+    ([keep, gain], [step, x]): ([T; 2], [&mut [T]; 2]),
+) {
+    let put = |step: &mut T, x: &mut T, sum: T| {
+        *step = keep * *step + gain * sum;
+        *x += *step;
+    };
+    if H == 0 {
+        let mut sums = vec![T::default(); matrix.height];
+        let nodes = step.chunks_exact_mut(matrix.height).zip(x.chunks_exact_mut(matrix.height));
+        for (row, (step, x)) in rows.zip(nodes) {
+            sums.fill(T::default());
+            matrix.add_row_product(row, r, &mut sums);
+            step.iter_mut().zip(x).zip(&sums).for_each(|((step, x), &sum)| put(step, x, sum));
+        }
+        return;
+    }
+    for (row, (step, x)) in rows.zip(step.as_chunks_mut::<H>().0.iter_mut().zip(x.as_chunks_mut::<H>().0)) {
+        let sums = matrix.row_product::<H, W>(row, r);
+        (0..H).for_each(|i| put(&mut step[i], &mut x[i], sums[i]));
     }
 }
 

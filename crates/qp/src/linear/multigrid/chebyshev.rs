@@ -7,6 +7,7 @@ use super::coarsest::LOST_DIAGONAL;
 use super::inverse::invert;
 use super::operator::Operator;
 use super::patches::Patches;
+use super::repeated::RowByRow;
 use crate::linear::Spare;
 use crate::linear::factor::Real;
 use crate::linear::power_iteration::power_iteration;
@@ -68,23 +69,16 @@ impl<T: Real> Chebyshev<T> {
     /// Improves `x` with the residual `rest` = b - A x. Returns the last step, which the residual does not contain yet: that saves a
     /// product if it is not used any more.
     pub fn smooth(&self, operator: &Operator<T>, x: &mut [T], rest: &mut [T]) -> Vec<T> {
-        let (mut step, mut moved) = (operator.spare.zeros(x.len()), operator.spare.take(x.len()));
+        let mut step = operator.spare.zeros(x.len());
         for k in 1..=self.degree {
-            let (keep, gain) = self.weights(k);
-            let (keep, gain) = (T::of(keep), T::of(gain));
-            self.precondition(operator, rest, &mut moved);
-            operator.in_chunks([&mut step, x], |range, [step, x]| {
-                for ((step, &moved), x) in step.iter_mut().zip(&moved[range]).zip(x) {
-                    *step = keep * *step + gain * moved;
-                    *x += *step;
-                }
-            });
+            self.inverse.step(rest, self.weights(k), [&mut step, x], operator.threads);
+            // The sum x is brought into the face at the end.
+            operator.project(&mut step);
             if k < self.degree {
-                operator.mul_into(&step, &mut moved);
-                operator.subtract(&moved, rest);
+                operator.subtract_product(&step, rest);
             }
         }
-        operator.spare.give(moved);
+        operator.project(x);
         step
     }
 
@@ -126,8 +120,8 @@ impl<T: Real> Chebyshev<T> {
                 }
             }
             invert(&mut work, size, &mut result);
-            let place = &mut smoother.inverse.values[node * size * size..(node + 1) * size * size];
-            place.iter_mut().zip(&result).for_each(|(place, &value)| *place = T::of(value));
+            let values: Vec<T> = result.iter().map(|&value| T::of(value)).collect();
+            smoother.inverse.replace_diagonal(node, &values);
         }
         smoother
     }
@@ -163,17 +157,17 @@ impl<T: Real> Chebyshev<T> {
 /// The inverse of each diagonal block.
 fn inverse_diagonal<T: Real>(matrix: &BlockMatrix<T>) -> BlockMatrix<T> {
     let size = matrix.height;
-    let mut inverse = Vec::with_capacity(matrix.rows() * size * size);
-    let (mut work, mut result) = (vec![0.0; size * size], vec![0.0; size * size]);
+    let mut inverse = RowByRow::new(size, matrix.rows());
+    let (mut work, mut result, mut values) = (vec![0.0; size * size], vec![0.0; size * size], Vec::new());
     for node in 0..matrix.rows() {
         match matrix.diagonal_place(node) {
             Some(place) => work.iter_mut().zip(matrix.block(place)).for_each(|(work, value)| *work = value.double()),
             None => work.fill(0.0),
         }
         invert(&mut work, size, &mut result);
-        inverse.extend(result.iter().map(|&value| T::of(value)));
+        values.clear();
+        values.extend(result.iter().map(|&value| T::of(value)));
+        inverse.push(&[node as u32], &values);
     }
-    let rows = matrix.rows();
-    let (starts, indices) = ((0..=rows).collect(), (0..rows as u32).collect());
-    BlockMatrix { starts, indices, values: inverse, ..BlockMatrix::empty(0, rows, (size, size)) }
+    inverse.finished()
 }

@@ -40,20 +40,18 @@ impl<T: Real> Hierarchy<T> {
             spare: &self.spare,
         };
         let smoother = face.and_then(|face| face.smoother(depth)).unwrap_or(&level.smoother);
-        let (mut x, force) = (self.spare.zeros(rest.len()), self.spare.copy(&rest));
+        let mut x = self.spare.zeros(rest.len());
         let step = smoother.smooth(&operator, &mut x, &mut rest);
         operator.subtract_product(&step, &mut rest);
         self.spare.give(step);
         let restricted = level.prolongator.transposed_mul(&rest, self.threads, &self.spare);
         let correction = self.descend(depth + 1, restricted, face);
-        let mut moved = rest;
+        let mut moved = self.spare.take(rest.len());
         level.prolongator.mul_into(&correction, &mut moved, self.threads);
         self.spare.give(correction);
         operator.project(&mut moved);
         operator.add(&moved, &mut x);
-        operator.mul_into(&x, &mut moved);
-        let mut rest = force;
-        operator.subtract(&moved, &mut rest);
+        operator.subtract_product(&moved, &mut rest);
         let step = smoother.smooth(&operator, &mut x, &mut rest);
         [moved, rest, step].into_iter().for_each(|vector| self.spare.give(vector));
         x

@@ -117,14 +117,13 @@ impl Filling<'_> {
     fn entry(&self, row: usize, column: usize, next: &mut [u32]) -> Option<f64> {
         let (row, column) = (row.max(column) as u32, row.min(column));
         let lower = self.matrix.lower();
-        let range = lower.column_starts()[column]..lower.column_starts()[column + 1];
-        let rows = &lower.row_indices()[range.clone()];
+        let (rows, values) = lower.column_slices(column);
         let mut place = next[column] as usize;
         if rows.get(place) != Some(&row) {
             place = rows.binary_search(&row).ok()?;
         }
         next[column] = place as u32 + 1;
-        Some(lower.values()[range.start + place])
+        Some(values[place])
     }
 }
 

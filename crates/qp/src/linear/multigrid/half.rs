@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use super::blocks::BlockMatrix;
+use super::blocks::{BlockMatrix, Product};
 use crate::linear::Spare;
 use crate::linear::factor::Real;
 use crate::linear::threads::{SharedRows, in_order};
@@ -66,14 +66,27 @@ impl<T: Real> BlockMatrix<T> {
     }
 }
 
-/// `y = A x` for a matrix of which half is stored. The sums run over parts of the rows that depend on the matrix alone, so that the result
-/// does not depend on the threads.
-pub fn multiply<T: Real>(matrix: &BlockMatrix<T>, x: &[T], y: &mut [T], threads: usize, spare: &Spare<T>) {
+/// `A x`, as `product` says, for a matrix of which half is stored. The sums run over parts of the rows that depend on the matrix alone, so
+/// that the result does not depend on the threads.
+pub fn multiply<T: Real>(
+    matrix: &BlockMatrix<T>,
+    x: &[T],
+    y: &mut [T],
+    product: Product,
+    threads: usize,
+    spare: &Spare<T>,
+) {
     let runs = SharedRows { starts: &matrix.starts, threads: MOST_PARTS }.runs();
     // What a part adds ends with its last row.
     let before = &runs[..runs.len() - 1];
     let mut sums: Vec<Vec<T>> = before.iter().map(|rows| spare.zeros(rows.end * matrix.height)).collect();
-    y.fill(T::default());
+    let sign = match product {
+        Product::Replaces => {
+            y.fill(T::default());
+            T::of(1.0)
+        }
+        Product::IsSubtracted => T::of(-1.0),
+    };
     let mut parts: Vec<(Range<usize>, &mut [T])> = Vec::with_capacity(runs.len());
     parts.extend(runs.iter().cloned().zip(sums.iter_mut().map(Vec::as_mut_slice).chain([&mut *y])));
     let of_thread = runs.len().div_ceil(threads);
@@ -85,9 +98,9 @@ pub fn multiply<T: Real>(matrix: &BlockMatrix<T>, x: &[T], y: &mut [T], threads:
     in_order(shares, |share| {
         for (rows, sums) in share {
             match matrix.height {
-                1 => add_products::<T, 1>(matrix, x, rows, sums),
-                2 => add_products::<T, 2>(matrix, x, rows, sums),
-                _ => add_products::<T, 3>(matrix, x, rows, sums),
+                1 => add_products::<T, 1>(matrix, x, sign, rows, sums),
+                2 => add_products::<T, 2>(matrix, x, sign, rows, sums),
+                _ => add_products::<T, 3>(matrix, x, sign, rows, sums),
             }
         }
     });
@@ -97,13 +110,19 @@ pub fn multiply<T: Real>(matrix: &BlockMatrix<T>, x: &[T], y: &mut [T], threads:
     }
 }
 
-/// Adds what the stored blocks of some rows, and those that mirror them, add to `A x`.
-fn add_products<T: Real, const H: usize>(matrix: &BlockMatrix<T>, x: &[T], rows: Range<usize>, sums: &mut [T]) {
+/// Adds what the stored blocks of some rows, and those that mirror them, add to `sign A x`.
+fn add_products<T: Real, const H: usize>(
+    matrix: &BlockMatrix<T>,
+    x: &[T],
+    sign: T,
+    rows: Range<usize>,
+    sums: &mut [T],
+) {
     let (x, sums) = (x.as_chunks::<H>().0, sums.as_chunks_mut::<H>().0);
     for row in rows {
         let places = matrix.starts[row]..matrix.starts[row + 1];
         let blocks = matrix.values[places.start * H * H..places.end * H * H].as_chunks::<H>().0;
-        let (of_row, mut own) = (x[row], [T::default(); H]);
+        let (of_row, mut own) = (x[row].map(|x| sign * x), [T::default(); H]);
         for (&column, block) in matrix.indices[places].iter().zip(blocks.chunks_exact(H)) {
             let column = column as usize;
             let of_column = x[column];
@@ -123,7 +142,7 @@ fn add_products<T: Real, const H: usize>(matrix: &BlockMatrix<T>, x: &[T], rows:
             }
         }
         for i in 0..H {
-            sums[row][i] += own[i];
+            sums[row][i] += sign * own[i];
         }
     }
 }
@@ -166,7 +185,11 @@ mod tests {
         whole.mul_into(&x, &mut expected, 1);
         let product = |threads: usize| {
             let mut y = vec![1.0; x.len()];
-            multiply(&half, &x, &mut y, threads, &Spare::default());
+            multiply(&half, &x, &mut y, Product::Replaces, threads, &Spare::default());
+            // What is subtracted from itself leaves the rounding of as many terms.
+            let mut rest = y.clone();
+            multiply(&half, &x, &mut rest, Product::IsSubtracted, threads, &Spare::default());
+            assert!(rest.iter().all(|rest| rest.abs() <= 4.0 * f64::EPSILON * (9 * H) as f64));
             y
         };
         let found = product(1);

@@ -1,8 +1,6 @@
 //! The matrix of a level, in all dofs or in a face.
 
-use std::ops::Range;
-
-use super::blocks::BlockMatrix;
+use super::blocks::{BlockMatrix, Product};
 use super::half;
 use super::held::Held;
 use super::repeated;
@@ -37,27 +35,28 @@ impl<'a, T: Real> Operator<'a, T> {
 
     /// The force of an `x` in the face.
     pub fn mul_into(&self, x: &[T], y: &mut [T]) {
+        self.multiply(x, y, Product::Replaces);
+    }
+
+    /// `y -= A x` for forces `y` and an `x` in the face.
+    pub fn subtract_product(&self, x: &[T], y: &mut [T]) {
+        self.multiply(x, y, Product::IsSubtracted);
+    }
+
+    fn multiply(&self, x: &[T], y: &mut [T], product: Product) {
         if self.matrix.is_half {
-            half::multiply(self.matrix, x, y, self.threads, self.spare);
+            half::multiply(self.matrix, x, y, product, self.threads, self.spare);
         } else if self.matrix.shared_rows.is_empty() {
-            self.matrix.mul_into(x, y, self.threads);
+            self.matrix.multiply(x, y, product, self.threads);
         } else {
-            repeated::multiply(self.matrix, x, y, self.threads, self.spare);
+            repeated::multiply(self.matrix, x, y, product, self.threads, self.spare);
         }
         if let Some(change) = self.change {
-            change.subtract_product(x, y);
+            change.add_few_products(x, y, if product == Product::Replaces { -1.0 } else { 1.0 });
         }
         if let Some(held) = self.held {
             held.project_force(y);
         }
-    }
-
-    /// `y -= A x` with an `x` in the face.
-    pub fn subtract_product(&self, x: &[T], y: &mut [T]) {
-        let mut product = self.spare.take(y.len());
-        self.mul_into(x, &mut product);
-        self.subtract(&product, y);
-        self.spare.give(product);
     }
 
     /// Brings a displacement into the face.
@@ -69,19 +68,9 @@ impl<'a, T: Real> Operator<'a, T> {
 
     /// `y += x`.
     pub fn add(&self, x: &[T], y: &mut [T]) {
-        self.in_chunks([y], |range, [y]| y.iter_mut().zip(&x[range]).for_each(|(y, &x)| *y += x));
-    }
-
-    /// `y -= x`.
-    pub fn subtract(&self, x: &[T], y: &mut [T]) {
-        self.in_chunks([y], |range, [y]| y.iter_mut().zip(&x[range]).for_each(|(y, &x)| *y -= x));
-    }
-
-    /// Runs `work` on runs of unknowns, whole nodes each, with the matching parts of the vectors `ys`.
-    pub fn in_chunks<const N: usize>(&self, ys: [&mut [T]; N], work: impl Fn(Range<usize>, [&mut [T]; N]) + Sync) {
         let height = self.matrix.height;
-        self.matrix.shared(self.threads).with_vectors(height, ys, |rows, parts| {
-            work(rows.start * height..rows.end * height, parts);
+        self.matrix.shared(self.threads).with_vectors(height, [y], |rows, [y]| {
+            y.iter_mut().zip(&x[rows.start * height..]).for_each(|(y, &x)| *y += x);
         });
     }
 }

@@ -112,14 +112,14 @@ pub fn smoothed<T: Real>(
     threads: usize,
 ) -> BlockMatrix<T> {
     let (height, width) = (moved.height, moved.width);
-    let (inverse, step) = (&smoother.inverse.values, T::of(STEP / smoother.largest));
+    let (inverse, step) = (&smoother.inverse, T::of(STEP / smoother.largest));
     let BlockMatrix { starts, indices, values, .. } = &mut moved;
     let size = height * width;
     SharedRows { starts, threads }.with_blocks(size, values, |rows, values| {
         let mut column = vec![T::default(); height];
         let first = starts[rows.start];
         for node in rows {
-            let of_node = &inverse[node * height * height..(node + 1) * height * height];
+            let Some((_, of_node)) = inverse.row(node).next() else { continue };
             let own = tentative.indices[node];
             for place in starts[node]..starts[node + 1] {
                 let is_own = indices[place] == own;

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::blocks::BlockMatrix;
+use super::blocks::{BlockMatrix, Product};
 use crate::linear::Spare;
 use crate::linear::factor::Real;
 
@@ -117,12 +117,19 @@ fn hash<T: Real>(indices: impl Iterator<Item = u32>, values: &[T]) -> u64 {
     words.fold(0, |hash: u64, word| (hash.rotate_left(5) ^ word).wrapping_mul(0x517c_c1b7_2722_0a95))
 }
 
-/// `y = A x` for a matrix with shared rows.
-pub fn multiply<T: Real>(matrix: &BlockMatrix<T>, x: &[T], y: &mut [T], threads: usize, spare: &Spare<T>) {
+/// `A x`, as `product` says, for a matrix with shared rows.
+pub fn multiply<T: Real>(
+    matrix: &BlockMatrix<T>,
+    x: &[T],
+    y: &mut [T],
+    product: Product,
+    threads: usize,
+    spare: &Spare<T>,
+) {
     match matrix.height {
-        1 => multiply_in::<T, 1>(matrix, x, y, threads, spare),
-        2 => multiply_in::<T, 2>(matrix, x, y, threads, spare),
-        _ => multiply_in::<T, 3>(matrix, x, y, threads, spare),
+        1 => multiply_in::<T, 1>(matrix, x, y, product, threads, spare),
+        2 => multiply_in::<T, 2>(matrix, x, y, product, threads, spare),
+        _ => multiply_in::<T, 3>(matrix, x, y, product, threads, spare),
     }
 }
 
@@ -130,6 +137,7 @@ fn multiply_in<T: Real, const H: usize>(
     matrix: &BlockMatrix<T>,
     x: &[T],
     y: &mut [T],
+    product: Product,
     threads: usize,
     spare: &Spare<T>,
 ) {
@@ -152,8 +160,13 @@ fn multiply_in<T: Real, const H: usize>(
             let run = row..row + (row..rows.end).take_while(alike).count();
             let sums = &mut part[run.start - first..run.end - first];
             match run.len() < TILE {
-                true => run.clone().zip(sums).for_each(|(row, sums)| *sums = matrix.row_product::<H, H>(row, x)),
-                false => arch.dispatch(Run { matrix, components, rows: run.clone(), sums }),
+                true => {
+                    for (row, y) in run.clone().zip(sums) {
+                        let sums = matrix.row_product::<H, H>(row, x);
+                        (0..H).for_each(|i| product.put(&mut y[i], sums[i]));
+                    }
+                }
+                false => arch.dispatch(Run { matrix, components, rows: run.clone(), sums, product }),
             }
             row = run.end;
         }
@@ -167,6 +180,7 @@ struct Run<'a, T, const H: usize> {
     components: [&'a [T]; H],
     rows: Range<usize>,
     sums: &'a mut [[T; H]],
+    product: Product,
 }
 
 impl<T: Real, const H: usize> WithSimd for Run<'_, T, H> {
@@ -174,12 +188,12 @@ impl<T: Real, const H: usize> WithSimd for Run<'_, T, H> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Run { matrix, components, rows, sums } = self;
+        let Run { matrix, components, rows, sums, product } = self;
         let first = matrix.shared_rows[rows.start] as usize;
         let places = first..first + matrix.starts[rows.start + 1] - matrix.starts[rows.start];
         let blocks = matrix.values[places.start * H * H..places.end * H * H].as_chunks::<H>().0;
         let indices = &matrix.indices[places];
-        let mut start = rows.start;
+        let (mut start, mut done) = (rows.start, rows.start);
         loop {
             let mut of_tile = [[T::default(); TILE]; H];
             for (&index, block) in indices.iter().zip(blocks.chunks_exact(H)) {
@@ -194,13 +208,15 @@ impl<T: Real, const H: usize> WithSimd for Run<'_, T, H> {
                     }
                 }
             }
-            for (node, of_node) in sums[start - rows.start..][..TILE].iter_mut().enumerate() {
-                *of_node = std::array::from_fn(|component| of_tile[component][node]);
+            let of_nodes: [[T; H]; TILE] = std::array::from_fn(|node| std::array::from_fn(|i| of_tile[i][node]));
+            for (y, of_node) in sums[start - rows.start..][..TILE].iter_mut().zip(&of_nodes).skip(done - start) {
+                (0..H).for_each(|i| product.put(&mut y[i], of_node[i]));
             }
             if start + TILE == rows.end {
                 return;
             }
             // The last tile may overlap the one before.
+            done = start + TILE;
             start = (start + TILE).min(rows.end - TILE);
         }
     }
@@ -249,11 +265,14 @@ mod tests {
         plain.mul_into(&x, &mut expected, 1);
         for threads in [1, 2, 3] {
             let mut y = vec![1.0; x.len()];
-            match is_shared {
-                true => multiply(&found, &x, &mut y, threads, &Spare::default()),
-                false => found.mul_into(&x, &mut y, threads),
-            }
+            let multiply = |product, y: &mut [f32]| match is_shared {
+                true => multiply(&found, &x, y, product, threads, &Spare::default()),
+                false => found.multiply(&x, y, product, threads),
+            };
+            multiply(Product::Replaces, &mut y);
             assert_eq!(y, expected, "{threads} threads");
+            multiply(Product::IsSubtracted, &mut y);
+            assert!(y.iter().all(|&rest| rest == 0.0), "{threads} threads");
         }
     }
 
