@@ -9,6 +9,7 @@
 //! for the exact displacement u, in the norms of energy; p is the pressure of tau on the obstacle, `p <= 0`. The bound contains no
 //! unknown constant.
 
+use super::balance::Balance;
 use super::displacement::Displacements;
 use super::johnson_mercier::{PartStress, at, corners_of_side};
 use super::mesh::{OuterFacet, SimplexMesh};
@@ -19,6 +20,7 @@ use super::system::{Row, Unknowns};
 use crate::error::Error;
 use crate::fem::geometry::{dot, length};
 use crate::fem::material::Lame;
+use crate::fem::threads::each;
 use signorini_qp as qp;
 use signorini_qp::{ContactProblem, ContactSet, Prepared, Settings, Solution, solve};
 
@@ -37,8 +39,14 @@ pub struct Bracket<'a> {
     pub dual: Side,
     /// The places at which the rows of the stress act.
     pub places: Vec<Place>,
+    /// The settings of every solve.
+    pub settings: Settings,
+    /// How forces are carried to the supports; `None` if these cannot carry every force.
+    pub balance: Option<Balance>,
     /// The stress on each simplex.
     pub stress: Vec<PartStress>,
+    /// The force of each row of the stress along its obstacle, `<= 0`.
+    pub pulls: Vec<f64>,
     /// The contribution of each simplex to J - D.
     pub shares: Vec<f64>,
     /// The part of J - D from contact.
@@ -104,10 +112,19 @@ impl<'a> Bracket<'a> {
         settings: &Settings,
     ) -> Result<Self, Error> {
         let clock = std::time::Instant::now();
+        let stresses = Stresses::new(problem, mesh)?;
+        let balance = Balance::of(&stresses);
+        let settings = &settings_for(settings, balance.is_some());
         let displacements = Displacements::new(problem, mesh);
         let unknowns = displacements.unknowns();
         let rows = displacements.rows(&unknowns)?;
-        let posed = unknowns.problem(displacements.blocks(), &displacements.load(), &rows)?;
+        let posed = unknowns.problem(
+            &displacements.numbers,
+            &displacements.blocks(),
+            &displacements.load(),
+            &rows,
+            &displacements.places(),
+        )?;
         let start = touching.map(|nodes| {
             let (count, edges) = (mesh.nodes.len(), &mesh.edges);
             ContactSet::from_fn(rows.len(), |row| match rows[row].unknown / mesh.dimension {
@@ -117,16 +134,18 @@ impl<'a> Bracket<'a> {
         });
         let mut primal = Side::solved(unknowns, rows, &posed, start, settings)?;
         primal.seconds = clock.elapsed().as_secs_f64();
-        let stresses = Stresses::new(problem, mesh);
         let unknowns = stresses.unknowns();
         let largest = largest(&primal.values);
         let (rows, places) = stresses.rows(&unknowns, |place, gap| {
             gap - displacements.approached(&primal.values, &place.on, place.corner, place.obstacle) <= largest
         });
-        let posed = unknowns.problem(stresses.blocks(), &stresses.load(), &rows)?;
+        let posed =
+            unknowns.problem(&stresses.numbers, &stresses.blocks(), &stresses.load(), &rows, &stresses.places())?;
         let start = touching.map(|nodes| ContactSet::from_fn(rows.len(), |row| nodes[places[row].node(mesh)]));
         let mut dual = Side::solved(unknowns, rows, &posed, start, settings)?;
-        let stress = stresses.stresses(&dual.values);
+        let pulls: Vec<f64> = dual.solution.multiplier.iter().map(|force| force.min(0.0)).collect();
+        let balanced = balance.as_ref().and_then(|balance| balance.stress(&stresses, &dual.values, &places, &pulls));
+        let stress = balanced.unwrap_or_else(|| stresses.stresses(&dual.values));
         dual.seconds = clock.elapsed().as_secs_f64() - primal.seconds;
         let mut bracket = Bracket {
             problem,
@@ -136,7 +155,10 @@ impl<'a> Bracket<'a> {
             primal,
             dual,
             places,
+            settings: settings.clone(),
+            balance,
             stress,
+            pulls,
             shares: Vec::new(),
             contact_share: 0.0,
             energy: 0.0,
@@ -182,23 +204,17 @@ impl<'a> Bracket<'a> {
     /// Computes energy, shares and the share of contact.
     pub(super) fn measure(&mut self) {
         let size = |strain: Tensor| work(self.problem.stress(strain), strain);
-        let cells = 0..self.mesh.count();
         let misfit = |strain: Tensor, stress: Tensor| size(less(strain, self.problem.compliance(stress))) / 2.0;
-        let mut shares: Vec<f64> = cells.clone().map(|cell| self.integral(cell, misfit)).collect();
-        let energy = cells.map(|cell| self.integral(cell, |strain, _| size(strain))).sum();
+        let mut shares = each(self.mesh.count(), |cell| self.integral(cell, misfit));
+        let energy = each(self.mesh.count(), |cell| self.integral(cell, |strain, _| size(strain))).iter().sum();
         let mut contact_share = 0.0;
         for (index, place) in self.places.iter().enumerate() {
             let moved = self.displacements.approached(&self.primal.values, &place.on, place.corner, place.obstacle);
-            let share = -self.pull(index) * (self.dual.rows[index].gap - moved);
+            let share = -self.pulls[index] * (self.dual.rows[index].gap - moved);
             shares[place.on.cell] += share;
             contact_share += share;
         }
         (self.shares, self.energy, self.contact_share) = (shares, energy, contact_share);
-    }
-
-    /// The force of a row of the stress along the obstacle, `<= 0`.
-    pub fn pull(&self, row: usize) -> f64 {
-        self.dual.solution.multiplier[row].min(0.0)
     }
 
     /// J - D, half the square of the bound, in force times length.
@@ -245,9 +261,8 @@ impl<'a> Bracket<'a> {
 
     /// D(tau).
     pub fn energy_of_stress(&self) -> f64 {
-        let stored: f64 = (0..self.mesh.count())
-            .map(|cell| self.integral(cell, |_, stress| work(stress, self.problem.compliance(stress))))
-            .sum();
+        let stored = |cell: usize| self.integral(cell, |_, stress| work(stress, self.problem.compliance(stress)));
+        let stored = each(self.mesh.count(), stored).iter().sum::<f64>();
         self.work_on_supports(&self.stress) + self.work_on_obstacles() - stored / 2.0
     }
 
@@ -259,7 +274,7 @@ impl<'a> Bracket<'a> {
 
     /// The work of the pressures of the stress over the distances to the obstacles.
     pub(super) fn work_on_obstacles(&self) -> f64 {
-        self.dual.rows.iter().enumerate().map(|(row, of_row)| self.pull(row) * of_row.gap).sum()
+        self.dual.rows.iter().zip(&self.pulls).map(|(row, pull)| pull * row.gap).sum()
     }
 
     /// The work of the tractions of a stress with the prescribed displacements.
@@ -293,6 +308,14 @@ impl<'a> Bracket<'a> {
             }
         }
         jumps
+    }
+}
+
+/// The settings for both problems: without a balance, a stress needs a linear solve with a settled contact set.
+fn settings_for(settings: &Settings, is_balanced: bool) -> Settings {
+    match is_balanced {
+        true => settings.clone(),
+        false => settings.clone().exactly(),
     }
 }
 

@@ -10,6 +10,7 @@ use super::simplex::{MOST_CORNERS, Point, Tensor, Weights, pairs, quadratic_rule
 use super::system::{Block, Numbers, Row, Unknowns};
 use crate::error::Error;
 use crate::fem::geometry::key;
+use crate::fem::threads::each;
 use signorini_qp as qp;
 
 /// Displacements on a mesh.
@@ -36,6 +37,13 @@ impl<'a> Displacements<'a> {
     /// Number of unknowns, free or held.
     fn count(&self) -> usize {
         self.mesh.dimension * (self.mesh.nodes.len() + self.mesh.edges.len())
+    }
+
+    /// The places of the functions: a linear displacement has its values there as coefficients.
+    pub fn places(&self) -> Vec<Point> {
+        let nodes = &self.mesh.nodes;
+        let middle = |&[a, b]: &[usize; 2]| [0, 1, 2].map(|axis| (nodes[a][axis] + nodes[b][axis]) / 2.0);
+        nodes.iter().copied().chain(self.mesh.edges.iter().map(middle)).collect()
     }
 
     /// The unknowns on a facet of the surface along an axis: those of its corners, then those of their pairs.
@@ -100,9 +108,9 @@ impl<'a> Displacements<'a> {
         Ok(rows)
     }
 
-    /// The functions of each simplex, with its stiffness.
-    pub fn blocks(&self) -> impl Iterator<Item = (&[usize], Block)> + '_ {
-        self.numbers.iter().enumerate().map(|(cell, numbers)| (numbers, self.stiffness(cell)))
+    /// The stiffness of each simplex.
+    pub fn blocks(&self) -> Vec<Block> {
+        each(self.mesh.count(), |cell| self.stiffness(cell))
     }
 
     fn stiffness(&self, cell: usize) -> Block {

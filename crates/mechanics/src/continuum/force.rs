@@ -17,26 +17,36 @@ use std::collections::BTreeSet;
 use super::bound::{Bracket, Side};
 use super::johnson_mercier::{PartStress, at};
 use super::simplex::{Weights, less, mean_over_parts, middle, work};
-use super::stress::Place;
+use super::stress::{Place, Stresses};
 use super::system::{Block, Unknowns};
 use crate::error::Error;
 use crate::fem::material::Lame;
-use signorini_qp::{Cholesky, ContactProblem};
+use crate::fem::threads::{both, each};
+use signorini_qp as qp;
+use signorini_qp::{ContactProblem, solve};
 
 /// Values between 0 and -1 by less than this, and pressures below this share of the largest, are rounding.
 const ROUNDING: f64 = 1e-12;
 
+/// If forces can be brought into balance, values of the wrong sign up to this share of the largest are set to zero.
+const ALMOST_RIGHT: f64 = 1e-3;
+
 /// Trial caps of beta, over the beta at which its term would reach that of the ball.
 const CAPS: [f64; 2] = [f64::INFINITY, 2.0];
+
+/// Error of the solver of a pair, relative in energy: it counts by its product with the radius.
+const OF_PAIR: f64 = 1e-4;
+
+/// From this number of unknowns in space a few cycles of multigrid cost less than a factor.
+const MANY_UNKNOWNS: usize = 20_000;
 
 /// Largest number of rounds that change rows of the wrong sign.
 const ROUNDS: usize = 12;
 
-/// The data for every pair: the matrices of the simplices, and the stress of facets at rest.
+/// The matrices of the simplices, for every pair.
 struct Blocks {
     displacement: Vec<Block>,
     stress: Vec<Block>,
-    at_rest: Vec<PartStress>,
 }
 
 /// A stress, and its force at each place.
@@ -66,12 +76,8 @@ impl Bracket<'_> {
         }
         let closed = &self.primal.solution.contact_set;
         let mut bonded: Vec<bool> = (0..self.primal.rows.len()).map(|row| closed.contains(row)).collect();
-        let mut pressed: Vec<bool> = (0..self.places.len()).map(|row| self.pull(row) < 0.0).collect();
-        let blocks = Blocks {
-            displacement: self.displacements.blocks().map(|(_, block)| block).collect(),
-            stress: self.stresses.blocks().map(|(_, block)| block).collect(),
-            at_rest: self.stresses.stresses(&vec![0.0; self.dual.values.len()]),
-        };
+        let mut pressed: Vec<bool> = (0..self.places.len()).map(|row| self.pulls[row] < 0.0).collect();
+        let blocks = Blocks { displacement: self.displacements.blocks(), stress: self.stresses.blocks() };
         let mut last: Option<Test> = None;
         let (mut interval, mut scale): (Option<[f64; 2]>, f64) = (None, 0.0);
         for cap in CAPS {
@@ -98,23 +104,26 @@ impl Bracket<'_> {
 
     /// The interval of a pair, and the beta at which its term would reach that of the ball.
     fn interval(&self, test: &Test) -> ([f64; 2], f64) {
-        let (mut base, mut square) = (self.work_on_supports(&test.stress), 0.0);
-        for cell in 0..self.mesh.count() {
+        let of_cell = |cell: usize| {
             let mean =
                 |value: &dyn Fn(usize, Weights) -> f64| self.volume(cell) * mean_over_parts(self.mesh.dimension, value);
             let rest = |k: usize, weights: Weights| {
                 let strain = self.strain(&test.displacement, cell, k, weights);
                 less(strain, self.problem.compliance(at(&test.stress[cell], k, weights)))
             };
-            square += mean(&|k, weights| {
+            let square = mean(&|k, weights| {
                 let rest = rest(k, weights);
                 work(self.problem.stress(rest), rest)
             });
-            base += mean(&|k, weights| {
+            let base = mean(&|k, weights| {
                 let of_displacement = self.problem.stress(self.strain(&self.primal.values, cell, k, weights));
                 work(middle(of_displacement, at(&self.stress[cell], k, weights)), rest(k, weights))
             });
-        }
+            [square, base]
+        };
+        let of_cells = each(self.mesh.count(), of_cell);
+        let square: f64 = of_cells.iter().map(|cell| cell[0]).sum();
+        let mut base = self.work_on_supports(&test.stress) + of_cells.iter().map(|cell| cell[1]).sum::<f64>();
         let load = self.displacements.load();
         base -= test.displacement.iter().zip(&load).map(|(value, load)| value * load).sum::<f64>();
         let [mut low, mut high] = [base; 2];
@@ -132,10 +141,11 @@ impl Bracket<'_> {
 
     /// The pair with these rows held; rows of the wrong sign are bonded or released until every row has the right sign.
     fn test(&self, bonded: &mut [bool], pressed: &mut [bool], blocks: &Blocks) -> Result<Option<Test>, Error> {
-        let Some(displacement) = self.bonded_displacement(bonded, &blocks.displacement)? else {
-            return Ok(None);
-        };
-        let Some((stress, pulls)) = self.bonded_stress(pressed, blocks)? else { return Ok(None) };
+        let (displacement, stress) = both(
+            || self.bonded_displacement(bonded, &blocks.displacement),
+            || self.bonded_stress(pressed, &blocks.stress),
+        );
+        let (Some(displacement), Some((stress, pulls))) = (displacement?, stress?) else { return Ok(None) };
         let (primal, values) = (&self.primal, &self.primal.values);
         let mut beyond: f64 = 0.0;
         let mut of_rows: Vec<f64> = Vec::with_capacity(primal.rows.len());
@@ -154,26 +164,30 @@ impl Bracket<'_> {
                 }
             }
         }
-        let of_places =
-            pulls.iter().enumerate().map(|(row, &pull)| if pull < 0.0 { pull / self.pull(row) } else { 0.0 }).collect();
+        let of_places = pulls
+            .iter()
+            .enumerate()
+            .map(|(row, &pull)| if pull < 0.0 { pull / self.pulls[row] } else { 0.0 })
+            .collect();
         Ok(Some(Test { displacement, stress, pulls, ratios: [of_rows, of_places], beyond }))
     }
 
-    /// The displacement -1 at bonded rows, without load; rows below -1 are bonded too.
+    /// The displacement -1 at bonded rows, without load; rows below -1 are bonded too, and those that are only a little below it are moved there.
     fn bonded_displacement(&self, bonded: &mut [bool], blocks: &[Block]) -> Result<Option<Vec<f64>>, Error> {
+        let (rows, places) = (&self.primal.rows, self.displacements.places());
         for _ in 0..ROUNDS {
             let (unknowns, load) = with_contact_held(&self.primal, bonded);
-            let cells = self.displacements.numbers.iter().zip(blocks.iter().cloned());
-            let posed = unknowns.problem(cells, &load, &[])?;
-            let Some(free) = linear(&posed) else { return Ok(None) };
-            let values = unknowns.expanded(&free);
-            let wrong: Vec<usize> = (0..bonded.len())
-                .filter(|&row| {
-                    let of_row = &self.primal.rows[row];
-                    1.0 + of_row.sense * values[of_row.unknown] < -ROUNDING && !bonded[row]
-                })
-                .collect();
+            let posed = unknowns.problem(&self.displacements.numbers, blocks, &load, &[], &places)?;
+            let Some(free) = self.linear(&posed) else { return Ok(None) };
+            let mut values = unknowns.expanded(&free);
+            let open = |row: usize| 1.0 + rows[row].sense * values[rows[row].unknown];
+            let wrong: Vec<usize> =
+                (0..bonded.len()).filter(|&row| open(row) < -self.allowed_sign() && !bonded[row]).collect();
             if wrong.is_empty() {
+                for row in rows {
+                    let value = &mut values[row.unknown];
+                    *value = row.sense * (row.sense * *value).max(-1.0);
+                }
                 return Ok(Some(values));
             }
             wrong.into_iter().for_each(|row| bonded[row] = true);
@@ -181,44 +195,62 @@ impl Bracket<'_> {
         Ok(None)
     }
 
-    /// The stress under facets held at -1 where pressed, and its forces there; places with a pulling force are released.
-    fn bonded_stress(&self, pressed: &mut [bool], blocks: &Blocks) -> Result<Option<Pressed>, Error> {
+    /// The stress under facets held at -1 where pressed, without load, and its forces there; places with a pulling force are released.
+    fn bonded_stress(&self, pressed: &mut [bool], blocks: &[Block]) -> Result<Option<Pressed>, Error> {
+        let places = self.stresses.places();
+        let unloaded = self.problem.unloaded();
+        let stresses = Stresses::new(&unloaded, self.mesh)?;
         for _ in 0..ROUNDS {
             let (unknowns, load) = with_contact_held(&self.dual, pressed);
-            let cells = self.stresses.numbers.iter().zip(blocks.stress.iter().cloned());
-            let posed = unknowns.problem(cells, &load, &[])?;
-            let Some(free) = linear(&posed) else { return Ok(None) };
-            let mut stress = self.stresses.stresses(&unknowns.expanded(&free));
-            // The difference of two answers under the same body force has no body force.
-            for (values, at_rest) in
-                stress.iter_mut().flatten().flatten().zip(blocks.at_rest.iter().flatten().flatten())
-            {
-                *values = less(*values, *at_rest);
-            }
-            let mut pulls = self.pulls(&stress);
+            let posed = unknowns.problem(&self.stresses.numbers, blocks, &load, &[], &places)?;
+            let Some(free) = self.linear(&posed) else { return Ok(None) };
+            let values = unknowns.expanded(&free);
+            let stress = stresses.stresses(&values);
+            let mut pulls = self.pulls_of(&stress);
             // The force for a displacement of one of a body as wide as high, for comparison: a body that nothing holds moves without
             // force.
             let Lame { lambda, mu } = self.problem.lame;
             let volume: f64 = (0..self.mesh.count()).map(|cell| self.volume(cell)).sum();
             let depth = self.problem.thickness * if self.mesh.dimension == 2 { 1.0 } else { volume.cbrt() };
             let unit = (lambda + 2.0 * mu) * depth;
-            let largest = pulls.iter().fold(unit, |largest: f64, pull| largest.max(pull.abs()));
-            let wrong: Vec<usize> =
-                (0..pressed.len()).filter(|&row| pressed[row] && pulls[row] > ROUNDING * largest).collect();
+            let largest = pulls.iter().fold(0.0, |largest: f64, pull| largest.max(pull.abs()));
+            let allowed = f64::max(self.allowed_sign() * largest, ROUNDING * unit);
+            let wrong: Vec<usize> = (0..pressed.len()).filter(|&row| pressed[row] && pulls[row] > allowed).collect();
             if wrong.is_empty() {
                 pulls
                     .iter_mut()
                     .zip(pressed.iter())
                     .for_each(|(pull, pressed)| *pull = if *pressed { pull.min(0.0) } else { 0.0 });
-                return Ok(Some((stress, pulls)));
+                let of_balance =
+                    self.balance.as_ref().and_then(|balance| balance.stress(&stresses, &values, &self.places, &pulls));
+                return Ok(Some((of_balance.unwrap_or(stress), pulls)));
             }
             wrong.into_iter().for_each(|row| pressed[row] = false);
         }
         Ok(None)
     }
 
+    /// The size, over the largest, of a value of the wrong sign that is not worth another solve.
+    fn allowed_sign(&self) -> f64 {
+        if self.balance.is_some() { ALMOST_RIGHT } else { ROUNDING }
+    }
+
+    /// The displacement of a problem without rows; `None` if it was not found.
+    fn linear(&self, problem: &ContactProblem) -> Option<Vec<f64>> {
+        let is_large = problem.dofs() > MANY_UNKNOWNS && self.mesh.dimension == 3;
+        let settings = match is_large && self.balance.is_some() {
+            true => self.settings.clone().with_accuracy(OF_PAIR).by(qp::Method::Mprgp),
+            false => self.settings.clone(),
+        };
+        match solve(problem, &settings) {
+            Ok(solution) => Some(solution.displacement),
+            Err(qp::Error::NotCertified { solution, .. }) => Some(solution.displacement),
+            Err(_) => None,
+        }
+    }
+
     /// The force of a stress at each place, along the obstacle.
-    fn pulls(&self, stress: &[PartStress]) -> Vec<f64> {
+    fn pulls_of(&self, stress: &[PartStress]) -> Vec<f64> {
         let pulls = self.jumps(stress);
         let pull = |place: &Place| {
             let facing = &self.problem.obstacles[place.obstacle];
@@ -240,16 +272,6 @@ fn with_contact_held(side: &Side, rows: &[bool]) -> (Unknowns, Vec<f64>) {
     chosen.for_each(|(row, _)| held[row.unknown] = Some(-row.sense));
     let load = vec![0.0; held.len()];
     (Unknowns::new(held), load)
-}
-
-/// The displacement of a problem without rows, refined once; `None` if the stiffness is not definite.
-fn linear(problem: &ContactProblem) -> Option<Vec<f64>> {
-    let factor = Cholesky::of(problem.stiffness()).ok()?;
-    let mut solution = factor.solve(problem.load());
-    let balanced = problem.stiffness().mul(&solution);
-    let left: Vec<f64> = problem.load().iter().zip(balanced).map(|(load, force)| load - force).collect();
-    solution.iter_mut().zip(factor.solve(&left)).for_each(|(value, step)| *value += step);
-    Some(solution)
 }
 
 /// The largest `x length + beta (radius^2 - x^2)` over x from zero to the radius.

@@ -9,6 +9,7 @@
 
 use std::sync::OnceLock;
 
+use super::normal::{Lower, add};
 use super::problem::ContinuumProblem;
 use super::simplex::{OnParts, Point, Simplex, Tensor, Weights, traction};
 use signorini_qp::dot;
@@ -16,14 +17,19 @@ use signorini_qp::dot;
 /// A stress on a simplex: for each part its values at the part's corners, of which the one with the number of the part is the centre.
 pub type PartStress = OnParts<Tensor>;
 
+/// Solves for a stress from its tractions: the second one takes the rounding of the first.
+const REFINED: usize = 2;
+
 /// The entries of a tensor, in the plane and in space.
 const ENTRIES: [&[usize]; 2] = [&[0, 1, 3], &[0, 1, 2, 3, 4, 5]];
 
 /// The stresses without divergence on a simplex, with their tractions and energies.
 #[derive(Clone, Debug)]
 pub struct Element {
-    /// Each has the complementary energy one, and none with the others.
-    stresses: Vec<PartStress>,
+    simplex: Simplex,
+    /// The factor L of the complementary energies of the reference stresses on this simplex. The stresses `L^-1` times these have the energy
+    /// one, and none with the others.
+    factor: Lower,
     /// A stress in balance with the body force.
     particular: PartStress,
     /// Works of the tractions of each stress with the unknowns of the sides.
@@ -32,6 +38,8 @@ pub struct Element {
     particular_tractions: Vec<f64>,
     /// The complementary energies of each stress with the particular one.
     particular_energies: Vec<f64>,
+    /// The factor of the products of the works of the stresses, at its first use.
+    of_works: OnceLock<Option<Lower>>,
 }
 
 /// A stress on part k at the point given by the weights of the part's corners.
@@ -49,34 +57,44 @@ pub fn corners_of_side(dimension: usize, side: usize) -> impl Iterator<Item = us
 }
 
 impl Element {
-    /// The element on a simplex.
-    pub fn new(problem: &ContinuumProblem, simplex: &Simplex) -> Self {
-        let mut stresses: Vec<PartStress> = reference(simplex.dimension)
+    /// The element on a simplex; `None` if it is flat.
+    pub fn new(problem: &ContinuumProblem, simplex: &Simplex) -> Option<Self> {
+        let carried: Vec<PartStress> = reference(simplex.dimension)
             .iter()
             .map(|stress| stress.map(|part| part.map(|value| simplex.carried(value))))
             .collect();
-        // Gram and Schmidt's method in the energy.
-        let mut strains: Vec<Vec<f64>> = Vec::with_capacity(stresses.len());
-        for index in 0..stresses.len() {
-            let (before, rest) = stresses.split_at_mut(index);
-            let own = &mut rest[0];
-            for (strain, other) in strains.iter().zip(before.iter()) {
-                add(own, -dot(strain, values(own)), other);
-            }
-            let mut strain = strains_of(problem, simplex, own);
-            let length = dot(&strain, values(own)).sqrt();
-            own.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|value| *value /= length);
-            strain.iter_mut().for_each(|value| *value /= length);
-            strains.push(strain);
-        }
+        let strains: Vec<Vec<f64>> = carried.iter().map(|stress| strains_of(problem, simplex, stress)).collect();
+        let energies = |(k, strain): (usize, &Vec<f64>)| -> Vec<f64> {
+            carried[..=k].iter().map(|stress| dot(strain, values(stress))).collect()
+        };
+        let factor = Lower::of(strains.iter().enumerate().map(energies).collect())?;
         let particular = balancing(problem.body_force, simplex);
-        Element {
-            tractions: stresses.iter().map(|stress| tractions(problem, simplex, stress)).collect(),
-            particular_tractions: tractions(problem, simplex, &particular),
-            particular_energies: strains.iter().map(|strain| dot(strain, values(&particular))).collect(),
-            stresses,
-            particular,
+        let mut tractions = vec![Vec::new(); carried.len()];
+        let of_carried: Vec<Vec<f64>> = carried.iter().map(|stress| works(problem, simplex, stress)).collect();
+        let mut of_unknown = vec![0.0; carried.len()];
+        for unknown in 0..of_carried[0].len() {
+            of_unknown.iter_mut().zip(&of_carried).for_each(|(own, works)| *own = works[unknown]);
+            factor.forward(&mut of_unknown);
+            tractions.iter_mut().zip(&of_unknown).for_each(|(works, &work)| works.push(work));
         }
+        let mut particular_energies = strains.iter().map(|strain| dot(strain, values(&particular))).collect::<Vec<_>>();
+        factor.forward(&mut particular_energies);
+        let particular_tractions = works(problem, simplex, &particular);
+        let (simplex, of_works) = (*simplex, OnceLock::new());
+        Some(Element { simplex, factor, particular, tractions, particular_tractions, particular_energies, of_works })
+    }
+
+    /// The particular stress and these amounts of the others.
+    fn sum(&self, mut amounts: Vec<f64>) -> PartStress {
+        self.factor.backward(&mut amounts);
+        let mut of_reference = [[[0.0; 6]; 4]; 4];
+        let sum = of_reference.as_flattened_mut().as_flattened_mut();
+        reference(self.simplex.dimension).iter().zip(&amounts).for_each(|(own, &amount)| add(sum, amount, values(own)));
+        let mut stress = self.particular;
+        for (own, carried) in stress.as_flattened_mut().iter_mut().zip(of_reference.as_flattened()) {
+            add(own, 1.0, &self.simplex.carried(*carried));
+        }
+        stress
     }
 
     /// The stiffness at the sides, row by row.
@@ -100,24 +118,44 @@ impl Element {
         load
     }
 
+    /// The amount of each stress under displacements of the sides.
+    fn amounts(&self, sides: &[f64]) -> Vec<f64> {
+        self.tractions.iter().zip(&self.particular_energies).map(|(works, energy)| dot(works, sides) - energy).collect()
+    }
+
+    /// The works of the tractions with the unknowns of the sides, under displacements of the sides.
+    pub fn works(&self, sides: &[f64]) -> Vec<f64> {
+        let mut sum = self.particular_tractions.clone();
+        self.tractions.iter().zip(self.amounts(sides)).for_each(|(works, amount)| add(&mut sum, amount, works));
+        sum
+    }
+
     /// The stress under displacements of the sides.
     pub fn stress(&self, sides: &[f64]) -> PartStress {
-        let mut stress = self.particular;
-        for ((works, energy), own) in self.tractions.iter().zip(&self.particular_energies).zip(&self.stresses) {
-            add(&mut stress, dot(works, sides) - energy, own);
+        self.sum(self.amounts(sides))
+    }
+
+    /// The stress whose tractions do these works with the unknowns of the sides; they are in balance with the body force. `None` for a flat
+    /// simplex.
+    pub fn stress_with(&self, works: &[f64]) -> Option<PartStress> {
+        let of_unknown = |unknown: usize| self.tractions.iter().map(|works| works[unknown]).collect();
+        let squares =
+            || Lower::of_squares(self.tractions.len(), &(0..works.len()).map(of_unknown).collect::<Vec<Vec<f64>>>());
+        let factor = self.of_works.get_or_init(squares).as_ref()?;
+        let mut rest: Vec<f64> = works.iter().zip(&self.particular_tractions).map(|(all, own)| all - own).collect();
+        let mut amounts = vec![0.0; self.tractions.len()];
+        for _ in 0..REFINED {
+            let mut step: Vec<f64> = self.tractions.iter().map(|works| dot(works, &rest)).collect();
+            factor.solve(&mut step);
+            self.tractions.iter().zip(&step).for_each(|(works, &amount)| add(&mut rest, -amount, works));
+            add(&mut amounts, 1.0, &step);
         }
-        stress
+        Some(self.sum(amounts))
     }
 }
 
 fn values(stress: &PartStress) -> &[f64] {
     stress.as_flattened().as_flattened()
-}
-
-/// Adds `amount` times another stress.
-fn add(stress: &mut PartStress, amount: f64, other: &PartStress) {
-    let own = stress.as_flattened_mut().as_flattened_mut();
-    own.iter_mut().zip(values(other)).for_each(|(value, part)| *value += amount * part);
 }
 
 /// The complementary energies of a stress with each value of another one.
@@ -142,7 +180,7 @@ fn strains_of(problem: &ContinuumProblem, simplex: &Simplex, stress: &PartStress
 
 /// The works of the tractions with the unknowns of the sides: for each side and each of its corners along each axis. The unknowns are the
 /// coefficients of functions that are dual to a linear traction: each acts on its own corner only, with its share of the side.
-fn tractions(problem: &ContinuumProblem, simplex: &Simplex, stress: &PartStress) -> Vec<f64> {
+fn works(problem: &ContinuumProblem, simplex: &Simplex, stress: &PartStress) -> Vec<f64> {
     let dimension = simplex.dimension;
     let mut works = Vec::with_capacity((dimension + 1) * dimension * dimension);
     for (side, part) in stress.iter().enumerate().take(dimension + 1) {
@@ -154,6 +192,11 @@ fn tractions(problem: &ContinuumProblem, simplex: &Simplex, stress: &PartStress)
         }
     }
     works
+}
+
+/// The works of the tractions of a stress in balance with the body force.
+pub fn tractions_of_body_force(problem: &ContinuumProblem, simplex: &Simplex) -> Vec<f64> {
+    works(problem, simplex, &balancing(problem.body_force, simplex))
 }
 
 /// A linear stress whose divergence is the opposite of a constant body force.
@@ -295,7 +338,7 @@ mod tests {
     fn stresses_are_in_balance_and_continuous() {
         for dimension in [2, 3] {
             let (material, simplex) = (material(dimension), simplex(dimension));
-            let element = Element::new(&material, &simplex);
+            let element = Element::new(&material, &simplex).unwrap();
             let unknowns = (dimension + 1) * dimension * dimension;
             for unknown in 0..unknowns {
                 let sides: Vec<f64> = (0..unknowns).map(|place| f64::from(u8::from(place == unknown))).collect();
@@ -346,7 +389,7 @@ mod tests {
         for dimension in [2, 3] {
             let (material, simplex) =
                 (ContinuumProblem { body_force: [0.0; 3], ..material(dimension) }, simplex(dimension));
-            let block = Element::new(&material, &simplex).block();
+            let block = Element::new(&material, &simplex).unwrap().block();
             let energy = |values: &[f64]| -> f64 {
                 block.chunks_exact(values.len()).zip(values).map(|(line, value)| value * dot(line, values)).sum()
             };

@@ -4,6 +4,7 @@ use super::bound::Bracket;
 use super::johnson_mercier::at;
 use super::simplex::{Point, Tensor, less, middle, work};
 use crate::fem::element::{ElementKind, Tabulated};
+use crate::fem::threads::each;
 
 /// The distance of a displacement w from others, in the energy norm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,14 +21,14 @@ impl Bracket<'_> {
     /// Judges a displacement by its strain in an element of the first mesh, at a point. The displacement needs no other property: the
     /// bound follows from its distance to the centre of the ball and the radius. Integrals are by five points in each direction on each
     /// part of a simplex.
-    pub fn judged<S: Fn(Point) -> Tensor>(&self, strain_in: impl Fn(usize) -> S) -> Judged {
+    pub fn judged<S: Fn(Point) -> Tensor>(&self, strain_in: impl Fn(usize) -> S + Sync) -> Judged {
         let (dimension, parts) = (self.mesh.dimension, self.mesh.dimension + 1);
         // On these elements the shape functions are the barycentric coordinates; the weights add up to the size of the reference element.
         let kind = if dimension == 2 { ElementKind::LINEAR_TRIANGLE } else { ElementKind::LINEAR_TETRAHEDRON };
         let rule = Tabulated::fine(kind.reference()).points;
         let reference: f64 = rule.iter().map(|point| point.weight).sum();
-        let (mut from_centre, mut from_displacement, mut norm) = (0.0_f64, 0.0_f64, 0.0_f64);
-        for cell in 0..self.mesh.count() {
+        let of_cell = |cell: usize| {
+            let (mut from_centre, mut from_displacement, mut norm) = (0.0, 0.0, 0.0);
             let (simplex, strain) = (self.mesh.simplex(cell), strain_in(self.mesh.origins[cell]));
             let volume = self.volume(cell) / parts as f64 / reference;
             for k in 0..parts {
@@ -43,11 +44,11 @@ impl Bracket<'_> {
                     norm += square(own);
                 }
             }
-        }
-        Judged {
-            bound: from_centre.sqrt() + self.square_of_radius().max(0.0).sqrt(),
-            from_displacement: from_displacement.sqrt(),
-            norm: norm.sqrt(),
-        }
+            [from_centre, from_displacement, norm]
+        };
+        let of_cells = each(self.mesh.count(), of_cell);
+        let [from_centre, from_displacement, norm] =
+            [0, 1, 2].map(|square| of_cells.iter().map(|cell| cell[square]).sum::<f64>().sqrt());
+        Judged { bound: from_centre + self.square_of_radius().max(0.0).sqrt(), from_displacement, norm }
     }
 }

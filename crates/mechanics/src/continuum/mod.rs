@@ -2,6 +2,9 @@
 //! nodes too, a stress in balance, and the difference of their energies.
 
 mod answer;
+mod balance;
+#[cfg(test)]
+mod bodies;
 mod bound;
 mod check;
 mod displacement;
@@ -9,6 +12,7 @@ mod force;
 mod johnson_mercier;
 mod judge;
 mod mesh;
+mod normal;
 mod problem;
 mod simplex;
 mod stress;

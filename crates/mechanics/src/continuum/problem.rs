@@ -150,6 +150,13 @@ impl ContinuumProblem {
         if round.is_folded_beside(&straight) { straight } else { round }
     }
 
+    /// The same body without loads.
+    pub fn unloaded(&self) -> Self {
+        let without = |condition: &Condition| Condition { traction: [0.0; 3], pressure: 0.0, ..condition.clone() };
+        let conditions = self.conditions.iter().map(without).collect();
+        ContinuumProblem { body_force: [0.0; 3], conditions, ..self.clone() }
+    }
+
     /// Returns `true` if all obstacles lie in one direction from the body.
     pub fn has_one_direction(&self) -> bool {
         let mut directions = self.obstacles.iter().map(|facing| (facing.axis, facing.sense));

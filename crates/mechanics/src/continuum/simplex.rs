@@ -64,7 +64,7 @@ impl Simplex {
     }
 
     /// The edges from the first corner; in the plane the third one is the unit vector along z.
-    fn edges(&self) -> [Point; 3] {
+    pub fn edges(&self) -> [Point; 3] {
         let [a, b, c, d] = self.corners;
         [minus(b, a), minus(c, a), if self.dimension == 2 { [0.0, 0.0, 1.0] } else { minus(d, a) }]
     }

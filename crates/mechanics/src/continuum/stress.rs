@@ -3,18 +3,27 @@
 //! The displacements of the facets are the unknowns. On each facet they are coefficients of functions that are dual to a linear traction:
 //! each acts on one corner only. So a row of the balance contains the tractions at that corner, and a contact row bounds one unknown.
 
+use std::collections::HashMap;
+use std::sync::Arc;
+
 use super::johnson_mercier::{Element, PartStress};
 use super::mesh::{OuterFacet, SimplexMesh};
 use super::problem::ContinuumProblem;
+use super::simplex::{MOST_CORNERS, Point};
 use super::system::{Block, Numbers, Row, Unknowns};
+use crate::error::Error;
+use crate::fem::threads::each;
+use signorini_qp as qp;
 
 /// Stresses on a mesh.
 #[derive(Debug)]
 pub struct Stresses<'a> {
-    problem: &'a ContinuumProblem,
-    mesh: &'a SimplexMesh,
+    pub problem: &'a ContinuumProblem,
+    pub mesh: &'a SimplexMesh,
     /// The unknowns of each simplex: of its sides, of their corners, along the axes.
     pub numbers: Numbers,
+    /// The element of each simplex; congruent simplices have one together.
+    elements: Vec<Arc<Element>>,
 }
 
 /// The place at which a contact row of the stress acts.
@@ -29,18 +38,47 @@ pub struct Place {
 }
 
 impl<'a> Stresses<'a> {
-    pub fn new(problem: &'a ContinuumProblem, mesh: &'a SimplexMesh) -> Self {
+    /// # Errors
+    /// [`qp::Error::Numerical`] for a flat simplex.
+    pub fn new(problem: &'a ContinuumProblem, mesh: &'a SimplexMesh) -> Result<Self, Error> {
         let dimension = mesh.dimension;
         let of_facet = dimension * dimension;
         // The corners of a side have the order of the nodes of the facet: both increase.
         let of_side = |&facet: &usize| of_facet * facet..of_facet * (facet + 1);
         let numbers = (0..mesh.count()).flat_map(|cell| mesh.sides(cell).iter().flat_map(of_side)).collect();
-        Stresses { problem, mesh, numbers: Numbers::new((dimension + 1) * of_facet, numbers) }
+        let numbers = Numbers::new((dimension + 1) * of_facet, numbers);
+        let mut known: HashMap<[[u64; 3]; MOST_CORNERS - 1], Arc<Element>> = HashMap::new();
+        let element = |cell: usize| {
+            let simplex = mesh.simplex(cell);
+            let edges = simplex.edges().map(|edge| edge.map(f64::to_bits));
+            if let Some(element) = known.get(&edges) {
+                return Some(element.clone());
+            }
+            let element = Arc::new(Element::new(problem, &simplex)?);
+            known.insert(edges, element.clone());
+            Some(element)
+        };
+        let elements: Option<Vec<_>> = (0..mesh.count()).map(element).collect();
+        let reason = || "a simplex of the mesh is flat".to_string();
+        let elements =
+            elements.ok_or_else(|| qp::Error::Numerical { step: "the guaranteed bound", reason: reason() })?;
+        Ok(Stresses { problem, mesh, numbers, elements })
     }
 
     /// The number of the unknown of a facet at a corner, along an axis.
     pub fn unknown(&self, facet: usize, corner: usize, axis: usize) -> usize {
         (facet * self.mesh.dimension + corner) * self.mesh.dimension + axis
+    }
+
+    /// The places of the unknowns of the facets: a linear displacement has its values there as unknowns.
+    pub fn places(&self) -> Vec<Point> {
+        let share = 1.0 / (self.mesh.dimension + 1) as f64;
+        let of_facet = |facet: usize| {
+            let corners = self.mesh.corners_of_facet(facet);
+            let sum = [0, 1, 2].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>());
+            corners.into_iter().map(move |corner| [0, 1, 2].map(|axis| share * (corner[axis] + sum[axis])))
+        };
+        (0..self.mesh.facet_count()).flat_map(of_facet).collect()
     }
 
     /// Number of unknowns, free or held.
@@ -80,42 +118,48 @@ impl<'a> Stresses<'a> {
         (rows, places)
     }
 
-    fn elements(&self) -> impl Iterator<Item = Element> + '_ {
-        (0..self.mesh.count()).map(|cell| Element::new(self.problem, &self.mesh.simplex(cell)))
+    /// The unknowns of each simplex, with its element.
+    pub fn with_elements(&self) -> impl Iterator<Item = (&[usize], &Element)> + '_ {
+        self.numbers.iter().zip(&self.elements).map(|(numbers, element)| (numbers, &**element))
     }
 
-    /// The unknowns of each simplex, with its stiffness.
-    pub fn blocks(&self) -> impl Iterator<Item = (&[usize], Block)> + '_ {
-        self.numbers.iter().zip(self.elements().map(|element| element.block()))
+    /// The stiffness of each simplex.
+    pub fn blocks(&self) -> Vec<Block> {
+        each(self.mesh.count(), |cell| self.elements[cell].block())
     }
 
     /// The work of tractions and body force with the unknowns.
     pub fn load(&self) -> Vec<f64> {
-        let (problem, mesh) = (self.problem, self.mesh);
         let mut load = vec![0.0; self.count()];
-        if problem.body_force != [0.0; 3] {
-            for (numbers, element) in self.numbers.iter().zip(self.elements()) {
+        if self.problem.body_force != [0.0; 3] {
+            for (numbers, element) in self.with_elements() {
                 numbers.iter().zip(element.load()).for_each(|(&number, part)| load[number] += part);
             }
         }
-        for outer in mesh.surface() {
-            let (normal, size) = mesh.simplex(outer.cell).outward(outer.local);
-            let (traction, share) = (problem.conditions[outer.condition].pull(normal), problem.share_of_corner(size));
-            for corner in 0..mesh.dimension {
-                for (axis, part) in traction.into_iter().enumerate().take(mesh.dimension) {
-                    load[self.unknown(outer.facet, corner, axis)] += share * part;
-                }
-            }
-        }
+        self.loads().for_each(|(unknown, part)| load[unknown] += part);
         load
+    }
+
+    /// The work of the tractions with the free unknowns of the surface.
+    pub fn loads(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let (problem, mesh) = (self.problem, self.mesh);
+        mesh.surface().flat_map(move |outer| {
+            let (normal, size) = mesh.simplex(outer.cell).outward(outer.local);
+            let condition = &problem.conditions[outer.condition];
+            let (pull, share) = (condition.pull(normal), problem.share_of_corner(size));
+            let free = (0..mesh.dimension).filter(|&axis| condition.held[axis].is_none());
+            free.flat_map(move |axis| {
+                (0..mesh.dimension).map(move |corner| (self.unknown(outer.facet, corner, axis), share * pull[axis]))
+            })
+        })
     }
 
     /// The stress of each simplex under displacements of the facets.
     pub fn stresses(&self, displacement: &[f64]) -> Vec<PartStress> {
-        let stress = |(numbers, element): (&[usize], Element)| {
+        let stress = |(numbers, element): (&[usize], &Element)| {
             element.stress(&numbers.iter().map(|&number| displacement[number]).collect::<Vec<_>>())
         };
-        self.numbers.iter().zip(self.elements()).map(stress).collect()
+        self.with_elements().map(stress).collect()
     }
 }
 

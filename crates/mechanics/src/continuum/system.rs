@@ -1,7 +1,9 @@
 //! The contact problem of simplices with the same number of unknowns each, some of which are prescribed, with rows of one unknown.
 
+use super::simplex::Point;
 use crate::error::Error;
-use signorini_qp::{ContactProblem, SparseMatrix, SymmetricMatrix};
+use crate::fem::geometry::Around;
+use signorini_qp::{ContactProblem, NearNullSpace, SparseMatrix, SymmetricMatrix};
 
 /// The matrix of a simplex, row by row.
 pub type Block = Vec<f64>;
@@ -25,7 +27,7 @@ impl Numbers {
     }
 
     /// The unknowns of each simplex.
-    pub fn iter(&self) -> impl Iterator<Item = &[usize]> {
+    pub fn iter(&self) -> impl Iterator<Item = &[usize]> + Clone {
         self.numbers.chunks_exact(self.of_cell)
     }
 }
@@ -83,33 +85,75 @@ impl Unknowns {
         all.iter().zip(&self.numbers).filter(|entry| entry.1.is_some()).map(|entry| *entry.0).collect()
     }
 
-    /// The problem of these simplices, each with its unknowns and its matrix, under a load on all unknowns, with rows on free ones.
+    /// The rigid motions as values of the free unknowns.
+    fn rigid_motions(&self, places: &[Point]) -> Result<Option<NearNullSpace>, Error> {
+        let dimension = self.held.len() / places.len();
+        let along = |axis: usize| places.iter().map(|place| place[axis]).collect();
+        let all = NearNullSpace::of_nodes(&(0..dimension).map(along).collect::<Vec<_>>())?;
+        Ok(NearNullSpace::of_modes(all.vectors().iter().map(|motion| self.reduced(motion)).collect()))
+    }
+
+    /// The problem of simplices with these unknowns and matrices, under a load on all unknowns, with rows on free ones. At each of the `places`
+    /// a linear displacement has the values of the unknowns along the axes.
     ///
     /// # Errors
     /// As [`ContactProblem::new`].
-    pub fn problem<'a>(
+    pub fn problem(
         &self,
-        cells: impl Iterator<Item = (&'a [usize], Block)>,
+        numbers: &Numbers,
+        blocks: &[Block],
         load: &[f64],
         rows: &[Row],
+        places: &[Point],
     ) -> Result<ContactProblem, Error> {
-        let (mut entries, mut load) = (Vec::new(), self.reduced(load));
-        for (unknowns, block) in cells {
+        let (starts, row_indices) = self.pattern(numbers, self.held.len() / places.len());
+        let (mut values, mut load) = (vec![0.0; row_indices.len()], self.reduced(load));
+        for (unknowns, block) in numbers.iter().zip(blocks) {
             for (&unknown, line) in unknowns.iter().zip(block.chunks_exact(unknowns.len())) {
-                let Some(row) = self.numbers[unknown] else { continue };
+                let Some(column) = self.numbers[unknown] else { continue };
+                let of_column = starts[column]..starts[column + 1];
                 for (&other, &value) in unknowns.iter().zip(line) {
                     match (self.numbers[other], self.held[other]) {
-                        (Some(column), _) if column <= row => entries.push((row, column, value)),
-                        (None, Some(held)) => load[row] -= value * held,
+                        (Some(row), _) if row >= column => {
+                            let place = row_indices[of_column.clone()].partition_point(|&other| (other as usize) < row);
+                            values[of_column.start + place] += value;
+                        }
+                        (None, Some(held)) => load[column] -= value * held,
                         _ => {}
                     }
                 }
             }
         }
-        let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(self.free, self.free, &entries)?)?;
+        let stiffness = SparseMatrix::from_parts(self.free, starts, row_indices, values);
         let numbered = |(index, row): (usize, &Row)| Some((index, self.numbers[row.unknown]?, row.sense));
         let contact: Vec<_> = rows.iter().enumerate().filter_map(numbered).collect();
         let contact = SparseMatrix::from_triplets(rows.len(), self.free, &contact)?;
-        Ok(ContactProblem::new(stiffness, load, contact, rows.iter().map(|row| row.gap).collect())?)
+        let gap = rows.iter().map(|row| row.gap).collect();
+        let posed = ContactProblem::new(SymmetricMatrix::from_lower(stiffness)?, load, contact, gap)?;
+        Ok(match self.rigid_motions(places)? {
+            Some(motions) => posed.with_near_null(motions)?,
+            None => posed,
+        })
+    }
+
+    /// Column starts and rows of the lower triangle in the free unknowns.
+    fn pattern(&self, numbers: &Numbers, dimension: usize) -> (Vec<usize>, Vec<u32>) {
+        let around = Around::new(self.held.len(), numbers.iter().map(|cell| cell.iter().copied()));
+        let (mut starts, mut rows, mut found) = (vec![0], Vec::new(), Vec::new());
+        let mut place = usize::MAX;
+        for (unknown, column) in self.numbers.iter().enumerate() {
+            let Some(column) = *column else { continue };
+            // The unknowns of one place have the same neighbours.
+            if std::mem::replace(&mut place, unknown / dimension) != unknown / dimension {
+                let cells = around.at(unknown).iter().map(|&cell| numbers.of(cell as usize));
+                found.clear();
+                found.extend(cells.flatten().filter_map(|&other| self.numbers[other].map(|row| row as u32)));
+                found.sort_unstable();
+                found.dedup();
+            }
+            rows.extend(found.iter().filter(|&&row| row as usize >= column));
+            starts.push(rows.len());
+        }
+        (starts, rows)
     }
 }

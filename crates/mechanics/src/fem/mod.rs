@@ -13,7 +13,7 @@ pub(crate) mod mortar;
 pub(crate) mod norms;
 pub(crate) mod recovery;
 pub(crate) mod surface;
-mod threads;
+pub(crate) mod threads;
 
 pub use assembly::{
     DofMap, Frame, MassForm, add_body_force, add_body_force_field, add_pressure, add_traction, add_traction_field,

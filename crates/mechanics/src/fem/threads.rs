@@ -50,6 +50,11 @@ pub(crate) fn each<R: Send>(count: usize, work: impl Fn(usize) -> R + Sync) -> V
     all
 }
 
+/// The results of two pieces of work.
+pub(crate) fn both<A: Send, B: Send>(one: impl FnOnce() -> A + Send, other: impl FnOnce() -> B + Send) -> (A, B) {
+    if threads() == 1 { (one(), other()) } else { rayon::join(one, other) }
+}
+
 /// The parts of `values` between consecutive `bounds`, each given to `work` with its number; a part is worked on by one thread.
 pub(crate) fn on_parts<T: Send>(values: &mut [T], bounds: &[usize], work: impl Fn(usize, &mut [T]) + Sync) {
     let mut rest = values;

@@ -1,0 +1,87 @@
+//! Bodies for tests.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::mesh::SimplexMesh;
+use super::problem::{Condition, ContinuumProblem, Distance, Enclosure, Facing};
+use super::simplex::{Point, pairs};
+use crate::fem::material::Lame;
+use signorini_qp::{Method, Settings};
+
+/// The surface at the height `1 - 0.02 + (x - 0.4)^2` in the plane, `1 - 0.1 + (x - 0.4)^2 + (y - 0.4)^2` in space.
+#[derive(Debug)]
+pub struct Bowl(usize);
+
+impl Distance for Bowl {
+    fn gap(&self, corners: &[Point]) -> Option<Enclosure> {
+        let height = self.0 - 1;
+        let lowest = if height == 1 { 0.98 } else { 0.9 };
+        let gap = |at: Point| lowest + at[..height].iter().map(|x| (x - 0.4) * (x - 0.4)).sum::<f64>() - at[height];
+        let of_pair = |[i, j]: [usize; 2]| {
+            let half = [0, 1, 2].map(|axis| (corners[i][axis] + corners[j][axis]) / 2.0);
+            2.0 * gap(half) - (gap(corners[i]) + gap(corners[j])) / 2.0
+        };
+        let coefficients = pairs(corners.len()).map(of_pair).collect();
+        Some(Enclosure { coefficients, below: 0.0, above: 0.0 })
+    }
+}
+
+/// A square or a cube of side 1 on a clamped side, with a traction on the right, a body force, and a bowl above.
+pub fn body(dimension: usize) -> (ContinuumProblem, SimplexMesh) {
+    let side = |held: bool, traction: Point, obstacles: Vec<usize>| Condition {
+        held: [held.then_some(0.0); 3],
+        traction,
+        obstacles,
+        ..Condition::default()
+    };
+    let problem = ContinuumProblem {
+        dimension,
+        lame: Lame { lambda: 1.5, mu: 1.0 },
+        thickness: if dimension == 2 { 0.5 } else { 1.0 },
+        body_force: if dimension == 2 { [0.01, -0.02, 0.0] } else { [0.01, -0.02, 0.015] },
+        conditions: vec![
+            side(true, [0.0; 3], vec![]),
+            side(false, [0.03, 0.01, 0.0], vec![]),
+            side(false, [0.0; 3], vec![0]),
+            side(false, [0.0; 3], vec![]),
+        ],
+        obstacles: vec![Facing { axis: dimension - 1, sense: 1.0, surface: Arc::new(Bowl(dimension)) }],
+        boundaries: Vec::new(),
+    };
+    // Each order of the axes is the way of a simplex from the origin to the opposite corner.
+    let nodes: Vec<Point> = (0..1 << dimension).map(|node| [0, 1, 2].map(|axis| f64::from(node >> axis & 1))).collect();
+    let orders: &[&[usize]] = match dimension {
+        2 => &[&[0, 1, 3], &[0, 2, 3]],
+        _ => &[&[0, 1, 3, 7], &[0, 1, 5, 7], &[0, 2, 3, 7], &[0, 2, 6, 7], &[0, 4, 5, 7], &[0, 4, 6, 7]],
+    };
+    let cells: Vec<Vec<usize>> = orders.iter().map(|order| order.to_vec()).collect();
+    let on = |facet: &[usize], axis: usize, at: f64| facet.iter().all(|&node| nodes[node][axis] == at);
+    let condition = |facet: &[usize]| match facet {
+        _ if on(facet, dimension - 1, 0.0) => Some(0),
+        _ if on(facet, 0, 1.0) => Some(1),
+        _ if on(facet, dimension - 1, 1.0) => Some(2),
+        _ => (0..dimension).any(|axis| on(facet, axis, 0.0) || on(facet, axis, 1.0)).then_some(3),
+    };
+    let mut surface = HashMap::new();
+    for cell in &cells {
+        for local in 0..cell.len() {
+            let mut facet = cell.clone();
+            facet.remove(local);
+            if let Some(condition) = condition(&facet) {
+                surface.insert(facet, condition);
+            }
+        }
+    }
+    let origins = vec![0; cells.len()];
+    let mut mesh = SimplexMesh::new(dimension, nodes.clone(), &cells, origins, &surface).unwrap();
+    for _ in 0..if dimension == 2 { 2 } else { 4 } {
+        mesh = problem.refined(&mesh, &vec![true; mesh.count()]);
+    }
+    (problem, mesh)
+}
+
+/// Settings for an exact answer.
+pub fn settings() -> Settings {
+    Settings::with_method(Method::ActiveSet)
+}

@@ -1,0 +1,85 @@
+//! Small definite matrices and their factors by Cholesky's method.
+
+use signorini_qp::dot;
+
+/// A pivot below this share of its entry is rounding.
+const SINGULAR_PIVOT: f64 = 1e-10;
+
+/// The lower factor L of a definite matrix `L L'`, row by row.
+#[derive(Clone, Debug)]
+pub struct Lower(Vec<Vec<f64>>);
+
+impl Lower {
+    /// The factor of a matrix of which the lower triangle is given, row by row; `None` if it is singular.
+    pub fn of(mut matrix: Vec<Vec<f64>>) -> Option<Self> {
+        for k in 0..matrix.len() {
+            let (above, rest) = matrix.split_at_mut(k);
+            let own = &mut rest[0];
+            for (j, before) in above.iter().enumerate() {
+                own[j] = (own[j] - dot(&own[..j], &before[..j])) / before[j];
+            }
+            let pivot = own[k] - dot(&own[..k], &own[..k]);
+            if pivot.is_nan() || pivot <= SINGULAR_PIVOT * own[k] {
+                return None;
+            }
+            own[k] = pivot.sqrt();
+        }
+        Some(Lower(matrix))
+    }
+
+    /// The factor of `A'A` for the rows of A, each of this length.
+    pub fn of_squares(length: usize, rows: &[Vec<f64>]) -> Option<Self> {
+        let mut matrix: Vec<Vec<f64>> = (0..length).map(|i| vec![0.0; i + 1]).collect();
+        for row in rows {
+            matrix.iter_mut().zip(row).for_each(|(line, &factor)| add(line, factor, row));
+        }
+        Self::of(matrix)
+    }
+
+    /// `L^-1 b`, in place.
+    pub fn forward(&self, b: &mut [f64]) {
+        for (k, line) in self.0.iter().enumerate() {
+            b[k] = (b[k] - dot(&line[..k], &b[..k])) / line[k];
+        }
+    }
+
+    /// `L'^-1 b`, in place.
+    pub fn backward(&self, b: &mut [f64]) {
+        for (k, line) in self.0.iter().enumerate().rev() {
+            b[k] /= line[k];
+            let (before, own) = b.split_at_mut(k);
+            add(before, -own[0], line);
+        }
+    }
+
+    /// `(L L')^-1 b`, in place.
+    pub fn solve(&self, b: &mut [f64]) {
+        self.forward(b);
+        self.backward(b);
+    }
+}
+
+/// Adds `factor` times another vector.
+pub fn add(sum: &mut [f64], factor: f64, other: &[f64]) {
+    sum.iter_mut().zip(other).for_each(|(sum, part)| *sum += factor * part);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn consistent_equations_are_solved_and_a_singular_matrix_is_refused() {
+        let rows = [vec![1.0, 2.0], vec![0.5, -1.0], vec![3.0, 0.25]];
+        let mut y = vec![0.0; 2];
+        rows.iter().for_each(|row| add(&mut y, dot(row, &[2.0, -3.0]), row));
+        Lower::of_squares(2, &rows).unwrap().solve(&mut y);
+        assert!((y[0] - 2.0).abs() < 1e-14 && (y[1] + 3.0).abs() < 1e-14);
+        assert!(Lower::of_squares(2, &[vec![1.0, 2.0], vec![2.0, 4.0]]).is_none());
+        // L = [2 0; 1 3].
+        let factor = Lower::of(vec![vec![4.0], vec![2.0, 10.0]]).unwrap();
+        let mut b = [4.0, 11.0];
+        factor.forward(&mut b);
+        assert_eq!(b, [2.0, 3.0]);
+    }
+}
