@@ -111,3 +111,43 @@ fn materials_without_a_guaranteed_bound_are_estimated_with_the_reason() {
         assert!(report["reason"].as_str().unwrap().contains(reason), "{report}");
     }
 }
+
+/// A part with planes of symmetry has bounds of the force and of the energy that meet those of the whole, on meshes that are no images of
+/// each other.
+#[test]
+fn a_half_and_a_quarter_have_guaranteed_bounds_that_meet_those_of_the_whole() {
+    let half = |scene: &Value, axes: &[&str], divisions: usize| {
+        let mut part = scene.clone();
+        part["symmetry"] = json!(axes);
+        for &axis in axes {
+            // The obstacles have their apex in the middle, which is moved to the plane of symmetry at zero.
+            part["body"][if axes.len() == 1 { "rectangle" } else { "box" }][axis] =
+                json!({"points": [0, 0.5], "divisions": [divisions]});
+        }
+        part
+    };
+    let (plane, mut space) = (classical(0.3), block(2));
+    let mut of_plane = half(&plane, &["x"], 4);
+    of_plane["obstacles"][0]["shape"]["parabola"]["apex"] = json!([0, 0.49]);
+    let mut of_space = half(&space, &["x", "y"], 2);
+    of_space["obstacles"][0]["shape"]["sphere"]["apex"] = json!([0, 0, 0.49]);
+    space["body"]["box"]["element"] = json!("hex8");
+    of_space["body"]["box"]["element"] = json!("hex8");
+    for (whole, part, goal, parts) in [(&plane, &of_plane, "0.03", 2), (&space, &of_space, "0.3", 4)] {
+        let [of_whole, of_part] = [whole, part].map(|scene| {
+            let (code, report, message) = solved(scene, &["--total-error", goal]);
+            assert!(code == 0 && report["total_error"]["guaranteed"] == true, "{message}");
+            report
+        });
+        for key in ["force_interval", "potential_energy"] {
+            let ends = |report: &Value| [0, 1].map(|end| report[key][end].as_f64().unwrap());
+            let ([low, high], [other_low, other_high]) = (ends(&of_whole), ends(&of_part));
+            assert!(low <= other_high && other_low <= high, "{key}: {low} {high} {other_low} {other_high}");
+            assert!((high - low).abs() < 0.3 * high.abs(), "{key}: {low} {high}");
+        }
+        let basis = of_part["force_basis"].as_str().unwrap();
+        assert!(basis.contains(&format!("{parts} times the meshed part")), "{basis}");
+        let unknowns = |report: &Value| report["levels"].as_array().unwrap().last().unwrap()["dofs"].as_f64().unwrap();
+        assert!(unknowns(&of_part) < 0.75 * unknowns(&of_whole));
+    }
+}

@@ -70,7 +70,7 @@ fn total_error_text(title: &str, found: &TotalError, answer: Option<&Summary>, u
     let lines: String = columns(&levels_table(found)).lines().map(|line| format!("  {line}\n")).collect();
     text += &(entry("seconds", &format!("{:.3}", found.seconds)) + "\n" + &lines);
     let Some(answer) = answer else { return text };
-    if found.guarantee.is_none() && answer.parts_of_whole.is_some() {
+    if answer.parts_of_whole.is_some() {
         text += "  total error and force are of the whole body, all other columns of the meshed part\n";
     }
     text + "\n" + &solve_text(&format!("The answer on the last mesh: {title}"), answer, units)

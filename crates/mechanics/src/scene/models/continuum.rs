@@ -90,7 +90,6 @@ impl Scene {
         };
         for (field, is_there) in [
             ("springs", !self.springs.is_empty()),
-            ("symmetry", !self.symmetry.is_empty()),
             ("rigid-faces", !self.rigid_faces.is_empty()),
             ("ties", !self.ties.is_empty()),
         ] {
@@ -209,6 +208,7 @@ impl Scene {
                 surface.change(&format!("{path}.boundary"), name, |condition| condition.held[axis] = Some(value))?;
             }
         }
+        surface.change_on_planes(|at| model.axes_of_symmetry(at));
         for (index, load) in self.loads.iter().enumerate() {
             let Some((path, boundary, traction, pressure)) = on_surface(model, index, load)? else { continue };
             surface.change(&path, boundary, |condition| {
@@ -305,6 +305,17 @@ impl<'a> Surface<'a> {
     fn change_outer(&mut self, name: &str, change: impl Fn(&mut Condition)) {
         for facet in self.pieces.facets_of(self.mesh, name) {
             self.facets.get_mut(&facet).into_iter().flatten().for_each(&change);
+        }
+    }
+
+    /// Holds the facets on planes of symmetry along the normals; `axes` says across which axes a place lies on a plane.
+    fn change_on_planes(&mut self, axes: impl Fn(&Point) -> [bool; 3]) {
+        for (facet, condition) in &mut self.facets {
+            let Some(condition) = condition else { continue };
+            let of_corners: Vec<_> = facet.iter().map(|&node| axes(&self.pieces.nodes[node])).collect();
+            for axis in (0..3).filter(|&axis| of_corners.iter().all(|axes| axes[axis])) {
+                condition.held[axis] = Some(0.0);
+            }
         }
     }
 

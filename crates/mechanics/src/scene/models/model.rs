@@ -187,6 +187,11 @@ impl Model {
         self.parts.symmetry.parts()
     }
 
+    /// Returns `true` for each axis across which a place lies on a plane of symmetry.
+    pub(crate) fn axes_of_symmetry(&self, at: &[f64; 3]) -> [bool; 3] {
+        self.parts.symmetry.axes_at(at)
+    }
+
     /// The sum of the contact forces on each obstacle and pair of bodies, in force, `>= 0`, for the multipliers of the rows (in force,
     /// `<= 0`).
     pub fn obstacle_forces(&self, multiplier: &[f64]) -> Vec<f64> {

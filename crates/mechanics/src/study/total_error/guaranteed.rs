@@ -177,7 +177,8 @@ impl Search<'_> {
                 _ => Domain::FirstPolyhedron,
             },
             mean_stress_error: Bound { bound: bracket.bound_of_mean(), guaranteed: true },
-            potential_energy: [bracket.energy_of_stress(), bracket.energy_of_displacement()],
+            potential_energy: [bracket.energy_of_stress(), bracket.energy_of_displacement()]
+                .map(|energy| self.given.model.parts_of_whole() * energy),
             contact_force: level.contact_force,
             force_basis: self.given.model.basis_of_forces(),
             force_interval: level.force_interval(),
@@ -208,12 +209,14 @@ impl Search<'_> {
         let goal = self.given.goal;
         let is_near = bracket.bound() <= goal.total_error || goal.force_error.is_some();
         let is_last = is_near || self.settings.watch.time_left().is_some();
-        let force_interval = if is_last { bracket.force_interval()? } else { None };
+        let parts = self.given.model.parts_of_whole();
+        let of_whole = |interval: [f64; 2]| interval.map(|force| parts * force);
+        let force_interval = if is_last { bracket.force_interval()?.map(of_whole) } else { None };
         Ok(Level {
             elements: bracket.mesh.count(),
             dofs: bracket.primal.unknowns.free,
             total_error: bracket.bound(),
-            contact_force: bracket.force(),
+            contact_force: parts * bracket.force(),
             kind: LevelKind::Guaranteed {
                 stress_dofs: bracket.dual.unknowns.free,
                 mean_stress_error: bracket.bound_of_mean(),
