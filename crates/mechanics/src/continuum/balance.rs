@@ -212,6 +212,7 @@ mod tests {
     use super::super::bodies::{body, settings};
     use super::super::bound::Bracket;
     use super::*;
+    use signorini_qp::{Method, Penalty, Settings};
 
     /// Displacements that are disturbed by a part in a thousand, and pressures that are a tenth too small.
     #[test]
@@ -233,6 +234,18 @@ mod tests {
             // The check compares J - D with the sum of the shares too.
             assert!(bracket.check().unwrap() < 1e-11);
             assert!(bracket.distance() > exact && bracket.distance() < 1e3 * exact, "{}", bracket.distance() / exact);
+        }
+    }
+
+    /// The displacement of a penalty method goes into the obstacle, and its forces balance nothing exactly.
+    #[test]
+    fn the_answers_of_a_penalty_method_are_made_admissible() {
+        for (problem, mesh) in [body(2), body(3)] {
+            let exact = Bracket::new(&problem, &mesh, None, &settings()).unwrap().distance();
+            let rough = Settings::with_method(Method::Penalty(Penalty { last: 1e3, ..Penalty::default() }));
+            let bracket = Bracket::new(&problem, &mesh, None, &rough).unwrap();
+            assert!(bracket.defect < 1e-11, "{}", bracket.defect);
+            assert!((bracket.distance() / exact - 1.0).abs() < 0.01, "{} {exact}", bracket.distance());
         }
     }
 

@@ -98,6 +98,14 @@ impl Side {
         let values = unknowns.expanded(&solution.displacement);
         Ok(Side { unknowns, rows, solution, values, seconds: 0.0 })
     }
+
+    /// Moves values beyond the bounds of rows, as those of a penalty method, to the bounds: the displacement stays out of the obstacles.
+    fn keep_out(&mut self) {
+        for row in &self.rows {
+            let value = &mut self.values[row.unknown];
+            *value = row.sense * (row.sense * *value).min(row.gap);
+        }
+    }
 }
 
 impl<'a> Bracket<'a> {
@@ -133,6 +141,7 @@ impl<'a> Bracket<'a> {
             })
         });
         let mut primal = Side::solved(unknowns, rows, &posed, start, settings)?;
+        primal.keep_out();
         primal.seconds = clock.elapsed().as_secs_f64();
         let unknowns = stresses.unknowns();
         let largest = largest(&primal.values);
