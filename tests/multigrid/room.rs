@@ -40,7 +40,7 @@ fn multigrid_is_chosen_with_the_reason_if_only_multigrid_fits() {
     let between = within(1.05 * estimate.multigrid_bytes);
     let exact = solve(&problem, &Settings::with_method(Method::ActiveSet)).unwrap();
     let mut with_accuracy = between.clone();
-    with_accuracy.accuracy = Some(1e-4);
+    with_accuracy.accuracy = Some(1e-8);
     for settings in [between, with_accuracy] {
         let found = solve(&problem, &settings).unwrap();
         let reason = found.reason.clone();
