@@ -60,8 +60,6 @@ struct Test {
     pulls: Vec<f64>,
     /// For each row the ratio over its slack, and for each place the ratio over its pressure: the largest is beta.
     ratios: [Vec<f64>; 2],
-    /// The distance of z below -1.
-    beyond: f64,
 }
 
 impl Bracket<'_> {
@@ -136,7 +134,7 @@ impl Bracket<'_> {
         let (length, radius) = (square.sqrt(), self.square_of_radius().max(0.0).sqrt());
         let beta = test.ratios.iter().flatten().fold(0.0, |beta: f64, &ratio| beta.max(ratio));
         let most = most_within(radius, length, beta);
-        ([(low - radius * length) / (1.0 + test.beyond), high + most], length / (2.0 * radius))
+        ([low - radius * length, high + most], length / (2.0 * radius))
     }
 
     /// The pair with these rows held; rows of the wrong sign are bonded or released until every row has the right sign.
@@ -147,11 +145,9 @@ impl Bracket<'_> {
         );
         let (Some(displacement), Some((stress, pulls))) = (displacement?, stress?) else { return Ok(None) };
         let (primal, values) = (&self.primal, &self.primal.values);
-        let mut beyond: f64 = 0.0;
         let mut of_rows: Vec<f64> = Vec::with_capacity(primal.rows.len());
         for row in &primal.rows {
             let open = 1.0 + row.sense * displacement[row.unknown];
-            beyond = beyond.max(-open);
             of_rows.push(over(open, row.gap - row.sense * values[row.unknown]));
         }
         // Places that a support holds do not move in the test, and may be touched.
@@ -169,7 +165,7 @@ impl Bracket<'_> {
             .enumerate()
             .map(|(row, &pull)| if pull < 0.0 { pull / self.pulls[row] } else { 0.0 })
             .collect();
-        Ok(Some(Test { displacement, stress, pulls, ratios: [of_rows, of_places], beyond }))
+        Ok(Some(Test { displacement, stress, pulls, ratios: [of_rows, of_places] }))
     }
 
     /// The displacement -1 at bonded rows, without load; rows below -1 are bonded too, and those that are only a little below it are moved there.

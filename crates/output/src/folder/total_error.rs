@@ -55,9 +55,10 @@ fn total_error_text(title: &str, found: &TotalError, answer: Option<&Summary>, u
         let elements = found.name_of_elements();
         let of_stress = match last.kind {
             LevelKind::Guaranteed { stress_dofs, .. } => format!(", and {stress_dofs} of the stress"),
-            LevelKind::Estimated { .. } => answer.map_or(String::new(), |answer| of_part(answer).to_string()),
+            LevelKind::Estimated { .. } => String::new(),
         };
-        let sizes = format!("{} {elements}, {} unknowns{of_stress}", last.elements, last.dofs);
+        let of_part = answer.map_or("", of_part);
+        let sizes = format!("{} {elements}, {} unknowns{of_stress}{of_part}", last.elements, last.dofs);
         text += &entry("mesh", &format!("{meshes}; the last: {sizes}"));
     }
     if let Some(guarantee) = &found.guarantee {
