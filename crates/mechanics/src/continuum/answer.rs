@@ -1,7 +1,6 @@
 //! The part of a bracket that is kept: the displacement and the stresses for a picture or a file.
 
 use super::bound::Bracket;
-use super::johnson_mercier::at;
 use super::simplex::{Point, Tensor, middle};
 use crate::error::Error;
 use crate::fem::geometry::key;
@@ -23,6 +22,8 @@ pub struct ContinuumAnswer {
     /// The mean over each element of the stress of the displacement and of the stress in balance: `[xx, yy, zz, xy, yz, zx]`, in force per
     /// area; in the plane those with z are zero.
     pub stress: Vec<Tensor>,
+    /// The element of the first mesh that contains each element.
+    pub origins: Vec<usize>,
     /// The contribution of each element to half the square of the bound, in force times length.
     pub shares: Vec<f64>,
 }
@@ -89,6 +90,7 @@ impl Bracket<'_> {
             displacement: corners.chain(middles).collect(),
             elements,
             stress: (0..mesh.count()).map(|cell| self.mean_stress(cell)).collect(),
+            origins: mesh.origins.clone(),
             shares: self.shares.clone(),
         }
     }
@@ -112,11 +114,13 @@ impl Bracket<'_> {
     fn mean_stress(&self, cell: usize) -> Tensor {
         let parts = self.mesh.dimension + 1;
         let centre = std::array::from_fn(|corner| if corner < parts { 1.0 / parts as f64 } else { 0.0 });
+        let (law, medium) = (self.law(cell), self.problem.medium(self.mesh.origins[cell]));
         let mut mean = [0.0; 6];
         for k in 0..parts {
-            let of_displacement = self.problem.stress(self.strain(&self.primal.values, cell, k, centre));
-            let of_part = middle(of_displacement, at(&self.stress[cell], k, centre));
-            mean.iter_mut().zip(of_part).for_each(|(mean, part)| *mean += part / parts as f64);
+            let of_displacement = law.stress(self.strain(&self.primal.values, cell, k, centre));
+            let elastic = middle(of_displacement, self.elastic_stress(cell, k, centre));
+            let own = medium.own_stress(self.mesh.simplex(cell).part(k).at(centre));
+            (0..6).for_each(|entry| mean[entry] += (elastic[entry] + own[entry]) / parts as f64);
         }
         mean
     }

@@ -11,7 +11,8 @@ use super::mesh::SimplexMesh;
 use super::normal::{Lower, add};
 use super::simplex::Point;
 use super::stress::{Place, Stresses};
-use crate::fem::geometry::minus;
+use super::system::Unknowns;
+use crate::fem::geometry::{COORDINATES, dot as inner, minus};
 use signorini_qp::dot;
 
 /// Rounds of balancing: the later ones take the rounding of the first.
@@ -79,14 +80,17 @@ struct Levers<'a> {
 }
 
 impl Levers<'_> {
+    /// The force and the moment of a force at a place.
+    fn at(&self, place: usize, force: Point) -> Vec<f64> {
+        let [x, y, z] = minus(self.places[place], self.centre).map(|part| part / self.size);
+        let moments = [[-y, x, 0.0], [0.0, -z, y], [z, 0.0, -x]].map(|turn| inner(turn, force));
+        let count = if self.dimension == 2 { 1 } else { 3 };
+        force.into_iter().take(self.dimension).chain(moments.into_iter().take(count)).collect()
+    }
+
     /// The force and the moment of a force of one along an unknown.
     fn of(&self, unknown: usize) -> Vec<f64> {
-        let (place, axis) = (self.places[unknown / self.dimension], unknown % self.dimension);
-        let [x, y, z] = minus(place, self.centre).map(|part| part / self.size);
-        let forces = [0, 1, 2].map(|other| f64::from(u8::from(other == axis)));
-        let moments = [[-y, x, 0.0], [0.0, -z, y], [z, 0.0, -x]].map(|turn| turn[axis]);
-        let count = if self.dimension == 2 { 1 } else { 3 };
-        forces.into_iter().take(self.dimension).chain(moments.into_iter().take(count)).collect()
+        self.at(unknown / self.dimension, COORDINATES[unknown % self.dimension])
     }
 
     /// The resultants of forces along unknowns.
@@ -96,11 +100,10 @@ impl Levers<'_> {
         sum
     }
 
-    /// The smallest forces along these unknowns with these resultants; `None` if there are none.
-    fn forces(&self, unknowns: &[usize], resultants: &[f64]) -> Option<Vec<f64>> {
-        let levers: Vec<Vec<f64>> = unknowns.iter().map(|&unknown| self.of(unknown)).collect();
+    /// The smallest amounts of the forces with these levers that have these resultants; `None` if there are none.
+    fn amounts(&self, levers: &[Vec<f64>], resultants: &[f64]) -> Option<Vec<f64>> {
         let mut motion = resultants.to_vec();
-        Lower::of_squares(motion.len(), &levers)?.solve(&mut motion);
+        Lower::of_squares(motion.len(), levers)?.solve(&mut motion);
         Some(levers.iter().map(|lever| dot(lever, &motion)).collect())
     }
 }
@@ -110,29 +113,43 @@ fn rigid_motions(dimension: usize) -> usize {
     if dimension == 2 { 3 } else { 6 }
 }
 
+/// The levers of forces of one at places along axes.
+fn levers(about: &Levers, held: &[(usize, Point)]) -> Vec<Vec<f64>> {
+    held.iter().map(|&(place, axis)| about.at(place, axis)).collect()
+}
+
 /// How forces are carried to the supports of a mesh.
 #[derive(Debug)]
 pub struct Balance {
     tree: Tree,
-    /// The held unknowns of the stress problem at each root.
-    held: Vec<(usize, Vec<usize>)>,
+    /// The places of the stress problem that supports hold, with the axes along which they do, by the root of their simplex.
+    held: Vec<(usize, Vec<(usize, Point)>)>,
     places: Vec<Point>,
 }
 
 impl Balance {
-    /// `None` if the supports cannot carry every force and moment.
-    pub fn of(stresses: &Stresses) -> Option<Self> {
-        let (mesh, tree) = (stresses.mesh, Tree::of(stresses.mesh));
-        let mut held: BTreeMap<usize, Vec<usize>> = tree.roots.iter().map(|&root| (root, Vec::new())).collect();
+    /// `None` if the supports alone cannot carry every force and moment.
+    pub fn of(stresses: &Stresses, unknowns: &Unknowns) -> Option<Self> {
+        let (mesh, problem) = (stresses.mesh, stresses.problem);
+        // What springs and rigid faces take, and where loads enter inside, follows from the solution.
+        let is_plain = problem.loads_of_motions().is_empty() && problem.rigid_faces.is_empty();
+        if !is_plain || mesh.has_inner_conditions() || stresses.on_springs().next().is_some() {
+            return None;
+        }
+        let tree = Tree::of(mesh);
+        let mut held: BTreeMap<usize, Vec<(usize, Point)>> = tree.roots.iter().map(|&root| (root, Vec::new())).collect();
         for outer in mesh.surface() {
             let at_root = held.entry(tree.roots[outer.cell]).or_default();
-            for (axis, _) in stresses.problem.held(&outer) {
-                at_root.extend((0..mesh.dimension).map(|corner| stresses.unknown(outer.facet, corner, axis)));
+            for place in (0..mesh.dimension).map(|corner| stresses.place(outer.facet, corner)) {
+                at_root.extend(unknowns.supports.get(&place).into_iter().flatten().map(|&axis| (place, axis)));
             }
         }
         let balance = Balance { tree, held: held.into_iter().collect(), places: stresses.places() };
         let none = vec![0.0; rigid_motions(mesh.dimension)];
-        let carries = |(_, held): &(usize, Vec<usize>)| balance.of_body(mesh).forces(held, &none).is_some();
+        let carries = |(_, held): &(usize, Vec<_>)| {
+            let of_body = balance.of_body(mesh);
+            of_body.amounts(&levers(&of_body, held), &none).is_some()
+        };
         balance.held.iter().all(carries).then_some(balance)
     }
 
@@ -148,17 +165,17 @@ impl Balance {
         Levers { dimension, places: &self.places, centre: simplex.centre(), size }
     }
 
-    /// The stress of each simplex, in balance with the loads and with these forces at the places, near that of displacements of the facets;
-    /// `None` for a flat simplex.
+    /// The stress of each simplex, in balance with the loads and with these forces at the places, near that of the displacements of the facets
+    /// of an answer; `None` for a flat simplex.
     pub fn stress(
         &self,
         stresses: &Stresses,
-        displacement: &[f64],
+        (unknowns, displacement): (&Unknowns, &[f64]),
         places: &[Place],
         pulls: &[f64],
     ) -> Option<Vec<PartStress>> {
         let (mesh, problem, tree) = (stresses.mesh, stresses.problem, &self.tree);
-        let of_facet = mesh.dimension * mesh.dimension;
+        let (dimension, of_facet) = (mesh.dimension, mesh.dimension * mesh.dimension);
         let sign = |cell: usize, unknown: usize| tree.sign(cell, unknown / of_facet);
         // The forces at the unknowns are those on the first simplex of their facet.
         let mut forces = vec![0.0; displacement.len()];
@@ -169,15 +186,21 @@ impl Balance {
                 forces[number] += share * sign(cell, number) * work;
             }
         }
-        for (unknown, load) in stresses.loads() {
-            forces[unknown] = load;
+        // On the surface only the part along supports is free.
+        let given = stresses.given_forces(displacement, places, pulls);
+        for place in mesh.surface().flat_map(|outer| (0..dimension).map(move |corner| stresses.place(outer.facet, corner)))
+        {
+            let own = dimension * place..dimension * (place + 1);
+            let rest: Vec<f64> = own.clone().map(|unknown| forces[unknown] - given[unknown]).collect();
+            forces[own.clone()].copy_from_slice(&given[own.clone()]);
+            for axis in unknowns.supports.get(&place).into_iter().flatten() {
+                let taken = dot(&rest, &axis[..dimension]);
+                own.clone().zip(axis).for_each(|(unknown, part)| forces[unknown] += taken * part);
+            }
         }
-        for (place, pull) in places.iter().zip(pulls) {
-            let facing = &problem.obstacles[place.obstacle];
-            forces[stresses.unknown(place.on.facet, place.corner, facing.axis)] += facing.sense * pull;
-        }
-        let of_body_force: Vec<Vec<f64>> =
-            (0..mesh.count()).map(|cell| tractions_of_body_force(problem, &mesh.simplex(cell))).collect();
+        let of_body_force: Vec<Vec<f64>> = (0..mesh.count())
+            .map(|cell| tractions_of_body_force(problem, mesh.origins[cell], &mesh.simplex(cell)))
+            .collect();
         // What a simplex has too much.
         let too_much = |cell: usize, levers: &Levers, forces: &[f64]| {
             let of_unknown =
@@ -190,14 +213,17 @@ impl Balance {
                 let mut sum = vec![0.0; rigid_motions(mesh.dimension)];
                 let of_root = (0..mesh.count()).filter(|&cell| tree.roots[cell] == *root);
                 of_root.for_each(|cell| add(&mut sum, 1.0, &too_much(cell, &of_body, &forces)));
-                held.iter().zip(of_body.forces(held, &sum)?).for_each(|(&unknown, taken)| forces[unknown] -= taken);
+                for (&(place, axis), taken) in held.iter().zip(of_body.amounts(&levers(&of_body, held), &sum)?) {
+                    (0..dimension).for_each(|along| forces[dimension * place + along] -= taken * axis[along]);
+                }
             }
             for &cell in tree.order.iter().rev() {
                 let Some(facet) = tree.towards_root[cell] else { continue };
                 let (levers, sign) = (self.of_cell(mesh, cell), tree.sign(cell, facet));
-                let unknowns: Vec<usize> = (of_facet * facet..of_facet * (facet + 1)).collect();
-                let taken = levers.forces(&unknowns, &too_much(cell, &levers, &forces))?;
-                unknowns.iter().zip(taken).for_each(|(&unknown, taken)| forces[unknown] -= sign * taken);
+                let of_side: Vec<usize> = (of_facet * facet..of_facet * (facet + 1)).collect();
+                let of_unknowns: Vec<Vec<f64>> = of_side.iter().map(|&unknown| levers.of(unknown)).collect();
+                let taken = levers.amounts(&of_unknowns, &too_much(cell, &levers, &forces))?;
+                of_side.iter().zip(taken).for_each(|(&unknown, taken)| forces[unknown] -= sign * taken);
             }
         }
         let stress = |(cell, (numbers, element)): (usize, (&[usize], &Element))| {
@@ -211,6 +237,7 @@ impl Balance {
 mod tests {
     use super::super::bodies::{body, settings};
     use super::super::bound::Bracket;
+    use super::super::problem::{ContinuumProblem, Held, Linear};
     use super::*;
     use signorini_qp::{Method, Penalty, Settings};
 
@@ -228,8 +255,10 @@ mod tests {
             bracket.stress = bracket.stresses.stresses(&disturbed);
             bracket.measure();
             assert!(bracket.check().unwrap_err().to_string().contains("out of balance"));
+            bracket.dual.values = disturbed;
             let balance = bracket.balance.as_ref().unwrap();
-            bracket.stress = balance.stress(&bracket.stresses, &disturbed, &bracket.places, &bracket.pulls).unwrap();
+            let answer = (&bracket.dual.unknowns, &bracket.dual.values[..]);
+            bracket.stress = balance.stress(&bracket.stresses, answer, &bracket.places, &bracket.pulls).unwrap();
             bracket.measure();
             // The check compares J - D with the sum of the shares too.
             assert!(bracket.check().unwrap() < 1e-11);
@@ -252,13 +281,17 @@ mod tests {
     #[test]
     fn guides_along_all_axes_carry_every_force_and_a_roller_does_not() {
         for (mut problem, mesh) in [body(2), body(3)] {
-            let last = problem.dimension - 1;
-            problem.conditions[0].held = [0, 1, 2].map(|axis| (axis == last).then_some(0.0));
-            assert!(Balance::of(&Stresses::new(&problem, &mesh).unwrap()).is_none());
-            problem.conditions[1].held[0] = Some(0.0);
+            let held = |axis: usize| Held { direction: COORDINATES[axis], value: Linear::default() };
+            let carries = |problem: &ContinuumProblem| {
+                let stresses = Stresses::new(problem, &mesh).unwrap();
+                Balance::of(&stresses, &stresses.unknowns()).is_some()
+            };
+            problem.conditions[0].held = vec![held(problem.dimension - 1)];
+            assert!(!carries(&problem));
+            problem.conditions[1].held = vec![held(0)];
             if problem.dimension == 3 {
-                assert!(Balance::of(&Stresses::new(&problem, &mesh).unwrap()).is_none());
-                problem.conditions[3].held[1] = Some(0.0);
+                assert!(!carries(&problem));
+                problem.conditions[3].held = vec![held(1)];
             }
             let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
             assert!(bracket.balance.is_some() && bracket.defect < 1e-10, "{}", bracket.defect);

@@ -4,9 +4,10 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::mesh::SimplexMesh;
-use super::problem::{Condition, ContinuumProblem, Distance, Enclosure, Facing};
+use super::problem::{Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium};
 use super::simplex::{Point, pairs};
-use crate::fem::material::Lame;
+use crate::fem::geometry::COORDINATES;
+use crate::fem::material::{Lame, Stiffness};
 use signorini_qp::{Method, Settings};
 
 /// The surface at the height `1 - 0.02 + (x - 0.4)^2` in the plane, `1 - 0.1 + (x - 0.4)^2 + (y - 0.4)^2` in space.
@@ -27,27 +28,48 @@ impl Distance for Bowl {
     }
 }
 
+/// A body of one isotropic medium without any condition.
+pub fn filled(dimension: usize, lame: Lame, body_force: Point) -> ContinuumProblem {
+    ContinuumProblem {
+        dimension,
+        media: vec![Medium { stiffness: Stiffness::Isotropic(lame), own_stress: None, body_force }],
+        medium_of: vec![0],
+        thickness: 1.0,
+        conditions: Vec::new(),
+        rigid_faces: Vec::new(),
+        obstacles: Vec::new(),
+        boundaries: Vec::new(),
+    }
+}
+
+/// Supports along all axes of a dimension.
+pub fn clamped(dimension: usize) -> Vec<Held> {
+    COORDINATES[..dimension].iter().map(|&direction| Held { direction, value: Linear::default() }).collect()
+}
+
 /// A square or a cube of side 1 on a clamped side, with a traction on the right, a body force, and a bowl above.
 pub fn body(dimension: usize) -> (ContinuumProblem, SimplexMesh) {
     let side = |held: bool, traction: Point, obstacles: Vec<usize>| Condition {
-        held: [held.then_some(0.0); 3],
-        traction,
+        held: if held { clamped(dimension) } else { Vec::new() },
+        traction: traction.map(Linear::constant),
         obstacles,
         ..Condition::default()
     };
+    let body_force = if dimension == 2 { [0.01, -0.02, 0.0] } else { [0.01, -0.02, 0.015] };
     let problem = ContinuumProblem {
-        dimension,
-        lame: Lame { lambda: 1.5, mu: 1.0 },
         thickness: if dimension == 2 { 0.5 } else { 1.0 },
-        body_force: if dimension == 2 { [0.01, -0.02, 0.0] } else { [0.01, -0.02, 0.015] },
         conditions: vec![
             side(true, [0.0; 3], vec![]),
             side(false, [0.03, 0.01, 0.0], vec![]),
             side(false, [0.0; 3], vec![0]),
             side(false, [0.0; 3], vec![]),
         ],
-        obstacles: vec![Facing { axis: dimension - 1, sense: 1.0, surface: Arc::new(Bowl(dimension)) }],
-        boundaries: Vec::new(),
+        obstacles: vec![Facing {
+            normal: COORDINATES[dimension - 1],
+            surface: Arc::new(Bowl(dimension)),
+            force: None,
+        }],
+        ..filled(dimension, Lame { lambda: 1.5, mu: 1.0 }, body_force)
     };
     // Each order of the axes is the way of a simplex from the origin to the opposite corner.
     let nodes: Vec<Point> = (0..1 << dimension).map(|node| [0, 1, 2].map(|axis| f64::from(node >> axis & 1))).collect();

@@ -8,18 +8,22 @@
 //!
 //! for the exact displacement u, in the norms of energy; p is the pressure of tau on the obstacle, `p <= 0`. The bound contains no
 //! unknown constant.
+//!
+//! A stress without strain is subtracted from tau in these energies, and does the opposite of its work with eps(v) as a load. Springs on the
+//! surface are a part of the body: w is the displacement of a facet with which their forces are in balance, and they add half of the work
+//! of their forces under `v - w` with it.
 
 use super::balance::Balance;
 use super::displacement::Displacements;
 use super::johnson_mercier::{PartStress, at, corners_of_side};
-use super::mesh::{OuterFacet, SimplexMesh};
-use super::problem::ContinuumProblem;
-use super::simplex::{Point, Simplex, Tensor, Weights, less, mean_over_parts, traction, work};
+use super::mesh::SimplexMesh;
+use super::problem::{ContinuumProblem, Law};
+use super::simplex::{Simplex, Tensor, Weights, less, mean_over_parts, traction, work};
+use super::springs::apart;
 use super::stress::{Place, Stresses};
 use super::system::{Row, Unknowns};
 use crate::error::Error;
-use crate::fem::geometry::{dot, length};
-use crate::fem::material::Lame;
+use crate::fem::geometry::length;
 use crate::fem::threads::each;
 use signorini_qp as qp;
 use signorini_qp::{ContactProblem, ContactSet, Prepared, Settings, Solution, solve};
@@ -36,6 +40,8 @@ pub struct Bracket<'a> {
     pub stresses: Stresses<'a>,
     /// The displacement problem and the stress problem, each with its answer.
     pub primal: Side,
+    /// Rows of the displacement that supports hold.
+    pub held_rows: Vec<Row>,
     pub dual: Side,
     /// The places at which the rows of the stress act.
     pub places: Vec<Place>,
@@ -101,9 +107,8 @@ impl Side {
 
     /// Moves values beyond the bounds of rows, as those of a penalty method, to the bounds: the displacement stays out of the obstacles.
     fn keep_out(&mut self) {
-        for row in &self.rows {
-            let value = &mut self.values[row.unknown];
-            *value = row.sense * (row.sense * *value).min(row.gap);
+        for row in self.rows.iter().filter(|row| row.value(&self.values) > row.gap).cloned().collect::<Vec<_>>() {
+            self.unknowns.move_to(&mut self.values, &row, row.gap);
         }
     }
 }
@@ -121,12 +126,14 @@ impl<'a> Bracket<'a> {
     ) -> Result<Self, Error> {
         let clock = std::time::Instant::now();
         let stresses = Stresses::new(problem, mesh)?;
-        let balance = Balance::of(&stresses);
+        let of_stress = stresses.unknowns();
+        let balance = Balance::of(&stresses, &of_stress);
         let settings = &settings_for(settings, balance.is_some());
         let displacements = Displacements::new(problem, mesh);
         let unknowns = displacements.unknowns();
-        let rows = displacements.rows(&unknowns)?;
+        let [rows, held_rows] = displacements.rows(&unknowns)?;
         let posed = unknowns.problem(
+            mesh.dimension,
             &displacements.numbers,
             &displacements.blocks(),
             &displacements.load(),
@@ -135,7 +142,7 @@ impl<'a> Bracket<'a> {
         )?;
         let start = touching.map(|nodes| {
             let (count, edges) = (mesh.nodes.len(), &mesh.edges);
-            ContactSet::from_fn(rows.len(), |row| match rows[row].unknown / mesh.dimension {
+            ContactSet::from_fn(rows.len(), |row| match rows[row].place(mesh.dimension) {
                 node if node < count => nodes[node],
                 edge => edges[edge - count].iter().all(|&end| nodes[end]),
             })
@@ -143,17 +150,24 @@ impl<'a> Bracket<'a> {
         let mut primal = Side::solved(unknowns, rows, &posed, start, settings)?;
         primal.keep_out();
         primal.seconds = clock.elapsed().as_secs_f64();
-        let unknowns = stresses.unknowns();
-        let largest = largest(&primal.values);
-        let (rows, places) = stresses.rows(&unknowns, |place, gap| {
-            gap - displacements.approached(&primal.values, &place.on, place.corner, place.obstacle) <= largest
+        let largest = displacements.largest(&primal.values);
+        let (rows, places) = stresses.rows(&of_stress, |place, gap| {
+            gap - displacements.towards(&primal.values, place) <= largest
         });
-        let posed =
-            unknowns.problem(&stresses.numbers, &stresses.blocks(), &stresses.load(), &rows, &stresses.places())?;
+        let posed = of_stress.problem(
+            mesh.dimension,
+            &stresses.numbers,
+            &stresses.blocks(),
+            &stresses.load(),
+            &rows,
+            &stresses.places(),
+        )?;
         let start = touching.map(|nodes| ContactSet::from_fn(rows.len(), |row| nodes[places[row].node(mesh)]));
-        let mut dual = Side::solved(unknowns, rows, &posed, start, settings)?;
+        let mut dual = Side::solved(of_stress, rows, &posed, start, settings)?;
         let pulls: Vec<f64> = dual.solution.multiplier.iter().map(|force| force.min(0.0)).collect();
-        let balanced = balance.as_ref().and_then(|balance| balance.stress(&stresses, &dual.values, &places, &pulls));
+        let balanced = balance.as_ref().and_then(|balance| {
+            balance.stress(&stresses, (&dual.unknowns, &dual.values), &places, &pulls)
+        });
         let stress = balanced.unwrap_or_else(|| stresses.stresses(&dual.values));
         dual.seconds = clock.elapsed().as_secs_f64() - primal.seconds;
         let mut bracket = Bracket {
@@ -162,6 +176,7 @@ impl<'a> Bracket<'a> {
             displacements,
             stresses,
             primal,
+            held_rows,
             dual,
             places,
             settings: settings.clone(),
@@ -184,7 +199,7 @@ impl<'a> Bracket<'a> {
     pub fn touching(&self) -> Vec<bool> {
         let mut nodes = vec![false; self.mesh.nodes.len()];
         for (index, row) in self.primal.rows.iter().enumerate() {
-            if let Some(node) = nodes.get_mut(row.unknown / self.mesh.dimension) {
+            if let Some(node) = nodes.get_mut(row.place(self.mesh.dimension)) {
                 *node |= self.primal.solution.contact_set.contains(index);
             }
         }
@@ -201,24 +216,47 @@ impl<'a> Bracket<'a> {
         self.displacements.strain(coefficients, cell, self.mesh.simplex(cell).in_whole(k, weights))
     }
 
-    /// The integral over a simplex of a function of the strain of the displacement and the stress.
+    /// The law on a simplex.
+    pub fn law(&self, cell: usize) -> Law<'_> {
+        self.problem.law(self.mesh.origins[cell])
+    }
+
+    /// The stress in balance less that without strain, at a point of part k of a simplex, given by the weights of the part's corners.
+    pub fn elastic_stress(&self, cell: usize, k: usize, weights: Weights) -> Tensor {
+        let (stress, medium) = (at(&self.stress[cell], k, weights), self.problem.medium(self.mesh.origins[cell]));
+        match medium.own_stress {
+            Some(_) => less(stress, medium.own_stress(self.mesh.simplex(cell).part(k).at(weights))),
+            None => stress,
+        }
+    }
+
+    /// The integral over a simplex of a function of the strain of the displacement and the elastic stress.
     pub fn integral(&self, cell: usize, product: impl Fn(Tensor, Tensor) -> f64) -> f64 {
         let mean = mean_over_parts(self.mesh.dimension, |k, weights| {
             let strain = self.strain(&self.primal.values, cell, k, weights);
-            product(strain, at(&self.stress[cell], k, weights))
+            product(strain, self.elastic_stress(cell, k, weights))
         });
         self.volume(cell) * mean
     }
 
     /// Computes energy, shares and the share of contact.
     pub(super) fn measure(&mut self) {
-        let size = |strain: Tensor| work(self.problem.stress(strain), strain);
-        let misfit = |strain: Tensor, stress: Tensor| size(less(strain, self.problem.compliance(stress))) / 2.0;
-        let mut shares = each(self.mesh.count(), |cell| self.integral(cell, misfit));
-        let energy = each(self.mesh.count(), |cell| self.integral(cell, |strain, _| size(strain))).iter().sum();
+        let of_cell = |cell: usize| {
+            let law = self.law(cell);
+            let misfit = |strain, stress| law.square(less(strain, law.compliance(stress))) / 2.0;
+            [self.integral(cell, misfit), self.integral(cell, |strain, _| law.square(strain))]
+        };
+        let of_cells = each(self.mesh.count(), of_cell);
+        let mut shares: Vec<f64> = of_cells.iter().map(|cell| cell[0]).collect();
+        let mut energy: f64 = of_cells.iter().map(|cell| cell[1]).sum();
+        for (outer, [moved, balanced]) in self.on_springs() {
+            let rest = apart(&moved, &balanced);
+            shares[outer.cell] += self.work_of_springs(&outer, &rest, &rest) / 2.0;
+            energy += self.work_of_springs(&outer, &moved, &moved);
+        }
         let mut contact_share = 0.0;
         for (index, place) in self.places.iter().enumerate() {
-            let moved = self.displacements.approached(&self.primal.values, &place.on, place.corner, place.obstacle);
+            let moved = self.displacements.towards(&self.primal.values, place);
             let share = -self.pulls[index] * (self.dual.rows[index].gap - moved);
             shares[place.on.cell] += share;
             contact_share += share;
@@ -234,12 +272,11 @@ impl<'a> Bracket<'a> {
     /// Returns `true` if the energies of displacement and stress are at most those of the rounding of the displacement, on every
     /// simplex.
     pub fn is_at_rest(&self) -> bool {
-        let largest = largest(&self.primal.values);
-        let Lame { lambda, mu } = self.problem.lame;
+        let largest = self.displacements.largest(&self.primal.values);
         // The strain on a simplex is the noise over its smallest height.
         let of_cell = |cell: usize| self.volume(cell) * steepest(&self.mesh.simplex(cell)).powi(2);
         let rounding =
-            (0..self.mesh.count()).map(of_cell).sum::<f64>() * (lambda + 2.0 * mu) * (NOISE * largest).powi(2);
+            (0..self.mesh.count()).map(of_cell).sum::<f64>() * self.problem.stiffest() * (NOISE * largest).powi(2);
         self.energy.max(self.distance()) <= rounding
     }
 
@@ -270,9 +307,10 @@ impl<'a> Bracket<'a> {
 
     /// D(tau).
     pub fn energy_of_stress(&self) -> f64 {
-        let stored = |cell: usize| self.integral(cell, |_, stress| work(stress, self.problem.compliance(stress)));
-        let stored = each(self.mesh.count(), stored).iter().sum::<f64>();
-        self.work_on_supports(&self.stress) + self.work_on_obstacles() - stored / 2.0
+        let stored = |cell: usize| self.integral(cell, |_, stress| work(stress, self.law(cell).compliance(stress)));
+        let mut stored = each(self.mesh.count(), stored).iter().sum::<f64>();
+        stored += self.on_springs().map(|(outer, [_, own])| self.work_of_springs(&outer, &own, &own)).sum::<f64>();
+        self.work_on_supports() + self.work_on_obstacles() - stored / 2.0
     }
 
     /// The work of the loads with the displacement.
@@ -286,37 +324,41 @@ impl<'a> Bracket<'a> {
         self.dual.rows.iter().zip(&self.pulls).map(|(row, pull)| pull * row.gap).sum()
     }
 
-    /// The work of the tractions of a stress with the prescribed displacements.
-    pub fn work_on_supports(&self, stress: &[PartStress]) -> f64 {
-        let pulls = self.jumps(stress);
-        let mut sum = 0.0;
-        for outer in self.mesh.surface() {
-            let held = self.problem.conditions[outer.condition].held.map(Option::unwrap_or_default);
-            let share = self.share_of_corner(&outer);
-            sum += pulls[outer.facet].iter().map(|&pull| share * dot(pull, held)).sum::<f64>();
-        }
-        sum
+    /// The work of what supports take with the prescribed displacements.
+    pub fn work_on_supports(&self) -> f64 {
+        let given = self.stresses.given_forces(&self.dual.values, &self.places, &self.pulls);
+        self.work_of_reactions(&self.stress, &given)
     }
 
-    /// The factor of a traction at a corner of a facet of the surface.
-    pub(super) fn share_of_corner(&self, outer: &OuterFacet) -> f64 {
-        self.problem.share_of_corner(self.mesh.simplex(outer.cell).outward(outer.local).1)
+    /// The work of the forces of a stress on facets that are not given with the prescribed displacements.
+    pub(super) fn work_of_reactions(&self, stress: &[PartStress], given: &[f64]) -> f64 {
+        let [forces, _] = self.forces_on_facets(stress);
+        let reactions = forces.iter().zip(given).map(|(force, given)| force - given);
+        reactions.zip(self.dual.unknowns.prescribed()).map(|(reaction, moved)| reaction * moved).sum()
     }
 
-    /// The sum of the tractions of a stress on both sides of each facet, at each of its corners: on the surface the traction itself.
-    pub(super) fn jumps(&self, stress: &[PartStress]) -> Vec<[Point; 3]> {
-        let mut jumps = vec![[[0.0; 3]; 3]; self.mesh.facet_count()];
+    /// The forces along the unknowns of the tractions of a stress on both sides of each facet: on the surface those from outside. And the
+    /// share of the facet that each belongs to.
+    pub(super) fn forces_on_facets(&self, stress: &[PartStress]) -> [Vec<f64>; 2] {
+        let dimension = self.mesh.dimension;
+        let mut forces = vec![0.0; self.dual.unknowns.count()];
+        let mut shares = forces.clone();
         for (cell, stress) in stress.iter().enumerate() {
             let simplex = self.mesh.simplex(cell);
             for (local, &facet) in self.mesh.sides(cell).iter().enumerate() {
-                let (normal, _) = simplex.outward(local);
-                for (sum, corner) in jumps[facet].iter_mut().zip(corners_of_side(self.mesh.dimension, local)) {
-                    let pull = traction(stress[local][corner], normal);
-                    (0..3).for_each(|axis| sum[axis] += pull[axis]);
+                let (normal, size) = simplex.outward(local);
+                let share = self.problem.share_of_corner(size);
+                for (corner, of_corner) in corners_of_side(dimension, local).enumerate() {
+                    let first = dimension * self.stresses.place(facet, corner);
+                    let pull = traction(stress[local][of_corner], normal);
+                    for (axis, part) in pull.iter().enumerate().take(dimension) {
+                        forces[first + axis] += share * part;
+                        shares[first + axis] = share;
+                    }
                 }
             }
         }
-        jumps
+        [forces, shares]
     }
 }
 
@@ -326,11 +368,6 @@ fn settings_for(settings: &Settings, is_balanced: bool) -> Settings {
         true => settings.clone(),
         false => settings.clone().exactly(),
     }
-}
-
-/// The largest absolute value.
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |largest, value| largest.max(value.abs()))
 }
 
 /// One over the smallest height of a simplex.

@@ -65,32 +65,32 @@ impl Bracket<'_> {
         let corners = self.mesh.dimension + 1;
         let centre = std::array::from_fn(|corner| if corner < corners { 1.0 / corners as f64 } else { 0.0 });
         let strain = |cell: usize| self.displacements.strain(&self.primal.values, cell, centre);
-        let of_displacement = (0..self.stress.len()).map(|cell| self.problem.stress(strain(cell)));
+        let of_displacement = (0..self.stress.len()).map(|cell| self.law(cell).stress(strain(cell)));
         let in_balance = self.stress.iter().flatten().flatten().copied();
         of_displacement.chain(in_balance).flatten().fold(0.0, |largest: f64, entry| largest.max(entry.abs()))
     }
 
-    /// The largest jump of a traction between simplices, difference of traction and load, and sum of divergence and body force times
-    /// length, over the largest stress.
+    /// The largest difference of a traction from what loads, springs and obstacles give, between simplices and on the surface, and the largest
+    /// sum of divergence and body force times length, over the largest stress. Where supports or rigid faces leave free motions, it is the
+    /// sum along each.
     fn imbalance(&self) -> f64 {
-        let mut left = self.jumps(&self.stress);
-        let mut worst = (0..self.mesh.count()).fold(0.0, |worst: f64, cell| worst.max(self.divergence(cell)));
-        for outer in self.mesh.surface() {
-            let condition = &self.problem.conditions[outer.condition];
-            let pull = condition.pull(self.mesh.simplex(outer.cell).outward(outer.local).0);
-            for corner in left[outer.facet].iter_mut().take(self.mesh.dimension) {
-                for axis in 0..3 {
-                    let free = condition.held[axis].is_none();
-                    corner[axis] = if free { corner[axis] - pull[axis] } else { 0.0 };
-                }
+        let [mut left, mut shares] = self.forces_on_facets(&self.stress);
+        let given = self.stresses.given_forces(&self.dual.values, &self.places, &self.pulls);
+        left.iter_mut().zip(given).for_each(|(left, given)| *left -= given);
+        // The forces along the motions of rigid faces and along travels.
+        let loads = self.problem.loads_of_motions();
+        let first = left.len() - loads.len();
+        left[first..].iter_mut().zip(loads).for_each(|(left, load)| *left = -load);
+        for (place, pull) in self.places.iter().zip(&self.pulls) {
+            if let Some(travel) = self.stresses.travel(place.obstacle) {
+                left[travel] -= pull;
+                shares[travel] += self.problem.share_of_corner(self.mesh.simplex(place.on.cell).outward(place.on.local).1);
             }
         }
-        for (row, place) in self.places.iter().enumerate() {
-            let facing = &self.problem.obstacles[place.obstacle];
-            left[place.on.facet][place.corner][facing.axis] -=
-                facing.sense * self.pulls[row] / self.share_of_corner(&place.on);
-        }
-        worst = left.iter().flatten().flatten().fold(worst, |worst, entry| worst.max(entry.abs()));
+        let unknowns = &self.dual.unknowns;
+        let per_area = unknowns.gathered(&left).into_iter().zip(unknowns.gathered_sizes(&shares));
+        let worst = (0..self.mesh.count()).fold(0.0, |worst: f64, cell| worst.max(self.divergence(cell)));
+        let worst = per_area.fold(worst, |worst, (force, area)| worst.max(over(force.abs(), area)));
         over(worst, self.largest_stress())
     }
 
@@ -100,7 +100,7 @@ impl Bracket<'_> {
         let mut worst: f64 = 0.0;
         for k in 0..corners {
             let part = simplex.part(k);
-            let mut sum = self.problem.body_force;
+            let mut sum = self.problem.medium(self.mesh.origins[cell]).body_force;
             for (stress, slope) in self.stress[cell][k].iter().zip(part.slopes()).take(corners) {
                 let pull = traction(*stress, slope);
                 (0..3).for_each(|axis| sum[axis] += pull[axis]);
@@ -119,19 +119,20 @@ impl Bracket<'_> {
     /// The largest depth of the displacement in an obstacle, over the largest displacement.
     fn penetration(&self) -> f64 {
         let (mut deepest, values) = (0.0_f64, &self.primal.values);
-        let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        let largest = self.displacements.largest(values);
         let dimension = self.mesh.dimension;
         for (outer, obstacle) in self.problem.facing(self.mesh) {
             let (facing, corners) = (&self.problem.obstacles[obstacle], self.mesh.corners_of_facet(outer.facet));
-            let functions = self.displacements.on_facet(&outer, facing.axis);
+            let coefficients = self.displacements.along(values, &outer, facing.normal);
+            let travel = self.displacements.travel(obstacle).map_or(0.0, |travel| values[travel]);
             for weights in samples(dimension) {
                 let place = [0, 1, 2]
                     .map(|axis| corners.iter().zip(weights).map(|(corner, weight)| weight * corner[axis]).sum());
                 let of_pair = |[i, j]: [usize; 2]| weights[i] * weights[j] * if i == j { 1.0 } else { 2.0 };
                 let moved: f64 =
-                    pairs(dimension).zip(&functions).map(|(pair, &function)| of_pair(pair) * values[function]).sum();
+                    pairs(dimension).zip(&coefficients).map(|(pair, coefficient)| of_pair(pair) * coefficient).sum();
                 if let Some(gap) = facing.surface.gap(&vec![place; dimension]) {
-                    deepest = deepest.max(facing.sense * moved - gap.coefficients[0]);
+                    deepest = deepest.max(moved + travel - gap.coefficients[0]);
                 }
             }
         }
@@ -142,7 +143,7 @@ impl Bracket<'_> {
     /// the work of forces that rounding leaves unbalanced, which grows with the rigid motion of a body.
     fn lost(&self) -> f64 {
         let [high, low] = [self.energy_of_displacement(), self.energy_of_stress()];
-        let works = [self.work_of_loads(), self.work_on_supports(&self.stress), self.work_on_obstacles()];
+        let works = [self.work_of_loads(), self.work_on_supports(), self.work_on_obstacles()];
         let size = works.iter().fold(self.energy, |sum, work| sum + work.abs());
         let rounding = (ENERGY_ROUNDING + self.imbalance()) * size;
         over(((high - low - self.distance()).abs() - rounding).max(0.0), self.distance())
@@ -169,8 +170,8 @@ mod tests {
     use super::super::bodies::{body, settings};
     use super::super::bound::Side;
     use super::super::displacement::Displacements;
-    use super::super::problem::ContinuumProblem;
-    use super::super::simplex::{Point, Tensor, less, middle, work};
+    use super::super::problem::Medium;
+    use super::super::simplex::{Point, Tensor, less, middle};
     use super::super::system::Row;
     use super::*;
 
@@ -199,11 +200,12 @@ mod tests {
             } else {
                 [0.01, -0.02, 0.01, 0.005, 0.01, 0.02]
             };
-            let size = |strain: Tensor| work(problem.stress(strain), strain);
+            let law = problem.law(0);
+            let size = |strain: Tensor| law.square(strain);
             let length = |square: &dyn Fn(Tensor, Tensor) -> f64| {
                 (0..mesh.count()).map(|cell| bracket.integral(cell, square)).sum::<f64>().sqrt()
             };
-            let from_centre = length(&|strain, stress| size(less(own, middle(strain, problem.compliance(stress)))));
+            let from_centre = length(&|strain, stress| size(less(own, middle(strain, law.compliance(stress)))));
             let judged = bracket.judged(|_| move |_: Point| own);
             // The body has the size one.
             let exact = [
@@ -221,9 +223,9 @@ mod tests {
     fn a_lost_traction_is_refused() {
         for (problem, mesh) in [body(2), body(3)] {
             let mut without = problem.clone();
-            without.conditions[1].traction = [0.0; 3];
+            without.conditions[1].traction = Default::default();
             let mut bracket = Bracket::new(&without, &mesh, None, &settings()).unwrap();
-            bracket.problem = &problem;
+            (bracket.problem, bracket.stresses.problem) = (&problem, &problem);
             assert!(refusal(&bracket).contains("the stress is out of balance"));
         }
     }
@@ -231,7 +233,8 @@ mod tests {
     #[test]
     fn a_missed_body_force_is_refused() {
         for (problem, mesh) in [body(2), body(3)] {
-            let weightless = ContinuumProblem { body_force: [0.0; 3], ..problem.clone() };
+            let mut weightless = problem.clone();
+            weightless.media[0] = Medium { body_force: [0.0; 3], ..weightless.media[0].clone() };
             let mut bracket = Bracket::new(&weightless, &mesh, None, &settings()).unwrap();
             bracket.problem = &problem;
             assert!(refusal(&bracket).contains("the stress is out of balance"));
@@ -256,11 +259,13 @@ mod tests {
             let mut bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
             let displacements = Displacements::new(&problem, &mesh);
             let unknowns = displacements.unknowns();
-            let corners_only = mesh.dimension * mesh.nodes.len();
-            let rows: Vec<Row> =
-                displacements.rows(&unknowns).unwrap().into_iter().filter(|row| row.unknown < corners_only).collect();
+            let corners_only = mesh.nodes.len();
+            let [rows, _] = displacements.rows(&unknowns).unwrap();
+            let rows: Vec<Row> = rows.into_iter().filter(|row| row.place(mesh.dimension) < corners_only).collect();
             let (blocks, load, places) = (displacements.blocks(), displacements.load(), displacements.places());
-            let posed = unknowns.problem(&displacements.numbers, &blocks, &load, &rows, &places).unwrap();
+            let posed = unknowns
+                .problem(mesh.dimension, &displacements.numbers, &blocks, &load, &rows, &places)
+                .unwrap();
             bracket.primal = Side::solved(unknowns, rows, &posed, None, &settings()).unwrap();
             bracket.measure();
             assert!(refusal(&bracket).contains("the displacement goes into an obstacle"));

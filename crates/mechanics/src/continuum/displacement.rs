@@ -7,7 +7,8 @@ use super::johnson_mercier::corners_of_side;
 use super::mesh::{OuterFacet, SimplexMesh};
 use super::problem::{ContinuumProblem, weighted_mean};
 use super::simplex::{MOST_CORNERS, Point, Tensor, Weights, pairs, quadratic_rule, work};
-use super::system::{Block, Numbers, Row, Unknowns};
+use super::stress::Place;
+use super::system::{Block, Numbers, Row, Unknowns, add_springs};
 use crate::error::Error;
 use crate::fem::geometry::key;
 use crate::fem::threads::each;
@@ -34,11 +35,6 @@ impl<'a> Displacements<'a> {
         Displacements { problem, mesh, numbers: Numbers::new(of_cell, numbers) }
     }
 
-    /// Number of unknowns, free or held.
-    fn count(&self) -> usize {
-        self.mesh.dimension * (self.mesh.nodes.len() + self.mesh.edges.len())
-    }
-
     /// The places of the functions: a linear displacement has its values there as coefficients.
     pub fn places(&self) -> Vec<Point> {
         let nodes = &self.mesh.nodes;
@@ -46,108 +42,146 @@ impl<'a> Displacements<'a> {
         nodes.iter().copied().chain(self.mesh.edges.iter().map(middle)).collect()
     }
 
-    /// The unknowns on a facet of the surface along an axis: those of its corners, then those of their pairs.
-    pub fn on_facet(&self, outer: &OuterFacet, axis: usize) -> Vec<usize> {
-        let (mesh, dimension) = (self.mesh, self.mesh.dimension);
-        let corners: Vec<usize> = corners_of_side(dimension, outer.local).collect();
+    /// The functions on a facet: those of its corners, then those of their pairs.
+    pub fn on_facet(&self, outer: &OuterFacet) -> Vec<usize> {
+        let dimension = self.mesh.dimension;
         let numbers = self.numbers.of(outer.cell);
-        let place = |pair: [usize; 2]| {
-            let pair = pair.map(|corner| corners[corner]);
-            pairs(dimension + 1).position(|other| other == key(pair[0], pair[1])).unwrap_or(0)
-        };
-        debug_assert!(mesh.sides(outer.cell)[outer.local] == outer.facet);
-        pairs(dimension).map(|pair| numbers[dimension * place(pair) + axis]).collect()
+        local_functions(dimension, outer.local).map(|function| numbers[dimension * function] / dimension).collect()
     }
 
-    /// The mean of a displacement towards an obstacle on a facet of the surface with the weight of a corner, as in a row of the stress.
-    pub fn approached(&self, coefficients: &[f64], outer: &OuterFacet, corner: usize, obstacle: usize) -> f64 {
-        let facing = &self.problem.obstacles[obstacle];
-        let functions = self.on_facet(outer, facing.axis);
-        let on_facet: Vec<f64> = functions.into_iter().map(|function| coefficients[function]).collect();
-        facing.sense * weighted_mean(self.mesh.dimension, corner, &on_facet)
+    /// The coefficients of a displacement on a facet along a vector.
+    pub fn along(&self, values: &[f64], outer: &OuterFacet, vector: Point) -> Vec<f64> {
+        let dimension = self.mesh.dimension;
+        let along = |function: usize| (0..dimension).map(|axis| vector[axis] * values[dimension * function + axis]).sum();
+        self.on_facet(outer).into_iter().map(along).collect()
     }
 
-    /// The unknowns; those on held facets are prescribed.
+    /// The mean of a displacement towards an obstacle on a facet with the weight of a corner, as in a row of the stress, without the travel.
+    fn approached(&self, values: &[f64], outer: &OuterFacet, corner: usize, obstacle: usize) -> f64 {
+        let normal = self.problem.obstacles[obstacle].normal;
+        weighted_mean(self.mesh.dimension, corner, &self.along(values, outer, normal))
+    }
+
+    /// The same mean with the travel of the obstacle.
+    pub fn towards(&self, values: &[f64], place: &Place) -> f64 {
+        let travel = self.travel(place.obstacle).map_or(0.0, |travel| values[travel]);
+        self.approached(values, &place.on, place.corner, place.obstacle) + travel
+    }
+
+    /// The largest component of a displacement.
+    pub fn largest(&self, values: &[f64]) -> f64 {
+        let functions = self.mesh.nodes.len() + self.mesh.edges.len();
+        let of_places = values.iter().take(self.mesh.dimension * functions);
+        of_places.fold(0.0, |largest, value| largest.max(value.abs()))
+    }
+
+    /// The unknowns.
     pub fn unknowns(&self) -> Unknowns {
-        let mut held = vec![None; self.count()];
-        for outer in self.mesh.surface() {
-            for (axis, value) in self.problem.held(&outer) {
-                self.on_facet(&outer, axis).into_iter().for_each(|function| held[function] = Some(value));
-            }
-        }
-        Unknowns::new(held)
+        Unknowns::new(self.problem, self.mesh, &self.places(), |outer| self.on_facet(outer))
     }
 
-    /// The rows that keep a displacement out of the obstacles, each function and obstacle once.
+    /// The rows that keep a displacement out of the obstacles, each function and obstacle once: those with a free unknown, and then those
+    /// that supports hold.
     ///
     /// # Errors
     /// [`qp::Error::Infeasible`] if a prescribed displacement leads into an obstacle.
-    pub fn rows(&self, unknowns: &Unknowns) -> Result<Vec<Row>, Error> {
+    pub fn rows(&self, unknowns: &Unknowns) -> Result<[Vec<Row>; 2], Error> {
         let mut gaps: BTreeMap<(usize, usize), f64> = BTreeMap::new();
         for (outer, number) in self.problem.facing(self.mesh) {
             let facing = &self.problem.obstacles[number];
             let Some(gap) = facing.surface.gap(&self.mesh.corners_of_facet(outer.facet)) else { continue };
-            for (function, bound) in self.on_facet(&outer, facing.axis).into_iter().zip(gap.lower()) {
+            for (function, bound) in self.on_facet(&outer).into_iter().zip(gap.lower()) {
                 let least = gaps.entry((number, function)).or_insert(f64::INFINITY);
                 *least = least.min(bound);
             }
         }
-        let mut rows = Vec::with_capacity(gaps.len());
-        for ((number, unknown), gap) in gaps {
-            let sense = self.problem.obstacles[number].sense;
-            match unknowns.held[unknown] {
-                Some(held) if sense * held > gap => {
-                    let overlap = sense * held - gap;
+        let (mut rows, mut held) = (Vec::with_capacity(gaps.len()), Vec::new());
+        for ((number, function), gap) in gaps {
+            let (normal, travel) = (self.problem.obstacles[number].normal, self.travel(number));
+            let row = Row::of(function, self.mesh.dimension, normal, travel, gap);
+            let (free, prescribed) = unknowns.of_row(&row);
+            match free.is_empty() {
+                true if prescribed > gap => {
+                    let overlap = prescribed - gap;
                     let reason = format!("a support holds the boundary {overlap:.3e} inside obstacles[{number}]");
                     return Err(qp::Error::Infeasible { reason, rows: Vec::new(), weights: Vec::new(), overlap }.into());
                 }
-                Some(_) => {}
-                None => rows.push(Row { unknown, sense, gap }),
+                true => held.push(row),
+                false => rows.push(row),
             }
         }
-        Ok(rows)
+        Ok([rows, held])
+    }
+
+    /// The unknown that is the travel of an obstacle.
+    pub fn travel(&self, obstacle: usize) -> Option<usize> {
+        let functions = self.mesh.nodes.len() + self.mesh.edges.len();
+        Some(self.mesh.dimension * functions + self.problem.travel(obstacle)?)
     }
 
     /// The stiffness of each simplex.
     pub fn blocks(&self) -> Vec<Block> {
-        each(self.mesh.count(), |cell| self.stiffness(cell))
+        let mut blocks = each(self.mesh.count(), |cell| self.stiffness(cell));
+        let dimension = self.mesh.dimension;
+        for outer in self.mesh.surface() {
+            let (normal, size) = self.mesh.simplex(outer.cell).outward(outer.local);
+            let local: Vec<usize> = local_functions(dimension, outer.local).collect();
+            let share = |i, j| self.problem.thickness * size * mean_of_product(dimension, i, j);
+            add_springs(&mut blocks[outer.cell], dimension, (&self.problem.springs(&outer), normal), &local, share);
+        }
+        blocks
     }
 
     fn stiffness(&self, cell: usize) -> Block {
         let (simplex, dimension) = (self.mesh.simplex(cell), self.mesh.dimension);
         let weight = self.problem.thickness * simplex.size() / (dimension + 1) as f64;
         let (slopes, count) = (simplex.slopes(), self.numbers.of(cell).len());
+        let law = self.problem.law(self.mesh.origins[cell]);
         let mut block = vec![0.0; count * count];
         for at in quadratic_rule(dimension) {
             let strains: Vec<Tensor> = strains_of_functions(dimension, &slopes, at).collect();
             for (line, strain) in block.chunks_exact_mut(count).zip(&strains) {
-                let stress = self.problem.stress(*strain);
+                let stress = law.stress(*strain);
                 line.iter_mut().zip(&strains).for_each(|(entry, &strain)| *entry += weight * work(stress, strain));
             }
         }
         block
     }
 
-    /// The work of the loads on each function.
+    /// The work of loads, less that of the stress without strain, on each unknown.
     pub fn load(&self) -> Vec<f64> {
         let (problem, mesh, dimension) = (self.problem, self.mesh, self.mesh.dimension);
-        let mut load = vec![0.0; self.count()];
+        let mut load = vec![0.0; dimension * (mesh.nodes.len() + mesh.edges.len())];
         for (cell, numbers) in self.numbers.iter().enumerate() {
+            let (medium, simplex) = (problem.medium(mesh.origins[cell]), mesh.simplex(cell));
+            let volume = problem.thickness * simplex.size();
             // All functions have the same mean.
-            let share = problem.thickness * mesh.simplex(cell).size() * dimension as f64 / numbers.len() as f64;
-            let parts = numbers.iter().zip(problem.body_force.iter().take(dimension).cycle());
+            let share = volume * dimension as f64 / numbers.len() as f64;
+            let parts = numbers.iter().zip(medium.body_force.iter().take(dimension).cycle());
             parts.for_each(|(&number, force)| load[number] += share * force);
+            if medium.own_stress.is_some() {
+                let (slopes, weight) = (simplex.slopes(), volume / (dimension + 1) as f64);
+                for at in quadratic_rule(dimension) {
+                    let own = medium.own_stress(simplex.at(at));
+                    let strains = strains_of_functions(dimension, &slopes, at);
+                    numbers.iter().zip(strains).for_each(|(&number, strain)| load[number] -= weight * work(own, strain));
+                }
+            }
         }
         for outer in mesh.surface() {
             let condition = &problem.conditions[outer.condition];
             let (normal, size) = mesh.simplex(outer.cell).outward(outer.local);
-            let (held, traction) = (condition.held, condition.pull(normal));
-            for axis in (0..dimension).filter(|&axis| held[axis].is_none()) {
-                let functions = self.on_facet(&outer, axis);
-                let share = problem.thickness * size / functions.len() as f64;
-                functions.into_iter().for_each(|function| load[function] += share * traction[axis]);
+            let (share, functions) = (problem.share_of_corner(size), self.on_facet(&outer));
+            for (corner, at) in mesh.corners_of_facet(outer.facet).into_iter().enumerate() {
+                let pull = condition.pull(normal, at);
+                for (place, &function) in functions.iter().enumerate() {
+                    let unit: Vec<f64> = (0..functions.len()).map(|other| f64::from(u8::from(other == place))).collect();
+                    let part = share * weighted_mean(dimension, corner, &unit);
+                    (0..dimension).for_each(|axis| load[dimension * function + axis] += part * pull[axis]);
+                }
             }
         }
+        load.extend(problem.loads_of_motions());
         load
     }
 
@@ -160,6 +194,30 @@ impl<'a> Displacements<'a> {
         }
         strain
     }
+}
+
+/// The functions of a simplex on the side opposite to a corner: those of its corners, then those of their pairs.
+fn local_functions(dimension: usize, side: usize) -> impl Iterator<Item = usize> {
+    let corners: Vec<usize> = corners_of_side(dimension, side).collect();
+    pairs(dimension).map(move |pair| {
+        let pair = pair.map(|corner| corners[corner]);
+        pairs(dimension + 1).position(|other| other == key(pair[0], pair[1])).unwrap_or(0)
+    })
+}
+
+/// The mean over a facet of the product of two functions of Bernstein's quadratic basis.
+pub fn mean_of_product(corners: usize, first: usize, second: usize) -> f64 {
+    // The product of l_a l_b and l_c l_d has the mean `d! prod(m!) / (d + 3)!` with the powers m of the coordinates and `d = corners - 1`.
+    let mut powers = [0_usize; MOST_CORNERS];
+    let mut factor = 1.0;
+    for place in [first, second] {
+        let pair = pairs(corners).nth(place).unwrap_or_default();
+        factor *= if pair[0] == pair[1] { 1.0 } else { 2.0 };
+        pair.into_iter().for_each(|corner| powers[corner] += 1);
+    }
+    let factorial = |count: usize| (1..=count).product::<usize>() as f64;
+    let product: f64 = powers.into_iter().map(factorial).product();
+    factor * product * factorial(corners - 1) / factorial(corners + 3)
 }
 
 /// The strains of the functions at a point: `l_i^2` of the corners, then `2 l_i l_j` of the pairs, each along all axes.

@@ -12,15 +12,15 @@
 //! and the last two terms lie between 0 and `beta S`, if `1 + z_n <= beta (g - v_n)` and `-p_z <= beta (-p_tau)`, coefficient by
 //! coefficient, with `S = integral of (-p) (g - v_n) + (-p_tau) (g - u_n) >= 0`. z and `tau_z` solve the two problems with contact held.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::bound::{Bracket, Side};
 use super::johnson_mercier::{PartStress, at};
-use super::simplex::{Weights, less, mean_over_parts, middle, work};
-use super::stress::{Place, Stresses};
+use super::simplex::{Point, Weights, less, mean_over_parts, middle, work};
+use super::springs::apart;
+use super::stress::Stresses;
 use super::system::{Block, Unknowns};
 use crate::error::Error;
-use crate::fem::material::Lame;
 use crate::fem::threads::{both, each};
 use signorini_qp as qp;
 use signorini_qp::{ContactProblem, solve};
@@ -49,13 +49,15 @@ struct Blocks {
     stress: Vec<Block>,
 }
 
-/// A stress, and its force at each place.
-type Pressed = (Vec<PartStress>, Vec<f64>);
+/// A stress with the values of its unknowns, and its force at each place.
+type Pressed = (Vec<PartStress>, Vec<f64>, Vec<f64>);
 
 /// A pair z, tau_z and the ratios of its rows.
 struct Test {
     displacement: Vec<f64>,
     stress: Vec<PartStress>,
+    /// The values of the unknowns of the stress.
+    facets: Vec<f64>,
     /// The force at each place of the bracket, `<= 0`.
     pulls: Vec<f64>,
     /// For each row the ratio over its slack, and for each place the ratio over its pressure: the largest is beta.
@@ -63,13 +65,17 @@ struct Test {
 }
 
 impl Bracket<'_> {
-    /// Bounds on the sum of the contact forces, in force; `None` if obstacles come from several directions, or no bound was found.
+    /// Bounds on the sum of the contact forces, in force; `None` if obstacles come from several directions or are pressed, if the boundary that
+    /// touches them is a rigid face, or if no bound was found.
     ///
     /// # Errors
     /// Those of [`ContactProblem::new`].
     pub fn force_interval(&self) -> Result<Option<[f64; 2]>, Error> {
         let corners: BTreeSet<_> = self.places.iter().map(|place| (place.on.facet, place.corner)).collect();
         if !self.problem.has_one_direction() || corners.len() != self.places.len() || self.is_at_rest() {
+            return Ok(None);
+        }
+        if [&self.primal, &self.dual].iter().any(|side| side.rows.iter().any(|row| side.unknowns.own_term(row).is_none())) {
             return Ok(None);
         }
         let closed = &self.primal.solution.contact_set;
@@ -103,25 +109,30 @@ impl Bracket<'_> {
     /// The interval of a pair, and the beta at which its term would reach that of the ball.
     fn interval(&self, test: &Test) -> ([f64; 2], f64) {
         let of_cell = |cell: usize| {
+            let law = self.law(cell);
             let mean =
                 |value: &dyn Fn(usize, Weights) -> f64| self.volume(cell) * mean_over_parts(self.mesh.dimension, value);
             let rest = |k: usize, weights: Weights| {
                 let strain = self.strain(&test.displacement, cell, k, weights);
-                less(strain, self.problem.compliance(at(&test.stress[cell], k, weights)))
+                less(strain, law.compliance(at(&test.stress[cell], k, weights)))
             };
-            let square = mean(&|k, weights| {
-                let rest = rest(k, weights);
-                work(self.problem.stress(rest), rest)
-            });
+            let square = mean(&|k, weights| law.square(rest(k, weights)));
             let base = mean(&|k, weights| {
-                let of_displacement = self.problem.stress(self.strain(&self.primal.values, cell, k, weights));
-                work(middle(of_displacement, at(&self.stress[cell], k, weights)), rest(k, weights))
+                let of_displacement = law.stress(self.strain(&self.primal.values, cell, k, weights));
+                work(middle(of_displacement, self.elastic_stress(cell, k, weights)), rest(k, weights))
             });
             [square, base]
         };
         let of_cells = each(self.mesh.count(), of_cell);
-        let square: f64 = of_cells.iter().map(|cell| cell[0]).sum();
-        let mut base = self.work_on_supports(&test.stress) + of_cells.iter().map(|cell| cell[1]).sum::<f64>();
+        let [mut square, mut base] = [0, 1].map(|part| of_cells.iter().map(|cell| cell[part]).sum::<f64>());
+        let half = |a: Point, b: Point| [0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2.0);
+        for (outer, [moved, balanced]) in self.on_springs() {
+            let rest = apart(&self.of_displacement(&test.displacement, &outer), &self.of_stress(&test.facets, &outer));
+            let mean: Vec<Point> = moved.into_iter().zip(balanced).map(|(a, b)| half(a, b)).collect();
+            square += self.work_of_springs(&outer, &rest, &rest);
+            base += self.work_of_springs(&outer, &mean, &rest);
+        }
+        base += self.work_of_reactions(&test.stress, &self.forces_without_load(&test.facets, &test.pulls));
         let load = self.displacements.load();
         base -= test.displacement.iter().zip(&load).map(|(value, load)| value * load).sum::<f64>();
         let [mut low, mut high] = [base; 2];
@@ -143,29 +154,20 @@ impl Bracket<'_> {
             || self.bonded_displacement(bonded, &blocks.displacement),
             || self.bonded_stress(pressed, &blocks.stress),
         );
-        let (Some(displacement), Some((stress, pulls))) = (displacement?, stress?) else { return Ok(None) };
+        let (Some(displacement), Some((stress, facets, pulls))) = (displacement?, stress?) else { return Ok(None) };
         let (primal, values) = (&self.primal, &self.primal.values);
         let mut of_rows: Vec<f64> = Vec::with_capacity(primal.rows.len());
         for row in &primal.rows {
-            let open = 1.0 + row.sense * displacement[row.unknown];
-            of_rows.push(over(open, row.gap - row.sense * values[row.unknown]));
+            of_rows.push(over(1.0 + row.value(&displacement), row.gap - row.value(values)));
         }
         // Places that a support holds do not move in the test, and may be touched.
-        for (outer, number) in self.problem.facing(self.mesh) {
-            let facing = &self.problem.obstacles[number];
-            let Some(gap) = facing.surface.gap(&self.mesh.corners_of_facet(outer.facet)) else { continue };
-            for (function, bound) in self.displacements.on_facet(&outer, facing.axis).into_iter().zip(gap.lower()) {
-                if let Some(held) = primal.unknowns.held[function] {
-                    of_rows.push(over(1.0, bound - facing.sense * held));
-                }
-            }
-        }
+        of_rows.extend(self.held_rows.iter().map(|row| over(1.0, row.gap - row.value(values))));
         let of_places = pulls
             .iter()
             .enumerate()
             .map(|(row, &pull)| if pull < 0.0 { pull / self.pulls[row] } else { 0.0 })
             .collect();
-        Ok(Some(Test { displacement, stress, pulls, ratios: [of_rows, of_places] }))
+        Ok(Some(Test { displacement, stress, facets, pulls, ratios: [of_rows, of_places] }))
     }
 
     /// The displacement -1 at bonded rows, without load; rows below -1 are bonded too, and those that are only a little below it are moved there.
@@ -173,16 +175,18 @@ impl Bracket<'_> {
         let (rows, places) = (&self.primal.rows, self.displacements.places());
         for _ in 0..ROUNDS {
             let (unknowns, load) = with_contact_held(&self.primal, bonded);
-            let posed = unknowns.problem(&self.displacements.numbers, blocks, &load, &[], &places)?;
+            let numbers = &self.displacements.numbers;
+            let posed = unknowns.problem(self.mesh.dimension, numbers, blocks, &load, &[], &places)?;
             let Some(free) = self.linear(&posed) else { return Ok(None) };
             let mut values = unknowns.expanded(&free);
-            let open = |row: usize| 1.0 + rows[row].sense * values[rows[row].unknown];
+            let open = |row: usize| 1.0 + rows[row].value(&values);
             let wrong: Vec<usize> =
                 (0..bonded.len()).filter(|&row| open(row) < -self.allowed_sign() && !bonded[row]).collect();
             if wrong.is_empty() {
                 for row in rows {
-                    let value = &mut values[row.unknown];
-                    *value = row.sense * (row.sense * *value).max(-1.0);
+                    if row.value(&values) < -1.0 {
+                        self.primal.unknowns.move_to(&mut values, row, -1.0);
+                    }
                 }
                 return Ok(Some(values));
             }
@@ -198,17 +202,17 @@ impl Bracket<'_> {
         let stresses = Stresses::new(&unloaded, self.mesh)?;
         for _ in 0..ROUNDS {
             let (unknowns, load) = with_contact_held(&self.dual, pressed);
-            let posed = unknowns.problem(&self.stresses.numbers, blocks, &load, &[], &places)?;
+            let numbers = &self.stresses.numbers;
+            let posed = unknowns.problem(self.mesh.dimension, numbers, blocks, &load, &[], &places)?;
             let Some(free) = self.linear(&posed) else { return Ok(None) };
             let values = unknowns.expanded(&free);
             let stress = stresses.stresses(&values);
-            let mut pulls = self.pulls_of(&stress);
+            let mut pulls = self.pulls_of(&stress, &values);
             // The force for a displacement of one of a body as wide as high, for comparison: a body that nothing holds moves without
             // force.
-            let Lame { lambda, mu } = self.problem.lame;
             let volume: f64 = (0..self.mesh.count()).map(|cell| self.volume(cell)).sum();
             let depth = self.problem.thickness * if self.mesh.dimension == 2 { 1.0 } else { volume.cbrt() };
-            let unit = (lambda + 2.0 * mu) * depth;
+            let unit = self.problem.stiffest() * depth;
             let largest = pulls.iter().fold(0.0, |largest: f64, pull| largest.max(pull.abs()));
             let allowed = f64::max(self.allowed_sign() * largest, ROUNDING * unit);
             let wrong: Vec<usize> = (0..pressed.len()).filter(|&row| pressed[row] && pulls[row] > allowed).collect();
@@ -217,9 +221,11 @@ impl Bracket<'_> {
                     .iter_mut()
                     .zip(pressed.iter())
                     .for_each(|(pull, pressed)| *pull = if *pressed { pull.min(0.0) } else { 0.0 });
-                let of_balance =
-                    self.balance.as_ref().and_then(|balance| balance.stress(&stresses, &values, &self.places, &pulls));
-                return Ok(Some((of_balance.unwrap_or(stress), pulls)));
+                let of_balance = self
+                    .balance
+                    .as_ref()
+                    .and_then(|balance| balance.stress(&stresses, (&self.dual.unknowns, &values), &self.places, &pulls));
+                return Ok(Some((of_balance.unwrap_or(stress), values, pulls)));
             }
             wrong.into_iter().for_each(|row| pressed[row] = false);
         }
@@ -245,14 +251,22 @@ impl Bracket<'_> {
         }
     }
 
-    /// The force of a stress at each place, along the obstacle.
-    fn pulls_of(&self, stress: &[PartStress]) -> Vec<f64> {
-        let pulls = self.jumps(stress);
-        let pull = |place: &Place| {
-            let facing = &self.problem.obstacles[place.obstacle];
-            facing.sense * pulls[place.on.facet][place.corner][facing.axis] * self.share_of_corner(&place.on)
-        };
-        self.places.iter().map(pull).collect()
+    /// The force of a stress without load at each place, along the obstacle.
+    fn pulls_of(&self, stress: &[PartStress], facets: &[f64]) -> Vec<f64> {
+        let [forces, _] = self.forces_on_facets(stress);
+        let of_springs = self.forces_without_load(facets, &[]);
+        let left: Vec<f64> = forces.iter().zip(of_springs).map(|(force, of_springs)| force - of_springs).collect();
+        let along = self.dual.unknowns.gathered(&left);
+        let of_row = |row| self.dual.unknowns.own_term(row).map_or(0.0, |(free, coefficient)| along[free] / coefficient);
+        self.dual.rows.iter().map(of_row).collect()
+    }
+
+    /// The forces along the unknowns of the stress from springs and obstacles.
+    fn forces_without_load(&self, facets: &[f64], pulls: &[f64]) -> Vec<f64> {
+        let all = self.stresses.given_forces(facets, &self.places, pulls);
+        let rest = vec![0.0; facets.len()];
+        let of_load = self.stresses.given_forces(&rest, &[], &[]);
+        all.iter().zip(of_load).map(|(all, load)| all - load).collect()
     }
 
     /// The force of the displacement: the sum of its multipliers, `>= 0`.
@@ -261,13 +275,13 @@ impl Bracket<'_> {
     }
 }
 
-/// The unknowns with supports at zero and the unknowns of these rows at -1 towards the obstacle; and a zero load.
+/// The unknowns with supports at zero, held in these rows at -1 towards the obstacle; and a zero load.
 fn with_contact_held(side: &Side, rows: &[bool]) -> (Unknowns, Vec<f64>) {
-    let mut held: Vec<Option<f64>> = side.unknowns.held.iter().map(|held| held.map(|_| 0.0)).collect();
     let chosen = side.rows.iter().zip(rows).filter(|row| *row.1);
-    chosen.for_each(|(row, _)| held[row.unknown] = Some(-row.sense));
-    let load = vec![0.0; held.len()];
-    (Unknowns::new(held), load)
+    let of_row = |(row, _)| side.unknowns.own_term(row).map(|(free, coefficient)| (free, -1.0 / coefficient));
+    let values: BTreeMap<usize, f64> = chosen.filter_map(of_row).collect();
+    let load = vec![0.0; side.unknowns.count()];
+    (side.unknowns.with_held(&values), load)
 }
 
 /// The largest `x length + beta (radius^2 - x^2)` over x from zero to the radius.

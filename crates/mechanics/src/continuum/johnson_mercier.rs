@@ -10,8 +10,8 @@
 use std::sync::OnceLock;
 
 use super::normal::{Lower, add};
-use super::problem::ContinuumProblem;
-use super::simplex::{OnParts, Point, Simplex, Tensor, Weights, traction};
+use super::problem::{ContinuumProblem, Law, Medium};
+use super::simplex::{ENTRIES, OnParts, Point, Simplex, Tensor, Weights, traction};
 use signorini_qp::dot;
 
 /// A stress on a simplex: for each part its values at the part's corners, of which the one with the number of the part is the centre.
@@ -19,9 +19,6 @@ pub type PartStress = OnParts<Tensor>;
 
 /// Solves for a stress from its tractions: the second one takes the rounding of the first.
 const REFINED: usize = 2;
-
-/// The entries of a tensor, in the plane and in space.
-const ENTRIES: [&[usize]; 2] = [&[0, 1, 3], &[0, 1, 2, 3, 4, 5]];
 
 /// The stresses without divergence on a simplex, with their tractions and energies.
 #[derive(Clone, Debug)]
@@ -36,7 +33,7 @@ pub struct Element {
     tractions: Vec<Vec<f64>>,
     /// The same of the particular stress.
     particular_tractions: Vec<f64>,
-    /// The complementary energies of each stress with the particular one.
+    /// The complementary energies of each stress with the particular one, less the stress without strain.
     particular_energies: Vec<f64>,
     /// The factor of the products of the works of the stresses, at its first use.
     of_works: OnceLock<Option<Lower>>,
@@ -57,18 +54,24 @@ pub fn corners_of_side(dimension: usize, side: usize) -> impl Iterator<Item = us
 }
 
 impl Element {
-    /// The element on a simplex; `None` if it is flat.
-    pub fn new(problem: &ContinuumProblem, simplex: &Simplex) -> Option<Self> {
+    /// The element on a simplex of the medium of an element of the first mesh; `None` if it is flat.
+    pub fn new(problem: &ContinuumProblem, origin: usize, simplex: &Simplex) -> Option<Self> {
+        let (medium, law) = (problem.medium(origin), problem.law(origin));
         let carried: Vec<PartStress> = reference(simplex.dimension)
             .iter()
             .map(|stress| stress.map(|part| part.map(|value| simplex.carried(value))))
             .collect();
-        let strains: Vec<Vec<f64>> = carried.iter().map(|stress| strains_of(problem, simplex, stress)).collect();
+        let strains: Vec<Vec<f64>> = carried.iter().map(|stress| strains_of(&law, problem.thickness, simplex, stress)).collect();
         let energies = |(k, strain): (usize, &Vec<f64>)| -> Vec<f64> {
             carried[..=k].iter().map(|stress| dot(strain, values(stress))).collect()
         };
         let factor = Lower::of(strains.iter().enumerate().map(energies).collect())?;
-        let particular = balancing(problem.body_force, simplex);
+        let particular = balancing(medium.body_force, simplex);
+        let mut elastic = particular;
+        if medium.own_stress.is_some() {
+            let own = own_stress(medium, simplex);
+            add(elastic.as_flattened_mut().as_flattened_mut(), -1.0, values(&own));
+        }
         let mut tractions = vec![Vec::new(); carried.len()];
         let of_carried: Vec<Vec<f64>> = carried.iter().map(|stress| works(problem, simplex, stress)).collect();
         let mut of_unknown = vec![0.0; carried.len()];
@@ -77,7 +80,7 @@ impl Element {
             factor.forward(&mut of_unknown);
             tractions.iter_mut().zip(&of_unknown).for_each(|(works, &work)| works.push(work));
         }
-        let mut particular_energies = strains.iter().map(|strain| dot(strain, values(&particular))).collect::<Vec<_>>();
+        let mut particular_energies = strains.iter().map(|strain| dot(strain, values(&elastic))).collect::<Vec<_>>();
         factor.forward(&mut particular_energies);
         let particular_tractions = works(problem, simplex, &particular);
         let (simplex, of_works) = (*simplex, OnceLock::new());
@@ -158,14 +161,28 @@ fn values(stress: &PartStress) -> &[f64] {
     stress.as_flattened().as_flattened()
 }
 
+/// The stress without strain of a medium.
+pub fn own_stress(medium: &Medium, simplex: &Simplex) -> PartStress {
+    on_parts(simplex, |place| medium.own_stress(place))
+}
+
+/// A linear stress by its values.
+fn on_parts(simplex: &Simplex, value: impl Fn(Point) -> Tensor) -> PartStress {
+    let mut stress = [[[0.0; 6]; 4]; 4];
+    for (k, part) in stress.iter_mut().enumerate().take(simplex.dimension + 1) {
+        part.iter_mut().zip(simplex.part(k).corners()).for_each(|(own, &at)| *own = value(at));
+    }
+    stress
+}
+
 /// The complementary energies of a stress with each value of another one.
-fn strains_of(problem: &ContinuumProblem, simplex: &Simplex, stress: &PartStress) -> Vec<f64> {
+fn strains_of(law: &Law, thickness: f64, simplex: &Simplex, stress: &PartStress) -> Vec<f64> {
     let corners = simplex.dimension + 1;
     // The integral of a product of barycentric coordinates over a part; twice that of a square.
-    let weight = problem.thickness * simplex.size() / (corners * corners * (corners + 1)) as f64;
+    let weight = thickness * simplex.size() / (corners * corners * (corners + 1)) as f64;
     let mut strains = [[[0.0; 6]; 4]; 4];
     for (part, values) in strains.iter_mut().zip(stress).take(corners) {
-        let of_corners = values.map(|value| problem.compliance(value));
+        let of_corners = values.map(|value| law.compliance(value));
         for entry in 0..6 {
             // Of a symmetric tensor each shear component stands for two.
             let weight = if entry < 3 { weight } else { 2.0 * weight };
@@ -195,24 +212,18 @@ fn works(problem: &ContinuumProblem, simplex: &Simplex, stress: &PartStress) -> 
 }
 
 /// The works of the tractions of a stress in balance with the body force.
-pub fn tractions_of_body_force(problem: &ContinuumProblem, simplex: &Simplex) -> Vec<f64> {
-    works(problem, simplex, &balancing(problem.body_force, simplex))
+pub fn tractions_of_body_force(problem: &ContinuumProblem, origin: usize, simplex: &Simplex) -> Vec<f64> {
+    works(problem, simplex, &balancing(problem.medium(origin).body_force, simplex))
 }
 
 /// A linear stress whose divergence is the opposite of a constant body force.
 fn balancing(force: Point, simplex: &Simplex) -> PartStress {
     let centre = simplex.centre();
-    let value = |at: &Point| {
+    on_parts(simplex, |at| {
         let mut stress = [0.0; 6];
         (0..3).for_each(|axis| stress[axis] = -force[axis] * (at[axis] - centre[axis]));
         stress
-    };
-    let mut balancing = [[[0.0; 6]; 4]; 4];
-    for (k, part) in balancing.iter_mut().enumerate().take(simplex.dimension + 1) {
-        let part_of = simplex.part(k);
-        part.iter_mut().zip(part_of.corners()).for_each(|(own, at)| *own = value(at));
-    }
-    balancing
+    })
 }
 
 /// The stresses without divergence on the simplex of the origin and the unit vectors: the subspace of the values that satisfies balance
@@ -303,7 +314,7 @@ fn null_space(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::simplex::work;
+    use super::super::bodies::filled;
     use super::*;
     use crate::fem::material::Lame;
 
@@ -311,14 +322,10 @@ mod tests {
     const ROUNDING: f64 = 1e-13;
 
     fn material(dimension: usize) -> ContinuumProblem {
+        let force = [0.75, -2.0, if dimension == 2 { 0.0 } else { 1.25 }];
         ContinuumProblem {
-            dimension,
-            lame: Lame { lambda: 1.5, mu: 1.0 },
             thickness: if dimension == 2 { 0.5 } else { 1.0 },
-            body_force: [0.75, -2.0, if dimension == 2 { 0.0 } else { 1.25 }],
-            conditions: Vec::new(),
-            obstacles: Vec::new(),
-            boundaries: Vec::new(),
+            ..filled(dimension, Lame { lambda: 1.5, mu: 1.0 }, force)
         }
     }
 
@@ -338,14 +345,14 @@ mod tests {
     fn stresses_are_in_balance_and_continuous() {
         for dimension in [2, 3] {
             let (material, simplex) = (material(dimension), simplex(dimension));
-            let element = Element::new(&material, &simplex).unwrap();
+            let element = Element::new(&material, 0, &simplex).unwrap();
             let unknowns = (dimension + 1) * dimension * dimension;
             for unknown in 0..unknowns {
                 let sides: Vec<f64> = (0..unknowns).map(|place| f64::from(u8::from(place == unknown))).collect();
                 let stress = element.stress(&sides);
                 for k in 0..=dimension {
                     let slopes = simplex.part(k).slopes();
-                    let mut sum = material.body_force;
+                    let mut sum = material.media[0].body_force;
                     for corner in 0..=dimension {
                         let pull = traction(stress[k][corner], slopes[corner]);
                         (0..3).for_each(|axis| sum[axis] += pull[axis]);
@@ -388,8 +395,8 @@ mod tests {
     fn only_rigid_body_motions_cost_nothing() {
         for dimension in [2, 3] {
             let (material, simplex) =
-                (ContinuumProblem { body_force: [0.0; 3], ..material(dimension) }, simplex(dimension));
-            let block = Element::new(&material, &simplex).unwrap().block();
+                (material(dimension).unloaded(), simplex(dimension));
+            let block = Element::new(&material, 0, &simplex).unwrap().block();
             let energy = |values: &[f64]| -> f64 {
                 block.chunks_exact(values.len()).zip(values).map(|(line, value)| value * dot(line, values)).sum()
             };
@@ -402,7 +409,7 @@ mod tests {
             }
             let strain =
                 if dimension == 2 { [0.5, -0.25, 0.0, 0.375, 0.0, 0.0] } else { [0.5, -0.25, 0.75, 0.375, 0.25, -0.5] };
-            let exact = material.thickness * simplex.size() * work(material.stress(strain), strain);
+            let exact = material.thickness * simplex.size() * material.law(0).square(strain);
             let moved = energy(&sides(&simplex, &|at| traction(strain, at)));
             assert!((moved / exact - 1.0).abs() < ROUNDING, "{moved} {exact}");
         }

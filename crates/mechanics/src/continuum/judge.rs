@@ -1,12 +1,11 @@
 //! Judges any other displacement by the ball that contains the exact stress.
 
 use super::bound::Bracket;
-use super::johnson_mercier::at;
-use super::simplex::{Point, Tensor, less, middle, work};
+use super::simplex::{Point, Tensor, less, middle};
 use crate::fem::element::{ElementKind, Tabulated};
 use crate::fem::threads::each;
 
-/// The distance of a displacement w from others, in the energy norm.
+/// The distance of a displacement w from others, in the energy norm of the body without springs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judged {
     /// An upper bound of |u - w|; u is exact.
@@ -30,6 +29,7 @@ impl Bracket<'_> {
         let of_cell = |cell: usize| {
             let (mut from_centre, mut from_displacement, mut norm) = (0.0, 0.0, 0.0);
             let (simplex, strain) = (self.mesh.simplex(cell), strain_in(self.mesh.origins[cell]));
+            let law = self.law(cell);
             let volume = self.volume(cell) / parts as f64 / reference;
             for k in 0..parts {
                 let part = simplex.part(k);
@@ -37,8 +37,8 @@ impl Bracket<'_> {
                     let weights = std::array::from_fn(|corner| if corner < parts { point.shape[corner] } else { 0.0 });
                     let own = strain(part.at(weights));
                     let of_bracket = self.strain(&self.primal.values, cell, k, weights);
-                    let balanced = self.problem.compliance(at(&self.stress[cell], k, weights));
-                    let square = |strain: Tensor| point.weight * volume * work(self.problem.stress(strain), strain);
+                    let balanced = law.compliance(self.elastic_stress(cell, k, weights));
+                    let square = |strain: Tensor| point.weight * volume * law.square(strain);
                     from_centre += square(less(own, middle(of_bracket, balanced)));
                     from_displacement += square(less(own, of_bracket));
                     norm += square(own);

@@ -39,18 +39,20 @@ pub struct SimplexMesh {
     sides: Vec<usize>,
     /// The element of the first mesh that contains each simplex.
     pub origins: Vec<usize>,
-    /// The number of the condition of each facet of the surface; `None` inside.
+    /// The number of the condition of each facet; most of those inside have none.
     pub conditions: Vec<Option<usize>>,
+    /// The facets with conditions, each at its first simplex.
+    surface: Vec<OuterFacet>,
     /// The ends of the edge that each new node halves, for the last nodes; empty in a first mesh.
     parents: Vec<[usize; 2]>,
     /// How it is refined.
     next: Bisection,
 }
 
-/// A facet of the surface.
+/// A facet of the surface, or one inside that has a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OuterFacet {
-    /// Its simplex.
+    /// Its simplex; the first one of two.
     pub cell: usize,
     /// Its local number there.
     pub local: usize,
@@ -80,8 +82,8 @@ fn filled<const N: usize>(nodes: impl IntoIterator<Item = usize>) -> [usize; N] 
 }
 
 impl SimplexMesh {
-    /// The mesh of these simplices, pieces of the elements `origins`, with the condition of each facet of the surface by its nodes,
-    /// increasing. `None` if a facet of the surface has no condition, or one inside has one.
+    /// The mesh of these simplices, pieces of the elements `origins`, with the condition of each facet of the surface and of some inside, by
+    /// their nodes, increasing. `None` if a facet of the surface has no condition.
     pub fn new(
         dimension: usize,
         nodes: Vec<Point>,
@@ -109,7 +111,7 @@ impl SimplexMesh {
             Self::of(dimension, nodes, cells.iter().map(|cell| filled(cell.iter().copied())), origins, &surface, next);
         let mut cells_at = vec![0_u8; mesh.facets.len()];
         mesh.sides.iter().for_each(|&facet| cells_at[facet] += 1);
-        let fits = |(at, condition): (&u8, &Option<usize>)| (*at == 1) == condition.is_some();
+        let fits = |(at, condition): (&u8, &Option<usize>)| *at == 2 || condition.is_some();
         cells_at.iter().zip(&mesh.conditions).all(fits).then_some(mesh)
     }
 
@@ -133,9 +135,14 @@ impl SimplexMesh {
             sides.extend((0..corners.len()).map(|local| facets.node(facet(local))));
         }
         let (edges, facets) = (edges.keys, facets.keys);
-        let conditions = facets.iter().map(|facet| surface.get(facet).copied()).collect();
-        let parents = Vec::new();
-        SimplexMesh { dimension, nodes, cells, edges, edges_of, facets, sides, origins, conditions, parents, next }
+        let conditions: Vec<Option<usize>> = facets.iter().map(|facet| surface.get(facet).copied()).collect();
+        let mut left = conditions.clone();
+        let outer = sides.iter().enumerate().filter_map(|(place, &facet)| {
+            let (cell, local) = (place / (dimension + 1), place % (dimension + 1));
+            Some(OuterFacet { cell, local, facet, condition: left[facet].take()? })
+        });
+        let (surface, parents) = (outer.collect(), Vec::new());
+        SimplexMesh { dimension, nodes, cells, edges, edges_of, facets, sides, origins, conditions, surface, parents, next }
     }
 
     /// Number of simplices.
@@ -179,13 +186,15 @@ impl SimplexMesh {
         self.facet(facet).iter().map(|&node| self.nodes[node]).collect()
     }
 
-    /// The facets of the surface.
+    /// The facets with conditions, each once: those of the surface, and some inside.
     pub fn surface(&self) -> impl Iterator<Item = OuterFacet> + '_ {
-        (0..self.count()).flat_map(move |cell| {
-            self.sides(cell).iter().enumerate().filter_map(move |(local, &facet)| {
-                Some(OuterFacet { cell, local, facet, condition: self.conditions[facet]? })
-            })
-        })
+        self.surface.iter().copied()
+    }
+
+    /// Returns `true` if a facet between two simplices has a condition.
+    pub fn has_inner_conditions(&self) -> bool {
+        let at_facets = self.count() * (self.dimension + 1);
+        at_facets + self.surface.len() != 2 * self.facet_count()
     }
 
     /// Returns `true` if a simplex has lost most of its size in a mesh of the same simplices with other node positions.

@@ -15,6 +15,7 @@ mod mesh;
 mod normal;
 mod problem;
 mod simplex;
+mod springs;
 mod stress;
 mod system;
 
@@ -22,5 +23,7 @@ pub use answer::ContinuumAnswer;
 pub use bound::Bracket;
 pub use judge::Judged;
 pub use mesh::SimplexMesh;
-pub use problem::{Circle, Condition, ContinuumProblem, Distance, Enclosure, Facing};
+pub use problem::{
+    Circle, Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, RigidFace,
+};
 pub use simplex::Point;

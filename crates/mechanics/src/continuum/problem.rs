@@ -1,47 +1,113 @@
-//! The contact problem of a body before any mesh: the conditions on its surface.
+//! The contact problem of a body before any mesh: its media, and the conditions on its surface.
 
 use std::fmt::Debug;
 use std::sync::Arc;
 
 use super::mesh::{OuterFacet, SimplexMesh};
-use super::simplex::{Point, Tensor, pairs};
-use crate::fem::geometry::distance;
-use crate::fem::material::Lame;
+use super::simplex::{ENTRIES, Point, Tensor, pairs, work};
+use crate::fem::geometry::{COORDINATES, distance, dot};
+use crate::fem::material::{Lame, Matrix, Stiffness};
 
-/// Frictionless contact of an elastic body that fills a polygon, in plane strain or plane stress, or a polyhedron.
+/// Frictionless contact of elastic media that fill a polygon, in plane strain or plane stress, or a polyhedron.
 #[derive(Clone, Debug)]
 pub struct ContinuumProblem {
     /// 2 or 3.
     pub dimension: usize,
-    /// The Lamé constants in the plane or in space, in force per area.
-    pub lame: Lame,
+    /// The media.
+    pub media: Vec<Medium>,
+    /// The number of the medium of each element of the first mesh.
+    pub medium_of: Vec<usize>,
     /// Depth across the plane, in length; 1 in space.
     pub thickness: f64,
-    /// Force per volume, constant.
-    pub body_force: Point,
-    /// The conditions on the facets of the surface: sides of the outline in the plane.
+    /// The conditions on facets, most of them on the surface: sides of the outline in the plane.
     pub conditions: Vec<Condition>,
+    /// The parts of the surface that move as rigid plates.
+    pub rigid_faces: Vec<RigidFace>,
     /// The obstacles.
     pub obstacles: Vec<Facing>,
     /// The names of the parts of the surface.
     pub boundaries: Vec<String>,
 }
 
-/// The condition on a facet of the surface, constant on it.
+/// What fills a part of the body.
+#[derive(Clone, Debug)]
+pub struct Medium {
+    /// The stiffness in the plane or in space, in force per area; its axes are those of the coordinates.
+    pub stiffness: Stiffness,
+    /// The stress `[xx, yy, zz, xy, yz, zx]` without strain, if there is one, in force per area.
+    pub own_stress: Option<[Linear; 6]>,
+    /// Force per volume, constant.
+    pub body_force: Point,
+}
+
+/// A linear function of the place.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Linear {
+    /// Its value at the origin.
+    pub at_origin: f64,
+    /// Its gradient.
+    pub slope: Point,
+}
+
+/// The condition on a facet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Condition {
-    /// The prescribed component of the displacement along each axis, in length.
-    pub held: [Option<f64>; 3],
-    /// The traction along each axis, in force per area; along a held axis its work is constant, and it is not used.
-    pub traction: Point,
+    /// The prescribed components of the displacement.
+    pub held: Vec<Held>,
+    /// The number of the rigid face that the facet belongs to.
+    pub rigid_face: Option<usize>,
+    /// The traction along each axis, in force per area.
+    pub traction: [Linear; 3],
     /// The pressure against the outward normal, in force per area.
-    pub pressure: f64,
+    pub pressure: Linear,
+    /// Springs spread over the facet.
+    pub springs: Foundation,
     /// The obstacles that the facet may touch.
     pub obstacles: Vec<usize>,
     /// The named parts of the surface that the facet belongs to.
     pub boundaries: Vec<usize>,
     /// In the plane, the circle on which new nodes are placed; without it they halve the straight side.
     pub circle: Option<Circle>,
+}
+
+/// A prescribed component of the displacement: `direction . u = value`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held {
+    /// A unit vector.
+    pub direction: Point,
+    /// In length.
+    pub value: Linear,
+}
+
+/// Springs at rest without displacement.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Foundation {
+    /// The stiffness along each axis, in force per volume.
+    pub along: Point,
+    /// The stiffness along the normal of the facet, in force per volume.
+    pub normal: f64,
+}
+
+impl Foundation {
+    /// The traction against a displacement, in force per area, on a facet with this unit normal.
+    pub fn resistance(&self, normal: Point, displacement: Point) -> Point {
+        let towards = self.normal * dot(normal, displacement);
+        [0, 1, 2].map(|axis| self.along[axis] * displacement[axis] + towards * normal[axis])
+    }
+
+    /// Returns `true` if there are springs.
+    pub fn is_there(&self) -> bool {
+        *self != Self::default()
+    }
+}
+
+/// A part of the surface that moves as a rigid plate: by prescribed motions and amounts of free ones.
+#[derive(Clone, Debug)]
+pub struct RigidFace {
+    /// The displacement by the prescribed motions, along each axis, in length.
+    pub prescribed: [Linear; 3],
+    /// The displacement along each axis by one of each free motion, and the force or the moment along it.
+    pub free: Vec<([Linear; 3], f64)>,
 }
 
 /// A circle that a side approximates.
@@ -53,22 +119,56 @@ pub struct Circle {
     pub radius: f64,
 }
 
-impl Condition {
-    /// Traction and pressure on a facet with this outward unit normal, in force per area.
-    pub fn pull(&self, normal: Point) -> Point {
-        [0, 1, 2].map(|axis| self.traction[axis] - self.pressure * normal[axis])
+impl Linear {
+    /// The same value everywhere.
+    pub fn constant(value: f64) -> Self {
+        Linear { at_origin: value, slope: [0.0; 3] }
+    }
+
+    /// A linear function, by its values at the origin and at the unit vectors.
+    pub fn of(value: impl Fn(Point) -> f64) -> Self {
+        let at_origin = value([0.0; 3]);
+        Linear { at_origin, slope: COORDINATES.map(|axis| value(axis) - at_origin) }
+    }
+
+    /// Its value at a place.
+    pub fn at(&self, place: Point) -> f64 {
+        self.at_origin + dot(self.slope, place)
+    }
+
+    /// The function times a factor.
+    pub fn times(&self, factor: f64) -> Self {
+        Linear { at_origin: factor * self.at_origin, slope: self.slope.map(|part| factor * part) }
+    }
+
+    /// The sum of two functions.
+    pub fn plus(&self, other: Linear) -> Self {
+        let slope = [0, 1, 2].map(|axis| self.slope[axis] + other.slope[axis]);
+        Linear { at_origin: self.at_origin + other.at_origin, slope }
     }
 }
 
-/// A rigid obstacle with rows along one axis.
+impl Condition {
+    /// Adds a traction.
+    pub fn pull_along(&mut self, traction: [Linear; 3]) {
+        self.traction = [0, 1, 2].map(|axis| self.traction[axis].plus(traction[axis]));
+    }
+
+    /// Traction and pressure at a place of a facet with this outward unit normal, in force per area.
+    pub fn pull(&self, normal: Point, place: Point) -> Point {
+        [0, 1, 2].map(|axis| self.traction[axis].at(place) - self.pressure.at(place) * normal[axis])
+    }
+}
+
+/// A rigid obstacle with rows along one direction.
 #[derive(Clone, Debug)]
 pub struct Facing {
-    /// The axis, from 0.
-    pub axis: usize,
-    /// 1 if the obstacle lies towards larger coordinates, else -1.
-    pub sense: f64,
+    /// The unit vector from the body towards the obstacle.
+    pub normal: Point,
     /// Its distance function.
     pub surface: Arc<dyn Distance>,
+    /// The force that presses it against the normal, if it moves along it.
+    pub force: Option<f64>,
 }
 
 /// The distance to an obstacle.
@@ -117,10 +217,9 @@ impl ContinuumProblem {
         })
     }
 
-    /// The axes along which a facet is held, and the prescribed displacements.
-    pub fn held(&self, outer: &OuterFacet) -> impl Iterator<Item = (usize, f64)> {
-        let held = self.conditions[outer.condition].held.into_iter().enumerate().take(self.dimension);
-        held.filter_map(|(axis, value)| Some((axis, value?)))
+    /// The springs on a facet.
+    pub fn springs(&self, outer: &OuterFacet) -> Foundation {
+        self.conditions[outer.condition].springs
     }
 
     /// The factor of a traction at a corner of a facet of this length or area.
@@ -150,20 +249,77 @@ impl ContinuumProblem {
         if round.is_folded_beside(&straight) { straight } else { round }
     }
 
-    /// The same body without loads.
+    /// The same body without loads and own stresses.
     pub fn unloaded(&self) -> Self {
-        let without = |condition: &Condition| Condition { traction: [0.0; 3], pressure: 0.0, ..condition.clone() };
-        let conditions = self.conditions.iter().map(without).collect();
-        ContinuumProblem { body_force: [0.0; 3], conditions, ..self.clone() }
+        let without = |condition: &Condition| Condition {
+            traction: Default::default(),
+            pressure: Linear::default(),
+            ..condition.clone()
+        };
+        let at_rest = |medium: &Medium| Medium { own_stress: None, body_force: [0.0; 3], ..medium.clone() };
+        ContinuumProblem {
+            media: self.media.iter().map(at_rest).collect(),
+            conditions: self.conditions.iter().map(without).collect(),
+            ..self.clone()
+        }
     }
 
-    /// Returns `true` if all obstacles lie in one direction from the body.
+    /// Returns `true` if all obstacles stand still and lie in one direction from the body.
     pub fn has_one_direction(&self) -> bool {
-        let mut directions = self.obstacles.iter().map(|facing| (facing.axis, facing.sense));
-        let first = directions.next();
-        first.is_some() && directions.all(|direction| Some(direction) == first)
+        let mut facing = self.obstacles.iter().map(|facing| (facing.normal, facing.force));
+        let first = facing.next();
+        first.is_some_and(|first| first.1.is_none() && facing.all(|other| other == first))
     }
 
+    /// The forces along the unknowns that are no displacements of places: the free motions of rigid faces, then the travels of pressed
+    /// obstacles.
+    pub fn loads_of_motions(&self) -> Vec<f64> {
+        let of_faces = self.rigid_faces.iter().flat_map(|face| face.free.iter().map(|motion| motion.1));
+        of_faces.chain(self.obstacles.iter().filter_map(|facing| facing.force)).collect()
+    }
+
+    /// The number among these of the travel of an obstacle; `None` if it stands still.
+    pub fn travel(&self, obstacle: usize) -> Option<usize> {
+        self.obstacles[obstacle].force?;
+        let before = self.obstacles[..obstacle].iter().filter(|facing| facing.force.is_some()).count();
+        Some(self.rigid_faces.iter().map(|face| face.free.len()).sum::<usize>() + before)
+    }
+
+    /// The medium of an element of the first mesh.
+    pub fn medium(&self, origin: usize) -> &Medium {
+        &self.media[self.medium_of[origin]]
+    }
+
+    /// The law of the medium of an element of the first mesh.
+    pub fn law(&self, origin: usize) -> Law<'_> {
+        Law { dimension: self.dimension, stiffness: &self.medium(origin).stiffness }
+    }
+
+    /// The largest stiffness against a strain of one component, in force per area.
+    pub fn stiffest(&self) -> f64 {
+        let of_medium = |medium: &Medium| match &medium.stiffness {
+            Stiffness::Isotropic(Lame { lambda, mu }) => lambda + 2.0 * mu,
+            Stiffness::General(matrices) => (0..3).map(|axis| matrices.stiffness[axis][axis]).fold(0.0, f64::max),
+        };
+        self.media.iter().map(of_medium).fold(0.0, f64::max)
+    }
+}
+
+impl Medium {
+    /// The stress without strain at a place.
+    pub fn own_stress(&self, place: Point) -> Tensor {
+        self.own_stress.map_or([0.0; 6], |own| own.map(|component| component.at(place)))
+    }
+}
+
+/// The law of stress and strain of a medium in the plane or in space. In the plane the components with z are zero.
+#[derive(Clone, Copy, Debug)]
+pub struct Law<'a> {
+    dimension: usize,
+    stiffness: &'a Stiffness,
+}
+
+impl Law<'_> {
     /// Returns `true` for an entry of a tensor on the diagonal, if it exists in the plane or in space.
     fn is_on_diagonal(&self, entry: usize) -> bool {
         entry < self.dimension
@@ -171,7 +327,14 @@ impl ContinuumProblem {
 
     /// The strain of a stress.
     pub fn compliance(&self, stress: Tensor) -> Tensor {
-        let (Lame { lambda, mu }, count) = (self.lame, self.dimension as f64);
+        let &Lame { lambda, mu } = match self.stiffness {
+            Stiffness::Isotropic(lame) => lame,
+            Stiffness::General(matrices) => {
+                let [xx, yy, zz, xy, yz, zx] = self.product(&matrices.compliance, stress);
+                return [xx, yy, zz, xy / 2.0, yz / 2.0, zx / 2.0];
+            }
+        };
+        let count = self.dimension as f64;
         let mean = stress.iter().take(self.dimension).sum::<f64>() / count;
         // The parts are kept separate: near incompressibility their sum would lose digits.
         let volume = mean / (count * lambda + 2.0 * mu);
@@ -184,7 +347,14 @@ impl ContinuumProblem {
 
     /// The stress of a strain.
     pub fn stress(&self, strain: Tensor) -> Tensor {
-        let (Lame { lambda, mu }, count) = (self.lame, self.dimension as f64);
+        let &Lame { lambda, mu } = match self.stiffness {
+            Stiffness::Isotropic(lame) => lame,
+            Stiffness::General(matrices) => {
+                let [xx, yy, zz, xy, yz, zx] = strain;
+                return self.product(&matrices.stiffness, [xx, yy, zz, 2.0 * xy, 2.0 * yz, 2.0 * zx]);
+            }
+        };
+        let count = self.dimension as f64;
         let volume = strain.iter().take(self.dimension).sum::<f64>() / count;
         let mean = (count * lambda + 2.0 * mu) * volume;
         let of_entry = |entry: usize| match self.is_on_diagonal(entry) {
@@ -193,12 +363,28 @@ impl ContinuumProblem {
         };
         std::array::from_fn(of_entry)
     }
+
+    /// The square of the energy norm of a strain, per volume.
+    pub fn square(&self, strain: Tensor) -> f64 {
+        work(self.stress(strain), strain)
+    }
+
+    /// A matrix times the components of a tensor that exist in the plane or in space.
+    fn product(&self, matrix: &Matrix, tensor: Tensor) -> Tensor {
+        let entries = ENTRIES[self.dimension - 2];
+        let mut product = [0.0; 6];
+        for &row in entries {
+            product[row] = entries.iter().map(|&column| matrix[row][column] * tensor[column]).sum();
+        }
+        product
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use std::collections::HashMap;
 
+    use super::super::bodies::filled;
     use super::*;
 
     /// A flat triangle on a chord: the middle of the arc lies beyond its tip, or not.
@@ -207,13 +393,8 @@ mod tests {
         let on_circle = Circle { centre: [0.0, 1.0, 0.0], radius: 2.0_f64.sqrt() };
         let side = |circle| Condition { circle, ..Condition::default() };
         let problem = ContinuumProblem {
-            dimension: 2,
-            lame: Lame { lambda: 1.0, mu: 1.0 },
-            thickness: 1.0,
-            body_force: [0.0; 3],
             conditions: vec![side(Some(on_circle)), side(None)],
-            obstacles: Vec::new(),
-            boundaries: Vec::new(),
+            ..filled(2, Lame { lambda: 1.0, mu: 1.0 }, [0.0; 3])
         };
         let surface = HashMap::from([(vec![0, 1], 0), (vec![1, 2], 1), (vec![0, 2], 1)]);
         for (tip, moved) in [(-0.1, 0.0), (-2.0, 1.0 - on_circle.radius)] {
@@ -250,15 +431,8 @@ mod tests {
     fn the_strain_of_the_stress_of_a_strain_is_that_strain() {
         for (dimension, strain) in [(2, [0.25, -0.5, 0.0, 0.125, 0.0, 0.0]), (3, [0.25, -0.5, 0.75, 0.125, 0.5, -0.25])]
         {
-            let material = ContinuumProblem {
-                dimension,
-                lame: Lame { lambda: 3.0, mu: 0.5 },
-                thickness: 1.0,
-                body_force: [0.0; 3],
-                conditions: Vec::new(),
-                obstacles: Vec::new(),
-                boundaries: Vec::new(),
-            };
+            let material = filled(dimension, Lame { lambda: 3.0, mu: 0.5 }, [0.0; 3]);
+            let material = material.law(0);
             let back = material.compliance(material.stress(strain));
             (0..6).for_each(|entry| assert!((back[entry] - strain[entry]).abs() < 1e-15, "{back:?}"));
             // sigma = lambda tr(eps) I + 2 mu eps.

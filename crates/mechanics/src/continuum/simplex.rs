@@ -8,6 +8,9 @@ pub type Point = [f64; 3];
 /// Symmetric tensors `[xx, yy, zz, xy, yz, zx]`; in the plane those with z are zero.
 pub type Tensor = Symmetric;
 
+/// The entries of a tensor that exist, in the plane and in space.
+pub const ENTRIES: [&[usize]; 2] = [&[0, 1, 3], &[0, 1, 2, 3, 4, 5]];
+
 /// Corners of a tetrahedron, the larger simplex.
 pub const MOST_CORNERS: usize = 4;
 

@@ -8,9 +8,9 @@ use std::sync::Arc;
 
 use super::johnson_mercier::{Element, PartStress};
 use super::mesh::{OuterFacet, SimplexMesh};
-use super::problem::ContinuumProblem;
+use super::problem::{ContinuumProblem, Medium};
 use super::simplex::{MOST_CORNERS, Point};
-use super::system::{Block, Numbers, Row, Unknowns};
+use super::system::{Block, Numbers, Row, Unknowns, add_springs};
 use crate::error::Error;
 use crate::fem::threads::each;
 use signorini_qp as qp;
@@ -37,6 +37,9 @@ pub struct Place {
     pub obstacle: usize,
 }
 
+/// The edges of a simplex, its medium, and its place if its stress depends on that, bit by bit: congruent simplices have the same.
+type Congruence = ([[u64; 3]; MOST_CORNERS - 1], usize, Option<[u64; 3]>);
+
 impl<'a> Stresses<'a> {
     /// # Errors
     /// [`qp::Error::Numerical`] for a flat simplex.
@@ -47,15 +50,17 @@ impl<'a> Stresses<'a> {
         let of_side = |&facet: &usize| of_facet * facet..of_facet * (facet + 1);
         let numbers = (0..mesh.count()).flat_map(|cell| mesh.sides(cell).iter().flat_map(of_side)).collect();
         let numbers = Numbers::new((dimension + 1) * of_facet, numbers);
-        let mut known: HashMap<[[u64; 3]; MOST_CORNERS - 1], Arc<Element>> = HashMap::new();
+        let mut known: HashMap<Congruence, Arc<Element>> = HashMap::new();
         let element = |cell: usize| {
             let simplex = mesh.simplex(cell);
-            let edges = simplex.edges().map(|edge| edge.map(f64::to_bits));
-            if let Some(element) = known.get(&edges) {
+            let (origin, bits) = (mesh.origins[cell], |point: Point| point.map(f64::to_bits));
+            let place = problem.medium(origin).own_stress.map(|_| bits(simplex.corners()[0]));
+            let congruence = (simplex.edges().map(bits), problem.medium_of[origin], place);
+            if let Some(element) = known.get(&congruence) {
                 return Some(element.clone());
             }
-            let element = Arc::new(Element::new(problem, &simplex)?);
-            known.insert(edges, element.clone());
+            let element = Arc::new(Element::new(problem, origin, &simplex)?);
+            known.insert(congruence, element.clone());
             Some(element)
         };
         let elements: Option<Vec<_>> = (0..mesh.count()).map(element).collect();
@@ -65,9 +70,9 @@ impl<'a> Stresses<'a> {
         Ok(Stresses { problem, mesh, numbers, elements })
     }
 
-    /// The number of the unknown of a facet at a corner, along an axis.
-    pub fn unknown(&self, facet: usize, corner: usize, axis: usize) -> usize {
-        (facet * self.mesh.dimension + corner) * self.mesh.dimension + axis
+    /// The number of the place at a corner of a facet.
+    pub fn place(&self, facet: usize, corner: usize) -> usize {
+        facet * self.mesh.dimension + corner
     }
 
     /// The places of the unknowns of the facets: a linear displacement has its values there as unknowns.
@@ -81,21 +86,20 @@ impl<'a> Stresses<'a> {
         (0..self.mesh.facet_count()).flat_map(of_facet).collect()
     }
 
-    /// Number of unknowns, free or held.
-    fn count(&self) -> usize {
-        self.unknown(self.mesh.facet_count(), 0, 0)
+    /// The places at the corners of a facet.
+    fn on_facet(&self, outer: &OuterFacet) -> Vec<usize> {
+        (0..self.mesh.dimension).map(|corner| self.place(outer.facet, corner)).collect()
     }
 
-    /// The unknowns; those on held facets are prescribed.
+    /// The unknowns.
     pub fn unknowns(&self) -> Unknowns {
-        let mut held = vec![None; self.count()];
-        for outer in self.mesh.surface() {
-            for (axis, value) in self.problem.held(&outer) {
-                let corners = 0..self.mesh.dimension;
-                corners.for_each(|corner| held[self.unknown(outer.facet, corner, axis)] = Some(value));
-            }
-        }
-        Unknowns::new(held)
+        Unknowns::new(self.problem, self.mesh, &self.places(), |outer| self.on_facet(outer))
+    }
+
+    /// The unknown that is the travel of an obstacle.
+    pub fn travel(&self, obstacle: usize) -> Option<usize> {
+        let places = self.place(self.mesh.facet_count(), 0);
+        Some(self.mesh.dimension * places + self.problem.travel(obstacle)?)
     }
 
     /// The contact rows, one for each corner of a facet and obstacle, and their places. The gaps are upper bounds on the weighted means of
@@ -108,9 +112,11 @@ impl<'a> Stresses<'a> {
             let gap = facing.surface.gap(&self.mesh.corners_of_facet(on.facet));
             let Some(gap) = gap.filter(|gap| gap.above.is_finite()) else { continue };
             for (corner, gap) in gap.upper_means(self.mesh.dimension).into_iter().enumerate() {
-                let (unknown, place) = (self.unknown(on.facet, corner, facing.axis), Place { on, corner, obstacle });
-                if unknowns.is_free(unknown) && may_touch(&place, gap) {
-                    rows.push(Row { unknown, sense: facing.sense, gap });
+                let at = self.place(on.facet, corner);
+                let row = Row::of(at, self.mesh.dimension, facing.normal, self.travel(obstacle), gap);
+                let place = Place { on, corner, obstacle };
+                if !unknowns.of_row(&row).0.is_empty() && may_touch(&place, gap) {
+                    rows.push(row);
                     places.push(place);
                 }
             }
@@ -123,35 +129,90 @@ impl<'a> Stresses<'a> {
         self.numbers.iter().zip(&self.elements).map(|(numbers, element)| (numbers, &**element))
     }
 
-    /// The stiffness of each simplex.
+    /// The stiffness of each simplex, with that of springs.
     pub fn blocks(&self) -> Vec<Block> {
-        each(self.mesh.count(), |cell| self.elements[cell].block())
+        let mut blocks = each(self.mesh.count(), |cell| self.elements[cell].block());
+        let dimension = self.mesh.dimension;
+        for outer in self.mesh.surface() {
+            let (normal, size) = self.mesh.simplex(outer.cell).outward(outer.local);
+            let local: Vec<usize> = (0..dimension).map(|corner| dimension * outer.local + corner).collect();
+            // The functions that are dual to the barycentric coordinates l are (dimension + 1) l - 1.
+            let product = |i, j| if i == j { dimension as f64 } else { -1.0 };
+            let share = |i, j| self.problem.share_of_corner(size) * product(i, j);
+            add_springs(&mut blocks[outer.cell], dimension, (&self.problem.springs(&outer), normal), &local, share);
+        }
+        blocks
     }
 
-    /// The work of tractions and body force with the unknowns.
+    /// The work of loads and of the stress without strain with the unknowns.
     pub fn load(&self) -> Vec<f64> {
-        let mut load = vec![0.0; self.count()];
-        if self.problem.body_force != [0.0; 3] {
+        let mut load = vec![0.0; self.mesh.dimension * self.place(self.mesh.facet_count(), 0)];
+        let has_load = |medium: &Medium| medium.own_stress.is_some() || medium.body_force != [0.0; 3];
+        if self.problem.media.iter().any(has_load) {
             for (numbers, element) in self.with_elements() {
                 numbers.iter().zip(element.load()).for_each(|(&number, part)| load[number] += part);
             }
         }
-        self.loads().for_each(|(unknown, part)| load[unknown] += part);
+        self.tractions().for_each(|(unknown, part)| load[unknown] += part);
+        load.extend(self.problem.loads_of_motions());
         load
     }
 
-    /// The work of the tractions with the free unknowns of the surface.
-    pub fn loads(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+    /// The work of the tractions on facets with the unknowns.
+    fn tractions(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let (problem, mesh) = (self.problem, self.mesh);
         mesh.surface().flat_map(move |outer| {
             let (normal, size) = mesh.simplex(outer.cell).outward(outer.local);
-            let condition = &problem.conditions[outer.condition];
-            let (pull, share) = (condition.pull(normal), problem.share_of_corner(size));
-            let free = (0..mesh.dimension).filter(|&axis| condition.held[axis].is_none());
-            free.flat_map(move |axis| {
-                (0..mesh.dimension).map(move |corner| (self.unknown(outer.facet, corner, axis), share * pull[axis]))
-            })
+            let (condition, share) = (&problem.conditions[outer.condition], problem.share_of_corner(size));
+            let corners = mesh.corners_of_facet(outer.facet).into_iter().enumerate();
+            corners.flat_map(move |(corner, at)| self.at_corner(&outer, corner, condition.pull(normal, at), share))
         })
+    }
+
+    /// The unknowns of a corner of a facet with a share of a vector.
+    fn at_corner(
+        &self,
+        outer: &OuterFacet,
+        corner: usize,
+        vector: Point,
+        share: f64,
+    ) -> impl Iterator<Item = (usize, f64)> + use<> {
+        let (dimension, place) = (self.mesh.dimension, self.place(outer.facet, corner));
+        (0..dimension).map(move |axis| (dimension * place + axis, share * vector[axis]))
+    }
+
+    /// The displacement of a facet at its corners.
+    pub fn displacement_at_corners(&self, values: &[f64], outer: &OuterFacet) -> Vec<Point> {
+        let dimension = self.mesh.dimension;
+        let value = |place: usize, axis: usize| if axis < dimension { values[dimension * place + axis] } else { 0.0 };
+        let own: Vec<Point> = self.on_facet(outer).iter().map(|&place| [0, 1, 2].map(|axis| value(place, axis))).collect();
+        let sum = [0, 1, 2].map(|axis| own.iter().map(|value| value[axis]).sum::<f64>());
+        own.iter().map(|own| [0, 1, 2].map(|axis| (dimension + 1) as f64 * own[axis] - sum[axis])).collect()
+    }
+
+    /// The facets on springs.
+    pub fn on_springs(&self) -> impl Iterator<Item = OuterFacet> + '_ {
+        self.mesh.surface().filter(|outer| self.problem.springs(outer).is_there())
+    }
+
+    /// The forces along the unknowns from outside under displacements of the facets: of tractions, springs, and contact forces at places. What
+    /// supports take is not among them.
+    pub fn given_forces(&self, displacement: &[f64], places: &[Place], pulls: &[f64]) -> Vec<f64> {
+        let mut forces = vec![0.0; displacement.len()];
+        let mut add = |(unknown, force): (usize, f64)| forces[unknown] += force;
+        self.tractions().for_each(&mut add);
+        for outer in self.on_springs() {
+            let (normal, size) = self.mesh.simplex(outer.cell).outward(outer.local);
+            for (corner, moved) in self.displacement_at_corners(displacement, &outer).into_iter().enumerate() {
+                let resistance = self.problem.springs(&outer).resistance(normal, moved);
+                self.at_corner(&outer, corner, resistance, -self.problem.share_of_corner(size)).for_each(&mut add);
+            }
+        }
+        for (place, &pull) in places.iter().zip(pulls) {
+            let normal = self.problem.obstacles[place.obstacle].normal;
+            self.at_corner(&place.on, place.corner, normal, pull).for_each(&mut add);
+        }
+        forces
     }
 
     /// The stress of each simplex under displacements of the facets.

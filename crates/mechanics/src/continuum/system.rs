@@ -1,12 +1,48 @@
-//! The contact problem of simplices with the same number of unknowns each, some of which are prescribed, with rows of one unknown.
+//! The contact problem of simplices with the same number of unknowns each, which are linear functions of the free ones.
+//!
+//! The unknowns are the components along the axes of a displacement at places, then the free motions of rigid faces and the travels of
+//! pressed obstacles. Supports and rigid faces make those of some places functions of fewer free ones.
 
+use std::collections::BTreeMap;
+
+use super::mesh::{OuterFacet, SimplexMesh};
+use super::problem::{ContinuumProblem, Foundation};
 use super::simplex::Point;
 use crate::error::Error;
-use crate::fem::geometry::Around;
+use crate::fem::assembly::perpendicular;
+use crate::fem::geometry::{Around, COORDINATES, dot, length, unit};
 use signorini_qp::{ContactProblem, NearNullSpace, SparseMatrix, SymmetricMatrix};
+
+/// A direction depends on others if the sine of its angle to their span is below this: the rounding of written components.
+const DEPENDENT: f64 = 1e-9;
 
 /// The matrix of a simplex, row by row.
 pub type Block = Vec<f64>;
+
+/// Adds springs on a facet with this normal to the matrix of its simplex. `share` is the integral of the product of two of the functions on
+/// the facet, and `local` their numbers among those of the simplex.
+pub fn add_springs(
+    block: &mut Block,
+    dimension: usize,
+    (springs, normal): (&Foundation, Point),
+    local: &[usize],
+    share: impl Fn(usize, usize) -> f64,
+) {
+    if !springs.is_there() {
+        return;
+    }
+    let count = block.len().isqrt();
+    for (axis, &along) in COORDINATES[..dimension].iter().enumerate() {
+        let resistance = springs.resistance(normal, along);
+        for (i, &own) in local.iter().enumerate() {
+            for (j, &other) in local.iter().enumerate() {
+                for (towards, part) in resistance.iter().enumerate().take(dimension) {
+                    block[(dimension * own + towards) * count + dimension * other + axis] += share(i, j) * part;
+                }
+            }
+        }
+    }
+}
 
 /// The unknowns of each simplex.
 #[derive(Clone, Debug)]
@@ -32,122 +68,336 @@ impl Numbers {
     }
 }
 
-/// A bound on one unknown: `sense x <= gap`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A bound on a sum of unknowns: `sum of coefficient x <= gap`.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// The unknown.
-    pub unknown: usize,
-    /// 1 or -1.
-    pub sense: f64,
+    /// The unknowns and their coefficients.
+    pub terms: Vec<(usize, f64)>,
     /// In length.
     pub gap: f64,
 }
 
-/// The free unknowns and the values of the others.
+impl Row {
+    /// The bound on the displacement of a place along a normal, with the travel of the obstacle towards it.
+    pub fn of(place: usize, dimension: usize, normal: Point, travel: Option<usize>, gap: f64) -> Self {
+        let along = (0..dimension).filter(|&axis| normal[axis] != 0.0);
+        let terms = along.map(|axis| (dimension * place + axis, normal[axis]));
+        Row { terms: terms.chain(travel.map(|travel| (travel, 1.0))).collect(), gap }
+    }
+
+    /// The place.
+    pub fn place(&self, dimension: usize) -> usize {
+        self.terms.first().map_or(usize::MAX, |term| term.0 / dimension)
+    }
+
+    /// The sum at these values of all unknowns.
+    pub fn value(&self, values: &[f64]) -> f64 {
+        self.terms.iter().map(|&(unknown, coefficient)| coefficient * values[unknown]).sum()
+    }
+}
+
+/// All unknowns as linear functions of the free ones.
 #[derive(Clone, Debug)]
 pub struct Unknowns {
-    /// The prescribed values.
-    pub held: Vec<Option<f64>>,
-    /// The number of each free unknown.
-    numbers: Vec<Option<usize>>,
     /// How many are free.
     pub free: usize,
+    /// How many of these, the first ones, belong to one place each.
+    own: usize,
+    /// The orthonormal axes of the supports of each supported place.
+    pub supports: BTreeMap<usize, Vec<Point>>,
+    /// The prescribed part of each unknown.
+    offset: Vec<f64>,
+    /// The first term of each unknown, and the end.
+    starts: Vec<u32>,
+    /// Free unknowns with their coefficients.
+    terms: Vec<(u32, f64)>,
+}
+
+/// The displacement of a supported place.
+struct Supported {
+    /// Its prescribed part.
+    offset: Point,
+    /// The orthonormal axes of the supports.
+    held: Vec<Point>,
+    /// The other axes.
+    free: Vec<Point>,
+}
+
+impl Supported {
+    /// The displacement under prescribed components; `first` is the first free axis, if it may be.
+    fn of(dimension: usize, components: &[(Point, f64)], first: Option<Point>) -> Self {
+        let (mut held, mut offset): (Vec<Point>, Point) = (Vec::new(), [0.0; 3]);
+        for &(direction, value) in components {
+            let rest = perpendicular(direction, &held);
+            if length(rest) > DEPENDENT {
+                let axis = unit(perpendicular(unit(rest), &held));
+                let amount = (value - dot(direction, offset)) / dot(direction, axis);
+                (0..3).for_each(|of| offset[of] += amount * axis[of]);
+                held.push(axis);
+            }
+        }
+        let mut axes = held.clone();
+        let first = first.map(|first| perpendicular(first, &axes)).filter(|rest| length(*rest) > DEPENDENT);
+        axes.extend(first.map(unit));
+        while axes.len() < dimension {
+            let rests = COORDINATES[..dimension].iter().map(|&axis| perpendicular(axis, &axes));
+            let Some(rest) = rests.max_by(|a, b| length(*a).total_cmp(&length(*b))) else { break };
+            axes.push(unit(perpendicular(unit(rest), &axes)));
+        }
+        let free = axes.split_off(held.len());
+        Supported { offset, held, free }
+    }
 }
 
 impl Unknowns {
-    /// Numbers the unknowns that are not held.
-    pub fn new(held: Vec<Option<f64>>) -> Self {
-        let mut free = 0;
-        let number = |value: &Option<f64>| match value {
-            Some(_) => None,
-            None => {
-                free += 1;
-                Some(free - 1)
+    /// The unknowns of a mesh at these places; `on` gives the places on a facet.
+    pub fn new(
+        problem: &ContinuumProblem,
+        mesh: &SimplexMesh,
+        places: &[Point],
+        on: impl Fn(&OuterFacet) -> Vec<usize>,
+    ) -> Self {
+        let dimension = mesh.dimension;
+        let (mut held, mut faces, mut normals) = (BTreeMap::<_, Vec<_>>::new(), BTreeMap::new(), BTreeMap::new());
+        for outer in mesh.surface() {
+            let condition = &problem.conditions[outer.condition];
+            for place in on(&outer) {
+                let components = condition.held.iter().map(|held| (held.direction, held.value.at(places[place])));
+                if !condition.held.is_empty() {
+                    held.entry(place).or_default().extend(components);
+                }
+                faces.extend(condition.rigid_face.map(|face| (place, face)));
+                normals.extend(condition.obstacles.first().map(|&obstacle| (place, problem.obstacles[obstacle].normal)));
             }
+        }
+        held.retain(|place, _| !faces.contains_key(place));
+        let mut special: BTreeMap<usize, Supported> = BTreeMap::new();
+        for (&place, &normal) in normals.iter().filter(|(place, _)| !faces.contains_key(place)) {
+            special.insert(place, Supported::of(dimension, &[], Some(normal)));
+        }
+        for (&place, components) in &held {
+            special.insert(place, Supported::of(dimension, components, normals.get(&place).copied()));
+        }
+        let prescribed: usize = special.values().map(|supported| supported.held.len()).sum();
+        // The motions of rigid faces and the travels come last.
+        let own = dimension * (places.len() - faces.len()) - prescribed;
+        let mut motions = vec![own];
+        motions.extend(problem.rigid_faces.iter().scan(own, |next, face| {
+            *next += face.free.len();
+            Some(*next)
+        }));
+        let free = own + problem.loads_of_motions().len();
+        let count = dimension * places.len() + free - own;
+        let mut unknowns = Unknowns {
+            free,
+            own,
+            supports: BTreeMap::new(),
+            offset: Vec::with_capacity(count),
+            starts: vec![0],
+            terms: Vec::with_capacity(count),
         };
-        let numbers = held.iter().map(number).collect();
-        Unknowns { held, numbers, free }
+        let mut next = 0;
+        for (place, &at) in places.iter().enumerate() {
+            if let Some(&face) = faces.get(&place) {
+                let (first, face) = (motions[face], &problem.rigid_faces[face]);
+                for axis in 0..dimension {
+                    let by_one = face.free.iter().enumerate().map(|(motion, by)| (first + motion, by.0[axis].at(at)));
+                    unknowns.push(face.prescribed[axis].at(at), by_one);
+                }
+            } else if let Some(supported) = special.get(&place) {
+                for axis in 0..dimension {
+                    let along = supported.free.iter().enumerate().map(|(free, along)| (next + free, along[axis]));
+                    unknowns.push(supported.offset[axis], along);
+                }
+                next += supported.free.len();
+            } else {
+                (0..dimension).for_each(|axis| unknowns.push(0.0, std::iter::once((next + axis, 1.0))));
+                next += dimension;
+            }
+        }
+        (own..free).for_each(|motion| unknowns.push(0.0, std::iter::once((motion, 1.0))));
+        let is_supported = |(place, supported): (usize, Supported)| {
+            (!supported.held.is_empty()).then_some((place, supported.held))
+        };
+        unknowns.supports = special.into_iter().filter_map(is_supported).collect();
+        unknowns
     }
 
-    /// Returns `true` if the unknown is free.
-    pub fn is_free(&self, unknown: usize) -> bool {
-        self.numbers[unknown].is_some()
+    /// Adds an unknown.
+    fn push(&mut self, offset: f64, terms: impl Iterator<Item = (usize, f64)>) {
+        self.offset.push(offset);
+        self.terms.extend(terms.filter(|term| term.1 != 0.0).map(|(free, coefficient)| (free as u32, coefficient)));
+        self.starts.push(self.terms.len() as u32);
+    }
+
+    /// The free unknowns of an unknown, with their coefficients.
+    fn terms(&self, unknown: usize) -> &[(u32, f64)] {
+        &self.terms[self.starts[unknown] as usize..self.starts[unknown + 1] as usize]
+    }
+
+    /// The prescribed part of each unknown.
+    pub fn prescribed(&self) -> &[f64] {
+        &self.offset
+    }
+
+    /// Number of all unknowns.
+    pub fn count(&self) -> usize {
+        self.offset.len()
+    }
+
+    /// The free unknowns of a row with their coefficients, and its prescribed part.
+    pub fn of_row(&self, row: &Row) -> (Vec<(usize, f64)>, f64) {
+        let (mut terms, mut prescribed) = (BTreeMap::new(), 0.0);
+        for &(unknown, coefficient) in &row.terms {
+            prescribed += coefficient * self.offset[unknown];
+            for &(free, part) in self.terms(unknown) {
+                *terms.entry(free as usize).or_insert(0.0) += coefficient * part;
+            }
+        }
+        (terms.into_iter().filter(|term| term.1.abs() > DEPENDENT).collect(), prescribed)
+    }
+
+    /// The free unknown of a row, if it is the only one and belongs to the place of the row, and its coefficient.
+    pub fn own_term(&self, row: &Row) -> Option<(usize, f64)> {
+        match self.of_row(row).0[..] {
+            [(free, coefficient)] if free < self.own => Some((free, coefficient)),
+            _ => None,
+        }
+    }
+
+    /// Changes the displacement of the place of a row, if that has a free unknown of its own, so that the sum of the row is `to`.
+    pub fn move_to(&self, values: &mut [f64], row: &Row, to: f64) {
+        let Some((free, coefficient)) = self.own_term(row) else { return };
+        let amount = (to - row.value(values)) / coefficient;
+        for &(unknown, _) in &row.terms {
+            let own = self.terms(unknown).iter().filter(|term| term.0 as usize == free);
+            values[unknown] += own.map(|term| amount * term.1).sum::<f64>();
+        }
     }
 
     /// All values from those of the free unknowns.
     pub fn expanded(&self, free: &[f64]) -> Vec<f64> {
-        let value = |(held, number): (&Option<f64>, &Option<usize>)| held.or(number.map(|at| free[at])).unwrap_or(0.0);
-        self.held.iter().zip(&self.numbers).map(value).collect()
+        let value = |unknown: usize| {
+            let terms = self.terms(unknown).iter().map(|&(free_unknown, part)| part * free[free_unknown as usize]);
+            terms.fold(self.offset[unknown], |sum, part| sum + part)
+        };
+        (0..self.count()).map(value).collect()
     }
 
-    /// The values of the free unknowns among all values.
-    pub fn reduced(&self, all: &[f64]) -> Vec<f64> {
-        all.iter().zip(&self.numbers).filter(|entry| entry.1.is_some()).map(|entry| *entry.0).collect()
+    /// The sums over all unknowns of an amount times the coefficient of each free unknown: forces along these.
+    pub fn gathered(&self, of_all: &[f64]) -> Vec<f64> {
+        self.gathered_by(of_all, |part| part)
     }
 
-    /// The rigid motions as values of the free unknowns.
-    fn rigid_motions(&self, places: &[Point]) -> Result<Option<NearNullSpace>, Error> {
-        let dimension = self.held.len() / places.len();
+    /// The same sums with the absolute values of the coefficients.
+    pub fn gathered_sizes(&self, of_all: &[f64]) -> Vec<f64> {
+        self.gathered_by(of_all, f64::abs)
+    }
+
+    fn gathered_by(&self, of_all: &[f64], factor: impl Fn(f64) -> f64) -> Vec<f64> {
+        let mut sums = vec![0.0; self.free];
+        for (unknown, amount) in of_all.iter().enumerate() {
+            self.terms(unknown).iter().for_each(|&(free, part)| sums[free as usize] += factor(part) * amount);
+        }
+        sums
+    }
+
+    /// The same unknowns without prescribed parts, and some of the free ones, each of one place, held at values.
+    pub fn with_held(&self, values: &BTreeMap<usize, f64>) -> Self {
+        let mut held = Unknowns {
+            free: self.free - values.len(),
+            own: self.own - values.len(),
+            supports: self.supports.clone(),
+            offset: Vec::with_capacity(self.count()),
+            starts: vec![0],
+            terms: Vec::with_capacity(self.terms.len()),
+        };
+        let mut next = 0..;
+        let number = |free: usize| if values.contains_key(&free) { None } else { next.next() };
+        let numbers: Vec<Option<usize>> = (0..self.free).map(number).collect();
+        for unknown in 0..self.count() {
+            let terms = self.terms(unknown).iter().map(|&(free, part)| (free as usize, part));
+            let prescribed = terms.clone().map(|(free, part)| part * values.get(&free).unwrap_or(&0.0)).sum();
+            held.push(prescribed, terms.filter_map(|(free, part)| Some((numbers[free]?, part))));
+        }
+        held
+    }
+
+    /// The rigid motions as values of the free unknowns; `None` with unknowns other than those of places.
+    fn rigid_motions(&self, places: &[Point], dimension: usize) -> Result<Option<NearNullSpace>, Error> {
+        if self.count() > dimension * places.len() {
+            return Ok(None);
+        }
         let along = |axis: usize| places.iter().map(|place| place[axis]).collect();
         let all = NearNullSpace::of_nodes(&(0..dimension).map(along).collect::<Vec<_>>())?;
-        Ok(NearNullSpace::of_modes(all.vectors().iter().map(|motion| self.reduced(motion)).collect()))
+        Ok(NearNullSpace::of_modes(all.vectors().iter().map(|motion| self.gathered(motion)).collect()))
     }
 
-    /// The problem of simplices with these unknowns and matrices, under a load on all unknowns, with rows on free ones. At each of the `places`
-    /// a linear displacement has the values of the unknowns along the axes.
+    /// The problem of simplices with these unknowns and matrices, under a load on all unknowns, with rows. At each of the `places` a linear
+    /// displacement has the values of the unknowns along the axes.
     ///
     /// # Errors
     /// As [`ContactProblem::new`].
     pub fn problem(
         &self,
+        dimension: usize,
         numbers: &Numbers,
         blocks: &[Block],
         load: &[f64],
         rows: &[Row],
         places: &[Point],
     ) -> Result<ContactProblem, Error> {
-        let (starts, row_indices) = self.pattern(numbers, self.held.len() / places.len());
-        let (mut values, mut load) = (vec![0.0; row_indices.len()], self.reduced(load));
+        let (starts, row_indices) = self.pattern(numbers);
+        let (mut values, mut lifted) = (vec![0.0; row_indices.len()], vec![0.0; self.count()]);
         for (unknowns, block) in numbers.iter().zip(blocks) {
             for (&unknown, line) in unknowns.iter().zip(block.chunks_exact(unknowns.len())) {
-                let Some(column) = self.numbers[unknown] else { continue };
-                let of_column = starts[column]..starts[column + 1];
                 for (&other, &value) in unknowns.iter().zip(line) {
-                    match (self.numbers[other], self.held[other]) {
-                        (Some(row), _) if row >= column => {
-                            let place = row_indices[of_column.clone()].partition_point(|&other| (other as usize) < row);
-                            values[of_column.start + place] += value;
+                    lifted[unknown] += value * self.offset[other];
+                }
+                for &(column, part) in self.terms(unknown) {
+                    let of_column = starts[column as usize]..starts[column as usize + 1];
+                    for (&other, &value) in unknowns.iter().zip(line) {
+                        for &(row, other_part) in self.terms(other).iter().filter(|term| term.0 >= column) {
+                            let place = row_indices[of_column.clone()].partition_point(|&other| other < row);
+                            values[of_column.start + place] += part * other_part * value;
                         }
-                        (None, Some(held)) => load[column] -= value * held,
-                        _ => {}
                     }
                 }
             }
         }
         let stiffness = SparseMatrix::from_parts(self.free, starts, row_indices, values);
-        let numbered = |(index, row): (usize, &Row)| Some((index, self.numbers[row.unknown]?, row.sense));
-        let contact: Vec<_> = rows.iter().enumerate().filter_map(numbered).collect();
+        let left: Vec<f64> = load.iter().zip(&lifted).map(|(load, lifted)| load - lifted).collect();
+        let (mut contact, mut gap) = (Vec::new(), Vec::with_capacity(rows.len()));
+        for (index, row) in rows.iter().enumerate() {
+            let (terms, prescribed) = self.of_row(row);
+            contact.extend(terms.into_iter().map(|(free, coefficient)| (index, free, coefficient)));
+            gap.push(row.gap - prescribed);
+        }
         let contact = SparseMatrix::from_triplets(rows.len(), self.free, &contact)?;
-        let gap = rows.iter().map(|row| row.gap).collect();
-        let posed = ContactProblem::new(SymmetricMatrix::from_lower(stiffness)?, load, contact, gap)?;
-        Ok(match self.rigid_motions(places)? {
+        let posed = ContactProblem::new(SymmetricMatrix::from_lower(stiffness)?, self.gathered(&left), contact, gap)?;
+        Ok(match self.rigid_motions(places, dimension)? {
             Some(motions) => posed.with_near_null(motions)?,
             None => posed,
         })
     }
 
     /// Column starts and rows of the lower triangle in the free unknowns.
-    fn pattern(&self, numbers: &Numbers, dimension: usize) -> (Vec<usize>, Vec<u32>) {
-        let around = Around::new(self.held.len(), numbers.iter().map(|cell| cell.iter().copied()));
-        let (mut starts, mut rows, mut found) = (vec![0], Vec::new(), Vec::new());
-        let mut place = usize::MAX;
-        for (unknown, column) in self.numbers.iter().enumerate() {
-            let Some(column) = *column else { continue };
+    fn pattern(&self, numbers: &Numbers) -> (Vec<usize>, Vec<u32>) {
+        let free = |cell: &[usize]| {
+            let mut free: Vec<usize> = Vec::with_capacity(cell.len());
+            cell.iter().for_each(|&unknown| free.extend(self.terms(unknown).iter().map(|term| term.0 as usize)));
+            free.sort_unstable();
+            free.dedup();
+            free
+        };
+        let around = Around::new(self.free, numbers.iter().map(|cell| free(cell).into_iter()));
+        let (mut starts, mut rows, mut found) = (vec![0], Vec::new(), Vec::<u32>::new());
+        for column in 0..self.free {
             // The unknowns of one place have the same neighbours.
-            if std::mem::replace(&mut place, unknown / dimension) != unknown / dimension {
-                let cells = around.at(unknown).iter().map(|&cell| numbers.of(cell as usize));
+            if column == 0 || around.at(column) != around.at(column - 1) {
+                let cells = around.at(column).iter().flat_map(|&cell| numbers.of(cell as usize));
                 found.clear();
-                found.extend(cells.flatten().filter_map(|&other| self.numbers[other].map(|row| row as u32)));
+                found.extend(cells.flat_map(|&other| self.terms(other).iter().map(|term| term.0)));
                 found.sort_unstable();
                 found.dedup();
             }

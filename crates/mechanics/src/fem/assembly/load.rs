@@ -73,6 +73,17 @@ pub(crate) fn add_traction_with_kinks(
 /// Adds to the nodal load (length `dim * n_nodes`) the traction `omega x (x - c)` on a boundary, c its centre of area, which has the
 /// given moment (force times length) and zero force. `None` for a moment that no such traction has.
 pub(crate) fn add_moment(body: &ElasticBody, boundary: &Boundary, moment: [f64; 3], load: &mut [f64]) -> Option<()> {
+    let (omega, centre) = turning_traction(body, boundary, moment)?;
+    let table = Tabulated::fine(boundary.kind.reference());
+    for_each_point_of(body, boundary, &|_| Cow::Borrowed(&table), &mut |point| {
+        add_share(body, point, cross(omega, minus(point.at, centre)), load);
+    });
+    Some(())
+}
+
+/// The vector omega and the centre c of the traction `omega x (x - c)` on a boundary that has this moment (force times length) and no force;
+/// `None` if there is no such traction.
+pub(crate) fn turning_traction(body: &ElasticBody, boundary: &Boundary, moment: [f64; 3]) -> Option<([f64; 3], [f64; 3])> {
     let table = Tabulated::fine(boundary.kind.reference());
     let visit = |visit: &mut dyn FnMut(&FacetPoint)| {
         for_each_point_of(body, boundary, &|_| Cow::Borrowed(&table), visit);
@@ -101,8 +112,7 @@ pub(crate) fn add_moment(body: &ElasticBody, boundary: &Boundary, moment: [f64; 
             return None;
         }
     }
-    visit(&mut |point| add_share(body, point, cross(omega, minus(point.at, centre)), load));
-    Some(())
+    Some((omega, centre))
 }
 
 /// Adds the force of a traction on the area of a quadrature point.

@@ -28,7 +28,7 @@ pub use element_stiffness::element_stiffness;
 pub use frame::Frame;
 pub(crate) use frame::perpendicular;
 pub use internal_force::internal_force;
-pub(crate) use load::{Kinks, add_centrifugal, add_gravity, add_moment, add_traction_with_kinks};
+pub(crate) use load::{Kinks, add_centrifugal, add_gravity, add_moment, add_traction_with_kinks, turning_traction};
 pub use load::{add_body_force, add_body_force_field, add_pressure, add_traction, add_traction_field, free_load};
 pub use mass::{MassForm, mass};
 pub(crate) use mass::{free_mass, nodal_mass};

@@ -78,8 +78,8 @@ impl Pieces {
         })
     }
 
-    /// The facets of pieces that may form a boundary, each by its nodes, increasing. A quadrilateral gives those of both diagonals, of
-    /// which pieces have one.
+    /// The facets of pieces that may form a boundary, each by its nodes in the order of the boundary. A quadrilateral gives those of both
+    /// diagonals, of which pieces have one.
     pub fn facets_of(&self, mesh: &Mesh, boundary: &str) -> Vec<Vec<usize>> {
         let of_facet = |facet: &[usize]| -> Vec<Vec<usize>> {
             let numbers: Vec<usize> = facet.iter().filter_map(|&node| self.numbers[node]).collect();
@@ -90,9 +90,7 @@ impl Pieces {
             }
         };
         let facets = mesh.boundary(boundary).into_iter().flat_map(|boundary| boundary.facets());
-        let mut facets: Vec<Vec<usize>> = facets.flat_map(of_facet).collect();
-        facets.iter_mut().for_each(|facet| facet.sort_unstable());
-        facets
+        facets.flat_map(of_facet).collect()
     }
 }
 

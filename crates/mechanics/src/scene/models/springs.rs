@@ -3,6 +3,7 @@
 use super::ties::terms_of;
 use crate::error::Error;
 use crate::fem::assembly::{Springs, tributary_areas};
+use crate::fem::Boundary;
 use crate::fem::body::ElasticBody;
 use crate::scene::input::entry::{boundary, node_at, positive, wrong};
 use crate::scene::input::schema::spring::StiffnessOf;
@@ -29,6 +30,31 @@ impl SpringSpec {
         if !self.terms.is_empty() || self.along.is_some() {
             return Err(wrong(path, "has both a place `on` and `terms` with `along`; give one of them"));
         }
+        match on {
+            Place::Point(_) if self.normal.is_some() => {
+                Err(wrong(format!("{path}.normal"), "a node alone has no normal; give x, y or z"))
+            }
+            Place::Point(_) if self.stiffness == StiffnessOf::PerArea => {
+                Err(wrong(format!("{path}.stiffness"), "a node has no area; `total` is the stiffness of the spring"))
+            }
+            Place::Point(at) => {
+                let node = node_at(body.mesh(), at, &format!("{path}.on.point"))?;
+                Ok(Springs::at_node(node, self.along_axes(path, dimension)?))
+            }
+            Place::Nodes(_) => Err(wrong(
+                format!("{path}.on.nodes"),
+                "a spring holds a boundary, or the node at a point; give one of them, or `terms` with `along`",
+            )),
+            Place::Boundary(name) => {
+                let boundary = boundary(body.mesh(), name, &format!("{path}.on.boundary"))?;
+                let (along, normal) = self.per_area(path, body, boundary)?;
+                Ok(Springs::under(body, boundary, along, normal))
+            }
+        }
+    }
+
+    /// The stiffness along the axes, as it is written.
+    fn along_axes(&self, path: &str, dimension: usize) -> Result<[f64; 3], Error> {
         let mut along = [0.0; 3];
         let named = [("x", self.x), ("y", self.y), ("z", self.z), ("normal", self.normal)];
         for (axis, (field, stiffness)) in named.into_iter().enumerate() {
@@ -46,30 +72,25 @@ impl SpringSpec {
             let names = ["x", "x, y or normal", "x, y, z or normal"][dimension - 1];
             return Err(wrong(path, format!("holds nothing; give a stiffness along {names}")));
         }
-        match on {
-            Place::Point(_) if self.normal.is_some() => {
-                Err(wrong(format!("{path}.normal"), "a node alone has no normal; give x, y or z"))
-            }
-            Place::Point(_) if self.stiffness == StiffnessOf::PerArea => {
-                Err(wrong(format!("{path}.stiffness"), "a node has no area; `total` is the stiffness of the spring"))
-            }
-            Place::Point(at) => Ok(Springs::at_node(node_at(body.mesh(), at, &format!("{path}.on.point"))?, along)),
-            Place::Nodes(_) => Err(wrong(
-                format!("{path}.on.nodes"),
-                "a spring holds a boundary, or the node at a point; give one of them, or `terms` with `along`",
-            )),
-            Place::Boundary(name) => {
-                let boundary = boundary(body.mesh(), name, &format!("{path}.on.boundary"))?;
-                let share = match self.stiffness {
-                    StiffnessOf::PerArea => 1.0,
-                    StiffnessOf::Total => {
-                        1.0 / tributary_areas(body, boundary).iter().map(|(_, area)| area).sum::<f64>()
-                    }
-                };
-                let normal = share * self.normal.unwrap_or(0.0);
-                Ok(Springs::under(body, boundary, along.map(|stiffness| share * stiffness), normal))
-            }
-        }
+        Ok(along)
+    }
+
+    /// The stiffness per area of springs under a boundary, along the axes and along the normal.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] without a positive stiffness.
+    pub(crate) fn per_area(
+        &self,
+        path: &str,
+        body: &ElasticBody,
+        boundary: &Boundary,
+    ) -> Result<([f64; 3], f64), Error> {
+        let along = self.along_axes(path, body.dimension())?;
+        let share = match self.stiffness {
+            StiffnessOf::PerArea => 1.0,
+            StiffnessOf::Total => 1.0 / tributary_areas(body, boundary).iter().map(|(_, area)| area).sum::<f64>(),
+        };
+        Ok((along.map(|stiffness| share * stiffness), share * self.normal.unwrap_or(0.0)))
     }
 
     /// A spring along the elongation that its terms give.

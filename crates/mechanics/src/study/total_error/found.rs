@@ -152,6 +152,8 @@ pub struct TotalError {
 pub struct Guarantee {
     /// The body for which the bounds hold.
     pub domain: Domain,
+    /// A bound on the distance between the exact displacement and that of the bound in the norm of energy, the root of force times length.
+    pub distance: f64,
     /// |sigma - tau_m| / |v|: tau_m the mean of the stress of v and of the stress in balance.
     pub mean_stress_error: Bound,
     /// The interval that contains the exact potential energy: D(tau) and J(v), in force times length.

@@ -36,7 +36,7 @@ pub(super) fn total_error(given: &Given, problem: &ContinuumProblem, mesh: Simpl
     let search = Search { given, problem, settings };
     let mut found = search.run(mesh)?;
     given.settings.watch.step("answer", 0);
-    match found.guarantee.as_ref().map(|guarantee| on_last_mesh(given, &guarantee.answer, found.total_error.bound)) {
+    match found.guarantee.as_ref().map(|guarantee| on_last_mesh(given, &guarantee.answer, guarantee.distance)) {
         Some(Ok((last, judged))) => {
             found.model = ModelSize::of(last.0.model().problem());
             found.last = Ok(Box::new(last));
@@ -50,23 +50,25 @@ pub(super) fn total_error(given: &Given, problem: &ContinuumProblem, mesh: Simpl
     Ok(TotalError { seconds: given.seconds(), ..found })
 }
 
-/// The answer to the scene on the last mesh, and its distance from the continuum: that of the displacement of the bound, which is `bound`
-/// of its norm, plus the one from that displacement.
+/// The answer to the scene on the last mesh, and its distance from the continuum: that of the displacement of the bound, which is at most
+/// `distance`, plus the one from that displacement.
 fn on_last_mesh(
     given: &Given,
     of_bound: &ContinuumAnswer,
-    bound: f64,
+    distance: f64,
 ) -> Result<((Answer, Solution), JudgedMesh), Error> {
     let model = Arc::new(given.scene.on_last_mesh(given.model, of_bound)?);
     let solution = solve(model.problem(), given.settings)?;
     let answer = Answer::of(model.clone(), &solution)?;
+    // Stresses without strain do not belong to the norm.
+    let own = internal_force(model.body(), &vec![0.0; model.body().nodal_dofs()])?;
     let size = |displacement: &[f64]| -> Result<f64, Error> {
-        Ok(dot(displacement, &internal_force(model.body(), displacement)?).max(0.0).sqrt())
+        let all = dot(displacement, &internal_force(model.body(), displacement)?);
+        Ok((all - dot(displacement, &own)).max(0.0).sqrt())
     };
     let of_bound = of_bound.components(&of_bound.displacement);
     let away: Vec<f64> = answer.displacement().iter().zip(&of_bound).map(|(own, other)| own - other).collect();
-    let distance = bound * size(&of_bound)? + size(&away)?;
-    let judged = JudgedMesh::of(&answer, distance, size(answer.displacement())?)?;
+    let judged = JudgedMesh::of(&answer, distance + size(&away)?, size(answer.displacement())?)?;
     Ok(((answer, solution), judged))
 }
 
@@ -150,13 +152,14 @@ impl Search<'_> {
     /// The cells of a mesh in the plane; in space the facets that may touch, along the approach direction.
     fn seen(&self, mesh: &SimplexMesh) -> Vec<Vec<[f64; 2]>> {
         let across = |axis: usize| [[1, 2], [0, 2], [0, 1]][axis];
+        let steepest = |normal: Point| (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(2);
         let along = |corners: &[Point], axes: [usize; 2]| corners.iter().map(|at| axes.map(|axis| at[axis])).collect();
         if mesh.dimension == 2 {
             return (0..mesh.count()).map(|cell| along(mesh.simplex(cell).corners(), across(2))).collect();
         }
         let facing = self.problem.facing(mesh);
         let seen = facing.map(|(outer, obstacle)| {
-            along(&mesh.corners_of_facet(outer.facet), across(self.problem.obstacles[obstacle].axis))
+            along(&mesh.corners_of_facet(outer.facet), across(steepest(self.problem.obstacles[obstacle].normal)))
         });
         seen.collect()
     }
@@ -176,6 +179,7 @@ impl Search<'_> {
                 2 => Domain::FirstPolygon,
                 _ => Domain::FirstPolyhedron,
             },
+            distance: bracket.bound() * bracket.energy.sqrt(),
             mean_stress_error: Bound { bound: bracket.bound_of_mean(), guaranteed: true },
             potential_energy: [bracket.energy_of_stress(), bracket.energy_of_displacement()]
                 .map(|energy| self.given.model.parts_of_whole() * energy),

@@ -1,0 +1,182 @@
+//! The contact problem of the continuum that a scene describes, before any mesh.
+
+mod obstacle;
+mod surface;
+
+use super::rigid_face::{Motion, RigidFace};
+use crate::continuum::{ContinuumAnswer, ContinuumProblem, Linear, Medium, Point, RigidFace as Plate, SimplexMesh};
+use crate::error::Error;
+use crate::fem::body::{Integration, Phase};
+use crate::fem::mesh::pieces::Pieces;
+use crate::fem::Formulation;
+use crate::scene::Model;
+use crate::scene::input::entry::wrong;
+use crate::scene::input::schema::Scene;
+use crate::scene::input::schema::load::LoadSpec;
+use obstacle::facing;
+
+/// What of a scene has no guaranteed bound, and what would have one.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct NoGuarantee {
+    /// JSON path of what has none.
+    pub path: String,
+    /// A sentence.
+    pub message: String,
+}
+
+/// Why there is no problem of the continuum: an answer to the question for a guarantee, or a failure, which answers nothing.
+#[derive(Debug)]
+pub(crate) enum WhyNot {
+    /// The scene has no guaranteed bound.
+    NoGuarantee(NoGuarantee),
+    /// The question has no answer.
+    Failed(Error),
+}
+
+impl From<Error> for WhyNot {
+    fn from(error: Error) -> Self {
+        WhyNot::Failed(error)
+    }
+}
+
+impl From<WhyNot> for Error {
+    fn from(why: WhyNot) -> Self {
+        match why {
+            WhyNot::NoGuarantee(NoGuarantee { path, message }) => Error::Scene { path, message },
+            WhyNot::Failed(error) => error,
+        }
+    }
+}
+
+fn none(path: impl Into<String>, message: impl Into<String>) -> WhyNot {
+    WhyNot::NoGuarantee(NoGuarantee { path: path.into(), message: message.into() })
+}
+
+impl Scene {
+    /// Refuses a scene without an answer in the continuum.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a force at a point, except on a bar.
+    pub(crate) fn check_continuum(&self) -> Result<(), Error> {
+        match self.loads.iter().position(LoadSpec::is_at_points) {
+            Some(index) if self.model.dimension() > 1 => {
+                let message = "a force at a point makes an infinite displacement in a continuum, so that there is \
+                               no total error; spread it over a boundary";
+                let field = if self.loads[index].is_at_point() { "force" } else { "nodal-forces" };
+                Err(wrong(format!("loads[{index}].{field}"), message))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Asks for a guaranteed bound: the problem of the polygon or polyhedron that the mesh of `model` fills and the initial simplices, or
+    /// why not.
+    pub(crate) fn continuum_problem(&self, model: &Model) -> Result<(ContinuumProblem, SimplexMesh), WhyNot> {
+        let body = model.body();
+        let formulation = *body.formulation();
+        let thickness = match formulation {
+            Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => thickness,
+            Formulation::Space => 1.0,
+            _ => {
+                let name = formulation.name();
+                let message =
+                    format!("{name} has no guaranteed bound: only plane strain, plane stress and space have one");
+                return Err(none("model", message));
+            }
+        };
+        if !self.ties.is_empty() {
+            return Err(none("ties", "they have no guaranteed bound: only supports, springs and rigid faces have one"));
+        }
+        let [_] = body.regions() else {
+            let message = "several bodies have no guaranteed bound: only one body with rigid obstacles has one";
+            return Err(none("further-bodies", message));
+        };
+        let media = body.phases().iter().map(|phase| self.medium(phase)).collect::<Result<_, _>>()?;
+        let obstacles = model.obstacles().iter().enumerate();
+        let dimension = model.mesh().dimension();
+        let mut problem = ContinuumProblem {
+            dimension,
+            media,
+            medium_of: body.elements().map(|element| element.phase_number as usize).collect(),
+            thickness,
+            conditions: Vec::new(),
+            rigid_faces: model.parts.rigid_faces.iter().map(rigid_face).collect(),
+            obstacles: obstacles
+                .map(|(index, obstacle)| facing(index, obstacle, model.gap()))
+                .collect::<Result<_, _>>()?,
+            boundaries: model.mesh().boundaries().iter().map(|boundary| boundary.name.clone()).collect(),
+        };
+        let at_body = |error: Error| match error {
+            Error::Mesh { message } => none("body", format!("{message}, so that there is no guaranteed bound")),
+            other => other.into(),
+        };
+        let pieces = Pieces::of(model.mesh()).map_err(at_body)?;
+        let surface = self.surface(model, &pieces, &mut problem.conditions)?;
+        let Pieces { nodes, cells, elements, .. } = pieces;
+        let unmatched = || {
+            let message = match dimension {
+                2 => "the triangles of the mesh do not meet in whole edges, so that there is no guaranteed bound",
+                _ => {
+                    "the cells of the mesh, cut into tetrahedra, do not meet in whole faces, so that there is no guaranteed bound"
+                }
+            };
+            none("body", message)
+        };
+        let mesh = SimplexMesh::new(dimension, nodes, &cells, elements, &surface).ok_or_else(unmatched)?;
+        for (outer, obstacle) in problem.facing(&mesh) {
+            let gap = problem.obstacles[obstacle].surface.gap(&mesh.corners_of_facet(outer.facet));
+            if gap.is_some_and(|gap| gap.below.is_infinite()) {
+                let message = "the distance to a surface of this shape has no bounds between nodes, so that there is no guaranteed bound";
+                return Err(none(format!("obstacles[{obstacle}].shape"), message));
+            }
+        }
+        Ok((problem, mesh))
+    }
+
+    /// The scene on the last mesh of a guaranteed error, with the boundaries and parts of the first mesh.
+    ///
+    /// # Errors
+    /// As [`Scene::build`].
+    pub(crate) fn on_last_mesh(&self, first: &Model, last: &ContinuumAnswer) -> Result<Model, Error> {
+        let body = first.body().clone().with_integration(Integration::Standard)?.on(last.mesh()?, &last.origins)?;
+        // The parts are boundaries of that mesh; to choose them again would move their ends.
+        Scene { parts: Vec::new(), ..self.clone() }.build_of(vec![body], &[])
+    }
+
+    /// What fills the elements of a phase, under the body forces of the scene.
+    fn medium(&self, phase: &Phase) -> Result<Medium, WhyNot> {
+        if phase.law.turns() {
+            let message = "a stiffness with axes around a line has no guaranteed bound: only one with the same axes everywhere has";
+            return Err(none("material.orthotropic.around", message));
+        }
+        let mut body_force = [0.0; 3];
+        for (index, load) in self.loads.iter().enumerate() {
+            let (force, density) = match load {
+                LoadSpec::BodyForce(force) => (force, 1.0),
+                // The model is built, so that the density exists.
+                LoadSpec::Gravity(acceleration) => (acceleration, phase.material().density().unwrap_or_default()),
+                LoadSpec::Centrifugal(_) => {
+                    let message = "a force that grows with the distance from an axis has no guaranteed bound: only a constant body \
+                                   force has one";
+                    return Err(none(format!("loads[{index}].centrifugal"), message));
+                }
+                _ => continue,
+            };
+            body_force.iter_mut().zip(force).for_each(|(sum, part)| *sum += density * part);
+        }
+        let own = |entry: usize| Linear::of(|place| phase.own_stress(place).map_or(0.0, |stress| stress[entry]));
+        let own_stress = phase.own.is_some().then(|| [0, 1, 2, 3, 4, 5].map(own));
+        Ok(Medium { stiffness: phase.law.stiffness.clone(), own_stress, body_force })
+    }
+}
+
+/// A rigid face by its motions.
+fn rigid_face(face: &RigidFace) -> Plate {
+    let field = |moved: &dyn Fn(Point) -> Point| [0, 1, 2].map(|axis| Linear::of(|place| moved(place)[axis]));
+    let free = face.motions.iter().filter(|motion| motion.prescribed.is_none());
+    let by_one = |motion: &Motion| {
+        let unit = face.unit(motion);
+        (field(&|place| face.displacement(motion, place).map(|part| unit * part)), unit * motion.force)
+    };
+    Plate { prescribed: field(&|place| face.prescribed(place)), free: free.map(by_one).collect() }
+}

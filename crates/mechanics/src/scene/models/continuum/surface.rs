@@ -1,0 +1,304 @@
+//! The conditions on the facets of a contact problem of the continuum.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::{WhyNot, none};
+use crate::continuum::{Circle, Condition, Held, Linear, Point};
+use crate::error::Error;
+use crate::fem::Mesh;
+use crate::fem::assembly::turning_traction;
+use crate::fem::geometry::{COORDINATES, cross, dot, minus, unit};
+use crate::fem::mesh::pieces::Pieces;
+use crate::scene::Model;
+use crate::scene::input::entry::boundary;
+use crate::scene::input::profile::Profile;
+use crate::scene::input::schema::load::{LoadSpec, PressureSpec, TractionSpec};
+use crate::scene::input::schema::profile::ProfileSpec;
+use crate::scene::input::schema::{Place, Scene};
+use crate::scene::models::load::spread;
+
+/// A kink of a profile lies at a corner of a facet if it does up to this share of the facet.
+const AT_A_CORNER: f64 = 1e-9;
+
+impl Scene {
+    /// The conditions, and the number of that of each facet with one, by its nodes.
+    pub(super) fn surface(
+        &self,
+        model: &Model,
+        pieces: &Pieces,
+        conditions: &mut Vec<Condition>,
+    ) -> Result<HashMap<Vec<usize>, usize>, WhyNot> {
+        let mut surface = Surface::of(model.mesh(), pieces);
+        self.add_supports(model, &mut surface)?;
+        surface.change_on_planes(|at| model.axes_of_symmetry(at));
+        for (index, face) in self.rigid_faces.iter().enumerate() {
+            let path = format!("rigid-faces[{index}]");
+            let Some(name) = &face.boundary else {
+                let message = "single nodes that move as a rigid body have no guaranteed bound: only a boundary has one";
+                return Err(none(format!("{path}.nodes"), message));
+            };
+            surface.change(name, |condition, _| {
+                condition.rigid_face = Some(index);
+                Ok(())
+            })?;
+        }
+        for (index, springs) in self.springs.iter().enumerate() {
+            let path = format!("springs[{index}]");
+            let Some(Place::Boundary(name)) = &springs.on else {
+                let message = "a spring at a point holds nothing in a continuum, so that there is no guaranteed bound; spread it \
+                               over a boundary";
+                return Err(none(if springs.on.is_some() { format!("{path}.on") } else { path }, message));
+            };
+            let of_boundary = boundary(model.mesh(), name, &format!("{path}.on.boundary"))?;
+            let (along, normal) = springs.per_area(&path, model.body(), of_boundary)?;
+            surface.change(name, |condition, _| {
+                (0..3).for_each(|axis| condition.springs.along[axis] += along[axis]);
+                condition.springs.normal += normal;
+                Ok(())
+            })?;
+        }
+        for (index, load) in self.loads.iter().enumerate() {
+            self.add_load_on_surface(model, index, load, &mut surface)?;
+        }
+        for (index, obstacle) in model.obstacles().iter().enumerate() {
+            let name = obstacle.boundary();
+            surface.change(name, |condition, facet| match facet.inner_normal {
+                None => {
+                    condition.obstacles.push(index);
+                    Ok(())
+                }
+                Some(_) => {
+                    let message = format!("`{name}` runs through the body, so that there is no guaranteed bound");
+                    Err(none(format!("obstacles[{index}].boundary"), message))
+                }
+            })?;
+        }
+        for (index, boundary) in model.mesh().boundaries().iter().enumerate() {
+            surface.change_known(&boundary.name, |condition| condition.boundaries.push(index));
+        }
+        for (name, centre, radius) in self.body.shape().circles() {
+            surface.change_known(name, |condition| {
+                let [x, y] = centre;
+                condition.circle = Some(Circle { centre: [x, y, 0.0], radius });
+            });
+        }
+        Ok(surface.numbered(conditions))
+    }
+
+    fn add_supports(&self, model: &Model, surface: &mut Surface) -> Result<(), WhyNot> {
+        for (index, support) in self.supports.iter().enumerate() {
+            let Place::Boundary(name) = &support.on else {
+                let message = "a support at a point holds nothing in a continuum, so that there is no guaranteed bound; \
+                               hold a boundary";
+                return Err(none(format!("supports[{index}].on"), message));
+            };
+            let profile = Factor::of(model, support.profile.as_ref(), format!("supports[{index}].profile"))?;
+            let components = self.components(index, support)?;
+            surface.change(name, |condition, facet| {
+                let factor = profile.on(facet)?;
+                condition.held.extend(components.iter().map(|component| Held {
+                    direction: component.direction,
+                    value: factor.times(component.value),
+                }));
+                Ok(())
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Adds load number `index`, if it acts on facets.
+    ///
+    /// # Errors
+    /// [`WhyNot::NoGuarantee`] for a load that is not linear on each facet.
+    fn add_load_on_surface(
+        &self,
+        model: &Model,
+        index: usize,
+        load: &LoadSpec,
+        surface: &mut Surface,
+    ) -> Result<(), WhyNot> {
+        let path = |field: &str| format!("loads[{index}].{field}");
+        let in_space = |value: &[f64]| [0, 1, 2].map(|axis| value.get(axis).copied().unwrap_or(0.0));
+        match load {
+            LoadSpec::Traction(TractionSpec { boundary, value, profile }) => {
+                let (factor, value) = (Factor::of(model, profile.as_ref(), path("traction.profile"))?, in_space(value));
+                surface.change(boundary, |condition, facet| {
+                    let factor = factor.on(facet)?;
+                    condition.pull_along(value.map(|component| factor.times(component)));
+                    Ok(())
+                })
+            }
+            LoadSpec::Pressure(PressureSpec { boundary, value, profile }) => {
+                let factor = Factor::of(model, profile.as_ref(), path("pressure.profile"))?;
+                surface.change(boundary, |condition, facet| {
+                    let pressure = factor.on(facet)?.times(*value);
+                    match facet.inner_normal {
+                        Some(normal) => condition.pull_along(normal.map(|part| pressure.times(-part))),
+                        None => condition.pressure = condition.pressure.plus(pressure),
+                    }
+                    Ok(())
+                })
+            }
+            LoadSpec::Force(spec) => {
+                let (Some(name), path) = (&spec.boundary, path("force.boundary")) else { return Ok(()) };
+                let of_boundary = boundary(model.mesh(), name, &path)?;
+                let traction = spread(model.body(), of_boundary, in_space(&spec.value), &path)?;
+                surface.change(name, |condition, _| {
+                    condition.pull_along(traction.map(Linear::constant));
+                    Ok(())
+                })
+            }
+            LoadSpec::Moment(spec) => {
+                let Some(name) = &spec.boundary else { return Ok(()) };
+                let of_boundary = boundary(model.mesh(), name, &path("moment.boundary"))?;
+                let moment = match spec.value[..] {
+                    [about_z] => [0.0, 0.0, about_z],
+                    _ => in_space(&spec.value),
+                };
+                // The model is built, so that there is one.
+                let Some((omega, centre)) = turning_traction(model.body(), of_boundary, moment) else { return Ok(()) };
+                let along = |axis: usize| Linear::of(|place| cross(omega, minus(place, centre))[axis]);
+                surface.change(name, |condition, _| {
+                    condition.pull_along([0, 1, 2].map(along));
+                    Ok(())
+                })
+            }
+            LoadSpec::NodalForces(_) => {
+                Err(none(path("nodal-forces"), "a force on a node has no guaranteed bound: only loads on boundaries have one"))
+            }
+            LoadSpec::BodyForce(_) | LoadSpec::Gravity(_) | LoadSpec::Centrifugal(_) => Ok(()),
+        }
+    }
+}
+
+/// A factor that may change along a boundary, with its JSON path.
+struct Factor {
+    profile: Option<Profile>,
+    path: String,
+}
+
+impl Factor {
+    fn of(model: &Model, spec: Option<&ProfileSpec>, path: String) -> Result<Self, Error> {
+        let dimension = model.mesh().dimension();
+        Ok(Factor { profile: spec.map(|spec| Profile::of(spec, &path, dimension)).transpose()?, path })
+    }
+
+    /// The factor on a facet.
+    ///
+    /// # Errors
+    /// [`WhyNot::NoGuarantee`] if it has a kink there.
+    fn on(&self, facet: &Facet) -> Result<Linear, WhyNot> {
+        let Some(profile) = &self.profile else { return Ok(Linear::constant(1.0)) };
+        let kinks = profile.kinks();
+        let along = facet.corners.iter().map(|&corner| (dot(kinks.along, corner), corner));
+        let ends = along.clone().min_by(|a, b| a.0.total_cmp(&b.0)).zip(along.max_by(|a, b| a.0.total_cmp(&b.0)));
+        let Some(((low, first), (high, last))) = ends else { return Ok(Linear::constant(1.0)) };
+        let margin = AT_A_CORNER * (high - low);
+        if kinks.at.iter().any(|&kink| low + margin < kink && kink < high - margin) {
+            let message = "a profile with a kink inside an edge of the mesh has no guaranteed bound: place nodes of the mesh at the kinks";
+            return Err(none(&*self.path, message));
+        }
+        let [at_low, at_high] = [first, last].map(|corner| profile.at(corner));
+        if high - low <= f64::EPSILON * low.abs().max(high.abs()) {
+            return Ok(Linear::constant(at_low));
+        }
+        let steepness = (at_high - at_low) / (high - low);
+        Ok(Linear { at_origin: at_low - steepness * low, slope: kinks.along.map(|part| steepness * part) })
+    }
+}
+
+/// A facet of a boundary.
+struct Facet {
+    corners: Vec<Point>,
+    /// Inside the body, the normal of the boundary.
+    inner_normal: Option<Point>,
+}
+
+/// The facets of the pieces of a mesh, by their nodes, increasing.
+struct Surface<'a> {
+    mesh: &'a Mesh,
+    pieces: &'a Pieces,
+    facets: BTreeMap<Vec<usize>, Entry>,
+}
+
+/// The condition of a facet; inside the body it is there once a boundary of the scene runs through the facet.
+struct Entry {
+    is_inner: bool,
+    condition: Option<Condition>,
+}
+
+impl<'a> Surface<'a> {
+    fn of(mesh: &'a Mesh, pieces: &'a Pieces) -> Self {
+        let mut facets = BTreeMap::new();
+        for facet in pieces.facets() {
+            let inner = |entry: &mut Entry| *entry = Entry { is_inner: true, condition: None };
+            facets
+                .entry(facet)
+                .and_modify(inner)
+                .or_insert(Entry { is_inner: false, condition: Some(Condition::default()) });
+        }
+        Surface { mesh, pieces, facets }
+    }
+
+    /// Changes the condition on each facet of a boundary.
+    fn change(
+        &mut self,
+        name: &str,
+        mut change: impl FnMut(&mut Condition, &Facet) -> Result<(), WhyNot>,
+    ) -> Result<(), WhyNot> {
+        for nodes in self.pieces.facets_of(self.mesh, name) {
+            // A facet of the other diagonal is missing.
+            let Some(entry) = self.facets.get_mut(&sorted(&nodes)) else { continue };
+            let corners: Vec<Point> = nodes.iter().map(|&node| self.pieces.nodes[node]).collect();
+            let inner_normal = entry.is_inner.then(|| normal(&corners));
+            change(entry.condition.get_or_insert_default(), &Facet { corners, inner_normal })?;
+        }
+        Ok(())
+    }
+
+    /// Changes the condition on those facets of a boundary that have one.
+    fn change_known(&mut self, name: &str, change: impl Fn(&mut Condition)) {
+        for facet in self.pieces.facets_of(self.mesh, name) {
+            let entry = self.facets.get_mut(&sorted(&facet));
+            entry.and_then(|entry| entry.condition.as_mut()).into_iter().for_each(&change);
+        }
+    }
+
+    /// Holds the facets on planes of symmetry along the normals; `axes` says across which axes a place lies on a plane.
+    fn change_on_planes(&mut self, axes: impl Fn(&Point) -> [bool; 3]) {
+        for (facet, entry) in self.facets.iter_mut().filter(|facet| !facet.1.is_inner) {
+            let Some(condition) = &mut entry.condition else { continue };
+            let of_corners: Vec<_> = facet.iter().map(|&node| axes(&self.pieces.nodes[node])).collect();
+            for axis in (0..3).filter(|&axis| of_corners.iter().all(|axes| axes[axis])) {
+                condition.held.push(Held { direction: COORDINATES[axis], value: Linear::default() });
+            }
+        }
+    }
+
+    /// The number of the condition of each facet with one; equal ones have one number.
+    fn numbered(self, conditions: &mut Vec<Condition>) -> HashMap<Vec<usize>, usize> {
+        let mut number = |condition: Condition| {
+            conditions.iter().position(|other| *other == condition).unwrap_or_else(|| {
+                conditions.push(condition);
+                conditions.len() - 1
+            })
+        };
+        let facets = self.facets.into_iter();
+        facets.filter_map(|(facet, entry)| Some((facet, number(entry.condition?)))).collect()
+    }
+}
+
+fn sorted(nodes: &[usize]) -> Vec<usize> {
+    let mut sorted = nodes.to_vec();
+    sorted.sort_unstable();
+    sorted
+}
+
+/// The unit normal of a facet with its corners in the order of its boundary.
+fn normal(corners: &[Point]) -> Point {
+    match *corners {
+        [from, to] => unit(cross(minus(to, from), COORDINATES[2])),
+        [a, b, c, ..] => unit(cross(minus(b, a), minus(c, a))),
+        _ => [0.0; 3],
+    }
+}
