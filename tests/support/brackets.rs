@@ -8,6 +8,9 @@ use signorini::{Error, Scene};
 /// this much.
 const ROUNDING: f64 = 1e-8;
 
+/// The distance between v and the answer by finite elements on the same mesh, over the bound, is below this.
+const OF_ELEMENTS: f64 = 1.5;
+
 /// A scene with the name of its element, and the exact energy and force of its answer.
 pub type Column = (Scene, &'static str, [f64; 2]);
 
@@ -145,6 +148,11 @@ pub fn shown((scene, element): (Scene, &'static str), levels: usize, clear: f64)
             );
             hold("the interval is empty", one[0] <= one[1] + size);
         }
+    }
+    // Finite elements on the same mesh err as much, unless they solve another problem.
+    let from_elements = last.from_elements.unwrap_or(f64::NAN);
+    if from_elements.is_nan() || from_elements > OF_ELEMENTS * last.bound + ROUNDING * last.norm {
+        violations.push(format!("{element}: finite elements are {from_elements} away from v: {last:?}"));
     }
     let (of_displacement, of_own, of_force) = effectivities(&found, clear);
     Ok(Shown { element, violations, of_displacement, of_own, of_force })

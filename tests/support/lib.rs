@@ -14,6 +14,7 @@ pub mod floors;
 pub mod fuzz;
 pub mod gmsh_forms;
 pub mod impact;
+pub mod key_scenes;
 pub mod manufactured;
 pub mod oracles;
 pub mod plane_scenes;

@@ -1,13 +1,13 @@
 //! Searches for violations of the guaranteed bound on the total error:
-//! `cargo run --release --example guarantee [-- [--space] [SCENES [LEVELS]]]`.
+//! `cargo run --release --example guarantee [-- [--space | --keys] [SCENES [LEVELS]]]`.
 //!
-//! Each random scene, in the plane or in space, is solved on its own mesh and on finer ones. All intervals of the energy and of the force must
+//! Each random scene, in the plane, there with more keys, or in space, is solved on its own mesh and on finer ones. All intervals of the energy and of the force must
 //! overlap, and the distance of each answer to the finest one must not exceed its bound. In addition, one column for every
 //! ten scenes is solved; its energy and force are known in closed form. The exit code is 1 if a guarantee is violated.
 
 use signorini::Scene;
 use support::brackets::{Column, Shown, of_column, shown};
-use support::{plane_scenes, space_scenes};
+use support::{key_scenes, plane_scenes, space_scenes};
 
 /// The scenes of a dimension: those of a seed, the columns, the names of their elements, and how many times smaller the last bound must be
 /// for an error to be known.
@@ -15,15 +15,16 @@ type Scenes = (fn(u64) -> (Scene, &'static str), fn(u64) -> Column, [&'static st
 
 fn main() -> std::process::ExitCode {
     let mut words = std::env::args().skip(1).peekable();
-    let (scene, column, elements, clear): Scenes = match words.next_if(|word| word == "--space") {
-        Some(_) => (space_scenes::scene, space_scenes::column, space_scenes::ELEMENTS, space_scenes::CLEAR),
+    let (scene, column, elements, clear): Scenes = match words.next_if(|word| word.starts_with("--")).as_deref() {
+        Some("--space") => (space_scenes::scene, space_scenes::column, space_scenes::ELEMENTS, space_scenes::CLEAR),
+        Some("--keys") => (key_scenes::scene, plane_scenes::column, plane_scenes::ELEMENTS, plane_scenes::CLEAR),
+        Some(_) => return usage(),
         None => (plane_scenes::scene, plane_scenes::column, plane_scenes::ELEMENTS, plane_scenes::CLEAR),
     };
     let mut numbers = words.map(|text| text.parse::<u64>());
     let (Some(scenes), Some(levels)) = (numbers.next().unwrap_or(Ok(300)).ok(), numbers.next().unwrap_or(Ok(6)).ok())
     else {
-        eprintln!("usage: guarantee [--space] [SCENES [LEVELS]]");
-        return std::process::ExitCode::from(2);
+        return usage();
     };
     let (mut all, mut refused, mut meshes): (Vec<Shown>, Vec<String>, usize) = (Vec::new(), Vec::new(), 0);
     for seed in 1..=scenes {
@@ -56,6 +57,11 @@ fn main() -> std::process::ExitCode {
     }
     println!("{} columns with exact energy and force, {of_columns} violations", scenes.div_ceil(10));
     std::process::ExitCode::from(u8::from(violations + of_columns > 0))
+}
+
+fn usage() -> std::process::ExitCode {
+    eprintln!("usage: guarantee [--space | --keys] [SCENES [LEVELS]]");
+    std::process::ExitCode::from(2)
 }
 
 /// Returns the median, the extremes and the number of the values as text.

@@ -152,7 +152,9 @@ impl<'a> Bracket<'a> {
         primal.seconds = clock.elapsed().as_secs_f64();
         let largest = displacements.largest(&primal.values);
         let (rows, places) = stresses.rows(&of_stress, |place, gap| {
-            gap - displacements.towards(&primal.values, place) <= largest
+            // What presses must touch, however far it is from a coarse facet.
+            problem.travel(place.obstacle).is_some()
+                || gap - displacements.towards(&primal.values, place) <= largest
         });
         let posed = of_stress.problem(
             mesh.dimension,

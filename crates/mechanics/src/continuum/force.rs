@@ -65,12 +65,15 @@ struct Test {
 }
 
 impl Bracket<'_> {
-    /// Bounds on the sum of the contact forces, in force; `None` if obstacles come from several directions or are pressed, if the boundary that
-    /// touches them is a rigid face, or if no bound was found.
+    /// Bounds on the sum of the contact forces, in force: the forces that press the obstacles, if all are pressed. `None` if obstacles come from
+    /// several directions, if only some are pressed, if the boundary that touches them is a rigid face, or if no bound was found.
     ///
     /// # Errors
     /// Those of [`ContactProblem::new`].
     pub fn force_interval(&self) -> Result<Option<[f64; 2]>, Error> {
+        if let Some(pressed) = self.problem.pressing_force() {
+            return Ok(Some([pressed; 2]));
+        }
         let corners: BTreeSet<_> = self.places.iter().map(|place| (place.on.facet, place.corner)).collect();
         if !self.problem.has_one_direction() || corners.len() != self.places.len() || self.is_at_rest() {
             return Ok(None);

@@ -278,6 +278,11 @@ impl ContinuumProblem {
         of_faces.chain(self.obstacles.iter().filter_map(|facing| facing.force)).collect()
     }
 
+    /// The sum of the forces that press the obstacles; `None` unless all are pressed.
+    pub fn pressing_force(&self) -> Option<f64> {
+        if self.obstacles.is_empty() { None } else { self.obstacles.iter().map(|facing| facing.force).sum() }
+    }
+
     /// The number among these of the travel of an obstacle; `None` if it stands still.
     pub fn travel(&self, obstacle: usize) -> Option<usize> {
         self.obstacles[obstacle].force?;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use signorini_qp::{Method, Settings, solve};
 
 use super::goal::{MARKED, marked};
-use super::guaranteed::judged;
+use super::guaranteed::{compared, judged};
 use crate::continuum::Bracket;
 use crate::error::Error;
 use crate::scene::{Answer, Scene};
@@ -26,6 +26,8 @@ pub struct Examined {
     /// The answer w on the scene's own mesh, in the energy norm, whose unit is the root of force times length: `[an upper bound of |u - w|,
     /// |v - w|, |w|]`.
     pub own: [f64; 3],
+    /// |v - w| with the answer w of the scene by finite elements on the last mesh; `None` on the others.
+    pub from_elements: Option<f64>,
     /// Unknowns of v.
     pub dofs: usize,
 }
@@ -44,6 +46,12 @@ impl Examined {
         for level in 0..=levels {
             let bracket = Bracket::new(&problem, &mesh, None, &settings)?;
             let judged = judged(&own, &bracket);
+            let from_elements = || -> Result<f64, Error> {
+                let of_bound = bracket.answer();
+                let last = Arc::new(scene.on_last_mesh(&model, &of_bound)?);
+                let solution = solve(last.problem(), &settings)?;
+                Ok(compared(&Answer::of(last, &solution)?, &of_bound)?[0])
+            };
             found.push(Examined {
                 energies: [bracket.energy_of_stress(), bracket.energy_of_displacement()],
                 bound: (2.0 * bracket.distance().max(0.0)).sqrt(),
@@ -51,6 +59,7 @@ impl Examined {
                 force: bracket.force(),
                 force_interval: bracket.force_interval()?,
                 own: [judged.bound, judged.from_displacement, judged.norm],
+                from_elements: if level == levels { Some(from_elements()?) } else { None },
                 dofs: bracket.primal.unknowns.free,
             });
             if level < levels {

@@ -27,7 +27,7 @@ const OF_SOLVER: f64 = 1e-4;
 pub(super) fn total_error(given: &Given, problem: &ContinuumProblem, mesh: SimplexMesh) -> Result<TotalError, Error> {
     if given.goal.force_error.is_some() && !problem.has_one_direction() {
         let message =
-            "the contact force has a guaranteed interval only if all obstacles lie in one direction from the body";
+            "the contact force has a guaranteed interval only if all obstacles stand still, in one direction from the body";
         return Err(Error::Scene { path: "obstacles".into(), message: message.into() });
     }
     // An error of the solver that is small beside the goal does not matter.
@@ -59,17 +59,27 @@ fn on_last_mesh(
 ) -> Result<((Answer, Solution), JudgedMesh), Error> {
     let model = Arc::new(given.scene.on_last_mesh(given.model, of_bound)?);
     let solution = solve(model.problem(), given.settings)?;
-    let answer = Answer::of(model.clone(), &solution)?;
+    let answer = Answer::of(model, &solution)?;
+    let [away, size] = compared(&answer, of_bound)?;
+    let judged = JudgedMesh::of(&answer, distance + away, size)?;
+    Ok(((answer, solution), judged))
+}
+
+/// The distance of an answer on the last mesh from the displacement of the bound, and its own length, in the energy norm of the body.
+///
+/// # Errors
+/// None for an answer on that mesh.
+pub(super) fn compared(answer: &Answer, of_bound: &ContinuumAnswer) -> Result<[f64; 2], Error> {
+    let body = answer.model().body();
     // Stresses without strain do not belong to the norm.
-    let own = internal_force(model.body(), &vec![0.0; model.body().nodal_dofs()])?;
+    let own = internal_force(body, &vec![0.0; body.nodal_dofs()])?;
     let size = |displacement: &[f64]| -> Result<f64, Error> {
-        let all = dot(displacement, &internal_force(model.body(), displacement)?);
+        let all = dot(displacement, &internal_force(body, displacement)?);
         Ok((all - dot(displacement, &own)).max(0.0).sqrt())
     };
     let of_bound = of_bound.components(&of_bound.displacement);
     let away: Vec<f64> = answer.displacement().iter().zip(&of_bound).map(|(own, other)| own - other).collect();
-    let judged = JudgedMesh::of(&answer, distance + size(&away)?, size(answer.displacement())?)?;
-    Ok(((answer, solution), judged))
+    Ok([size(&away)?, size(answer.displacement())?])
 }
 
 /// The data that stay the same from mesh to mesh.

@@ -92,7 +92,6 @@ impl Scene {
             return Err(none("further-bodies", message));
         };
         let media = body.phases().iter().map(|phase| self.medium(phase)).collect::<Result<_, _>>()?;
-        let obstacles = model.obstacles().iter().enumerate();
         let dimension = model.mesh().dimension();
         let mut problem = ContinuumProblem {
             dimension,
@@ -101,9 +100,7 @@ impl Scene {
             thickness,
             conditions: Vec::new(),
             rigid_faces: model.parts.rigid_faces.iter().map(rigid_face).collect(),
-            obstacles: obstacles
-                .map(|(index, obstacle)| facing(index, obstacle, model.gap()))
-                .collect::<Result<_, _>>()?,
+            obstacles: (0..model.obstacles().len()).map(|index| facing(model, index)).collect::<Result<_, _>>()?,
             boundaries: model.mesh().boundaries().iter().map(|boundary| boundary.name.clone()).collect(),
         };
         let at_body = |error: Error| match error {
@@ -123,12 +120,19 @@ impl Scene {
             none("body", message)
         };
         let mesh = SimplexMesh::new(dimension, nodes, &cells, elements, &surface).ok_or_else(unmatched)?;
+        let mut within_reach = vec![false; problem.obstacles.len()];
         for (outer, obstacle) in problem.facing(&mesh) {
             let gap = problem.obstacles[obstacle].surface.gap(&mesh.corners_of_facet(outer.facet));
-            if gap.is_some_and(|gap| gap.below.is_infinite()) {
+            if gap.as_ref().is_some_and(|gap| gap.below.is_infinite()) {
                 let message = "the distance to a surface of this shape has no bounds between nodes, so that there is no guaranteed bound";
                 return Err(none(format!("obstacles[{obstacle}].shape"), message));
             }
+            within_reach[obstacle] |= gap.is_some_and(|gap| gap.above.is_finite());
+        }
+        if let Some(obstacle) = (0..within_reach.len()).find(|&of| !within_reach[of] && problem.travel(of).is_some()) {
+            let message = "no facet of the mesh lies all within the reach of the pressed obstacle, so that there is no guaranteed bound; \
+                           take smaller cells there";
+            return Err(none(format!("obstacles[{obstacle}].force"), message));
         }
         Ok((problem, mesh))
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::{WhyNot, none};
 use crate::continuum::{Distance, Enclosure, Facing, Point};
 use crate::fem::geometry::COORDINATES;
+use crate::scene::Model;
 use crate::scene::input::obstacle::PlacedObstacle;
 use crate::scene::input::schema::Rule;
 
@@ -18,14 +19,15 @@ fn along_axis(direction: [f64; 3]) -> [f64; 3] {
     axis.map_or(direction, |axis| COORDINATES[axis].map(|part| part * direction[axis].signum()))
 }
 
-/// An obstacle with rows along one direction.
-pub(super) fn facing(index: usize, obstacle: &PlacedObstacle, gap: f64) -> Result<Facing, WhyNot> {
-    let path = format!("obstacles[{index}]");
+/// Obstacle number `index` of a model, with rows along one direction.
+pub(super) fn facing(model: &Model, index: usize) -> Result<Facing, WhyNot> {
+    let (obstacle, path) = (&model.obstacles()[index], format!("obstacles[{index}]"));
     match obstacle.rule() {
         Some(Rule::Approach) if obstacle.rigid().is_some() => {
-            let surface = Shifted { obstacle: obstacle.clone(), gap: obstacle.shift(gap) };
+            let surface = Shifted { obstacle: obstacle.clone(), gap: obstacle.shift(model.gap()) };
             let normal = along_axis(obstacle.approach());
-            Ok(Facing { normal, surface: Arc::new(surface), force: obstacle.force() })
+            let force = obstacle.force().map(|force| model.parts.share_of(index, force));
+            Ok(Facing { normal, surface: Arc::new(surface), force })
         }
         Some(Rule::ClosestPoint) => Err(none(
             format!("{path}.rule"),
