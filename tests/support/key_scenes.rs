@@ -111,7 +111,11 @@ pub fn scene(seed: u64) -> (Scene, &'static str) {
         1 => json!({"plane": {"point": apex, "normal": [draws.between(-0.1, 0.1), 1.0]}}),
         _ => json!({"wedge": {"apex": apex, "slope": draws.between(0.02, 0.5)}}),
     };
+    let shape_is_flat = shape.get("plane").is_some();
     let mut obstacle = json!({"boundary": "top", "approach": "+y", "shape": shape});
+    if shape_is_flat && draws.next() < 0.5 {
+        obstacle["rule"] = json!("closest-point");
+    }
     if draws.next() < 0.3 {
         obstacle["force"] = json!(size * width * draws.between(0.05, 1.0));
     }

@@ -67,7 +67,7 @@ pub fn body(dimension: usize) -> (ContinuumProblem, SimplexMesh) {
         obstacles: vec![Facing {
             normal: COORDINATES[dimension - 1],
             surface: Arc::new(Bowl(dimension)),
-            force: None,
+            pressed: None,
         }],
         ..filled(dimension, Lame { lambda: 1.5, mu: 1.0 }, body_force)
     };

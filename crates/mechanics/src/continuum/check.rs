@@ -82,8 +82,8 @@ impl Bracket<'_> {
         let first = left.len() - loads.len();
         left[first..].iter_mut().zip(loads).for_each(|(left, load)| *left = -load);
         for (place, pull) in self.places.iter().zip(&self.pulls) {
-            if let Some(travel) = self.stresses.travel(place.obstacle) {
-                left[travel] -= pull;
+            if let Some((travel, share)) = self.stresses.travel(place.obstacle) {
+                left[travel] -= share * pull;
                 shares[travel] += self.problem.share_of_corner(self.mesh.simplex(place.on.cell).outward(place.on.local).1);
             }
         }
@@ -124,7 +124,7 @@ impl Bracket<'_> {
         for (outer, obstacle) in self.problem.facing(self.mesh) {
             let (facing, corners) = (&self.problem.obstacles[obstacle], self.mesh.corners_of_facet(outer.facet));
             let coefficients = self.displacements.along(values, &outer, facing.normal);
-            let travel = self.displacements.travel(obstacle).map_or(0.0, |travel| values[travel]);
+            let travel = self.displacements.travel(obstacle).map_or(0.0, |(travel, share)| share * values[travel]);
             for weights in samples(dimension) {
                 let place = [0, 1, 2]
                     .map(|axis| corners.iter().zip(weights).map(|(corner, weight)| weight * corner[axis]).sum());

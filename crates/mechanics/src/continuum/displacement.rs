@@ -64,7 +64,7 @@ impl<'a> Displacements<'a> {
 
     /// The same mean with the travel of the obstacle.
     pub fn towards(&self, values: &[f64], place: &Place) -> f64 {
-        let travel = self.travel(place.obstacle).map_or(0.0, |travel| values[travel]);
+        let travel = self.travel(place.obstacle).map_or(0.0, |(travel, share)| share * values[travel]);
         self.approached(values, &place.on, place.corner, place.obstacle) + travel
     }
 
@@ -113,10 +113,11 @@ impl<'a> Displacements<'a> {
         Ok([rows, held])
     }
 
-    /// The unknown that is the travel of an obstacle.
-    pub fn travel(&self, obstacle: usize) -> Option<usize> {
+    /// The unknown that is the travel of an obstacle, and the share of it against the normal.
+    pub fn travel(&self, obstacle: usize) -> Option<(usize, f64)> {
         let functions = self.mesh.nodes.len() + self.mesh.edges.len();
-        Some(self.mesh.dimension * functions + self.problem.travel(obstacle)?)
+        let share = self.problem.obstacles[obstacle].pressed?.cosine;
+        Some((self.mesh.dimension * functions + self.problem.travel(obstacle)?, share))
     }
 
     /// The stiffness of each simplex.

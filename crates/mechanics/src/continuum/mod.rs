@@ -11,6 +11,8 @@ mod displacement;
 mod force;
 mod johnson_mercier;
 mod judge;
+#[cfg(test)]
+mod keys;
 mod mesh;
 mod normal;
 mod problem;
@@ -24,6 +26,6 @@ pub use bound::Bracket;
 pub use judge::Judged;
 pub use mesh::SimplexMesh;
 pub use problem::{
-    Circle, Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, RigidFace,
+    Circle, Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, Pressed, RigidFace,
 };
-pub use simplex::Point;
+pub use simplex::{Point, pairs};

@@ -167,8 +167,17 @@ pub struct Facing {
     pub normal: Point,
     /// Its distance function.
     pub surface: Arc<dyn Distance>,
-    /// The force that presses it against the normal, if it moves along it.
-    pub force: Option<f64>,
+    /// What presses it, if it moves.
+    pub pressed: Option<Pressed>,
+}
+
+/// An obstacle that a force presses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pressed {
+    /// The force along its travel.
+    pub force: f64,
+    /// The part of the travel against the normal: the cosine of their angle.
+    pub cosine: f64,
 }
 
 /// The distance to an obstacle.
@@ -266,7 +275,7 @@ impl ContinuumProblem {
 
     /// Returns `true` if all obstacles stand still and lie in one direction from the body.
     pub fn has_one_direction(&self) -> bool {
-        let mut facing = self.obstacles.iter().map(|facing| (facing.normal, facing.force));
+        let mut facing = self.obstacles.iter().map(|facing| (facing.normal, facing.pressed));
         let first = facing.next();
         first.is_some_and(|first| first.1.is_none() && facing.all(|other| other == first))
     }
@@ -275,18 +284,19 @@ impl ContinuumProblem {
     /// obstacles.
     pub fn loads_of_motions(&self) -> Vec<f64> {
         let of_faces = self.rigid_faces.iter().flat_map(|face| face.free.iter().map(|motion| motion.1));
-        of_faces.chain(self.obstacles.iter().filter_map(|facing| facing.force)).collect()
+        of_faces.chain(self.obstacles.iter().filter_map(|facing| Some(facing.pressed?.force))).collect()
     }
 
-    /// The sum of the forces that press the obstacles; `None` unless all are pressed.
+    /// The sum of the contact forces, as those that press the obstacles make it; `None` unless all are pressed.
     pub fn pressing_force(&self) -> Option<f64> {
-        if self.obstacles.is_empty() { None } else { self.obstacles.iter().map(|facing| facing.force).sum() }
+        let along_normal = |facing: &Facing| facing.pressed.map(|Pressed { force, cosine }| force / cosine);
+        if self.obstacles.is_empty() { None } else { self.obstacles.iter().map(along_normal).sum() }
     }
 
     /// The number among these of the travel of an obstacle; `None` if it stands still.
     pub fn travel(&self, obstacle: usize) -> Option<usize> {
-        self.obstacles[obstacle].force?;
-        let before = self.obstacles[..obstacle].iter().filter(|facing| facing.force.is_some()).count();
+        self.obstacles[obstacle].pressed?;
+        let before = self.obstacles[..obstacle].iter().filter(|facing| facing.pressed.is_some()).count();
         Some(self.rigid_faces.iter().map(|face| face.free.len()).sum::<usize>() + before)
     }
 

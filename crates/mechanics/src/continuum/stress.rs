@@ -96,10 +96,11 @@ impl<'a> Stresses<'a> {
         Unknowns::new(self.problem, self.mesh, &self.places(), |outer| self.on_facet(outer))
     }
 
-    /// The unknown that is the travel of an obstacle.
-    pub fn travel(&self, obstacle: usize) -> Option<usize> {
+    /// The unknown that is the travel of an obstacle, and the share of it against the normal.
+    pub fn travel(&self, obstacle: usize) -> Option<(usize, f64)> {
         let places = self.place(self.mesh.facet_count(), 0);
-        Some(self.mesh.dimension * places + self.problem.travel(obstacle)?)
+        let share = self.problem.obstacles[obstacle].pressed?.cosine;
+        Some((self.mesh.dimension * places + self.problem.travel(obstacle)?, share))
     }
 
     /// The contact rows, one for each corner of a facet and obstacle, and their places. The gaps are upper bounds on the weighted means of

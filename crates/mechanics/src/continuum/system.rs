@@ -78,11 +78,11 @@ pub struct Row {
 }
 
 impl Row {
-    /// The bound on the displacement of a place along a normal, with the travel of the obstacle towards it.
-    pub fn of(place: usize, dimension: usize, normal: Point, travel: Option<usize>, gap: f64) -> Self {
+    /// The bound on the displacement of a place along a normal, with the travel of the obstacle towards it and the share that counts.
+    pub fn of(place: usize, dimension: usize, normal: Point, travel: Option<(usize, f64)>, gap: f64) -> Self {
         let along = (0..dimension).filter(|&axis| normal[axis] != 0.0);
         let terms = along.map(|axis| (dimension * place + axis, normal[axis]));
-        Row { terms: terms.chain(travel.map(|travel| (travel, 1.0))).collect(), gap }
+        Row { terms: terms.chain(travel).collect(), gap }
     }
 
     /// The place.

@@ -3,14 +3,17 @@
 use std::sync::Arc;
 
 use super::{WhyNot, none};
-use crate::continuum::{Distance, Enclosure, Facing, Point};
-use crate::fem::geometry::COORDINATES;
-use crate::scene::Model;
+use crate::continuum::{Distance, Enclosure, Facing, Point, Pressed, pairs};
+use crate::fem::geometry::{COORDINATES, dot};
+use crate::scene::{ContactRow, Model};
 use crate::scene::input::obstacle::PlacedObstacle;
 use crate::scene::input::schema::Rule;
 
 /// The component of a unit vector normal to a coordinate axis below which it is rounding of the written components.
 const ALONG_AXIS: f64 = 1e-14;
+
+/// Normals and heights that differ by less than this, relative to the size of the body, belong to one plane.
+const IN_PLANE: f64 = 1e-12;
 
 /// The unit vector; along an axis without the rounding of its other components.
 fn along_axis(direction: [f64; 3]) -> [f64; 3] {
@@ -22,19 +25,35 @@ fn along_axis(direction: [f64; 3]) -> [f64; 3] {
 /// Obstacle number `index` of a model, with rows along one direction.
 pub(super) fn facing(model: &Model, index: usize) -> Result<Facing, WhyNot> {
     let (obstacle, path) = (&model.obstacles()[index], format!("obstacles[{index}]"));
-    match obstacle.rule() {
-        Some(Rule::Approach) if obstacle.rigid().is_some() => {
-            let surface = Shifted { obstacle: obstacle.clone(), gap: obstacle.shift(model.gap()) };
-            let normal = along_axis(obstacle.approach());
-            let force = obstacle.force().map(|force| model.parts.share_of(index, force));
-            Ok(Facing { normal, surface: Arc::new(surface), force })
-        }
-        Some(Rule::ClosestPoint) => Err(none(
-            format!("{path}.rule"),
-            "rows along the normals of an obstacle have no guaranteed bound: rule `approach` has one",
-        )),
-        _ => Err(none(path, "only the rigid obstacles of a scene have a guaranteed bound")),
-    }
+    let (surface, approach) =
+        (Shifted { obstacle: obstacle.clone(), gap: obstacle.shift(model.gap()) }, obstacle.approach());
+    let (normal, surface): (Point, Arc<dyn Distance>) = match obstacle.rule() {
+        Some(Rule::Approach) if obstacle.rigid().is_some() => (along_axis(approach), Arc::new(surface)),
+        Some(Rule::ClosestPoint) if obstacle.rigid().is_some() => match flat(model, index) {
+            Some(normal) => (along_axis(normal), Arc::new(Closest(surface))),
+            None => {
+                let message = "rows along normals that change along the obstacle have no guaranteed bound: rule `approach` has \
+                               one, and a plane";
+                return Err(none(format!("{path}.rule"), message));
+            }
+        },
+        _ => return Err(none(path, "only the rigid obstacles of a scene have a guaranteed bound")),
+    };
+    let pressed = |force| Pressed { force: model.parts.share_of(index, force), cosine: dot(normal, approach) };
+    Ok(Facing { normal, surface, pressed: obstacle.force().map(pressed) })
+}
+
+/// The normal of all rows of an obstacle, if they meet it in one plane.
+fn flat(model: &Model, index: usize) -> Option<Point> {
+    let mut rows = model.rows().iter().filter(|row| row.obstacle == index);
+    let height = |row: &ContactRow, normal: Point| dot(model.place(row.node), normal) + row.gap;
+    let first = rows.next()?;
+    let (normal, of_first) = (first.normal, height(first, first.normal));
+    let is_in_plane = |row: &ContactRow| {
+        let away = (height(row, normal) - of_first).abs();
+        dot(row.normal, normal) > 1.0 - IN_PLANE && away <= IN_PLANE * model.mesh().size()
+    };
+    rows.all(is_in_plane).then_some(normal)
 }
 
 /// An obstacle of the model at its gap.
@@ -42,6 +61,20 @@ pub(super) fn facing(model: &Model, index: usize) -> Result<Facing, WhyNot> {
 struct Shifted {
     obstacle: PlacedObstacle,
     gap: f64,
+}
+
+/// A plane along its normal.
+#[derive(Debug)]
+struct Closest(Shifted);
+
+impl Distance for Closest {
+    fn gap(&self, corners: &[Point]) -> Option<Enclosure> {
+        let Closest(Shifted { obstacle, gap }) = self;
+        let of_corner = |&corner: &Point| obstacle.rigid()?.shifted_row(corner, *gap).ok()?.map(|row| row.gap);
+        let of_corners = corners.iter().map(of_corner).collect::<Option<Vec<f64>>>()?;
+        let coefficients = pairs(corners.len()).map(|[i, j]| (of_corners[i] + of_corners[j]) / 2.0).collect();
+        Some(Enclosure { coefficients, below: 0.0, above: 0.0 })
+    }
 }
 
 impl Distance for Shifted {
