@@ -18,6 +18,7 @@ mod promised;
 mod schema;
 mod terminal;
 mod time;
+mod guarantees;
 mod total_error;
 mod total_error_of_loads;
 mod tradeoff;
