@@ -132,7 +132,7 @@ impl Balance {
     pub fn of(stresses: &Stresses, unknowns: &Unknowns) -> Option<Self> {
         let (mesh, problem) = (stresses.mesh, stresses.problem);
         // What springs and rigid faces take, and where loads enter inside, follows from the solution.
-        let is_plain = problem.loads_of_motions().is_empty() && problem.rigid_faces.is_empty();
+        let is_plain = !problem.is_axisymmetric && problem.loads_of_motions().is_empty() && problem.rigid_faces.is_empty();
         if !is_plain || mesh.has_inner_conditions() || stresses.on_springs().next().is_some() {
             return None;
         }

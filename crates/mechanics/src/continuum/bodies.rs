@@ -32,6 +32,7 @@ impl Distance for Bowl {
 pub fn filled(dimension: usize, lame: Lame, body_force: Point) -> ContinuumProblem {
     ContinuumProblem {
         dimension,
+        is_axisymmetric: false,
         media: vec![Medium { stiffness: Stiffness::Isotropic(lame), own_stress: None, body_force }],
         medium_of: vec![0],
         thickness: 1.0,

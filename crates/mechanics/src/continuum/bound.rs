@@ -15,10 +15,11 @@
 
 use super::balance::Balance;
 use super::displacement::Displacements;
-use super::johnson_mercier::{PartStress, at, corners_of_side};
+use super::axis::{Sample, samples};
+use super::johnson_mercier::{PartStress, corners_of_side};
 use super::mesh::SimplexMesh;
 use super::problem::{ContinuumProblem, Law};
-use super::simplex::{Simplex, Tensor, Weights, less, mean_over_parts, traction, work};
+use super::simplex::{Simplex, Tensor, Weights, less, traction, work};
 use super::springs::apart;
 use super::stress::{Place, Stresses};
 use super::system::{Row, Unknowns};
@@ -210,7 +211,8 @@ impl<'a> Bracket<'a> {
 
     /// Volume of a simplex.
     pub fn volume(&self, cell: usize) -> f64 {
-        self.problem.thickness * self.mesh.simplex(cell).size()
+        let simplex = self.mesh.simplex(cell);
+        self.problem.thickness * simplex.size() * self.problem.radius(simplex.centre())
     }
 
     /// The strain of a displacement at a point of part k of a simplex, given by the weights of the part's corners.
@@ -225,28 +227,59 @@ impl<'a> Bracket<'a> {
 
     /// The stress in balance less that without strain, at a point of part k of a simplex, given by the weights of the part's corners.
     pub fn elastic_stress(&self, cell: usize, k: usize, weights: Weights) -> Tensor {
-        let (stress, medium) = (at(&self.stress[cell], k, weights), self.problem.medium(self.mesh.origins[cell]));
+        let (stress, medium) = (self.stress_of(&self.stress, cell, k, weights), self.problem.medium(self.mesh.origins[cell]));
         match medium.own_stress {
             Some(_) => less(stress, medium.own_stress(self.mesh.simplex(cell).part(k).at(weights))),
             None => stress,
         }
     }
 
-    /// The integral over a simplex of a function of the strain of the displacement and the elastic stress.
-    pub fn integral(&self, cell: usize, product: impl Fn(Tensor, Tensor) -> f64) -> f64 {
-        let mean = mean_over_parts(self.mesh.dimension, |k, weights| {
-            let strain = self.strain(&self.primal.values, cell, k, weights);
-            product(strain, self.elastic_stress(cell, k, weights))
-        });
-        self.volume(cell) * mean
+    /// A stress at a point.
+    pub fn stress_of(&self, stress: &[PartStress], cell: usize, k: usize, weights: Weights) -> Tensor {
+        let value = stress[cell].at(k, weights);
+        match self.problem.is_axisymmetric {
+            true => {
+                let radius = self.mesh.simplex(cell).part(k).at(weights)[0];
+                value.map(|part| part / radius)
+            }
+            false => value,
+        }
+    }
+
+    /// The sum over the points of integration of the parts of a simplex.
+    pub fn sum(&self, cell: usize, value: impl Fn(usize, &Sample) -> f64) -> f64 {
+        let simplex = self.mesh.simplex(cell);
+        let of_part = |k: usize| samples(self.problem, &simplex.part(k)).iter().map(|at| value(k, at)).sum::<f64>();
+        (0..=self.mesh.dimension).map(of_part).sum()
+    }
+
+    /// The square of the energy norm of a strain at a point of integration, times its volume.
+    pub fn square(&self, cell: usize, at: &Sample, strain: Tensor) -> f64 {
+        let law = self.law(cell);
+        at.weight * law.square(strain) + at.extra * law.hoop() * strain[2] * strain[2]
+    }
+
+    /// The same of the difference of a strain and that of an elastic stress.
+    pub fn square_of_rest(&self, cell: usize, at: &Sample, strain: Tensor, stress: Tensor) -> f64 {
+        let law = self.law(cell);
+        let of_stress = law.compliance(stress);
+        let square = at.weight * law.square(less(strain, of_stress));
+        match at.extra == 0.0 {
+            true => square,
+            false => square + at.extra * (law.hoop() * strain[2] * strain[2] + work(stress, of_stress)),
+        }
     }
 
     /// Computes energy, shares and the share of contact.
     pub(super) fn measure(&mut self) {
+        let values = &self.primal.values;
         let of_cell = |cell: usize| {
-            let law = self.law(cell);
-            let misfit = |strain, stress| law.square(less(strain, law.compliance(stress))) / 2.0;
-            [self.integral(cell, misfit), self.integral(cell, |strain, _| law.square(strain))]
+            let misfit = |k: usize, at: &Sample| {
+                let stress = self.elastic_stress(cell, k, at.weights);
+                self.square_of_rest(cell, at, self.strain(values, cell, k, at.weights), stress) / 2.0
+            };
+            let energy = |k: usize, at: &Sample| self.square(cell, at, self.strain(values, cell, k, at.weights));
+            [self.sum(cell, misfit), self.sum(cell, energy)]
         };
         let of_cells = each(self.mesh.count(), of_cell);
         let mut shares: Vec<f64> = of_cells.iter().map(|cell| cell[0]).collect();
@@ -309,8 +342,10 @@ impl<'a> Bracket<'a> {
 
     /// D(tau).
     pub fn energy_of_stress(&self) -> f64 {
-        let stored = |cell: usize| self.integral(cell, |_, stress| work(stress, self.law(cell).compliance(stress)));
-        let mut stored = each(self.mesh.count(), stored).iter().sum::<f64>();
+        let of_cell = |cell: usize| {
+            self.sum(cell, |k, at| self.square_of_rest(cell, at, [0.0; 6], self.elastic_stress(cell, k, at.weights)))
+        };
+        let mut stored = each(self.mesh.count(), of_cell).iter().sum::<f64>();
         stored += self.on_springs().map(|(outer, [_, own])| self.work_of_springs(&outer, &own, &own)).sum::<f64>();
         self.work_on_supports() + self.work_on_obstacles() - stored / 2.0
     }
@@ -352,7 +387,7 @@ impl<'a> Bracket<'a> {
                 let share = self.problem.share_of_corner(size);
                 for (corner, of_corner) in corners_of_side(dimension, local).enumerate() {
                     let first = dimension * self.stresses.place(facet, corner);
-                    let pull = traction(stress[local][of_corner], normal);
+                    let pull = traction(stress.corner(local, of_corner), normal);
                     for (axis, part) in pull.iter().enumerate().take(dimension) {
                         forces[first + axis] += share * part;
                         shares[first + axis] = share;

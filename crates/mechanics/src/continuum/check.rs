@@ -66,7 +66,12 @@ impl Bracket<'_> {
         let centre = std::array::from_fn(|corner| if corner < corners { 1.0 / corners as f64 } else { 0.0 });
         let strain = |cell: usize| self.displacements.strain(&self.primal.values, cell, centre);
         let of_displacement = (0..self.stress.len()).map(|cell| self.law(cell).stress(strain(cell)));
-        let in_balance = self.stress.iter().flatten().flatten().copied();
+        let in_balance = (0..self.stress.len()).flat_map(|cell| {
+            (0..corners).map(move |k| {
+                let at_centre = std::array::from_fn(|corner| if corner < corners { 1.0 / corners as f64 } else { 0.0 });
+                self.stress_of(&self.stress, cell, k, at_centre)
+            })
+        });
         of_displacement.chain(in_balance).flatten().fold(0.0, |largest: f64, entry| largest.max(entry.abs()))
     }
 
@@ -100,12 +105,17 @@ impl Bracket<'_> {
         let mut worst: f64 = 0.0;
         for k in 0..corners {
             let part = simplex.part(k);
-            let mut sum = self.problem.medium(self.mesh.origins[cell]).body_force;
-            for (stress, slope) in self.stress[cell][k].iter().zip(part.slopes()).take(corners) {
-                let pull = traction(*stress, slope);
-                (0..3).for_each(|axis| sum[axis] += pull[axis]);
+            for corner in 0..corners {
+                let body_force = self.problem.medium(self.mesh.origins[cell]).body_force;
+                let mut sum = body_force.map(|force| self.problem.radius(part.corners()[corner]) * force);
+                for (axis, slope) in part.slopes().into_iter().enumerate().take(corners) {
+                    let pull = traction(self.stress[cell].slope(k, corner, axis), slope);
+                    (0..3).for_each(|axis| sum[axis] += pull[axis]);
+                }
+                // About an axis the radial balance gives the hoop stress.
+                let balances = sum.iter().skip(usize::from(self.problem.is_axisymmetric));
+                worst = balances.fold(worst, |worst, part_of| worst.max(part_of.abs() / steepest(&part)));
             }
-            worst = sum.iter().fold(worst, |worst, part_of| worst.max(part_of.abs() / steepest(&part)));
         }
         worst
     }
@@ -202,8 +212,14 @@ mod tests {
             };
             let law = problem.law(0);
             let size = |strain: Tensor| law.square(strain);
+            let of_cell = |cell: usize, square: &dyn Fn(Tensor, Tensor) -> f64| {
+                bracket.sum(cell, |k, at| {
+                    let strain = bracket.strain(&bracket.primal.values, cell, k, at.weights);
+                    at.weight * square(strain, bracket.elastic_stress(cell, k, at.weights))
+                })
+            };
             let length = |square: &dyn Fn(Tensor, Tensor) -> f64| {
-                (0..mesh.count()).map(|cell| bracket.integral(cell, square)).sum::<f64>().sqrt()
+                (0..mesh.count()).map(|cell| of_cell(cell, square)).sum::<f64>().sqrt()
             };
             let from_centre = length(&|strain, stress| size(less(own, middle(strain, law.compliance(stress)))));
             let judged = bracket.judged(|_| move |_: Point| own);

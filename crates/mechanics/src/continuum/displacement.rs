@@ -3,14 +3,15 @@
 
 use std::collections::BTreeMap;
 
+use super::axis::{Sample, samples};
 use super::johnson_mercier::corners_of_side;
 use super::mesh::{OuterFacet, SimplexMesh};
 use super::problem::{ContinuumProblem, weighted_mean};
-use super::simplex::{MOST_CORNERS, Point, Tensor, Weights, pairs, quadratic_rule, work};
+use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, pairs, work};
 use super::stress::Place;
 use super::system::{Block, Numbers, Row, Unknowns, add_springs};
 use crate::error::Error;
-use crate::fem::geometry::key;
+use crate::fem::geometry::{COORDINATES, key};
 use crate::fem::threads::each;
 use signorini_qp as qp;
 
@@ -77,7 +78,11 @@ impl<'a> Displacements<'a> {
 
     /// The unknowns.
     pub fn unknowns(&self) -> Unknowns {
-        Unknowns::new(self.problem, self.mesh, &self.places(), |outer| self.on_facet(outer))
+        let places = self.places();
+        // On the axis there is no radial displacement.
+        let on_axis = (0..places.len()).filter(|&place| self.problem.is_on_axis(places[place]));
+        let held = on_axis.map(|place| (place, COORDINATES[0]));
+        Unknowns::new(self.problem, self.mesh, &places, held, |outer| self.on_facet(outer))
     }
 
     /// The rows that keep a displacement out of the obstacles, each function and obstacle once: those with a free unknown, and then those
@@ -134,16 +139,16 @@ impl<'a> Displacements<'a> {
     }
 
     fn stiffness(&self, cell: usize) -> Block {
-        let (simplex, dimension) = (self.mesh.simplex(cell), self.mesh.dimension);
-        let weight = self.problem.thickness * simplex.size() / (dimension + 1) as f64;
-        let (slopes, count) = (simplex.slopes(), self.numbers.of(cell).len());
+        let (simplex, count) = (self.mesh.simplex(cell), self.numbers.of(cell).len());
         let law = self.problem.law(self.mesh.origins[cell]);
         let mut block = vec![0.0; count * count];
-        for at in quadratic_rule(dimension) {
-            let strains: Vec<Tensor> = strains_of_functions(dimension, &slopes, at).collect();
+        for sample in samples(self.problem, &simplex) {
+            let strains: Vec<Tensor> = self.strains_of_functions(&simplex, sample.weights).collect();
             for (line, strain) in block.chunks_exact_mut(count).zip(&strains) {
                 let stress = law.stress(*strain);
-                line.iter_mut().zip(&strains).for_each(|(entry, &strain)| *entry += weight * work(stress, strain));
+                let hoop = sample.extra * law.hoop() * strain[2];
+                let entries = line.iter_mut().zip(&strains);
+                entries.for_each(|(entry, &other)| *entry += sample.weight * work(stress, other) + hoop * other[2]);
             }
         }
         block
@@ -155,26 +160,24 @@ impl<'a> Displacements<'a> {
         let mut load = vec![0.0; dimension * (mesh.nodes.len() + mesh.edges.len())];
         for (cell, numbers) in self.numbers.iter().enumerate() {
             let (medium, simplex) = (problem.medium(mesh.origins[cell]), mesh.simplex(cell));
-            let volume = problem.thickness * simplex.size();
-            // All functions have the same mean.
-            let share = volume * dimension as f64 / numbers.len() as f64;
-            let parts = numbers.iter().zip(medium.body_force.iter().take(dimension).cycle());
-            parts.for_each(|(&number, force)| load[number] += share * force);
-            if medium.own_stress.is_some() {
-                let (slopes, weight) = (simplex.slopes(), volume / (dimension + 1) as f64);
-                for at in quadratic_rule(dimension) {
-                    let own = medium.own_stress(simplex.at(at));
-                    let strains = strains_of_functions(dimension, &slopes, at);
-                    numbers.iter().zip(strains).for_each(|(&number, strain)| load[number] -= weight * work(own, strain));
+            if medium.body_force == [0.0; 3] && medium.own_stress.is_none() {
+                continue;
+            }
+            for Sample { weights, weight, .. } in samples(problem, &simplex) {
+                let own = medium.own_stress(simplex.at(weights));
+                let values = values_of_functions(dimension, weights);
+                let forces = values.flat_map(|value| medium.body_force.iter().take(dimension).map(move |force| value * force));
+                let strains = self.strains_of_functions(&simplex, weights);
+                for ((&number, force), strain) in numbers.iter().zip(forces).zip(strains) {
+                    load[number] += weight * (force - work(own, strain));
                 }
             }
         }
         for outer in mesh.surface() {
-            let condition = &problem.conditions[outer.condition];
             let (normal, size) = mesh.simplex(outer.cell).outward(outer.local);
             let (share, functions) = (problem.share_of_corner(size), self.on_facet(&outer));
             for (corner, at) in mesh.corners_of_facet(outer.facet).into_iter().enumerate() {
-                let pull = condition.pull(normal, at);
+                let pull = problem.pull(outer.condition, normal, at);
                 for (place, &function) in functions.iter().enumerate() {
                     let unit: Vec<f64> = (0..functions.len()).map(|other| f64::from(u8::from(other == place))).collect();
                     let part = share * weighted_mean(dimension, corner, &unit);
@@ -188,13 +191,37 @@ impl<'a> Displacements<'a> {
 
     /// The strain of a displacement at a point of a simplex, given in barycentric coordinates.
     pub fn strain(&self, coefficients: &[f64], cell: usize, at: Weights) -> Tensor {
-        let (dimension, slopes) = (self.mesh.dimension, self.mesh.simplex(cell).slopes());
+        let simplex = self.mesh.simplex(cell);
         let mut strain = [0.0; 6];
-        for (&number, of_function) in self.numbers.of(cell).iter().zip(strains_of_functions(dimension, &slopes, at)) {
+        for (&number, of_function) in self.numbers.of(cell).iter().zip(self.strains_of_functions(&simplex, at)) {
             strain.iter_mut().zip(of_function).for_each(|(sum, part)| *sum += coefficients[number] * part);
         }
         strain
     }
+
+    /// The strains of the functions at a point: `l_i^2` of the corners, then `2 l_i l_j` of the pairs, each along all axes.
+    fn strains_of_functions(&self, simplex: &Simplex, at: Weights) -> impl Iterator<Item = Tensor> + use<> {
+        let (dimension, slopes) = (self.mesh.dimension, simplex.slopes());
+        let over_radius = if self.problem.is_axisymmetric { 1.0 / simplex.at(at)[0] } else { 0.0 };
+        let slope = move |[i, j]: [usize; 2]| -> Point {
+            let twice = |axis: usize| 2.0 * (at[i] * slopes[j][axis] + at[j] * slopes[i][axis]);
+            let along = |axis: usize| if i == j { twice(axis) / 2.0 } else { twice(axis) };
+            [0, 1, 2].map(along)
+        };
+        pairs(dimension + 1).map(slope).zip(values_of_functions(dimension, at)).flat_map(move |(slope, value)| {
+            (0..dimension).map(move |axis| {
+                let mut strain = strain_along(axis, slope);
+                // A radial displacement stretches the circle about the axis.
+                strain[2] += if axis == 0 { value * over_radius } else { 0.0 };
+                strain
+            })
+        })
+    }
+}
+
+/// The values of the functions at a point.
+fn values_of_functions(dimension: usize, at: Weights) -> impl Iterator<Item = f64> {
+    pairs(dimension + 1).map(move |[i, j]| at[i] * at[j] * if i == j { 1.0 } else { 2.0 })
 }
 
 /// The functions of a simplex on the side opposite to a corner: those of its corners, then those of their pairs.
@@ -219,16 +246,6 @@ pub fn mean_of_product(corners: usize, first: usize, second: usize) -> f64 {
     let factorial = |count: usize| (1..=count).product::<usize>() as f64;
     let product: f64 = powers.into_iter().map(factorial).product();
     factor * product * factorial(corners - 1) / factorial(corners + 3)
-}
-
-/// The strains of the functions at a point: `l_i^2` of the corners, then `2 l_i l_j` of the pairs, each along all axes.
-fn strains_of_functions(dimension: usize, slopes: &[Point; MOST_CORNERS], at: Weights) -> impl Iterator<Item = Tensor> {
-    let slope = move |[i, j]: [usize; 2]| -> Point {
-        let twice = |axis: usize| 2.0 * (at[i] * slopes[j][axis] + at[j] * slopes[i][axis]);
-        let along = |axis: usize| if i == j { twice(axis) / 2.0 } else { twice(axis) };
-        [0, 1, 2].map(along)
-    };
-    pairs(dimension + 1).map(slope).flat_map(move |slope| (0..dimension).map(move |axis| strain_along(axis, slope)))
 }
 
 /// The strain of a displacement along an axis with this slope.

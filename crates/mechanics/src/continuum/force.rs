@@ -15,8 +15,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::bound::{Bracket, Side};
-use super::johnson_mercier::{PartStress, at};
-use super::simplex::{Point, Weights, less, mean_over_parts, middle, work};
+use super::axis::Sample;
+use super::johnson_mercier::PartStress;
+use super::simplex::{Point, less, middle, work};
 use super::springs::apart;
 use super::stress::Stresses;
 use super::system::{Block, Unknowns};
@@ -113,21 +114,43 @@ impl Bracket<'_> {
     fn interval(&self, test: &Test) -> ([f64; 2], f64) {
         let of_cell = |cell: usize| {
             let law = self.law(cell);
-            let mean =
-                |value: &dyn Fn(usize, Weights) -> f64| self.volume(cell) * mean_over_parts(self.mesh.dimension, value);
-            let rest = |k: usize, weights: Weights| {
-                let strain = self.strain(&test.displacement, cell, k, weights);
-                less(strain, law.compliance(at(&test.stress[cell], k, weights)))
+            let pair = |k: usize, at: &Sample| {
+                let strain = self.strain(&test.displacement, cell, k, at.weights);
+                (strain, self.stress_of(&test.stress, cell, k, at.weights))
             };
-            let square = mean(&|k, weights| law.square(rest(k, weights)));
-            let base = mean(&|k, weights| {
-                let of_displacement = law.stress(self.strain(&self.primal.values, cell, k, weights));
-                work(middle(of_displacement, self.elastic_stress(cell, k, weights)), rest(k, weights))
-            });
-            [square, base]
+            let square = |k: usize, at: &Sample| {
+                let (strain, stress) = pair(k, at);
+                self.square_of_rest(cell, at, strain, stress)
+            };
+            let base = |k: usize, at: &Sample| {
+                let (strain, stress) = pair(k, at);
+                let own = self.strain(&self.primal.values, cell, k, at.weights);
+                let elastic = self.elastic_stress(cell, k, at.weights);
+                let rest = less(strain, law.compliance(stress));
+                let extra = law.hoop() * own[2] * strain[2] - work(elastic, law.compliance(stress));
+                at.weight * work(middle(law.stress(own), elastic), rest) + at.extra * extra / 2.0
+            };
+            // By as much the polynomial for 1/r may change these products.
+            let changes = |k: usize, at: &Sample| {
+                let (strain, stress) = pair(k, at);
+                at.extra * (law.hoop() * strain[2] * strain[2] + work(stress, law.compliance(stress)))
+            };
+            let changes_of_bracket = |k: usize, at: &Sample| {
+                let own = self.strain(&self.primal.values, cell, k, at.weights);
+                let elastic = self.elastic_stress(cell, k, at.weights);
+                at.extra * (law.hoop() * own[2] * own[2] + work(elastic, law.compliance(elastic)))
+            };
+            let of_extra = if self.problem.is_axisymmetric {
+                [self.sum(cell, changes), self.sum(cell, changes_of_bracket)]
+            } else {
+                [0.0; 2]
+            };
+            [self.sum(cell, square), self.sum(cell, base), of_extra[0], of_extra[1]]
         };
         let of_cells = each(self.mesh.count(), of_cell);
-        let [mut square, mut base] = [0, 1].map(|part| of_cells.iter().map(|cell| cell[part]).sum::<f64>());
+        let [mut square, mut base, of_test, of_bracket] =
+            [0, 1, 2, 3].map(|part| of_cells.iter().map(|cell| cell[part]).sum::<f64>());
+        let by_polynomial = (of_test * of_bracket).sqrt() / 2.0;
         let half = |a: Point, b: Point| [0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2.0);
         for (outer, [moved, balanced]) in self.on_springs() {
             let rest = apart(&self.of_displacement(&test.displacement, &outer), &self.of_stress(&test.facets, &outer));
@@ -148,7 +171,7 @@ impl Bracket<'_> {
         let (length, radius) = (square.sqrt(), self.square_of_radius().max(0.0).sqrt());
         let beta = test.ratios.iter().flatten().fold(0.0, |beta: f64, &ratio| beta.max(ratio));
         let most = most_within(radius, length, beta);
-        ([low - radius * length, high + most], length / (2.0 * radius))
+        ([low - radius * length - by_polynomial, high + most + by_polynomial], length / (2.0 * radius))
     }
 
     /// The pair with these rows held; rows of the wrong sign are bonded or released until every row has the right sign.

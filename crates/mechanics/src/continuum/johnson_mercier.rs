@@ -1,6 +1,6 @@
 //! The stress element of Johnson and Mercier, and of Křížek in space: a simplex cut in parts at its centre, the stress linear on each
 //! part, tractions continuous between them. Those of its stresses that have no divergence are the stresses of a simplex without body
-//! force: 9 of 15 on a triangle, 30 of 42 on a tetrahedron.
+//! force: 9 of 15 on a triangle, 30 of 42 on a tetrahedron. About an axis, [`axis`](super::axis) has stresses of a triangle instead.
 //!
 //! # Source
 //! C. Johnson, B. Mercier, "Some equilibrium finite element methods for two-dimensional elasticity problems", Numerische Mathematik
@@ -11,20 +11,147 @@ use std::sync::OnceLock;
 
 use super::normal::{Lower, add};
 use super::problem::{ContinuumProblem, Law, Medium};
-use super::simplex::{ENTRIES, OnParts, Point, Simplex, Tensor, Weights, traction};
+use super::axis::{QUADRATIC, samples, stresses};
+use super::simplex::{ENTRIES, Point, Simplex, Tensor, Weights, pairs, traction};
 use signorini_qp::dot;
 
-/// A stress on a simplex: for each part its values at the part's corners, of which the one with the number of the part is the centre.
-pub type PartStress = OnParts<Tensor>;
+/// A stress on a simplex; about an axis r times a stress. On each part it is linear, given by its values at the part's corners, or quadratic,
+/// given by its coefficients in Bernstein's basis. The corner with the number of a part is the centre.
+#[derive(Clone, Debug)]
+pub struct PartStress {
+    of_part: usize,
+    values: Vec<Tensor>,
+}
+
+impl PartStress {
+    /// Zero on so many parts, with so many coefficients on each.
+    pub fn zero(parts: usize, of_part: usize) -> Self {
+        PartStress { of_part, values: vec![[0.0; 6]; parts * of_part] }
+    }
+
+    /// A linear or quadratic function of the place.
+    fn of(problem: &ContinuumProblem, simplex: &Simplex, value: impl Fn(Point) -> Tensor) -> Self {
+        let count = simplex.dimension + 1;
+        let mut stress = Self::zero(count, if problem.is_axisymmetric { QUADRATIC } else { count });
+        for (k, values) in stress.values.chunks_exact_mut(stress.of_part).enumerate() {
+            let part = simplex.part(k);
+            let corners = part.corners();
+            for (place, own) in pairs(count).zip(values) {
+                let [one, other] = place.map(|corner| value(corners[corner]));
+                *own = if place[0] == place[1] {
+                    one
+                } else {
+                    let half = value([0, 1, 2].map(|axis| (corners[place[0]][axis] + corners[place[1]][axis]) / 2.0));
+                    std::array::from_fn(|entry| 2.0 * half[entry] - (one[entry] + other[entry]) / 2.0)
+                };
+            }
+        }
+        stress
+    }
+
+    /// The value at a corner of part k.
+    pub fn corner(&self, k: usize, corner: usize) -> Tensor {
+        self.values[k * self.of_part + corner]
+    }
+
+    /// The value on part k at the point given by the weights of the part's corners.
+    pub fn at(&self, k: usize, weights: Weights) -> Tensor {
+        let mut sum = [0.0; 6];
+        let of_part = &self.values[k * self.of_part..(k + 1) * self.of_part];
+        for (value, factor) in of_part.iter().zip(self.factors(weights)) {
+            sum.iter_mut().zip(value).for_each(|(sum, entry)| *sum += factor * entry);
+        }
+        sum
+    }
+
+    /// The derivative by one barycentric coordinate at a corner of part k.
+    pub fn slope(&self, k: usize, corner: usize, along: usize) -> Tensor {
+        if self.of_part < QUADRATIC {
+            return self.corner(k, along);
+        }
+        let pair = [corner.min(along), corner.max(along)];
+        let place = pairs(3).position(|other| other == pair).unwrap_or(0);
+        self.corner(k, place).map(|part| 2.0 * part)
+    }
+
+    /// The value of the function of each coefficient at a point.
+    fn factors(&self, weights: Weights) -> [f64; QUADRATIC] {
+        let mut factors = [0.0; QUADRATIC];
+        if self.of_part < QUADRATIC {
+            factors[..weights.len()].copy_from_slice(&weights);
+        } else {
+            let of_pair = |[i, j]: [usize; 2]| weights[i] * weights[j] * if i == j { 1.0 } else { 2.0 };
+            factors.iter_mut().zip(pairs(3)).for_each(|(factor, pair)| *factor = of_pair(pair));
+        }
+        factors
+    }
+
+    /// The coefficients of all parts.
+    pub fn values_mut(&mut self) -> &mut [Tensor] {
+        &mut self.values
+    }
+
+    /// The entries of all coefficients.
+    fn entries(&self) -> &[f64] {
+        self.values.as_flattened()
+    }
+
+    /// Adds a multiple of another stress.
+    fn add(&mut self, factor: f64, other: &PartStress) {
+        add(self.values.as_flattened_mut(), factor, other.entries());
+    }
+}
+
+/// Stresses without divergence: those of the reference simplex, carried to this one, or those of a triangle about an axis.
+#[derive(Clone, Debug)]
+enum Basis {
+    Carried(Simplex),
+    About(Vec<PartStress>),
+}
+
+impl Basis {
+    fn of(problem: &ContinuumProblem, simplex: &Simplex) -> Self {
+        if problem.is_axisymmetric { Basis::About(stresses(simplex)) } else { Basis::Carried(*simplex) }
+    }
+
+    fn stresses(&self) -> Vec<PartStress> {
+        let carried = |simplex: &Simplex, stress: &PartStress| PartStress {
+            values: stress.values.iter().map(|&value| simplex.carried(value)).collect(),
+            ..*stress
+        };
+        match self {
+            Basis::Carried(simplex) => reference(simplex.dimension).iter().map(|stress| carried(simplex, stress)).collect(),
+            Basis::About(stresses) => stresses.clone(),
+        }
+    }
+
+    /// Adds these amounts of the stresses.
+    fn add_to(&self, stress: &mut PartStress, amounts: &[f64]) {
+        match self {
+            Basis::Carried(simplex) => {
+                let mut of_reference = PartStress::zero(1, stress.values.len());
+                let own = reference(simplex.dimension).iter().zip(amounts);
+                own.for_each(|(own, &amount)| of_reference.add(amount, own));
+                for (value, carried) in stress.values.iter_mut().zip(of_reference.values) {
+                    add(value, 1.0, &simplex.carried(carried));
+                }
+            }
+            Basis::About(stresses) => stresses.iter().zip(amounts).for_each(|(own, &amount)| stress.add(amount, own)),
+        }
+    }
+}
 
 /// Solves for a stress from its tractions: the second one takes the rounding of the first.
 const REFINED: usize = 2;
 
+/// Coefficients of conditions below this are rounding; theirs are of order one.
+const DEPENDENT: f64 = 1e-9;
+
 /// The stresses without divergence on a simplex, with their tractions and energies.
 #[derive(Clone, Debug)]
 pub struct Element {
-    simplex: Simplex,
-    /// The factor L of the complementary energies of the reference stresses on this simplex. The stresses `L^-1` times these have the energy
+    basis: Basis,
+    /// The factor L of the complementary energies of the stresses of the basis. The stresses `L^-1` times these have the energy
     /// one, and none with the others.
     factor: Lower,
     /// A stress in balance with the body force.
@@ -39,15 +166,6 @@ pub struct Element {
     of_works: OnceLock<Option<Lower>>,
 }
 
-/// A stress on part k at the point given by the weights of the part's corners.
-pub fn at(stress: &PartStress, k: usize, weights: Weights) -> Tensor {
-    let mut value = [0.0; 6];
-    for (of_corner, weight) in stress[k].iter().zip(weights) {
-        value.iter_mut().zip(of_corner).for_each(|(value, entry)| *value += weight * entry);
-    }
-    value
-}
-
 /// The corners of the side opposite to a corner, in their order.
 pub fn corners_of_side(dimension: usize, side: usize) -> impl Iterator<Item = usize> + Clone {
     (0..=dimension).filter(move |&corner| corner != side)
@@ -57,20 +175,17 @@ impl Element {
     /// The element on a simplex of the medium of an element of the first mesh; `None` if it is flat.
     pub fn new(problem: &ContinuumProblem, origin: usize, simplex: &Simplex) -> Option<Self> {
         let (medium, law) = (problem.medium(origin), problem.law(origin));
-        let carried: Vec<PartStress> = reference(simplex.dimension)
-            .iter()
-            .map(|stress| stress.map(|part| part.map(|value| simplex.carried(value))))
-            .collect();
-        let strains: Vec<Vec<f64>> = carried.iter().map(|stress| strains_of(&law, problem.thickness, simplex, stress)).collect();
+        let basis = Basis::of(problem, simplex);
+        let carried = basis.stresses();
+        let strains: Vec<Vec<f64>> = carried.iter().map(|stress| strains_of(problem, &law, simplex, stress)).collect();
         let energies = |(k, strain): (usize, &Vec<f64>)| -> Vec<f64> {
-            carried[..=k].iter().map(|stress| dot(strain, values(stress))).collect()
+            carried[..=k].iter().map(|stress| dot(strain, stress.entries())).collect()
         };
         let factor = Lower::of(strains.iter().enumerate().map(energies).collect())?;
-        let particular = balancing(medium.body_force, simplex);
-        let mut elastic = particular;
+        let particular = balancing(problem, medium, simplex);
+        let mut elastic = particular.clone();
         if medium.own_stress.is_some() {
-            let own = own_stress(medium, simplex);
-            add(elastic.as_flattened_mut().as_flattened_mut(), -1.0, values(&own));
+            elastic.add(-1.0, &own_stress(problem, medium, simplex));
         }
         let mut tractions = vec![Vec::new(); carried.len()];
         let of_carried: Vec<Vec<f64>> = carried.iter().map(|stress| works(problem, simplex, stress)).collect();
@@ -80,23 +195,18 @@ impl Element {
             factor.forward(&mut of_unknown);
             tractions.iter_mut().zip(&of_unknown).for_each(|(works, &work)| works.push(work));
         }
-        let mut particular_energies = strains.iter().map(|strain| dot(strain, values(&elastic))).collect::<Vec<_>>();
+        let mut particular_energies = strains.iter().map(|strain| dot(strain, elastic.entries())).collect::<Vec<_>>();
         factor.forward(&mut particular_energies);
         let particular_tractions = works(problem, simplex, &particular);
-        let (simplex, of_works) = (*simplex, OnceLock::new());
-        Some(Element { simplex, factor, particular, tractions, particular_tractions, particular_energies, of_works })
+        let of_works = OnceLock::new();
+        Some(Element { basis, factor, particular, tractions, particular_tractions, particular_energies, of_works })
     }
 
     /// The particular stress and these amounts of the others.
     fn sum(&self, mut amounts: Vec<f64>) -> PartStress {
         self.factor.backward(&mut amounts);
-        let mut of_reference = [[[0.0; 6]; 4]; 4];
-        let sum = of_reference.as_flattened_mut().as_flattened_mut();
-        reference(self.simplex.dimension).iter().zip(&amounts).for_each(|(own, &amount)| add(sum, amount, values(own)));
-        let mut stress = self.particular;
-        for (own, carried) in stress.as_flattened_mut().iter_mut().zip(of_reference.as_flattened()) {
-            add(own, 1.0, &self.simplex.carried(*carried));
-        }
+        let mut stress = self.particular.clone();
+        self.basis.add_to(&mut stress, &amounts);
         stress
     }
 
@@ -157,42 +267,39 @@ impl Element {
     }
 }
 
-fn values(stress: &PartStress) -> &[f64] {
-    stress.as_flattened().as_flattened()
+/// The stress without strain of a medium, as a stress of an element.
+fn own_stress(problem: &ContinuumProblem, medium: &Medium, simplex: &Simplex) -> PartStress {
+    PartStress::of(problem, simplex, |place| medium.own_stress(place).map(|part| problem.radius(place) * part))
 }
 
-/// The stress without strain of a medium.
-pub fn own_stress(medium: &Medium, simplex: &Simplex) -> PartStress {
-    on_parts(simplex, |place| medium.own_stress(place))
-}
-
-/// A linear stress by its values.
-fn on_parts(simplex: &Simplex, value: impl Fn(Point) -> Tensor) -> PartStress {
-    let mut stress = [[[0.0; 6]; 4]; 4];
-    for (k, part) in stress.iter_mut().enumerate().take(simplex.dimension + 1) {
-        part.iter_mut().zip(simplex.part(k).corners()).for_each(|(own, &at)| *own = value(at));
-    }
-    stress
-}
-
-/// The complementary energies of a stress with each value of another one.
-fn strains_of(law: &Law, thickness: f64, simplex: &Simplex, stress: &PartStress) -> Vec<f64> {
+/// The complementary energies of a stress with each coefficient of another one.
+fn strains_of(problem: &ContinuumProblem, law: &Law, simplex: &Simplex, stress: &PartStress) -> Vec<f64> {
     let corners = simplex.dimension + 1;
+    let mut strains = PartStress::zero(corners, stress.of_part);
+    let add_to = |own: &mut Tensor, weight: f64, strain: Tensor| {
+        // Of a symmetric tensor each shear component stands for two.
+        (0..6).for_each(|entry| own[entry] += weight * if entry < 3 { strain[entry] } else { 2.0 * strain[entry] });
+    };
     // The integral of a product of barycentric coordinates over a part; twice that of a square.
-    let weight = thickness * simplex.size() / (corners * corners * (corners + 1)) as f64;
-    let mut strains = [[[0.0; 6]; 4]; 4];
-    for (part, values) in strains.iter_mut().zip(stress).take(corners) {
-        let of_corners = values.map(|value| law.compliance(value));
-        for entry in 0..6 {
-            // Of a symmetric tensor each shear component stands for two.
-            let weight = if entry < 3 { weight } else { 2.0 * weight };
-            let sum: f64 = of_corners.iter().map(|strain| strain[entry]).sum();
-            for (value, of_corner) in part.iter_mut().zip(of_corners).take(corners) {
-                value[entry] = weight * (sum + of_corner[entry]);
+    let of_product = problem.thickness * simplex.size() / (corners * corners * (corners + 1)) as f64;
+    for (k, own) in strains.values.chunks_exact_mut(stress.of_part).enumerate() {
+        if problem.is_axisymmetric {
+            let part = simplex.part(k);
+            for sample in samples(problem, &part) {
+                let over_radius = (sample.weight + sample.extra) / part.at(sample.weights)[0].powi(2);
+                let strain = law.compliance(stress.at(k, sample.weights));
+                let factors = stress.factors(sample.weights);
+                own.iter_mut().zip(factors).for_each(|(own, factor)| add_to(own, factor * over_radius, strain));
             }
+            continue;
+        }
+        for corner in 0..corners {
+            let strain = law.compliance(stress.corner(k, corner));
+            own.iter_mut().for_each(|own| add_to(own, of_product, strain));
+            add_to(&mut own[corner], of_product, strain);
         }
     }
-    values(&strains).to_vec()
+    strains.entries().to_vec()
 }
 
 /// The works of the tractions with the unknowns of the sides: for each side and each of its corners along each axis. The unknowns are the
@@ -200,11 +307,11 @@ fn strains_of(law: &Law, thickness: f64, simplex: &Simplex, stress: &PartStress)
 fn works(problem: &ContinuumProblem, simplex: &Simplex, stress: &PartStress) -> Vec<f64> {
     let dimension = simplex.dimension;
     let mut works = Vec::with_capacity((dimension + 1) * dimension * dimension);
-    for (side, part) in stress.iter().enumerate().take(dimension + 1) {
+    for side in 0..=dimension {
         let (normal, size) = simplex.outward(side);
         let share = problem.share_of_corner(size);
         for corner in corners_of_side(dimension, side) {
-            let pull = traction(part[corner], normal);
+            let pull = traction(stress.corner(side, corner), normal);
             works.extend(pull.iter().take(dimension).map(|part| share * part));
         }
     }
@@ -213,15 +320,22 @@ fn works(problem: &ContinuumProblem, simplex: &Simplex, stress: &PartStress) -> 
 
 /// The works of the tractions of a stress in balance with the body force.
 pub fn tractions_of_body_force(problem: &ContinuumProblem, origin: usize, simplex: &Simplex) -> Vec<f64> {
-    works(problem, simplex, &balancing(problem.medium(origin).body_force, simplex))
+    works(problem, simplex, &balancing(problem, problem.medium(origin), simplex))
 }
 
-/// A linear stress whose divergence is the opposite of a constant body force.
-fn balancing(force: Point, simplex: &Simplex) -> PartStress {
-    let centre = simplex.centre();
-    on_parts(simplex, |at| {
-        let mut stress = [0.0; 6];
-        (0..3).for_each(|axis| stress[axis] = -force[axis] * (at[axis] - centre[axis]));
+/// A stress whose divergence is the opposite of a constant body force. About an axis the radial part of the force acts against the hoop
+/// stress alone.
+fn balancing(problem: &ContinuumProblem, medium: &Medium, simplex: &Simplex) -> PartStress {
+    let (force, centre) = (medium.body_force, simplex.centre());
+    PartStress::of(problem, simplex, |at| {
+        let radius = problem.radius(at);
+        let mut stress = [0, 1, 2, 3, 4, 5].map(|axis: usize| match force.get(axis) {
+            Some(force) => -radius * force * (at[axis] - centre[axis]),
+            None => 0.0,
+        });
+        if problem.is_axisymmetric {
+            (stress[0], stress[2]) = (0.0, radius * radius * force[0]);
+        }
         stress
     })
 }
@@ -233,13 +347,9 @@ fn reference(dimension: usize) -> &'static [PartStress] {
     let entries = ENTRIES[dimension - 2];
     STRESSES[dimension - 2].get_or_init(|| {
         let of_vector = |vector: Vec<f64>| {
-            let mut stress = [[[0.0; 6]; 4]; 4];
-            for k in 0..=dimension {
-                for corner in 0..=dimension {
-                    for (place, &entry) in entries.iter().enumerate() {
-                        stress[k][corner][entry] = vector[value_at(dimension, k, corner) + place];
-                    }
-                }
+            let mut stress = PartStress::zero(dimension + 1, dimension + 1);
+            for (value, of_value) in stress.values.iter_mut().zip(vector.chunks_exact(entries.len())) {
+                entries.iter().zip(of_value).for_each(|(&entry, &part)| value[entry] = part);
             }
             stress
         };
@@ -287,34 +397,41 @@ fn conditions(dimension: usize) -> Vec<Vec<f64>> {
     conditions
 }
 
-/// A basis of the null space of all rows, by elimination; the rows are independent.
-fn null_space(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+/// A basis of the null space of all rows, by elimination.
+pub(super) fn null_space(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let count = rows.first().map_or(0, Vec::len);
-    let mut pivots = Vec::with_capacity(rows.len());
-    for index in 0..rows.len() {
-        let largest = |&a: &usize, &b: &usize| rows[index][a].abs().total_cmp(&rows[index][b].abs());
-        let pivot = (0..count).max_by(largest).unwrap_or(0);
-        let scale = rows[index][pivot];
+    let mut pivots: Vec<(usize, usize)> = Vec::with_capacity(rows.len());
+    let largest_in = |row: &[f64]| {
+        let largest = (0..count).max_by(|&a, &b| row[a].abs().total_cmp(&row[b].abs())).unwrap_or(0);
+        (row[largest].abs(), largest)
+    };
+    loop {
+        let left = (0..rows.len()).filter(|row| pivots.iter().all(|pivot| pivot.0 != *row));
+        let next = left.map(|row| (largest_in(&rows[row]), row)).max_by(|a, b| a.0.0.total_cmp(&b.0.0));
+        // What is left of a row that depends on others is rounding.
+        let Some(((_, column), index)) = next.filter(|((size, _), _)| *size > DEPENDENT) else { break };
+        let scale = rows[index][column];
         rows[index].iter_mut().for_each(|value| *value /= scale);
         let row = rows[index].clone();
         for other in (0..rows.len()).filter(|&other| other != index) {
-            let share = rows[other][pivot];
+            let share = rows[other][column];
             rows[other].iter_mut().zip(&row).for_each(|(value, part)| *value -= share * part);
         }
-        pivots.push(pivot);
+        pivots.push((index, column));
     }
     let vector = |column: usize| {
         let mut vector = vec![0.0; count];
         vector[column] = 1.0;
-        pivots.iter().zip(&rows).for_each(|(&pivot, row)| vector[pivot] = -row[column]);
+        pivots.iter().for_each(|&(row, pivot)| vector[pivot] = -rows[row][column]);
         vector
     };
-    (0..count).filter(|column| !pivots.contains(column)).map(vector).collect()
+    (0..count).filter(|column| pivots.iter().all(|pivot| pivot.1 != *column)).map(vector).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::bodies::filled;
+    use super::super::simplex::less;
     use super::*;
     use crate::fem::material::Lame;
 
@@ -354,7 +471,7 @@ mod tests {
                     let slopes = simplex.part(k).slopes();
                     let mut sum = material.media[0].body_force;
                     for corner in 0..=dimension {
-                        let pull = traction(stress[k][corner], slopes[corner]);
+                        let pull = traction(stress.corner(k, corner), slopes[corner]);
                         (0..3).for_each(|axis| sum[axis] += pull[axis]);
                     }
                     assert!(sum.iter().all(|part| part.abs() < 100.0 * ROUNDING), "{sum:?}");
@@ -362,7 +479,7 @@ mod tests {
                         for corner in (0..=dimension).filter(|&corner| corner != other) {
                             let there = if corner == k { other } else { corner };
                             let jump: Tensor =
-                                std::array::from_fn(|entry| stress[k][corner][entry] - stress[other][there][entry]);
+                                less(stress.corner(k, corner), stress.corner(other, there));
                             let jump = traction(jump, slopes[other]);
                             assert!(jump.iter().all(|part| part.abs() < 100.0 * ROUNDING), "{jump:?}");
                         }

@@ -30,12 +30,13 @@ impl Bracket<'_> {
             let (mut from_centre, mut from_displacement, mut norm) = (0.0, 0.0, 0.0);
             let (simplex, strain) = (self.mesh.simplex(cell), strain_in(self.mesh.origins[cell]));
             let law = self.law(cell);
-            let volume = self.volume(cell) / parts as f64 / reference;
+            let volume = self.problem.thickness * simplex.size() / parts as f64 / reference;
             for k in 0..parts {
                 let part = simplex.part(k);
                 for point in &rule {
                     let weights = std::array::from_fn(|corner| if corner < parts { point.shape[corner] } else { 0.0 });
                     let own = strain(part.at(weights));
+                    let volume = volume * self.problem.radius(part.at(weights));
                     let of_bracket = self.strain(&self.primal.values, cell, k, weights);
                     let balanced = law.compliance(self.elastic_stress(cell, k, weights));
                     let square = |strain: Tensor| point.weight * volume * law.square(strain);

@@ -2,6 +2,7 @@
 //! nodes too, a stress in balance, and the difference of their energies.
 
 mod answer;
+mod axis;
 mod balance;
 #[cfg(test)]
 mod bodies;

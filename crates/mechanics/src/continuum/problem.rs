@@ -13,11 +13,13 @@ use crate::fem::material::{Lame, Matrix, Stiffness};
 pub struct ContinuumProblem {
     /// 2 or 3.
     pub dimension: usize,
+    /// A body of revolution about the y axis, x being the radius.
+    pub is_axisymmetric: bool,
     /// The media.
     pub media: Vec<Medium>,
     /// The number of the medium of each element of the first mesh.
     pub medium_of: Vec<usize>,
-    /// Depth across the plane, in length; 1 in space.
+    /// Depth across the plane, in length; 1 in space, and the angle of a full turn about an axis.
     pub thickness: f64,
     /// The conditions on facets, most of them on the surface: sides of the outline in the plane.
     pub conditions: Vec<Condition>,
@@ -300,6 +302,21 @@ impl ContinuumProblem {
         Some(self.rigid_faces.iter().map(|face| face.free.len()).sum::<usize>() + before)
     }
 
+    /// The factor between a stress and what the elements of the stress hold: the radius about an axis, else 1.
+    pub fn radius(&self, place: Point) -> f64 {
+        if self.is_axisymmetric { place[0] } else { 1.0 }
+    }
+
+    /// Returns `true` for a place on the axis of revolution.
+    pub fn is_on_axis(&self, place: Point) -> bool {
+        self.is_axisymmetric && place[0] == 0.0
+    }
+
+    /// Traction and pressure on a facet of a condition with this outward unit normal, at a place, times its radius.
+    pub fn pull(&self, condition: usize, normal: Point, place: Point) -> Point {
+        self.conditions[condition].pull(normal, place).map(|part| self.radius(place) * part)
+    }
+
     /// The medium of an element of the first mesh.
     pub fn medium(&self, origin: usize) -> &Medium {
         &self.media[self.medium_of[origin]]
@@ -307,7 +324,8 @@ impl ContinuumProblem {
 
     /// The law of the medium of an element of the first mesh.
     pub fn law(&self, origin: usize) -> Law<'_> {
-        Law { dimension: self.dimension, stiffness: &self.medium(origin).stiffness }
+        let normals = if self.is_axisymmetric { 3 } else { self.dimension };
+        Law { normals, stiffness: &self.medium(origin).stiffness }
     }
 
     /// The largest stiffness against a strain of one component, in force per area.
@@ -330,14 +348,15 @@ impl Medium {
 /// The law of stress and strain of a medium in the plane or in space. In the plane the components with z are zero.
 #[derive(Clone, Copy, Debug)]
 pub struct Law<'a> {
-    dimension: usize,
+    /// Components on the diagonal of a tensor, 2 in the plane.
+    normals: usize,
     stiffness: &'a Stiffness,
 }
 
 impl Law<'_> {
     /// Returns `true` for an entry of a tensor on the diagonal, if it exists in the plane or in space.
     fn is_on_diagonal(&self, entry: usize) -> bool {
-        entry < self.dimension
+        entry < self.normals
     }
 
     /// The strain of a stress.
@@ -349,8 +368,8 @@ impl Law<'_> {
                 return [xx, yy, zz, xy / 2.0, yz / 2.0, zx / 2.0];
             }
         };
-        let count = self.dimension as f64;
-        let mean = stress.iter().take(self.dimension).sum::<f64>() / count;
+        let count = self.normals as f64;
+        let mean = stress.iter().take(self.normals).sum::<f64>() / count;
         // The parts are kept separate: near incompressibility their sum would lose digits.
         let volume = mean / (count * lambda + 2.0 * mu);
         let of_entry = |entry: usize| match self.is_on_diagonal(entry) {
@@ -369,14 +388,19 @@ impl Law<'_> {
                 return self.product(&matrices.stiffness, [xx, yy, zz, 2.0 * xy, 2.0 * yz, 2.0 * zx]);
             }
         };
-        let count = self.dimension as f64;
-        let volume = strain.iter().take(self.dimension).sum::<f64>() / count;
+        let count = self.normals as f64;
+        let volume = strain.iter().take(self.normals).sum::<f64>() / count;
         let mean = (count * lambda + 2.0 * mu) * volume;
         let of_entry = |entry: usize| match self.is_on_diagonal(entry) {
             true => mean + 2.0 * mu * (strain[entry] - volume),
             false => 2.0 * mu * strain[entry],
         };
         std::array::from_fn(of_entry)
+    }
+
+    /// The stiffness against a strain around an axis.
+    pub fn hoop(&self) -> f64 {
+        self.stress([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])[2]
     }
 
     /// The square of the energy norm of a strain, per volume.
@@ -386,7 +410,7 @@ impl Law<'_> {
 
     /// A matrix times the components of a tensor that exist in the plane or in space.
     fn product(&self, matrix: &Matrix, tensor: Tensor) -> Tensor {
-        let entries = ENTRIES[self.dimension - 2];
+        let entries = ENTRIES[self.normals - 2];
         let mut product = [0.0; 6];
         for &row in entries {
             product[row] = entries.iter().map(|&column| matrix[row][column] * tensor[column]).sum();

@@ -17,9 +17,6 @@ pub const MOST_CORNERS: usize = 4;
 /// Barycentric coordinates.
 pub type Weights = [f64; MOST_CORNERS];
 
-/// A value for each corner of each part of a simplex.
-pub type OnParts<T> = [[T; MOST_CORNERS]; MOST_CORNERS];
-
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Simplex {
     /// 2 or 3.
@@ -45,14 +42,6 @@ pub fn quadratic_rule(dimension: usize) -> impl Iterator<Item = Weights> + Clone
         };
         std::array::from_fn(weight)
     })
-}
-
-/// The mean over a simplex of the product of two functions that are linear on each part, or of another function of degree two there:
-/// `value(k, weights)` is its value on part k at a point.
-pub fn mean_over_parts(dimension: usize, value: impl Fn(usize, Weights) -> f64) -> f64 {
-    let corners = dimension + 1;
-    let points = (0..corners).flat_map(|k| quadratic_rule(dimension).map(move |weights| (k, weights)));
-    points.map(|(k, weights)| value(k, weights)).sum::<f64>() / (corners * corners) as f64
 }
 
 impl Simplex {

@@ -12,6 +12,7 @@ use super::problem::{ContinuumProblem, Medium};
 use super::simplex::{MOST_CORNERS, Point};
 use super::system::{Block, Numbers, Row, Unknowns, add_springs};
 use crate::error::Error;
+use crate::fem::geometry::COORDINATES;
 use crate::fem::threads::each;
 use signorini_qp as qp;
 
@@ -54,7 +55,8 @@ impl<'a> Stresses<'a> {
         let element = |cell: usize| {
             let simplex = mesh.simplex(cell);
             let (origin, bits) = (mesh.origins[cell], |point: Point| point.map(f64::to_bits));
-            let place = problem.medium(origin).own_stress.map(|_| bits(simplex.corners()[0]));
+            let depends = problem.is_axisymmetric || problem.medium(origin).own_stress.is_some();
+            let place = depends.then(|| bits(simplex.corners()[0]));
             let congruence = (simplex.edges().map(bits), problem.medium_of[origin], place);
             if let Some(element) = known.get(&congruence) {
                 return Some(element.clone());
@@ -93,7 +95,14 @@ impl<'a> Stresses<'a> {
 
     /// The unknowns.
     pub fn unknowns(&self) -> Unknowns {
-        Unknowns::new(self.problem, self.mesh, &self.places(), |outer| self.on_facet(outer))
+        // On the axis a stress times its radius does no work.
+        let corners = (0..self.mesh.facet_count()).flat_map(|facet| {
+            let corners = self.mesh.corners_of_facet(facet).into_iter().enumerate();
+            corners.map(move |(corner, at)| (self.place(facet, corner), at))
+        });
+        let on_axis = corners.filter(|&(_, at)| self.problem.is_on_axis(at));
+        let held = on_axis.flat_map(|(place, _)| [0, 1].map(|axis| (place, COORDINATES[axis])));
+        Unknowns::new(self.problem, self.mesh, &self.places(), held, |outer| self.on_facet(outer))
     }
 
     /// The unknown that is the travel of an obstacle, and the share of it against the normal.
@@ -164,9 +173,11 @@ impl<'a> Stresses<'a> {
         let (problem, mesh) = (self.problem, self.mesh);
         mesh.surface().flat_map(move |outer| {
             let (normal, size) = mesh.simplex(outer.cell).outward(outer.local);
-            let (condition, share) = (&problem.conditions[outer.condition], problem.share_of_corner(size));
+            let share = problem.share_of_corner(size);
             let corners = mesh.corners_of_facet(outer.facet).into_iter().enumerate();
-            corners.flat_map(move |(corner, at)| self.at_corner(&outer, corner, condition.pull(normal, at), share))
+            corners.flat_map(move |(corner, at)| {
+                self.at_corner(&outer, corner, problem.pull(outer.condition, normal, at), share)
+            })
         })
     }
 

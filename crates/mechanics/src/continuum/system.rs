@@ -103,6 +103,8 @@ pub struct Unknowns {
     pub free: usize,
     /// How many of these, the first ones, belong to one place each.
     own: usize,
+    /// Rigid motions in the plane or in space cost no energy.
+    moves_rigidly: bool,
     /// The orthonormal axes of the supports of each supported place.
     pub supports: BTreeMap<usize, Vec<Point>>,
     /// The prescribed part of each unknown.
@@ -150,15 +152,17 @@ impl Supported {
 }
 
 impl Unknowns {
-    /// The unknowns of a mesh at these places; `on` gives the places on a facet.
+    /// The unknowns of a mesh at these places; `fixed` are those of them that do not move along an axis, `on` gives the places on a facet.
     pub fn new(
         problem: &ContinuumProblem,
         mesh: &SimplexMesh,
         places: &[Point],
+        fixed: impl Iterator<Item = (usize, Point)>,
         on: impl Fn(&OuterFacet) -> Vec<usize>,
     ) -> Self {
         let dimension = mesh.dimension;
         let (mut held, mut faces, mut normals) = (BTreeMap::<_, Vec<_>>::new(), BTreeMap::new(), BTreeMap::new());
+        fixed.for_each(|(place, axis)| held.entry(place).or_default().push((axis, 0.0)));
         for outer in mesh.surface() {
             let condition = &problem.conditions[outer.condition];
             for place in on(&outer) {
@@ -191,6 +195,7 @@ impl Unknowns {
         let mut unknowns = Unknowns {
             free,
             own,
+            moves_rigidly: !problem.is_axisymmetric && own == free,
             supports: BTreeMap::new(),
             offset: Vec::with_capacity(count),
             starts: vec![0],
@@ -307,6 +312,7 @@ impl Unknowns {
         let mut held = Unknowns {
             free: self.free - values.len(),
             own: self.own - values.len(),
+            moves_rigidly: self.moves_rigidly,
             supports: self.supports.clone(),
             offset: Vec::with_capacity(self.count()),
             starts: vec![0],
@@ -323,9 +329,9 @@ impl Unknowns {
         held
     }
 
-    /// The rigid motions as values of the free unknowns; `None` with unknowns other than those of places.
+    /// The rigid motions as values of the free unknowns; `None` with unknowns other than those of places, and about an axis.
     fn rigid_motions(&self, places: &[Point], dimension: usize) -> Result<Option<NearNullSpace>, Error> {
-        if self.count() > dimension * places.len() {
+        if !self.moves_rigidly {
             return Ok(None);
         }
         let along = |axis: usize| places.iter().map(|place| place[axis]).collect();

@@ -247,7 +247,7 @@ impl Search<'_> {
 pub(super) fn judged(answer: &Answer, bracket: &Bracket) -> Judged {
     bracket.judged(|element| {
         let strain = answer.model().body().strain_in(answer.displacement(), element);
-        let in_plane = bracket.problem.dimension == 2;
+        let in_plane = bracket.problem.dimension == 2 && !bracket.problem.is_axisymmetric;
         move |at| {
             let own @ [xx, yy, _, xy, ..] = strain(at);
             // The strain across the plane belongs to the material.

@@ -3,6 +3,9 @@
 mod obstacle;
 mod surface;
 
+use std::f64::consts::TAU;
+
+use super::condition::ON_THE_AXIS;
 use super::rigid_face::{Motion, RigidFace};
 use crate::continuum::{ContinuumAnswer, ContinuumProblem, Linear, Medium, Point, RigidFace as Plate, SimplexMesh};
 use crate::error::Error;
@@ -77,10 +80,9 @@ impl Scene {
         let thickness = match formulation {
             Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => thickness,
             Formulation::Space => 1.0,
-            _ => {
-                let name = formulation.name();
-                let message =
-                    format!("{name} has no guaranteed bound: only plane strain, plane stress and space have one");
+            Formulation::Axisymmetric => TAU,
+            Formulation::Bar { .. } => {
+                let message = "a bar has no guaranteed bound: only plane bodies, bodies of revolution and those in space have one";
                 return Err(none("model", message));
             }
         };
@@ -91,10 +93,11 @@ impl Scene {
             let message = "several bodies have no guaranteed bound: only one body with rigid obstacles has one";
             return Err(none("further-bodies", message));
         };
-        let media = body.phases().iter().map(|phase| self.medium(phase)).collect::<Result<_, _>>()?;
+        let media = body.phases().iter().map(|phase| self.medium(phase, &formulation)).collect::<Result<_, _>>()?;
         let dimension = model.mesh().dimension();
         let mut problem = ContinuumProblem {
             dimension,
+            is_axisymmetric: formulation.is_axisymmetric(),
             media,
             medium_of: body.elements().map(|element| element.phase_number as usize).collect(),
             thickness,
@@ -107,7 +110,11 @@ impl Scene {
             Error::Mesh { message } => none("body", format!("{message}, so that there is no guaranteed bound")),
             other => other.into(),
         };
-        let pieces = Pieces::of(model.mesh()).map_err(at_body)?;
+        let mut pieces = Pieces::of(model.mesh()).map_err(at_body)?;
+        if problem.is_axisymmetric {
+            let near = ON_THE_AXIS * model.mesh().size();
+            pieces.nodes.iter_mut().filter(|node| node[0] <= near).for_each(|node| node[0] = 0.0);
+        }
         let surface = self.surface(model, &pieces, &mut problem.conditions)?;
         let Pieces { nodes, cells, elements, .. } = pieces;
         let unmatched = || {
@@ -148,7 +155,7 @@ impl Scene {
     }
 
     /// What fills the elements of a phase, under the body forces of the scene.
-    fn medium(&self, phase: &Phase) -> Result<Medium, WhyNot> {
+    fn medium(&self, phase: &Phase, formulation: &Formulation) -> Result<Medium, WhyNot> {
         if phase.law.turns() {
             let message = "a stiffness with axes around a line has no guaranteed bound: only one with the same axes everywhere has";
             return Err(none("material.orthotropic.around", message));
@@ -168,7 +175,12 @@ impl Scene {
             };
             body_force.iter_mut().zip(force).for_each(|(sum, part)| *sum += density * part);
         }
-        let own = |entry: usize| Linear::of(|place| phase.own_stress(place).map_or(0.0, |stress| stress[entry]));
+        // In the plane the stress across it does no work.
+        let does_work = |entry: usize| entry != 2 || formulation.dimension() == 3 || formulation.is_axisymmetric();
+        let own = |entry: usize| match does_work(entry) {
+            true => Linear::of(|place| phase.own_stress(place).map_or(0.0, |stress| stress[entry])),
+            false => Linear::default(),
+        };
         let own_stress = phase.own.is_some().then(|| [0, 1, 2, 3, 4, 5].map(own));
         Ok(Medium { stiffness: phase.law.stiffness.clone(), own_stress, body_force })
     }

@@ -49,6 +49,10 @@ impl Scene {
                                over a boundary";
                 return Err(none(if springs.on.is_some() { format!("{path}.on") } else { path }, message));
             };
+            if model.body().formulation().is_axisymmetric() {
+                let message = "springs about an axis have no guaranteed bound: their traction times the radius is not linear on an edge";
+                return Err(none(path, message));
+            }
             let of_boundary = boundary(model.mesh(), name, &format!("{path}.on.boundary"))?;
             let (along, normal) = springs.per_area(&path, model.body(), of_boundary)?;
             surface.change(name, |condition, _| {
@@ -92,7 +96,8 @@ impl Scene {
                                hold a boundary";
                 return Err(none(format!("supports[{index}].on"), message));
             };
-            let profile = Factor::of(model, support.profile.as_ref(), format!("supports[{index}].profile"))?;
+            let path = format!("supports[{index}].profile");
+            let profile = Factor { counts_radius: false, ..Factor::of(model, support.profile.as_ref(), path)? };
             let components = self.components(index, support)?;
             surface.change(name, |condition, facet| {
                 let factor = profile.on(facet)?;
@@ -173,6 +178,8 @@ impl Scene {
 
 /// A factor that may change along a boundary, with its JSON path.
 struct Factor {
+    /// It is that of a load about an axis.
+    counts_radius: bool,
     profile: Option<Profile>,
     path: String,
 }
@@ -180,7 +187,8 @@ struct Factor {
 impl Factor {
     fn of(model: &Model, spec: Option<&ProfileSpec>, path: String) -> Result<Self, Error> {
         let dimension = model.mesh().dimension();
-        Ok(Factor { profile: spec.map(|spec| Profile::of(spec, &path, dimension)).transpose()?, path })
+        let counts_radius = model.body().formulation().is_axisymmetric();
+        Ok(Factor { counts_radius, profile: spec.map(|spec| Profile::of(spec, &path, dimension)).transpose()?, path })
     }
 
     /// The factor on a facet.
@@ -189,6 +197,10 @@ impl Factor {
     /// [`WhyNot::NoGuarantee`] if it has a kink there.
     fn on(&self, facet: &Facet) -> Result<Linear, WhyNot> {
         let Some(profile) = &self.profile else { return Ok(Linear::constant(1.0)) };
+        if self.counts_radius && facet.corners.iter().any(|corner| corner[0] != facet.corners[0][0]) {
+            let message = "a load that changes along an edge whose radius changes has no guaranteed bound: their product is not linear";
+            return Err(none(&*self.path, message));
+        }
         let kinks = profile.kinks();
         let along = facet.corners.iter().map(|&corner| (dot(kinks.along, corner), corner));
         let ends = along.clone().min_by(|a, b| a.0.total_cmp(&b.0)).zip(along.max_by(|a, b| a.0.total_cmp(&b.0)));
