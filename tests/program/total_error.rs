@@ -379,7 +379,7 @@ fn no_random_scene_violates_the_guarantee() {
     assert!(meshes > 90, "{meshes}");
     for seed in 1..=12 {
         for column in [plane_scenes::column(seed), space_scenes::column(seed)] {
-            assert_eq!(of_column(column, 1).unwrap(), Vec::<String>::new(), "seed {seed}");
+            assert_eq!(of_column(column, 1, 0.0).unwrap(), Vec::<String>::new(), "seed {seed}");
         }
     }
 }

@@ -2,6 +2,7 @@
 //! built program.
 #![forbid(unsafe_code)]
 
+pub mod axis_scenes;
 pub mod bodies;
 pub mod brackets;
 pub mod clock;

@@ -1,25 +1,28 @@
 //! Searches for violations of the guaranteed bound on the total error:
-//! `cargo run --release --example guarantee [-- [--space | --keys] [SCENES [LEVELS]]]`.
+//! `cargo run --release --example guarantee [-- [--space | --keys | --axis] [SCENES [LEVELS]]]`.
 //!
-//! Each random scene, in the plane, there with more keys, or in space, is solved on its own mesh and on finer ones. All intervals of the energy and of the force must
+//! Each random scene, in the plane, there with more keys, about an axis or in space, is solved on its own mesh and on finer ones. All intervals of the energy and of the force must
 //! overlap, and the distance of each answer to the finest one must not exceed its bound. In addition, one column for every
 //! ten scenes is solved; its energy and force are known in closed form. The exit code is 1 if a guarantee is violated.
 
 use signorini::Scene;
 use support::brackets::{Column, Shown, of_column, shown};
-use support::{key_scenes, plane_scenes, space_scenes};
+use support::{axis_scenes, key_scenes, plane_scenes, space_scenes};
 
-/// The scenes of a dimension: those of a seed, the columns, the names of their elements, and how many times smaller the last bound must be
-/// for an error to be known.
-type Scenes = (fn(u64) -> (Scene, &'static str), fn(u64) -> Column, [&'static str; 4], f64);
+/// The scenes of a dimension: those of a seed, the columns, the names of their elements, how many times smaller the last bound must be
+/// for an error to be known, and how far the energies of a column may be apart.
+type Scenes = (fn(u64) -> (Scene, &'static str), fn(u64) -> Column, [&'static str; 4], f64, f64);
 
 fn main() -> std::process::ExitCode {
     let mut words = std::env::args().skip(1).peekable();
-    let (scene, column, elements, clear): Scenes = match words.next_if(|word| word.starts_with("--")).as_deref() {
-        Some("--space") => (space_scenes::scene, space_scenes::column, space_scenes::ELEMENTS, space_scenes::CLEAR),
-        Some("--keys") => (key_scenes::scene, plane_scenes::column, plane_scenes::ELEMENTS, plane_scenes::CLEAR),
+    let (scene, column, elements, clear, width): Scenes = match words.next_if(|word| word.starts_with("--")).as_deref() {
+        Some("--space") => (space_scenes::scene, space_scenes::column, space_scenes::ELEMENTS, space_scenes::CLEAR, 0.0),
+        Some("--axis") => {
+            (axis_scenes::scene, axis_scenes::column, plane_scenes::ELEMENTS, plane_scenes::CLEAR, axis_scenes::OF_POLYNOMIAL)
+        }
+        Some("--keys") => (key_scenes::scene, plane_scenes::column, plane_scenes::ELEMENTS, plane_scenes::CLEAR, 0.0),
         Some(_) => return usage(),
-        None => (plane_scenes::scene, plane_scenes::column, plane_scenes::ELEMENTS, plane_scenes::CLEAR),
+        None => (plane_scenes::scene, plane_scenes::column, plane_scenes::ELEMENTS, plane_scenes::CLEAR, 0.0),
     };
     let mut numbers = words.map(|text| text.parse::<u64>());
     let (Some(scenes), Some(levels)) = (numbers.next().unwrap_or(Ok(300)).ok(), numbers.next().unwrap_or(Ok(6)).ok())
@@ -51,7 +54,7 @@ fn main() -> std::process::ExitCode {
     let mut of_columns = 0;
     for seed in 1..=scenes.div_ceil(10) {
         let broken =
-            of_column(column(seed), 1).unwrap_or_else(|error| vec![format!("column {seed} is refused: {error}")]);
+            of_column(column(seed), 1, width).unwrap_or_else(|error| vec![format!("column {seed} is refused: {error}")]);
         broken.iter().for_each(|violation| println!("seed {seed}, {violation}"));
         of_columns += broken.len();
     }
@@ -60,7 +63,7 @@ fn main() -> std::process::ExitCode {
 }
 
 fn usage() -> std::process::ExitCode {
-    eprintln!("usage: guarantee [--space | --keys] [SCENES [LEVELS]]");
+    eprintln!("usage: guarantee [--space | --keys | --axis] [SCENES [LEVELS]]");
     std::process::ExitCode::from(2)
 }
 

@@ -81,11 +81,16 @@ fn around(size: f64, triangle: &Simplex) -> Vec<Sample> {
 fn beyond(radius: f64, [one, other]: [f64; 2]) -> f64 {
     let (low, high) = (one.min(other), one.max(other));
     let ends = (radius - low) / low * ((high - radius) / high);
-    let zero = |index: usize| {
-        let angle = std::f64::consts::PI * index as f64 / (ZEROS + 1) as f64;
-        (low + high) / 2.0 + (high - low) / 2.0 * angle.cos()
-    };
-    (1..=ZEROS).fold(ends.max(0.0), |product, index| product * (radius / zero(index) - 1.0).powi(2))
+    let middle = [low + high, high - low].map(|sum| sum / 2.0);
+    let zeros = places_of_zeros().iter().map(|place| middle[0] + middle[1] * place);
+    zeros.fold(ends.max(0.0), |product, zero| product * (radius / zero - 1.0).powi(2))
+}
+
+/// The double zeros between -1 and 1.
+fn places_of_zeros() -> &'static [f64; ZEROS] {
+    static PLACES: OnceLock<[f64; ZEROS]> = OnceLock::new();
+    let place = |index: usize| (std::f64::consts::PI * (index + 1) as f64 / (ZEROS + 1) as f64).cos();
+    PLACES.get_or_init(|| std::array::from_fn(place))
 }
 
 /// The coefficients in Bernstein's basis of the product of two linear functions, by their values at the corners.

@@ -44,10 +44,11 @@ const MANY_UNKNOWNS: usize = 20_000;
 /// Largest number of rounds that change rows of the wrong sign.
 const ROUNDS: usize = 12;
 
-/// The matrices of the simplices, for every pair.
-struct Blocks {
+/// The matrices of the simplices, and the stresses without load, for every pair.
+struct Blocks<'a> {
     displacement: Vec<Block>,
     stress: Vec<Block>,
+    stresses: Stresses<'a>,
 }
 
 /// A stress with the values of its unknowns, and its force at each place.
@@ -85,7 +86,12 @@ impl Bracket<'_> {
         let closed = &self.primal.solution.contact_set;
         let mut bonded: Vec<bool> = (0..self.primal.rows.len()).map(|row| closed.contains(row)).collect();
         let mut pressed: Vec<bool> = (0..self.places.len()).map(|row| self.pulls[row] < 0.0).collect();
-        let blocks = Blocks { displacement: self.displacements.blocks(), stress: self.stresses.blocks() };
+        let unloaded = self.problem.unloaded();
+        let blocks = Blocks {
+            displacement: self.displacements.blocks(),
+            stress: self.stresses.blocks(),
+            stresses: Stresses::new(&unloaded, self.mesh)?,
+        };
         let mut last: Option<Test> = None;
         let (mut interval, mut scale): (Option<[f64; 2]>, f64) = (None, 0.0);
         for cap in CAPS {
@@ -178,7 +184,7 @@ impl Bracket<'_> {
     fn test(&self, bonded: &mut [bool], pressed: &mut [bool], blocks: &Blocks) -> Result<Option<Test>, Error> {
         let (displacement, stress) = both(
             || self.bonded_displacement(bonded, &blocks.displacement),
-            || self.bonded_stress(pressed, &blocks.stress),
+            || self.bonded_stress(pressed, &blocks.stress, &blocks.stresses),
         );
         let (Some(displacement), Some((stress, facets, pulls))) = (displacement?, stress?) else { return Ok(None) };
         let (primal, values) = (&self.primal, &self.primal.values);
@@ -222,10 +228,13 @@ impl Bracket<'_> {
     }
 
     /// The stress under facets held at -1 where pressed, without load, and its forces there; places with a pulling force are released.
-    fn bonded_stress(&self, pressed: &mut [bool], blocks: &[Block]) -> Result<Option<Pressed>, Error> {
+    fn bonded_stress(
+        &self,
+        pressed: &mut [bool],
+        blocks: &[Block],
+        stresses: &Stresses,
+    ) -> Result<Option<Pressed>, Error> {
         let places = self.stresses.places();
-        let unloaded = self.problem.unloaded();
-        let stresses = Stresses::new(&unloaded, self.mesh)?;
         for _ in 0..ROUNDS {
             let (unknowns, load) = with_contact_held(&self.dual, pressed);
             let numbers = &self.stresses.numbers;
@@ -250,7 +259,7 @@ impl Bracket<'_> {
                 let of_balance = self
                     .balance
                     .as_ref()
-                    .and_then(|balance| balance.stress(&stresses, (&self.dual.unknowns, &values), &self.places, &pulls));
+                    .and_then(|balance| balance.stress(stresses, (&self.dual.unknowns, &values), &self.places, &pulls));
                 return Ok(Some((of_balance.unwrap_or(stress), values, pulls)));
             }
             wrong.into_iter().for_each(|row| pressed[row] = false);

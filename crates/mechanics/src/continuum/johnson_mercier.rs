@@ -76,13 +76,11 @@ impl PartStress {
 
     /// The value of the function of each coefficient at a point.
     fn factors(&self, weights: Weights) -> [f64; QUADRATIC] {
-        let mut factors = [0.0; QUADRATIC];
-        if self.of_part < QUADRATIC {
-            factors[..weights.len()].copy_from_slice(&weights);
-        } else {
-            let of_pair = |[i, j]: [usize; 2]| weights[i] * weights[j] * if i == j { 1.0 } else { 2.0 };
-            factors.iter_mut().zip(pairs(3)).for_each(|(factor, pair)| *factor = of_pair(pair));
+        if self.of_part == QUADRATIC {
+            return quadratic_factors(weights);
         }
+        let mut factors = [0.0; QUADRATIC];
+        factors[..weights.len()].copy_from_slice(&weights);
         factors
     }
 
@@ -100,6 +98,12 @@ impl PartStress {
     fn add(&mut self, factor: f64, other: &PartStress) {
         add(self.values.as_flattened_mut(), factor, other.entries());
     }
+}
+
+/// The values of Bernstein's quadratic functions on a triangle.
+fn quadratic_factors(weights: Weights) -> [f64; QUADRATIC] {
+    let [a, b, c, _] = weights;
+    [a * a, b * b, c * c, 2.0 * a * b, 2.0 * a * c, 2.0 * b * c]
 }
 
 /// Stresses without divergence: those of the reference simplex, carried to this one, or those of a triangle about an axis.
@@ -177,7 +181,8 @@ impl Element {
         let (medium, law) = (problem.medium(origin), problem.law(origin));
         let basis = Basis::of(problem, simplex);
         let carried = basis.stresses();
-        let strains: Vec<Vec<f64>> = carried.iter().map(|stress| strains_of(problem, &law, simplex, stress)).collect();
+        let products = products(problem, simplex);
+        let strains: Vec<Vec<f64>> = carried.iter().map(|stress| strains_of(&law, &products, stress)).collect();
         let energies = |(k, strain): (usize, &Vec<f64>)| -> Vec<f64> {
             carried[..=k].iter().map(|stress| dot(strain, stress.entries())).collect()
         };
@@ -272,31 +277,42 @@ fn own_stress(problem: &ContinuumProblem, medium: &Medium, simplex: &Simplex) ->
     PartStress::of(problem, simplex, |place| medium.own_stress(place).map(|part| problem.radius(place) * part))
 }
 
-/// The complementary energies of a stress with each coefficient of another one.
-fn strains_of(problem: &ContinuumProblem, law: &Law, simplex: &Simplex, stress: &PartStress) -> Vec<f64> {
+/// The integrals of the products of the functions of two coefficients on a part.
+type Products = [[f64; QUADRATIC]; QUADRATIC];
+
+/// These integrals on each part; about an axis over the radius, for products of r times a stress.
+fn products(problem: &ContinuumProblem, simplex: &Simplex) -> Vec<Products> {
     let corners = simplex.dimension + 1;
-    let mut strains = PartStress::zero(corners, stress.of_part);
-    let add_to = |own: &mut Tensor, weight: f64, strain: Tensor| {
-        // Of a symmetric tensor each shear component stands for two.
-        (0..6).for_each(|entry| own[entry] += weight * if entry < 3 { strain[entry] } else { 2.0 * strain[entry] });
-    };
-    // The integral of a product of barycentric coordinates over a part; twice that of a square.
+    if problem.is_axisymmetric {
+        return (0..corners).map(|k| products_over_radius(problem, &simplex.part(k))).collect();
+    }
     let of_product = problem.thickness * simplex.size() / (corners * corners * (corners + 1)) as f64;
-    for (k, own) in strains.values.chunks_exact_mut(stress.of_part).enumerate() {
-        if problem.is_axisymmetric {
-            let part = simplex.part(k);
-            for sample in samples(problem, &part) {
-                let over_radius = (sample.weight + sample.extra) / part.at(sample.weights)[0].powi(2);
-                let strain = law.compliance(stress.at(k, sample.weights));
-                let factors = stress.factors(sample.weights);
-                own.iter_mut().zip(factors).for_each(|(own, factor)| add_to(own, factor * over_radius, strain));
-            }
-            continue;
+    let entry = |i: usize, j: usize| if i == j { 2.0 * of_product } else { of_product };
+    vec![std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))); corners]
+}
+
+fn products_over_radius(problem: &ContinuumProblem, part: &Simplex) -> Products {
+    let mut products = [[0.0; QUADRATIC]; QUADRATIC];
+    for sample in samples(problem, part) {
+        let weight = (sample.weight + sample.extra) / part.at(sample.weights)[0].powi(2);
+        let factors = quadratic_factors(sample.weights);
+        for (line, of_line) in products.iter_mut().zip(factors) {
+            line.iter_mut().zip(factors).for_each(|(entry, factor)| *entry += weight * of_line * factor);
         }
-        for corner in 0..corners {
-            let strain = law.compliance(stress.corner(k, corner));
-            own.iter_mut().for_each(|own| add_to(own, of_product, strain));
-            add_to(&mut own[corner], of_product, strain);
+    }
+    products
+}
+
+/// The complementary energies of a stress with each coefficient of another one.
+fn strains_of(law: &Law, products: &[Products], stress: &PartStress) -> Vec<f64> {
+    let mut strains = PartStress::zero(products.len(), stress.of_part);
+    let parts = strains.values.chunks_exact_mut(stress.of_part).zip(stress.values.chunks_exact(stress.of_part));
+    for ((strains, of_part), products) in parts.zip(products) {
+        for (value, column) in of_part.iter().zip(products) {
+            // Of a symmetric tensor each shear component stands for two.
+            let [xx, yy, zz, xy, yz, zx] = law.compliance(*value);
+            let strain = [xx, yy, zz, 2.0 * xy, 2.0 * yz, 2.0 * zx];
+            strains.iter_mut().zip(column).for_each(|(own, &product)| add(own, product, &strain));
         }
     }
     strains.entries().to_vec()

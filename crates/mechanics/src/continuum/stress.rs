@@ -121,7 +121,10 @@ impl<'a> Stresses<'a> {
             let facing = &self.problem.obstacles[obstacle];
             let gap = facing.surface.gap(&self.mesh.corners_of_facet(on.facet));
             let Some(gap) = gap.filter(|gap| gap.above.is_finite()) else { continue };
-            for (corner, gap) in gap.upper_means(self.mesh.dimension).into_iter().enumerate() {
+            let corners = self.mesh.corners_of_facet(on.facet);
+            // On an axis the pressure times the radius is zero.
+            let means = gap.upper_means(self.mesh.dimension).into_iter().enumerate();
+            for (corner, gap) in means.filter(|&(corner, _)| !self.problem.is_on_axis(corners[corner])) {
                 let at = self.place(on.facet, corner);
                 let row = Row::of(at, self.mesh.dimension, facing.normal, self.travel(obstacle), gap);
                 let place = Place { on, corner, obstacle };

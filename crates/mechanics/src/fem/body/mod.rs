@@ -288,14 +288,20 @@ impl ElasticBody {
         }
     }
 
-    /// The strain of a nodal displacement in an element, at points given in coordinates; not for a body of revolution.
+    /// The strain of a nodal displacement in an element, at points given in coordinates off an axis of revolution.
     pub(crate) fn strain_in(&self, displacement: &[f64], element: usize) -> impl Fn([f64; 3]) -> Symmetric {
         let (reference, nodes) = (self.mesh.kind_of(element).reference(), self.mesh.element(element));
         let cell = Cell::new(reference, &self.coordinates(nodes));
         let own = self.gather(displacement, nodes);
+        let is_axisymmetric = self.formulation().is_axisymmetric();
         move |at| {
-            let gradients = cell.map(&(reference.derivative)(cell.reference_coordinates(at))).gradients;
-            let point = LocalPoint { gradients, hoop: [0.0; MAX_NODES], nodes: nodes.len(), weight: 0.0 };
+            let local = cell.reference_coordinates(at);
+            let gradients = cell.map(&(reference.derivative)(local)).gradients;
+            let hoop = match is_axisymmetric {
+                true => (reference.shape)(local).map(|value| value * cell.unit() / at[0]),
+                false => [0.0; MAX_NODES],
+            };
+            let point = LocalPoint { gradients, hoop, nodes: nodes.len(), weight: 0.0 };
             point.strain(&own, cell.unit())
         }
     }
