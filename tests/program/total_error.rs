@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use support::brackets::{of_column, shown};
 use support::program::Desk;
-use support::{plane_scenes, space_scenes};
+use support::{axis_scenes, key_scenes, plane_scenes, space_scenes};
 
 /// The classical scene: a block of 1 x 0.5, clamped below, pressed by a parabola 0.01 deep.
 pub fn classical(poisson: f64) -> Value {
@@ -201,8 +201,7 @@ fn changed(change: &dyn Fn(&mut Value)) -> (i32, Value, String) {
 #[test]
 fn scenes_without_a_guarantee_are_estimated_with_the_reason() {
     type Change = dyn Fn(&mut Value);
-    let cases: [(&Change, &str); 3] = [
-        (&|scene| scene["model"] = json!("axisymmetric"), "model: an axisymmetric body has no guaranteed bound"),
+    let cases: [(&Change, &str); 2] = [
         (&|scene| scene["obstacles"][0]["rule"] = json!("closest-point"), "rule `approach` has one"),
         (&|scene| support(scene, json!({"on": {"point": [0, 0.5]}, "x": 0})), "a support at a point"),
     ];
@@ -226,9 +225,9 @@ fn scenes_without_a_total_error_are_refused_with_the_reason() {
         code == 1 && report["total_error"] == Value::Null && message.contains("a force at a point"),
         "{code} {message}"
     );
-    let mut turned = classical(0.3);
-    turned["model"] = json!("axisymmetric");
-    let (code, _, message) = solved(&turned, &["--total-error", "0.1", "--force-error", "0.1"]);
+    let mut along_normals = classical(0.3);
+    along_normals["obstacles"][0]["rule"] = json!("closest-point");
+    let (code, _, message) = solved(&along_normals, &["--total-error", "0.1", "--force-error", "0.1"]);
     assert!(code == 1 && message.contains("leave out --force-error"), "{message}");
     let mut two = classical(0.3);
     let plane =
@@ -364,13 +363,52 @@ fn a_surface_without_bounds_between_nodes_has_an_estimate() {
     assert!(report["reason"].as_str().unwrap().starts_with("obstacles[0].shape: the distance"), "{report}");
 }
 
+/// The thick cylinder of Lame under inner pressure: the bound is the one that a prototype printed, and the energy lies between the bounds.
+#[test]
+fn a_thick_cylinder_about_an_axis_has_the_energy_of_lame() {
+    let (inner, outer, pressure, young, poisson): (f64, f64, f64, f64, f64) = (0.5, 1.0, 0.01, 1.0, 0.3);
+    let scene = json!({
+        "model": "axisymmetric",
+        "body": {"rectangle": {"x": {"points": [inner, outer], "divisions": [8]}, "y": {"points": [0, 0.5], "divisions": [8]}}},
+        "material": {"young": young, "poisson": poisson},
+        "supports": [{"on": {"boundary": "bottom"}, "y": 0}, {"on": {"boundary": "top"}, "y": 0}],
+        "loads": [{"pressure": {"boundary": "left", "value": pressure}}],
+        "obstacles": [{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [2, 0], "normal": [1, 0]}}}]
+    });
+    let (code, report, message) = solved(&scene, &["--total-error", "0.01"]);
+    assert!(code == 0 && report["total_error"]["bound"].as_f64().unwrap() < 2.25e-3, "{message} {report}");
+    let ratio = inner * inner / (outer * outer - inner * inner);
+    let moved = pressure * ratio * (1.0 + poisson) / young * ((1.0 - 2.0 * poisson) * inner + outer * outer / inner);
+    let energy = -std::f64::consts::PI * inner * 0.5 * pressure * moved;
+    let [low, high] = [0, 1].map(|end| report["potential_energy"][end].as_f64().unwrap());
+    assert!(low <= energy && energy <= high && high - low < 1e-5 * energy.abs(), "{low} {energy} {high}");
+}
+
+/// A ball on a cylinder takes the unknowns of a prototype, and the interval of the force contains that of a finer mesh.
+#[test]
+fn a_ball_on_a_cylinder_about_an_axis_takes_few_unknowns() {
+    let scene = json!({
+        "model": "axisymmetric",
+        "body": {"rectangle": {"x": {"points": [0, 0.5], "divisions": [4]}, "y": {"points": [0, 0.5], "divisions": [4]}}},
+        "material": {"young": 1e5, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+        "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"parabola": {"apex": [0, 0.49], "radius": 1}}}]
+    });
+    let [coarse, fine] = ["0.06", "0.011"].map(|goal| solved(&scene, &["--total-error", goal]).1);
+    let last = fine["levels"].as_array().unwrap().last().unwrap();
+    assert!(last["dofs"].as_u64().unwrap() <= 3700 && last["stress_dofs"].as_u64().unwrap() <= 5300, "{last}");
+    let force = |report: &Value, end: usize| report["force_interval"][end].as_f64().unwrap();
+    assert!(force(&coarse, 0) < force(&fine, 0) && force(&fine, 1) < force(&coarse, 1), "{coarse}");
+}
+
 /// A short form of `cargo run --release --example guarantee`.
 #[test]
 fn no_random_scene_violates_the_guarantee() {
     let mut meshes = 0;
     for seed in 1..=24 {
         let in_space = (seed <= 12).then(|| (space_scenes::scene(seed), space_scenes::CLEAR));
-        for (scene, clear) in [(plane_scenes::scene(seed), plane_scenes::CLEAR)].into_iter().chain(in_space) {
+        let others = [plane_scenes::scene(seed), key_scenes::scene(seed), axis_scenes::scene(seed)];
+        for (scene, clear) in others.map(|scene| (scene, plane_scenes::CLEAR)).into_iter().chain(in_space) {
             let one = shown(scene, 3, clear).unwrap();
             assert!(one.violations.is_empty(), "seed {seed}: {:#?}", one.violations);
             meshes += one.of_force.len();
@@ -378,8 +416,10 @@ fn no_random_scene_violates_the_guarantee() {
     }
     assert!(meshes > 90, "{meshes}");
     for seed in 1..=12 {
-        for column in [plane_scenes::column(seed), space_scenes::column(seed)] {
-            assert_eq!(of_column(column, 1, 0.0).unwrap(), Vec::<String>::new(), "seed {seed}");
+        let columns = [(plane_scenes::column(seed), 0.0), (space_scenes::column(seed), 0.0)];
+        let about = (axis_scenes::column(seed), axis_scenes::OF_POLYNOMIAL);
+        for (column, width) in columns.into_iter().chain([about]) {
+            assert_eq!(of_column(column, 1, width).unwrap(), Vec::<String>::new(), "seed {seed}");
         }
     }
 }

@@ -53,7 +53,8 @@ fn a_load_on_a_part_has_a_guaranteed_bound() {
 
 #[test]
 fn loads_and_supports_with_a_kink_inside_an_edge_are_estimated_with_the_reason() {
-    let profile = |along: [f64; 2], end: f64| json!({"along": along, "places": [0, 0.3 * end, end], "factors": [1, 0, 0]});
+    let profile =
+        |along: [f64; 2], end: f64| json!({"along": along, "places": [0, 0.3 * end, end], "factors": [1, 0, 0]});
     let varies = profile([0.0, 1.0], 0.5);
     let cases = [
         (json!({"pressure": {"boundary": "left", "value": 1e4, "profile": varies}}), "loads[0].pressure.profile"),

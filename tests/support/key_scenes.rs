@@ -51,12 +51,11 @@ pub fn scene(seed: u64) -> (Scene, &'static str) {
     }
     let mut initial = Vec::new();
     if draws.next() < 0.3 {
-        initial.push(json!({"box": below, "xx": size * draws.between(-0.2, 0.2), "yy": size * draws.between(-0.2, 0.2),
+        initial
+            .push(json!({"box": below, "xx": size * draws.between(-0.2, 0.2), "yy": size * draws.between(-0.2, 0.2),
             "xy": size * draws.between(-0.2, 0.2)}));
     }
-    let profile = |along: [f64; 2], places: [f64; 3], factors: [f64; 3]| {
-        json!({"along": along, "places": places, "factors": factors})
-    };
+    let profile = |along: [f64; 2], places: [f64; 3], factors: [f64; 3]| json!({"along": along, "places": places, "factors": factors});
     let across = |factors| profile([1.0, 0.0], [0.0, inner_x, width], factors);
     let upwards = |factors| profile([0.0, 1.0], [0.0, inner_y, height], factors);
     let mut supports = vec![json!({"on": {"boundary": "bottom"}, "x": 0, "y": 0})];
@@ -74,7 +73,9 @@ pub fn scene(seed: u64) -> (Scene, &'static str) {
         2 => {
             supports = Vec::new();
             let stiffness = young / height * 10_f64.powf(draws.between(-1.0, 1.0));
-            springs.push(json!({"on": {"boundary": "bottom"}, "x": stiffness, "normal": stiffness, "stiffness": "per-area"}));
+            springs.push(
+                json!({"on": {"boundary": "bottom"}, "x": stiffness, "normal": stiffness, "stiffness": "per-area"}),
+            );
         }
         _ => {}
     }
@@ -85,14 +86,19 @@ pub fn scene(seed: u64) -> (Scene, &'static str) {
             faces.push(json!({"boundary": "right", "force": [size * height * draws.between(-0.1, 0.1), 0],
                 "moment": [size * height * height * draws.between(-0.05, 0.05)]}));
         }
-        1 => faces.push(json!({"boundary": "right", "x": depth * draws.between(-0.3, 0.3), "rotation": {"z": 0.1 * depth}})),
-        2 => loads.push(json!({"moment": {"boundary": "right", "value": [size * height * height * draws.between(-0.1, 0.1)]}})),
+        1 => faces
+            .push(json!({"boundary": "right", "x": depth * draws.between(-0.3, 0.3), "rotation": {"z": 0.1 * depth}})),
+        2 => loads.push(
+            json!({"moment": {"boundary": "right", "value": [size * height * height * draws.between(-0.1, 0.1)]}}),
+        ),
         _ => {}
     }
     // A rigid face shares a corner with the bottom: it must move as the support there holds it.
     if !faces.is_empty() && !supports.is_empty() {
         supports = Vec::new();
-        springs = vec![json!({"on": {"boundary": "bottom"}, "x": young / height, "y": young / height, "stiffness": "per-area"})];
+        springs = vec![
+            json!({"on": {"boundary": "bottom"}, "x": young / height, "y": young / height, "stiffness": "per-area"}),
+        ];
     }
     if draws.next() < 0.4 {
         loads.push(json!({"traction": {"boundary": "left", "value": [size * draws.between(-0.2, 0.2), size * 0.1],
@@ -119,8 +125,16 @@ pub fn scene(seed: u64) -> (Scene, &'static str) {
     if draws.next() < 0.3 {
         obstacle["force"] = json!(size * width * draws.between(0.05, 1.0));
     }
-    let keys = [("materials", materials), ("temperature", temperature), ("initial-stress", initial), ("supports", supports),
-        ("springs", springs), ("rigid-faces", faces), ("loads", loads), ("obstacles", vec![obstacle])];
+    let keys = [
+        ("materials", materials),
+        ("temperature", temperature),
+        ("initial-stress", initial),
+        ("supports", supports),
+        ("springs", springs),
+        ("rigid-faces", faces),
+        ("loads", loads),
+        ("obstacles", vec![obstacle]),
+    ];
     for (key, entries) in keys.into_iter().filter(|(_, entries)| !entries.is_empty()) {
         scene[key] = Value::from(entries);
     }

@@ -15,11 +15,18 @@ type Scenes = (fn(u64) -> (Scene, &'static str), fn(u64) -> Column, [&'static st
 
 fn main() -> std::process::ExitCode {
     let mut words = std::env::args().skip(1).peekable();
-    let (scene, column, elements, clear, width): Scenes = match words.next_if(|word| word.starts_with("--")).as_deref() {
-        Some("--space") => (space_scenes::scene, space_scenes::column, space_scenes::ELEMENTS, space_scenes::CLEAR, 0.0),
-        Some("--axis") => {
-            (axis_scenes::scene, axis_scenes::column, plane_scenes::ELEMENTS, plane_scenes::CLEAR, axis_scenes::OF_POLYNOMIAL)
+    let (scene, column, elements, clear, width): Scenes = match words.next_if(|word| word.starts_with("--")).as_deref()
+    {
+        Some("--space") => {
+            (space_scenes::scene, space_scenes::column, space_scenes::ELEMENTS, space_scenes::CLEAR, 0.0)
         }
+        Some("--axis") => (
+            axis_scenes::scene,
+            axis_scenes::column,
+            plane_scenes::ELEMENTS,
+            plane_scenes::CLEAR,
+            axis_scenes::OF_POLYNOMIAL,
+        ),
         Some("--keys") => (key_scenes::scene, plane_scenes::column, plane_scenes::ELEMENTS, plane_scenes::CLEAR, 0.0),
         Some(_) => return usage(),
         None => (plane_scenes::scene, plane_scenes::column, plane_scenes::ELEMENTS, plane_scenes::CLEAR, 0.0),
@@ -53,8 +60,8 @@ fn main() -> std::process::ExitCode {
     println!("half width of the force / bound, both relative, median: {}", median(of_force));
     let mut of_columns = 0;
     for seed in 1..=scenes.div_ceil(10) {
-        let broken =
-            of_column(column(seed), 1, width).unwrap_or_else(|error| vec![format!("column {seed} is refused: {error}")]);
+        let broken = of_column(column(seed), 1, width)
+            .unwrap_or_else(|error| vec![format!("column {seed} is refused: {error}")]);
         broken.iter().for_each(|violation| println!("seed {seed}, {violation}"));
         of_columns += broken.len();
     }

@@ -130,7 +130,8 @@ fn add_hoop(triangle: &Simplex, stress: &mut PartStress) {
         let (slopes, corners) = (part.slopes(), part.corners());
         let values = &mut stress.values_mut()[k * QUADRATIC..(k + 1) * QUADRATIC];
         let hoop = [0, 1, 2].map(|corner| {
-            gradient(&slopes, corner, |place| values[place][0])[0] + gradient(&slopes, corner, |place| values[place][3])[1]
+            gradient(&slopes, corner, |place| values[place][0])[0]
+                + gradient(&slopes, corner, |place| values[place][3])[1]
         });
         let radii = [0, 1, 2].map(|corner: usize| corners[corner][0]);
         values.iter_mut().zip(product(radii, hoop)).for_each(|(value, hoop)| value[2] = hoop);

@@ -132,12 +132,14 @@ impl Balance {
     pub fn of(stresses: &Stresses, unknowns: &Unknowns) -> Option<Self> {
         let (mesh, problem) = (stresses.mesh, stresses.problem);
         // What springs and rigid faces take, and where loads enter inside, follows from the solution.
-        let is_plain = !problem.is_axisymmetric && problem.loads_of_motions().is_empty() && problem.rigid_faces.is_empty();
+        let is_plain =
+            !problem.is_axisymmetric && problem.loads_of_motions().is_empty() && problem.rigid_faces.is_empty();
         if !is_plain || mesh.has_inner_conditions() || stresses.on_springs().next().is_some() {
             return None;
         }
         let tree = Tree::of(mesh);
-        let mut held: BTreeMap<usize, Vec<(usize, Point)>> = tree.roots.iter().map(|&root| (root, Vec::new())).collect();
+        let mut held: BTreeMap<usize, Vec<(usize, Point)>> =
+            tree.roots.iter().map(|&root| (root, Vec::new())).collect();
         for outer in mesh.surface() {
             let at_root = held.entry(tree.roots[outer.cell]).or_default();
             for place in (0..mesh.dimension).map(|corner| stresses.place(outer.facet, corner)) {
@@ -188,7 +190,8 @@ impl Balance {
         }
         // On the surface only the part along supports is free.
         let given = stresses.given_forces(displacement, places, pulls);
-        for place in mesh.surface().flat_map(|outer| (0..dimension).map(move |corner| stresses.place(outer.facet, corner)))
+        for place in
+            mesh.surface().flat_map(|outer| (0..dimension).map(move |corner| stresses.place(outer.facet, corner)))
         {
             let own = dimension * place..dimension * (place + 1);
             let rest: Vec<f64> = own.clone().map(|unknown| forces[unknown] - given[unknown]).collect();

@@ -13,9 +13,9 @@
 //! surface are a part of the body: w is the displacement of a facet with which their forces are in balance, and they add half of the work
 //! of their forces under `v - w` with it.
 
+use super::axis::{Sample, samples};
 use super::balance::Balance;
 use super::displacement::Displacements;
-use super::axis::{Sample, samples};
 use super::johnson_mercier::{PartStress, corners_of_side};
 use super::mesh::SimplexMesh;
 use super::problem::{ContinuumProblem, Law};
@@ -154,8 +154,7 @@ impl<'a> Bracket<'a> {
         let largest = displacements.largest(&primal.values);
         let (rows, places) = stresses.rows(&of_stress, |place, gap| {
             // What presses must touch, however far it is from a coarse facet.
-            problem.travel(place.obstacle).is_some()
-                || gap - displacements.towards(&primal.values, place) <= largest
+            problem.travel(place.obstacle).is_some() || gap - displacements.towards(&primal.values, place) <= largest
         });
         let posed = of_stress.problem(
             mesh.dimension,
@@ -168,9 +167,9 @@ impl<'a> Bracket<'a> {
         let start = touching.map(|nodes| ContactSet::from_fn(rows.len(), |row| nodes[places[row].node(mesh)]));
         let mut dual = Side::solved(of_stress, rows, &posed, start, settings)?;
         let pulls: Vec<f64> = dual.solution.multiplier.iter().map(|force| force.min(0.0)).collect();
-        let balanced = balance.as_ref().and_then(|balance| {
-            balance.stress(&stresses, (&dual.unknowns, &dual.values), &places, &pulls)
-        });
+        let balanced = balance
+            .as_ref()
+            .and_then(|balance| balance.stress(&stresses, (&dual.unknowns, &dual.values), &places, &pulls));
         let stress = balanced.unwrap_or_else(|| stresses.stresses(&dual.values));
         dual.seconds = clock.elapsed().as_secs_f64() - primal.seconds;
         let mut bracket = Bracket {
@@ -227,7 +226,8 @@ impl<'a> Bracket<'a> {
 
     /// The stress in balance less that without strain, at a point of part k of a simplex, given by the weights of the part's corners.
     pub fn elastic_stress(&self, cell: usize, k: usize, weights: Weights) -> Tensor {
-        let (stress, medium) = (self.stress_of(&self.stress, cell, k, weights), self.problem.medium(self.mesh.origins[cell]));
+        let (stress, medium) =
+            (self.stress_of(&self.stress, cell, k, weights), self.problem.medium(self.mesh.origins[cell]));
         match medium.own_stress {
             Some(_) => less(stress, medium.own_stress(self.mesh.simplex(cell).part(k).at(weights))),
             None => stress,

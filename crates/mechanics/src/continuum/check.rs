@@ -89,7 +89,8 @@ impl Bracket<'_> {
         for (place, pull) in self.places.iter().zip(&self.pulls) {
             if let Some((travel, share)) = self.stresses.travel(place.obstacle) {
                 left[travel] -= share * pull;
-                shares[travel] += self.problem.share_of_corner(self.mesh.simplex(place.on.cell).outward(place.on.local).1);
+                shares[travel] +=
+                    self.problem.share_of_corner(self.mesh.simplex(place.on.cell).outward(place.on.local).1);
             }
         }
         let unknowns = &self.dual.unknowns;
@@ -279,9 +280,8 @@ mod tests {
             let [rows, _] = displacements.rows(&unknowns).unwrap();
             let rows: Vec<Row> = rows.into_iter().filter(|row| row.place(mesh.dimension) < corners_only).collect();
             let (blocks, load, places) = (displacements.blocks(), displacements.load(), displacements.places());
-            let posed = unknowns
-                .problem(mesh.dimension, &displacements.numbers, &blocks, &load, &rows, &places)
-                .unwrap();
+            let posed =
+                unknowns.problem(mesh.dimension, &displacements.numbers, &blocks, &load, &rows, &places).unwrap();
             bracket.primal = Side::solved(unknowns, rows, &posed, None, &settings()).unwrap();
             bracket.measure();
             assert!(refusal(&bracket).contains("the displacement goes into an obstacle"));

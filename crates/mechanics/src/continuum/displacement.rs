@@ -53,7 +53,8 @@ impl<'a> Displacements<'a> {
     /// The coefficients of a displacement on a facet along a vector.
     pub fn along(&self, values: &[f64], outer: &OuterFacet, vector: Point) -> Vec<f64> {
         let dimension = self.mesh.dimension;
-        let along = |function: usize| (0..dimension).map(|axis| vector[axis] * values[dimension * function + axis]).sum();
+        let along =
+            |function: usize| (0..dimension).map(|axis| vector[axis] * values[dimension * function + axis]).sum();
         self.on_facet(outer).into_iter().map(along).collect()
     }
 
@@ -166,7 +167,8 @@ impl<'a> Displacements<'a> {
             for Sample { weights, weight, .. } in samples(problem, &simplex) {
                 let own = medium.own_stress(simplex.at(weights));
                 let values = values_of_functions(dimension, weights);
-                let forces = values.flat_map(|value| medium.body_force.iter().take(dimension).map(move |force| value * force));
+                let forces =
+                    values.flat_map(|value| medium.body_force.iter().take(dimension).map(move |force| value * force));
                 let strains = self.strains_of_functions(&simplex, weights);
                 for ((&number, force), strain) in numbers.iter().zip(forces).zip(strains) {
                     load[number] += weight * (force - work(own, strain));
@@ -179,7 +181,8 @@ impl<'a> Displacements<'a> {
             for (corner, at) in mesh.corners_of_facet(outer.facet).into_iter().enumerate() {
                 let pull = problem.pull(outer.condition, normal, at);
                 for (place, &function) in functions.iter().enumerate() {
-                    let unit: Vec<f64> = (0..functions.len()).map(|other| f64::from(u8::from(other == place))).collect();
+                    let unit: Vec<f64> =
+                        (0..functions.len()).map(|other| f64::from(u8::from(other == place))).collect();
                     let part = share * weighted_mean(dimension, corner, &unit);
                     (0..dimension).for_each(|axis| load[dimension * function + axis] += part * pull[axis]);
                 }

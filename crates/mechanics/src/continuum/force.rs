@@ -14,8 +14,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::bound::{Bracket, Side};
 use super::axis::Sample;
+use super::bound::{Bracket, Side};
 use super::johnson_mercier::PartStress;
 use super::simplex::{Point, less, middle, work};
 use super::springs::apart;
@@ -80,7 +80,10 @@ impl Bracket<'_> {
         if !self.problem.has_one_direction() || corners.len() != self.places.len() || self.is_at_rest() {
             return Ok(None);
         }
-        if [&self.primal, &self.dual].iter().any(|side| side.rows.iter().any(|row| side.unknowns.own_term(row).is_none())) {
+        if [&self.primal, &self.dual]
+            .iter()
+            .any(|side| side.rows.iter().any(|row| side.unknowns.own_term(row).is_none()))
+        {
             return Ok(None);
         }
         let closed = &self.primal.solution.contact_set;
@@ -292,7 +295,8 @@ impl Bracket<'_> {
         let of_springs = self.forces_without_load(facets, &[]);
         let left: Vec<f64> = forces.iter().zip(of_springs).map(|(force, of_springs)| force - of_springs).collect();
         let along = self.dual.unknowns.gathered(&left);
-        let of_row = |row| self.dual.unknowns.own_term(row).map_or(0.0, |(free, coefficient)| along[free] / coefficient);
+        let of_row =
+            |row| self.dual.unknowns.own_term(row).map_or(0.0, |(free, coefficient)| along[free] / coefficient);
         self.dual.rows.iter().map(of_row).collect()
     }
 

@@ -9,9 +9,9 @@
 
 use std::sync::OnceLock;
 
+use super::axis::{QUADRATIC, samples, stresses};
 use super::normal::{Lower, add};
 use super::problem::{ContinuumProblem, Law, Medium};
-use super::axis::{QUADRATIC, samples, stresses};
 use super::simplex::{ENTRIES, Point, Simplex, Tensor, Weights, pairs, traction};
 use signorini_qp::dot;
 
@@ -124,7 +124,9 @@ impl Basis {
             ..*stress
         };
         match self {
-            Basis::Carried(simplex) => reference(simplex.dimension).iter().map(|stress| carried(simplex, stress)).collect(),
+            Basis::Carried(simplex) => {
+                reference(simplex.dimension).iter().map(|stress| carried(simplex, stress)).collect()
+            }
             Basis::About(stresses) => stresses.clone(),
         }
     }
@@ -494,8 +496,7 @@ mod tests {
                     for other in (0..=dimension).filter(|&other| other != k) {
                         for corner in (0..=dimension).filter(|&corner| corner != other) {
                             let there = if corner == k { other } else { corner };
-                            let jump: Tensor =
-                                less(stress.corner(k, corner), stress.corner(other, there));
+                            let jump: Tensor = less(stress.corner(k, corner), stress.corner(other, there));
                             let jump = traction(jump, slopes[other]);
                             assert!(jump.iter().all(|part| part.abs() < 100.0 * ROUNDING), "{jump:?}");
                         }
@@ -527,8 +528,7 @@ mod tests {
     #[test]
     fn only_rigid_body_motions_cost_nothing() {
         for dimension in [2, 3] {
-            let (material, simplex) =
-                (material(dimension).unloaded(), simplex(dimension));
+            let (material, simplex) = (material(dimension).unloaded(), simplex(dimension));
             let block = Element::new(&material, 0, &simplex).unwrap().block();
             let energy = |values: &[f64]| -> f64 {
                 block.chunks_exact(values.len()).zip(values).map(|(line, value)| value * dot(line, values)).sum()

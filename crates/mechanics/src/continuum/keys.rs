@@ -23,7 +23,11 @@ const YOUNG: f64 = 2.0;
 
 /// A medium of this modulus that does not bulge.
 fn medium(young: f64) -> Medium {
-    Medium { stiffness: Stiffness::Isotropic(Lame { lambda: 0.0, mu: young / 2.0 }), own_stress: None, body_force: [0.0; 3] }
+    Medium {
+        stiffness: Stiffness::Isotropic(Lame { lambda: 0.0, mu: young / 2.0 }),
+        own_stress: None,
+        body_force: [0.0; 3],
+    }
 }
 
 /// The same distance everywhere.
@@ -76,7 +80,10 @@ fn a_column_on_springs_with_own_stress_is_exact_under_a_plane_that_stands_still_
         let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
         assert_exact(&bracket, stored(pressure).0);
         let [low, high] = bracket.force_interval().unwrap().unwrap();
-        assert!((low - area * pressure).abs() < 1e-5 * low && (high - area * pressure).abs() < 1e-5 * low, "{low} {high}");
+        assert!(
+            (low - area * pressure).abs() < 1e-5 * low && (high - area * pressure).abs() < 1e-5 * low,
+            "{low} {high}"
+        );
         // Half of the force as a load on the plane, which travels until the head balances it.
         let force = area * pressure / 2.0;
         problem.obstacles[0].pressed = Some(Pressed { force, cosine: 1.0 });
@@ -145,7 +152,8 @@ fn loads_and_supports_on_edges_inside_are_exact() {
     assert_exact(&Bracket::new(&problem, &mesh, None, &settings()).unwrap(), -pull * pull / (4.0 * YOUNG));
     let moved = pull / YOUNG / 2.0;
     let support = Held { direction: COORDINATES[1], value: Linear::constant(moved) };
-    let (problem, mesh) = layers([medium(YOUNG), medium(YOUNG)], Condition { held: vec![support], ..Condition::default() });
+    let (problem, mesh) =
+        layers([medium(YOUNG), medium(YOUNG)], Condition { held: vec![support], ..Condition::default() });
     assert_exact(&Bracket::new(&problem, &mesh, None, &settings()).unwrap(), YOUNG * moved * moved);
 }
 
@@ -174,11 +182,10 @@ fn linear_profiles_are_exact() {
         problem.obstacles = Vec::new();
         problem.media[0].body_force = [0.0; 3];
         let gradient = [[0.02, -0.01, 0.015], [0.03, 0.01, -0.02], [-0.01, 0.02, 0.025]];
-        let moved = |axis: usize, place: Point| (0..dimension).map(|along| gradient[axis][along] * place[along]).sum::<f64>();
-        let all = (0..dimension).map(|axis| Held {
-            direction: COORDINATES[axis],
-            value: Linear::of(|place| moved(axis, place)),
-        });
+        let moved =
+            |axis: usize, place: Point| (0..dimension).map(|along| gradient[axis][along] * place[along]).sum::<f64>();
+        let all = (0..dimension)
+            .map(|axis| Held { direction: COORDINATES[axis], value: Linear::of(|place| moved(axis, place)) });
         let all: Vec<Held> = all.collect();
         problem.conditions = vec![Condition { held: all, ..Condition::default() }; 4];
         let strain = |i: usize, j: usize| (gradient[i][j] + gradient[j][i]) / 2.0;

@@ -142,7 +142,20 @@ impl SimplexMesh {
             Some(OuterFacet { cell, local, facet, condition: left[facet].take()? })
         });
         let (surface, parents) = (outer.collect(), Vec::new());
-        SimplexMesh { dimension, nodes, cells, edges, edges_of, facets, sides, origins, conditions, surface, parents, next }
+        SimplexMesh {
+            dimension,
+            nodes,
+            cells,
+            edges,
+            edges_of,
+            facets,
+            sides,
+            origins,
+            conditions,
+            surface,
+            parents,
+            next,
+        }
     }
 
     /// Number of simplices.

@@ -13,7 +13,8 @@ impl Bracket<'_> {
     /// The facets on springs, with the displacement of each, and the one that has the forces of the springs in balance.
     pub fn on_springs(&self) -> impl Iterator<Item = (OuterFacet, [OnFacet; 2])> + '_ {
         self.stresses.on_springs().map(|outer| {
-            let of_bracket = [self.of_displacement(&self.primal.values, &outer), self.of_stress(&self.dual.values, &outer)];
+            let of_bracket =
+                [self.of_displacement(&self.primal.values, &outer), self.of_stress(&self.dual.values, &outer)];
             (outer, of_bracket)
         })
     }

@@ -200,7 +200,8 @@ impl<'a> Stresses<'a> {
     pub fn displacement_at_corners(&self, values: &[f64], outer: &OuterFacet) -> Vec<Point> {
         let dimension = self.mesh.dimension;
         let value = |place: usize, axis: usize| if axis < dimension { values[dimension * place + axis] } else { 0.0 };
-        let own: Vec<Point> = self.on_facet(outer).iter().map(|&place| [0, 1, 2].map(|axis| value(place, axis))).collect();
+        let own: Vec<Point> =
+            self.on_facet(outer).iter().map(|&place| [0, 1, 2].map(|axis| value(place, axis))).collect();
         let sum = [0, 1, 2].map(|axis| own.iter().map(|value| value[axis]).sum::<f64>());
         own.iter().map(|own| [0, 1, 2].map(|axis| (dimension + 1) as f64 * own[axis] - sum[axis])).collect()
     }

@@ -171,7 +171,8 @@ impl Unknowns {
                     held.entry(place).or_default().extend(components);
                 }
                 faces.extend(condition.rigid_face.map(|face| (place, face)));
-                normals.extend(condition.obstacles.first().map(|&obstacle| (place, problem.obstacles[obstacle].normal)));
+                normals
+                    .extend(condition.obstacles.first().map(|&obstacle| (place, problem.obstacles[obstacle].normal)));
             }
         }
         held.retain(|place, _| !faces.contains_key(place));
@@ -221,9 +222,8 @@ impl Unknowns {
             }
         }
         (own..free).for_each(|motion| unknowns.push(0.0, std::iter::once((motion, 1.0))));
-        let is_supported = |(place, supported): (usize, Supported)| {
-            (!supported.held.is_empty()).then_some((place, supported.held))
-        };
+        let is_supported =
+            |(place, supported): (usize, Supported)| (!supported.held.is_empty()).then_some((place, supported.held));
         unknowns.supports = special.into_iter().filter_map(is_supported).collect();
         unknowns
     }

@@ -83,7 +83,11 @@ pub(crate) fn add_moment(body: &ElasticBody, boundary: &Boundary, moment: [f64; 
 
 /// The vector omega and the centre c of the traction `omega x (x - c)` on a boundary that has this moment (force times length) and no force;
 /// `None` if there is no such traction.
-pub(crate) fn turning_traction(body: &ElasticBody, boundary: &Boundary, moment: [f64; 3]) -> Option<([f64; 3], [f64; 3])> {
+pub(crate) fn turning_traction(
+    body: &ElasticBody,
+    boundary: &Boundary,
+    moment: [f64; 3],
+) -> Option<([f64; 3], [f64; 3])> {
     let table = Tabulated::fine(boundary.kind.reference());
     let visit = |visit: &mut dyn FnMut(&FacetPoint)| {
         for_each_point_of(body, boundary, &|_| Cow::Borrowed(&table), visit);

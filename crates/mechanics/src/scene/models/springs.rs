@@ -2,8 +2,8 @@
 
 use super::ties::terms_of;
 use crate::error::Error;
-use crate::fem::assembly::{Springs, tributary_areas};
 use crate::fem::Boundary;
+use crate::fem::assembly::{Springs, tributary_areas};
 use crate::fem::body::ElasticBody;
 use crate::scene::input::entry::{boundary, node_at, positive, wrong};
 use crate::scene::input::schema::spring::StiffnessOf;

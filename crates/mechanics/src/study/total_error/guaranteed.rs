@@ -26,8 +26,7 @@ const OF_SOLVER: f64 = 1e-4;
 /// Those of [`signorini_qp::solve`] on the first mesh; [`Error::Scene`] for a bound of the force with obstacles from several directions.
 pub(super) fn total_error(given: &Given, problem: &ContinuumProblem, mesh: SimplexMesh) -> Result<TotalError, Error> {
     if given.goal.force_error.is_some() && !problem.has_one_direction() {
-        let message =
-            "the contact force has a guaranteed interval only if all obstacles stand still, in one direction from the body";
+        let message = "the contact force has a guaranteed interval only if all obstacles stand still, in one direction from the body";
         return Err(Error::Scene { path: "obstacles".into(), message: message.into() });
     }
     // An error of the solver that is small beside the goal does not matter.

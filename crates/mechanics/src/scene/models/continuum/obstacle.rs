@@ -5,9 +5,9 @@ use std::sync::Arc;
 use super::{WhyNot, none};
 use crate::continuum::{Distance, Enclosure, Facing, Point, Pressed, pairs};
 use crate::fem::geometry::{COORDINATES, dot};
-use crate::scene::{ContactRow, Model};
 use crate::scene::input::obstacle::PlacedObstacle;
 use crate::scene::input::schema::Rule;
+use crate::scene::{ContactRow, Model};
 
 /// The component of a unit vector normal to a coordinate axis below which it is rounding of the written components.
 const ALONG_AXIS: f64 = 1e-14;

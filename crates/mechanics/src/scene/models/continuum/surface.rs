@@ -34,7 +34,8 @@ impl Scene {
         for (index, face) in self.rigid_faces.iter().enumerate() {
             let path = format!("rigid-faces[{index}]");
             let Some(name) = &face.boundary else {
-                let message = "single nodes that move as a rigid body have no guaranteed bound: only a boundary has one";
+                let message =
+                    "single nodes that move as a rigid body have no guaranteed bound: only a boundary has one";
                 return Err(none(format!("{path}.nodes"), message));
             };
             surface.change(name, |condition, _| {
@@ -101,10 +102,11 @@ impl Scene {
             let components = self.components(index, support)?;
             surface.change(name, |condition, facet| {
                 let factor = profile.on(facet)?;
-                condition.held.extend(components.iter().map(|component| Held {
-                    direction: component.direction,
-                    value: factor.times(component.value),
-                }));
+                condition.held.extend(
+                    components
+                        .iter()
+                        .map(|component| Held { direction: component.direction, value: factor.times(component.value) }),
+                );
                 Ok(())
             })?;
         }
@@ -168,9 +170,10 @@ impl Scene {
                     Ok(())
                 })
             }
-            LoadSpec::NodalForces(_) => {
-                Err(none(path("nodal-forces"), "a force on a node has no guaranteed bound: only loads on boundaries have one"))
-            }
+            LoadSpec::NodalForces(_) => Err(none(
+                path("nodal-forces"),
+                "a force on a node has no guaranteed bound: only loads on boundaries have one",
+            )),
             LoadSpec::BodyForce(_) | LoadSpec::Gravity(_) | LoadSpec::Centrifugal(_) => Ok(()),
         }
     }
