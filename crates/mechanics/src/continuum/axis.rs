@@ -9,9 +9,10 @@
 
 use std::sync::OnceLock;
 
-use super::johnson_mercier::{PartStress, corners_of_side, null_space};
+use super::normal::null_space;
+use super::part_stress::{PartStress, QUADRATIC};
 use super::problem::ContinuumProblem;
-use super::simplex::{Point, Simplex, Weights, pairs, quadratic_rule, traction};
+use super::simplex::{Point, Simplex, Weights, corners_of_side, pairs, quadratic_rule, traction};
 use crate::fem::element::gauss_legendre;
 
 /// Gauss points in each direction: exact for degree 15, and P times a product of two quadratic functions has 13.
@@ -19,9 +20,6 @@ const POINTS: usize = 8;
 
 /// Double zeros of `1 - r P(r)` between the smallest and the largest radius of a triangle.
 const ZEROS: usize = 4;
-
-/// Coefficients of a quadratic function on a triangle.
-pub const QUADRATIC: usize = 6;
 
 /// The entries of s that have conditions.
 const ENTRIES: [usize; 3] = [0, 1, 3];

@@ -6,9 +6,10 @@
 
 use std::collections::BTreeMap;
 
-use super::johnson_mercier::{Element, PartStress, tractions_of_body_force};
+use super::johnson_mercier::{Element, tractions_of_body_force};
 use super::mesh::SimplexMesh;
 use super::normal::{Lower, add};
+use super::part_stress::PartStress;
 use super::simplex::Point;
 use super::stress::{Place, Stresses};
 use super::system::Unknowns;

@@ -15,12 +15,11 @@
 
 use super::axis::{Sample, samples};
 use super::balance::Balance;
-use super::displacement::Displacements;
-use super::johnson_mercier::{PartStress, corners_of_side};
+use super::displacement::{Displacements, apart};
 use super::mesh::SimplexMesh;
+use super::part_stress::PartStress;
 use super::problem::{ContinuumProblem, Law};
-use super::simplex::{Simplex, Tensor, Weights, less, traction, work};
-use super::springs::apart;
+use super::simplex::{Simplex, Tensor, Weights, corners_of_side, less, traction, work};
 use super::stress::{Place, Stresses};
 use super::system::{Row, Unknowns};
 use crate::error::Error;

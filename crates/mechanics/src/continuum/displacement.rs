@@ -4,16 +4,18 @@
 use std::collections::BTreeMap;
 
 use super::axis::{Sample, samples};
-use super::johnson_mercier::corners_of_side;
 use super::mesh::{OuterFacet, SimplexMesh};
 use super::problem::{ContinuumProblem, weighted_mean};
-use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, pairs, work};
+use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, corners_of_side, pairs, work};
 use super::stress::Place;
 use super::system::{Block, Numbers, Row, Unknowns, add_springs};
 use crate::error::Error;
-use crate::fem::geometry::{COORDINATES, key};
+use crate::fem::geometry::{COORDINATES, key, minus};
 use crate::fem::threads::each;
 use signorini_qp as qp;
+
+/// Coefficients in Bernstein's quadratic basis of a displacement of a facet.
+pub type OnFacet = Vec<Point>;
 
 /// Displacements on a mesh.
 #[derive(Debug)]
@@ -234,6 +236,11 @@ fn local_functions(dimension: usize, side: usize) -> impl Iterator<Item = usize>
         let pair = pair.map(|corner| corners[corner]);
         pairs(dimension + 1).position(|other| other == key(pair[0], pair[1])).unwrap_or(0)
     })
+}
+
+/// The difference of two displacements of a facet.
+pub fn apart(one: &[Point], other: &[Point]) -> OnFacet {
+    one.iter().zip(other).map(|(&one, &other)| minus(one, other)).collect()
 }
 
 /// The mean over a facet of the product of two functions of Bernstein's quadratic basis.

@@ -16,9 +16,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::axis::Sample;
 use super::bound::{Bracket, Side};
-use super::johnson_mercier::PartStress;
+use super::displacement::apart;
+use super::part_stress::PartStress;
 use super::simplex::{Point, less, middle, work};
-use super::springs::apart;
 use super::stress::Stresses;
 use super::system::{Block, Unknowns};
 use crate::error::Error;

@@ -9,102 +9,12 @@
 
 use std::sync::OnceLock;
 
-use super::axis::{QUADRATIC, samples, stresses};
-use super::normal::{Lower, add};
+use super::axis::{samples, stresses};
+use super::normal::{Lower, add, null_space};
+use super::part_stress::{PartStress, QUADRATIC, quadratic_factors};
 use super::problem::{ContinuumProblem, Law, Medium};
-use super::simplex::{ENTRIES, Point, Simplex, Tensor, Weights, pairs, traction};
+use super::simplex::{ENTRIES, Point, Simplex, corners_of_side, traction};
 use signorini_qp::dot;
-
-/// A stress on a simplex; about an axis r times a stress. On each part it is linear, given by its values at the part's corners, or quadratic,
-/// given by its coefficients in Bernstein's basis. The corner with the number of a part is the centre.
-#[derive(Clone, Debug)]
-pub struct PartStress {
-    of_part: usize,
-    values: Vec<Tensor>,
-}
-
-impl PartStress {
-    /// Zero on so many parts, with so many coefficients on each.
-    pub fn zero(parts: usize, of_part: usize) -> Self {
-        PartStress { of_part, values: vec![[0.0; 6]; parts * of_part] }
-    }
-
-    /// A linear or quadratic function of the place.
-    fn of(problem: &ContinuumProblem, simplex: &Simplex, value: impl Fn(Point) -> Tensor) -> Self {
-        let count = simplex.dimension + 1;
-        let mut stress = Self::zero(count, if problem.is_axisymmetric { QUADRATIC } else { count });
-        for (k, values) in stress.values.chunks_exact_mut(stress.of_part).enumerate() {
-            let part = simplex.part(k);
-            let corners = part.corners();
-            for (place, own) in pairs(count).zip(values) {
-                let [one, other] = place.map(|corner| value(corners[corner]));
-                *own = if place[0] == place[1] {
-                    one
-                } else {
-                    let half = value([0, 1, 2].map(|axis| (corners[place[0]][axis] + corners[place[1]][axis]) / 2.0));
-                    std::array::from_fn(|entry| 2.0 * half[entry] - (one[entry] + other[entry]) / 2.0)
-                };
-            }
-        }
-        stress
-    }
-
-    /// The value at a corner of part k.
-    pub fn corner(&self, k: usize, corner: usize) -> Tensor {
-        self.values[k * self.of_part + corner]
-    }
-
-    /// The value on part k at the point given by the weights of the part's corners.
-    pub fn at(&self, k: usize, weights: Weights) -> Tensor {
-        let mut sum = [0.0; 6];
-        let of_part = &self.values[k * self.of_part..(k + 1) * self.of_part];
-        for (value, factor) in of_part.iter().zip(self.factors(weights)) {
-            sum.iter_mut().zip(value).for_each(|(sum, entry)| *sum += factor * entry);
-        }
-        sum
-    }
-
-    /// The derivative by one barycentric coordinate at a corner of part k.
-    pub fn slope(&self, k: usize, corner: usize, along: usize) -> Tensor {
-        if self.of_part < QUADRATIC {
-            return self.corner(k, along);
-        }
-        let pair = [corner.min(along), corner.max(along)];
-        let place = pairs(3).position(|other| other == pair).unwrap_or(0);
-        self.corner(k, place).map(|part| 2.0 * part)
-    }
-
-    /// The value of the function of each coefficient at a point.
-    fn factors(&self, weights: Weights) -> [f64; QUADRATIC] {
-        if self.of_part == QUADRATIC {
-            return quadratic_factors(weights);
-        }
-        let mut factors = [0.0; QUADRATIC];
-        factors[..weights.len()].copy_from_slice(&weights);
-        factors
-    }
-
-    /// The coefficients of all parts.
-    pub fn values_mut(&mut self) -> &mut [Tensor] {
-        &mut self.values
-    }
-
-    /// The entries of all coefficients.
-    fn entries(&self) -> &[f64] {
-        self.values.as_flattened()
-    }
-
-    /// Adds a multiple of another stress.
-    fn add(&mut self, factor: f64, other: &PartStress) {
-        add(self.values.as_flattened_mut(), factor, other.entries());
-    }
-}
-
-/// The values of Bernstein's quadratic functions on a triangle.
-fn quadratic_factors(weights: Weights) -> [f64; QUADRATIC] {
-    let [a, b, c, _] = weights;
-    [a * a, b * b, c * c, 2.0 * a * b, 2.0 * a * c, 2.0 * b * c]
-}
 
 /// Stresses without divergence: those of the reference simplex, carried to this one, or those of a triangle about an axis.
 #[derive(Clone, Debug)]
@@ -119,10 +29,7 @@ impl Basis {
     }
 
     fn stresses(&self) -> Vec<PartStress> {
-        let carried = |simplex: &Simplex, stress: &PartStress| PartStress {
-            values: stress.values.iter().map(|&value| simplex.carried(value)).collect(),
-            ..*stress
-        };
+        let carried = |simplex: &Simplex, stress: &PartStress| stress.map(|value| simplex.carried(value));
         match self {
             Basis::Carried(simplex) => {
                 reference(simplex.dimension).iter().map(|stress| carried(simplex, stress)).collect()
@@ -135,11 +42,11 @@ impl Basis {
     fn add_to(&self, stress: &mut PartStress, amounts: &[f64]) {
         match self {
             Basis::Carried(simplex) => {
-                let mut of_reference = PartStress::zero(1, stress.values.len());
+                let mut of_reference = PartStress::zero(1, stress.values().len());
                 let own = reference(simplex.dimension).iter().zip(amounts);
                 own.for_each(|(own, &amount)| of_reference.add(amount, own));
-                for (value, carried) in stress.values.iter_mut().zip(of_reference.values) {
-                    add(value, 1.0, &simplex.carried(carried));
+                for (value, carried) in stress.values_mut().iter_mut().zip(of_reference.values()) {
+                    add(value, 1.0, &simplex.carried(*carried));
                 }
             }
             Basis::About(stresses) => stresses.iter().zip(amounts).for_each(|(own, &amount)| stress.add(amount, own)),
@@ -149,9 +56,6 @@ impl Basis {
 
 /// Solves for a stress from its tractions: the second one takes the rounding of the first.
 const REFINED: usize = 2;
-
-/// Coefficients of conditions below this are rounding; theirs are of order one.
-const DEPENDENT: f64 = 1e-9;
 
 /// The stresses without divergence on a simplex, with their tractions and energies.
 #[derive(Clone, Debug)]
@@ -170,11 +74,6 @@ pub struct Element {
     particular_energies: Vec<f64>,
     /// The factor of the products of the works of the stresses, at its first use.
     of_works: OnceLock<Option<Lower>>,
-}
-
-/// The corners of the side opposite to a corner, in their order.
-pub fn corners_of_side(dimension: usize, side: usize) -> impl Iterator<Item = usize> + Clone {
-    (0..=dimension).filter(move |&corner| corner != side)
 }
 
 impl Element {
@@ -307,8 +206,9 @@ fn products_over_radius(problem: &ContinuumProblem, part: &Simplex) -> Products 
 
 /// The complementary energies of a stress with each coefficient of another one.
 fn strains_of(law: &Law, products: &[Products], stress: &PartStress) -> Vec<f64> {
-    let mut strains = PartStress::zero(products.len(), stress.of_part);
-    let parts = strains.values.chunks_exact_mut(stress.of_part).zip(stress.values.chunks_exact(stress.of_part));
+    let mut strains = PartStress::zero(products.len(), stress.of_part());
+    let parts =
+        strains.values_mut().chunks_exact_mut(stress.of_part()).zip(stress.values().chunks_exact(stress.of_part()));
     for ((strains, of_part), products) in parts.zip(products) {
         for (value, column) in of_part.iter().zip(products) {
             // Of a symmetric tensor each shear component stands for two.
@@ -366,7 +266,7 @@ fn reference(dimension: usize) -> &'static [PartStress] {
     STRESSES[dimension - 2].get_or_init(|| {
         let of_vector = |vector: Vec<f64>| {
             let mut stress = PartStress::zero(dimension + 1, dimension + 1);
-            for (value, of_value) in stress.values.iter_mut().zip(vector.chunks_exact(entries.len())) {
+            for (value, of_value) in stress.values_mut().iter_mut().zip(vector.chunks_exact(entries.len())) {
                 entries.iter().zip(of_value).for_each(|(&entry, &part)| value[entry] = part);
             }
             stress
@@ -415,41 +315,10 @@ fn conditions(dimension: usize) -> Vec<Vec<f64>> {
     conditions
 }
 
-/// A basis of the null space of all rows, by elimination.
-pub(super) fn null_space(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-    let count = rows.first().map_or(0, Vec::len);
-    let mut pivots: Vec<(usize, usize)> = Vec::with_capacity(rows.len());
-    let largest_in = |row: &[f64]| {
-        let largest = (0..count).max_by(|&a, &b| row[a].abs().total_cmp(&row[b].abs())).unwrap_or(0);
-        (row[largest].abs(), largest)
-    };
-    loop {
-        let left = (0..rows.len()).filter(|row| pivots.iter().all(|pivot| pivot.0 != *row));
-        let next = left.map(|row| (largest_in(&rows[row]), row)).max_by(|a, b| a.0.0.total_cmp(&b.0.0));
-        // What is left of a row that depends on others is rounding.
-        let Some(((_, column), index)) = next.filter(|((size, _), _)| *size > DEPENDENT) else { break };
-        let scale = rows[index][column];
-        rows[index].iter_mut().for_each(|value| *value /= scale);
-        let row = rows[index].clone();
-        for other in (0..rows.len()).filter(|&other| other != index) {
-            let share = rows[other][column];
-            rows[other].iter_mut().zip(&row).for_each(|(value, part)| *value -= share * part);
-        }
-        pivots.push((index, column));
-    }
-    let vector = |column: usize| {
-        let mut vector = vec![0.0; count];
-        vector[column] = 1.0;
-        pivots.iter().for_each(|&(row, pivot)| vector[pivot] = -rows[row][column]);
-        vector
-    };
-    (0..count).filter(|column| pivots.iter().all(|pivot| pivot.1 != *column)).map(vector).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::bodies::filled;
-    use super::super::simplex::less;
+    use super::super::simplex::{Tensor, less};
     use super::*;
     use crate::fem::material::Lame;
 

@@ -16,6 +16,7 @@ mod judge;
 mod keys;
 mod mesh;
 mod normal;
+mod part_stress;
 mod problem;
 mod simplex;
 mod springs;

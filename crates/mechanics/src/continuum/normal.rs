@@ -1,9 +1,12 @@
-//! Small definite matrices and their factors by Cholesky's method.
+//! Small dense matrices: factors by Cholesky's method, and null spaces.
 
 use signorini_qp::dot;
 
 /// A pivot below this share of its entry is rounding.
 const SINGULAR_PIVOT: f64 = 1e-10;
+
+/// Coefficients of conditions below this are rounding; theirs are of order one.
+const DEPENDENT: f64 = 1e-9;
 
 /// The lower factor L of a definite matrix `L L'`, row by row.
 #[derive(Clone, Debug)]
@@ -62,6 +65,37 @@ impl Lower {
 /// Adds `factor` times another vector.
 pub fn add(sum: &mut [f64], factor: f64, other: &[f64]) {
     sum.iter_mut().zip(other).for_each(|(sum, part)| *sum += factor * part);
+}
+
+/// A basis of the null space of all rows, by elimination.
+pub fn null_space(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let count = rows.first().map_or(0, Vec::len);
+    let mut pivots: Vec<(usize, usize)> = Vec::with_capacity(rows.len());
+    let largest_in = |row: &[f64]| {
+        let largest = (0..count).max_by(|&a, &b| row[a].abs().total_cmp(&row[b].abs())).unwrap_or(0);
+        (row[largest].abs(), largest)
+    };
+    loop {
+        let left = (0..rows.len()).filter(|row| pivots.iter().all(|pivot| pivot.0 != *row));
+        let next = left.map(|row| (largest_in(&rows[row]), row)).max_by(|a, b| a.0.0.total_cmp(&b.0.0));
+        // What is left of a row that depends on others is rounding.
+        let Some(((_, column), index)) = next.filter(|((size, _), _)| *size > DEPENDENT) else { break };
+        let scale = rows[index][column];
+        rows[index].iter_mut().for_each(|value| *value /= scale);
+        let row = rows[index].clone();
+        for other in (0..rows.len()).filter(|&other| other != index) {
+            let share = rows[other][column];
+            rows[other].iter_mut().zip(&row).for_each(|(value, part)| *value -= share * part);
+        }
+        pivots.push((index, column));
+    }
+    let vector = |column: usize| {
+        let mut vector = vec![0.0; count];
+        vector[column] = 1.0;
+        pivots.iter().for_each(|&(row, pivot)| vector[pivot] = -rows[row][column]);
+        vector
+    };
+    (0..count).filter(|column| pivots.iter().all(|pivot| pivot.1 != *column)).map(vector).collect()
 }
 
 #[cfg(test)]

@@ -30,6 +30,11 @@ pub fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> + Clone {
     (0..count).map(|i| [i, i]).chain((0..count).flat_map(move |i| (i + 1..count).map(move |j| [i, j])))
 }
 
+/// The corners of the side opposite to a corner, in their order.
+pub fn corners_of_side(dimension: usize, side: usize) -> impl Iterator<Item = usize> + Clone {
+    (0..=dimension).filter(move |&corner| corner != side)
+}
+
 /// The barycentric coordinates of points whose mean is that of a quadratic function over the simplex.
 pub fn quadratic_rule(dimension: usize) -> impl Iterator<Item = Weights> + Clone {
     let corners = dimension + 1;

@@ -1,13 +1,10 @@
 //! Springs that are spread over facets: a part of the body without volume, whose strain is the displacement of the facet.
 
 use super::bound::Bracket;
-use super::displacement::mean_of_product;
+use super::displacement::{OnFacet, mean_of_product};
 use super::mesh::OuterFacet;
 use super::simplex::{Point, pairs};
-use crate::fem::geometry::{dot, minus};
-
-/// Coefficients in Bernstein's quadratic basis of a displacement of a facet.
-pub type OnFacet = Vec<Point>;
+use crate::fem::geometry::dot;
 
 impl Bracket<'_> {
     /// The facets on springs, with the displacement of each, and the one that has the forces of the springs in balance.
@@ -50,9 +47,4 @@ impl Bracket<'_> {
         }
         self.problem.thickness * size * mean
     }
-}
-
-/// The difference of two displacements of a facet.
-pub fn apart(one: &[Point], other: &[Point]) -> OnFacet {
-    one.iter().zip(other).map(|(&one, &other)| minus(one, other)).collect()
 }

@@ -6,8 +6,9 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::johnson_mercier::{Element, PartStress};
+use super::johnson_mercier::Element;
 use super::mesh::{OuterFacet, SimplexMesh};
+use super::part_stress::PartStress;
 use super::problem::{ContinuumProblem, Medium};
 use super::simplex::{MOST_CORNERS, Point};
 use super::system::{Block, Numbers, Row, Unknowns, add_springs};

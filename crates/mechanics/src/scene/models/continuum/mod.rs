@@ -2,6 +2,7 @@
 
 mod obstacle;
 mod surface;
+mod why_not;
 
 use std::f64::consts::TAU;
 
@@ -17,43 +18,8 @@ use crate::scene::input::entry::wrong;
 use crate::scene::input::schema::Scene;
 use crate::scene::input::schema::load::LoadSpec;
 use obstacle::facing;
-
-/// What of a scene has no guaranteed bound, and what would have one.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct NoGuarantee {
-    /// JSON path of what has none.
-    pub path: String,
-    /// A sentence.
-    pub message: String,
-}
-
-/// Why there is no problem of the continuum: an answer to the question for a guarantee, or a failure, which answers nothing.
-#[derive(Debug)]
-pub(crate) enum WhyNot {
-    /// The scene has no guaranteed bound.
-    NoGuarantee(NoGuarantee),
-    /// The question has no answer.
-    Failed(Error),
-}
-
-impl From<Error> for WhyNot {
-    fn from(error: Error) -> Self {
-        WhyNot::Failed(error)
-    }
-}
-
-impl From<WhyNot> for Error {
-    fn from(why: WhyNot) -> Self {
-        match why {
-            WhyNot::NoGuarantee(NoGuarantee { path, message }) => Error::Scene { path, message },
-            WhyNot::Failed(error) => error,
-        }
-    }
-}
-
-fn none(path: impl Into<String>, message: impl Into<String>) -> WhyNot {
-    WhyNot::NoGuarantee(NoGuarantee { path: path.into(), message: message.into() })
-}
+use why_not::none;
+pub(crate) use why_not::{NoGuarantee, WhyNot};
 
 impl Scene {
     /// Refuses a scene without an answer in the continuum.

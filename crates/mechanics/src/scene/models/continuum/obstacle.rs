@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{WhyNot, none};
+use super::why_not::{WhyNot, none};
 use crate::continuum::{Distance, Enclosure, Facing, Point, Pressed, pairs};
 use crate::fem::geometry::{COORDINATES, dot};
 use crate::scene::input::obstacle::PlacedObstacle;

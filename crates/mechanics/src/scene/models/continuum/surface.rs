@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::{WhyNot, none};
+use super::why_not::{WhyNot, none};
 use crate::continuum::{Circle, Condition, Held, Linear, Point};
 use crate::error::Error;
 use crate::fem::Mesh;
