@@ -164,9 +164,9 @@ fn conditions(triangle: &Simplex) -> Vec<Vec<f64>> {
             }
             conditions.push(divergence);
         }
-        for other in k + 1..3 {
+        for (other, &normal) in slopes[k].iter().enumerate().take(3).skip(k + 1) {
             // The side between both parts goes from the third corner to the centre.
-            let (third, normal) = (3 - k - other, slopes[k][other]);
+            let third = 3 - k - other;
             let here = [place(third, third), place(third, k), place(k, k)];
             let there = [place(third, third), place(third, other), place(other, other)];
             for (here, there) in here.into_iter().zip(there) {

@@ -357,8 +357,8 @@ mod tests {
                 for k in 0..=dimension {
                     let slopes = simplex.part(k).slopes();
                     let mut sum = material.media[0].body_force;
-                    for corner in 0..=dimension {
-                        let pull = traction(stress.corner(k, corner), slopes[corner]);
+                    for (corner, &slope) in slopes.iter().enumerate().take(dimension + 1) {
+                        let pull = traction(stress.corner(k, corner), slope);
                         (0..3).for_each(|axis| sum[axis] += pull[axis]);
                     }
                     assert!(sum.iter().all(|part| part.abs() < 100.0 * ROUNDING), "{sum:?}");

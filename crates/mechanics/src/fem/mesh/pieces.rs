@@ -1,5 +1,7 @@
 //! The elements of a mesh cut into straight triangles or tetrahedra.
 
+use std::collections::{HashMap, HashSet};
+
 use super::{Mesh, fail};
 use crate::error::Error;
 use crate::fem::geometry::{cross, distance, dot, minus};
@@ -78,6 +80,27 @@ impl Pieces {
         })
     }
 
+    /// Returns `true` if the pieces meet in whole facets: all that belong to one piece only lie on the surface of the mesh.
+    ///
+    /// Two hexahedra can cut their common face along different diagonals.
+    pub fn meet(&self, mesh: &Mesh) -> bool {
+        if mesh.dimension() < 3 {
+            return true;
+        }
+        let mut faces: HashMap<Vec<usize>, usize> = HashMap::new();
+        for element in 0..mesh.element_count() {
+            for face in mesh.kind_of(element).reference().faces {
+                let corners = face.iter().filter_map(|&local| self.numbers[mesh.element(element)[local]]);
+                *faces.entry(sorted(corners)).or_default() += 1;
+            }
+        }
+        let outer = faces.into_iter().filter(|face| face.1 == 1);
+        let on_surface: HashSet<Vec<usize>> = outer.flat_map(|(face, _)| without_one(&face)).collect();
+        let mut of_pieces: HashMap<Vec<usize>, usize> = HashMap::new();
+        self.facets().for_each(|facet| *of_pieces.entry(facet).or_default() += 1);
+        of_pieces.into_iter().all(|(facet, count)| count == 2 || on_surface.contains(&facet))
+    }
+
     /// The facets of pieces that may form a boundary, each by its nodes in the order of the boundary. A quadrilateral gives those of both
     /// diagonals, of which pieces have one.
     pub fn facets_of(&self, mesh: &Mesh, boundary: &str) -> Vec<Vec<usize>> {
@@ -91,6 +114,22 @@ impl Pieces {
         };
         let facets = mesh.boundary(boundary).into_iter().flat_map(|boundary| boundary.facets());
         facets.flat_map(of_facet).collect()
+    }
+}
+
+fn sorted(nodes: impl Iterator<Item = usize>) -> Vec<usize> {
+    let mut nodes: Vec<usize> = nodes.collect();
+    nodes.sort_unstable();
+    nodes
+}
+
+/// A triangle itself, or the triangles of three corners of a quadrilateral.
+fn without_one(face: &[usize]) -> Vec<Vec<usize>> {
+    match face.len() {
+        4 => (0..4)
+            .map(|left_out| (0..4).filter(|&corner| corner != left_out).map(|corner| face[corner]).collect())
+            .collect(),
+        _ => vec![face.to_vec()],
     }
 }
 
@@ -160,6 +199,20 @@ mod tests {
         Mesh::new(nodes, ElementKind::ALL[2], vec![3, 4, 5, 0, 1, 2], vec![side]).unwrap()
     }
 
+    /// Two cubes side by side; the second one begins at another corner, so that it cuts the common face along the other diagonal.
+    #[test]
+    fn cubes_meet_in_whole_facets_only_if_they_are_cut_alike() {
+        let nodes: Vec<[f64; 3]> = (0..12).map(|node| [node / 4, node / 2 % 2, node % 2].map(f64::from)).collect();
+        let cube = |first: usize| [0, 4, 6, 2, 1, 5, 7, 3].map(|node| first + node);
+        let turned = [6, 10, 11, 7, 4, 8, 9, 5];
+        for (second, expected) in [(cube(4), true), (turned, false)] {
+            let elements = [cube(0), second].concat();
+            let kind = *ElementKind::ALL.iter().find(|kind| kind.name() == "Hex8").unwrap();
+            let mesh = Mesh::new(nodes.clone(), kind, elements, Vec::new()).unwrap();
+            assert_eq!(Pieces::of(&mesh).unwrap().meet(&mesh), expected, "{second:?}");
+        }
+    }
+
     #[test]
     fn straight_sides_need_the_corners_alone() {
         let mesh = triangle(0.0);
@@ -176,7 +229,7 @@ mod tests {
         let mesh = triangle(0.0625);
         let pieces = Pieces::of(&mesh).unwrap();
         assert_eq!((pieces.cells.len(), pieces.nodes.len()), (4, 6));
-        assert_eq!(pieces.facets_of(&mesh, "side"), [[1, 4], [1, 5]]);
+        assert_eq!(pieces.facets_of(&mesh, "side"), [[4, 1], [1, 5]]);
         // The triangle, and another one on its side of length sqrt 2, as high as the bulge.
         assert_eq!(twice_size(&pieces), 2.0 * (0.5 + 0.0625));
         assert_eq!(pieces.elements, [0; 4]);
@@ -199,7 +252,8 @@ mod tests {
         let pieces = Pieces::of(&mesh).unwrap();
         assert_eq!((pieces.cells.len(), twice_size(&pieces)), (12, 6.0 * 2.0));
         let mut all: Vec<Vec<usize>> = pieces.facets().collect();
-        let on_top = pieces.facets_of(&mesh, "top").into_iter().filter(|facet| all.contains(facet)).count();
+        let on_top = pieces.facets_of(&mesh, "top").into_iter().map(|facet| sorted(facet.into_iter()));
+        let on_top = on_top.filter(|facet| all.contains(facet)).count();
         assert_eq!(on_top, 4);
         all.sort_unstable();
         let outer =

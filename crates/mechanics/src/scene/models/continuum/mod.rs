@@ -81,8 +81,6 @@ impl Scene {
             let near = ON_THE_AXIS * model.mesh().size();
             pieces.nodes.iter_mut().filter(|node| node[0] <= near).for_each(|node| node[0] = 0.0);
         }
-        let surface = self.surface(model, &pieces, &mut problem.conditions)?;
-        let Pieces { nodes, cells, elements, .. } = pieces;
         let unmatched = || {
             let message = match dimension {
                 2 => "the triangles of the mesh do not meet in whole edges, so that there is no guaranteed bound",
@@ -92,6 +90,11 @@ impl Scene {
             };
             none("body", message)
         };
+        if !pieces.meet(model.mesh()) {
+            return Err(unmatched());
+        }
+        let surface = self.surface(model, &pieces, &mut problem.conditions)?;
+        let Pieces { nodes, cells, elements, .. } = pieces;
         let mesh = SimplexMesh::new(dimension, nodes, &cells, elements, &surface).ok_or_else(unmatched)?;
         let mut within_reach = vec![false; problem.obstacles.len()];
         for (outer, obstacle) in problem.facing(&mesh) {
