@@ -75,19 +75,20 @@ def test_the_solution_on_the_last_mesh_has_that_mesh() -> None:
     assert np.abs(solution.displacement - found.displacement).max() < 0.1 * np.abs(found.displacement).max()
 
 
-def test_an_axisymmetric_scene_is_estimated_and_says_why() -> None:
+def test_rows_along_normals_that_change_are_estimated_and_say_why() -> None:
     scene = sg.Scene(
         {
             "model": "axisymmetric",
             "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [4]}, "y": {"points": [0, 1], "divisions": [4]}}},
             "material": {"young": 1, "poisson": 0.3},
             "supports": [{"on": {"boundary": "bottom"}, "y": 0}, {"on": {"boundary": "left"}, "x": 0}],
-            "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"parabola": {"apex": [0, 0.95], "radius": 1}}}],
+            "obstacles": [{"boundary": "top", "approach": "+y", "rule": "closest-point",
+                           "shape": {"parabola": {"apex": [0, 0.95], "radius": 1}}}],
         }
     )
     found = sg.total_error(scene, 0.2)
     assert not found.guaranteed and found.force_interval is None
-    assert found.reason is not None and found.reason.startswith("model: ")
+    assert found.reason is not None and found.reason.startswith("obstacles[0].rule: ")
     assert found.bound <= 0.2 and found.status == "certified" and found.levels[-1]["energy_error_bound"] < 0.02
     solution = found.solution
     assert solution is not None
