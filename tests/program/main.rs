@@ -20,6 +20,7 @@ mod schema;
 mod terminal;
 mod time;
 mod total_error;
+mod total_error_about_axis;
 mod total_error_of_loads;
 mod tradeoff;
 mod tutorial;
