@@ -1,11 +1,13 @@
-"""Measures how many faults in the certificate the tests detect: `python reference/mutants.py [--count N] [--seed S]`.
+"""Measures how many faults in the certificate or in the guarantee the tests detect.
 
-cargo-mutants (`cargo install cargo-mutants --locked`) lists the mutants of certificate, bound, proof, infeasibility and claims: an
-exchanged operator, a negated condition, a function that returns a constant. This command draws some of them, by a digest of the seed
-and of the change, so that an edit of the code does not move other mutants into or out of the draw. It puts one mutant at a time into
-a copy of the repository in `target/mutants`, builds it, and runs stages of fast tests until one fails. Survivors that are not faults
-are listed in `tests/mutants.toml`, each with its reason. The exit code is 1 if more than 2 % of the mutants that build survive without
-a reason. With `--again`, mutants that earlier runs killed count as killed.
+`python reference/mutants.py [--of certificate|guarantee] [--count N] [--seed S]`
+
+cargo-mutants (`cargo install cargo-mutants --locked`) lists the mutants of the certificate (conditions, bound, proof, infeasible rows,
+claims) or of the guarantee against the continuum: an exchanged operator, a negated condition, a function that returns a constant. This
+command draws some of them, by a digest of the seed and of the change, so that an edit of the code does not move other mutants into or
+out of the draw. It puts one mutant at a time into a copy of the repository in `target/mutants`, builds it, and runs stages of fast tests
+until one fails. Survivors that are not faults are listed in `tests/mutants.toml`, each with its reason. The exit code is 1 if more than
+2 % of the mutants that build survive without a reason. With `--again`, mutants that earlier runs killed count as killed.
 """
 
 import argparse
@@ -27,9 +29,6 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 OWN = ROOT / "target" / "mutants"
 REASONS = ROOT / "tests" / "mutants.toml"
-
-FILES = ("crates/qp/src/certificate/**", "crates/qp/src/existence/**")
-"""The mutated files: conditions, bound, proof, infeasible rows, claims."""
 
 SEED = 20
 COUNT = 60
@@ -65,23 +64,42 @@ class Stage:
     tests: tuple[str, ...]
 
 
-STAGES = (
-    Stage("own", ("--package", "signorini-qp", "--lib"), ("certificate::", "existence::")),
-    Stage(
-        "quick",
-        ("--test", "numerics"),
-        ("certificate::", "claims::", "hostile::", "exact_arithmetic::", "findings::"),
+@dataclass(frozen=True)
+class Area:
+    """The mutated files, and the stages. Fast tests run first; the others run only for mutants that survive them."""
+
+    files: tuple[str, ...]
+    stages: tuple[Stage, ...]
+
+
+AREAS = {
+    "certificate": Area(
+        ("crates/qp/src/certificate/**", "crates/qp/src/existence/**"),
+        (
+            Stage("own", ("--package", "signorini-qp", "--lib"), ("certificate::", "existence::")),
+            Stage(
+                "quick",
+                ("--test", "numerics"),
+                ("certificate::", "claims::", "hostile::", "exact_arithmetic::", "findings::"),
+            ),
+            Stage("unit", ("--package", "signorini-qp", "--lib"), ()),
+            Stage(
+                "numerics",
+                ("--test", "numerics"),
+                ("degenerate::", "dual_active_set::", "energy_bound::", "exact_path::", "extremes::", "methods::")
+                + ("obstacle_problems::", "penalty_ladder::", "precision::", "proven_set::", "separate_parts::", "watch::"),
+            ),
+            Stage("multigrid", ("--test", "multigrid"), ("cycle_bound::", "mprgp::")),
+        ),
     ),
-    Stage("unit", ("--package", "signorini-qp", "--lib"), ()),
-    Stage(
-        "numerics",
-        ("--test", "numerics"),
-        ("degenerate::", "dual_active_set::", "energy_bound::", "exact_path::", "extremes::", "methods::")
-        + ("obstacle_problems::", "penalty_ladder::", "precision::", "proven_set::", "separate_parts::", "watch::"),
+    "guarantee": Area(
+        ("crates/mechanics/src/continuum/**",),
+        (
+            Stage("own", ("--package", "signorini-mechanics", "--lib"), ("continuum::",)),
+            Stage("program", ("--test", "program"), ("total_error", "guarantees")),
+        ),
     ),
-    Stage("multigrid", ("--test", "multigrid"), ("cycle_bound::", "mprgp::")),
-)
-"""The stages. Fast tests run first; the others run only for mutants that survive them."""
+}
 
 WRAPPER = '#!/bin/sh\nexec "$@" -C lto=off\n'
 """The wrapper of the compiler for the crate itself. Without link-time optimisation a build takes a sixth of the time."""
@@ -122,9 +140,9 @@ class Mutant:
         return "\n".join(changed + lines[at:]) + "\n"
 
 
-def listed(root: Path) -> list[Mutant]:
-    """Returns all mutants of `FILES`, in the order of cargo-mutants."""
-    chosen = [part for file in FILES for part in ("--file", file)]
+def listed(root: Path, area: Area) -> list[Mutant]:
+    """Returns all mutants of an area, in the order of cargo-mutants."""
+    chosen = [part for file in area.files for part in ("--file", file)]
     command = ["cargo", "mutants", "--workspace", "--no-config", "--list", "--json", *chosen]
     done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
     if done.returncode:
@@ -217,9 +235,9 @@ def programs(tree: Path, stage: Stage) -> list[str] | None:
     return [message["executable"] for message in built if message["executable"]]
 
 
-def judged(tree: Path) -> tuple[str, str]:
+def judged(tree: Path, area: Area) -> tuple[str, str]:
     """Builds and tests the tree. Returns `unbuildable`, `timed out`, `killed` or `survived`, and the stage."""
-    for stage in STAGES:
+    for stage in area.stages:
         found = programs(tree, stage)
         if found is None:
             return "unbuildable", stage.name
@@ -233,13 +251,13 @@ def judged(tree: Path) -> tuple[str, str]:
     return "survived", ""
 
 
-def tried(mutant: Mutant, tree: Path) -> tuple[str, str]:
+def tried(mutant: Mutant, tree: Path, area: Area) -> tuple[str, str]:
     """Returns the outcome of a mutant. The copy of the repository is restored afterwards."""
     file = tree / mutant.file
     text = file.read_text()
     try:
         file.write_text(mutant.applied(text))
-        return judged(tree)
+        return judged(tree, area)
     finally:
         file.write_text(text)
 
@@ -272,15 +290,17 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=COUNT, metavar="N", help=f"number of mutants to draw (default {COUNT})")
     parser.add_argument("--seed", type=int, default=SEED, metavar="S", help=f"seed of the draw (default {SEED})")
     parser.add_argument("--again", action="store_true", help="try only what the last run did not kill")
+    parser.add_argument("--of", choices=AREAS, default="certificate", help="what is changed (default certificate)")
     options = parser.parse_args()
-    began, tree, kept = time.monotonic(), OWN / "tree", OWN / "outcomes.json"
-    known, mutants = reasons(REASONS), listed(ROOT)
+    area = AREAS[options.of]
+    began, tree, kept = time.monotonic(), OWN / "tree", OWN / f"outcomes-{options.of}.json"
+    known, mutants = reasons(REASONS), listed(ROOT, area)
     chosen = drawn(mutants, options.count, options.seed)
     print(f"{len(mutants)} mutants, {len(chosen)} drawn with seed {options.seed}", flush=True)
     copied(ROOT, tree)
     (OWN / "rustc").write_text(WRAPPER)
     (OWN / "rustc").chmod(0o755)
-    first = judged(tree)
+    first = judged(tree, area)
     if first[0] != "survived":
         print(f"without a mutant the tests end with: {' in stage '.join(first)}", file=sys.stderr)
         return 1
@@ -289,7 +309,7 @@ def main() -> int:
     outcomes = []
     for name, mutant in chosen:
         if last.get(name, "survived") == "survived":
-            outcome, stage = tried(mutant, tree)
+            outcome, stage = tried(mutant, tree, area)
             print(f"{time.monotonic() - began:6.0f} s  {outcome:<12}{stage:<10}{mutant.name}", flush=True)
         else:
             outcome = last[name]

@@ -49,13 +49,13 @@ class Change(unittest.TestCase):
                 file = Path(folder) / LESS.file
                 file.parent.mkdir()
                 file.write_text(TEXT)
-                judged.side_effect = lambda tree: (self.assertIn(">", file.read_text().split("\n")[1]), ending)[1]
+                judged.side_effect = lambda tree, _: (self.assertIn(">", file.read_text().split("\n")[1]), ending)[1]
                 if ending:
                     judged.side_effect = ending
                     with self.assertRaises(ending):
-                        mutants.tried(LESS, Path(folder))
+                        mutants.tried(LESS, Path(folder), mutants.Area((), ()))
                 else:
-                    mutants.tried(LESS, Path(folder))
+                    mutants.tried(LESS, Path(folder), mutants.Area((), ()))
                 self.assertEqual(file.read_text(), TEXT)
 
 
@@ -121,12 +121,11 @@ class Stages(unittest.TestCase):
         stage = Stage("only", (), ())
         run = mutants.ended
         with (
-            mock.patch.object(mutants, "STAGES", (stage,)),
             mock.patch.object(mutants, "TEST_SECONDS", 1.0),
             mock.patch.object(mutants, "programs", lambda tree, stage: [program] if builds else None),
             mock.patch.object(mutants, "ended", lambda command, *rest: run(command[0], *rest)),
         ):
-            return mutants.judged(Path("."))
+            return mutants.judged(Path("."), mutants.Area((), (stage,)))
 
     def test_each_ending_has_its_name(self):
         self.assertEqual(self.verdict("pass"), ("survived", ""))

@@ -52,6 +52,29 @@ fn kinds() -> Vec<(&'static str, [Value; 2])> {
         json!({"obstacles": obstacles})
     });
     let on_plane: Vec<Value> = on_plane.collect();
+    let lowered = |axes: usize| {
+        let last = ["y", "z"][axes - 2];
+        let line = |from: f64, to: f64, cells: usize| json!({"points": [from, to], "divisions": [cells]});
+        let mut support = json!({"on": {"boundary": "cap.top"}, "x": 0, "y": 0});
+        support[last] = json!(-0.01);
+        let body = match axes {
+            2 => json!({"rectangle": {"x": line(0.3, 0.7, 5), "y": line(0.5, 0.7, 2)}}),
+            _ => {
+                json!({"box": {"x": line(0.3, 0.7, 2), "y": line(0.3, 0.7, 2), "z": line(0.5, 0.7, 1), "element": "tet4"}})
+            }
+        };
+        let scene = if axes == 2 { classical(0.3) } else { block(2) };
+        let mut supports = scene["supports"].as_array().unwrap().clone();
+        supports.push(support);
+        json!({"further-bodies": [{"name": "cap", "body": body, "material": {"young": 3e6, "poisson": 0.3}}], "supports": supports,
+            "obstacles": [{"boundary": "top", "approach": format!("+{last}"), "shape": {"body": {"boundary": "cap.bottom"}}}]})
+    };
+    let tied = [2, 3].map(|axes| {
+        let mut scene = lowered(axes);
+        scene["ties"] = json!([{"surfaces": {"boundary": "cap.bottom", "to": "top"}}]);
+        scene["obstacles"] = [classical(0.3), block(2)][axes - 2]["obstacles"].clone();
+        scene
+    });
     vec![
         ("one material, supports along axes, constant loads", both(json!({}))),
         ("several materials", [[[0.0, 0.0, 0.0], [0.5, 0.25, 0.0]], [[0.0; 3], [0.5, 1.0, 0.25]]].map(|[min, max]| {
@@ -70,6 +93,8 @@ fn kinds() -> Vec<(&'static str, [Value; 2])> {
         ("`moment`", [json!([1e3]), json!([0, 1e2, 0])].map(|value| json!({"loads": [{"moment": {"boundary": "left", "value": value}}]}))),
         ("`profile` with kinks at nodes", [profile(0.25, 2), profile(0.25, 3)]),
         ("rows along the normal of a plane", [on_plane[0].clone(), on_plane[1].clone()]),
+        ("several bodies, rows along one direction", [lowered(2), lowered(3)]),
+        ("`ties`", tied),
         ("`profile` with a kink inside an edge", [profile(0.3, 2), profile(0.3, 3)]),
         ("rows along normals that change", obstacle("rule", json!("closest-point"))),
         ("a support at a point", supported([json!({"on": {"point": [1, 0.5]}, "x": 0}), json!({"on": {"point": [0, 0, 0.5]}, "x": 0})])),

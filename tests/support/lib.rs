@@ -18,6 +18,7 @@ pub mod impact;
 pub mod key_scenes;
 pub mod manufactured;
 pub mod oracles;
+pub mod pair_scenes;
 pub mod plane_scenes;
 pub mod problems;
 pub mod process;

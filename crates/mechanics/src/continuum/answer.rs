@@ -11,7 +11,7 @@ use crate::fem::{Boundary, ElementKind, Mesh};
 pub struct ContinuumAnswer {
     /// Six-node triangles or ten-node tetrahedra.
     pub kind: ElementKind,
-    /// The corners of the mesh, then the middles of its edges.
+    /// Of each body the corners of the mesh, then the middles of its edges.
     pub nodes: Vec<Point>,
     /// The nodes of each element, in the order of its kind.
     pub elements: Vec<Vec<usize>>,
@@ -45,11 +45,19 @@ impl ContinuumAnswer {
     /// # Errors
     /// [`Error::Mesh`] for elements that form no mesh.
     pub fn mesh(&self) -> Result<Mesh, Error> {
+        self.mesh_with(|_| true)
+    }
+
+    /// The same with those boundaries whose names are kept.
+    ///
+    /// # Errors
+    /// As [`ContinuumAnswer::mesh`].
+    pub(crate) fn mesh_with(&self, keeps: impl Fn(&str) -> bool) -> Result<Mesh, Error> {
         // As a part of itself, a boundary has its facets in the order in which they follow each other.
         let boundary = |(name, facets): &(String, Vec<Vec<usize>>)| {
             Boundary::new(name, self.kind.facet(), facets.concat()).part(name, |_| true)
         };
-        let boundaries = self.boundaries.iter().map(boundary).collect();
+        let boundaries = self.boundaries.iter().filter(|boundary| keeps(&boundary.0)).map(boundary).collect();
         Mesh::new(self.nodes.clone(), self.kind, self.elements.concat(), boundaries)
     }
 }
@@ -68,10 +76,17 @@ impl Bracket<'_> {
         let corners = (0..mesh.nodes.len()).map(of);
         let middles =
             mesh.edges.iter().enumerate().map(|(edge, &[a, b])| half(half(of(a), of(b)), of(mesh.nodes.len() + edge)));
-        let elements: Vec<Vec<usize>> = (0..mesh.count()).map(|cell| self.element(kind, cell)).collect();
+        let displacement: Vec<Point> = corners.chain(middles).collect();
+        let places = self.displacements.places();
+        let order = self.in_bodies(places.len());
+        let mut number = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(new, &function)| number[function] = new);
+        let elements: Vec<Vec<usize>> = (0..mesh.count())
+            .map(|cell| self.element(kind, cell).into_iter().map(|function| number[function]).collect())
+            .collect();
         let mut boundaries: Vec<_> = self.problem.boundaries.iter().map(|name| (name.clone(), Vec::new())).collect();
         for outer in mesh.surface() {
-            let (element, opposite) = (&elements[outer.cell], mesh.cell(outer.cell)[outer.local]);
+            let (element, opposite) = (&elements[outer.cell], number[mesh.cell(outer.cell)[outer.local]]);
             let on_side = |face: &&&[usize]| face.iter().all(|&local| element[local] != opposite);
             let Some(face) = kind.reference().faces.iter().find(on_side) else { continue };
             for &boundary in &self.problem.conditions[outer.condition].boundaries {
@@ -81,18 +96,25 @@ impl Bracket<'_> {
         ContinuumAnswer {
             kind,
             boundaries,
-            nodes: mesh
-                .nodes
-                .iter()
-                .copied()
-                .chain(mesh.edges.iter().map(|&[a, b]| half(mesh.nodes[a], mesh.nodes[b])))
-                .collect(),
-            displacement: corners.chain(middles).collect(),
+            nodes: order.iter().map(|&function| places[function]).collect(),
+            displacement: order.iter().map(|&function| displacement[function]).collect(),
             elements,
             stress: (0..mesh.count()).map(|cell| self.mean_stress(cell)).collect(),
             origins: mesh.origins.clone(),
             shares: self.shares.clone(),
         }
+    }
+
+    /// The functions of the displacement, body by body.
+    fn in_bodies(&self, count: usize) -> Vec<usize> {
+        let mut body_of = vec![0; count];
+        for (cell, functions) in self.displacements.numbers.iter().enumerate() {
+            let body = self.problem.bodies.iter().position(|body| body.contains(&self.mesh.origins[cell]));
+            functions.iter().for_each(|&number| body_of[number / self.mesh.dimension] = body.unwrap_or(0));
+        }
+        let mut order: Vec<usize> = (0..count).collect();
+        order.sort_by_key(|&function| body_of[function]);
+        order
     }
 
     /// The nodes of a simplex in the order of a kind.

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::mesh::SimplexMesh;
-use super::problem::{Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium};
+use super::mesh::{Cells, SimplexMesh};
+use super::problem::{Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, Surface};
 use super::simplex::{Point, pairs};
 use crate::fem::geometry::COORDINATES;
 use crate::fem::material::{Lame, Stiffness};
@@ -35,6 +35,7 @@ pub fn filled(dimension: usize, lame: Lame, body_force: Point) -> ContinuumProbl
         is_axisymmetric: false,
         media: vec![Medium { stiffness: Stiffness::Isotropic(lame), own_stress: None, body_force }],
         medium_of: vec![0],
+        bodies: vec![0..1],
         thickness: 1.0,
         conditions: Vec::new(),
         rigid_faces: Vec::new(),
@@ -67,7 +68,7 @@ pub fn body(dimension: usize) -> (ContinuumProblem, SimplexMesh) {
         ],
         obstacles: vec![Facing {
             normal: COORDINATES[dimension - 1],
-            surface: Arc::new(Bowl(dimension)),
+            surface: Surface::Rigid(Arc::new(Bowl(dimension))),
             pressed: None,
         }],
         ..filled(dimension, Lame { lambda: 1.5, mu: 1.0 }, body_force)
@@ -97,7 +98,7 @@ pub fn body(dimension: usize) -> (ContinuumProblem, SimplexMesh) {
         }
     }
     let origins = vec![0; cells.len()];
-    let mut mesh = SimplexMesh::new(dimension, nodes.clone(), &cells, origins, &surface).unwrap();
+    let mut mesh = SimplexMesh::new(dimension, Cells { nodes, cells, origins, surface }).unwrap();
     for _ in 0..if dimension == 2 { 2 } else { 4 } {
         mesh = problem.refined(&mesh, &vec![true; mesh.count()]);
     }

@@ -153,7 +153,8 @@ impl<'a> Bracket<'a> {
         let largest = displacements.largest(&primal.values);
         let (rows, places) = stresses.rows(&of_stress, |place, gap| {
             // What presses must touch, however far it is from a coarse facet.
-            problem.travel(place.obstacle).is_some() || gap - displacements.towards(&primal.values, place) <= largest
+            problem.travel(place.obstacle).is_some()
+                || gap - displacements.mean_towards(&primal.values, place) <= largest
         });
         let posed = of_stress.problem(
             mesh.dimension,
@@ -290,7 +291,7 @@ impl<'a> Bracket<'a> {
         }
         let mut contact_share = 0.0;
         for (index, place) in self.places.iter().enumerate() {
-            let moved = self.displacements.towards(&self.primal.values, place);
+            let moved = self.displacements.mean_towards(&self.primal.values, place);
             let share = -self.pulls[index] * (self.dual.rows[index].gap - moved);
             shares[place.on.cell] += share;
             contact_share += share;

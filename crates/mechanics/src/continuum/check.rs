@@ -1,6 +1,7 @@
 //! The check of a bracket: balance, signs, distances and energies, from the stresses and displacements only.
 
 use super::bound::{Bracket, steepest};
+use super::problem::Surface;
 use super::simplex::{pairs, traction};
 use crate::error::Error;
 use signorini_qp as qp;
@@ -133,17 +134,26 @@ impl Bracket<'_> {
         let largest = self.displacements.largest(values);
         let dimension = self.mesh.dimension;
         for (outer, obstacle) in self.problem.facing(self.mesh) {
-            let (facing, corners) = (&self.problem.obstacles[obstacle], self.mesh.corners_of_facet(outer.facet));
-            let coefficients = self.displacements.along(values, &outer, facing.normal);
-            let travel = self.displacements.travel(obstacle).map_or(0.0, |(travel, share)| share * values[travel]);
+            let corners = self.mesh.corners_of_facet(outer.facet);
+            let coefficients = self.displacements.towards(values, &outer, obstacle);
             for weights in samples(dimension) {
-                let place = [0, 1, 2]
-                    .map(|axis| corners.iter().zip(weights).map(|(corner, weight)| weight * corner[axis]).sum());
                 let of_pair = |[i, j]: [usize; 2]| weights[i] * weights[j] * if i == j { 1.0 } else { 2.0 };
-                let moved: f64 =
-                    pairs(dimension).zip(&coefficients).map(|(pair, coefficient)| of_pair(pair) * coefficient).sum();
-                if let Some(gap) = facing.surface.gap(&vec![place; dimension]) {
-                    deepest = deepest.max(moved + travel - gap.coefficients[0]);
+                let at = |coefficients: &[f64]| -> f64 {
+                    pairs(dimension).zip(coefficients).map(|(pair, coefficient)| of_pair(pair) * coefficient).sum()
+                };
+                let gap = match &self.problem.obstacles[obstacle].surface {
+                    Surface::Rigid(distance) => {
+                        let place = [0, 1, 2].map(|axis| {
+                            corners.iter().zip(weights).map(|(corner, weight)| weight * corner[axis]).sum()
+                        });
+                        distance.gap(&vec![place; dimension]).map(|gap| gap.coefficients[0])
+                    }
+                    Surface::Body { .. } => {
+                        self.problem.gap(self.mesh, outer.facet, obstacle).map(|gap| at(&gap.coefficients))
+                    }
+                };
+                if let Some(gap) = gap {
+                    deepest = deepest.max(at(&coefficients) - gap);
                 }
             }
         }

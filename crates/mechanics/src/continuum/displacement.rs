@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use super::axis::{Sample, samples};
 use super::mesh::{OuterFacet, SimplexMesh};
+use super::opposite::Partner;
 use super::problem::{ContinuumProblem, weighted_mean};
 use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, corners_of_side, pairs, work};
 use super::stress::Place;
@@ -60,16 +61,23 @@ impl<'a> Displacements<'a> {
         self.on_facet(outer).into_iter().map(along).collect()
     }
 
-    /// The mean of a displacement towards an obstacle on a facet with the weight of a corner, as in a row of the stress, without the travel.
-    fn approached(&self, values: &[f64], outer: &OuterFacet, corner: usize, obstacle: usize) -> f64 {
-        let normal = self.problem.obstacles[obstacle].normal;
-        weighted_mean(self.mesh.dimension, corner, &self.along(values, outer, normal))
+    /// The coefficients of a displacement on a facet towards an obstacle, less that of the obstacle.
+    pub fn towards(&self, values: &[f64], outer: &OuterFacet, obstacle: usize) -> Vec<f64> {
+        let (dimension, normal) = (self.mesh.dimension, self.problem.obstacles[obstacle].normal);
+        let travel = self.travel(obstacle).map_or(0.0, |(travel, share)| share * values[travel]);
+        let own = self.along(values, outer, normal).into_iter().map(|coefficient| coefficient + travel);
+        match self.mesh.partner(outer.facet, obstacle) {
+            None => own.collect(),
+            Some(partner) => {
+                let other = self.along(values, &partner.on, normal);
+                own.zip(opposite_functions(dimension, partner)).map(|(own, function)| own - other[function]).collect()
+            }
+        }
     }
 
-    /// The same mean with the travel of the obstacle.
-    pub fn towards(&self, values: &[f64], place: &Place) -> f64 {
-        let travel = self.travel(place.obstacle).map_or(0.0, |(travel, share)| share * values[travel]);
-        self.approached(values, &place.on, place.corner, place.obstacle) + travel
+    /// The mean of a displacement towards an obstacle at a place, as in a row of the stress.
+    pub fn mean_towards(&self, values: &[f64], place: &Place) -> f64 {
+        weighted_mean(self.mesh.dimension, place.corner, &self.towards(values, &place.on, place.obstacle))
     }
 
     /// The largest component of a displacement.
@@ -94,19 +102,25 @@ impl<'a> Displacements<'a> {
     /// # Errors
     /// [`qp::Error::Infeasible`] if a prescribed displacement leads into an obstacle.
     pub fn rows(&self, unknowns: &Unknowns) -> Result<[Vec<Row>; 2], Error> {
-        let mut gaps: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+        let mut gaps: BTreeMap<(usize, usize, Option<usize>), f64> = BTreeMap::new();
+        let dimension = self.mesh.dimension;
         for (outer, number) in self.problem.facing(self.mesh) {
-            let facing = &self.problem.obstacles[number];
-            let Some(gap) = facing.surface.gap(&self.mesh.corners_of_facet(outer.facet)) else { continue };
+            let Some(gap) = self.problem.gap(self.mesh, outer.facet, number) else { continue };
+            let partner = self.mesh.partner(outer.facet, number).map(|partner| {
+                let functions = self.on_facet(&partner.on);
+                opposite_functions(dimension, partner).map(move |function| functions[function])
+            });
+            let mut others = partner.into_iter().flatten();
             for (function, bound) in self.on_facet(&outer).into_iter().zip(gap.lower()) {
-                let least = gaps.entry((number, function)).or_insert(f64::INFINITY);
+                let least = gaps.entry((number, function, others.next())).or_insert(f64::INFINITY);
                 *least = least.min(bound);
             }
         }
         let (mut rows, mut held) = (Vec::with_capacity(gaps.len()), Vec::new());
-        for ((number, function), gap) in gaps {
+        for ((number, function, other), gap) in gaps {
             let (normal, travel) = (self.problem.obstacles[number].normal, self.travel(number));
-            let row = Row::of(function, self.mesh.dimension, normal, travel, gap);
+            let row =
+                Row::of(function, dimension, normal, gap).with_other(other, dimension, normal).with_travel(travel);
             let (free, prescribed) = unknowns.of_row(&row);
             match free.is_empty() {
                 true if prescribed > gap => {
@@ -235,6 +249,15 @@ fn local_functions(dimension: usize, side: usize) -> impl Iterator<Item = usize>
     pairs(dimension).map(move |pair| {
         let pair = pair.map(|corner| corners[corner]);
         pairs(dimension + 1).position(|other| other == key(pair[0], pair[1])).unwrap_or(0)
+    })
+}
+
+/// For each function on a facet the number of the one on the opposite facet.
+fn opposite_functions(dimension: usize, partner: &Partner) -> impl Iterator<Item = usize> + use<> {
+    let corners = partner.corners;
+    pairs(dimension).map(move |pair| {
+        let [i, j] = pair.map(|corner| corners[corner]);
+        pairs(dimension).position(|other| other == key(i, j)).unwrap_or(0)
     })
 }
 

@@ -12,7 +12,7 @@
 //! and the last two terms lie between 0 and `beta S`, if `1 + z_n <= beta (g - v_n)` and `-p_z <= beta (-p_tau)`, coefficient by
 //! coefficient, with `S = integral of (-p) (g - v_n) + (-p_tau) (g - u_n) >= 0`. z and `tau_z` solve the two problems with contact held.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use super::axis::Sample;
 use super::bound::{Bracket, Side};
@@ -172,8 +172,7 @@ impl Bracket<'_> {
         base -= test.displacement.iter().zip(&load).map(|(value, load)| value * load).sum::<f64>();
         let [mut low, mut high] = [base; 2];
         for (place, (&pull, row)) in self.places.iter().zip(test.pulls.iter().zip(&self.dual.rows)) {
-            let corners = self.mesh.corners_of_facet(place.on.facet);
-            let gap = self.problem.obstacles[place.obstacle].surface.gap(&corners);
+            let gap = self.problem.gap(self.mesh, place.on.facet, place.obstacle);
             low += pull * row.gap;
             high += pull * (row.gap - gap.map_or(0.0, |gap| gap.below + gap.above));
         }
@@ -209,7 +208,8 @@ impl Bracket<'_> {
     fn bonded_displacement(&self, bonded: &mut [bool], blocks: &[Block]) -> Result<Option<Vec<f64>>, Error> {
         let (rows, places) = (&self.primal.rows, self.displacements.places());
         for _ in 0..ROUNDS {
-            let (unknowns, load) = with_contact_held(&self.primal, bonded);
+            let Some(unknowns) = with_contact_held(&self.primal, bonded) else { return Ok(None) };
+            let load = vec![0.0; unknowns.count()];
             let numbers = &self.displacements.numbers;
             let posed = unknowns.problem(self.mesh.dimension, numbers, blocks, &load, &[], &places)?;
             let Some(free) = self.linear(&posed) else { return Ok(None) };
@@ -239,7 +239,8 @@ impl Bracket<'_> {
     ) -> Result<Option<Pressed>, Error> {
         let places = self.stresses.places();
         for _ in 0..ROUNDS {
-            let (unknowns, load) = with_contact_held(&self.dual, pressed);
+            let Some(unknowns) = with_contact_held(&self.dual, pressed) else { return Ok(None) };
+            let load = vec![0.0; unknowns.count()];
             let numbers = &self.stresses.numbers;
             let posed = unknowns.problem(self.mesh.dimension, numbers, blocks, &load, &[], &places)?;
             let Some(free) = self.linear(&posed) else { return Ok(None) };
@@ -314,13 +315,10 @@ impl Bracket<'_> {
     }
 }
 
-/// The unknowns with supports at zero, held in these rows at -1 towards the obstacle; and a zero load.
-fn with_contact_held(side: &Side, rows: &[bool]) -> (Unknowns, Vec<f64>) {
-    let chosen = side.rows.iter().zip(rows).filter(|row| *row.1);
-    let of_row = |(row, _)| side.unknowns.own_term(row).map(|(free, coefficient)| (free, -1.0 / coefficient));
-    let values: BTreeMap<usize, f64> = chosen.filter_map(of_row).collect();
-    let load = vec![0.0; side.unknowns.count()];
-    (side.unknowns.with_held(&values), load)
+/// The unknowns with supports at zero, held in these rows at -1 towards the obstacle; `None` if they cannot be.
+fn with_contact_held(side: &Side, rows: &[bool]) -> Option<Unknowns> {
+    let chosen = side.rows.iter().zip(rows).filter(|row| *row.1).map(|row| row.0);
+    side.unknowns.with_held(chosen, -1.0)
 }
 
 /// The largest `x length + beta (radius^2 - x^2)` over x from zero to the radius.

@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use super::bodies::{body, filled, settings};
 use super::bound::Bracket;
-use super::mesh::SimplexMesh;
+use super::mesh::{Cells, SimplexMesh};
 use super::problem::{
     Condition, ContinuumProblem, Distance, Enclosure, Facing, Foundation, Held, Linear, Medium, Pressed, RigidFace,
+    Surface,
 };
 use super::simplex::Point;
 use crate::fem::Formulation;
@@ -76,7 +77,8 @@ fn a_column_on_springs_with_own_stress_is_exact_under_a_plane_that_stands_still_
             (area * energy, strain + base)
         };
         let pressure = -(GAP + OWN / YOUNG) / (1.0 / YOUNG + 1.0 / SPRINGS);
-        problem.obstacles = vec![Facing { normal: COORDINATES[up], surface: Arc::new(Flat(GAP)), pressed: None }];
+        problem.obstacles =
+            vec![Facing { normal: COORDINATES[up], surface: Surface::Rigid(Arc::new(Flat(GAP))), pressed: None }];
         let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
         assert_exact(&bracket, stored(pressure).0);
         let [low, high] = bracket.force_interval().unwrap().unwrap();
@@ -111,7 +113,7 @@ fn a_column_on_springs_with_own_stress_is_exact_under_a_plane_that_stands_still_
 /// Two layers of height 1/2 on a clamped base, with a condition on the edge between them.
 fn layers(media: [Medium; 2], between: Condition) -> (ContinuumProblem, SimplexMesh) {
     let nodes: Vec<Point> = (0..6).map(|node| [f64::from(node % 2), f64::from(node / 2) / 2.0, 0.0]).collect();
-    let cells = [vec![0, 1, 3], vec![0, 3, 2], vec![2, 3, 5], vec![2, 5, 4]];
+    let cells = vec![vec![0, 1, 3], vec![0, 3, 2], vec![2, 3, 5], vec![2, 5, 4]];
     let sides = [([0, 1], 0), ([4, 5], 1), ([2, 3], 2), ([0, 2], 4), ([1, 3], 3), ([2, 4], 4), ([3, 5], 3)];
     let surface: HashMap<Vec<usize>, usize> = sides.into_iter().map(|(side, number)| (side.to_vec(), number)).collect();
     let problem = ContinuumProblem {
@@ -126,7 +128,7 @@ fn layers(media: [Medium; 2], between: Condition) -> (ContinuumProblem, SimplexM
         ],
         ..filled(2, Lame { lambda: 0.0, mu: 1.0 }, [0.0; 3])
     };
-    let mesh = SimplexMesh::new(2, nodes, &cells, vec![0, 1, 2, 3], &surface).unwrap();
+    let mesh = SimplexMesh::new(2, Cells { nodes, cells, origins: vec![0, 1, 2, 3], surface }).unwrap();
     let finer = problem.refined(&mesh, &[true, false, true, false]);
     (problem, finer)
 }
@@ -136,7 +138,8 @@ fn layers_of_two_media_share_their_shortening() {
     let [lower, upper] = [2.0, 8.0];
     let (mut problem, mesh) = layers([medium(lower), medium(upper)], Condition::default());
     problem.conditions[1].obstacles = vec![0];
-    problem.obstacles = vec![Facing { normal: COORDINATES[1], surface: Arc::new(Flat(-0.1)), pressed: None }];
+    problem.obstacles =
+        vec![Facing { normal: COORDINATES[1], surface: Surface::Rigid(Arc::new(Flat(-0.1))), pressed: None }];
     let pressure = 0.1 / (0.5 / lower + 0.5 / upper);
     assert_exact(&Bracket::new(&problem, &mesh, None, &settings()).unwrap(), 0.1 * pressure / 2.0);
 }
@@ -168,7 +171,8 @@ fn an_orthotropic_column_has_the_modulus_along_its_axis() {
     problem.conditions[0].held = vec![held(1)];
     problem.conditions[4].held = vec![held(0)];
     problem.conditions[1].obstacles = vec![0];
-    problem.obstacles = vec![Facing { normal: COORDINATES[1], surface: Arc::new(Flat(-0.1)), pressed: None }];
+    problem.obstacles =
+        vec![Facing { normal: COORDINATES[1], surface: Surface::Rigid(Arc::new(Flat(-0.1))), pressed: None }];
     let energy = young[1] * 0.1 * 0.1 / 2.0;
     let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
     assert_exact(&bracket, energy);
@@ -253,7 +257,9 @@ fn a_turned_body_has_the_same_bounds() {
         }
         for facing in &mut turned.obstacles {
             facing.normal = turn.by(facing.normal);
-            facing.surface = Arc::new(Turned(facing.surface.clone(), turn));
+            if let Surface::Rigid(distance) = &facing.surface {
+                facing.surface = Surface::Rigid(Arc::new(Turned(distance.clone(), turn)));
+            }
         }
         let mut turned_mesh = mesh.clone();
         turned_mesh.nodes.iter_mut().for_each(|node| *node = turn.by(*node));

@@ -3,6 +3,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use super::opposite::{Opposite, Partner};
 use super::simplex::{MOST_CORNERS, Point, Simplex, pairs};
 use crate::fem::geometry::{distance, key};
 use crate::fem::mesh::bisection::Tetrahedra;
@@ -19,6 +20,18 @@ const FOLDED: f64 = 0.1;
 
 /// Halvings of a marked tetrahedron.
 const GENERATIONS: usize = 1;
+
+/// Simplices before they are a mesh.
+#[derive(Clone, Debug)]
+pub struct Cells {
+    pub nodes: Vec<Point>,
+    /// The nodes of each simplex.
+    pub cells: Vec<Vec<usize>>,
+    /// The element of the first mesh that contains each simplex.
+    pub origins: Vec<usize>,
+    /// The number of the condition of each facet of the surface and of some inside, by their nodes, increasing.
+    pub surface: HashMap<Vec<usize>, usize>,
+}
 
 /// Simplices that meet in whole facets. A local number k is that of corner k of a simplex, and of the facet opposite to this corner.
 #[derive(Clone, Debug)]
@@ -45,12 +58,16 @@ pub struct SimplexMesh {
     surface: Vec<OuterFacet>,
     /// The ends of the edge that each new node halves, for the last nodes; empty in a first mesh.
     parents: Vec<[usize; 2]>,
+    /// The edges of two bodies that lie opposite to each other, in the plane.
+    opposites: Vec<Opposite>,
+    /// The same by facet and obstacle.
+    partners: HashMap<(usize, usize), Partner>,
     /// How it is refined.
     next: Bisection,
 }
 
 /// A facet of the surface, or one inside that has a condition.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OuterFacet {
     /// Its simplex; the first one of two.
     pub cell: usize,
@@ -82,15 +99,8 @@ fn filled<const N: usize>(nodes: impl IntoIterator<Item = usize>) -> [usize; N] 
 }
 
 impl SimplexMesh {
-    /// The mesh of these simplices, pieces of the elements `origins`, with the condition of each facet of the surface and of some inside, by
-    /// their nodes, increasing. `None` if a facet of the surface has no condition.
-    pub fn new(
-        dimension: usize,
-        nodes: Vec<Point>,
-        cells: &[Vec<usize>],
-        origins: Vec<usize>,
-        surface: &HashMap<Vec<usize>, usize>,
-    ) -> Option<Self> {
+    /// The mesh of these simplices. `None` if a facet of the surface has no condition.
+    pub fn new(dimension: usize, Cells { nodes, cells, origins, surface }: Cells) -> Option<Self> {
         let next = match dimension {
             2 => {
                 let corners = cells.iter().map(|cell| [cell[0], cell[1], cell[2]]);
@@ -98,7 +108,7 @@ impl SimplexMesh {
             }
             _ => {
                 let mut facets = BTreeMap::<_, Vec<_>>::new();
-                for (facet, &condition) in surface {
+                for (facet, &condition) in &surface {
                     let facet: [usize; OF_FACET] = filled(facet.iter().copied());
                     facets.entry(facet).or_default().push((condition, facet));
                 }
@@ -113,6 +123,39 @@ impl SimplexMesh {
         mesh.sides.iter().for_each(|&facet| cells_at[facet] += 1);
         let fits = |(at, condition): (&u8, &Option<usize>)| *at == 2 || condition.is_some();
         cells_at.iter().zip(&mesh.conditions).all(fits).then_some(mesh)
+    }
+
+    /// The mesh with edges of the surface in the plane that lie opposite to each other, and stay so when they are refined.
+    pub fn with_opposites(mut self, opposites: Vec<Opposite>) -> Self {
+        let nodes = |outer: &OuterFacet| -> [usize; 2] { [0, 1].map(|corner| self.facets[outer.facet][corner]) };
+        let at: HashMap<[usize; 2], OuterFacet> = self.surface.iter().map(|outer| (nodes(outer), *outer)).collect();
+        let partner = |opposite: &Opposite| {
+            let [own, other] = opposite.edges().map(|edge| at.get(&edge));
+            let is_reversed = (opposite.own[0] < opposite.own[1]) != (opposite.other[0] < opposite.other[1]);
+            let partner = Partner { on: *other?, corners: if is_reversed { [1, 0] } else { [0, 1] } };
+            Some(((own?.facet, opposite.obstacle), partner))
+        };
+        self.partners = opposites.iter().filter_map(partner).collect();
+        SimplexMesh { opposites, ..self }
+    }
+
+    /// The simplices without their numbers.
+    pub fn cells(&self) -> Cells {
+        let conditions = self.facets.iter().zip(&self.conditions);
+        let of_facet = |(facet, condition): (&[usize; OF_FACET], &Option<usize>)| {
+            Some((facet[..self.dimension].to_vec(), (*condition)?))
+        };
+        Cells {
+            nodes: self.nodes.clone(),
+            cells: (0..self.count()).map(|cell| self.cell(cell).to_vec()).collect(),
+            origins: self.origins.clone(),
+            surface: conditions.filter_map(of_facet).collect(),
+        }
+    }
+
+    /// The facet of another body, an obstacle, that lies opposite to a facet; `None` without one.
+    pub fn partner(&self, facet: usize, obstacle: usize) -> Option<&Partner> {
+        self.partners.get(&(facet, obstacle))
     }
 
     /// Numbers edges and facets.
@@ -154,6 +197,8 @@ impl SimplexMesh {
             conditions,
             surface,
             parents,
+            opposites: Vec::new(),
+            partners: HashMap::new(),
             next,
         }
     }
@@ -247,7 +292,7 @@ impl SimplexMesh {
         for (triangle, _) in triangles.iter().zip(marked).filter(|entry| *entry.1) {
             halved.extend(sides(triangle).map(|edge| (edge, None)));
         }
-        // A triangle with a halved edge halves its first edge too.
+        // A triangle with a halved edge halves its first edge too, and edges opposite to each other are halved together.
         let mut waiting = true;
         while waiting {
             waiting = false;
@@ -255,6 +300,12 @@ impl SimplexMesh {
                 let hangs = halved.contains_key(&second) || halved.contains_key(&third);
                 if hangs && !halved.contains_key(&first) {
                     halved.insert(first, None);
+                    waiting = true;
+                }
+            }
+            for [own, other] in self.opposites.iter().map(Opposite::edges) {
+                if halved.contains_key(&own) != halved.contains_key(&other) {
+                    halved.extend([(own, None), (other, None)]);
                     waiting = true;
                 }
             }
@@ -284,8 +335,12 @@ impl SimplexMesh {
                 }
             }
         }
+        let middle = |edge: [usize; 2]| halved.get(&edge).copied().flatten();
+        let opposites = self.opposites.iter().flat_map(|opposite| opposite.halved(middle)).collect();
         let cells = pieces.clone().into_iter().map(filled);
-        SimplexMesh { parents, ..Self::of(2, nodes, cells, origins, &surface, Bisection::Triangles(pieces)) }
+        let mesh = Self::of(2, nodes, cells, origins, &surface, Bisection::Triangles(pieces));
+        let mesh = SimplexMesh { parents, ..mesh };
+        if self.opposites.is_empty() { mesh } else { mesh.with_opposites(opposites) }
     }
 
     /// A property of nodes of the previous mesh, carried to this one: a new node has it if both ends of its edge have it.
@@ -313,7 +368,8 @@ mod tests {
     fn square() -> SimplexMesh {
         let nodes = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
         let surface = HashMap::from([(vec![0, 1], 0), (vec![1, 2], 1), (vec![2, 3], 2), (vec![0, 3], 3)]);
-        SimplexMesh::new(2, nodes, &[vec![0, 1, 2], vec![0, 2, 3]], vec![0, 1], &surface).unwrap()
+        let cells = Cells { nodes, cells: vec![vec![0, 1, 2], vec![0, 2, 3]], origins: vec![0, 1], surface };
+        SimplexMesh::new(2, cells).unwrap()
     }
 
     /// The unit cube in six tetrahedra, with one condition for each of its six sides.
@@ -331,7 +387,7 @@ mod tests {
                 }
             }
         }
-        SimplexMesh::new(3, nodes, &cells, (0..6).collect(), &surface).unwrap()
+        SimplexMesh::new(3, Cells { nodes, cells, origins: (0..6).collect(), surface }).unwrap()
     }
 
     #[test]
@@ -389,6 +445,7 @@ mod tests {
     fn a_surface_without_a_condition_is_no_mesh() {
         let nodes = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
         let surface = HashMap::from([(vec![0, 1], 0), (vec![1, 2], 1)]);
-        assert!(SimplexMesh::new(2, nodes, &[vec![0, 1, 2]], vec![0], &surface).is_none());
+        let cells = Cells { nodes, cells: vec![vec![0, 1, 2]], origins: vec![0], surface };
+        assert!(SimplexMesh::new(2, cells).is_none());
     }
 }

@@ -16,18 +16,21 @@ mod judge;
 mod keys;
 mod mesh;
 mod normal;
+mod opposite;
 mod part_stress;
 mod problem;
 mod simplex;
 mod springs;
 mod stress;
 mod system;
+#[cfg(test)]
+mod two_bodies;
 
 pub use answer::ContinuumAnswer;
 pub use bound::Bracket;
 pub use judge::Judged;
-pub use mesh::SimplexMesh;
+pub use mesh::{Cells, SimplexMesh};
 pub use problem::{
-    Circle, Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, Pressed, RigidFace,
+    Circle, Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, Pressed, RigidFace, Surface,
 };
 pub use simplex::{Point, pairs};

@@ -1,11 +1,12 @@
 //! The contact problem of a body before any mesh: its media, and the conditions on its surface.
 
 use std::fmt::Debug;
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::mesh::{OuterFacet, SimplexMesh};
 use super::simplex::{ENTRIES, Point, Tensor, pairs, work};
-use crate::fem::geometry::{COORDINATES, distance, dot};
+use crate::fem::geometry::{COORDINATES, distance, dot, minus};
 use crate::fem::material::{Lame, Matrix, Stiffness};
 
 /// Frictionless contact of elastic media that fill a polygon, in plane strain or plane stress, or a polyhedron.
@@ -19,6 +20,8 @@ pub struct ContinuumProblem {
     pub media: Vec<Medium>,
     /// The number of the medium of each element of the first mesh.
     pub medium_of: Vec<usize>,
+    /// The elements of the first mesh of each body.
+    pub bodies: Vec<Range<usize>>,
     /// Depth across the plane, in length; 1 in space, and the angle of a full turn about an axis.
     pub thickness: f64,
     /// The conditions on facets, most of them on the surface: sides of the outline in the plane.
@@ -66,6 +69,8 @@ pub struct Condition {
     pub springs: Foundation,
     /// The obstacles that the facet may touch.
     pub obstacles: Vec<usize>,
+    /// The obstacles whose surface the facet is a part of: those that are bodies.
+    pub faces: Vec<usize>,
     /// The named parts of the surface that the facet belongs to.
     pub boundaries: Vec<usize>,
     /// In the plane, the circle on which new nodes are placed; without it they halve the straight side.
@@ -162,15 +167,31 @@ impl Condition {
     }
 }
 
-/// A rigid obstacle with rows along one direction.
+/// An obstacle with rows along one direction.
 #[derive(Clone, Debug)]
 pub struct Facing {
     /// The unit vector from the body towards the obstacle.
     pub normal: Point,
-    /// Its distance function.
-    pub surface: Arc<dyn Distance>,
+    /// What the body meets.
+    pub surface: Surface,
     /// What presses it, if it moves.
     pub pressed: Option<Pressed>,
+}
+
+/// What a body meets at an obstacle.
+#[derive(Clone, Debug)]
+pub enum Surface {
+    /// A rigid surface with this distance function.
+    Rigid(Arc<dyn Distance>),
+    /// Another body, in the plane.
+    Body {
+        /// Largest distance at which the bodies may touch, in length.
+        reach: f64,
+        /// The gap everywhere, in length, instead of the distance of the bodies.
+        fit: Option<f64>,
+        /// How far the other body stands back along the normal, in length.
+        shift: f64,
+    },
 }
 
 /// An obstacle that a force presses.
@@ -212,6 +233,14 @@ impl Enclosure {
     }
 }
 
+/// The distance along a normal from a place to the line through two points in the plane.
+fn along_normal(normal: Point, place: Point, line: [Point; 2]) -> f64 {
+    let across = [-normal[1], normal[0], 0.0];
+    let ([first, second], along) = (line.map(|end| minus(end, place)), minus(line[1], line[0]));
+    let share = -dot(across, first) / dot(across, along);
+    (1.0 - share) * dot(normal, first) + share * dot(normal, second)
+}
+
 /// The mean over a facet of a quadratic function, given by its Bernstein coefficients, with the weight of a corner: its barycentric
 /// coordinate.
 pub fn weighted_mean(corners: usize, corner: usize, coefficients: &[f64]) -> f64 {
@@ -226,6 +255,26 @@ impl ContinuumProblem {
         mesh.surface().flat_map(move |outer| {
             self.conditions[outer.condition].obstacles.iter().map(move |&obstacle| (outer, obstacle))
         })
+    }
+
+    /// The gap to an obstacle on a facet; `None` if it is out of reach on all of the facet.
+    pub fn gap(&self, mesh: &SimplexMesh, facet: usize, obstacle: usize) -> Option<Enclosure> {
+        let Facing { normal, surface, .. } = &self.obstacles[obstacle];
+        let corners = mesh.corners_of_facet(facet);
+        match surface {
+            Surface::Rigid(distance) => distance.gap(&corners),
+            Surface::Body { fit, shift, .. } => {
+                let partner = mesh.partner(facet, obstacle)?;
+                let others = mesh.corners_of_facet(partner.on.facet);
+                let away = |corner: usize| {
+                    let measured = || along_normal(*normal, corners[corner], partner.corners.map(|of| others[of]));
+                    fit.unwrap_or_else(measured) + shift
+                };
+                let of_corners = [away(0), away(1)];
+                let coefficients = pairs(2).map(|[i, j]| (of_corners[i] + of_corners[j]) / 2.0).collect();
+                Some(Enclosure { coefficients, below: 0.0, above: 0.0 })
+            }
+        }
     }
 
     /// The springs on a facet.
@@ -424,6 +473,7 @@ mod tests {
     use std::collections::HashMap;
 
     use super::super::bodies::filled;
+    use super::super::mesh::Cells;
     use super::*;
 
     /// A flat triangle on a chord: the middle of the arc lies beyond its tip, or not.
@@ -438,7 +488,8 @@ mod tests {
         let surface = HashMap::from([(vec![0, 1], 0), (vec![1, 2], 1), (vec![0, 2], 1)]);
         for (tip, moved) in [(-0.1, 0.0), (-2.0, 1.0 - on_circle.radius)] {
             let nodes = vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, tip, 0.0]];
-            let mesh = SimplexMesh::new(2, nodes, &[vec![0, 2, 1]], vec![0], &surface).unwrap();
+            let cells = Cells { nodes, cells: vec![vec![0, 2, 1]], origins: vec![0], surface: surface.clone() };
+            let mesh = SimplexMesh::new(2, cells).unwrap();
             let finer = problem.refined(&mesh, &[true]);
             let middle = finer.nodes.iter().skip(3).find(|node| node[0] == 0.0).unwrap();
             assert!((middle[1] - moved).abs() < 1e-15, "{middle:?}");

@@ -120,15 +120,19 @@ impl<'a> Stresses<'a> {
         let (mut rows, mut places) = (Vec::new(), Vec::new());
         for (on, obstacle) in self.problem.facing(self.mesh) {
             let facing = &self.problem.obstacles[obstacle];
-            let gap = facing.surface.gap(&self.mesh.corners_of_facet(on.facet));
+            let gap = self.problem.gap(self.mesh, on.facet, obstacle);
             let Some(gap) = gap.filter(|gap| gap.above.is_finite()) else { continue };
             let corners = self.mesh.corners_of_facet(on.facet);
             // On an axis the pressure times the radius is zero.
             let means = gap.upper_means(self.mesh.dimension).into_iter().enumerate();
             for (corner, gap) in means.filter(|&(corner, _)| !self.problem.is_on_axis(corners[corner])) {
                 let at = self.place(on.facet, corner);
-                let row = Row::of(at, self.mesh.dimension, facing.normal, self.travel(obstacle), gap);
                 let place = Place { on, corner, obstacle };
+                let other = self.opposite(&place).map(|(on, corner)| self.place(on.facet, corner));
+                let dimension = self.mesh.dimension;
+                let row = Row::of(at, dimension, facing.normal, gap)
+                    .with_other(other, dimension, facing.normal)
+                    .with_travel(self.travel(obstacle));
                 if !unknowns.of_row(&row).0.is_empty() && may_touch(&place, gap) {
                     rows.push(row);
                     places.push(place);
@@ -136,6 +140,12 @@ impl<'a> Stresses<'a> {
             }
         }
         (rows, places)
+    }
+
+    /// The facet of another body, and its corner, opposite to a place; `None` at a rigid obstacle.
+    fn opposite(&self, place: &Place) -> Option<(OuterFacet, usize)> {
+        let partner = self.mesh.partner(place.on.facet, place.obstacle)?;
+        Some((partner.on, partner.corners[place.corner]))
     }
 
     /// The unknowns of each simplex, with its element.
@@ -228,6 +238,9 @@ impl<'a> Stresses<'a> {
         for (place, &pull) in places.iter().zip(pulls) {
             let normal = self.problem.obstacles[place.obstacle].normal;
             self.at_corner(&place.on, place.corner, normal, pull).for_each(&mut add);
+            if let Some((other, corner)) = self.opposite(place) {
+                self.at_corner(&other, corner, normal, -pull).for_each(&mut add);
+            }
         }
         forces
     }

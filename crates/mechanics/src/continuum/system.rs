@@ -71,21 +71,35 @@ impl Numbers {
 /// A bound on a sum of unknowns: `sum of coefficient x <= gap`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// The unknowns and their coefficients.
+    /// The unknowns and their coefficients, those of its place first.
     pub terms: Vec<(usize, f64)>,
+    /// The number of terms of its place.
+    own: usize,
     /// In length.
     pub gap: f64,
 }
 
 impl Row {
-    /// The bound on the displacement of a place along a normal, with the travel of the obstacle towards it and the share that counts.
-    pub fn of(place: usize, dimension: usize, normal: Point, travel: Option<(usize, f64)>, gap: f64) -> Self {
-        let along = (0..dimension).filter(|&axis| normal[axis] != 0.0);
-        let terms = along.map(|axis| (dimension * place + axis, normal[axis]));
-        Row { terms: terms.chain(travel).collect(), gap }
+    /// The bound on the displacement of a place along a normal.
+    pub fn of(place: usize, dimension: usize, normal: Point, gap: f64) -> Self {
+        let terms: Vec<_> = along(place, dimension, normal).collect();
+        Row { own: terms.len(), terms, gap }
     }
 
-    /// The place.
+    /// The row less the displacement of a place of another body along the normal.
+    pub fn with_other(mut self, place: Option<usize>, dimension: usize, normal: Point) -> Self {
+        let other = place.into_iter().flat_map(|place| along(place, dimension, normal));
+        self.terms.extend(other.map(|(unknown, part)| (unknown, -part)));
+        self
+    }
+
+    /// The row with the travel of the obstacle towards the body, and the share of it that counts.
+    pub fn with_travel(mut self, travel: Option<(usize, f64)>) -> Self {
+        self.terms.extend(travel);
+        self
+    }
+
+    /// The place whose displacement it bounds.
     pub fn place(&self, dimension: usize) -> usize {
         self.terms.first().map_or(usize::MAX, |term| term.0 / dimension)
     }
@@ -94,6 +108,12 @@ impl Row {
     pub fn value(&self, values: &[f64]) -> f64 {
         self.terms.iter().map(|&(unknown, coefficient)| coefficient * values[unknown]).sum()
     }
+}
+
+/// The unknowns of a place with the components of a vector.
+fn along(place: usize, dimension: usize, vector: Point) -> impl Iterator<Item = (usize, f64)> {
+    let components = vector.into_iter().take(dimension).enumerate();
+    components.filter(|part| part.1 != 0.0).map(move |(axis, part)| (dimension * place + axis, part))
 }
 
 /// All unknowns as linear functions of the free ones.
@@ -252,8 +272,12 @@ impl Unknowns {
 
     /// The free unknowns of a row with their coefficients, and its prescribed part.
     pub fn of_row(&self, row: &Row) -> (Vec<(usize, f64)>, f64) {
+        self.of_terms(&row.terms)
+    }
+
+    fn of_terms(&self, of_all: &[(usize, f64)]) -> (Vec<(usize, f64)>, f64) {
         let (mut terms, mut prescribed) = (BTreeMap::new(), 0.0);
-        for &(unknown, coefficient) in &row.terms {
+        for &(unknown, coefficient) in of_all {
             prescribed += coefficient * self.offset[unknown];
             for &(free, part) in self.terms(unknown) {
                 *terms.entry(free as usize).or_insert(0.0) += coefficient * part;
@@ -262,15 +286,17 @@ impl Unknowns {
         (terms.into_iter().filter(|term| term.1.abs() > DEPENDENT).collect(), prescribed)
     }
 
-    /// The free unknown of a row, if it is the only one and belongs to the place of the row, and its coefficient.
+    /// The free unknown of the place of a row, or of the place opposite to it if that one is held, and its coefficient; `None` unless one
+    /// unknown alone moves the place along the row.
     pub fn own_term(&self, row: &Row) -> Option<(usize, f64)> {
-        match self.of_row(row).0[..] {
+        let of_places = [&row.terms[..row.own], &row.terms[row.own..]].map(|terms| self.of_terms(terms).0);
+        match of_places.iter().find(|terms| !terms.is_empty())?[..] {
             [(free, coefficient)] if free < self.own => Some((free, coefficient)),
             _ => None,
         }
     }
 
-    /// Changes the displacement of the place of a row, if that has a free unknown of its own, so that the sum of the row is `to`.
+    /// Changes the displacement of a place of a row, if that has a free unknown of its own, so that the sum of the row is `to`.
     pub fn move_to(&self, values: &mut [f64], row: &Row, to: f64) {
         let Some((free, coefficient)) = self.own_term(row) else { return };
         let amount = (to - row.value(values)) / coefficient;
@@ -307,26 +333,50 @@ impl Unknowns {
         sums
     }
 
-    /// The same unknowns without prescribed parts, and some of the free ones, each of one place, held at values.
-    pub fn with_held(&self, values: &BTreeMap<usize, f64>) -> Self {
-        let mut held = Unknowns {
-            free: self.free - values.len(),
-            own: self.own - values.len(),
-            moves_rigidly: self.moves_rigidly,
+    /// The same unknowns without prescribed parts, with the sums of some rows held at a value; `None` if the unknown of one row has a part in
+    /// another.
+    pub fn with_held<'r>(&self, rows: impl Iterator<Item = &'r Row>, to: f64) -> Option<Self> {
+        // Each held unknown is a constant and a sum of others.
+        let mut held: BTreeMap<usize, (f64, Vec<(usize, f64)>)> = BTreeMap::new();
+        for row in rows {
+            let (own, coefficient) = self.own_term(row)?;
+            let others = self.of_row(row).0.into_iter().filter(|term| term.0 != own);
+            let given = (to / coefficient, others.map(|(free, part)| (free, -part / coefficient)).collect());
+            let known = held.entry(own).or_insert_with(|| given.clone());
+            if *known != given {
+                return None;
+            }
+        }
+        let others = || held.values().flat_map(|given| &given.1);
+        if others().any(|other| held.contains_key(&other.0)) {
+            return None;
+        }
+        let mut unknowns = Unknowns {
+            free: self.free - held.len(),
+            own: self.own - held.len(),
+            moves_rigidly: self.moves_rigidly && others().next().is_none(),
             supports: self.supports.clone(),
             offset: Vec::with_capacity(self.count()),
             starts: vec![0],
             terms: Vec::with_capacity(self.terms.len()),
         };
         let mut next = 0..;
-        let number = |free: usize| if values.contains_key(&free) { None } else { next.next() };
+        let number = |free: usize| if held.contains_key(&free) { None } else { next.next() };
         let numbers: Vec<Option<usize>> = (0..self.free).map(number).collect();
         for unknown in 0..self.count() {
-            let terms = self.terms(unknown).iter().map(|&(free, part)| (free as usize, part));
-            let prescribed = terms.clone().map(|(free, part)| part * values.get(&free).unwrap_or(&0.0)).sum();
-            held.push(prescribed, terms.filter_map(|(free, part)| Some((numbers[free]?, part))));
+            let (mut prescribed, mut terms) = (0.0, Vec::new());
+            for &(free, part) in self.terms(unknown) {
+                match held.get(&(free as usize)) {
+                    None => terms.push((free as usize, part)),
+                    Some((constant, others)) => {
+                        prescribed += part * constant;
+                        terms.extend(others.iter().map(|&(other, share)| (other, part * share)));
+                    }
+                }
+            }
+            unknowns.push(prescribed, terms.into_iter().filter_map(|(free, part)| Some((numbers[free]?, part))));
         }
-        held
+        Some(unknowns)
     }
 
     /// The rigid motions as values of the free unknowns; `None` with unknowns other than those of places, and about an axis.

@@ -103,7 +103,8 @@ fn of_meshes(guarantee: &Guarantee, no_answer: Option<&String>) -> String {
         Domain::LastPolygon => "the polygon of the last mesh: new nodes lie on the circles of the body",
         Domain::FirstPolyhedron => "the polyhedron of the first mesh, whose edges are straight",
     };
-    text + &entry("domain", domain)
+    text += &entry("domain", domain);
+    text + &entry("not bounded", "peak pressure, width, and stresses at a place")
 }
 
 /// Why no finer mesh was made, and what the goal would need.

@@ -25,6 +25,20 @@ impl Region {
         Region { name: name.into(), nodes, elements }
     }
 
+    /// Regions on a mesh of parts of their elements, region by region, given the element that each is a part of.
+    pub(super) fn on(regions: &[Self], mesh: &Mesh, parents: &[usize]) -> Vec<Self> {
+        let (mut first_node, mut first_element) = (0, 0);
+        let mut next = |region: &Region| {
+            let parts = parents[first_element..].iter().take_while(|&parent| region.elements.contains(parent)).count();
+            let elements = first_element..first_element + parts;
+            let last_node = elements.clone().flat_map(|element| mesh.element(element)).max();
+            let nodes = first_node..last_node.map_or(first_node, |node| node + 1);
+            (first_node, first_element) = (nodes.end, elements.end);
+            Region { name: region.name.clone(), nodes, elements }
+        };
+        regions.iter().map(&mut next).collect()
+    }
+
     /// Its name, the prefix of its boundaries; empty for the first.
     pub fn name(&self) -> &str {
         &self.name

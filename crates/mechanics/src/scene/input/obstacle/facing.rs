@@ -153,6 +153,8 @@ impl ObstacleShape for FacingSpec {
             across: Vec::new(),
             other: other.name.clone(),
             covered: None,
+            reach: f64::INFINITY,
+            fit,
             is_swapped: false,
             warnings: Vec::new(),
         }))

@@ -33,6 +33,7 @@ pub use cylinder::CylinderSpec;
 pub use facing::FacingSpec;
 pub use height_map::HeightMapSpec;
 pub(crate) use order::SideOrder;
+pub(crate) use pairs::Between;
 pub use parabola::ParabolaSpec;
 pub use placed::PlacedObstacle;
 pub use plane::PlaneSpec;

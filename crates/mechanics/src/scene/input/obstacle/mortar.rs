@@ -55,7 +55,16 @@ pub(super) fn between(
     // In the order of the candidates of the boundary that carries the rows.
     let rows = slave.nodes().into_iter().map(|node| of_node.remove(&node)).collect();
     let across = found.opposite.into_iter().map(|seen| (seen.node, facing(seen))).collect();
-    Ok(Between { rows, across, other: master.name.clone(), covered: Some(found.covered), is_swapped, warnings })
+    Ok(Between {
+        rows,
+        across,
+        other: master.name.clone(),
+        covered: Some(found.covered),
+        reach,
+        fit,
+        is_swapped,
+        warnings,
+    })
 }
 
 /// The means of the first boundary over the second within reach, along a direction or half way between the normals of both, at the nodes

@@ -38,6 +38,10 @@ pub(crate) struct Between {
     pub other: String,
     /// Covered shares of the carrying and of the other boundary, if rows are means.
     pub covered: Option<[f64; 2]>,
+    /// Largest distance at which the bodies may touch, in length; infinite without one.
+    pub reach: f64,
+    /// The gap of all rows, in length, instead of the distance of the bodies.
+    pub fit: Option<f64>,
     /// The boundary of the other body carries the rows, so that they lead against the approach direction.
     pub is_swapped: bool,
     /// What the search for rows noticed.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::order::SideOrder;
-use super::pairs::Facing;
+use super::pairs::{Between, Facing};
 use super::row::{Obstacle, ObstacleRow};
 use super::shape::{Geometry, Site};
 use crate::error::Error;
@@ -172,6 +172,14 @@ impl PlacedObstacle {
     /// another body, and outside the plane.
     pub fn outline(&self, gap: f64, segments: usize) -> Vec<[f64; 2]> {
         self.rigid().map_or_else(Vec::new, |obstacle| obstacle.outline(gap, segments))
+    }
+
+    /// The rows against another body; `None` if the obstacle is rigid.
+    pub(crate) fn between(&self) -> Option<&Between> {
+        match &self.geometry {
+            Geometry::Body(between) => Some(between),
+            Geometry::Rigid(_) => None,
+        }
     }
 
     /// The row of the candidate of this index against another body; `None` if the obstacle is rigid, or nothing faces the candidate.

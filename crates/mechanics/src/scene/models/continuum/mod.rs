@@ -8,11 +8,13 @@ use std::f64::consts::TAU;
 
 use super::condition::ON_THE_AXIS;
 use super::rigid_face::{Motion, RigidFace};
-use crate::continuum::{ContinuumAnswer, ContinuumProblem, Linear, Medium, Point, RigidFace as Plate, SimplexMesh};
+use crate::continuum::{
+    Cells, ContinuumAnswer, ContinuumProblem, Linear, Medium, Point, RigidFace as Plate, SimplexMesh,
+};
 use crate::error::Error;
-use crate::fem::Formulation;
 use crate::fem::body::{Integration, Phase};
 use crate::fem::mesh::pieces::Pieces;
+use crate::fem::{Formulation, Region};
 use crate::scene::Model;
 use crate::scene::input::entry::wrong;
 use crate::scene::input::schema::Scene;
@@ -55,16 +57,13 @@ impl Scene {
         if !self.ties.is_empty() {
             return Err(none("ties", "they have no guaranteed bound: only supports, springs and rigid faces have one"));
         }
-        let [_] = body.regions() else {
-            let message = "several bodies have no guaranteed bound: only one body with rigid obstacles has one";
-            return Err(none("further-bodies", message));
-        };
         let media = body.phases().iter().map(|phase| self.medium(phase, &formulation)).collect::<Result<_, _>>()?;
         let dimension = model.mesh().dimension();
         let mut problem = ContinuumProblem {
             dimension,
             is_axisymmetric: formulation.is_axisymmetric(),
             media,
+            bodies: body.regions().iter().map(Region::elements).collect(),
             medium_of: body.elements().map(|element| element.phase_number as usize).collect(),
             thickness,
             conditions: Vec::new(),
@@ -94,11 +93,17 @@ impl Scene {
             return Err(unmatched());
         }
         let surface = self.surface(model, &pieces, &mut problem.conditions)?;
-        let Pieces { nodes, cells, elements, .. } = pieces;
-        let mesh = SimplexMesh::new(dimension, nodes, &cells, elements, &surface).ok_or_else(unmatched)?;
+        let Pieces { nodes, cells, elements: origins, .. } = pieces;
+        let cells = Cells { nodes, cells, origins, surface };
+        let mesh = SimplexMesh::new(dimension, cells).ok_or_else(unmatched)?;
+        let mesh = mesh.cut_at_contacts(&problem).map_err(|obstacle| {
+            let message = "several layers of the bodies, or nodes that nearly meet, lie before each other, so that there is no guaranteed \
+                           bound; give a smaller `reach`, or meshes that match";
+            none(format!("obstacles[{obstacle}].shape.body"), message)
+        })?;
         let mut within_reach = vec![false; problem.obstacles.len()];
         for (outer, obstacle) in problem.facing(&mesh) {
-            let gap = problem.obstacles[obstacle].surface.gap(&mesh.corners_of_facet(outer.facet));
+            let gap = problem.gap(&mesh, outer.facet, obstacle);
             if gap.as_ref().is_some_and(|gap| gap.below.is_infinite()) {
                 let message = "the distance to a surface of this shape has no bounds between nodes, so that there is no guaranteed bound";
                 return Err(none(format!("obstacles[{obstacle}].shape"), message));
@@ -118,7 +123,14 @@ impl Scene {
     /// # Errors
     /// As [`Scene::build`].
     pub(crate) fn on_last_mesh(&self, first: &Model, last: &ContinuumAnswer) -> Result<Model, Error> {
-        let body = first.body().clone().with_integration(Integration::Standard)?.on(last.mesh()?, &last.origins)?;
+        // Contacts that the program found are found again.
+        let found: Vec<&str> = first.obstacles()[self.obstacles.len()..]
+            .iter()
+            .flat_map(|obstacle| [Some(obstacle.boundary()), obstacle.other_body().map(|other| other.0)])
+            .flatten()
+            .collect();
+        let mesh = last.mesh_with(|name| !found.contains(&name))?;
+        let body = first.body().clone().with_integration(Integration::Standard)?.on(mesh, &last.origins)?;
         // The parts are boundaries of that mesh; to choose them again would move their ends.
         Scene { parts: Vec::new(), ..self.clone() }.build_of(vec![body], &[])
     }

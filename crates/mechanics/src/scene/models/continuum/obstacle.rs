@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::why_not::{WhyNot, none};
-use crate::continuum::{Distance, Enclosure, Facing, Point, Pressed, pairs};
+use crate::continuum::{Distance, Enclosure, Facing, Point, Pressed, Surface, pairs};
 use crate::fem::geometry::{COORDINATES, dot};
-use crate::scene::input::obstacle::PlacedObstacle;
+use crate::scene::Model;
+use crate::scene::input::obstacle::{Between, PlacedObstacle};
 use crate::scene::input::schema::Rule;
-use crate::scene::{ContactRow, Model};
 
 /// The component of a unit vector normal to a coordinate axis below which it is rounding of the written components.
 const ALONG_AXIS: f64 = 1e-14;
@@ -25,35 +25,48 @@ fn along_axis(direction: [f64; 3]) -> [f64; 3] {
 /// Obstacle number `index` of a model, with rows along one direction.
 pub(super) fn facing(model: &Model, index: usize) -> Result<Facing, WhyNot> {
     let (obstacle, path) = (&model.obstacles()[index], format!("obstacles[{index}]"));
-    let (surface, approach) =
-        (Shifted { obstacle: obstacle.clone(), gap: obstacle.shift(model.gap()) }, obstacle.approach());
-    let (normal, surface): (Point, Arc<dyn Distance>) = match obstacle.rule() {
-        Some(Rule::Approach) if obstacle.rigid().is_some() => (along_axis(approach), Arc::new(surface)),
-        Some(Rule::ClosestPoint) if obstacle.rigid().is_some() => match flat(model, index) {
-            Some(normal) => (along_axis(normal), Arc::new(Closest(surface))),
-            None => {
-                let message = "rows along normals that change along the obstacle have no guaranteed bound: rule `approach` has \
-                               one, and a plane";
-                return Err(none(format!("{path}.rule"), message));
-            }
-        },
-        _ => return Err(none(path, "only the rigid obstacles of a scene have a guaranteed bound")),
+    let (shift, approach) = (obstacle.shift(model.gap()), obstacle.approach());
+    let rigid = || Shifted { obstacle: obstacle.clone(), gap: shift };
+    let changing = || {
+        let message = "rows along normals that change along the obstacle have no guaranteed bound: rule `approach` has \
+                       one, and a plane";
+        none(format!("{path}.rule"), message)
+    };
+    let body = |normal: Point, between: &Between| {
+        if model.mesh().dimension() == 3 {
+            return Err(none(&*path, "two bodies in space have no guaranteed bound: only those in the plane have one"));
+        }
+        let Between { reach, fit, .. } = *between;
+        let surface = Surface::Body { reach, fit, shift: shift * dot(normal, approach) };
+        Ok((along_axis(normal), surface))
+    };
+    let (normal, surface): (Point, Surface) = match (obstacle.rule(), obstacle.between()) {
+        (Some(Rule::Approach), None) => (along_axis(approach), Surface::Rigid(Arc::new(rigid()))),
+        (Some(Rule::Approach), Some(between)) => body(approach, between)?,
+        (Some(Rule::ClosestPoint), None) => {
+            (along_axis(flat(model, index).ok_or_else(changing)?), Surface::Rigid(Arc::new(Closest(rigid()))))
+        }
+        (Some(Rule::ClosestPoint), Some(between)) => body(one_normal(model, index).ok_or_else(changing)?, between)?,
+        (None, _) => return Err(none(path, "an obstacle without a rule has no guaranteed bound")),
     };
     let pressed = |force| Pressed { force: model.parts.share_of(index, force), cosine: dot(normal, approach) };
     Ok(Facing { normal, surface, pressed: obstacle.force().map(pressed) })
 }
 
+/// The normal of all rows of an obstacle, if they have one.
+fn one_normal(model: &Model, index: usize) -> Option<Point> {
+    let mut rows = model.rows().iter().filter(|row| row.obstacle == index);
+    let normal = rows.next()?.normal;
+    rows.all(|row| dot(row.normal, normal) > 1.0 - IN_PLANE).then_some(normal)
+}
+
 /// The normal of all rows of an obstacle, if they meet it in one plane.
 fn flat(model: &Model, index: usize) -> Option<Point> {
-    let mut rows = model.rows().iter().filter(|row| row.obstacle == index);
-    let height = |row: &ContactRow, normal: Point| dot(model.place(row.node), normal) + row.gap;
-    let first = rows.next()?;
-    let (normal, of_first) = (first.normal, height(first, first.normal));
-    let is_in_plane = |row: &ContactRow| {
-        let away = (height(row, normal) - of_first).abs();
-        dot(row.normal, normal) > 1.0 - IN_PLANE && away <= IN_PLANE * model.mesh().size()
-    };
-    rows.all(is_in_plane).then_some(normal)
+    let normal = one_normal(model, index)?;
+    let mut heights =
+        model.rows().iter().filter(|row| row.obstacle == index).map(|row| dot(model.place(row.node), normal) + row.gap);
+    let first = heights.next()?;
+    heights.all(|height| (height - first).abs() <= IN_PLANE * model.mesh().size()).then_some(normal)
 }
 
 /// An obstacle of the model at its gap.

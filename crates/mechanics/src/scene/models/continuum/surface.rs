@@ -77,11 +77,16 @@ impl Scene {
                     Err(none(format!("obstacles[{index}].boundary"), message))
                 }
             })?;
+            if let Some((other, _)) = obstacle.other_body() {
+                surface.change_known(other, |condition| condition.faces.push(index));
+            }
         }
         for (index, boundary) in model.mesh().boundaries().iter().enumerate() {
             surface.change_known(&boundary.name, |condition| condition.boundaries.push(index));
         }
-        for (name, centre, radius) in self.body.shape().circles() {
+        // Edges of two bodies that lie opposite to each other stay so only if they are straight.
+        let circles = if self.further_bodies.is_empty() { self.body.shape().circles() } else { Vec::new() };
+        for (name, centre, radius) in circles {
             surface.change_known(name, |condition| {
                 let [x, y] = centre;
                 condition.circle = Some(Circle { centre: [x, y, 0.0], radius });

@@ -1,0 +1,245 @@
+//! The contact of two bodies in the plane: edges of one lie opposite to edges of the other, end by end.
+//!
+//! Meshes that do not match are cut at the nodes of the other body: a triangle with an edge on the contact becomes a fan from its third
+//! corner. Then a pressure that is linear on the edges of one body is so on those of the other, and both displacements are quadratic on the
+//! same edges.
+
+use std::collections::HashMap;
+
+use super::mesh::{Cells, OuterFacet, SimplexMesh};
+use super::problem::{Condition, ContinuumProblem, Surface};
+use super::simplex::{Point, Simplex};
+use crate::fem::geometry::{distance, dot, key, minus};
+
+/// Height over length of a triangle of a fan below which the triangle is refined before the cut, if its own is not small too.
+const SLENDER: f64 = 0.01;
+
+/// The same over that of the triangle before the cut.
+const MORE_SLENDER: f64 = 0.05;
+
+/// Rounds of refinement before the cut.
+const ROUNDS: usize = 12;
+
+/// Nodes count as opposite to each other if they are aside by less than this share of the shorter edge.
+const SAME_PLACE: f64 = 1e-4;
+
+/// Two edges that may touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Opposite {
+    /// The number of the obstacle.
+    pub obstacle: usize,
+    /// The nodes of the edge of the body whose obstacle it is.
+    pub own: [usize; 2],
+    /// The nodes of the edge of the other body, each opposite to that of the first in the same place.
+    pub other: [usize; 2],
+}
+
+/// The facet opposite to another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Partner {
+    pub on: OuterFacet,
+    /// For each corner of the other one the corner opposite to it.
+    pub corners: [usize; 2],
+}
+
+impl Opposite {
+    /// Both edges by their nodes, increasing.
+    pub fn edges(&self) -> [[usize; 2]; 2] {
+        [self.own, self.other].map(|[a, b]| key(a, b))
+    }
+
+    /// The pieces if both edges are halved at the nodes that `middle` gives, else the edges as they are.
+    pub fn halved(&self, middle: impl Fn([usize; 2]) -> Option<usize>) -> Vec<Opposite> {
+        let [own, other] = self.edges().map(middle);
+        match own.zip(other) {
+            None => vec![*self],
+            Some((own, other)) => [0, 1]
+                .map(|end| Opposite { own: [self.own[end], own], other: [self.other[end], other], ..*self })
+                .to_vec(),
+        }
+    }
+}
+
+/// An edge on a contact, along a line across the direction of the rows.
+#[derive(Clone, Debug)]
+struct Edge {
+    /// Its lower end, places at which it is cut, and its upper end: along the line, and the node.
+    stops: Vec<(f64, usize)>,
+}
+
+impl Edge {
+    fn ends(&self) -> [f64; 2] {
+        [self.stops[0].0, self.stops[self.stops.len() - 1].0]
+    }
+
+    fn length(&self) -> f64 {
+        let [low, high] = self.ends();
+        high - low
+    }
+
+    /// The point of the edge at a place along the line.
+    fn at(&self, nodes: &[Point], place: f64) -> Point {
+        let [first, last] = [self.stops[0].1, self.stops[self.stops.len() - 1].1].map(|node| nodes[node]);
+        let share = (place - self.ends()[0]) / self.length();
+        [0, 1, 2].map(|axis| first[axis] + share * (last[axis] - first[axis]))
+    }
+
+    /// The node at a place along the line; one within the margin, or a new one.
+    fn node_at(&mut self, nodes: &mut Vec<Point>, place: f64, margin: f64) -> usize {
+        if let Some(stop) = self.stops.iter().find(|stop| (stop.0 - place).abs() <= margin) {
+            return stop.1;
+        }
+        let node = nodes.len();
+        nodes.push(self.at(nodes, place));
+        self.stops.push((place, node));
+        self.stops.sort_by(|a, b| a.0.total_cmp(&b.0));
+        node
+    }
+}
+
+/// The cut of triangles at contacts.
+struct Cut {
+    cells: Cells,
+    /// The triangle before the cut of each one.
+    parents: Vec<usize>,
+    /// The triangles before the cut that are too large for it.
+    too_large: Vec<usize>,
+}
+
+impl SimplexMesh {
+    /// The mesh cut at the contacts of its bodies: there edges lie opposite to each other. Triangles that are large beside their pieces are
+    /// refined first.
+    ///
+    /// # Errors
+    /// The number of an obstacle if a body lies before another, or before two, in several layers, or with nodes too close to its own.
+    pub fn cut_at_contacts(self, problem: &ContinuumProblem) -> Result<Self, usize> {
+        let Some(first) = problem.obstacles.iter().position(|facing| matches!(facing.surface, Surface::Body { .. }))
+        else {
+            return Ok(self);
+        };
+        let mut mesh = self;
+        for _ in 0..ROUNDS {
+            let cells = mesh.cells();
+            let (parents, too_large) = ((0..cells.cells.len()).collect(), Vec::new());
+            let mut cut = Cut { cells, parents, too_large };
+            let opposites = cut.at_contacts(problem)?;
+            if cut.too_large.is_empty() {
+                return Ok(SimplexMesh::new(2, cut.cells).ok_or(first)?.with_opposites(opposites));
+            }
+            let mut marked = vec![false; mesh.count()];
+            cut.too_large.iter().for_each(|&cell| marked[cell] = true);
+            mesh = problem.refined(&mesh, &marked);
+        }
+        Err(first)
+    }
+}
+
+impl Cut {
+    /// Cuts the triangles, and returns the edges that lie opposite to each other.
+    ///
+    /// # Errors
+    /// The number of an obstacle if a body lies before another, or before two, in several layers.
+    fn at_contacts(&mut self, problem: &ContinuumProblem) -> Result<Vec<Opposite>, usize> {
+        let mut opposites = Vec::new();
+        for (obstacle, facing) in problem.obstacles.iter().enumerate() {
+            let Surface::Body { reach, .. } = &facing.surface else { continue };
+            let along = [-facing.normal[1], facing.normal[0], 0.0];
+            let faces = |of: fn(&Condition) -> &[usize], towards: f64| {
+                let has = |condition: usize| of(&problem.conditions[condition]).contains(&obstacle);
+                self.edges(has, facing.normal.map(|part| towards * part), along)
+            };
+            let mut own = faces(|condition| &condition.obstacles, 1.0);
+            let mut other = faces(|condition| &condition.faces, -1.0);
+            let mut covered: [Vec<Vec<[f64; 2]>>; 2] = [&own, &other].map(|edges| vec![Vec::new(); edges.len()]);
+            for (first, one) in own.iter_mut().enumerate() {
+                for (second, two) in other.iter_mut().enumerate() {
+                    let ([low, high], [from, to]) = (one.ends(), two.ends());
+                    let (from, to, nodes) = (low.max(from), high.min(to), &self.cells.nodes);
+                    let margin = SAME_PLACE * one.length().min(two.length());
+                    let away = |place: f64| dot(facing.normal, minus(two.at(nodes, place), one.at(nodes, place))).abs();
+                    if to - from <= margin || away(from).min(away(to)) > *reach {
+                        continue;
+                    }
+                    let meets = |&[start, end]: &[f64; 2]| to.min(end) - from.max(start) > margin;
+                    if covered[0][first].iter().chain(&covered[1][second]).any(meets) {
+                        return Err(obstacle);
+                    }
+                    covered[0][first].push([from, to]);
+                    covered[1][second].push([from, to]);
+                    let mut ends =
+                        |edge: &mut Edge| [from, to].map(|at| edge.node_at(&mut self.cells.nodes, at, margin));
+                    opposites.push(Opposite { obstacle, own: ends(one), other: ends(two) });
+                }
+            }
+            own.iter().chain(&other).for_each(|edge| self.fan(edge));
+        }
+        let is_lost =
+            |opposite: &&Opposite| opposite.edges().iter().any(|edge| !self.cells.surface.contains_key(&edge.to_vec()));
+        if let Some(opposite) = opposites.iter().find(is_lost) {
+            return Err(opposite.obstacle);
+        }
+        // The elements of the first mesh stay in their order.
+        let Cells { cells, origins, .. } = &mut self.cells;
+        let mut order: Vec<usize> = (0..cells.len()).collect();
+        order.sort_by_key(|&cell| origins[cell]);
+        *cells = order.iter().map(|&cell| cells[cell].clone()).collect();
+        origins.sort_unstable();
+        Ok(opposites)
+    }
+
+    /// The edges of chosen conditions whose outward normals have a part along a direction, in increasing order.
+    fn edges(&self, has: impl Fn(usize) -> bool, towards: Point, along: Point) -> Vec<Edge> {
+        let mut chosen: Vec<[usize; 2]> =
+            self.cells.surface.iter().filter(|entry| has(*entry.1)).map(|(edge, _)| [edge[0], edge[1]]).collect();
+        chosen.sort_unstable();
+        let mut third = HashMap::new();
+        for cell in &self.cells.cells {
+            for corner in 0..3 {
+                let [a, b] = [1, 2].map(|next| cell[(corner + next) % 3]);
+                third.insert(key(a, b), cell[corner]);
+            }
+        }
+        let edge = |ends: [usize; 2]| {
+            let stops = ends.map(|node| (dot(along, self.cells.nodes[node]), node));
+            let mut edge = Edge { stops: stops.to_vec() };
+            edge.stops.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let tip = self.cells.nodes[*third.get(&key(ends[0], ends[1]))?];
+            let is_parallel = edge.length() <= SAME_PLACE * dot(towards, minus(self.cells.nodes[ends[0]], tip)).abs();
+            let below = dot(towards, minus(edge.at(&self.cells.nodes, dot(along, tip)), tip));
+            (!is_parallel && below > 0.0).then_some(edge)
+        };
+        chosen.into_iter().filter_map(edge).collect()
+    }
+
+    /// Cuts the triangle at an edge in a fan.
+    fn fan(&mut self, edge: &Edge) {
+        let nodes: Vec<usize> = edge.stops.iter().map(|stop| stop.1).collect();
+        let (Some(&first), Some(&last)) = (nodes.first(), nodes.last()) else { return };
+        let is_at = |cell: &Vec<usize>| cell.contains(&first) && cell.contains(&last);
+        let Cells { nodes: places, cells, origins, surface } = &mut self.cells;
+        let Some(index) = cells.iter().position(is_at).filter(|_| nodes.len() > 2) else { return };
+        let Some(&tip) = cells[index].iter().find(|&&node| node != first && node != last) else { return };
+        let mut pieces = nodes.windows(2).map(|ends| [ends[0], ends[1]]);
+        let condition = surface.remove(&key(first, last).to_vec());
+        surface.extend(
+            condition.into_iter().flat_map(|of| pieces.clone().map(move |ends| (key(ends[0], ends[1]).to_vec(), of))),
+        );
+        let height = |[a, b]: [usize; 2]| {
+            let corners = [a, b, tip].map(|node| places[node]);
+            let size = |k: usize| distance(corners[k], corners[(k + 1) % 3]);
+            2.0 * Simplex::new(2, corners).size() / (0..3).map(size).fold(0.0, f64::max).powi(2)
+        };
+        let least = f64::min(SLENDER, MORE_SLENDER * height([first, last]));
+        if pieces.clone().any(|piece| height(piece) < least) {
+            self.too_large.push(self.parents[index]);
+        }
+        if let Some([a, b]) = pieces.next() {
+            cells[index] = vec![a, b, tip];
+        }
+        for [a, b] in pieces {
+            cells.push(vec![a, b, tip]);
+            origins.push(origins[index]);
+            self.parents.push(self.parents[index]);
+        }
+    }
+}
