@@ -25,7 +25,7 @@ mod system;
 
 pub use answer::ContinuumAnswer;
 pub use bound::Bracket;
-pub use judge::Judged;
+pub use judge::{Judged, Strain};
 pub use mesh::SimplexMesh;
 pub use problem::{
     Circle, Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, Pressed, RigidFace,
