@@ -69,6 +69,8 @@ pub struct Side {
     pub unknowns: Unknowns,
     pub rows: Vec<Row>,
     pub solution: Solution,
+    /// The problem, prepared for other gaps and loads, if it serves for the pairs of the force.
+    pub prepared: Option<Prepared>,
     /// The values of all unknowns.
     pub values: Vec<f64>,
     /// Seconds, including assembly.
@@ -84,9 +86,10 @@ impl Side {
         settings: &Settings,
     ) -> Result<Self, Error> {
         let is_later_mesh = start.is_some();
+        let mut prepared = None;
         let from_start = start.map(|closed| {
-            let prepared = Prepared::for_gaps(problem, 1, settings)?.starting_from(closed);
-            prepared.solve(problem.gap())
+            let own = prepared.insert(Prepared::for_gaps(problem, 1, settings)?.starting_from(closed));
+            own.solve(problem.gap())
         });
         let solution = match from_start {
             Some(Ok(solution)) => solution,
@@ -102,7 +105,7 @@ impl Side {
             },
         };
         let values = unknowns.expanded(&solution.displacement);
-        Ok(Side { unknowns, rows, solution, values, seconds: 0.0 })
+        Ok(Side { unknowns, rows, solution, prepared, values, seconds: 0.0 })
     }
 
     /// Moves values beyond the bounds of rows, as those of a penalty method, to the bounds: the displacement stays out of the obstacles.
@@ -148,6 +151,9 @@ impl<'a> Bracket<'a> {
             })
         });
         let mut primal = Side::solved(unknowns, rows, &posed, start, settings)?;
+        // Without a balance a pair needs its rows held exactly; in the plane its factor costs little, and the memory counts.
+        let serves = balance.is_some() && mesh.dimension == 3;
+        primal.prepared.take_if(|_| !serves);
         primal.keep_out();
         primal.seconds = clock.elapsed().as_secs_f64();
         let largest = displacements.largest(&primal.values);
@@ -166,6 +172,7 @@ impl<'a> Bracket<'a> {
         )?;
         let start = touching.map(|nodes| ContactSet::from_fn(rows.len(), |row| nodes[places[row].node(mesh)]));
         let mut dual = Side::solved(of_stress, rows, &posed, start, settings)?;
+        dual.prepared.take_if(|_| !serves);
         let pulls: Vec<f64> = dual.solution.multiplier.iter().map(|force| force.min(0.0)).collect();
         let balanced = balance
             .as_ref()

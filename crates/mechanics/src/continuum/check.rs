@@ -191,6 +191,7 @@ mod tests {
     use super::super::bodies::{body, settings};
     use super::super::bound::Side;
     use super::super::displacement::Displacements;
+    use super::super::judge::Strain;
     use super::super::problem::Medium;
     use super::super::simplex::{Point, Tensor, less, middle};
     use super::super::system::Row;
@@ -233,15 +234,18 @@ mod tests {
                 (0..mesh.count()).map(|cell| of_cell(cell, square)).sum::<f64>().sqrt()
             };
             let from_centre = length(&|strain, stress| size(less(own, middle(strain, law.compliance(stress)))));
-            let judged = bracket.judged(|_| move |_: Point| own);
-            // The body has the size one.
-            let exact = [
-                (judged.norm, (problem.thickness * size(own)).sqrt()),
-                (judged.from_displacement, length(&|strain, _| size(less(own, strain)))),
-                (judged.bound, from_centre + bracket.square_of_radius().sqrt()),
-            ];
-            for (found, exact) in exact {
-                assert!(exact > 0.0 && (found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
+            let varying = bracket.judged(|_| Strain::Varying(move |_: Point| own));
+            let constant = bracket.judged(|_| Strain::<fn(Point) -> Tensor>::Constant(own));
+            for judged in [varying, constant] {
+                // The body has the size one.
+                let exact = [
+                    (judged.norm, (problem.thickness * size(own)).sqrt()),
+                    (judged.from_displacement, length(&|strain, _| size(less(own, strain)))),
+                    (judged.bound, from_centre + bracket.square_of_radius().sqrt()),
+                ];
+                for (found, exact) in exact {
+                    assert!(exact > 0.0 && (found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
+                }
             }
         }
     }

@@ -20,11 +20,11 @@ use super::displacement::apart;
 use super::part_stress::PartStress;
 use super::simplex::{Point, less, middle, work};
 use super::stress::Stresses;
-use super::system::{Block, Unknowns};
+use super::system::{Block, Numbers, Unknowns};
 use crate::error::Error;
 use crate::fem::threads::{both, each};
 use signorini_qp as qp;
-use signorini_qp::{ContactProblem, solve};
+use signorini_qp::{ContactSet, solve};
 
 /// Values between 0 and -1 by less than this, and pressures below this share of the largest, are rounding.
 const ROUNDING: f64 = 1e-12;
@@ -38,8 +38,8 @@ const CAPS: [f64; 2] = [f64::INFINITY, 2.0];
 /// Error of the solver of a pair, relative in energy: it counts by its product with the radius.
 const OF_PAIR: f64 = 1e-4;
 
-/// From this number of unknowns in space a few cycles of multigrid cost less than a factor.
-const MANY_UNKNOWNS: usize = 20_000;
+/// A gap that no displacement of order one closes.
+const FAR: f64 = 1e3;
 
 /// Largest number of rounds that change rows of the wrong sign.
 const ROUNDS: usize = 12;
@@ -71,7 +71,7 @@ impl Bracket<'_> {
     /// several directions, if only some are pressed, if the boundary that touches them is a rigid face, or if no bound was found.
     ///
     /// # Errors
-    /// Those of [`ContactProblem::new`].
+    /// Those of [`signorini_qp::ContactProblem::new`].
     pub fn force_interval(&self) -> Result<Option<[f64; 2]>, Error> {
         if let Some(pressed) = self.problem.pressing_force() {
             return Ok(Some([pressed; 2]));
@@ -208,18 +208,14 @@ impl Bracket<'_> {
     fn bonded_displacement(&self, bonded: &mut [bool], blocks: &[Block]) -> Result<Option<Vec<f64>>, Error> {
         let (rows, places) = (&self.primal.rows, self.displacements.places());
         for _ in 0..ROUNDS {
-            let Some(unknowns) = with_contact_held(&self.primal, bonded) else { return Ok(None) };
-            let load = vec![0.0; unknowns.count()];
-            let numbers = &self.displacements.numbers;
-            let posed = unknowns.problem(self.mesh.dimension, numbers, blocks, &load, &[], &places)?;
-            let Some(free) = self.linear(&posed) else { return Ok(None) };
-            let mut values = unknowns.expanded(&free);
+            let of_mesh = (&self.displacements.numbers, blocks, &places[..]);
+            let Some(mut values) = self.held(&self.primal, bonded, of_mesh)? else { return Ok(None) };
             let open = |row: usize| 1.0 + rows[row].value(&values);
             let wrong: Vec<usize> =
                 (0..bonded.len()).filter(|&row| open(row) < -self.allowed_sign() && !bonded[row]).collect();
             if wrong.is_empty() {
-                for row in rows {
-                    if row.value(&values) < -1.0 {
+                for (row, bonded) in rows.iter().zip(bonded.iter()) {
+                    if *bonded || row.value(&values) < -1.0 {
                         self.primal.unknowns.move_to(&mut values, row, -1.0);
                     }
                 }
@@ -239,12 +235,8 @@ impl Bracket<'_> {
     ) -> Result<Option<Pressed>, Error> {
         let places = self.stresses.places();
         for _ in 0..ROUNDS {
-            let Some(unknowns) = with_contact_held(&self.dual, pressed) else { return Ok(None) };
-            let load = vec![0.0; unknowns.count()];
-            let numbers = &self.stresses.numbers;
-            let posed = unknowns.problem(self.mesh.dimension, numbers, blocks, &load, &[], &places)?;
-            let Some(free) = self.linear(&posed) else { return Ok(None) };
-            let values = unknowns.expanded(&free);
+            let of_mesh = (&self.stresses.numbers, blocks, &places[..]);
+            let Some(values) = self.held(&self.dual, pressed, of_mesh)? else { return Ok(None) };
             let stress = stresses.stresses(&values);
             let mut pulls = self.pulls_of(&stress, &values);
             // The force for a displacement of one of a body as wide as high, for comparison: a body that nothing holds moves without
@@ -276,18 +268,35 @@ impl Bracket<'_> {
         if self.balance.is_some() { ALMOST_RIGHT } else { ROUNDING }
     }
 
-    /// The displacement of a problem without rows; `None` if it was not found.
-    fn linear(&self, problem: &ContactProblem) -> Option<Vec<f64>> {
-        let is_large = problem.dofs() > MANY_UNKNOWNS && self.mesh.dimension == 3;
-        let settings = match is_large && self.balance.is_some() {
-            true => self.settings.clone().with_accuracy(OF_PAIR).by(qp::Method::Mprgp),
-            false => self.settings.clone(),
+    /// All values with supports at zero, under no load, with these rows at -1 towards the obstacle; `None` if they were not found. If the
+    /// data of the bracket serve again, rows that would pull go beyond -1, as in contact.
+    fn held(
+        &self,
+        side: &Side,
+        rows: &[bool],
+        (numbers, blocks, places): (&Numbers, &[Block], &[Point]),
+    ) -> Result<Option<Vec<f64>>, Error> {
+        let (unknowns, found) = match &side.prepared {
+            Some(prepared) => {
+                let settings = self.settings.clone().with_accuracy(OF_PAIR);
+                let gaps: Vec<f64> = rows.iter().map(|held| if *held { -1.0 } else { FAR }).collect();
+                let closed: ContactSet = rows.iter().copied().collect();
+                let prepared = prepared.with_settings(&settings)?.with_load(vec![0.0; side.unknowns.free])?;
+                (side.unknowns.with_held(std::iter::empty(), 0.0), prepared.starting_from(closed).solve(&gaps))
+            }
+            None => {
+                let Some(unknowns) = with_contact_held(side, rows) else { return Ok(None) };
+                let load = vec![0.0; unknowns.count()];
+                let posed = unknowns.problem(self.mesh.dimension, numbers, blocks, &load, &[], places)?;
+                (Some(unknowns), solve(&posed, &self.settings))
+            }
         };
-        match solve(problem, &settings) {
-            Ok(solution) => Some(solution.displacement),
-            Err(qp::Error::NotCertified { solution, .. }) => Some(solution.displacement),
-            Err(_) => None,
-        }
+        let free = match found {
+            Ok(solution) => solution.displacement,
+            Err(qp::Error::NotCertified { solution, .. }) => solution.displacement,
+            Err(_) => return Ok(None),
+        };
+        Ok(unknowns.map(|unknowns| unknowns.expanded(&free)))
     }
 
     /// The force of a stress without load at each place, along the obstacle.

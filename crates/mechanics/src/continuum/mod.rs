@@ -28,7 +28,7 @@ mod two_bodies;
 
 pub use answer::ContinuumAnswer;
 pub use bound::Bracket;
-pub use judge::Judged;
+pub use judge::{Judged, Strain};
 pub use mesh::{Cells, SimplexMesh};
 pub use problem::{
     Circle, Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, Pressed, RigidFace, Surface,

@@ -412,10 +412,17 @@ impl Unknowns {
                 }
                 for &(column, part) in self.terms(unknown) {
                     let of_column = starts[column as usize]..starts[column as usize + 1];
+                    let mut place = of_column.start;
                     for (&other, &value) in unknowns.iter().zip(line) {
                         for &(row, other_part) in self.terms(other).iter().filter(|term| term.0 >= column) {
-                            let place = row_indices[of_column.clone()].partition_point(|&other| other < row);
-                            values[of_column.start + place] += part * other_part * value;
+                            // Most unknowns follow the one before.
+                            if row_indices.get(place + 1) == Some(&row) && place + 1 < of_column.end {
+                                place += 1;
+                            } else {
+                                let before = row_indices[of_column.clone()].partition_point(|&other| other < row);
+                                place = of_column.start + before;
+                            }
+                            values[place] += part * other_part * value;
                         }
                     }
                 }

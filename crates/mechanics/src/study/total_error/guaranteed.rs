@@ -6,8 +6,9 @@ use signorini_qp::{Settings, Solution, dot, solve};
 
 use super::found::{Bound, Domain, Guarantee, JudgedMesh, Level, LevelKind, Search as Given, TotalError};
 use super::goal::{Answering, Ended, marked, shortage};
-use crate::continuum::{Bracket, ContinuumAnswer, ContinuumProblem, Judged, Point, SimplexMesh};
+use crate::continuum::{Bracket, ContinuumAnswer, ContinuumProblem, Judged, Point, SimplexMesh, Strain};
 use crate::error::Error;
+use crate::fem::ElementKind;
 use crate::fem::assembly::internal_force;
 use crate::scene::Answer;
 use crate::study::warnings::{check_motion, of_refined};
@@ -244,13 +245,20 @@ impl Search<'_> {
 
 /// Judges an answer by a bracket on pieces of its elements.
 pub(super) fn judged(answer: &Answer, bracket: &Bracket) -> Judged {
+    let (body, is_axisymmetric) = (answer.model().body(), bracket.problem.is_axisymmetric);
     bracket.judged(|element| {
-        let strain = answer.model().body().strain_in(answer.displacement(), element);
-        let in_plane = bracket.problem.dimension == 2 && !bracket.problem.is_axisymmetric;
-        move |at| {
+        let strain = body.strain_in(answer.displacement(), element);
+        let in_plane = bracket.problem.dimension == 2 && !is_axisymmetric;
+        let own = move |at| {
             let own @ [xx, yy, _, xy, ..] = strain(at);
             // The strain across the plane belongs to the material.
             if in_plane { [xx, yy, 0.0, xy, 0.0, 0.0] } else { own }
+        };
+        match body.mesh().kind_of(element) {
+            ElementKind::LINEAR_TRIANGLE | ElementKind::LINEAR_TETRAHEDRON if !is_axisymmetric => {
+                Strain::Constant(own([0.0; 3]))
+            }
+            _ => Strain::Varying(own),
         }
     })
 }
