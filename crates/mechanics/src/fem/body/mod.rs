@@ -145,16 +145,15 @@ impl ElasticBody {
         Ok(self)
     }
 
-    /// The same single body on a mesh of parts of its elements; the second argument gives, for each element of that mesh, the element
-    /// that it is a part of.
+    /// The same single body on a mesh of parts of its elements, with [`Integration::Standard`]; the second argument gives, for each
+    /// element of that mesh, the element that it is a part of.
     ///
     /// # Errors
     /// As [`ElasticBody::new`].
     pub(crate) fn on(&self, mesh: Mesh, parents: &[usize]) -> Result<Self, Error> {
         let body = Self::new(mesh, *self.phases[0].material(), self.formulation)?;
         let of_elements = parents.iter().map(|&parent| self.of_elements[parent]).collect();
-        let integration = self.phases[0].integration;
-        ElasticBody { phases: self.phases.clone(), of_elements, ..body }.with_integration(integration)
+        ElasticBody { phases: self.phases.clone(), of_elements, ..body }.with_integration(Integration::Standard)
     }
 
     /// The same body with another named boundary.

@@ -11,7 +11,7 @@ use super::rigid_face::{Motion, RigidFace};
 use crate::continuum::{ContinuumAnswer, ContinuumProblem, Linear, Medium, Point, RigidFace as Plate, SimplexMesh};
 use crate::error::Error;
 use crate::fem::Formulation;
-use crate::fem::body::{Integration, Phase};
+use crate::fem::body::Phase;
 use crate::fem::mesh::pieces::Pieces;
 use crate::scene::Model;
 use crate::scene::input::entry::wrong;
@@ -118,7 +118,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::build`].
     pub(crate) fn on_last_mesh(&self, first: &Model, last: &ContinuumAnswer) -> Result<Model, Error> {
-        let body = first.body().clone().with_integration(Integration::Standard)?.on(last.mesh()?, &last.origins)?;
+        let body = first.body().on(last.mesh()?, &last.origins)?;
         // The parts are boundaries of that mesh; to choose them again would move their ends.
         Scene { parts: Vec::new(), ..self.clone() }.build_of(vec![body], &[])
     }
