@@ -71,6 +71,27 @@ fn an_estimate_of_a_tenth_takes_at_most_15000_unknowns() {
     assert!((one / other - 1.0).abs() < 0.05, "{one} {other}");
 }
 
+/// The same mesh with rows along the approach has a guaranteed bound, which judges the estimate.
+#[test]
+fn the_estimate_of_quadratic_tetrahedra_is_near_the_guaranteed_bound() {
+    for ratio in [0.3, 0.45] {
+        let desk = Desk::new();
+        let mut scene = estimated(2);
+        scene["material"]["poisson"] = json!(ratio);
+        desk.write("scene.json", scene.to_string());
+        let run = desk.run(&["solve", "scene.json", "--total-error", "0.25", "--format", "json", "--out", "out"]);
+        let found = run.ends_with(0).json();
+        scene["body"] = json!({"gmsh": {"file": "out/mesh.msh"}});
+        scene["obstacles"][0]["rule"] = json!("approach");
+        desk.write("again.json", scene.to_string());
+        let run = desk.run(&["solve", "again.json", "--total-error", "0.1", "--format", "json"]);
+        let own = run.ends_with(0).json()["own_mesh"].clone();
+        assert_eq!(own["element"], "Tet10");
+        let [estimate, bound] = [&found, &own].map(|report| report["total_error"]["bound"].as_f64().unwrap());
+        assert!((0.6..1.5).contains(&(estimate / bound)), "{estimate} {bound}");
+    }
+}
+
 /// On the first mesh no node is at the tip: its answer would have no contact and no error.
 #[test]
 fn a_tip_between_nodes_is_found_by_refinement() {

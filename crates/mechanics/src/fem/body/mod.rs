@@ -249,6 +249,11 @@ impl ElasticBody {
         &self.phases[self.of_elements[element] as usize]
     }
 
+    /// The number of the phase of an element among the phases of the body.
+    pub(crate) fn phase_number(&self, element: usize) -> u32 {
+        self.of_elements[element]
+    }
+
     /// The coordinates of up to [`MAX_NODES`] nodes.
     pub(crate) fn coordinates(&self, nodes: &[usize]) -> PerNode<[f64; 3]> {
         let mut coordinates = [[0.0; 3]; MAX_NODES];
