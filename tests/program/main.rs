@@ -21,6 +21,7 @@ mod terminal;
 mod time;
 mod total_error;
 mod total_error_about_axis;
+mod total_error_estimated;
 mod total_error_of_loads;
 mod tradeoff;
 mod tutorial;

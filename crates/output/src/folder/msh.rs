@@ -22,21 +22,24 @@ pub(crate) fn msh(mesh: &Mesh, bodies: &[(&str, Range<usize>)]) -> String {
     let facets: usize = mesh.boundaries().iter().map(|boundary| boundary.facet_count()).sum();
     let _ = writeln!(text, "$EndNodes\n$Elements\n{}", facets + mesh.element_count());
     let mut number = 0;
-    let mut line = |kind: usize, group: usize, nodes: &[usize]| {
+    let mut line = |kind: usize, order: &[usize], group: usize, nodes: &[usize]| {
         number += 1;
         let _ = write!(text, "{number} {kind} 2 {group} {group}");
-        nodes.iter().for_each(|node| {
-            let _ = write!(text, " {}", node + 1);
+        let mut in_file = vec![0; nodes.len()];
+        order.iter().zip(nodes).for_each(|(&place, node)| in_file[place] = node + 1);
+        in_file.iter().for_each(|node| {
+            let _ = write!(text, " {node}");
         });
         text.push('\n');
     };
     for (index, boundary) in mesh.boundaries().iter().enumerate() {
-        let kind = boundary.kind.reference().gmsh;
-        boundary.facets().for_each(|facet| line(kind, index + 1, facet));
+        let facet = boundary.kind.reference();
+        boundary.facets().for_each(|nodes| line(facet.gmsh, facet.gmsh_order, index + 1, nodes));
     }
     for (element, nodes) in mesh.elements().enumerate() {
         let body = bodies.iter().position(|(_, elements)| elements.contains(&element)).unwrap_or(0);
-        line(mesh.kind_of(element).reference().gmsh, mesh.boundaries().len() + 1 + body, nodes);
+        let cell = mesh.kind_of(element).reference();
+        line(cell.gmsh, cell.gmsh_order, mesh.boundaries().len() + 1 + body, nodes);
     }
     text += "$EndElements\n";
     text

@@ -145,8 +145,8 @@ impl ElasticBody {
         Ok(self)
     }
 
-    /// The same body on a mesh of parts of its elements, region by region; the second argument gives, for each element of that mesh, the
-    /// element that it is a part of.
+    /// The same body on a mesh of parts of its elements, region by region, with [`Integration::Standard`]; the second argument gives, for
+    /// each element of that mesh, the element that it is a part of.
     ///
     /// # Errors
     /// As [`ElasticBody::new`].
@@ -154,8 +154,8 @@ impl ElasticBody {
         let regions = Region::on(&self.regions, &mesh, parents);
         let body = Self::new(mesh, *self.phases[0].material(), self.formulation)?;
         let of_elements = parents.iter().map(|&parent| self.of_elements[parent]).collect();
-        let integration = self.phases[0].integration;
-        ElasticBody { phases: self.phases.clone(), of_elements, regions, ..body }.with_integration(integration)
+        let phases = self.phases.clone();
+        ElasticBody { phases, of_elements, regions, ..body }.with_integration(Integration::Standard)
     }
 
     /// The same body with another named boundary.
@@ -249,6 +249,11 @@ impl ElasticBody {
     /// The material and the stress without strain of an element.
     pub(crate) fn phase_of(&self, element: usize) -> &Phase {
         &self.phases[self.of_elements[element] as usize]
+    }
+
+    /// The number of the phase of an element among the phases of the body.
+    pub(crate) fn phase_number(&self, element: usize) -> u32 {
+        self.of_elements[element]
     }
 
     /// The coordinates of up to [`MAX_NODES`] nodes.

@@ -1,7 +1,8 @@
 //! Refinement of marked tetrahedra by bisection.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
+use super::pieces::Pieces;
 use super::{Boundary, ElementKind, Mesh};
 use crate::error::Error;
 use crate::fem::geometry::{cross, distance, dot, key, minus};
@@ -30,26 +31,29 @@ struct Marked {
     opposite: [[usize; 2]; 2],
     /// `true` if bisection made it from a tetrahedron whose marked edges lie in one face.
     is_second: bool,
-    /// The tetrahedron of the first mesh that it is a part of.
+    /// The element of the first mesh that it is a part of.
     parent: usize,
 }
 
 impl Tetrahedra {
-    /// From a mesh, with the longest edge of each face marked; `None` for other elements.
+    /// From the elements of a mesh in space, each cut into tetrahedra, with the longest edge of each face marked; `None` if edges are
+    /// curved, or if the tetrahedra do not meet in whole faces.
     pub fn of(mesh: &Mesh) -> Option<Self> {
-        if !mesh.kinds().eq([ElementKind::LINEAR_TETRAHEDRON]) {
-            return None;
-        }
+        let pieces = Pieces::of(mesh).ok().filter(|pieces| mesh.dimension() == 3 && pieces.meet(mesh))?;
+        let exists: HashSet<Vec<usize>> = pieces.facets().collect();
         let mut facets = BTreeMap::<_, Vec<_>>::new();
         for (number, boundary) in mesh.boundaries().iter().enumerate() {
-            for facet in boundary.facets() {
-                let own = [facet[0], facet[1], facet[2]];
-                facets.entry(sorted(own)).or_default().push((number, own));
+            for facet in pieces.facets_of(mesh, &boundary.name) {
+                let Ok(own) = <[usize; 3]>::try_from(facet) else { continue };
+                // A quadrilateral has the facets of both diagonals, and one diagonal exists.
+                if exists.contains(&sorted(own)[..]) {
+                    facets.entry(sorted(own)).or_default().push((number, own));
+                }
             }
         }
         let names = mesh.boundaries().iter().map(|boundary| boundary.name.clone()).collect();
-        let elements = mesh.elements().enumerate().map(|(parent, element)| (element, parent));
-        Some(Tetrahedra { names, ..Self::new(mesh.nodes().to_vec(), elements, facets) })
+        let cells = pieces.cells.iter().map(Vec::as_slice).zip(pieces.elements.iter().copied());
+        Some(Tetrahedra { names, ..Self::new(pieces.nodes.clone(), cells, facets) })
     }
 
     /// From tetrahedra by their nodes, each with the cell that it is a part of, and from the facets of boundaries by their nodes,
@@ -78,15 +82,15 @@ impl Tetrahedra {
         self.facets.iter().flat_map(|(&facet, of)| of.iter().map(move |entry| (facet, entry.0)))
     }
 
-    /// For each tetrahedron, the tetrahedron of the first mesh that it is a part of.
+    /// For each tetrahedron, the element of the first mesh that it is a part of.
     pub fn parents(&self) -> Vec<usize> {
         self.cells.iter().map(|cell| cell.parent).collect()
     }
 
-    /// The mesh; its boundaries keep their names.
+    /// The mesh of quadratic tetrahedra with straight edges, in the order of the cells; its boundaries keep their names.
     ///
     /// # Errors
-    /// [`Error::Mesh`], as [`Mesh::new`].
+    /// [`Error::Mesh`], as [`Mesh::new`], and for too many nodes.
     pub fn mesh(&self) -> Result<Mesh, Error> {
         let connectivity = self.cells.iter().flat_map(|cell| turned(&self.nodes, cell.nodes)).collect();
         let of_boundary = |number: usize| {
@@ -95,7 +99,8 @@ impl Tetrahedra {
         };
         let kind = ElementKind::LINEAR_TETRAHEDRON;
         let boundary = |(number, name): (usize, &String)| Boundary::new(name, kind.facet(), of_boundary(number));
-        Mesh::new(self.nodes.clone(), kind, connectivity, self.names.iter().enumerate().map(boundary).collect())
+        let boundaries = self.names.iter().enumerate().map(boundary).collect();
+        Mesh::new(self.nodes.clone(), kind, connectivity, boundaries)?.elevated(ElementKind::QUADRATIC_TETRAHEDRON)
     }
 
     /// Halves each marked tetrahedron and its halves so many times, and further tetrahedra with a hanging node. The pieces replace the
@@ -281,8 +286,27 @@ mod tests {
         }
     }
 
+    /// Bricks become six tetrahedra each, whose faces are the boundaries of the bricks and nothing else.
     #[test]
-    fn other_kinds_are_not_bisected() {
-        assert!(Tetrahedra::of(&file("box-hex8.msh")).is_none());
+    fn bricks_are_bisected_as_tetrahedra_with_the_same_boundaries() {
+        let first = file("box-hex8.msh");
+        let mut mesh = Tetrahedra::of(&first).unwrap();
+        assert_eq!(mesh.parents(), (0..6 * first.element_count()).map(|cell| cell / 6).collect::<Vec<_>>());
+        mesh.refine(&(0..mesh.cells.len()).map(|cell| cell % 3 == 0).collect::<Vec<_>>(), 2);
+        let refined = mesh.mesh().unwrap();
+        assert!(refined.kinds().eq([ElementKind::QUADRATIC_TETRAHEDRON]));
+        for (before, after) in first.boundaries().iter().zip(refined.boundaries()) {
+            assert_eq!(before.name, after.name);
+            let of_nodes = |mesh: &Mesh, boundary: &Boundary| {
+                let at: Vec<[f64; 3]> = boundary.nodes().into_iter().map(|node| mesh.nodes()[node]).collect();
+                crate::fem::mesh::extent(&at)
+            };
+            assert_eq!(of_nodes(&first, before), of_nodes(&refined, after));
+        }
+    }
+
+    #[test]
+    fn plane_elements_are_not_bisected() {
+        assert!(Tetrahedra::of(&file("half-disc-t6.msh")).is_none());
     }
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod along;
 pub(crate) mod discretisation;
+mod patches;
 pub(crate) mod points;
 
 pub use discretisation::discretisation_error;

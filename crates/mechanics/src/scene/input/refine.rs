@@ -23,4 +23,10 @@ impl Scene {
         }
         Ok(scene)
     }
+
+    /// Returns `true` if a body has sides that approximate known circles or spheres, to which finer meshes come nearer.
+    pub(crate) fn is_round(&self) -> bool {
+        let further = self.further_bodies.iter().map(|further| &further.body);
+        std::iter::once(&self.body).chain(further).any(|body| body.shape().is_round())
+    }
 }

@@ -60,6 +60,10 @@ impl BodyShape for HalfBallSpec {
         self.integration
     }
 
+    fn is_round(&self) -> bool {
+        true
+    }
+
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
         site.check_estimate(&self.block(None))?;
         let sides = [SymmetrySpec::X, SymmetrySpec::Y].map(|axis| Sides::of(self.symmetric.contains(&axis)));

@@ -35,6 +35,11 @@ pub(crate) trait BodyShape {
         Vec::new()
     }
 
+    /// Returns `true` if sides of the mesh approximate known circles or spheres, to which finer meshes come nearer.
+    fn is_round(&self) -> bool {
+        !self.circles().is_empty()
+    }
+
     /// The mesh; errors without a place in the scene count as errors of the whole body.
     fn mesh(&self, site: &Site) -> Result<Mesh, Error>;
 

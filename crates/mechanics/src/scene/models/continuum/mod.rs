@@ -12,7 +12,7 @@ use crate::continuum::{
     Cells, ContinuumAnswer, ContinuumProblem, Linear, Medium, Point, RigidFace as Plate, SimplexMesh,
 };
 use crate::error::Error;
-use crate::fem::body::{Integration, Phase};
+use crate::fem::body::Phase;
 use crate::fem::mesh::pieces::Pieces;
 use crate::fem::{Formulation, Region};
 use crate::scene::Model;
@@ -130,7 +130,7 @@ impl Scene {
             .flatten()
             .collect();
         let mesh = last.mesh_with(|name| !found.contains(&name))?;
-        let body = first.body().clone().with_integration(Integration::Standard)?.on(mesh, &last.origins)?;
+        let body = first.body().on(mesh, &last.origins)?;
         // The parts are boundaries of that mesh; to choose them again would move their ends.
         Scene { parts: Vec::new(), ..self.clone() }.build_of(vec![body], &[])
     }
