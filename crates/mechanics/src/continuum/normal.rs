@@ -3,7 +3,7 @@
 use signorini_qp::dot;
 
 /// A pivot below this share of its entry is rounding.
-const SINGULAR_PIVOT: f64 = 1e-10;
+const SINGULAR_PIVOT: f64 = 1e-12;
 
 /// Coefficients of conditions below this are rounding; theirs are of order one.
 const DEPENDENT: f64 = 1e-9;

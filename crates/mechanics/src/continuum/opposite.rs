@@ -15,13 +15,13 @@ use crate::fem::geometry::{distance, dot, key, minus};
 const SLENDER: f64 = 0.01;
 
 /// The same over that of the triangle before the cut.
-const MORE_SLENDER: f64 = 0.05;
+const MORE_SLENDER: f64 = 0.1;
 
-/// Rounds of refinement before the cut.
+/// Largest number of rounds of refinement before the cut.
 const ROUNDS: usize = 12;
 
-/// Nodes count as opposite to each other if they are aside by less than this share of the shorter edge.
-const SAME_PLACE: f64 = 1e-4;
+/// Nodes count as opposite to each other if they are aside by less than this share of the shorter edge, as in rows between pairs of nodes.
+const SAME_PLACE: f64 = 1e-3;
 
 /// Two edges that may touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,26 +111,25 @@ impl SimplexMesh {
     /// refined first.
     ///
     /// # Errors
-    /// The number of an obstacle if a body lies before another, or before two, in several layers, or with nodes too close to its own.
+    /// The number of an obstacle if a body lies before another, or before two, in several layers.
     pub fn cut_at_contacts(self, problem: &ContinuumProblem) -> Result<Self, usize> {
         let Some(first) = problem.obstacles.iter().position(|facing| matches!(facing.surface, Surface::Body { .. }))
         else {
             return Ok(self);
         };
-        let mut mesh = self;
-        for _ in 0..ROUNDS {
+        let (mut mesh, mut rounds) = (self, 0);
+        loop {
             let cells = mesh.cells();
             let (parents, too_large) = ((0..cells.cells.len()).collect(), Vec::new());
             let mut cut = Cut { cells, parents, too_large };
             let opposites = cut.at_contacts(problem)?;
-            if cut.too_large.is_empty() {
+            if cut.too_large.is_empty() || rounds == ROUNDS {
                 return Ok(SimplexMesh::new(2, cut.cells).ok_or(first)?.with_opposites(opposites));
             }
             let mut marked = vec![false; mesh.count()];
             cut.too_large.iter().for_each(|&cell| marked[cell] = true);
-            mesh = problem.refined(&mesh, &marked);
+            (mesh, rounds) = (problem.refined(&mesh, &marked), rounds + 1);
         }
-        Err(first)
     }
 }
 

@@ -97,8 +97,8 @@ impl Scene {
         let cells = Cells { nodes, cells, origins, surface };
         let mesh = SimplexMesh::new(dimension, cells).ok_or_else(unmatched)?;
         let mesh = mesh.cut_at_contacts(&problem).map_err(|obstacle| {
-            let message = "several layers of the bodies, or nodes that nearly meet, lie before each other, so that there is no guaranteed \
-                           bound; give a smaller `reach`, or meshes that match";
+            let message =
+                "several layers of the bodies lie before each other, so that there is no guaranteed bound; give a smaller `reach`";
             none(format!("obstacles[{obstacle}].shape.body"), message)
         })?;
         let mut within_reach = vec![false; problem.obstacles.len()];
