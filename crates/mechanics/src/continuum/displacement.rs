@@ -4,8 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::axis::{Sample, samples};
-use super::mesh::{OuterFacet, SimplexMesh};
-use super::opposite::Partner;
+use super::mesh::{OuterFacet, Partner, SimplexMesh};
 use super::problem::{ContinuumProblem, weighted_mean};
 use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, corners_of_side, pairs, work};
 use super::stress::Place;

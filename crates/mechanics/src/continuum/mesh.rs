@@ -3,7 +3,6 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::opposite::{Opposite, Partner};
 use super::simplex::{MOST_CORNERS, Point, Simplex, pairs};
 use crate::fem::geometry::{distance, key};
 use crate::fem::mesh::bisection::Tetrahedra;
@@ -77,6 +76,43 @@ pub struct OuterFacet {
     pub facet: usize,
     /// The number of its condition.
     pub condition: usize,
+}
+
+/// Two edges that may touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Opposite {
+    /// The number of the obstacle.
+    pub obstacle: usize,
+    /// The nodes of the edge of the body whose obstacle it is.
+    pub own: [usize; 2],
+    /// The nodes of the edge of the other body, each opposite to that of the first in the same place.
+    pub other: [usize; 2],
+}
+
+/// The facet opposite to another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Partner {
+    pub on: OuterFacet,
+    /// For each corner of the other one the corner opposite to it.
+    pub corners: [usize; 2],
+}
+
+impl Opposite {
+    /// Both edges by their nodes, increasing.
+    pub fn edges(&self) -> [[usize; 2]; 2] {
+        [self.own, self.other].map(|[a, b]| key(a, b))
+    }
+
+    /// The pieces if both edges are halved at the nodes that `middle` gives, else the edges as they are.
+    pub fn halved(&self, middle: impl Fn([usize; 2]) -> Option<usize>) -> Vec<Opposite> {
+        let [own, other] = self.edges().map(middle);
+        match own.zip(other) {
+            None => vec![*self],
+            Some((own, other)) => [0, 1]
+                .map(|end| Opposite { own: [self.own[end], own], other: [self.other[end], other], ..*self })
+                .to_vec(),
+        }
+    }
 }
 
 /// What the next bisection needs.

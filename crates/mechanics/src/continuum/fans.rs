@@ -6,7 +6,7 @@
 
 use std::collections::HashMap;
 
-use super::mesh::{Cells, OuterFacet, SimplexMesh};
+use super::mesh::{Cells, Opposite, SimplexMesh};
 use super::problem::{Condition, ContinuumProblem, Surface};
 use super::simplex::{Point, Simplex};
 use crate::fem::geometry::{distance, dot, key, minus};
@@ -22,43 +22,6 @@ const ROUNDS: usize = 12;
 
 /// Nodes count as opposite to each other if they are aside by less than this share of the shorter edge, as in rows between pairs of nodes.
 const SAME_PLACE: f64 = 1e-3;
-
-/// Two edges that may touch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Opposite {
-    /// The number of the obstacle.
-    pub obstacle: usize,
-    /// The nodes of the edge of the body whose obstacle it is.
-    pub own: [usize; 2],
-    /// The nodes of the edge of the other body, each opposite to that of the first in the same place.
-    pub other: [usize; 2],
-}
-
-/// The facet opposite to another one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Partner {
-    pub on: OuterFacet,
-    /// For each corner of the other one the corner opposite to it.
-    pub corners: [usize; 2],
-}
-
-impl Opposite {
-    /// Both edges by their nodes, increasing.
-    pub fn edges(&self) -> [[usize; 2]; 2] {
-        [self.own, self.other].map(|[a, b]| key(a, b))
-    }
-
-    /// The pieces if both edges are halved at the nodes that `middle` gives, else the edges as they are.
-    pub fn halved(&self, middle: impl Fn([usize; 2]) -> Option<usize>) -> Vec<Opposite> {
-        let [own, other] = self.edges().map(middle);
-        match own.zip(other) {
-            None => vec![*self],
-            Some((own, other)) => [0, 1]
-                .map(|end| Opposite { own: [self.own[end], own], other: [self.other[end], other], ..*self })
-                .to_vec(),
-        }
-    }
-}
 
 /// An edge on a contact, along a line across the direction of the rows.
 #[derive(Clone, Debug)]
