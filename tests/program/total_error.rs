@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use support::brackets::{of_column, shown};
 use support::program::Desk;
-use support::{axis_scenes, key_scenes, plane_scenes, space_scenes};
+use support::{axis_scenes, key_scenes, pair_scenes, plane_scenes, space_scenes};
 
 /// The classical scene: a block of 1 x 0.5, clamped below, pressed by a parabola 0.01 deep.
 pub fn classical(poisson: f64) -> Value {
@@ -304,7 +304,9 @@ fn no_random_scene_violates_the_guarantee() {
     for seed in 1..=24 {
         let in_space = (seed <= 12).then(|| (space_scenes::scene(seed), space_scenes::CLEAR));
         let about_axis = (seed <= 6).then(|| axis_scenes::scene(seed));
-        let in_plane = [plane_scenes::scene(seed), key_scenes::scene(seed)].into_iter().chain(about_axis);
+        let of_bodies = (seed <= 12).then(|| pair_scenes::scene(seed));
+        let in_plane =
+            [plane_scenes::scene(seed), key_scenes::scene(seed)].into_iter().chain(about_axis).chain(of_bodies);
         for (scene, clear) in in_plane.map(|scene| (scene, plane_scenes::CLEAR)).chain(in_space) {
             let one = shown(scene, 3, clear).unwrap();
             assert!(one.violations.is_empty(), "seed {seed}: {:#?}", one.violations);
@@ -313,7 +315,8 @@ fn no_random_scene_violates_the_guarantee() {
     }
     assert!(meshes > 90, "{meshes}");
     for seed in 1..=12 {
-        let columns = [(plane_scenes::column(seed), 0.0), (space_scenes::column(seed), 0.0)];
+        let columns = [plane_scenes::column(seed), space_scenes::column(seed), pair_scenes::column(seed)];
+        let columns = columns.map(|column| (column, 0.0));
         let about = (axis_scenes::column(seed), axis_scenes::OF_POLYNOMIAL);
         for (column, width) in columns.into_iter().chain([about]) {
             assert_eq!(of_column(column, 1, width).unwrap(), Vec::<String>::new(), "seed {seed}");

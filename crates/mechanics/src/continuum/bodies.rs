@@ -35,7 +35,7 @@ pub fn filled(dimension: usize, lame: Lame, body_force: Point) -> ContinuumProbl
         is_axisymmetric: false,
         media: vec![Medium { stiffness: Stiffness::Isotropic(lame), own_stress: None, body_force }],
         medium_of: vec![0],
-        bodies: vec![0..1],
+        bodies: std::iter::once(0..1).collect(),
         thickness: 1.0,
         conditions: Vec::new(),
         rigid_faces: Vec::new(),

@@ -135,8 +135,9 @@ impl Cut {
             }
             own.iter().chain(&other).for_each(|edge| self.fan(edge));
         }
-        let is_lost =
-            |opposite: &&Opposite| opposite.edges().iter().any(|edge| !self.cells.surface.contains_key(&edge.to_vec()));
+        let is_lost = |opposite: &&Opposite| {
+            opposite.edges().iter().any(|edge| !self.cells.surface.contains_key(edge.as_slice()))
+        };
         if let Some(opposite) = opposites.iter().find(is_lost) {
             return Err(opposite.obstacle);
         }
@@ -182,7 +183,7 @@ impl Cut {
         let Some(index) = cells.iter().position(is_at).filter(|_| nodes.len() > 2) else { return };
         let Some(&tip) = cells[index].iter().find(|&&node| node != first && node != last) else { return };
         let mut pieces = nodes.windows(2).map(|ends| [ends[0], ends[1]]);
-        let condition = surface.remove(&key(first, last).to_vec());
+        let condition = surface.remove(key(first, last).as_slice());
         surface.extend(
             condition.into_iter().flat_map(|of| pieces.clone().map(move |ends| (key(ends[0], ends[1]).to_vec(), of))),
         );

@@ -104,6 +104,20 @@ fn columns_of_two_bodies_are_exact_on_meshes_that_do_not_match_and_refined() {
     }
 }
 
+/// An interference of 0.01 and a body that stands back by 0.002 press as if the upper block were lowered by 0.028.
+#[test]
+fn an_interference_adds_to_what_presses_and_a_shift_takes_from_it() {
+    let young = [2.0, 20.0];
+    let (mut problem, mesh) = blocks([[3, 2], [4, 1]], young, 0.0, |_| 0.0);
+    problem.obstacles[0].surface = Surface::Body { reach: 1.0, fit: Some(-0.01), shift: 0.002 };
+    let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+    let pressure = 0.028 / young.iter().map(|young| 0.5 / young).sum::<f64>();
+    for energy in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
+        assert!((energy / (0.014 * pressure) - 1.0).abs() < ROUNDING, "{energy}");
+    }
+    assert!((bracket.force() / pressure - 1.0).abs() < ROUNDING, "{}", bracket.force());
+}
+
 /// The upper block hangs on nothing but contact and guides of its sides.
 #[test]
 fn a_block_that_rests_on_another_one_between_guides_is_exact() {
