@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use signorini_qp as qp;
 use signorini_qp::{Settings, Solution, dot, solve};
 
 use super::found::{Bound, Domain, Guarantee, JudgedMesh, Level, LevelKind, Search as Given, TotalError};
@@ -16,6 +17,10 @@ use crate::study::{AnswerWarning, ModelSize, Status};
 
 /// The seconds of the next mesh over those of this one, approximately.
 const GROWTH: f64 = 2.2;
+
+/// Times that triangles at obstacles are refined before a body counts as held by nothing: on a coarse mesh the means of the gap, which bound
+/// the stress problem, stay open where the body touches.
+const COARSE: usize = 6;
 
 /// The error of the solver over that of the goal. A hundred times as much would not be seen in the bound, but the interval of the force needs
 /// the distances near the edge of the contact.
@@ -94,7 +99,7 @@ impl Search<'_> {
         let mut found: Option<TotalError> = None;
         let (mut next, mut own, mut touching) = (first, None, None);
         let (mut before, mut displacement_seconds) = (0.0, 0.0);
-        let mut answering = Answering::new();
+        let (mut answering, mut coarse) = (Answering::new(), 0);
         let goal = self.given.goal;
         loop {
             let mesh = next;
@@ -102,6 +107,15 @@ impl Search<'_> {
             let settings = self.keeping(displacement_seconds);
             let bracket = match Bracket::new(self.problem, &mesh, touching.as_deref(), &settings) {
                 Ok(bracket) => bracket,
+                Err(Error::Qp(qp::Error::UnderHeld { .. }))
+                    if found.is_none() && coarse < COARSE && !self.problem.has_circles() =>
+                {
+                    coarse += 1;
+                    let mut at_obstacles = vec![false; mesh.count()];
+                    self.problem.facing(&mesh).for_each(|(outer, _)| at_obstacles[outer.cell] = true);
+                    next = self.problem.refined(&mesh, &at_obstacles);
+                    continue;
+                }
                 Err(error) => {
                     let (Some(found), Some(ended)) = (found, shortage(&error)) else { return Err(error) };
                     // Its mesh is the one that was not made.
