@@ -104,7 +104,7 @@ fn columns_of_two_bodies_are_exact_on_meshes_that_do_not_match_and_refined() {
     }
 }
 
-/// Triangles of a height of three thousandths of their length, as those of fans that stay slender, lose six digits and are exact to the others.
+/// Triangles whose height is three thousandths of their length, as fans may contain: the energies keep eight digits.
 #[test]
 fn columns_of_slender_triangles_are_nearly_exact() {
     let young = [2.0, 20.0];

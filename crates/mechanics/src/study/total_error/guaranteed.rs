@@ -18,8 +18,8 @@ use crate::study::{AnswerWarning, ModelSize, Status};
 /// The seconds of the next mesh over those of this one, approximately.
 const GROWTH: f64 = 2.2;
 
-/// Times that triangles at obstacles are refined before a body counts as held by nothing: on a coarse mesh the means of the gap, which bound
-/// the stress problem, stay open where the body touches.
+/// Times that the simplices at obstacles are refined before a body counts as held by nothing. On a coarse mesh the rows of the stress
+/// problem, whose gaps are means, may stay open where the body touches.
 const COARSE: usize = 6;
 
 /// The error of the solver over that of the goal. A hundred times as much would not be seen in the bound, but the interval of the force needs
