@@ -41,10 +41,6 @@ ALLOWED = 0.02
 BUILD_SECONDS = 1200
 """Time limit of a build. The first one compiles all dependencies."""
 
-TEST_SECONDS = 120
-"""Time limit of a stage. A stage takes at most 20 s; a mutant that takes six times as long is in an endless loop and counts as
-detected."""
-
 MEMORY = 6 << 30
 """Limit of the address space of a test program in bytes, which ends a loop that fills a vector."""
 
@@ -64,6 +60,8 @@ class Stage:
     name: str
     programs: tuple[str, ...]
     tests: tuple[str, ...]
+    seconds: float = 120
+    """Time limit, a few times what the tests take. A mutant that takes longer is in an endless loop and counts as detected."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +96,7 @@ AREAS = {
         ("crates/mechanics/src/continuum/**",),
         (
             Stage("own", ("--package", "signorini-mechanics", "--lib"), ("continuum::",)),
-            Stage("program", ("--test", "program"), ("total_error", "guarantees")),
+            Stage("program", ("--test", "program"), ("total_error", "guarantees"), 600),
         ),
     ),
 }
@@ -245,7 +243,7 @@ def judged(tree: Path, area: Area) -> tuple[str, str]:
             return "unbuildable", stage.name
         skipped = [part for name in SLOW for part in ("--skip", name)]
         for program in found:
-            code, _ = ended([program, *stage.tests, *skipped], tree, TEST_SECONDS, limited)
+            code, _ = ended([program, *stage.tests, *skipped], tree, stage.seconds, limited)
             if code is None:
                 return "timed out", stage.name
             if code != 0:

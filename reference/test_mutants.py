@@ -118,10 +118,9 @@ class Stages(unittest.TestCase):
 
     def verdict(self, script: str, builds: bool = True) -> tuple[str, str]:
         program = [sys.executable, "-c", script] if builds else None
-        stage = Stage("only", (), ())
+        stage = Stage("only", (), (), 1.0)
         run = mutants.ended
         with (
-            mock.patch.object(mutants, "TEST_SECONDS", 1.0),
             mock.patch.object(mutants, "programs", lambda tree, stage: [program] if builds else None),
             mock.patch.object(mutants, "ended", lambda command, *rest: run(command[0], *rest)),
         ):
