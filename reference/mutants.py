@@ -41,6 +41,9 @@ ALLOWED = 0.02
 BUILD_SECONDS = 1200
 """Time limit of a build. The first one compiles all dependencies."""
 
+WAITING = 10
+"""A test program that waits, or shares the machine, takes at most this many times its limit of processor time."""
+
 MEMORY = 6 << 30
 """Limit of the address space of a test program in bytes, which ends a loop that fills a vector."""
 
@@ -61,7 +64,8 @@ class Stage:
     programs: tuple[str, ...]
     tests: tuple[str, ...]
     seconds: float = 120
-    """Time limit, a few times what the tests take. A mutant that takes longer is in an endless loop and counts as detected."""
+    """Limit of the processor time of a process, a few times what the tests take. A mutant that takes longer is in an endless loop and
+    counts as detected."""
 
 
 @dataclass(frozen=True)
@@ -193,9 +197,14 @@ def copied(root: Path, tree: Path) -> None:
         stale.unlink()
 
 
-def limited() -> None:
-    """Limits the memory of a test program."""
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+def limits(seconds: float):
+    """Returns the function that limits memory and processor time of a test program, and of each process that it starts."""
+
+    def limited() -> None:
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), int(seconds) + 1))
+
+    return limited
 
 
 def ended(command: list[str], tree: Path, seconds: float, limit=None) -> tuple[int | None, str]:
@@ -243,8 +252,9 @@ def judged(tree: Path, area: Area) -> tuple[str, str]:
             return "unbuildable", stage.name
         skipped = [part for name in SLOW for part in ("--skip", name)]
         for program in found:
-            code, _ = ended([program, *stage.tests, *skipped], tree, stage.seconds, limited)
-            if code is None:
+            command = [program, *stage.tests, *skipped]
+            code, _ = ended(command, tree, WAITING * stage.seconds, limits(stage.seconds))
+            if code in (None, -signal.SIGXCPU):
                 return "timed out", stage.name
             if code != 0:
                 return "killed", stage.name

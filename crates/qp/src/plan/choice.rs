@@ -61,6 +61,9 @@ impl Estimate {
         }
         let slower = 1.0 / ratio;
         let reason = match self.smooth {
+            _ if self.multigrid_bytes.is_infinite() => {
+                "with a factor: multigrid cannot take dofs that contact alone holds".to_string()
+            }
             Smooth::Unknown => {
                 "with a factor: multigrid has no near-null space, which names the motions of almost no energy"
                     .to_string()
