@@ -71,8 +71,15 @@ fn kinds() -> Vec<(&'static str, [Value; 2])> {
     };
     let tied = [2, 3].map(|axes| {
         let mut scene = lowered(axes);
+        if axes == 3 {
+            // The faces of both bodies are the same.
+            for axis in ["x", "y"] {
+                scene["further-bodies"][0]["body"]["box"][axis] = json!({"points": [0.25, 0.75], "divisions": [2]});
+            }
+        }
         scene["ties"] = json!([{"surfaces": {"boundary": "cap.bottom", "to": "top"}}]);
-        scene["obstacles"] = [classical(0.3), block(2)][axes - 2]["obstacles"].clone();
+        scene["obstacles"][0] = json!({"boundary": "right", "approach": "+x",
+            "shape": {"plane": {"point": ([1.26, 0.0, 0.0][..axes]), "normal": ([1, 0, 0][..axes])}}});
         scene
     });
     vec![
@@ -94,7 +101,7 @@ fn kinds() -> Vec<(&'static str, [Value; 2])> {
         ("`profile` with kinks at nodes", [profile(0.25, 2), profile(0.25, 3)]),
         ("rows along the normal of a plane", [on_plane[0].clone(), on_plane[1].clone()]),
         ("several bodies, rows along one direction", [lowered(2), lowered(3)]),
-        ("`ties`", tied),
+        ("tied `surfaces`, with the same faces in space", tied),
         ("`profile` with a kink inside an edge", [profile(0.3, 2), profile(0.3, 3)]),
         ("rows along normals that change", obstacle("rule", json!("closest-point"))),
         ("a support at a point", supported([json!({"on": {"point": [1, 0.5]}, "x": 0}), json!({"on": {"point": [0, 0, 0.5]}, "x": 0})])),

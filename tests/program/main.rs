@@ -23,6 +23,7 @@ mod total_error;
 mod total_error_about_axis;
 mod total_error_estimated;
 mod total_error_of_loads;
+mod total_error_of_ties;
 mod tradeoff;
 mod tutorial;
 mod verify;

@@ -1,4 +1,4 @@
-//! Random scenes of two and three bodies in the plane and about an axis, with meshes that do not match.
+//! Random scenes of two to four bodies in the plane and about an axis, with meshes that do not match; some bodies are tied.
 
 use serde_json::{Value, json};
 use signorini::Scene;
@@ -9,7 +9,8 @@ use super::plane_scenes::ELEMENTS;
 /// The models, and whether their bodies are blocks only.
 const MODELS: [(&str, bool); 3] = [("plane-strain", false), ("plane-stress", false), ("axisymmetric", true)];
 
-/// A body on a wider block, and in one of five scenes a third one under both; with the name of the element of the first.
+/// A body on a wider block, in one of five scenes a third one under both, and in some a cap that is tied to a block above; with the name of
+/// the element of the first.
 pub fn scene(seed: u64) -> (Scene, &'static str) {
     let mut draws = Draws::new(seed);
     let (model, has_blocks_only) = *draws.of(&MODELS);
@@ -87,14 +88,32 @@ pub fn scene(seed: u64) -> (Scene, &'static str) {
         obstacles
             .push(json!({"boundary": "base.bottom", "approach": "-y", "shape": {"body": {"boundary": "floor.top"}}}));
     }
+    let material_of_body = material(&mut draws, young);
+    let mut ties = Vec::new();
+    if !is_round && draws.next() < 0.3 {
+        let wide = width * draws.of(&[0.7, 1.0]);
+        let of_cap = young * 10_f64.powf(draws.between(-1.0, 1.0));
+        further.push(json!({
+            "name": "cap",
+            "material": material(&mut draws, of_cap),
+            "body": {"rectangle": {"x": draws.lines(wide), "y": moved(draws.lines(thickness), height),
+                "element": draws.of(&ELEMENTS)}},
+        }));
+        ties.push(json!({"surfaces": {"boundary": "cap.bottom", "to": top}}));
+        // What acts above acts on the cap.
+        let places = supports.iter_mut().map(|support| &mut support["on"]["boundary"]);
+        let pressures = loads.iter_mut().filter_map(|load| load.pointer_mut("/pressure/boundary"));
+        places.chain(pressures).filter(|name| *name == top).for_each(|name| *name = json!("cap.top"));
+    }
     let scene = json!({
         "model": model,
         "body": body,
-        "material": material(&mut draws, young),
+        "material": material_of_body,
         "further-bodies": further,
         "supports": supports,
         "loads": loads,
         "obstacles": obstacles,
+        "ties": ties,
     });
     (Scene::from_json(&scene.to_string(), "scene").unwrap_or_else(|error| panic!("{error}: {scene}")), element)
 }

@@ -1,5 +1,8 @@
 //! The part of a bracket that is kept: the displacement and the stresses for a picture or a file.
 
+use std::collections::BTreeMap;
+use std::ops::Range;
+
 use super::bound::Bracket;
 use super::simplex::{Point, Tensor, middle};
 use crate::error::Error;
@@ -78,24 +81,34 @@ impl Bracket<'_> {
             mesh.edges.iter().enumerate().map(|(edge, &[a, b])| half(half(of(a), of(b)), of(mesh.nodes.len() + edge)));
         let displacement: Vec<Point> = corners.chain(middles).collect();
         let places = self.displacements.places();
-        let order = self.in_bodies(places.len());
-        let mut number = vec![0; order.len()];
-        order.iter().enumerate().for_each(|(new, &function)| number[function] = new);
-        let elements: Vec<Vec<usize>> = (0..mesh.count())
-            .map(|cell| self.element(kind, cell).into_iter().map(|function| number[function]).collect())
-            .collect();
-        let mut boundaries: Vec<_> = self.problem.boundaries.iter().map(|name| (name.clone(), Vec::new())).collect();
+        // The nodes body by body; at a seam each body has its own.
+        let body_of: Vec<usize> = (0..mesh.count()).map(|cell| self.body_of(cell)).collect();
+        let functions: Vec<Vec<usize>> = (0..mesh.count()).map(|cell| self.element(kind, cell)).collect();
+        let in_bodies =
+            functions.iter().zip(&body_of).flat_map(|(of_cell, &body)| of_cell.iter().map(move |&of| (body, of)));
+        let number: BTreeMap<(usize, usize), usize> = in_bodies.map(|node| (node, 0)).collect();
+        let number: BTreeMap<_, usize> = number.into_keys().enumerate().map(|(new, node)| (node, new)).collect();
+        let order: Vec<usize> = number.keys().map(|node| node.1).collect();
+        let numbered =
+            |(of_cell, &body): (&Vec<usize>, &usize)| of_cell.iter().map(|&of| number[&(body, of)]).collect();
+        let elements: Vec<Vec<usize>> = functions.iter().zip(&body_of).map(numbered).collect();
+        let (mut boundaries, cells_at) = (vec![Vec::new(); self.problem.boundaries.len()], mesh.cells_at());
         for outer in mesh.surface() {
-            let (element, opposite) = (&elements[outer.cell], number[mesh.cell(outer.cell)[outer.local]]);
-            let on_side = |face: &&&[usize]| face.iter().all(|&local| element[local] != opposite);
-            let Some(face) = kind.reference().faces.iter().find(on_side) else { continue };
             for &boundary in &self.problem.conditions[outer.condition].boundaries {
-                boundaries[boundary].1.push(face.iter().map(|&local| element[local]).collect());
+                let body = self.problem.boundaries[boundary].1;
+                let cell = cells_at[outer.facet].into_iter().flatten().find(|&cell| body_of[cell] == body);
+                let cell = cell.unwrap_or(outer.cell);
+                let Some(local) = mesh.sides(cell).iter().position(|&side| side == outer.facet) else { continue };
+                let (element, opposite) = (&functions[cell], mesh.cell(cell)[local]);
+                let on_side = |face: &&&[usize]| face.iter().all(|&place| element[place] != opposite);
+                let face = kind.reference().faces.iter().find(on_side);
+                boundaries[boundary].extend(face.map(|face| face.iter().map(|&place| elements[cell][place]).collect()));
             }
         }
+        let names = self.problem.boundaries.iter().map(|boundary| boundary.0.clone());
         ContinuumAnswer {
             kind,
-            boundaries,
+            boundaries: names.zip(boundaries).collect(),
             nodes: order.iter().map(|&function| places[function]).collect(),
             displacement: order.iter().map(|&function| displacement[function]).collect(),
             elements,
@@ -105,16 +118,10 @@ impl Bracket<'_> {
         }
     }
 
-    /// The functions of the displacement, body by body.
-    fn in_bodies(&self, count: usize) -> Vec<usize> {
-        let mut body_of = vec![0; count];
-        for (cell, functions) in self.displacements.numbers.iter().enumerate() {
-            let body = self.problem.bodies.iter().position(|body| body.contains(&self.mesh.origins[cell]));
-            functions.iter().for_each(|&number| body_of[number / self.mesh.dimension] = body.unwrap_or(0));
-        }
-        let mut order: Vec<usize> = (0..count).collect();
-        order.sort_by_key(|&function| body_of[function]);
-        order
+    /// The number of the body that contains a simplex.
+    fn body_of(&self, cell: usize) -> usize {
+        let contains = |body: &Range<usize>| body.contains(&self.mesh.origins[cell]);
+        self.problem.bodies.iter().position(contains).unwrap_or(0)
     }
 
     /// The nodes of a simplex in the order of a kind.

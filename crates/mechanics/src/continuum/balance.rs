@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use super::johnson_mercier::{Element, tractions_of_body_force};
-use super::mesh::SimplexMesh;
+use super::mesh::{OuterFacet, SimplexMesh};
 use super::normal::{Lower, add};
 use super::part_stress::PartStress;
 use super::simplex::Point;
@@ -34,13 +34,7 @@ struct Tree {
 
 impl Tree {
     fn of(mesh: &SimplexMesh) -> Self {
-        let mut cells_at = vec![[None; 2]; mesh.facet_count()];
-        for cell in 0..mesh.count() {
-            for &facet in mesh.sides(cell) {
-                let place = usize::from(cells_at[facet][0].is_some());
-                cells_at[facet][place] = Some(cell);
-            }
-        }
+        let cells_at = mesh.cells_at();
         let (mut order, mut towards_root) = (Vec::with_capacity(mesh.count()), vec![None; mesh.count()]);
         let mut roots = vec![usize::MAX; mesh.count()];
         for root in 0..mesh.count() {
@@ -62,6 +56,11 @@ impl Tree {
             }
         }
         Tree { cells_at, order, towards_root, roots }
+    }
+
+    /// Returns `true` for a facet between two simplices.
+    fn is_inside(&self, facet: usize) -> bool {
+        self.cells_at[facet][1].is_some()
     }
 
     /// 1 for the first simplex at a facet, -1 for the other one.
@@ -135,10 +134,11 @@ impl Balance {
         // What springs and rigid faces take, and where loads enter inside, follows from the solution.
         let is_plain =
             !problem.is_axisymmetric && problem.loads_of_motions().is_empty() && problem.rigid_faces.is_empty();
-        if !is_plain || mesh.has_inner_conditions() || stresses.on_springs().next().is_some() {
+        let tree = Tree::of(mesh);
+        let acts_inside = |outer: OuterFacet| tree.is_inside(outer.facet) && problem.conditions[outer.condition].acts();
+        if !is_plain || mesh.surface().any(acts_inside) || stresses.on_springs().next().is_some() {
             return None;
         }
-        let tree = Tree::of(mesh);
         let mut held: BTreeMap<usize, Vec<(usize, Point)>> =
             tree.roots.iter().map(|&root| (root, Vec::new())).collect();
         for outer in mesh.surface() {
@@ -185,15 +185,14 @@ impl Balance {
         for (cell, (numbers, element)) in stresses.with_elements().enumerate() {
             let own: Vec<f64> = numbers.iter().map(|&number| displacement[number]).collect();
             for (&number, work) in numbers.iter().zip(element.works(&own)) {
-                let share = if mesh.conditions[number / of_facet].is_some() { 1.0 } else { 0.5 };
+                let share = if tree.is_inside(number / of_facet) { 0.5 } else { 1.0 };
                 forces[number] += share * sign(cell, number) * work;
             }
         }
         // On the surface only the part along supports is free.
         let given = stresses.given_forces(displacement, places, pulls);
-        for place in
-            mesh.surface().flat_map(|outer| (0..dimension).map(move |corner| stresses.place(outer.facet, corner)))
-        {
+        let outside = mesh.surface().filter(|outer| !tree.is_inside(outer.facet));
+        for place in outside.flat_map(|outer| (0..dimension).map(move |corner| stresses.place(outer.facet, corner))) {
             let own = dimension * place..dimension * (place + 1);
             let rest: Vec<f64> = own.clone().map(|unknown| forces[unknown] - given[unknown]).collect();
             forces[own.clone()].copy_from_slice(&given[own.clone()]);

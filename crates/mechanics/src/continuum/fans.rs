@@ -1,4 +1,4 @@
-//! The contact of two bodies in the plane: edges of one lie opposite to edges of the other, end by end.
+//! Where bodies meet: in the plane, edges of one lie opposite to edges of the other, end by end.
 //!
 //! Meshes that do not match are cut at the nodes of the other body: a triangle with an edge on the contact becomes a fan from its third
 //! corner. Then a pressure that is linear on the edges of one body is so on those of the other, and both displacements are quadratic on the
@@ -23,32 +23,32 @@ const ROUNDS: usize = 12;
 /// Nodes count as opposite to each other if they are aside by less than this share of the shorter edge, as in rows between pairs of nodes.
 const SAME_PLACE: f64 = 1e-3;
 
-/// An edge on a contact, along a line across the direction of the rows.
+/// An edge on a contact, along a line across the direction of the rows, or an edge on a seam, along itself.
 #[derive(Clone, Debug)]
-struct Edge {
+pub(super) struct Edge {
     /// Its lower end, places at which it is cut, and its upper end: along the line, and the node.
-    stops: Vec<(f64, usize)>,
+    pub stops: Vec<(f64, usize)>,
 }
 
 impl Edge {
-    fn ends(&self) -> [f64; 2] {
+    pub fn ends(&self) -> [f64; 2] {
         [self.stops[0].0, self.stops[self.stops.len() - 1].0]
     }
 
-    fn length(&self) -> f64 {
+    pub fn length(&self) -> f64 {
         let [low, high] = self.ends();
         high - low
     }
 
     /// The point of the edge at a place along the line.
-    fn at(&self, nodes: &[Point], place: f64) -> Point {
+    pub fn at(&self, nodes: &[Point], place: f64) -> Point {
         let [first, last] = [self.stops[0].1, self.stops[self.stops.len() - 1].1].map(|node| nodes[node]);
         let share = (place - self.ends()[0]) / self.length();
         [0, 1, 2].map(|axis| first[axis] + share * (last[axis] - first[axis]))
     }
 
     /// The node at a place along the line; one within the margin, or a new one.
-    fn node_at(&mut self, nodes: &mut Vec<Point>, place: f64, margin: f64) -> usize {
+    pub fn node_at(&mut self, nodes: &mut Vec<Point>, place: f64, margin: f64) -> usize {
         if let Some(stop) = self.stops.iter().find(|stop| (stop.0 - place).abs() <= margin) {
             return stop.1;
         }
@@ -60,34 +60,47 @@ impl Edge {
     }
 }
 
-/// The cut of triangles at contacts.
-struct Cut {
-    cells: Cells,
+/// Simplices that are cut and joined where bodies meet.
+pub(super) struct Cut {
+    pub cells: Cells,
     /// The triangle before the cut of each one.
     parents: Vec<usize>,
     /// The triangles before the cut that are too large for it.
     too_large: Vec<usize>,
 }
 
+/// Why bodies cannot be joined where they meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unjoined {
+    /// A body lies before another, or before two, in several layers at the obstacle of this number.
+    Layers(usize),
+    /// A support, a load or an obstacle acts on a surface of the seam of this number.
+    Acting(usize),
+}
+
 impl SimplexMesh {
-    /// The mesh cut at the contacts of its bodies: there edges lie opposite to each other. Triangles that are large beside their pieces are
-    /// refined first.
+    /// The mesh whose bodies are one at seams, and which is cut at contacts of bodies in the plane: there edges lie opposite to each other.
+    /// Triangles that are large beside their pieces are refined first. The second value says how much of the two surfaces of each
+    /// seam is joined, from 0 to 1. Facets inside, at seams, get conditions of their own.
     ///
     /// # Errors
-    /// The number of an obstacle if a body lies before another, or before two, in several layers.
-    pub fn cut_at_contacts(self, problem: &ContinuumProblem) -> Result<Self, usize> {
-        let Some(first) = problem.obstacles.iter().position(|facing| matches!(facing.surface, Surface::Body { .. }))
-        else {
-            return Ok(self);
-        };
+    /// [`Unjoined`].
+    pub fn joined(self, problem: &mut ContinuumProblem) -> Result<(Self, Vec<[f64; 2]>), Unjoined> {
+        let contact = problem.obstacles.iter().position(|facing| matches!(facing.surface, Surface::Body { .. }));
+        let has_seams = problem.conditions.iter().any(|condition| !condition.seams.is_empty());
+        if contact.is_none() && !has_seams {
+            return Ok((self, Vec::new()));
+        }
         let (mut mesh, mut rounds) = (self, 0);
         loop {
             let cells = mesh.cells();
             let (parents, too_large) = ((0..cells.cells.len()).collect(), Vec::new());
             let mut cut = Cut { cells, parents, too_large };
-            let opposites = cut.at_contacts(problem)?;
+            let joined = cut.at_seams(problem).map_err(Unjoined::Acting)?;
+            let opposites = cut.at_contacts(problem).map_err(Unjoined::Layers)?;
             if cut.too_large.is_empty() || rounds == ROUNDS {
-                return Ok(SimplexMesh::new(2, cut.cells).ok_or(first)?.with_opposites(opposites));
+                let cut = SimplexMesh::new(mesh.dimension, cut.cells).ok_or(Unjoined::Layers(contact.unwrap_or(0)))?;
+                return Ok((cut.with_opposites(opposites), joined));
             }
             let mut marked = vec![false; mesh.count()];
             cut.too_large.iter().for_each(|&cell| marked[cell] = true);
@@ -175,7 +188,7 @@ impl Cut {
     }
 
     /// Cuts the triangle at an edge in a fan.
-    fn fan(&mut self, edge: &Edge) {
+    pub fn fan(&mut self, edge: &Edge) {
         let nodes: Vec<usize> = edge.stops.iter().map(|stop| stop.1).collect();
         let (Some(&first), Some(&last)) = (nodes.first(), nodes.last()) else { return };
         let is_at = |cell: &Vec<usize>| cell.contains(&first) && cell.contains(&last);

@@ -151,7 +151,7 @@ fn loads_and_supports_on_edges_inside_are_exact() {
     let mut between = Condition::default();
     between.pull_along([Linear::default(), Linear::constant(pull), Linear::default()]);
     let (problem, mesh) = layers([medium(YOUNG), medium(YOUNG)], between);
-    assert!(mesh.has_inner_conditions());
+    assert!(mesh.surface().any(|outer| mesh.cells_at()[outer.facet][1].is_some()));
     assert_exact(&Bracket::new(&problem, &mesh, None, &settings()).unwrap(), -pull * pull / (4.0 * YOUNG));
     let moved = pull / YOUNG / 2.0;
     let support = Held { direction: COORDINATES[1], value: Linear::constant(moved) };

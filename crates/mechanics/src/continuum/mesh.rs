@@ -285,10 +285,16 @@ impl SimplexMesh {
         self.surface.iter().copied()
     }
 
-    /// Returns `true` if a facet between two simplices has a condition.
-    pub fn has_inner_conditions(&self) -> bool {
-        let at_facets = self.count() * (self.dimension + 1);
-        at_facets + self.surface.len() != 2 * self.facet_count()
+    /// The simplices at each facet.
+    pub fn cells_at(&self) -> Vec<[Option<usize>; 2]> {
+        let mut cells_at = vec![[None; 2]; self.facet_count()];
+        for cell in 0..self.count() {
+            for &facet in self.sides(cell) {
+                let place = usize::from(cells_at[facet][0].is_some());
+                cells_at[facet][place] = Some(cell);
+            }
+        }
+        cells_at
     }
 
     /// Returns `true` if a simplex has lost most of its size in a mesh of the same simplices with other node positions.

@@ -19,6 +19,7 @@ mod mesh;
 mod normal;
 mod part_stress;
 mod problem;
+mod seams;
 mod simplex;
 mod springs;
 mod stress;
@@ -28,6 +29,7 @@ mod two_bodies;
 
 pub use answer::ContinuumAnswer;
 pub use bound::Bracket;
+pub use fans::Unjoined;
 pub use judge::{Judged, Strain};
 pub use mesh::{Cells, SimplexMesh};
 pub use problem::{

@@ -30,8 +30,8 @@ pub struct ContinuumProblem {
     pub rigid_faces: Vec<RigidFace>,
     /// The obstacles.
     pub obstacles: Vec<Facing>,
-    /// The names of the parts of the surface.
-    pub boundaries: Vec<String>,
+    /// The names of the parts of the surface, each with the number of its body.
+    pub boundaries: Vec<(String, usize)>,
 }
 
 /// What fills a part of the body.
@@ -71,6 +71,8 @@ pub struct Condition {
     pub obstacles: Vec<usize>,
     /// The obstacles whose surface the facet is a part of: those that are bodies.
     pub faces: Vec<usize>,
+    /// The sides of seams that the facet belongs to: 2k and 2k + 1 are the surfaces that are tied at seam k.
+    pub seams: Vec<usize>,
     /// The named parts of the surface that the facet belongs to.
     pub boundaries: Vec<usize>,
     /// In the plane, the circle on which new nodes are placed; without it they halve the straight side.

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use super::bodies::{clamped, filled, settings};
 use super::bound::Bracket;
+use super::fans::Unjoined;
 use super::mesh::{Cells, SimplexMesh};
 use super::problem::{Condition, ContinuumProblem, Facing, Held, Linear, Medium, Surface};
 use crate::fem::geometry::{COORDINATES, key, length};
@@ -48,6 +49,18 @@ fn blocks(
     poisson: f64,
     profile: impl Fn(f64) -> f64,
 ) -> (ContinuumProblem, SimplexMesh) {
+    let (mut problem, mesh) = unjoined_blocks(divisions, young, poisson, profile);
+    let (mesh, _) = mesh.joined(&mut problem).unwrap();
+    (problem, mesh)
+}
+
+/// The same before they are cut where they meet.
+fn unjoined_blocks(
+    divisions: [[usize; 2]; 2],
+    young: [f64; 2],
+    poisson: f64,
+    profile: impl Fn(f64) -> f64,
+) -> (ContinuumProblem, SimplexMesh) {
     let mut cells = Cells { nodes: Vec::new(), cells: Vec::new(), origins: Vec::new(), surface: HashMap::new() };
     add_block(&mut cells, |x, y| [x, y / 2.0], divisions[0], [0, 2, 3, 2]);
     add_block(&mut cells, |x, y| [x, 0.5 + y / 2.0 + (1.0 - y) * profile(x)], divisions[1], [4, 2, 1, 2]);
@@ -80,8 +93,7 @@ fn blocks(
         }],
         ..filled(2, Lame { lambda: 0.0, mu: 1.0 }, [0.0; 3])
     };
-    let mesh = SimplexMesh::new(2, cells).unwrap().cut_at_contacts(&problem).unwrap();
-    (problem, mesh)
+    (problem, SimplexMesh::new(2, cells).unwrap())
 }
 
 /// The bracket of a column contains its energy and its force: without Poisson's ratio `q = 0.02 / (h_1 / E_1 + h_2 / E_2)`.
@@ -102,6 +114,68 @@ fn columns_of_two_bodies_are_exact_on_meshes_that_do_not_match_and_refined() {
             mesh = problem.refined(&mesh, &marked);
         }
     }
+}
+
+/// Two blocks that are tied, where they were in contact.
+fn tied(mut problem: ContinuumProblem) -> ContinuumProblem {
+    problem.obstacles.clear();
+    problem.conditions[3] = Condition { seams: vec![0], ..Condition::default() };
+    problem.conditions[4] = Condition { seams: vec![1], ..Condition::default() };
+    problem
+}
+
+/// Two tied columns that are pulled apart, on meshes that do not match and are refined, and where supports hold one body only.
+#[test]
+fn tied_columns_are_exact() {
+    let young = [2.0, 20.0];
+    for divisions in [[[3, 2], [4, 1]], [[2, 2], [5, 3]], [[4, 2], [4, 1]]] {
+        let (uncut, first) = unjoined_blocks(divisions, young, 0.0, |_| 0.0);
+        let mut problem = tied(uncut);
+        let (mut mesh, joined) = first.joined(&mut problem).unwrap();
+        assert!(joined.iter().flatten().all(|share| (share - 1.0).abs() < ROUNDING), "{joined:?}");
+        let pressure = 0.02 / young.iter().map(|young| 0.5 / young).sum::<f64>();
+        for level in 0..3 {
+            let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+            assert!(bracket.balance.is_some() && bracket.defect < ROUNDING, "{}", bracket.defect);
+            for energy in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
+                assert!((energy / (0.01 * pressure) - 1.0).abs() < ROUNDING, "{energy}");
+            }
+            // The second body has nodes of its own on the seam.
+            let answer = bracket.answer();
+            let of_body = |body: usize| answer.origins.iter().position(|&origin| origin == body).unwrap();
+            assert!(answer.elements[of_body(0)].iter().all(|node| !answer.elements[of_body(1)].contains(node)));
+            let marked: Vec<bool> = (0..mesh.count()).map(|cell| cell % 3 == level).collect();
+            mesh = problem.refined(&mesh, &marked);
+        }
+        problem.conditions[1] = Condition::default();
+        problem.conditions[1].pressure = Linear::constant(-0.5);
+        let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+        let energy = -0.125 * young.iter().map(|young| 0.5 / young).sum::<f64>();
+        for found in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
+            assert!((found / energy - 1.0).abs() < ROUNDING, "{found}");
+        }
+    }
+}
+
+/// Half of a surface is free if the other one covers only half of it, and none of it is joined if they do not lie on each other.
+#[test]
+fn only_what_lies_on_each_other_is_joined_and_nothing_acts_there() {
+    let sides = |reach: f64, up: f64| {
+        let mut cells = Cells { nodes: Vec::new(), cells: Vec::new(), origins: Vec::new(), surface: HashMap::new() };
+        add_block(&mut cells, |x, y| [x, y / 2.0], [3, 2], [0, 2, 3, 2]);
+        add_block(&mut cells, |x, y| [reach * x, up + y / 2.0], [4, 1], [4, 2, 1, 2]);
+        SimplexMesh::new(2, cells).unwrap()
+    };
+    let (uncut, _) = unjoined_blocks([[1, 1], [1, 1]], [1.0, 1.0], 0.3, |_| 0.0);
+    let mut problem = tied(uncut);
+    let (_, joined) = sides(0.5, 0.5).joined(&mut problem).unwrap();
+    assert!(
+        joined.len() == 1 && (joined[0][0] - 0.5).abs() < 1e-15 && (joined[0][1] - 1.0).abs() < 1e-15,
+        "{joined:?}"
+    );
+    assert!(sides(1.0, 0.5001).joined(&mut problem).unwrap().1 == [[0.0; 2]]);
+    problem.conditions[4].traction[0] = Linear::constant(1.0);
+    assert_eq!(sides(1.0, 0.5).joined(&mut problem).err(), Some(Unjoined::Acting(0)));
 }
 
 /// Triangles whose height is three thousandths of their length, as fans may contain: the energies keep eight digits.
@@ -235,9 +309,9 @@ fn several_layers_are_refused() {
     add_block(&mut cells, shifted(1.1), [3, 1], [4, 2, 2, 2]);
     let (mut problem, _) = blocks([[1, 1], [1, 1]], [1.0, 1.0], 0.3, |_| 0.0);
     let mesh = SimplexMesh::new(2, cells).unwrap();
-    assert_eq!(mesh.clone().cut_at_contacts(&problem).err(), Some(0));
+    assert_eq!(mesh.clone().joined(&mut problem).err(), Some(Unjoined::Layers(0)));
     problem.obstacles[0].surface = Surface::Body { reach: 0.2, fit: None, shift: 0.0 };
-    let cut = mesh.cut_at_contacts(&problem).unwrap();
+    let cut = mesh.joined(&mut problem).unwrap().0;
     assert_eq!(problem.facing(&cut).filter(|facing| cut.partner(facing.0.facet, 0).is_some()).count(), 4);
 }
 

@@ -59,8 +59,7 @@ impl Scene {
         if !self.ties.is_empty() && self.analysis.is_some() {
             return Err(wrong("ties", "ties are for equilibria only; a motion has only supports"));
         }
-        let surfaces = self.tied_surfaces().flatten().filter_map(|name| body.mesh().boundary(name));
-        let order = SideOrder::of(body, surfaces);
+        let order = self.order_of_tied(body);
         let (mut rows, mut of_tie, mut warnings) = (Vec::new(), Vec::with_capacity(self.ties.len()), Vec::new());
         let (mut entries, mut values, mut shortenings) = (Vec::new(), Vec::new(), Vec::new());
         let (dimension, rounding) = (body.dimension(), COORDINATE_ROUNDING * body.mesh().size());
@@ -110,6 +109,27 @@ impl Scene {
         }
         let ties = Ties { rows, of_tie, matrix, values, shortenings, warnings };
         Ok(if ties.of_tie.len() > 1 { ties.without_repeated() } else { ties })
+    }
+
+    /// Says which surface of tie `index` takes the means, 0 or 1, and how much of it is tied, from 0 to 1; `None` for a tie that is no pair
+    /// of surfaces.
+    ///
+    /// # Errors
+    /// None for the ties of a model that is built.
+    pub(crate) fn tied_share(
+        &self,
+        index: usize,
+        body: &ElasticBody,
+        dofs: &DofMap,
+    ) -> Result<Option<(usize, f64)>, Error> {
+        let TieSpec::Surfaces(TiedSurfacesSpec { boundary, to, reach }) = &self.ties[index] else { return Ok(None) };
+        let place = (body, dofs, &self.order_of_tied(body));
+        let facing = Facing::of([boundary, to], *reach, &format!("ties[{index}].surfaces"), place, &mut Vec::new())?;
+        Ok(Some((usize::from(facing.is_swapped), facing.found.covered[0])))
+    }
+
+    fn order_of_tied(&self, body: &ElasticBody) -> SideOrder {
+        SideOrder::of(body, self.tied_surfaces().flatten().filter_map(|name| body.mesh().boundary(name)))
     }
 
     /// The pairs of boundaries that are tied.

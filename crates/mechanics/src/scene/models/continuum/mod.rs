@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use super::condition::ON_THE_AXIS;
 use super::rigid_face::{Motion, RigidFace};
 use crate::continuum::{
-    Cells, ContinuumAnswer, ContinuumProblem, Linear, Medium, Point, RigidFace as Plate, SimplexMesh,
+    Cells, ContinuumAnswer, ContinuumProblem, Linear, Medium, Point, RigidFace as Plate, SimplexMesh, Unjoined,
 };
 use crate::error::Error;
 use crate::fem::body::Phase;
@@ -22,6 +22,12 @@ use crate::scene::input::schema::load::LoadSpec;
 use obstacle::facing;
 use why_not::none;
 pub(crate) use why_not::{NoGuarantee, WhyNot};
+
+/// Times that facets partly within the reach of a pressed obstacle are refined.
+const MOST_ROUNDS: usize = 12;
+
+/// Shares of a surface that differ by less are the same: the rounding of areas.
+const ALL_OF_IT: f64 = 1e-6;
 
 impl Scene {
     /// Refuses a scene without an answer in the continuum.
@@ -54,9 +60,6 @@ impl Scene {
                 return Err(none("model", message));
             }
         };
-        if !self.ties.is_empty() {
-            return Err(none("ties", "they have no guaranteed bound: only supports, springs and rigid faces have one"));
-        }
         let media = body.phases().iter().map(|phase| self.medium(phase, &formulation)).collect::<Result<_, _>>()?;
         let dimension = model.mesh().dimension();
         let mut problem = ContinuumProblem {
@@ -69,7 +72,12 @@ impl Scene {
             conditions: Vec::new(),
             rigid_faces: model.parts.rigid_faces.iter().map(rigid_face).collect(),
             obstacles: (0..model.obstacles().len()).map(|index| facing(model, index)).collect::<Result<_, _>>()?,
-            boundaries: model.mesh().boundaries().iter().map(|boundary| boundary.name.clone()).collect(),
+            boundaries: model
+                .mesh()
+                .boundaries()
+                .iter()
+                .map(|boundary| (boundary.name.clone(), body.region_of(boundary).unwrap_or(0)))
+                .collect(),
         };
         let at_body = |error: Error| match error {
             Error::Mesh { message } => none("body", format!("{message}, so that there is no guaranteed bound")),
@@ -96,26 +104,28 @@ impl Scene {
         let Pieces { nodes, cells, elements: origins, .. } = pieces;
         let cells = Cells { nodes, cells, origins, surface };
         let mesh = SimplexMesh::new(dimension, cells).ok_or_else(unmatched)?;
-        let mesh = mesh.cut_at_contacts(&problem).map_err(|obstacle| {
-            let message =
-                "several layers of the bodies lie before each other, so that there is no guaranteed bound; give a smaller `reach`";
-            none(format!("obstacles[{obstacle}].shape.body"), message)
-        })?;
-        let mut within_reach = vec![false; problem.obstacles.len()];
-        for (outer, obstacle) in problem.facing(&mesh) {
-            let gap = problem.gap(&mesh, outer.facet, obstacle);
-            if gap.as_ref().is_some_and(|gap| gap.below.is_infinite()) {
-                let message = "the distance to a surface of this shape has no bounds between nodes, so that there is no guaranteed bound";
-                return Err(none(format!("obstacles[{obstacle}].shape"), message));
+        let (mesh, joined) = mesh.joined(&mut problem).map_err(|why| match why {
+            Unjoined::Layers(obstacle) => {
+                let message =
+                    "several layers of the bodies lie before each other, so that there is no guaranteed bound; give a smaller `reach`";
+                none(format!("obstacles[{obstacle}].shape.body"), message)
             }
-            within_reach[obstacle] |= gap.is_some_and(|gap| gap.above.is_finite());
+            Unjoined::Acting(tie) => {
+                let message = "a support, a load or an obstacle on a tied surface has no guaranteed bound";
+                none(format!("ties[{tie}]"), message)
+            }
+        })?;
+        for (tie, shares) in joined.into_iter().enumerate() {
+            let tied = self.tied_share(tie, body, model.dofs())?;
+            if tied.is_some_and(|(side, share)| (shares[side] - share).abs() > ALL_OF_IT) {
+                let message = match dimension {
+                    2 => "surfaces that do not lie on each other have no guaranteed bound if they are tied",
+                    _ => "tied surfaces whose faces, cut into triangles, are not the same have no guaranteed bound",
+                };
+                return Err(none(format!("ties[{tie}]"), message));
+            }
         }
-        if let Some(obstacle) = (0..within_reach.len()).find(|&of| !within_reach[of] && problem.travel(of).is_some()) {
-            let message = "no facet of the mesh lies all within the reach of the pressed obstacle, so that there is no guaranteed bound; \
-                           take smaller cells there";
-            return Err(none(format!("obstacles[{obstacle}].force"), message));
-        }
-        Ok((problem, mesh))
+        within_reach(problem, mesh)
     }
 
     /// The scene on the last mesh of a guaranteed error, with the boundaries and parts of the first mesh.
@@ -165,6 +175,33 @@ impl Scene {
         let own_stress = phase.own.is_some().then(|| [0, 1, 2, 3, 4, 5].map(own));
         Ok(Medium { stiffness: phase.law.stiffness.clone(), own_stress, body_force })
     }
+}
+
+/// The problem with a mesh on which some facet lies all within the reach of each pressed obstacle; it is refined there if need be.
+fn within_reach(problem: ContinuumProblem, mut mesh: SimplexMesh) -> Result<(ContinuumProblem, SimplexMesh), WhyNot> {
+    for round in 0.. {
+        let (mut has_facet, mut partly) = (vec![false; problem.obstacles.len()], Vec::new());
+        for (outer, obstacle) in problem.facing(&mesh) {
+            let Some(gap) = problem.gap(&mesh, outer.facet, obstacle) else { continue };
+            if gap.below.is_infinite() {
+                let message = "the distance to a surface of this shape has no bounds between nodes, so that there is no guaranteed bound";
+                return Err(none(format!("obstacles[{obstacle}].shape"), message));
+            }
+            has_facet[obstacle] |= gap.above.is_finite();
+            partly.push((outer.cell, obstacle));
+        }
+        let is_missed = |obstacle: &usize| !has_facet[*obstacle] && problem.travel(*obstacle).is_some();
+        let Some(obstacle) = (0..has_facet.len()).find(is_missed) else { break };
+        let mut marked = vec![false; mesh.count()];
+        partly.iter().filter(|of| of.1 == obstacle).for_each(|of| marked[of.0] = true);
+        if round == MOST_ROUNDS || problem.has_circles() || !marked.contains(&true) {
+            let message = "no facet of the mesh lies all within the reach of the pressed obstacle, so that there is no guaranteed bound; \
+                           take smaller cells there";
+            return Err(none(format!("obstacles[{obstacle}].force"), message));
+        }
+        mesh = problem.refined(&mesh, &marked);
+    }
+    Ok((problem, mesh))
 }
 
 /// A rigid face by its motions.

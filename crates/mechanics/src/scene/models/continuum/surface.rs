@@ -14,7 +14,7 @@ use crate::scene::input::entry::boundary;
 use crate::scene::input::profile::Profile;
 use crate::scene::input::schema::load::{LoadSpec, PressureSpec, TractionSpec};
 use crate::scene::input::schema::profile::ProfileSpec;
-use crate::scene::input::schema::{Place, Scene};
+use crate::scene::input::schema::{Place, Scene, TieSpec, TiedSurfacesSpec};
 use crate::scene::models::load::spread;
 
 /// A kink of a profile lies at a corner of a facet if it does up to this share of the facet.
@@ -79,6 +79,15 @@ impl Scene {
             })?;
             if let Some((other, _)) = obstacle.other_body() {
                 surface.change_known(other, |condition| condition.faces.push(index));
+            }
+        }
+        for (index, tie) in self.ties.iter().enumerate() {
+            let TieSpec::Surfaces(TiedSurfacesSpec { boundary, to, .. }) = tie else {
+                let message = "only tied surfaces have a guaranteed bound, not equations of nodes and no preload";
+                return Err(none(format!("ties[{index}]"), message));
+            };
+            for (side, name) in [boundary, to].into_iter().enumerate() {
+                surface.change_known(name, |condition| condition.seams.push(2 * index + side));
             }
         }
         for (index, boundary) in model.mesh().boundaries().iter().enumerate() {
