@@ -1,9 +1,10 @@
 //! Random scenes in space that have a guaranteed bound.
 
-use serde_json::json;
+use serde_json::{Value, json};
 use signorini::Scene;
 
 use super::brackets::{Column, Draws};
+use super::gmsh_forms::{Drawing, FORMS, Part};
 
 /// Elements of the scene's own mesh.
 pub const ELEMENTS: [&str; 4] = ["tet4", "tet10", "hex8", "hex20"];
@@ -14,7 +15,16 @@ const RATIOS: [f64; 7] = [0.0, 0.2, 0.3, 0.45, 0.49, 0.499, 0.4999];
 /// The error of a mesh is known to about seven percent if the bound of the last mesh is this many times smaller.
 pub const CLEAR: f64 = 4.0;
 
-/// A block under a rigid obstacle, and the name of its element.
+/// The boundaries of a box.
+const SIDES: [&str; 6] = ["left", "right", "front", "back", "bottom", "top"];
+
+/// The corners at the ends of each edge of a tetrahedron of ten nodes.
+const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
+
+/// Largest move of a node along an axis, over the size of the box; the smallest cells have 0.15 of it.
+const MOVED: f64 = 0.04;
+
+/// A block under a rigid obstacle, and the name of its element. The nodes of some meshes of tetrahedra are moved.
 ///
 /// # Panics
 /// Never: the scene is valid.
@@ -65,7 +75,7 @@ pub fn scene(seed: u64) -> (Scene, &'static str) {
             json!({"boundary": "right", "approach": "+x", "shape": {"plane": {"point": point, "normal": [1, 0, 0]}}}),
         );
     }
-    let scene = json!({
+    let mut scene = json!({
         "model": "space",
         "body": {"box": {
             "x": draws.few_lines(width), "y": draws.few_lines(length), "z": draws.few_lines(height), "element": element
@@ -75,7 +85,55 @@ pub fn scene(seed: u64) -> (Scene, &'static str) {
         "loads": loads,
         "obstacles": obstacles,
     });
-    (Scene::from_json(&scene.to_string(), "scene").unwrap(), element)
+    if element.starts_with("tet") && draws.next() < 0.6 {
+        // The name appears with the whole file: several processes may draw the same scene.
+        let file = std::env::temp_dir().join(format!("signorini-moved-nodes-{seed}.msh"));
+        let own = file.with_extension(std::process::id().to_string());
+        std::fs::write(&own, with_moved_nodes(&scene, &mut draws, [width, length, height])).unwrap();
+        std::fs::rename(&own, &file).unwrap();
+        scene["body"] = json!({"gmsh": {"file": file}});
+    }
+    (Scene { reads_outside: true, ..Scene::from_json(&scene.to_string(), "scene").unwrap() }, element)
+}
+
+/// The mesh of a box of tetrahedra as a file of Gmsh, with each node moved inside the box, and along the planes on which it lies.
+fn with_moved_nodes(scene: &Value, draws: &mut Draws, size: [f64; 3]) -> Vec<u8> {
+    let model = Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap();
+    let mesh = model.mesh();
+    let mut moved = |place: f64, size: f64| match place == 0.0 || place == size {
+        true => place,
+        false => place + size * draws.between(-MOVED, MOVED),
+    };
+    let mut nodes: Vec<[f64; 3]> =
+        mesh.nodes().iter().map(|node| [0, 1, 2].map(|axis| moved(node[axis], size[axis]))).collect();
+    for element in (0..mesh.element_count()).map(|index| mesh.element(index)).filter(|element| element.len() == 10) {
+        for ([from, to], middle) in EDGES.into_iter().zip(&element[4..]) {
+            let [from, to] = [from, to].map(|corner| nodes[element[corner]]);
+            nodes[*middle] = [0, 1, 2].map(|axis| (from[axis] + to[axis]) / 2.0);
+        }
+    }
+    let tags = |of: &[usize]| of.iter().map(|&node| node as u64 + 1).collect::<Vec<_>>();
+    let of_element = |index: usize| {
+        let mut element = tags(mesh.element(index));
+        // Gmsh has the last two edges in the other order.
+        if element.len() == 10 {
+            element.swap(8, 9);
+        }
+        element
+    };
+    let is_linear = mesh.element(0).len() == 4;
+    let elements = (0..mesh.element_count()).map(of_element).collect();
+    let body = Part { dimension: 3, entity: 1, group: 7, number: if is_linear { 4 } else { 11 }, elements };
+    let sides = SIDES.into_iter().zip(1..).map(|(name, group)| {
+        let facets = mesh.boundary(name).unwrap().facets().map(tags).collect();
+        Part { dimension: 2, entity: group, group, number: if is_linear { 2 } else { 9 }, elements: facets }
+    });
+    let drawing = Drawing {
+        names: SIDES.into_iter().zip(1..).map(|(name, group)| (2, group, name)).chain([(3, 7, "body")]).collect(),
+        nodes: nodes.into_iter().enumerate().map(|(node, at)| (node as u64 + 1, at)).collect(),
+        parts: sides.chain([body]).collect(),
+    };
+    drawing.written(FORMS[3])
 }
 
 /// A column between rollers under a body force b, up or down, its head against a plane, as
