@@ -236,4 +236,20 @@ mod tests {
             assert!((volume / exact - 1.0).abs() < 1e-13, "{volume} {exact}");
         }
     }
+
+    /// `1 - r P = (r - 2) (r - 6) prod (r - c)^2 / 12 prod c^2` at r = 3, with the places `4 + 2 cos(k pi / 5)`.
+    #[test]
+    fn the_polynomial_for_one_over_the_radius_is_above_it() {
+        let cosines = [0.809_016_994_374_947_5, 0.309_016_994_374_947_45];
+        let squares: f64 = cosines
+            .iter()
+            .flat_map(|cosine| [4.0 + 2.0 * cosine, 4.0 - 2.0 * cosine])
+            .map(|place: f64| (1.0 - 3.0 / place).powi(2))
+            .product();
+        let exact = 1.0 / 2.0 * (3.0 / 6.0) * squares;
+        for ends in [[2.0, 6.0], [6.0, 2.0]] {
+            assert!((beyond(3.0, ends) / exact - 1.0).abs() < 1e-13, "{}", beyond(3.0, ends));
+            assert_eq!(ends.map(|end| beyond(end, ends)), [0.0; 2]);
+        }
+    }
 }

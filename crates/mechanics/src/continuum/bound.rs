@@ -271,10 +271,16 @@ impl<'a> Bracket<'a> {
         let law = self.law(cell);
         let of_stress = law.compliance(stress);
         let square = at.weight * law.square(less(strain, of_stress));
-        match at.extra == 0.0 {
-            true => square,
-            false => square + at.extra * (law.hoop() * strain[2] * strain[2] + work(stress, of_stress)),
+        square + self.by_polynomial(cell, at, strain, stress)
+    }
+
+    /// The sum of the squares of a strain and of an elastic stress about an axis, as far as the polynomial for 1/r makes them too large.
+    pub fn by_polynomial(&self, cell: usize, at: &Sample, strain: Tensor, stress: Tensor) -> f64 {
+        if at.extra == 0.0 {
+            return 0.0;
         }
+        let law = self.law(cell);
+        at.extra * (law.hoop() * strain[2] * strain[2] + work(stress, law.compliance(stress)))
     }
 
     /// Computes energy, shares and the share of contact.

@@ -208,6 +208,11 @@ mod tests {
             let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
             assert!(bracket.defect < 1e-11, "{}", bracket.defect);
             assert!(bracket.force() > 0.0 && bracket.contact_share > 0.0);
+            // In a coarse mesh only middles of edges may touch.
+            let is_on_top = |(node, touches): (&Point, bool)| !touches || node[mesh.dimension - 1] == 1.0;
+            assert!(mesh.nodes.iter().zip(bracket.touching()).all(is_on_top));
+            let volume: f64 = (0..mesh.count()).map(|cell| bracket.volume(cell)).sum();
+            assert!((volume - 1.0).abs() < 1e-14, "{volume}");
             assert!(bracket.energy_of_stress() < bracket.energy_of_displacement());
         }
     }
@@ -247,6 +252,21 @@ mod tests {
                     assert!(exact > 0.0 && (found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
                 }
             }
+        }
+    }
+
+    /// A body at rest under a stress in balance: that stress is the largest.
+    #[test]
+    fn the_largest_stress_may_be_that_in_balance() {
+        for (problem, mesh) in [body(2), body(3)] {
+            let mut bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+            bracket.primal.values.fill(0.0);
+            let corners = mesh.dimension + 1;
+            let centre = std::array::from_fn(|corner| if corner < corners { 1.0 / corners as f64 } else { 0.0 });
+            let at_centres = (0..mesh.count()).flat_map(|cell| (0..corners).map(move |k| (cell, k)));
+            let entries = at_centres.flat_map(|(cell, k)| bracket.elastic_stress(cell, k, centre));
+            let largest = entries.fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
+            assert!(largest > 0.0 && bracket.largest_stress() == largest, "{largest} {}", bracket.largest_stress());
         }
     }
 

@@ -142,12 +142,11 @@ impl Bracket<'_> {
             // By as much the polynomial for 1/r may change these products.
             let changes = |k: usize, at: &Sample| {
                 let (strain, stress) = pair(k, at);
-                at.extra * (law.hoop() * strain[2] * strain[2] + work(stress, law.compliance(stress)))
+                self.by_polynomial(cell, at, strain, stress)
             };
             let changes_of_bracket = |k: usize, at: &Sample| {
                 let own = self.strain(&self.primal.values, cell, k, at.weights);
-                let elastic = self.elastic_stress(cell, k, at.weights);
-                at.extra * (law.hoop() * own[2] * own[2] + work(elastic, law.compliance(elastic)))
+                self.by_polynomial(cell, at, own, self.elastic_stress(cell, k, at.weights))
             };
             let of_extra = if self.problem.is_axisymmetric {
                 [self.sum(cell, changes), self.sum(cell, changes_of_bracket)]

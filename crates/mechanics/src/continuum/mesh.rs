@@ -484,6 +484,14 @@ mod tests {
     }
 
     #[test]
+    fn the_longest_edge_lies_opposite_to_the_first_corner() {
+        let nodes = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 1.0, 0.0]];
+        for triangle in [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1]] {
+            assert_eq!(longest_first(&nodes, triangle)[0], 1);
+        }
+    }
+
+    #[test]
     fn a_surface_without_a_condition_is_no_mesh() {
         let nodes = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
         let surface = HashMap::from([(vec![0, 1], 0), (vec![1, 2], 1)]);

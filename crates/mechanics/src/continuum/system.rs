@@ -470,3 +470,58 @@ impl Unknowns {
         (starts, rows)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::bodies::body;
+    use super::super::displacement::Displacements;
+    use super::super::problem::{Held, Linear};
+    use super::*;
+
+    /// Supports along two directions that are not at right angles hold what each of them prescribes.
+    #[test]
+    fn inclined_supports_at_one_place_are_both_kept() {
+        let [one, other] = [[1.0, 0.0, 0.0], [0.6, 0.8, 0.0]];
+        let supported = Supported::of(3, &[(one, 3.0), (other, -5.0)], None);
+        for (direction, value) in [(one, 3.0), (other, -5.0)] {
+            assert!((dot(direction, supported.offset) - value).abs() < 1e-14, "{:?}", supported.offset);
+        }
+        assert_eq!((supported.held.len(), &supported.free[..]), (2, &[[0.0, 0.0, 1.0]][..]));
+    }
+
+    /// Rows along an inclined normal at a place that a support holds along x: one unknown moves it, by a part of itself.
+    #[test]
+    fn a_row_at_a_support_is_moved_to_a_value_and_held_there() {
+        let (mut problem, mesh) = body(2);
+        let normal = [0.6, 0.8, 0.0];
+        problem.obstacles[0].normal = normal;
+        problem.conditions[2].held = vec![Held { direction: COORDINATES[0], value: Linear::constant(0.25) }];
+        let displacements = Displacements::new(&problem, &mesh);
+        let unknowns = displacements.unknowns();
+        let outer = mesh.surface().find(|outer| outer.condition == 2).unwrap();
+        let row = Row::of(displacements.on_facet(&outer)[2], 2, normal, 0.0);
+        assert_eq!(row.place(2), displacements.on_facet(&outer)[2]);
+        let (own, coefficient) = unknowns.own_term(&row).unwrap();
+        assert!((coefficient - 0.8).abs() < 1e-14, "{coefficient}");
+        let mut values = unknowns.expanded(&vec![0.0; unknowns.free]);
+        assert!((row.value(&values) - 0.15).abs() < 1e-14);
+        unknowns.move_to(&mut values, &row, 7.0);
+        assert!((row.value(&values) - 7.0).abs() < 1e-13, "{}", row.value(&values));
+        // Held rows have no prescribed part.
+        let held = unknowns.with_held(std::iter::once(&row), -1.0).unwrap();
+        assert_eq!(held.free, unknowns.free - 1);
+        assert!(own < unknowns.free && (row.value(&held.expanded(&vec![0.5; held.free])) + 1.0).abs() < 1e-14);
+    }
+
+    /// A support that holds the surface inside the obstacle says how deep.
+    #[test]
+    fn a_support_inside_an_obstacle_names_the_depth() {
+        let (mut problem, mesh) = body(2);
+        problem.conditions[2].held = vec![Held { direction: COORDINATES[1], value: Linear::constant(0.5) }];
+        let displacements = Displacements::new(&problem, &mesh);
+        let error = displacements.rows(&displacements.unknowns()).unwrap_err();
+        // The gap is between -0.1 and 0.26 there.
+        let Error::Qp(signorini_qp::Error::Infeasible { overlap, .. }) = error else { panic!("{error}") };
+        assert!(overlap > 0.24 && overlap < 0.5, "{overlap}");
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::bodies::{clamped, filled, settings};
+use super::bodies::{body, clamped, filled, settings};
 use super::bound::Bracket;
 use super::fans::Unjoined;
 use super::mesh::{Cells, SimplexMesh};
@@ -41,6 +41,11 @@ fn add_block(cells: &mut Cells, image: impl Fn(f64, f64) -> [f64; 2], [across, u
     cells.surface.extend(edges.map(|(a, b, side)| (key(node(a[0], a[1]), node(b[0], b[1])).to_vec(), side)));
 }
 
+/// No simplices yet.
+fn empty() -> Cells {
+    Cells { nodes: Vec::new(), cells: Vec::new(), origins: Vec::new(), surface: HashMap::new() }
+}
+
 /// Two blocks of the widths and heights one and a half, the second one on the first. The lower one is clamped below; the upper one is held
 /// above, moved by `-0.02`. `profile` is how far the lower side of the upper block lies higher.
 fn blocks(
@@ -61,7 +66,7 @@ fn unjoined_blocks(
     poisson: f64,
     profile: impl Fn(f64) -> f64,
 ) -> (ContinuumProblem, SimplexMesh) {
-    let mut cells = Cells { nodes: Vec::new(), cells: Vec::new(), origins: Vec::new(), surface: HashMap::new() };
+    let mut cells = empty();
     add_block(&mut cells, |x, y| [x, y / 2.0], divisions[0], [0, 2, 3, 2]);
     add_block(&mut cells, |x, y| [x, 0.5 + y / 2.0 + (1.0 - y) * profile(x)], divisions[1], [4, 2, 1, 2]);
     let medium = |young: f64| {
@@ -116,6 +121,71 @@ fn columns_of_two_bodies_are_exact_on_meshes_that_do_not_match_and_refined() {
     }
 }
 
+/// In another unit of length, columns stay exact, with the same tree of triangles.
+#[test]
+fn columns_of_a_tenth_of_a_millimetre_are_exact() {
+    const UNIT: f64 = 1e-4;
+    let young = [2.0, 20.0];
+    let (mut problem, mesh) = unjoined_blocks([[3, 2], [4, 1]], young, 0.0, |_| 0.0);
+    let mut cells = mesh.cells();
+    cells.nodes.iter_mut().flatten().for_each(|part| *part *= UNIT);
+    problem.conditions[1].held.iter_mut().for_each(|held| held.value = held.value.times(UNIT));
+    let (mesh, _) = SimplexMesh::new(2, cells).unwrap().joined(&mut problem).unwrap();
+    let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+    assert!(bracket.balance.is_some() && bracket.defect < ROUNDING, "{}", bracket.defect);
+    let energy = 0.01 * 0.02 * UNIT * UNIT / young.iter().map(|young| 0.5 / young).sum::<f64>();
+    for found in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
+        assert!((found / energy - 1.0).abs() < ROUNDING, "{found}");
+    }
+}
+
+/// Two cubes of side 3 in space, tied face to face and pulled apart; their nodes on the seam differ by rounding.
+#[test]
+fn tied_cubes_in_space_are_exact() {
+    let (mut problem, unit) = body(3);
+    let cells = unit.cells();
+    let mut both = empty();
+    for (number, up) in [0.0, 1.0].into_iter().enumerate() {
+        let first = both.nodes.len();
+        let wide = 3.0 * (1.0 + number as f64 * 1e-15);
+        both.nodes.extend(cells.nodes.iter().map(|[x, y, z]| [wide * x, wide * y, wide * (z + up)]));
+        both.cells.extend(cells.cells.iter().map(|cell| cell.iter().map(|node| first + node).collect()));
+        both.origins.extend(cells.cells.iter().map(|_| number));
+        let facets =
+            cells.surface.iter().map(|(facet, of)| (facet.iter().map(|node| first + node).collect(), 4 * number + of));
+        both.surface.extend(facets);
+    }
+    let media = problem.media[0].clone();
+    problem.media = [1.0, 4.0]
+        .map(|mu| Medium {
+            stiffness: Stiffness::Isotropic(Lame { lambda: 0.0, mu }),
+            body_force: [0.0; 3],
+            ..media.clone()
+        })
+        .to_vec();
+    problem.medium_of = vec![0, 1];
+    problem.bodies = vec![0..1, 1..2];
+    problem.obstacles.clear();
+    let raised = Held { direction: COORDINATES[2], value: Linear::constant(0.06) };
+    let rollers = [0, 1].map(|axis| Held { direction: COORDINATES[axis], value: Linear::default() });
+    let free = Condition::default();
+    let tied = |side: usize| Condition { seams: vec![side], ..Condition::default() };
+    let moved = Condition { held: [&rollers[..], &[raised]].concat(), ..Condition::default() };
+    problem.conditions =
+        vec![problem.conditions[0].clone(), free.clone(), tied(0), free.clone(), tied(1), free.clone(), moved, free];
+    let (mesh, joined) = SimplexMesh::new(3, both).unwrap().joined(&mut problem).unwrap();
+    assert!(joined.iter().flatten().all(|share| (share - 1.0).abs() < ROUNDING), "{joined:?}");
+    let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+    assert!(bracket.balance.is_some() && bracket.defect < 1e-10, "{}", bracket.defect);
+    // Young's moduli 2 and 8, heights 3, an area of 9.
+    let energy = 0.03 * 9.0 * 0.06 / (3.0 / 2.0 + 3.0 / 8.0);
+    for found in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
+        assert!((found / energy - 1.0).abs() < 1e-10, "{found} {energy}");
+    }
+    let faces = problem.conditions.iter().position(|condition| condition.seams == [0]).unwrap();
+    assert!(mesh.surface().all(|outer| outer.condition != faces));
+}
+
 /// Two blocks that are tied, where they were in contact.
 fn tied(mut problem: ContinuumProblem) -> ContinuumProblem {
     problem.obstacles.clear();
@@ -140,8 +210,14 @@ fn tied_columns_are_exact() {
             for energy in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
                 assert!((energy / (0.01 * pressure) - 1.0).abs() < ROUNDING, "{energy}");
             }
-            // The second body has nodes of its own on the seam.
+            // The second body has nodes of its own on the seam; the displacement is linear in each body.
             let answer = bracket.answer();
+            for (node, moved) in answer.nodes.iter().zip(&answer.displacement) {
+                let below = -pressure * node[1] / young[0];
+                let above = -0.02 + pressure * (1.0 - node[1]) / young[1];
+                let exact = if node[1] <= 0.5 { below } else { above };
+                assert!((moved[1] - exact).abs() < 1e-13, "{node:?} {moved:?}");
+            }
             let of_body = |body: usize| answer.origins.iter().position(|&origin| origin == body).unwrap();
             assert!(answer.elements[of_body(0)].iter().all(|node| !answer.elements[of_body(1)].contains(node)));
             let marked: Vec<bool> = (0..mesh.count()).map(|cell| cell % 3 == level).collect();
@@ -161,7 +237,7 @@ fn tied_columns_are_exact() {
 #[test]
 fn only_what_lies_on_each_other_is_joined_and_nothing_acts_there() {
     let sides = |reach: f64, up: f64| {
-        let mut cells = Cells { nodes: Vec::new(), cells: Vec::new(), origins: Vec::new(), surface: HashMap::new() };
+        let mut cells = empty();
         add_block(&mut cells, |x, y| [x, y / 2.0], [3, 2], [0, 2, 3, 2]);
         add_block(&mut cells, |x, y| [reach * x, up + y / 2.0], [4, 1], [4, 2, 1, 2]);
         SimplexMesh::new(2, cells).unwrap()
@@ -302,7 +378,7 @@ fn what_the_check_finds_between_two_bodies() {
 /// A body that lies before another one twice.
 #[test]
 fn several_layers_are_refused() {
-    let mut cells = Cells { nodes: Vec::new(), cells: Vec::new(), origins: Vec::new(), surface: HashMap::new() };
+    let mut cells = empty();
     let shifted = |up: f64| move |x: f64, y: f64| [x, y / 2.0 + up];
     add_block(&mut cells, shifted(0.0), [2, 1], [0, 2, 3, 2]);
     add_block(&mut cells, shifted(0.5), [3, 1], [4, 2, 2, 2]);
