@@ -212,6 +212,7 @@ def ended(command: list[str], tree: Path, seconds: float, limit=None) -> tuple[i
     environment = os.environ | {
         "CARGO_TARGET_DIR": str(OWN / "build"),
         "CARGO_PROFILE_DEV_DEBUG": "0",
+        "CARGO_INCREMENTAL": "1",
         "RUSTC_WORKSPACE_WRAPPER": str(OWN / "rustc"),
     }
     with subprocess.Popen(
