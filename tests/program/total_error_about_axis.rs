@@ -24,6 +24,62 @@ fn a_thick_cylinder_about_an_axis_has_the_energy_of_lame() {
     assert!(low <= energy && energy <= high && high - low < 1e-5 * energy.abs(), "{low} {energy} {high}");
 }
 
+/// The same cylinder in an elastic bed: springs take the pressure `q` at its outer side that makes `q = k u` there.
+#[test]
+fn a_thick_cylinder_in_springs_has_the_energy_of_lame() {
+    let (inner, outer, pressure, poisson, stiffness): (f64, f64, f64, f64, f64) = (0.5, 1.0, 0.01, 0.3, 0.7);
+    let scene = json!({
+        "model": "axisymmetric",
+        "body": {"rectangle": {"x": {"points": [inner, outer], "divisions": [8]}, "y": {"points": [0, 0.5], "divisions": [8]}}},
+        "material": {"young": 1, "poisson": poisson},
+        "supports": [{"on": {"boundary": "bottom"}, "y": 0}, {"on": {"boundary": "top"}, "y": 0}],
+        "springs": [{"on": {"boundary": "right"}, "normal": stiffness, "stiffness": "per-area"}],
+        "loads": [{"pressure": {"boundary": "left", "value": pressure}}],
+        "obstacles": [{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [2, 0], "normal": [1, 0]}}}]
+    });
+    let (code, report, message) = solved(&scene, &["--total-error", "0.01"]);
+    assert!(code == 0 && report["total_error"]["guaranteed"] == true, "{message} {}", report["reason"]);
+    // u = A r + B / r with the radial stress 2 mu (A / (1 - 2 nu) - B / r^2).
+    let twice_mu = 1.0 / (1.0 + poisson);
+    let stress = |r: f64| [twice_mu / (1.0 - 2.0 * poisson), -twice_mu / (r * r)];
+    let [[a, b], [c, d]] =
+        [stress(inner), [stress(outer)[0] + stiffness * outer, stress(outer)[1] + stiffness / outer]];
+    let determinant = a * d - b * c;
+    let moved = (-pressure * d / determinant) * inner + pressure * c / determinant / inner;
+    let energy = -std::f64::consts::PI * inner * 0.5 * pressure * moved;
+    let [low, high] = [0, 1].map(|end| report["potential_energy"][end].as_f64().unwrap());
+    assert!(low <= energy && energy <= high && high - low < 1e-5 * energy.abs(), "{low} {energy} {high}");
+}
+
+/// A solid column on a bed of springs under a plane: `p = 0.001 / (h / E + 1 / k)`.
+#[test]
+fn a_column_about_an_axis_on_springs_has_its_energy_and_force() {
+    let mut scene = column("axisymmetric");
+    scene["loads"] = json!([]);
+    scene["material"] = json!({"young": 2, "poisson": 0});
+    scene["supports"] = json!([]);
+    scene["springs"] = json!([{"on": {"boundary": "bottom"}, "y": 5, "stiffness": "per-area"}]);
+    let [wide, high] = ["x", "y"].map(|axis| {
+        let points = scene["body"]["rectangle"][axis]["points"].as_array().unwrap();
+        points.last().unwrap().as_f64().unwrap() - points[0].as_f64().unwrap()
+    });
+    scene["obstacles"][0]["shape"]["plane"]["point"][1] = json!(high - 0.001);
+    let (code, report, message) = solved(&scene, &["--total-error", "0.02"]);
+    assert!(code == 0 && report["total_error"]["guaranteed"] == true, "{message} {}", report["reason"]);
+    let force = std::f64::consts::PI * wide * wide * 0.001 / (high / 2.0 + 1.0 / 5.0);
+    let [low, high] = [0, 1].map(|end| report["potential_energy"][end].as_f64().unwrap());
+    let energy = 0.0005 * force;
+    assert!(
+        low <= energy * (1.0 + 1e-9) && energy <= high * (1.0 + 1e-9) && high - low < 1e-3 * energy,
+        "{low} {energy} {high}"
+    );
+    let [least, most] = [0, 1].map(|end| report["force_interval"][end].as_f64().unwrap());
+    assert!(
+        least <= force * (1.0 + 1e-9) && force <= most * (1.0 + 1e-9) && most - least < 0.05 * force,
+        "{least} {force} {most}"
+    );
+}
+
 /// In plane strain a temperature has a stress across the plane, which does no work: the column stays exact.
 #[test]
 fn a_warm_column_is_exact() {

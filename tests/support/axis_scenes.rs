@@ -61,6 +61,16 @@ pub fn scene(seed: u64) -> (Scene, &'static str) {
         let warmth = 2e4 * depth / height;
         scene["temperature"] = json!([{"value": warmth, "gradient": [warmth * draws.between(-1.0, 1.0), 0]}]);
     }
+    let stiffness = |draws: &mut Draws| young / height * 10_f64.powf(draws.between(-1.0, 1.0));
+    let mut springs = Vec::new();
+    if draws.next() < 0.3 {
+        scene["supports"] = json!([]);
+        springs.push(json!({"on": {"boundary": "bottom"}, "y": stiffness(&mut draws), "stiffness": "per-area"}));
+    }
+    if draws.next() < 0.2 {
+        springs.push(json!({"on": {"boundary": "right"}, "normal": stiffness(&mut draws), "stiffness": "per-area"}));
+    }
+    scene["springs"] = json!(springs);
     (Scene::from_json(&scene.to_string(), "scene").unwrap_or_else(|error| panic!("{error}: {scene}")), element)
 }
 

@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 use super::normal::null_space;
 use super::part_stress::{PartStress, QUADRATIC};
 use super::problem::ContinuumProblem;
-use super::simplex::{Point, Simplex, Weights, corners_of_side, pairs, quadratic_rule, traction};
+use super::simplex::{Point, Simplex, Weights, corners_of_side, pairs, quadratic_rule, size_of_facet, traction};
 use crate::fem::element::gauss_legendre;
 
 /// Gauss points in each direction: exact for degree 15, and P times a product of two quadratic functions has 13.
@@ -44,13 +44,38 @@ pub fn samples(problem: &ContinuumProblem, simplex: &Simplex) -> Vec<Sample> {
     quadratic_rule(simplex.dimension).map(|weights| Sample { weights, weight, extra: 0.0 }).collect()
 }
 
+/// The points of integration of a problem on a facet of the surface: exact for polynomials of degree 14, one of which is the radius.
+pub fn samples_on_facet(problem: &ContinuumProblem, corners: &[Point]) -> Vec<Sample> {
+    let size = problem.thickness * size_of_facet(corners);
+    let radii: Vec<f64> = corners.iter().map(|&corner| problem.radius(corner)).collect();
+    let sample = |weights: Weights, share: f64| {
+        let radius: f64 = radii.iter().zip(weights).map(|(radius, weight)| radius * weight).sum();
+        let too_much = match radii[..] {
+            // Towards a corner on the axis the stress is r times a polynomial.
+            [one, other] if problem.is_axisymmetric && one > 0.0 && other > 0.0 => beyond(radius, [one, other]),
+            _ => 0.0,
+        };
+        let weight = share * size * radius;
+        Sample { weights, weight, extra: weight * too_much }
+    };
+    match corners.len() {
+        2 => line().map(|(t, share)| sample([1.0 - t, t, 0.0, 0.0], share)).collect(),
+        _ => {
+            let of_square = square().iter();
+            of_square.map(|&([t, y], share)| sample([1.0 - t, t * (1.0 - y), t * y, 0.0], 2.0 * t * share)).collect()
+        }
+    }
+}
+
+/// Points between 0 and 1 with their weights.
+fn line() -> impl Iterator<Item = (f64, f64)> {
+    gauss_legendre(POINTS).map(|(x, weight)| ((x + 1.0) / 2.0, weight / 2.0))
+}
+
 /// Points of a square with their weights.
 fn square() -> &'static [([f64; 2], f64)] {
     static SQUARE: OnceLock<Vec<([f64; 2], f64)>> = OnceLock::new();
-    SQUARE.get_or_init(|| {
-        let line = || gauss_legendre(POINTS).map(|(x, weight)| ((x + 1.0) / 2.0, weight / 2.0));
-        line().flat_map(|(t, of_t)| line().map(move |(y, of_y)| ([t, y], of_t * of_y))).collect()
-    })
+    SQUARE.get_or_init(|| line().flat_map(|(t, of_t)| line().map(move |(y, of_y)| ([t, y], of_t * of_y))).collect())
 }
 
 /// The points on a triangle about the axis; towards a single corner on the axis the radius is `t rho(y)`, and rho takes its place.

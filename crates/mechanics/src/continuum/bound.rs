@@ -15,7 +15,7 @@
 
 use super::axis::{Sample, samples};
 use super::balance::Balance;
-use super::displacement::{Displacements, apart};
+use super::displacement::Displacements;
 use super::mesh::SimplexMesh;
 use super::part_stress::PartStress;
 use super::problem::{ContinuumProblem, Law};
@@ -297,10 +297,10 @@ impl<'a> Bracket<'a> {
         let of_cells = each(self.mesh.count(), of_cell);
         let mut shares: Vec<f64> = of_cells.iter().map(|cell| cell[0]).collect();
         let mut energy: f64 = of_cells.iter().map(|cell| cell[1]).sum();
-        for (outer, [moved, balanced]) in self.on_springs() {
-            let rest = apart(&moved, &balanced);
-            shares[outer.cell] += self.work_of_springs(&outer, &rest, &rest) / 2.0;
-            energy += self.work_of_springs(&outer, &moved, &moved);
+        for on in self.on_springs() {
+            let of_bracket = self.moved(&on, values, &self.dual.values);
+            shares[on.cell] += self.square_on_springs(&on, of_bracket) / 2.0;
+            energy += on.at.weight * self.product_of_springs(&on, of_bracket[0], of_bracket[0]);
         }
         let mut contact_share = 0.0;
         for (index, place) in self.places.iter().enumerate() {
@@ -359,7 +359,10 @@ impl<'a> Bracket<'a> {
             self.sum(cell, |k, at| self.square_of_rest(cell, at, [0.0; 6], self.elastic_stress(cell, k, at.weights)))
         };
         let mut stored = each(self.mesh.count(), of_cell).iter().sum::<f64>();
-        stored += self.on_springs().map(|(outer, [_, own])| self.work_of_springs(&outer, &own, &own)).sum::<f64>();
+        for on in self.on_springs() {
+            let [_, balanced] = self.moved(&on, &self.primal.values, &self.dual.values);
+            stored += self.square_on_springs(&on, [[0.0; 3], balanced]);
+        }
         self.work_on_supports() + self.work_on_obstacles() - stored / 2.0
     }
 

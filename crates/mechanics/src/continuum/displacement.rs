@@ -3,19 +3,16 @@
 
 use std::collections::BTreeMap;
 
-use super::axis::{Sample, samples};
+use super::axis::{Sample, samples, samples_on_facet};
 use super::mesh::{OuterFacet, Partner, SimplexMesh};
 use super::problem::{ContinuumProblem, weighted_mean};
-use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, corners_of_side, pairs, work};
+use super::simplex::{Point, Simplex, Tensor, Weights, corners_of_side, pairs, work};
 use super::stress::Place;
 use super::system::{Block, Numbers, Row, Unknowns, add_springs};
 use crate::error::Error;
-use crate::fem::geometry::{COORDINATES, key, minus};
+use crate::fem::geometry::{COORDINATES, key};
 use crate::fem::threads::each;
 use signorini_qp as qp;
-
-/// Coefficients in Bernstein's quadratic basis of a displacement of a facet.
-pub type OnFacet = Vec<Point>;
 
 /// Displacements on a mesh.
 #[derive(Debug)]
@@ -146,10 +143,19 @@ impl<'a> Displacements<'a> {
         let mut blocks = each(self.mesh.count(), |cell| self.stiffness(cell));
         let dimension = self.mesh.dimension;
         for outer in self.mesh.surface() {
-            let (normal, size) = self.mesh.simplex(outer.cell).outward(outer.local);
-            let local: Vec<usize> = local_functions(dimension, outer.local).collect();
-            let share = |i, j| self.problem.thickness * size * mean_of_product(dimension, i, j);
-            add_springs(&mut blocks[outer.cell], dimension, (&self.problem.springs(&outer), normal), &local, share);
+            let springs = self.problem.springs(&outer);
+            if springs.is_there() {
+                let (normal, _) = self.mesh.simplex(outer.cell).outward(outer.local);
+                let local: Vec<usize> = local_functions(dimension, outer.local).collect();
+                let mut share = vec![vec![0.0; local.len()]; local.len()];
+                for at in samples_on_facet(self.problem, &self.mesh.corners_of_facet(outer.facet)) {
+                    let values: Vec<f64> = on_facet(dimension, at.weights).collect();
+                    for (line, one) in share.iter_mut().zip(&values) {
+                        line.iter_mut().zip(&values).for_each(|(sum, other)| *sum += at.weight * one * other);
+                    }
+                }
+                add_springs(&mut blocks[outer.cell], dimension, (&springs, normal), &local, &share);
+            }
         }
         blocks
     }
@@ -260,24 +266,9 @@ fn opposite_functions(dimension: usize, partner: &Partner) -> impl Iterator<Item
     })
 }
 
-/// The difference of two displacements of a facet.
-pub fn apart(one: &[Point], other: &[Point]) -> OnFacet {
-    one.iter().zip(other).map(|(&one, &other)| minus(one, other)).collect()
-}
-
-/// The mean over a facet of the product of two functions of Bernstein's quadratic basis.
-pub fn mean_of_product(corners: usize, first: usize, second: usize) -> f64 {
-    // The product of l_a l_b and l_c l_d has the mean `d! prod(m!) / (d + 3)!` with the powers m of the coordinates and `d = corners - 1`.
-    let mut powers = [0_usize; MOST_CORNERS];
-    let mut factor = 1.0;
-    for place in [first, second] {
-        let pair = pairs(corners).nth(place).unwrap_or_default();
-        factor *= if pair[0] == pair[1] { 1.0 } else { 2.0 };
-        pair.into_iter().for_each(|corner| powers[corner] += 1);
-    }
-    let factorial = |count: usize| (1..=count).product::<usize>() as f64;
-    let product: f64 = powers.into_iter().map(factorial).product();
-    factor * product * factorial(corners - 1) / factorial(corners + 3)
+/// The values at a point of a facet of its functions: those of its corners, then those of their pairs.
+pub fn on_facet(dimension: usize, at: Weights) -> impl Iterator<Item = f64> {
+    values_of_functions(dimension - 1, at)
 }
 
 /// The strain of a displacement along an axis with this slope.

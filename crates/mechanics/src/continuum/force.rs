@@ -16,12 +16,12 @@ use std::collections::BTreeSet;
 
 use super::axis::Sample;
 use super::bound::{Bracket, Side};
-use super::displacement::apart;
 use super::part_stress::PartStress;
 use super::simplex::{Point, less, middle, work};
 use super::stress::Stresses;
 use super::system::{Block, Numbers, Unknowns};
 use crate::error::Error;
+use crate::fem::geometry::minus;
 use crate::fem::threads::{both, each};
 use signorini_qp as qp;
 use signorini_qp::{ContactSet, solve};
@@ -156,16 +156,20 @@ impl Bracket<'_> {
             [self.sum(cell, square), self.sum(cell, base), of_extra[0], of_extra[1]]
         };
         let of_cells = each(self.mesh.count(), of_cell);
-        let [mut square, mut base, of_test, of_bracket] =
+        let [mut square, mut base, mut of_test, mut of_bracket] =
             [0, 1, 2, 3].map(|part| of_cells.iter().map(|cell| cell[part]).sum::<f64>());
-        let by_polynomial = (of_test * of_bracket).sqrt() / 2.0;
         let half = |a: Point, b: Point| [0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2.0);
-        for (outer, [moved, balanced]) in self.on_springs() {
-            let rest = apart(&self.of_displacement(&test.displacement, &outer), &self.of_stress(&test.facets, &outer));
-            let mean: Vec<Point> = moved.into_iter().zip(balanced).map(|(a, b)| half(a, b)).collect();
-            square += self.work_of_springs(&outer, &rest, &rest);
-            base += self.work_of_springs(&outer, &mean, &rest);
+        for on in self.on_springs() {
+            let [moved, balanced] = self.moved(&on, &self.primal.values, &self.dual.values);
+            let of_pair @ [of_z, of_tau] = self.moved(&on, &test.displacement, &test.facets);
+            let product = |one, other| self.product_of_springs(&on, one, other);
+            square += self.square_on_springs(&on, of_pair);
+            base += on.at.weight * product(half(moved, balanced), minus(of_z, of_tau))
+                - on.at.extra * product(balanced, of_tau) / 2.0;
+            of_test += on.at.extra * product(of_tau, of_tau);
+            of_bracket += on.at.extra * product(balanced, balanced);
         }
+        let by_polynomial = (of_test * of_bracket).sqrt() / 2.0;
         base += self.work_of_reactions(&test.stress, &self.forces_without_load(&test.facets, &test.pulls));
         let load = self.displacements.load();
         base -= test.displacement.iter().zip(&load).map(|(value, load)| value * load).sum::<f64>();

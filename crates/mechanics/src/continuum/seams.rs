@@ -7,8 +7,8 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::fans::{Cut, Edge};
 use super::problem::{Condition, ContinuumProblem};
-use super::simplex::Point;
-use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
+use super::simplex::{Point, size_of_facet};
+use crate::fem::geometry::{distance, dot, minus, unit};
 
 /// Points closer than this share of an edge lie at the same place: far above the rounding of coordinates.
 const SAME_PLACE: f64 = 1e-9;
@@ -66,11 +66,10 @@ impl Cut {
 
     /// The length or area of facets, about an axis over a full turn and its angle.
     fn size_of(&self, facets: &Facets, problem: &ContinuumProblem) -> f64 {
-        let at = |node: usize| self.cells.nodes[node];
-        let size = |facet: &Vec<usize>| match facet[..] {
-            [a, b] => distance(at(a), at(b)) * (problem.radius(at(a)) + problem.radius(at(b))) / 2.0,
-            [a, b, c] => length(cross(minus(at(b), at(a)), minus(at(c), at(a)))) / 2.0,
-            _ => 0.0,
+        let size = |facet: &Vec<usize>| {
+            let corners: Vec<Point> = facet.iter().map(|&node| self.cells.nodes[node]).collect();
+            let radii = corners.iter().map(|&corner| problem.radius(corner)).sum::<f64>();
+            size_of_facet(&corners) * radii / corners.len() as f64
         };
         facets.iter().map(size).sum()
     }

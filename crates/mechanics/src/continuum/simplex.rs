@@ -1,6 +1,6 @@
 //! A triangle in the plane or a tetrahedron in space, by its corners. The order of the corners does not matter: sizes are positive.
 
-use crate::fem::geometry::{Symmetric, cross, dot, length, minus};
+use crate::fem::geometry::{Symmetric, cross, distance, dot, length, minus};
 
 /// Coordinates or components `[x, y, z]`; in the plane z is zero.
 pub type Point = [f64; 3];
@@ -47,6 +47,15 @@ pub fn quadratic_rule(dimension: usize) -> impl Iterator<Item = Weights> + Clone
         };
         std::array::from_fn(weight)
     })
+}
+
+/// The length of an edge, or the area of a triangle in space.
+pub fn size_of_facet(corners: &[Point]) -> f64 {
+    match *corners {
+        [a, b] => distance(a, b),
+        [a, b, c] => length(cross(minus(b, a), minus(c, a))) / 2.0,
+        _ => 0.0,
+    }
 }
 
 impl Simplex {

@@ -1,50 +1,60 @@
 //! Springs that are spread over facets: a part of the body without volume, whose strain is the displacement of the facet.
 
+use super::axis::{Sample, samples_on_facet};
 use super::bound::Bracket;
-use super::displacement::{OnFacet, mean_of_product};
+use super::displacement::on_facet;
 use super::mesh::OuterFacet;
-use super::simplex::{Point, pairs};
-use crate::fem::geometry::dot;
+use super::simplex::Point;
+use crate::fem::geometry::{dot, minus};
+
+/// A point of a facet on springs.
+pub struct OnSprings {
+    /// The point of integration.
+    pub at: Sample,
+    /// The simplex of the facet.
+    pub cell: usize,
+    outer: OuterFacet,
+    normal: Point,
+}
 
 impl Bracket<'_> {
-    /// The facets on springs, with the displacement of each, and the one that has the forces of the springs in balance.
-    pub fn on_springs(&self) -> impl Iterator<Item = (OuterFacet, [OnFacet; 2])> + '_ {
-        self.stresses.on_springs().map(|outer| {
-            let of_bracket =
-                [self.of_displacement(&self.primal.values, &outer), self.of_stress(&self.dual.values, &outer)];
-            (outer, of_bracket)
+    /// The points of all facets on springs.
+    pub fn on_springs(&self) -> impl Iterator<Item = OnSprings> + '_ {
+        self.stresses.on_springs().flat_map(|outer| {
+            let (normal, _) = self.mesh.simplex(outer.cell).outward(outer.local);
+            let samples = samples_on_facet(self.problem, &self.mesh.corners_of_facet(outer.facet));
+            samples.into_iter().map(move |at| OnSprings { at, cell: outer.cell, outer, normal })
         })
     }
 
-    /// A displacement on a facet.
-    pub fn of_displacement(&self, values: &[f64], outer: &OuterFacet) -> OnFacet {
+    /// The values there of a displacement, and of the displacement whose forces the springs have in balance by unknowns of the stress.
+    pub fn moved(&self, on: &OnSprings, displacement: &[f64], facets: &[f64]) -> [Point; 2] {
         let dimension = self.mesh.dimension;
-        let component = |function: usize, axis: usize| match axis {
-            _ if axis < dimension => values[dimension * function + axis],
-            _ => 0.0,
-        };
-        let functions = self.displacements.on_facet(outer).into_iter();
-        functions.map(|function| [0, 1, 2].map(|axis| component(function, axis))).collect()
-    }
-
-    /// The linear displacement of a facet by unknowns of the stress.
-    pub fn of_stress(&self, values: &[f64], outer: &OuterFacet) -> OnFacet {
-        let corners = self.stresses.displacement_at_corners(values, outer);
-        let middle = |[i, j]: [usize; 2]| [0, 1, 2].map(|axis| (corners[i][axis] + corners[j][axis]) / 2.0);
-        pairs(self.mesh.dimension).map(middle).collect()
-    }
-
-    /// The work of the forces of the springs on a facet under one displacement with another one.
-    pub fn work_of_springs(&self, outer: &OuterFacet, one: &[Point], other: &[Point]) -> f64 {
-        let (normal, size) = self.mesh.simplex(outer.cell).outward(outer.local);
-        let springs = self.problem.springs(outer);
-        let mut mean = 0.0;
-        for (i, &own) in one.iter().enumerate() {
-            let resistance = springs.resistance(normal, own);
-            for (j, &moved) in other.iter().enumerate() {
-                mean += mean_of_product(self.mesh.dimension, i, j) * dot(resistance, moved);
-            }
+        let (mut moved, mut balanced) = ([0.0; 3], [0.0; 3]);
+        for (function, value) in
+            self.displacements.on_facet(&on.outer).into_iter().zip(on_facet(dimension, on.at.weights))
+        {
+            (0..dimension).for_each(|axis| moved[axis] += value * displacement[dimension * function + axis]);
         }
-        self.problem.thickness * size * mean
+        let corners = self.mesh.corners_of_facet(on.outer.facet);
+        let radius: f64 =
+            corners.iter().zip(on.at.weights).map(|(&corner, weight)| weight * self.problem.radius(corner)).sum();
+        let of_corners = self.stresses.displacement_at_corners(facets, &on.outer);
+        for (corner, weight) in of_corners.into_iter().zip(on.at.weights) {
+            (0..dimension).for_each(|axis| balanced[axis] += weight * corner[axis] / radius);
+        }
+        [moved, balanced]
+    }
+
+    /// The product there of the forces of the springs under one displacement with another one, per area.
+    pub fn product_of_springs(&self, on: &OnSprings, one: Point, other: Point) -> f64 {
+        dot(self.problem.springs(&on.outer).resistance(on.normal, one), other)
+    }
+
+    /// The square there of the difference of a displacement and one in balance, with what the polynomial for 1/r makes it too large.
+    pub fn square_on_springs(&self, on: &OnSprings, [moved, balanced]: [Point; 2]) -> f64 {
+        let rest = minus(moved, balanced);
+        on.at.weight * self.product_of_springs(on, rest, rest)
+            + on.at.extra * self.product_of_springs(on, balanced, balanced)
     }
 }

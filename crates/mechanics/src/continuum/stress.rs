@@ -6,6 +6,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use super::axis::samples_on_facet;
 use super::johnson_mercier::Element;
 use super::mesh::{OuterFacet, SimplexMesh};
 use super::part_stress::PartStress;
@@ -157,13 +158,13 @@ impl<'a> Stresses<'a> {
     pub fn blocks(&self) -> Vec<Block> {
         let mut blocks = each(self.mesh.count(), |cell| self.elements[cell].block());
         let dimension = self.mesh.dimension;
-        for outer in self.mesh.surface() {
+        for outer in self.on_springs() {
             let (normal, size) = self.mesh.simplex(outer.cell).outward(outer.local);
             let local: Vec<usize> = (0..dimension).map(|corner| dimension * outer.local + corner).collect();
-            // The functions that are dual to the barycentric coordinates l are (dimension + 1) l - 1.
-            let product = |i, j| if i == j { dimension as f64 } else { -1.0 };
-            let share = |i, j| self.problem.share_of_corner(size) * product(i, j);
-            add_springs(&mut blocks[outer.cell], dimension, (&self.problem.springs(&outer), normal), &local, share);
+            let mut share = self.corners_by_unknowns(&outer);
+            share.iter_mut().flatten().for_each(|part| *part *= self.problem.share_of_corner(size));
+            let springs = self.problem.springs(&outer);
+            add_springs(&mut blocks[outer.cell], dimension, (&springs, normal), &local, &share);
         }
         blocks
     }
@@ -207,14 +208,47 @@ impl<'a> Stresses<'a> {
         (0..dimension).map(move |axis| (dimension * place + axis, share * vector[axis]))
     }
 
-    /// The displacement of a facet at its corners.
+    /// How the linear displacement of a facet on springs, times the radius about an axis, follows at each corner from the unknowns there: its
+    /// products with linear tractions are theirs.
+    fn corners_by_unknowns(&self, outer: &OuterFacet) -> Vec<Vec<f64>> {
+        let (dimension, corners) = (self.mesh.dimension, self.mesh.corners_of_facet(outer.facet));
+        let share = self.problem.share_of_corner(self.mesh.simplex(outer.cell).outward(outer.local).1);
+        if !self.problem.is_axisymmetric {
+            // The functions that are dual to the barycentric coordinates l are (dimension + 1) l - 1.
+            let entry = |i: usize, j: usize| if i == j { dimension as f64 } else { -1.0 };
+            return (0..dimension).map(|i| (0..dimension).map(|j| entry(i, j)).collect()).collect();
+        }
+        // The integrals of products of coordinates over the radius; on the axis itself a stress times the radius is zero.
+        let is_free: Vec<bool> = corners.iter().map(|&corner| !self.problem.is_on_axis(corner)).collect();
+        let mut products = [[0.0; 2]; 2];
+        for at in samples_on_facet(self.problem, &corners) {
+            let radius: f64 = corners.iter().zip(at.weights).map(|(corner, weight)| weight * corner[0]).sum();
+            let weight = (at.weight + at.extra) / (radius * radius);
+            for (i, line) in products.iter_mut().enumerate() {
+                line.iter_mut().zip(at.weights).for_each(|(sum, other)| *sum += weight * at.weights[i] * other);
+            }
+        }
+        let [[one, both], [_, other]] = products;
+        let inverse = match is_free[..] {
+            [true, true] => {
+                let determinant = one * other - both * both;
+                [[other / determinant, -both / determinant], [-both / determinant, one / determinant]]
+            }
+            [true, false] => [[1.0 / one, 0.0], [0.0; 2]],
+            [false, true] => [[0.0; 2], [0.0, 1.0 / other]],
+            _ => [[0.0; 2]; 2],
+        };
+        inverse.map(|line| line.map(|part| share * part).to_vec()).to_vec()
+    }
+
+    /// The linear displacement of a facet on springs at its corners, times the radius about an axis, whose forces the springs have in balance.
     pub fn displacement_at_corners(&self, values: &[f64], outer: &OuterFacet) -> Vec<Point> {
         let dimension = self.mesh.dimension;
         let value = |place: usize, axis: usize| if axis < dimension { values[dimension * place + axis] } else { 0.0 };
         let own: Vec<Point> =
             self.on_facet(outer).iter().map(|&place| [0, 1, 2].map(|axis| value(place, axis))).collect();
-        let sum = [0, 1, 2].map(|axis| own.iter().map(|value| value[axis]).sum::<f64>());
-        own.iter().map(|own| [0, 1, 2].map(|axis| (dimension + 1) as f64 * own[axis] - sum[axis])).collect()
+        let along = |line: &[f64], axis: usize| line.iter().zip(&own).map(|(part, own)| part * own[axis]).sum();
+        self.corners_by_unknowns(outer).iter().map(|line| [0, 1, 2].map(|axis| along(line, axis))).collect()
     }
 
     /// The facets on springs.

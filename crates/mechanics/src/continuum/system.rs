@@ -26,18 +26,15 @@ pub fn add_springs(
     dimension: usize,
     (springs, normal): (&Foundation, Point),
     local: &[usize],
-    share: impl Fn(usize, usize) -> f64,
+    share: &[Vec<f64>],
 ) {
-    if !springs.is_there() {
-        return;
-    }
     let count = block.len().isqrt();
     for (axis, &along) in COORDINATES[..dimension].iter().enumerate() {
         let resistance = springs.resistance(normal, along);
-        for (i, &own) in local.iter().enumerate() {
-            for (j, &other) in local.iter().enumerate() {
+        for (&own, line) in local.iter().zip(share) {
+            for (&other, &share) in local.iter().zip(line) {
                 for (towards, part) in resistance.iter().enumerate().take(dimension) {
-                    block[(dimension * own + towards) * count + dimension * other + axis] += share(i, j) * part;
+                    block[(dimension * own + towards) * count + dimension * other + axis] += share * part;
                 }
             }
         }

@@ -50,10 +50,6 @@ impl Scene {
                                over a boundary";
                 return Err(none(if springs.on.is_some() { format!("{path}.on") } else { path }, message));
             };
-            if model.body().formulation().is_axisymmetric() {
-                let message = "springs about an axis have no guaranteed bound: their traction times the radius is not linear on an edge";
-                return Err(none(path, message));
-            }
             let of_boundary = boundary(model.mesh(), name, &format!("{path}.on.boundary"))?;
             let (along, normal) = springs.per_area(&path, model.body(), of_boundary)?;
             surface.change(name, |condition, _| {
