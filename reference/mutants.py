@@ -100,7 +100,7 @@ AREAS = {
         ("crates/mechanics/src/continuum/**",),
         (
             Stage("own", ("--package", "signorini-mechanics", "--lib"), ("continuum::",)),
-            Stage("program", ("--test", "program"), ("total_error", "guarantees"), 600),
+            Stage("program", ("--test", "program"), ("total_error", "guarantees"), 240),
         ),
     ),
 }

@@ -143,12 +143,13 @@ impl Bracket<'_> {
     fn mean_stress(&self, cell: usize) -> Tensor {
         let parts = self.mesh.dimension + 1;
         let centre = std::array::from_fn(|corner| if corner < parts { 1.0 / parts as f64 } else { 0.0 });
-        let (law, medium) = (self.law(cell), self.problem.medium(self.mesh.origins[cell]));
+        let medium = self.problem.medium(self.mesh.origins[cell]);
         let mut mean = [0.0; 6];
         for k in 0..parts {
-            let of_displacement = law.stress(self.strain(&self.primal.values, cell, k, centre));
+            let place = self.mesh.simplex(cell).part(k).at(centre);
+            let of_displacement = self.law(cell, place).stress(self.strain(&self.primal.values, cell, k, centre));
             let elastic = middle(of_displacement, self.elastic_stress(cell, k, centre));
-            let own = medium.own_stress(self.mesh.simplex(cell).part(k).at(centre));
+            let own = medium.own_stress(place);
             (0..6).for_each(|entry| mean[entry] += (elastic[entry] + own[entry]) / parts as f64);
         }
         mean

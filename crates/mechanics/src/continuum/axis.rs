@@ -11,9 +11,8 @@ use std::sync::OnceLock;
 
 use super::normal::null_space;
 use super::part_stress::{PartStress, QUADRATIC};
-use super::problem::ContinuumProblem;
-use super::simplex::{Point, Simplex, Weights, corners_of_side, pairs, quadratic_rule, size_of_facet, traction};
-use crate::fem::element::gauss_legendre;
+use super::sample::{Sample, square};
+use super::simplex::{Point, Simplex, corners_of_side, pairs, traction};
 
 /// Gauss points in each direction: exact for degree 15, and P times a product of two quadratic functions has 13.
 const POINTS: usize = 8;
@@ -24,62 +23,14 @@ const ZEROS: usize = 4;
 /// The entries of s that have conditions.
 const ENTRIES: [usize; 3] = [0, 1, 3];
 
-/// A point of integration on a simplex.
-#[derive(Clone, Copy, Debug)]
-pub struct Sample {
-    /// Its barycentric coordinates.
-    pub weights: Weights,
-    /// Its volume.
-    pub weight: f64,
-    /// What counts in addition, for squares of a hoop strain or of a stress, because P stands for `1/r`: its volume times `r P - 1`.
-    pub extra: f64,
-}
-
-/// The points of integration of a problem on a simplex.
-pub fn samples(problem: &ContinuumProblem, simplex: &Simplex) -> Vec<Sample> {
-    if problem.is_axisymmetric {
-        return around(problem.thickness * simplex.size(), simplex);
-    }
-    let weight = problem.thickness * simplex.size() / (simplex.dimension + 1) as f64;
-    quadratic_rule(simplex.dimension).map(|weights| Sample { weights, weight, extra: 0.0 }).collect()
-}
-
-/// The points of integration of a problem on a facet of the surface: exact for polynomials of degree 14, one of which is the radius.
-pub fn samples_on_facet(problem: &ContinuumProblem, corners: &[Point]) -> Vec<Sample> {
-    let size = problem.thickness * size_of_facet(corners);
-    let radii: Vec<f64> = corners.iter().map(|&corner| problem.radius(corner)).collect();
-    let sample = |weights: Weights, share: f64| {
-        let radius: f64 = radii.iter().zip(weights).map(|(radius, weight)| radius * weight).sum();
-        let too_much = match radii[..] {
-            // Towards a corner on the axis the stress is r times a polynomial.
-            [one, other] if problem.is_axisymmetric && one > 0.0 && other > 0.0 => beyond(radius, [one, other]),
-            _ => 0.0,
-        };
-        let weight = share * size * radius;
-        Sample { weights, weight, extra: weight * too_much }
-    };
-    match corners.len() {
-        2 => line().map(|(t, share)| sample([1.0 - t, t, 0.0, 0.0], share)).collect(),
-        _ => {
-            let of_square = square().iter();
-            of_square.map(|&([t, y], share)| sample([1.0 - t, t * (1.0 - y), t * y, 0.0], 2.0 * t * share)).collect()
-        }
-    }
-}
-
-/// Points between 0 and 1 with their weights.
-fn line() -> impl Iterator<Item = (f64, f64)> {
-    gauss_legendre(POINTS).map(|(x, weight)| ((x + 1.0) / 2.0, weight / 2.0))
-}
-
 /// Points of a square with their weights.
-fn square() -> &'static [([f64; 2], f64)] {
+fn points() -> &'static [([f64; 2], f64)] {
     static SQUARE: OnceLock<Vec<([f64; 2], f64)>> = OnceLock::new();
-    SQUARE.get_or_init(|| line().flat_map(|(t, of_t)| line().map(move |(y, of_y)| ([t, y], of_t * of_y))).collect())
+    SQUARE.get_or_init(|| square(POINTS))
 }
 
 /// The points on a triangle about the axis; towards a single corner on the axis the radius is `t rho(y)`, and rho takes its place.
-fn around(size: f64, triangle: &Simplex) -> Vec<Sample> {
+pub fn around(size: f64, triangle: &Simplex) -> Vec<Sample> {
     let radii: Vec<f64> = triangle.corners().iter().map(|corner| corner[0]).collect();
     let on_axis = radii.iter().filter(|radius| **radius == 0.0).count();
     let tip = radii.iter().position(|radius| *radius == 0.0).unwrap_or(0);
@@ -95,13 +46,13 @@ fn around(size: f64, triangle: &Simplex) -> Vec<Sample> {
             _ => beyond(radius, [0, 1].map(|end| radii.iter().copied().fold(radii[0], [f64::min, f64::max][end]))),
         };
         let weight = 2.0 * t * share * size * radius;
-        Sample { weights, weight, extra: weight * too_much }
+        Sample { weights, place: triangle.at(weights), weight, extra: weight * too_much }
     };
-    square().iter().map(of_point).collect()
+    points().iter().map(of_point).collect()
 }
 
 /// `r P(r) - 1 >= 0` between two radii: `1 - r P = (r-a)(r-b) prod (r-c)^2 / ab prod c^2`.
-fn beyond(radius: f64, [one, other]: [f64; 2]) -> f64 {
+pub fn beyond(radius: f64, [one, other]: [f64; 2]) -> f64 {
     let (low, high) = (one.min(other), one.max(other));
     let ends = (radius - low) / low * ((high - radius) / high);
     let middle = [low + high, high - low].map(|sum| sum / 2.0);
@@ -222,9 +173,8 @@ fn conditions(triangle: &Simplex) -> Vec<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bodies::filled;
+    use super::super::simplex::Weights;
     use super::*;
-    use crate::fem::material::Lame;
 
     fn triangle(radii: [f64; 3]) -> Simplex {
         Simplex::new(2, [[radii[0], 0.1, 0.0], [radii[1], -0.2, 0.0], [radii[2], 1.1, 0.0]])
@@ -239,7 +189,6 @@ mod tests {
     /// The integral of `f^2 / r` of a function f that is r times a linear one near the axis is bounded from above, and only by a little.
     #[test]
     fn integrals_of_squares_over_the_radius_are_bounded_from_above() {
-        let problem = ContinuumProblem { is_axisymmetric: true, ..filled(2, Lame { lambda: 1.0, mu: 1.0 }, [0.0; 3]) };
         for (radii, is_exact) in [([0.3, 1.2, 0.7], false), ([0.0, 1.2, 0.7], false), ([0.0, 1.2, 0.0], true)] {
             let triangle = triangle(radii);
             // A corner function that vanishes at the first corner; on an axis edge r itself.
@@ -252,11 +201,11 @@ mod tests {
                     let weight = sample.weight + if with_extra { sample.extra } else { 0.0 };
                     weight * (value(sample.weights) / triangle.at(sample.weights)[0]).powi(2)
                 };
-                samples(&problem, &triangle).iter().map(of_sample).sum()
+                around(triangle.size(), &triangle).iter().map(of_sample).sum()
             };
             let (bound, nearly) = (sum(true), sum(false));
             assert!(bound >= nearly * (1.0 - 1e-14) && bound <= nearly * 1.001, "{radii:?}: {bound} {nearly}");
-            let volume: f64 = samples(&problem, &triangle).iter().map(|sample| sample.weight).sum();
+            let volume: f64 = around(triangle.size(), &triangle).iter().map(|sample| sample.weight).sum();
             let exact = triangle.size() * radii.iter().sum::<f64>() / 3.0;
             assert!((volume / exact - 1.0).abs() < 1e-13, "{volume} {exact}");
         }

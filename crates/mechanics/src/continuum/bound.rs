@@ -13,13 +13,14 @@
 //! surface are a part of the body: w is the displacement of a facet with which their forces are in balance, and they add half of the work
 //! of their forces under `v - w` with it.
 
-use super::axis::{Sample, samples};
 use super::balance::Balance;
 use super::displacement::Displacements;
+use super::integration::samples;
 use super::mesh::SimplexMesh;
 use super::part_stress::PartStress;
 use super::problem::{ContinuumProblem, Law};
-use super::simplex::{Simplex, Tensor, Weights, corners_of_side, less, traction, work};
+use super::sample::Sample;
+use super::simplex::{Point, Simplex, Tensor, Weights, corners_of_side, less, traction, work};
 use super::stress::{Place, Stresses};
 use super::system::{Row, Unknowns};
 use crate::error::Error;
@@ -226,9 +227,9 @@ impl<'a> Bracket<'a> {
         self.displacements.strain(coefficients, cell, self.mesh.simplex(cell).in_whole(k, weights))
     }
 
-    /// The law on a simplex.
-    pub fn law(&self, cell: usize) -> Law<'_> {
-        self.problem.law(self.mesh.origins[cell])
+    /// The law on a simplex at a place.
+    pub fn law(&self, cell: usize, place: Point) -> Law<'_> {
+        self.problem.law(self.mesh.origins[cell], place)
     }
 
     /// The stress in balance less that without strain, at a point of part k of a simplex, given by the weights of the part's corners.
@@ -256,31 +257,32 @@ impl<'a> Bracket<'a> {
     /// The sum over the points of integration of the parts of a simplex.
     pub fn sum(&self, cell: usize, value: impl Fn(usize, &Sample) -> f64) -> f64 {
         let simplex = self.mesh.simplex(cell);
-        let of_part = |k: usize| samples(self.problem, &simplex.part(k)).iter().map(|at| value(k, at)).sum::<f64>();
+        let samples = |k: usize| samples(self.problem, self.mesh.origins[cell], &simplex.part(k));
+        let of_part = |k: usize| samples(k).iter().map(|at| value(k, at)).sum::<f64>();
         (0..=self.mesh.dimension).map(of_part).sum()
     }
 
     /// The square of the energy norm of a strain at a point of integration, times its volume.
     pub fn square(&self, cell: usize, at: &Sample, strain: Tensor) -> f64 {
-        let law = self.law(cell);
-        at.weight * law.square(strain) + at.extra * law.hoop() * strain[2] * strain[2]
+        let law = self.law(cell, at.place);
+        at.weight * law.square(strain) + at.extra * law.over_radius(strain, strain)
     }
 
     /// The same of the difference of a strain and that of an elastic stress.
     pub fn square_of_rest(&self, cell: usize, at: &Sample, strain: Tensor, stress: Tensor) -> f64 {
-        let law = self.law(cell);
+        let law = self.law(cell, at.place);
         let of_stress = law.compliance(stress);
         let square = at.weight * law.square(less(strain, of_stress));
         square + self.by_polynomial(cell, at, strain, stress)
     }
 
-    /// The sum of the squares of a strain and of an elastic stress about an axis, as far as the polynomial for 1/r makes them too large.
+    /// The sum of the squares of a strain and of an elastic stress, as far as the polynomial for a power of a radius makes them too large.
     pub fn by_polynomial(&self, cell: usize, at: &Sample, strain: Tensor, stress: Tensor) -> f64 {
         if at.extra == 0.0 {
             return 0.0;
         }
-        let law = self.law(cell);
-        at.extra * (law.hoop() * strain[2] * strain[2] + work(stress, law.compliance(stress)))
+        let law = self.law(cell, at.place);
+        at.extra * (law.over_radius(strain, strain) + work(stress, law.compliance(stress)))
     }
 
     /// Computes energy, shares and the share of contact.

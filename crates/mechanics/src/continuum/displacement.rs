@@ -3,9 +3,10 @@
 
 use std::collections::BTreeMap;
 
-use super::axis::{Sample, samples, samples_on_facet};
+use super::integration::{samples, samples_on_facet};
 use super::mesh::{OuterFacet, Partner, SimplexMesh};
 use super::problem::{ContinuumProblem, weighted_mean};
+use super::sample::Sample;
 use super::simplex::{Point, Simplex, Tensor, Weights, corners_of_side, pairs, work};
 use super::stress::Place;
 use super::system::{Block, Numbers, Row, Unknowns, add_springs};
@@ -162,15 +163,19 @@ impl<'a> Displacements<'a> {
 
     fn stiffness(&self, cell: usize) -> Block {
         let (simplex, count) = (self.mesh.simplex(cell), self.numbers.of(cell).len());
-        let law = self.problem.law(self.mesh.origins[cell]);
+        let origin = self.mesh.origins[cell];
         let mut block = vec![0.0; count * count];
-        for sample in samples(self.problem, &simplex) {
+        for sample in samples(self.problem, origin, &simplex) {
+            let law = self.problem.law(origin, sample.place);
             let strains: Vec<Tensor> = self.strains_of_functions(&simplex, sample.weights).collect();
             for (line, strain) in block.chunks_exact_mut(count).zip(&strains) {
                 let stress = law.stress(*strain);
-                let hoop = sample.extra * law.hoop() * strain[2];
                 let entries = line.iter_mut().zip(&strains);
-                entries.for_each(|(entry, &other)| *entry += sample.weight * work(stress, other) + hoop * other[2]);
+                entries.for_each(|(entry, &other)| *entry += sample.weight * work(stress, other));
+                if sample.extra != 0.0 {
+                    let entries = line.iter_mut().zip(&strains);
+                    entries.for_each(|(entry, &other)| *entry += sample.extra * law.over_radius(*strain, other));
+                }
             }
         }
         block
@@ -185,8 +190,8 @@ impl<'a> Displacements<'a> {
             if medium.body_force == [0.0; 3] && medium.own_stress.is_none() {
                 continue;
             }
-            for Sample { weights, weight, .. } in samples(problem, &simplex) {
-                let own = medium.own_stress(simplex.at(weights));
+            for Sample { weights, place, weight, .. } in samples(problem, mesh.origins[cell], &simplex) {
+                let own = medium.own_stress(place);
                 let values = values_of_functions(dimension, weights);
                 let forces =
                     values.flat_map(|value| medium.body_force.iter().take(dimension).map(move |force| value * force));

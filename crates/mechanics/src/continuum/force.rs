@@ -14,9 +14,9 @@
 
 use std::collections::BTreeSet;
 
-use super::axis::Sample;
 use super::bound::{Bracket, Side};
 use super::part_stress::PartStress;
+use super::sample::Sample;
 use super::simplex::{Point, less, middle, work};
 use super::stress::Stresses;
 use super::system::{Block, Numbers, Unknowns};
@@ -122,7 +122,6 @@ impl Bracket<'_> {
     /// The interval of a pair, and the beta at which its term would reach that of the ball.
     fn interval(&self, test: &Test) -> ([f64; 2], f64) {
         let of_cell = |cell: usize| {
-            let law = self.law(cell);
             let pair = |k: usize, at: &Sample| {
                 let strain = self.strain(&test.displacement, cell, k, at.weights);
                 (strain, self.stress_of(&test.stress, cell, k, at.weights))
@@ -135,11 +134,12 @@ impl Bracket<'_> {
                 let (strain, stress) = pair(k, at);
                 let own = self.strain(&self.primal.values, cell, k, at.weights);
                 let elastic = self.elastic_stress(cell, k, at.weights);
+                let law = self.law(cell, at.place);
                 let rest = less(strain, law.compliance(stress));
-                let extra = law.hoop() * own[2] * strain[2] - work(elastic, law.compliance(stress));
+                let extra = law.over_radius(own, strain) - work(elastic, law.compliance(stress));
                 at.weight * work(middle(law.stress(own), elastic), rest) + at.extra * extra / 2.0
             };
-            // By as much the polynomial for 1/r may change these products.
+            // By as much the polynomial for a power of a radius may change these products.
             let changes = |k: usize, at: &Sample| {
                 let (strain, stress) = pair(k, at);
                 self.by_polynomial(cell, at, strain, stress)
@@ -148,7 +148,8 @@ impl Bracket<'_> {
                 let own = self.strain(&self.primal.values, cell, k, at.weights);
                 self.by_polynomial(cell, at, own, self.elastic_stress(cell, k, at.weights))
             };
-            let of_extra = if self.problem.is_axisymmetric {
+            let turns = self.problem.medium(self.mesh.origins[cell]).turns_around().is_some();
+            let of_extra = if self.problem.is_axisymmetric || turns {
                 [self.sum(cell, changes), self.sum(cell, changes_of_bracket)]
             } else {
                 [0.0; 2]

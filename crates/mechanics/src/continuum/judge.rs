@@ -1,7 +1,8 @@
 //! Judges any other displacement by the ball that contains the exact stress.
 
-use super::axis::{Sample, samples};
 use super::bound::Bracket;
+use super::integration::samples;
+use super::sample::Sample;
 use super::simplex::{Point, Simplex, Tensor, less, middle};
 use crate::fem::element::{ElementKind, Tabulated};
 use crate::fem::threads::each;
@@ -34,17 +35,17 @@ impl Bracket<'_> {
         let of_cell = |cell: usize| {
             let (mut from_centre, mut from_displacement, mut norm) = (0.0, 0.0, 0.0);
             let (simplex, strain) = (self.mesh.simplex(cell), strain_in(self.mesh.origins[cell]));
-            let law = self.law(cell);
             for k in 0..=self.mesh.dimension {
                 let part = simplex.part(k);
                 let points = match strain {
-                    Strain::Constant(_) => samples(self.problem, &part),
+                    Strain::Constant(_) => samples(self.problem, self.mesh.origins[cell], &part),
                     Strain::Varying(_) => fine(&part),
                 };
-                for Sample { weights, weight, .. } in points {
+                for Sample { weights, place, weight, .. } in points {
+                    let law = self.law(cell, place);
                     let own = match &strain {
                         Strain::Constant(strain) => *strain,
-                        Strain::Varying(strain) => strain(part.at(weights)),
+                        Strain::Varying(strain) => strain(place),
                     };
                     let of_bracket = self.strain(&self.primal.values, cell, k, weights);
                     let balanced = law.compliance(self.elastic_stress(cell, k, weights));
@@ -73,7 +74,8 @@ impl Bracket<'_> {
             let volume = self.problem.thickness * part.size() / reference;
             let sample = |shape: &[f64], weight: f64| {
                 let weights = std::array::from_fn(|corner| if corner < corners { shape[corner] } else { 0.0 });
-                Sample { weights, weight: weight * volume * self.problem.radius(part.at(weights)), extra: 0.0 }
+                let place = part.at(weights);
+                Sample { weights, place, weight: weight * volume * self.problem.radius(place), extra: 0.0 }
             };
             rule.iter().map(|point| sample(&point.shape, point.weight)).collect()
         }

@@ -11,6 +11,7 @@ mod check;
 mod displacement;
 mod fans;
 mod force;
+mod integration;
 mod johnson_mercier;
 mod judge;
 #[cfg(test)]
@@ -19,11 +20,13 @@ mod mesh;
 mod normal;
 mod part_stress;
 mod problem;
+mod sample;
 mod seams;
 mod simplex;
 mod springs;
 mod stress;
 mod system;
+mod turning;
 #[cfg(test)]
 mod two_bodies;
 

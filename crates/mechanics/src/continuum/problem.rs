@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::mesh::{OuterFacet, SimplexMesh};
 use super::simplex::{ENTRIES, Point, Tensor, pairs, work};
 use crate::fem::geometry::{COORDINATES, distance, dot, minus};
-use crate::fem::material::{Lame, Matrix, Stiffness};
+use crate::fem::material::{Lame, Matrix, Stiffness, back, local};
 
 /// Frictionless contact of elastic media that fill a polygon, in plane strain or plane stress, or a polyhedron.
 #[derive(Clone, Debug)]
@@ -37,7 +37,7 @@ pub struct ContinuumProblem {
 /// What fills a part of the body.
 #[derive(Clone, Debug)]
 pub struct Medium {
-    /// The stiffness in the plane or in space, in force per area; its axes are those of the coordinates.
+    /// The stiffness in the plane or in space, in force per area; its axes are those of the coordinates, or turn around a point of the plane.
     pub stiffness: Stiffness,
     /// The stress `[xx, yy, zz, xy, yz, zx]` without strain, if there is one, in force per area.
     pub own_stress: Option<[Linear; 6]>,
@@ -373,10 +373,15 @@ impl ContinuumProblem {
         &self.media[self.medium_of[origin]]
     }
 
-    /// The law of the medium of an element of the first mesh.
-    pub fn law(&self, origin: usize) -> Law<'_> {
+    /// The law of the medium of an element of the first mesh at a place.
+    pub fn law(&self, origin: usize, place: Point) -> Law<'_> {
         let normals = if self.is_axisymmetric { 3 } else { self.dimension };
-        Law { normals, stiffness: &self.medium(origin).stiffness }
+        let stiffness = &self.medium(origin).stiffness;
+        let axes = match stiffness {
+            Stiffness::Isotropic(_) => None,
+            Stiffness::General(matrices) => matrices.axes(|| place),
+        };
+        Law { normals, stiffness, axes }
     }
 
     /// The largest stiffness against a strain of one component, in force per area.
@@ -390,6 +395,14 @@ impl ContinuumProblem {
 }
 
 impl Medium {
+    /// The point of the plane around which its axes turn, if they do.
+    pub fn turns_around(&self) -> Option<Point> {
+        match &self.stiffness {
+            Stiffness::Isotropic(_) => None,
+            Stiffness::General(matrices) => matrices.around.map(|line| line.point()),
+        }
+    }
+
     /// The stress without strain at a place.
     pub fn own_stress(&self, place: Point) -> Tensor {
         self.own_stress.map_or([0.0; 6], |own| own.map(|component| component.at(place)))
@@ -402,6 +415,8 @@ pub struct Law<'a> {
     /// Components on the diagonal of a tensor, 2 in the plane.
     normals: usize,
     stiffness: &'a Stiffness,
+    /// The axes of the stiffness, if they are not those of the coordinates.
+    axes: Option<[Point; 3]>,
 }
 
 impl Law<'_> {
@@ -415,8 +430,8 @@ impl Law<'_> {
         let &Lame { lambda, mu } = match self.stiffness {
             Stiffness::Isotropic(lame) => lame,
             Stiffness::General(matrices) => {
-                let [xx, yy, zz, xy, yz, zx] = self.product(&matrices.compliance, stress);
-                return [xx, yy, zz, xy / 2.0, yz / 2.0, zx / 2.0];
+                let [xx, yy, zz, xy, yz, zx] = self.product(&matrices.compliance, local(&stress, &self.axes));
+                return back([xx, yy, zz, xy / 2.0, yz / 2.0, zx / 2.0], &self.axes);
             }
         };
         let count = self.normals as f64;
@@ -435,8 +450,9 @@ impl Law<'_> {
         let &Lame { lambda, mu } = match self.stiffness {
             Stiffness::Isotropic(lame) => lame,
             Stiffness::General(matrices) => {
-                let [xx, yy, zz, xy, yz, zx] = strain;
-                return self.product(&matrices.stiffness, [xx, yy, zz, 2.0 * xy, 2.0 * yz, 2.0 * zx]);
+                let [xx, yy, zz, xy, yz, zx] = local(&strain, &self.axes);
+                let stress = self.product(&matrices.stiffness, [xx, yy, zz, 2.0 * xy, 2.0 * yz, 2.0 * zx]);
+                return back(stress, &self.axes);
             }
         };
         let count = self.normals as f64;
@@ -449,9 +465,13 @@ impl Law<'_> {
         std::array::from_fn(of_entry)
     }
 
-    /// The stiffness against a strain around an axis.
-    pub fn hoop(&self) -> f64 {
-        self.stress([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])[2]
+    /// The part of the product of two strains, per volume, that contains a power of a radius: of the strains around an axis, or of all where
+    /// the axes turn.
+    pub fn over_radius(&self, strain: Tensor, other: Tensor) -> f64 {
+        match self.axes {
+            Some(_) => work(self.stress(strain), other),
+            None => self.stress([0.0, 0.0, strain[2], 0.0, 0.0, 0.0])[2] * other[2],
+        }
     }
 
     /// The square of the energy norm of a strain, per volume.
@@ -524,7 +544,7 @@ mod tests {
         for (dimension, strain) in [(2, [0.25, -0.5, 0.0, 0.125, 0.0, 0.0]), (3, [0.25, -0.5, 0.75, 0.125, 0.5, -0.25])]
         {
             let material = filled(dimension, Lame { lambda: 3.0, mu: 0.5 }, [0.0; 3]);
-            let material = material.law(0);
+            let material = material.law(0, [0.0; 3]);
             let back = material.compliance(material.stress(strain));
             (0..6).for_each(|entry| assert!((back[entry] - strain[entry]).abs() < 1e-15, "{back:?}"));
             // sigma = lambda tr(eps) I + 2 mu eps.

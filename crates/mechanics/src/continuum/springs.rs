@@ -1,9 +1,10 @@
 //! Springs that are spread over facets: a part of the body without volume, whose strain is the displacement of the facet.
 
-use super::axis::{Sample, samples_on_facet};
 use super::bound::Bracket;
 use super::displacement::on_facet;
+use super::integration::samples_on_facet;
 use super::mesh::OuterFacet;
+use super::sample::Sample;
 use super::simplex::Point;
 use crate::fem::geometry::{dot, minus};
 
@@ -36,9 +37,7 @@ impl Bracket<'_> {
         {
             (0..dimension).for_each(|axis| moved[axis] += value * displacement[dimension * function + axis]);
         }
-        let corners = self.mesh.corners_of_facet(on.outer.facet);
-        let radius: f64 =
-            corners.iter().zip(on.at.weights).map(|(&corner, weight)| weight * self.problem.radius(corner)).sum();
+        let radius = self.problem.radius(on.at.place);
         let of_corners = self.stresses.displacement_at_corners(facets, &on.outer);
         for (corner, weight) in of_corners.into_iter().zip(on.at.weights) {
             (0..dimension).for_each(|axis| balanced[axis] += weight * corner[axis] / radius);

@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::axis::samples_on_facet;
+use super::integration::samples_on_facet;
 use super::johnson_mercier::Element;
 use super::mesh::{OuterFacet, SimplexMesh};
 use super::part_stress::PartStress;
@@ -57,7 +57,8 @@ impl<'a> Stresses<'a> {
         let element = |cell: usize| {
             let simplex = mesh.simplex(cell);
             let (origin, bits) = (mesh.origins[cell], |point: Point| point.map(f64::to_bits));
-            let depends = problem.is_axisymmetric || problem.medium(origin).own_stress.is_some();
+            let medium = problem.medium(origin);
+            let depends = problem.is_axisymmetric || medium.own_stress.is_some() || medium.turns_around().is_some();
             let place = depends.then(|| bits(simplex.corners()[0]));
             let congruence = (simplex.edges().map(bits), problem.medium_of[origin], place);
             if let Some(element) = known.get(&congruence) {
@@ -222,8 +223,7 @@ impl<'a> Stresses<'a> {
         let is_free: Vec<bool> = corners.iter().map(|&corner| !self.problem.is_on_axis(corner)).collect();
         let mut products = [[0.0; 2]; 2];
         for at in samples_on_facet(self.problem, &corners) {
-            let radius: f64 = corners.iter().zip(at.weights).map(|(corner, weight)| weight * corner[0]).sum();
-            let weight = (at.weight + at.extra) / (radius * radius);
+            let weight = (at.weight + at.extra) / at.place[0].powi(2);
             for (i, line) in products.iter_mut().enumerate() {
                 line.iter_mut().zip(at.weights).for_each(|(sum, other)| *sum += weight * at.weights[i] * other);
             }

@@ -25,6 +25,11 @@ impl Cylinder {
         self.along
     }
 
+    /// A point of the line.
+    pub fn point(&self) -> [f64; 3] {
+        self.point
+    }
+
     /// The axes at a place, of unit length; `None` on the line, where no direction leads away from it.
     pub fn axes(&self, place: [f64; 3]) -> Option<[[f64; 3]; 3]> {
         let away = minus(place, self.point);
