@@ -6,14 +6,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 use signorini_qp::threads_of_machine;
 
-/// Elements, or nodes, of a run: their results fit into the cache of a thread.
-const RUN: usize = 128;
+/// Elements, or nodes, of a run: their work is worth a thread, and their results fit into its cache.
+const RUN: usize = 1024;
 
 /// Runs of a thread whose results wait to be taken.
-const WAITING: usize = 64;
-
-/// Pieces of work that are worth a thread of their own.
-const WORTH_THREAD: usize = 1024;
+const WAITING: usize = 8;
 
 /// The number of threads that was asked for; 0 if none was.
 static LIMIT: AtomicUsize = AtomicUsize::new(0);
@@ -41,7 +38,7 @@ pub(crate) fn in_order<R: Send>(count: usize, work: impl Fn(Range<usize>) -> R +
     }
     for waiting in starts.chunks(threads * WAITING) {
         let of_thread = |starts: &[usize]| starts.iter().map(run).collect::<Vec<R>>();
-        let results: Vec<Vec<R>> = waiting.par_chunks(waiting.len().div_ceil(threads)).map(of_thread).collect();
+        let results: Vec<Vec<R>> = waiting.par_chunks(WAITING).map(of_thread).collect();
         results.into_iter().flatten().for_each(&mut take);
     }
 }
@@ -72,7 +69,7 @@ pub(crate) fn on_parts<T: Send>(values: &mut [T], bounds: &[usize], work: impl F
 
 /// Number of parts that `count` pieces of work are worth on the threads of the pool: at least 1.
 pub(crate) fn parts(count: usize) -> usize {
-    (count / WORTH_THREAD).clamp(1, threads())
+    (count / RUN).clamp(1, threads())
 }
 
 #[cfg(test)]
@@ -81,7 +78,7 @@ mod tests {
 
     #[test]
     fn results_come_in_their_order() {
-        for count in [0, 1, RUN, RUN + 1, 400 * RUN + 7] {
+        for count in [0, 1, RUN, RUN + 1, 40 * RUN + 7] {
             assert_eq!(each(count, |index| index), (0..count).collect::<Vec<_>>());
         }
     }
