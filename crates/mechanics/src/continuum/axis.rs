@@ -186,6 +186,29 @@ mod tests {
         assert_eq!(found, [21, 17, 12]);
     }
 
+    /// Differences of quadratic functions are exact: the divergence of the first row is the hoop stress, that of the second row is zero.
+    #[test]
+    fn the_hoop_stress_is_in_radial_balance() {
+        for radii in [[0.3, 1.2, 0.7], [0.0, 1.2, 0.7]] {
+            let triangle = triangle(radii);
+            for (k, stress) in stresses(&triangle).iter().flat_map(|stress| (0..3).map(move |k| (k, stress))) {
+                let (part, at) = (triangle.part(k), [0.5, 0.3, 0.2, 0.0]);
+                let along = |axis: usize| {
+                    let moved = |step: f64| {
+                        let slopes = part.slopes();
+                        stress.at(k, [0, 1, 2, 3].map(|corner| at[corner] + step * slopes[corner][axis]))
+                    };
+                    let [above, below] = [moved(0.01), moved(-0.01)];
+                    [0, 1, 2, 3, 4, 5].map(|entry| (above[entry] - below[entry]) / 0.02)
+                };
+                let ([by_r, by_y], hoop) = ([along(0), along(1)], stress.at(k, at)[2]);
+                let size = stress.entries().iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
+                assert!((part.at(at)[0] * (by_r[0] + by_y[3]) - hoop).abs() < 1e-11 * size, "{radii:?}");
+                assert!((by_r[3] + by_y[1]).abs() < 1e-10 * size, "{radii:?}");
+            }
+        }
+    }
+
     /// The integral of `f^2 / r` of a function f that is r times a linear one near the axis is bounded from above, and only by a little.
     #[test]
     fn integrals_of_squares_over_the_radius_are_bounded_from_above() {

@@ -110,6 +110,26 @@ fn a_column_on_springs_with_own_stress_is_exact_under_a_plane_that_stands_still_
     }
 }
 
+/// The force of a body on springs under a bowl lies in the intervals of a mesh and of finer ones.
+#[test]
+fn the_intervals_of_the_force_of_a_body_on_springs_overlap() {
+    for dimension in [2, 3] {
+        let (mut problem, mut mesh) = body(dimension);
+        let springs = Foundation { along: [0.5, 0.7, 0.6], normal: 0.4 };
+        problem.conditions[0] = Condition { springs, ..Condition::default() };
+        let intervals: Vec<[f64; 2]> = (0..4)
+            .map(|_| {
+                let interval = Bracket::new(&problem, &mesh, None, &settings()).unwrap().force_interval().unwrap();
+                mesh = problem.refined(&mesh, &vec![true; mesh.count()]);
+                interval.unwrap()
+            })
+            .collect();
+        let least = intervals.iter().fold(f64::INFINITY, |least: f64, [_, high]| least.min(*high));
+        let most = intervals.iter().fold(0.0, |most: f64, [low, _]| most.max(*low));
+        assert!(most <= least && least < 1.2 * most, "{intervals:?}");
+    }
+}
+
 /// Two layers of height 1/2 on a clamped base, with a condition on the edge between them.
 fn layers(media: [Medium; 2], between: Condition) -> (ContinuumProblem, SimplexMesh) {
     let nodes: Vec<Point> = (0..6).map(|node| [f64::from(node % 2), f64::from(node / 2) / 2.0, 0.0]).collect();
