@@ -370,6 +370,23 @@ mod tests {
         if dimension == 2 { Simplex::new(2, plane) } else { Simplex::new(3, space) }
     }
 
+    /// About an axis the force `0.75` along the radius is balanced by the hoop stress `0.75 r`, both times r; a force along the axis by the
+    /// axial stress.
+    #[test]
+    fn a_body_force_about_an_axis_is_in_balance() {
+        let problem = ContinuumProblem { is_axisymmetric: true, ..material(2) };
+        let (simplex, at) = (simplex(2), [0.2, 0.5, 0.3, 0.0]);
+        let stress = balancing(&problem, &problem.media[0], &simplex);
+        for k in 0..3 {
+            let radius = simplex.part(k).at(at)[0];
+            let [rr, _, hoop, ry, ..] = stress.at(k, at);
+            assert!(
+                rr.abs() + ry.abs() < ROUNDING && (hoop - 0.75 * radius * radius).abs() < ROUNDING,
+                "{hoop} {radius}"
+            );
+        }
+    }
+
     #[test]
     fn there_are_as_many_stresses_as_motions_of_the_sides_that_are_not_rigid() {
         assert_eq!([2, 3].map(|dimension| reference(dimension).len()), [9, 30]);
