@@ -107,6 +107,20 @@ mod tests {
         }
     }
 
+    /// `s P - 1 = (s - 1) (4 - s) (s - 5/2)^2 / (4 (5/2)^2)` at s = 2 between 1 and 4, and what counts in addition is `(s P)^2 - 1` of the
+    /// area.
+    #[test]
+    fn the_square_of_the_polynomial_is_counted() {
+        assert!((beyond(2.0, [1.0, 4.0]) - 0.02).abs() < 1e-15);
+        let problem = filled(2, Lame { lambda: 1.0, mu: 1.0 }, [0.0; 3]);
+        let triangle = Simplex::new(2, [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 0.5, 0.0]]);
+        for at in samples(&problem, &triangle, [0.0; 3]) {
+            let s = square(at.place);
+            let times = 1.0 + (s - 1.0) * (4.0 - s) / 4.0 * (s / 2.5 - 1.0).powi(2);
+            assert!((1.0 + at.extra / at.weight - times * times).abs() < 1e-14, "{at:?}");
+        }
+    }
+
     #[test]
     fn a_point_on_the_border_lies_in_a_triangle() {
         let triangle = Simplex::new(2, [[1.0, -1.0, 0.0], [1.0, 3.0, 0.0], [2.0, 0.0, 0.0]]);
