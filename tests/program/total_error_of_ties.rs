@@ -74,7 +74,10 @@ fn ties_without_a_guarantee_are_estimated_with_the_reason() {
     let mut equation = layers("plane-strain", true);
     let terms = json!([{"on": {"point": [1, 0.25]}, "x": 1}, {"on": {"point": [0, 0.25]}, "x": -1}]);
     equation["ties"] = json!([equation["ties"][0], {"equation": {"terms": terms}}]);
+    let mut repeated = layers("plane-strain", true);
+    repeated["ties"] = json!([repeated["ties"][0], repeated["ties"][0]]);
     let cases = [
+        (repeated, "ties[1]: surfaces that do not lie on each other"),
         (apart, "surfaces that do not lie on each other"),
         (loaded, "on a tied surface"),
         (unmatched, "are not the same"),

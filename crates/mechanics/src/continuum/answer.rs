@@ -1,6 +1,6 @@
 //! The part of a bracket that is kept: the displacement and the stresses for a picture or a file.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::bound::Bracket;
@@ -84,14 +84,12 @@ impl Bracket<'_> {
         // The nodes body by body; at a seam each body has its own.
         let body_of: Vec<usize> = (0..mesh.count()).map(|cell| self.body_of(cell)).collect();
         let functions: Vec<Vec<usize>> = (0..mesh.count()).map(|cell| self.element(kind, cell)).collect();
-        let in_bodies =
-            functions.iter().zip(&body_of).flat_map(|(of_cell, &body)| of_cell.iter().map(move |&of| (body, of)));
-        let number: BTreeMap<(usize, usize), usize> = in_bodies.map(|node| (node, 0)).collect();
-        let number: BTreeMap<_, usize> = number.into_keys().enumerate().map(|(new, node)| (node, new)).collect();
-        let order: Vec<usize> = number.keys().map(|node| node.1).collect();
-        let numbered =
-            |(of_cell, &body): (&Vec<usize>, &usize)| of_cell.iter().map(|&of| number[&(body, of)]).collect();
-        let elements: Vec<Vec<usize>> = functions.iter().zip(&body_of).map(numbered).collect();
+        let of_cells = functions.iter().zip(&body_of);
+        let in_bodies = of_cells.clone().flat_map(|(of_cell, &body)| of_cell.iter().map(move |&of| (body, of)));
+        let in_bodies: Vec<(usize, usize)> = in_bodies.collect::<BTreeSet<_>>().into_iter().collect();
+        let number = |node: (usize, usize)| in_bodies.partition_point(|other| *other < node);
+        let numbered = |(of_cell, &body): (&Vec<usize>, &usize)| of_cell.iter().map(|&of| number((body, of))).collect();
+        let elements: Vec<Vec<usize>> = of_cells.map(numbered).collect();
         let (mut boundaries, cells_at) = (vec![Vec::new(); self.problem.boundaries.len()], mesh.cells_at());
         for outer in mesh.surface() {
             for &boundary in &self.problem.conditions[outer.condition].boundaries {
@@ -109,8 +107,8 @@ impl Bracket<'_> {
         ContinuumAnswer {
             kind,
             boundaries: names.zip(boundaries).collect(),
-            nodes: order.iter().map(|&function| places[function]).collect(),
-            displacement: order.iter().map(|&function| displacement[function]).collect(),
+            nodes: in_bodies.iter().map(|node| places[node.1]).collect(),
+            displacement: in_bodies.iter().map(|node| displacement[node.1]).collect(),
             elements,
             stress: (0..mesh.count()).map(|cell| self.mean_stress(cell)).collect(),
             origins: mesh.origins.clone(),

@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 
 use super::normal::null_space;
 use super::part_stress::{PartStress, QUADRATIC};
-use super::sample::{Sample, square};
+use super::sample::{self, Sample, square};
 use super::simplex::{Point, Simplex, corners_of_side, pairs, traction};
 
 /// Gauss points in each direction: exact for degree 15, and P times a product of two quadratic functions has 13.
@@ -51,13 +51,9 @@ pub fn around(size: f64, triangle: &Simplex) -> Vec<Sample> {
     points().iter().map(of_point).collect()
 }
 
-/// `r P(r) - 1 >= 0` between two radii: `1 - r P = (r-a)(r-b) prod (r-c)^2 / ab prod c^2`.
-pub fn beyond(radius: f64, [one, other]: [f64; 2]) -> f64 {
-    let (low, high) = (one.min(other), one.max(other));
-    let ends = (radius - low) / low * ((high - radius) / high);
-    let middle = [low + high, high - low].map(|sum| sum / 2.0);
-    let zeros = places_of_zeros().iter().map(|place| middle[0] + middle[1] * place);
-    zeros.fold(ends.max(0.0), |product, zero| product * (radius / zero - 1.0).powi(2))
+/// `r P(r) - 1 >= 0` between two radii.
+pub fn beyond(radius: f64, radii: [f64; 2]) -> f64 {
+    sample::beyond(radius, radii, places_of_zeros())
 }
 
 /// The double zeros between -1 and 1.

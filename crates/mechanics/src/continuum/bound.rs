@@ -60,6 +60,8 @@ pub struct Bracket<'a> {
     pub contact_share: f64,
     /// The square of the energy norm of the displacement.
     pub energy: f64,
+    /// By as much the polynomial for a power of a radius makes this square too large in J.
+    pub rounded_up: f64,
     /// The largest relative defect found by the check of balance, signs and distances.
     pub defect: f64,
 }
@@ -196,6 +198,7 @@ impl<'a> Bracket<'a> {
             shares: Vec::new(),
             contact_share: 0.0,
             energy: 0.0,
+            rounded_up: 0.0,
             defect: 0.0,
         };
         bracket.measure();
@@ -262,12 +265,6 @@ impl<'a> Bracket<'a> {
         (0..=self.mesh.dimension).map(of_part).sum()
     }
 
-    /// The square of the energy norm of a strain at a point of integration, times its volume.
-    pub fn square(&self, cell: usize, at: &Sample, strain: Tensor) -> f64 {
-        let law = self.law(cell, at.place);
-        at.weight * law.square(strain) + at.extra * law.over_radius(strain, strain)
-    }
-
     /// The same of the difference of a strain and that of an elastic stress.
     pub fn square_of_rest(&self, cell: usize, at: &Sample, strain: Tensor, stress: Tensor) -> f64 {
         let law = self.law(cell, at.place);
@@ -293,16 +290,22 @@ impl<'a> Bracket<'a> {
                 let stress = self.elastic_stress(cell, k, at.weights);
                 self.square_of_rest(cell, at, self.strain(values, cell, k, at.weights), stress) / 2.0
             };
-            let energy = |k: usize, at: &Sample| self.square(cell, at, self.strain(values, cell, k, at.weights));
-            [self.sum(cell, misfit), self.sum(cell, energy)]
+            let energy = |k: usize, at: &Sample| {
+                at.weight * self.law(cell, at.place).square(self.strain(values, cell, k, at.weights))
+            };
+            let rounded_up = |k: usize, at: &Sample| {
+                self.by_polynomial(cell, at, self.strain(values, cell, k, at.weights), [0.0; 6])
+            };
+            let has_polynomial = self.problem.has_polynomial(self.mesh.origins[cell]);
+            let rounded_up = if has_polynomial { self.sum(cell, rounded_up) } else { 0.0 };
+            [self.sum(cell, misfit), self.sum(cell, energy), rounded_up]
         };
         let of_cells = each(self.mesh.count(), of_cell);
         let mut shares: Vec<f64> = of_cells.iter().map(|cell| cell[0]).collect();
-        let mut energy: f64 = of_cells.iter().map(|cell| cell[1]).sum();
-        for on in self.on_springs() {
-            let of_bracket = self.moved(&on, values, &self.dual.values);
-            shares[on.cell] += self.square_on_springs(&on, of_bracket) / 2.0;
-            energy += on.at.weight * self.product_of_springs(&on, of_bracket[0], of_bracket[0]);
+        let [mut energy, rounded_up] = [1, 2].map(|part| of_cells.iter().map(|cell| cell[part]).sum::<f64>());
+        for on in self.on_springs(values, &self.dual.values) {
+            shares[on.cell] += on.square_of_rest() / 2.0;
+            energy += on.at.weight * on.product(on.moved, on.moved);
         }
         let mut contact_share = 0.0;
         for (index, place) in self.places.iter().enumerate() {
@@ -311,7 +314,8 @@ impl<'a> Bracket<'a> {
             shares[place.on.cell] += share;
             contact_share += share;
         }
-        (self.shares, self.energy, self.contact_share) = (shares, energy, contact_share);
+        (self.shares, self.contact_share) = (shares, contact_share);
+        (self.energy, self.rounded_up) = (energy, rounded_up);
     }
 
     /// J - D, half the square of the bound, in force times length.
@@ -352,7 +356,7 @@ impl<'a> Bracket<'a> {
 
     /// J(v).
     pub fn energy_of_displacement(&self) -> f64 {
-        self.energy / 2.0 - self.work_of_loads()
+        (self.energy + self.rounded_up) / 2.0 - self.work_of_loads()
     }
 
     /// D(tau).
@@ -361,10 +365,10 @@ impl<'a> Bracket<'a> {
             self.sum(cell, |k, at| self.square_of_rest(cell, at, [0.0; 6], self.elastic_stress(cell, k, at.weights)))
         };
         let mut stored = each(self.mesh.count(), of_cell).iter().sum::<f64>();
-        for on in self.on_springs() {
-            let [_, balanced] = self.moved(&on, &self.primal.values, &self.dual.values);
-            stored += self.square_on_springs(&on, [[0.0; 3], balanced]);
-        }
+        stored += self
+            .on_springs(&self.primal.values, &self.dual.values)
+            .map(|on| (on.at.weight + on.at.extra) * on.product(on.balanced, on.balanced))
+            .sum::<f64>();
         self.work_on_supports() + self.work_on_obstacles() - stored / 2.0
     }
 

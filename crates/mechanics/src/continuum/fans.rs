@@ -76,6 +76,8 @@ pub enum Unjoined {
     Layers(usize),
     /// A support, a load or an obstacle acts on a surface of the seam of this number.
     Acting(usize),
+    /// The simplices do not meet in whole facets afterwards.
+    Unmatched,
 }
 
 impl SimplexMesh {
@@ -86,9 +88,9 @@ impl SimplexMesh {
     /// # Errors
     /// [`Unjoined`].
     pub fn joined(self, problem: &mut ContinuumProblem) -> Result<(Self, Vec<[f64; 2]>), Unjoined> {
-        let contact = problem.obstacles.iter().position(|facing| matches!(facing.surface, Surface::Body { .. }));
+        let has_contacts = problem.obstacles.iter().any(|facing| matches!(facing.surface, Surface::Body { .. }));
         let has_seams = problem.conditions.iter().any(|condition| !condition.seams.is_empty());
-        if contact.is_none() && !has_seams {
+        if !has_contacts && !has_seams {
             return Ok((self, Vec::new()));
         }
         let (mut mesh, mut rounds) = (self, 0);
@@ -99,7 +101,7 @@ impl SimplexMesh {
             let joined = cut.at_seams(problem).map_err(Unjoined::Acting)?;
             let opposites = cut.at_contacts(problem).map_err(Unjoined::Layers)?;
             if cut.too_large.is_empty() || rounds == ROUNDS {
-                let cut = SimplexMesh::new(mesh.dimension, cut.cells).ok_or(Unjoined::Layers(contact.unwrap_or(0)))?;
+                let cut = SimplexMesh::new(mesh.dimension, cut.cells).ok_or(Unjoined::Unmatched)?;
                 return Ok((cut.with_opposites(opposites), joined));
             }
             let mut marked = vec![false; mesh.count()];

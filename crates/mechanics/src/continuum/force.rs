@@ -148,8 +148,7 @@ impl Bracket<'_> {
                 let own = self.strain(&self.primal.values, cell, k, at.weights);
                 self.by_polynomial(cell, at, own, self.elastic_stress(cell, k, at.weights))
             };
-            let turns = self.problem.medium(self.mesh.origins[cell]).turns_around().is_some();
-            let of_extra = if self.problem.is_axisymmetric || turns {
+            let of_extra = if self.problem.has_polynomial(self.mesh.origins[cell]) {
                 [self.sum(cell, changes), self.sum(cell, changes_of_bracket)]
             } else {
                 [0.0; 2]
@@ -160,15 +159,14 @@ impl Bracket<'_> {
         let [mut square, mut base, mut of_test, mut of_bracket] =
             [0, 1, 2, 3].map(|part| of_cells.iter().map(|cell| cell[part]).sum::<f64>());
         let half = |a: Point, b: Point| [0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2.0);
-        for on in self.on_springs() {
-            let [moved, balanced] = self.moved(&on, &self.primal.values, &self.dual.values);
-            let of_pair @ [of_z, of_tau] = self.moved(&on, &test.displacement, &test.facets);
-            let product = |one, other| self.product_of_springs(&on, one, other);
-            square += self.square_on_springs(&on, of_pair);
-            base += on.at.weight * product(half(moved, balanced), minus(of_z, of_tau))
-                - on.at.extra * product(balanced, of_tau) / 2.0;
-            of_test += on.at.extra * product(of_tau, of_tau);
-            of_bracket += on.at.extra * product(balanced, balanced);
+        let of_pair = self.on_springs(&test.displacement, &test.facets);
+        for (pair, own) in of_pair.zip(self.on_springs(&self.primal.values, &self.dual.values)) {
+            let (weight, extra) = (own.at.weight, own.at.extra);
+            square += pair.square_of_rest();
+            base += weight * own.product(half(own.moved, own.balanced), minus(pair.moved, pair.balanced))
+                - extra * own.product(own.balanced, pair.balanced) / 2.0;
+            of_test += extra * own.product(pair.balanced, pair.balanced);
+            of_bracket += extra * own.product(own.balanced, own.balanced);
         }
         let by_polynomial = (of_test * of_bracket).sqrt() / 2.0;
         base += self.work_of_reactions(&test.stress, &self.forces_without_load(&test.facets, &test.pulls));

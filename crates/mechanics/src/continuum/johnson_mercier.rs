@@ -15,7 +15,8 @@ use super::normal::{Lower, add, null_space};
 use super::part_stress::{PartStress, QUADRATIC, quadratic_factors};
 use super::problem::{ContinuumProblem, Law, Medium};
 use super::sample::Sample;
-use super::simplex::{ENTRIES, Point, Simplex, Tensor, corners_of_side, traction};
+use super::simplex::{ENTRIES, Point, Simplex, corners_of_side, traction};
+use crate::fem::material::engineering;
 use signorini_qp::dot;
 
 /// Stresses without divergence: those of the reference simplex, carried to this one, or those of a triangle about an axis.
@@ -221,7 +222,7 @@ fn strains_of_all(
     let strains_of = |stress: &PartStress| {
         let mut strains = PartStress::zero(simplex.dimension + 1, stress.of_part());
         for (k, at) in &points {
-            let strain = engineering(problem.law(origin, at.place).compliance(stress.at(*k, at.weights)));
+            let strain = engineering(&problem.law(origin, at.place).compliance(stress.at(*k, at.weights)));
             let values = strains.values_mut().iter_mut().skip(k * stress.of_part());
             values.zip(at.weights).take(stress.of_part()).for_each(|(value, share)| {
                 add(value, share * (at.weight + at.extra), &strain);
@@ -232,11 +233,6 @@ fn strains_of_all(
     stresses.iter().map(strains_of).collect()
 }
 
-/// Of a symmetric tensor each shear component stands for two.
-fn engineering([xx, yy, zz, xy, yz, zx]: Tensor) -> Tensor {
-    [xx, yy, zz, 2.0 * xy, 2.0 * yz, 2.0 * zx]
-}
-
 /// The complementary energies of a stress with each coefficient of another one.
 fn strains_of(law: &Law, products: &[Products], stress: &PartStress) -> Vec<f64> {
     let mut strains = PartStress::zero(products.len(), stress.of_part());
@@ -244,7 +240,7 @@ fn strains_of(law: &Law, products: &[Products], stress: &PartStress) -> Vec<f64>
         strains.values_mut().chunks_exact_mut(stress.of_part()).zip(stress.values().chunks_exact(stress.of_part()));
     for ((strains, of_part), products) in parts.zip(products) {
         for (value, column) in of_part.iter().zip(products) {
-            let strain = engineering(law.compliance(*value));
+            let strain = engineering(&law.compliance(*value));
             strains.iter_mut().zip(column).for_each(|(own, &product)| add(own, product, &strain));
         }
     }

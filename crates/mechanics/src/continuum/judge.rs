@@ -28,8 +28,8 @@ pub enum Strain<S> {
 
 impl Bracket<'_> {
     /// Judges a displacement by its strain in an element of the first mesh. The displacement needs no other property: the bound follows
-    /// from its distance to the centre of the ball and the radius. Integrals of a constant strain are exact; those of others are by five
-    /// points in each direction on each part of a simplex.
+    /// from its distance to the centre of the ball and the radius. Integrals of a constant strain are exact, except where axes turn; those
+    /// of others are by five points in each direction on each part of a simplex.
     pub fn judged<S: Fn(Point) -> Tensor>(&self, strain_in: impl Fn(usize) -> Strain<S> + Sync) -> Judged {
         let fine = self.fine_rule();
         let of_cell = |cell: usize| {

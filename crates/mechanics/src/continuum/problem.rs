@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::mesh::{OuterFacet, SimplexMesh};
 use super::simplex::{ENTRIES, Point, Tensor, pairs, work};
 use crate::fem::geometry::{COORDINATES, distance, dot, minus};
-use crate::fem::material::{Lame, Matrix, Stiffness, back, local};
+use crate::fem::material::{Lame, Matrix, Stiffness, back, engineering, local};
 
 /// Frictionless contact of elastic media that fill a polygon, in plane strain or plane stress, or a polyhedron.
 #[derive(Clone, Debug)]
@@ -373,6 +373,11 @@ impl ContinuumProblem {
         &self.media[self.medium_of[origin]]
     }
 
+    /// Returns `true` if a polynomial stands for a power of a radius in the energies of an element of the first mesh.
+    pub fn has_polynomial(&self, origin: usize) -> bool {
+        self.is_axisymmetric || self.medium(origin).turns_around().is_some()
+    }
+
     /// The law of the medium of an element of the first mesh at a place.
     pub fn law(&self, origin: usize, place: Point) -> Law<'_> {
         let normals = if self.is_axisymmetric { 3 } else { self.dimension };
@@ -450,9 +455,8 @@ impl Law<'_> {
         let &Lame { lambda, mu } = match self.stiffness {
             Stiffness::Isotropic(lame) => lame,
             Stiffness::General(matrices) => {
-                let [xx, yy, zz, xy, yz, zx] = local(&strain, &self.axes);
-                let stress = self.product(&matrices.stiffness, [xx, yy, zz, 2.0 * xy, 2.0 * yz, 2.0 * zx]);
-                return back(stress, &self.axes);
+                let strain = engineering(&local(&strain, &self.axes));
+                return back(self.product(&matrices.stiffness, strain), &self.axes);
             }
         };
         let count = self.normals as f64;

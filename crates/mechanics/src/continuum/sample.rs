@@ -12,9 +12,19 @@ pub struct Sample {
     pub place: Point,
     /// Its volume, or its area.
     pub weight: f64,
-    /// What counts in addition, because a polynomial stands for a power of a radius: about an axis for squares of a hoop strain or of a
-    /// stress, its volume times `r P - 1`; where axes turn for squares of a strain or of a stress.
+    /// What counts in addition, because a polynomial P stands for a power of a radius r: about an axis, for squares of a hoop strain or of a
+    /// stress, its volume times `r P(r) - 1`; where axes turn, for squares of any strain or stress, its volume times `r^4 P(r^2)^2 - 1`.
     pub extra: f64,
+}
+
+/// `x P(x) - 1 >= 0` for the polynomial `P(x) >= 1/x` between a and b with `1 - x P = (x - a) (x - b) prod (x - c)^2 / a b prod c^2`. `places`
+/// are those of the c, -1 at the smaller end and 1 at the larger one.
+pub fn beyond(x: f64, [one, other]: [f64; 2], places: &[f64]) -> f64 {
+    let (low, high) = (one.min(other), one.max(other));
+    let ends = (x - low) / low * ((high - x) / high);
+    let middle = [low + high, high - low].map(|sum| sum / 2.0);
+    let zeros = places.iter().map(|place| middle[0] + middle[1] * place);
+    zeros.fold(ends.max(0.0), |product, zero| product * (x / zero - 1.0).powi(2))
 }
 
 /// So many points between 0 and 1 with their weights.

@@ -10,8 +10,8 @@ use super::problem::{Condition, ContinuumProblem};
 use super::simplex::{Point, size_of_facet};
 use crate::fem::geometry::{distance, dot, minus, unit};
 
-/// Points closer than this share of an edge lie at the same place: far above the rounding of coordinates.
-const SAME_PLACE: f64 = 1e-9;
+/// Points closer than this share of an edge are one: far above the rounding of coordinates.
+const ONE_PLACE: f64 = 1e-9;
 
 /// The nodes of each facet of a surface.
 type Facets = Vec<Vec<usize>>;
@@ -74,7 +74,7 @@ impl Cut {
         facets.iter().map(size).sum()
     }
 
-    /// Cuts the triangles at edges that lie on each other at the nodes of both, and returns these.
+    /// Where edges lie on each other, cuts their triangles at the nodes of both, and returns the nodes that are one.
     fn cut_at_each_other(&mut self, one: &Facets, other: &Facets) -> Vec<Pair> {
         let edge = |facet: &Vec<usize>, nodes: &[Point]| {
             let [from, to] = [facet[0], facet[1]];
@@ -87,7 +87,7 @@ impl Cut {
             let [from, to] = [own.stops[0].1, own.stops[own.stops.len() - 1].1].map(|node| self.cells.nodes[node]);
             let along = unit(minus(to, from));
             for facing in &mut other {
-                let margin = SAME_PLACE * own.length().min(facing.length());
+                let margin = ONE_PLACE * own.length().min(facing.length());
                 let ends = facing.ends().map(|end| facing.at(&self.cells.nodes, end));
                 let places = ends.map(|end| dot(along, minus(end, from)));
                 let is_aside = |k: usize| {
@@ -108,7 +108,7 @@ impl Cut {
         pairs
     }
 
-    /// The nodes of faces that are the same.
+    /// The nodes that are one where faces are the same.
     fn nodes_of_same(&self, one: &Facets, other: &Facets) -> Vec<Pair> {
         let at = |node: usize| self.cells.nodes[node];
         let sum = |face: &Vec<usize>| face.iter().map(|&node| at(node)[0]).sum::<f64>();
@@ -116,7 +116,7 @@ impl Cut {
         by_place.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut pairs = Vec::new();
         for face in one {
-            let margin = SAME_PLACE * distance(at(face[0]), at(face[1]));
+            let margin = ONE_PLACE * distance(at(face[0]), at(face[1]));
             let (here, reach) = (sum(face), face.len() as f64 * margin);
             let first = by_place.partition_point(|entry| entry.0 < here - reach);
             for (_, facing) in by_place[first..].iter().take_while(|entry| entry.0 <= here + reach) {

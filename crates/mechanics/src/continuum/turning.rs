@@ -8,13 +8,16 @@ use std::sync::OnceLock;
 
 use super::mesh::SimplexMesh;
 use super::problem::ContinuumProblem;
-use super::sample::{Sample, square as points};
+use super::sample::{Sample, beyond, square as points};
 use super::simplex::{Point, Simplex};
 use crate::fem::geometry::{dot, minus};
 
 /// Points along a line: exact for degree 19, of the squares of two linear strains (2), the stiffness (4), `P^2` (12), and the map of the
 /// square to the triangle (1).
 const POINTS: usize = 10;
+
+/// The place of the double zero of `1 - s P(s)`: in the middle.
+const ZERO: [f64; 1] = [0.0];
 
 /// The points of integration on a triangle of a medium whose axes turn around a point.
 pub fn samples(problem: &ContinuumProblem, triangle: &Simplex, point: Point) -> Vec<Sample> {
@@ -24,7 +27,7 @@ pub fn samples(problem: &ContinuumProblem, triangle: &Simplex, point: Point) -> 
     let sample = |&([t, y], share): &([f64; 2], f64)| {
         let weights = [1.0 - t, t * (1.0 - y), t * y, 0.0];
         let (place, weight) = (triangle.at(weights), 2.0 * t * share * size);
-        let too_much = beyond(square(minus(place, point)), range);
+        let too_much = beyond(square(minus(place, point)), range, &ZERO);
         Sample { weights, place, weight, extra: weight * too_much * (2.0 + too_much) }
     };
     of_square.map(sample).collect()
@@ -37,8 +40,8 @@ fn square(vector: Point) -> f64 {
     dot(vector, vector)
 }
 
-/// The smallest and the largest square of the distance of a triangle from a point outside.
-pub fn squares(triangle: &Simplex, point: Point) -> [f64; 2] {
+/// The smallest and the largest square of the distance of a triangle from a point; the smallest one is zero in the triangle.
+fn squares(triangle: &Simplex, point: Point) -> [f64; 2] {
     let corners = triangle.corners();
     let to_edge = |k: usize| {
         let (from, along) = (corners[k], minus(corners[(k + 1) % 3], corners[k]));
@@ -46,7 +49,8 @@ pub fn squares(triangle: &Simplex, point: Point) -> [f64; 2] {
         square([0, 1, 2].map(|axis| from[axis] + share * along[axis] - point[axis]))
     };
     let to_corner = |corner: &Point| square(minus(*corner, point));
-    [(0..3).map(to_edge).fold(f64::INFINITY, f64::min), corners.iter().map(to_corner).fold(0.0, f64::max)]
+    let nearest = if contains(triangle, point) { 0.0 } else { (0..3).map(to_edge).fold(f64::INFINITY, f64::min) };
+    [nearest, corners.iter().map(to_corner).fold(0.0, f64::max)]
 }
 
 /// Returns `true` if a point lies in a triangle or, except for rounding, on its border.
@@ -65,12 +69,6 @@ impl ContinuumProblem {
         };
         (0..mesh.count()).any(is_inside)
     }
-}
-
-/// `s P(s) - 1 >= 0` between two squares: `1 - s P = (s - a) (s - b) (s - c)^2 / a b c^2` with c in the middle.
-fn beyond(s: f64, [low, high]: [f64; 2]) -> f64 {
-    let middle = (low + high) / 2.0;
-    ((s - low) / low * ((high - s) / high)).max(0.0) * (s / middle - 1.0).powi(2)
 }
 
 #[cfg(test)]
@@ -111,7 +109,7 @@ mod tests {
     /// area.
     #[test]
     fn the_square_of_the_polynomial_is_counted() {
-        assert!((beyond(2.0, [1.0, 4.0]) - 0.02).abs() < 1e-15);
+        assert!((beyond(2.0, [1.0, 4.0], &ZERO) - 0.02).abs() < 1e-15);
         let problem = filled(2, Lame { lambda: 1.0, mu: 1.0 }, [0.0; 3]);
         let triangle = Simplex::new(2, [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 0.5, 0.0]]);
         for at in samples(&problem, &triangle, [0.0; 3]) {
@@ -134,5 +132,6 @@ mod tests {
         let triangle = Simplex::new(2, [[1.0, -1.0, 0.0], [1.0, 3.0, 0.0], [2.0, 0.0, 0.0]]);
         assert_eq!(squares(&triangle, [0.0; 3]), [1.0, 10.0]);
         assert_eq!(squares(&triangle, [3.0, 0.0, 0.0]), [1.0, 13.0]);
+        assert_eq!(squares(&triangle, [1.5, 0.0, 0.0])[0], 0.0);
     }
 }

@@ -149,7 +149,7 @@ pub fn back(tensor: Symmetric, axes: &Option<[[f64; 3]; 3]>) -> Symmetric {
 
 /// Engineering strains: twice the shear components of the tensor.
 #[inline]
-fn engineering([xx, yy, zz, xy, yz, zx]: &Symmetric) -> Symmetric {
+pub fn engineering([xx, yy, zz, xy, yz, zx]: &Symmetric) -> Symmetric {
     [*xx, *yy, *zz, 2.0 * xy, 2.0 * yz, 2.0 * zx]
 }
 

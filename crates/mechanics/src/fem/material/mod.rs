@@ -5,7 +5,7 @@ mod law;
 mod orthotropic;
 
 pub use cylinder::Cylinder;
-pub use law::{Lame, Law, Matrices, Matrix, Stiffness, back, local};
+pub use law::{Lame, Law, Matrices, Matrix, Stiffness, back, engineering, local};
 use orthotropic::Orthotropic;
 use signorini_qp as qp;
 

@@ -24,6 +24,8 @@ pub(crate) struct Ties {
     pub rows: Vec<TieRow>,
     /// The rows of each tie of the scene.
     pub of_tie: Vec<Range<usize>>,
+    /// Of each tie of surfaces the one that takes the means, 0 or 1, and how much of it is tied, from 0 to 1.
+    pub covered: Vec<Option<(usize, f64)>>,
     /// E, a row for each of `rows`, dimensionless.
     pub matrix: SparseMatrix,
     /// e, in length.
@@ -41,6 +43,7 @@ impl Ties {
         Ties {
             rows: stays.iter().map(|&row| self.rows[row].clone()).collect(),
             of_tie: self.of_tie.iter().map(|rows| before(rows.start)..before(rows.end)).collect(),
+            covered: self.covered,
             matrix: self.matrix.select_rows(&stays),
             values: stays.iter().map(|&row| self.values[row]).collect(),
             shortenings: self.shortenings,
@@ -59,14 +62,21 @@ impl Scene {
         if !self.ties.is_empty() && self.analysis.is_some() {
             return Err(wrong("ties", "ties are for equilibria only; a motion has only supports"));
         }
-        let order = self.order_of_tied(body);
+        let surfaces = self.tied_surfaces().flatten().filter_map(|name| body.mesh().boundary(name));
+        let order = SideOrder::of(body, surfaces);
         let (mut rows, mut of_tie, mut warnings) = (Vec::new(), Vec::with_capacity(self.ties.len()), Vec::new());
+        let mut covered = vec![None; self.ties.len()];
         let (mut entries, mut values, mut shortenings) = (Vec::new(), Vec::new(), Vec::new());
         let (dimension, rounding) = (body.dimension(), COORDINATE_ROUNDING * body.mesh().size());
         for (index, tie) in self.ties.iter().enumerate() {
             let path = format!("ties[{index}]");
             let found = match tie {
-                TieSpec::Surfaces(spec) => of_surfaces(spec, &path, (body, dofs, &order), &mut warnings)?,
+                TieSpec::Surfaces(TiedSurfacesSpec { boundary, to, reach }) => {
+                    let path = format!("{path}.surfaces");
+                    let facing = Facing::of([boundary, to], *reach, &path, (body, dofs, &order), &mut warnings)?;
+                    covered[index] = Some((usize::from(facing.is_swapped), facing.found.covered[0]));
+                    means(&facing)?
+                }
                 TieSpec::Preload(spec) => {
                     let path = format!("{path}.preload");
                     let (rows, shortening) = spec.rows((&path, index), (body, dofs, &order), &mut warnings)?;
@@ -107,29 +117,8 @@ impl Scene {
                 return Err(wrong(format!("ties[{}].preload.force", shortening.tie), message));
             }
         }
-        let ties = Ties { rows, of_tie, matrix, values, shortenings, warnings };
+        let ties = Ties { rows, of_tie, covered, matrix, values, shortenings, warnings };
         Ok(if ties.of_tie.len() > 1 { ties.without_repeated() } else { ties })
-    }
-
-    /// Says which surface of tie `index` takes the means, 0 or 1, and how much of it is tied, from 0 to 1; `None` for a tie that is no pair
-    /// of surfaces.
-    ///
-    /// # Errors
-    /// None for the ties of a model that is built.
-    pub(crate) fn tied_share(
-        &self,
-        index: usize,
-        body: &ElasticBody,
-        dofs: &DofMap,
-    ) -> Result<Option<(usize, f64)>, Error> {
-        let TieSpec::Surfaces(TiedSurfacesSpec { boundary, to, reach }) = &self.ties[index] else { return Ok(None) };
-        let place = (body, dofs, &self.order_of_tied(body));
-        let facing = Facing::of([boundary, to], *reach, &format!("ties[{index}].surfaces"), place, &mut Vec::new())?;
-        Ok(Some((usize::from(facing.is_swapped), facing.found.covered[0])))
-    }
-
-    fn order_of_tied(&self, body: &ElasticBody) -> SideOrder {
-        SideOrder::of(body, self.tied_surfaces().flatten().filter_map(|name| body.mesh().boundary(name)))
     }
 
     /// The pairs of boundaries that are tied.
@@ -143,13 +132,7 @@ impl Scene {
 }
 
 /// The rows of two surfaces: the means of one of them in every direction.
-fn of_surfaces(
-    spec: &TiedSurfacesSpec,
-    path: &str,
-    place: (&ElasticBody, &DofMap, &SideOrder),
-    warnings: &mut Vec<Warning>,
-) -> Result<Vec<TieRow>, Error> {
-    let facing = Facing::of([&spec.boundary, &spec.to], spec.reach, &format!("{path}.surfaces"), place, warnings)?;
+fn means(facing: &Facing) -> Result<Vec<TieRow>, Error> {
     let dofs = facing.dofs;
     let rows = |axis: usize| facing.rows(|node| dofs.axes(node)[axis]);
     Ok((0..facing.body.dimension()).map(rows).collect::<Result<Vec<_>, Error>>()?.concat())

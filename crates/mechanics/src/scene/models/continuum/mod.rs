@@ -26,7 +26,7 @@ pub(crate) use why_not::{NoGuarantee, WhyNot};
 /// Times that facets partly within the reach of a pressed obstacle are refined.
 const MOST_ROUNDS: usize = 12;
 
-/// Shares of a surface that differ by less are the same: the rounding of areas.
+/// Shares of a surface that differ by less are the same, as in the warning that surfaces are partly tied.
 const ALL_OF_IT: f64 = 1e-6;
 
 impl Scene {
@@ -110,6 +110,7 @@ impl Scene {
                     "several layers of the bodies lie before each other, so that there is no guaranteed bound; give a smaller `reach`";
                 none(format!("obstacles[{obstacle}].shape.body"), message)
             }
+            Unjoined::Unmatched => unmatched(),
             Unjoined::Acting(tie) => {
                 let message = "a support, a load or an obstacle on a tied surface has no guaranteed bound";
                 none(format!("ties[{tie}]"), message)
@@ -120,9 +121,11 @@ impl Scene {
                 "axes around a line through the body have no guaranteed bound: on the line the stiffness has no value";
             return Err(none("material.orthotropic.around", message));
         }
-        for (tie, shares) in joined.into_iter().enumerate() {
-            let tied = self.tied_share(tie, body, model.dofs())?;
-            if tied.is_some_and(|(side, share)| (shares[side] - share).abs() > ALL_OF_IT) {
+        for (tie, covered) in model.parts.ties.covered.iter().enumerate() {
+            let is_joined = |&(side, share): &(usize, f64)| {
+                joined.get(tie).is_some_and(|shares| (shares[side] - share).abs() <= ALL_OF_IT)
+            };
+            if !covered.as_ref().is_some_and(is_joined) {
                 let message = match dimension {
                     2 => "surfaces that do not lie on each other have no guaranteed bound if they are tied",
                     _ => "tied surfaces whose faces, cut into triangles, are not the same have no guaranteed bound",
