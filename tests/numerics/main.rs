@@ -5,6 +5,7 @@ mod claims;
 mod condensation;
 mod degenerate;
 mod dense;
+mod derivatives;
 mod dual_active_set;
 mod energy_bound;
 mod equalities;

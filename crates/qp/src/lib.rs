@@ -29,6 +29,7 @@
 
 mod certificate;
 mod cost;
+mod derivative;
 mod directory;
 mod engine;
 mod error;
@@ -50,6 +51,7 @@ mod transform;
 mod watch;
 
 pub use cost::Estimate;
+pub use derivative::{Adjoint, Change, Derivative, Derivatives, Tangent};
 pub use directory::read_problem;
 pub use error::{Error, Failure};
 pub use linear::multigrid::{Multigrid, NearNullSpace};
@@ -244,7 +246,8 @@ impl ContactProblem {
     pub fn with_contact_sets(&self) -> Result<impl Fn(&ContactSet) -> Option<[Vec<f64>; 2]>, Error> {
         let factored = engine::Factored::new(self, &plan::WithFactor::BY_RULES, &Settings::default())?;
         Ok(move |closed: &ContactSet| {
-            let (displacement, multiplier) = factored.with_contact_set(&self.with_equality_rows(closed))?;
+            let held = self.with_equality_rows(closed);
+            let [displacement, multiplier] = factored.balanced(&held, self.load().to_vec(), self.gap())?;
             Some([displacement, self.split(multiplier).concat()])
         })
     }

@@ -238,7 +238,7 @@ impl ContactProblem {
     }
 
     /// Checks that the vectors of an answer have the lengths of the problem.
-    pub(super) fn check_answer(&self, displacement: &[f64], multiplier: &[f64]) -> Result<(), Error> {
+    pub(crate) fn check_answer(&self, displacement: &[f64], multiplier: &[f64]) -> Result<(), Error> {
         let length = |name, found: usize, expected, of| {
             if found == expected { Ok(()) } else { Err(Error::Length { name, found, expected, of }) }
         };

@@ -154,6 +154,10 @@ impl Engine for Factored {
         self.walk_to(from, to)
     }
 
+    fn held(&self, closed: &ContactSet, load: &[f64], gap: &[f64], _: &Watch) -> Result<Option<[Vec<f64>; 2]>, Error> {
+        Ok(self.balanced(closed, load.to_vec(), gap))
+    }
+
     fn factor_entries(&self) -> usize {
         self.reduction.condensation.as_ref().map_or(0, Condensation::factor_entries)
     }
@@ -328,15 +332,14 @@ impl Factored {
         if interior > 0.0 { (on_boundary / (on_boundary + interior)).max(0.0).sqrt() } else { 1.0 }
     }
 
-    /// Displacement and multiplier with the rows of `closed` held at their gaps; `None` if they do not hold the body, or contradict
-    /// each other.
-    pub(crate) fn with_contact_set(&self, closed: &ContactSet) -> Option<(Vec<f64>, Vec<f64>)> {
-        let gap = self.reduction.selection.gap(self.problem.gap());
-        let loading = Loading::of(&self.reduction, self.problem.load().to_vec(), &gap);
-        let (problem, unit) = self.scaled(&loading, self.problem.gap()).ok()?;
+    /// Displacement and multiplier under `load` (length n) with the rows of `closed` held at `gap` (one entry per row), pushing or pulling,
+    /// and all others free; `None` if they do not hold the body, or contradict each other.
+    pub(crate) fn balanced(&self, closed: &ContactSet, load: Vec<f64>, gap: &[f64]) -> Option<[Vec<f64>; 2]> {
+        let loading = Loading::of(&self.reduction, load, &self.reduction.selection.gap(gap));
+        let (problem, unit) = self.scaled(&loading, gap).ok()?;
         let task = self.scaled_problem(&problem);
         let held = active_set::with_contact_set(&task, &self.reduction.selection.restrict_set(closed)).ok()??;
-        Some((self.expand(&loading, unit, &held.displacement), self.expand_multiplier(&held.multiplier, unit)))
+        Some([self.expand(&loading, unit, &held.displacement), self.expand_multiplier(&held.multiplier, unit)])
     }
 
     /// The displacement of the whole body.

@@ -131,6 +131,13 @@ pub(crate) trait Engine: Debug + Send + Sync {
         Err(Error::NotCondensed { step: "the exact path" })
     }
 
+    /// Displacement and multiplier under `load` (length n) with the rows of `closed` held at `gap` (one entry per row), pushing or pulling,
+    /// and all others free; `None` if these rows do not hold the body, or contradict each other.
+    ///
+    /// # Errors
+    /// As [`Engine::make`].
+    fn held(&self, closed: &ContactSet, load: &[f64], gap: &[f64], watch: &Watch) -> Result<Option<[Vec<f64>; 2]>, Error>;
+
     /// Values of the factor; zero if the methods factorise by themselves.
     fn factor_entries(&self) -> usize {
         0

@@ -13,7 +13,7 @@ use crate::method::{Solver, Start};
 use crate::plan::{Means, Tried};
 use crate::problem::ContactProblem;
 use crate::settings::{ByFactor, Method, Settings};
-use crate::solution::Seconds;
+use crate::solution::{ContactSet, Seconds};
 use crate::watch::Watch;
 
 /// With fewer dofs a second thread costs about what it saves.
@@ -21,6 +21,12 @@ const WORTH_THREADS: usize = 50_000;
 
 /// A start for another method ends at this relative imbalance of forces.
 const NEAR: f64 = 1e-4;
+
+/// Relative imbalance of forces at which a balance with held rows ends.
+const HELD: f64 = 1e-11;
+
+/// Largest number of cycles of a balance with held rows.
+const MOST_HELD_CYCLES: usize = 400;
 
 /// A contact problem with the multigrid hierarchy of its stiffness: built once, for all gaps, loads and starts.
 ///
@@ -86,6 +92,29 @@ impl Engine for Hierarchical {
 
     fn bounding(&self, watch: &Watch, _: f64) -> Bounding<'_> {
         Bounding::Cycles(&self.multigrid, watch.clone())
+    }
+
+    /// The held rows are pairs of opposed rows: bounds that are equal.
+    fn held(
+        &self,
+        closed: &ContactSet,
+        load: &[f64],
+        gap: &[f64],
+        watch: &Watch,
+    ) -> Result<Option<[Vec<f64>; 2]>, Error> {
+        let rows: Vec<usize> = closed.iter().collect();
+        let values = rows.iter().map(|&row| gap[row]).collect();
+        let free = self.problem.without_rows()?.with_load(load.to_vec())?;
+        let problem = &free.with_equalities(&self.problem.contact().select_rows(&rows), values)?;
+        let limits = Limits { tolerance: HELD, most_cycles: MOST_HELD_CYCLES, worth: usize::MAX };
+        let outcome = Mprgp { problem, multigrid: &self.multigrid, limits, watch }.solve(Start::default())?;
+        if !outcome.is_settled() {
+            return Ok(None);
+        }
+        let [_, forces] = problem.split(outcome.multiplier);
+        let mut multiplier = vec![0.0; self.problem.rows()];
+        rows.iter().zip(forces).for_each(|(&row, force)| multiplier[row] = force);
+        Ok(Some([outcome.displacement, multiplier]))
     }
 
     fn bytes(&self) -> f64 {

@@ -37,11 +37,11 @@ use crate::solution::{Seconds, Solution};
 #[derive(Clone, Debug)]
 pub struct Prepared {
     /// The problem under the current load.
-    pub(super) problem: ContactProblem,
-    pub(super) settings: Settings,
+    pub(crate) problem: ContactProblem,
+    pub(crate) settings: Settings,
     ladder: Arc<Ladder>,
     /// The data of the first attempt that memory and time allow; `None` if the stiffness cannot be prepared.
-    pub(super) bench: Option<Workbench>,
+    pub(crate) bench: Option<Workbench>,
     pub(super) start: Start,
 }
 

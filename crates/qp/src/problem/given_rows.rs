@@ -52,6 +52,16 @@ impl ContactProblem {
         Ok(ContactProblem { near_null: self.near_null.clone(), equality_rows: count, ..problem })
     }
 
+    /// The same body and load without any row.
+    ///
+    /// # Errors
+    /// None for a problem.
+    pub(crate) fn without_rows(&self) -> Result<Self, Error> {
+        let none = SparseMatrix::from_triplets(0, self.dofs(), &[])?;
+        let problem = ContactProblem::new(self.stiffness.clone(), self.load.clone(), none, Vec::new())?;
+        Ok(ContactProblem { near_null: self.near_null.clone(), ..problem })
+    }
+
     /// Number m of rows of B.
     pub fn inequalities(&self) -> usize {
         self.rows() - 2 * self.equality_rows

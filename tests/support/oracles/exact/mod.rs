@@ -7,6 +7,7 @@ pub mod case;
 pub mod dyadic;
 mod evidence;
 pub mod judge;
+pub mod kinks;
 mod lemke;
 mod loads;
 pub mod measure;

@@ -1,0 +1,313 @@
+//! Derivatives of an answer with respect to all data of its problem, and a verdict on whether they exist.
+//!
+//! With the closed rows C of the exact answer, and as long as every closed row presses and every open row has a gap, the answer is smooth
+//! in the data: it is that of a linear system. For a change of the data along a parameter,
+//!
+//! ```text
+//! K du - B_C' dl = r,   B_C du = d,     r = df - dK u + dB_C' lambda_C,   d = dg_C - dB_C u        (tangent)
+//! ```
+//!
+//! and for an output phi(u, lambda) one system with the same matrix serves all parameters,
+//!
+//! ```text
+//! K w - B_C' nu = dphi/du,   B_C w = -dphi/dlambda_C,     dphi = w'r - nu'd                        (adjoint)
+//! ```
+//!
+//! Rows that are *proven* closed press and are independent, rows that are proven open have a gap: then the derivative exists. A row whose
+//! gap and force are exactly zero makes a kink, with a derivative on each side. A row that is neither proven nor exactly zero may be either.
+//!
+//! # Source
+//! J. F. Bonnans, A. Shapiro, *Perturbation Analysis of Optimization Problems*, Springer (2000), section 5.2. B. Amos, J. Z. Kolter,
+//! *OptNet: differentiable optimization as a layer in neural networks*, ICML (2017), for the adjoint.
+
+mod change;
+mod held;
+mod verdict;
+
+pub use change::{Adjoint, Change, Tangent};
+
+use std::sync::Arc;
+
+use crate::engine::{Engine, Factored};
+use crate::error::Error;
+use crate::linear::check_vector;
+use crate::plan::WithFactor;
+use crate::prepared::Prepared;
+use crate::problem::ContactProblem;
+use crate::run::solved;
+use crate::settings::{Method, Settings};
+use crate::solution::{ContactSet, Solution};
+use crate::method::Start;
+use verdict::{Rows, rows_of};
+
+/// A derivative, with what is known about it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Derivative<T> {
+    /// The derivative: it exists, because every row is proven to be closed and pressing, or open.
+    Proven(T),
+    /// The derivatives to both sides of a kink: gap and force of some rows are exactly zero in the given doubles.
+    OneSided {
+        /// The derivative for a falling parameter.
+        left: T,
+        /// The derivative for a growing parameter.
+        right: T,
+    },
+    /// The proof leaves some rows undecided, or a kink belongs to more than one parameter.
+    Undecided {
+        /// The derivatives with all of these rows open, and with all of them closed, if both exist. If there are several rows, the true
+        /// derivative may belong to another combination of them.
+        between: Vec<T>,
+        /// The rows, from 0.
+        rows: Vec<usize>,
+    },
+    /// Nothing is known.
+    Unknown {
+        /// The reason, in words.
+        why: String,
+    },
+}
+
+impl<T> Derivative<T> {
+    /// The same verdict about something that follows from the derivative.
+    pub fn map<U>(&self, of: impl Fn(&T) -> U) -> Derivative<U> {
+        match self {
+            Derivative::Proven(value) => Derivative::Proven(of(value)),
+            Derivative::OneSided { left, right } => Derivative::OneSided { left: of(left), right: of(right) },
+            Derivative::Undecided { between, rows } => {
+                Derivative::Undecided { between: between.iter().map(of).collect(), rows: rows.clone() }
+            }
+            Derivative::Unknown { why } => Derivative::Unknown { why: why.clone() },
+        }
+    }
+
+    /// The derivative, if it is proven.
+    pub fn proven(&self) -> Option<&T> {
+        if let Derivative::Proven(value) = self { Some(value) } else { None }
+    }
+
+    /// `proven`, `one-sided`, `undecided` or `unknown`.
+    pub fn verdict(&self) -> &'static str {
+        match self {
+            Derivative::Proven(_) => "proven",
+            Derivative::OneSided { .. } => "one-sided",
+            Derivative::Undecided { .. } => "undecided",
+            Derivative::Unknown { .. } => "unknown",
+        }
+    }
+}
+
+/// The derivatives of an answer: each costs one solve with the factor, or the hierarchy, that the answer had.
+///
+/// ```
+/// use signorini_qp::{Change, ContactProblem, Derivative, Prepared, Settings, SparseMatrix, SymmetricMatrix};
+///
+/// // A spring of stiffness 2, pushed with force 3 towards a wall at 1: the wall takes 3 - 2 x 1 = 1.
+/// let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]);
+/// let stiffness = SymmetricMatrix::from_lower(one(2.0)?)?;
+/// let problem = ContactProblem::new(stiffness, vec![3.0], one(1.0)?, vec![1.0])?;
+/// let prepared = Prepared::new(&problem, &Settings::default())?;
+///
+/// // The force on the wall, -lambda, falls by 2 for each unit of gap, grows with the load, and falls with the stiffness.
+/// let derivatives = prepared.derivatives(&prepared.solve(&[1.0])?)?;
+/// let force = derivatives.adjoint(&[0.0], &[-1.0])?;
+/// let Derivative::Proven(force) = force else { panic!() };
+/// assert_eq!((force.of_gap(), force.of_load()), (vec![-2.0], &[1.0][..]));
+/// assert_eq!(force.of_stiffness(&problem)?.triplets().collect::<Vec<_>>(), [(0, 0, -1.0)]);
+///
+/// // Under a force of 2 the spring just touches: a kink. The wall takes any more force, and the spring any less.
+/// let touching = prepared.with_load(vec![2.0])?;
+/// let derivatives = touching.derivatives(&touching.solve(&[1.0])?)?;
+/// let Derivative::OneSided { left, right } = derivatives.tangent(&Change::of_load(vec![1.0], 1))? else { panic!() };
+/// assert_eq!((left.displacement, left.multiplier), (vec![0.5], vec![0.0]));
+/// assert_eq!((right.displacement, right.multiplier), (vec![0.0], vec![-1.0]));
+/// # Ok::<(), signorini_qp::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Derivatives {
+    problem: ContactProblem,
+    engine: Arc<dyn Engine>,
+    settings: Settings,
+    /// The displacement u of the answer, length n.
+    displacement: Vec<f64>,
+    /// The multipliers of all rows of the problem.
+    multiplier: Vec<f64>,
+    rows: Rows,
+}
+
+impl Derivatives {
+    /// The rows that are proven, or known exactly, to press; `None` if nothing is known.
+    pub fn closed(&self) -> Option<ContactSet> {
+        let closed = match &self.rows {
+            Rows::Smooth { closed } | Rows::Kink { closed, .. } | Rows::Undecided { closed, .. } => closed,
+            Rows::Unknown { .. } => return None,
+        };
+        Some(self.problem.of_inequalities(closed))
+    }
+
+    /// The rows that are at a kink, or undecided, from 0; empty if every row is decided, or nothing is known.
+    pub fn at_kink(&self) -> &[usize] {
+        match &self.rows {
+            Rows::Kink { weak: rows, .. } | Rows::Undecided { undecided: rows, .. } => rows,
+            Rows::Smooth { .. } | Rows::Unknown { .. } => &[],
+        }
+    }
+
+    /// The adjoint solution of an output with these derivatives with respect to the displacement u (length n) and to the multiplier lambda
+    /// (length m, then one for each equality row), in the unit of the output over that of length, and of force. At a kink the gradient
+    /// does not exist: it is undecided between both sides, and only [`tangent`](Self::tangent) tells them apart.
+    ///
+    /// # Errors
+    /// [`Error::Length`] and [`Error::NotFinite`] for vectors that do not fit; [`Error::Numerical`] and [`Error::Interrupted`] of the solve.
+    pub fn adjoint(&self, by_displacement: &[f64], by_multiplier: &[f64]) -> Result<Derivative<Adjoint>, Error> {
+        let (problem, rows) = (&self.problem, self.given_rows());
+        check_vector("derivative by displacement", by_displacement, (problem.dofs(), "dofs"), f64::is_finite, "finite")?;
+        check_vector("derivative by multiplier", by_multiplier, (rows, "contact and equality rows"), f64::is_finite, "finite")?;
+        let distances: Vec<f64> = self.on_first_rows(by_multiplier).iter().map(|value| 0.0 - value).collect();
+        let of = |closed: &ContactSet| {
+            let found = self.held(closed, by_displacement, &distances)?;
+            Ok(found.map(|held| Adjoint {
+                displacement: held.displacement,
+                multiplier: problem.split(held.multiplier).concat(),
+                answer: [self.displacement.clone(), problem.split(self.multiplier.clone()).concat()],
+                inequalities: problem.inequalities(),
+                error: held.error,
+            }))
+        };
+        match &self.rows {
+            Rows::Kink { closed, weak } => self.between(closed, weak, of),
+            _ => self.by_linear_system(of),
+        }
+    }
+
+    /// The derivatives of displacement and multipliers along a change of the data.
+    ///
+    /// # Errors
+    /// As [`Derivatives::adjoint`], and those of [`solve`](crate::solve()) for the small contact problem at a kink.
+    pub fn tangent(&self, change: &Change) -> Result<Derivative<Tangent>, Error> {
+        change.check(self.problem.dofs(), self.given_rows())?;
+        let distances = self.on_first_rows(&change.distance);
+        let of = |closed: &ContactSet| {
+            let found = self.held(closed, &change.load, &distances)?;
+            Ok(found.map(|held| Tangent {
+                displacement: held.displacement,
+                multiplier: self.problem.split(held.multiplier).concat(),
+                error: held.error,
+            }))
+        };
+        match &self.rows {
+            Rows::Kink { closed, weak } => {
+                let side = |sign: f64| self.one_sided(closed, weak, &change.times(sign));
+                let (right, left) = (side(1.0)?, side(-1.0)?.times(-1.0));
+                Ok(Derivative::OneSided { left, right })
+            }
+            _ => self.by_linear_system(of),
+        }
+    }
+
+    /// What one linear system gives, away from a kink.
+    fn by_linear_system<T>(
+        &self,
+        of: impl Fn(&ContactSet) -> Result<Option<T>, Error>,
+    ) -> Result<Derivative<T>, Error> {
+        match &self.rows {
+            Rows::Smooth { closed } => Ok(match of(closed)? {
+                Some(found) => Derivative::Proven(found),
+                None => Derivative::Unknown { why: NOT_HELD.to_string() },
+            }),
+            Rows::Kink { closed, weak: rows } | Rows::Undecided { closed, undecided: rows } => {
+                self.between(closed, rows, of)
+            }
+            Rows::Unknown { why } => Ok(Derivative::Unknown { why: why.clone() }),
+        }
+    }
+
+    /// The pieces with all of `rows` open, and with all of them closed.
+    fn between<T>(
+        &self,
+        closed: &ContactSet,
+        rows: &[usize],
+        of: impl Fn(&ContactSet) -> Result<Option<T>, Error>,
+    ) -> Result<Derivative<T>, Error> {
+        let mut all = closed.clone();
+        rows.iter().for_each(|&row| all.insert(row));
+        let between: Vec<T> = [of(closed)?, of(&all)?].into_iter().flatten().collect();
+        Ok(match between.is_empty() {
+            true => Derivative::Unknown { why: NOT_HELD.to_string() },
+            false => Derivative::Undecided { between, rows: rows.to_vec() },
+        })
+    }
+
+    /// The tangent for a growing parameter at a kink: a contact problem of the weak rows, with the pressing rows held.
+    fn one_sided(&self, closed: &ContactSet, weak: &[usize], change: &Change) -> Result<Tangent, Error> {
+        let problem = &self.problem;
+        let distances = self.on_first_rows(&change.distance);
+        let pick = |rows: &[usize]| rows.iter().map(|&row| distances[row]).collect::<Vec<f64>>();
+        let held: Vec<usize> = closed.iter().collect();
+        let contact = problem.contact().select_rows(weak);
+        let mut small = ContactProblem::new(problem.stiffness().clone(), change.load.clone(), contact, pick(weak))?;
+        if let Some(near_null) = problem.near_null() {
+            small = small.with_near_null(near_null.clone())?;
+        }
+        let small = small.with_equalities(&problem.contact().select_rows(&held), pick(&held))?;
+        let Settings { watch, memory, threads, .. } = self.settings.clone();
+        let settings = Settings { watch, memory, threads, ..Settings::default() };
+        let found = solved(&small, &Start::default(), &settings)?;
+        let mut multiplier = vec![0.0; problem.rows()];
+        weak.iter().zip(&found.multiplier).for_each(|(&row, &force)| multiplier[row] = force);
+        held.iter().zip(&found.equality_multiplier).for_each(|(&row, &force)| multiplier[row] = force);
+        let multiplier = problem.split(multiplier).concat();
+        Ok(Tangent { displacement: found.displacement, multiplier, error: found.certificate.energy_error_bound })
+    }
+
+    /// Number of rows as they were given: those of B and the equality rows.
+    fn given_rows(&self) -> usize {
+        self.problem.inequalities() + self.problem.equality_rows()
+    }
+
+    /// Values of the rows as they were given, for all rows of the problem: an equality is held by the first of its two rows.
+    fn on_first_rows(&self, given: &[f64]) -> Vec<f64> {
+        let mut values = given.to_vec();
+        values.resize(self.problem.rows(), 0.0);
+        values
+    }
+}
+
+/// The reason if the rows that press do not determine a linear system.
+const NOT_HELD: &str = "the rows that press do not hold the body, or follow from each other";
+
+impl Prepared {
+    /// The derivatives of an answer of this problem, under the current load: the gaps are those of the problem that was prepared. If the
+    /// answer brings no proof of its rows, they are proven here.
+    ///
+    /// # Errors
+    /// [`Error::Length`] for an answer that does not fit, and those of the proof.
+    pub fn derivatives(&self, solution: &Solution) -> Result<Derivatives, Error> {
+        let (problem, settings) = (&self.problem, self.settings.started()?);
+        let engine: Arc<dyn Engine> = match &self.bench {
+            Some(bench) => bench.engine.clone(),
+            None => Arc::new(Factored::new(problem, &WithFactor::BY_RULES, &settings)?),
+        };
+        let rows = rows_of(problem, engine.as_ref(), solution, &settings.watch)?;
+        let given = [solution.multiplier.as_slice(), &solution.equality_multiplier].concat();
+        Ok(Derivatives {
+            problem: problem.clone(),
+            engine,
+            settings,
+            displacement: solution.displacement.clone(),
+            multiplier: problem.of_all_rows(&given).into_owned(),
+            rows,
+        })
+    }
+}
+
+impl ContactProblem {
+    /// The derivatives of an answer of this problem, with a factor or a hierarchy of their own.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`] and [`Prepared::derivatives`].
+    pub fn derivatives(&self, solution: &Solution, settings: &Settings) -> Result<Derivatives, Error> {
+        // A derivative takes the method of its answer.
+        let method = if solution.method.starts_with("mprgp") { Method::Mprgp } else { Method::ActiveSet };
+        Prepared::new(self, &settings.clone().by(method))?.derivatives(solution)
+    }
+}

@@ -1,0 +1,175 @@
+//! The rows of an exact answer: pressing, with a gap, or neither.
+
+use crate::certificate::WithEvidence;
+use crate::engine::Engine;
+use crate::error::Error;
+use crate::linear::{Dependence, ExactSum, largest};
+use crate::problem::ContactProblem;
+use crate::solution::{ContactSet, ProvenSet, Solution};
+use crate::watch::Watch;
+
+/// Corrections on the way to an answer that is exact in doubles.
+const MOST_CORRECTIONS: usize = 4;
+
+/// Forces that are left in an answer that is exact in doubles: rounding of their sums in twice the precision, relative.
+const NEARLY: f64 = 1e-25;
+
+/// What is known about the rows of the exact answer. Sets are those of all rows of the problem, one row of each equality included.
+#[derive(Clone, Debug)]
+pub(super) enum Rows {
+    /// The rows of `closed` press, and all others have a gap.
+    Smooth { closed: ContactSet },
+    /// The rows of `closed` press, gap and force of the `weak` ones are exactly zero, and all others have a gap; closed and weak rows are
+    /// independent.
+    Kink { closed: ContactSet, weak: Vec<usize> },
+    /// The rows of `closed` press; the `undecided` ones may be open or closed.
+    Undecided { closed: ContactSet, undecided: Vec<usize> },
+    /// Nothing is known.
+    Unknown { why: String },
+}
+
+/// The rows of the exact answer of `problem`, of which `solution` is the answer in doubles.
+///
+/// # Errors
+/// [`Error::Length`] for an answer that does not fit, and those of the proof.
+pub(super) fn rows_of(
+    problem: &ContactProblem,
+    engine: &dyn Engine,
+    solution: &Solution,
+    watch: &Watch,
+) -> Result<Rows, Error> {
+    let given = [solution.multiplier.as_slice(), &solution.equality_multiplier].concat();
+    let multiplier = problem.of_all_rows(&given).into_owned();
+    let displacement = solution.displacement.clone();
+    problem.check_answer(&displacement, &multiplier)?;
+    let proven = match &solution.proven {
+        Some(proven) => Some(proven.clone()),
+        None => proven_here(problem, engine, [&displacement, &multiplier], watch)?,
+    };
+    let Some(ProvenSet { open, closed }) = proven else {
+        let why = "no bound on the error of the answer is known, so that no row is proven".to_string();
+        return Ok(Rows::Unknown { why });
+    };
+    let of_rows = |row: &usize| !open.contains(*row) && !closed.contains(*row);
+    let undecided: Vec<usize> = (0..problem.inequalities()).filter(of_rows).collect();
+    let closed = problem.with_equality_rows(&closed);
+    if undecided.is_empty() {
+        return Ok(Rows::Smooth { closed });
+    }
+    let start = [displacement, multiplier];
+    let sets = [problem.with_equality_rows(&solution.contact_set), closed.clone()];
+    let exact = sets.iter().find_map(|set| exact_answer(problem, engine, set, &start, watch));
+    let exact = exact.filter(|(closed, weak)| {
+        let active: Vec<usize> = closed.iter().chain(weak.iter().copied()).collect();
+        let found = Dependence::of(problem.contact(), &active, || watch.is_over());
+        found.is_some_and(|found| found.independent.iter().all(|&is_independent| is_independent))
+    });
+    Ok(match exact {
+        Some((closed, weak)) if weak.is_empty() => Rows::Smooth { closed },
+        Some((closed, weak)) => Rows::Kink { closed, weak },
+        None => Rows::Undecided { closed, undecided },
+    })
+}
+
+/// The proof by the data of the engine, or by a factor of the certificate.
+fn proven_here(
+    problem: &ContactProblem,
+    engine: &dyn Engine,
+    [displacement, multiplier]: [&[f64]; 2],
+    watch: &Watch,
+) -> Result<Option<ProvenSet>, Error> {
+    let by = engine.bounding(watch, 0.0);
+    let (two_sided, of_rows) = problem.two_sided(multiplier);
+    let evidence = two_sided.examine(&by, displacement, &of_rows)?.evidence;
+    let answer = || WithEvidence { displacement, multiplier, evidence: None };
+    match problem.prove_by(&by, WithEvidence { evidence, ..answer() }) {
+        Some(proven) => Ok(Some(proven)),
+        None if engine.hierarchy().is_some() => Ok(None),
+        None => problem.prove_alone(answer()),
+    }
+}
+
+/// The closed and the weak rows, if the answer with the rows of `set` held is exact in doubles: every force is in balance, and every
+/// condition holds, without any rounding. The answer is unique, because a bound on its error is known.
+fn exact_answer(
+    problem: &ContactProblem,
+    engine: &dyn Engine,
+    set: &ContactSet,
+    [displacement, multiplier]: &[Vec<f64>; 2],
+    watch: &Watch,
+) -> Option<(ContactSet, Vec<usize>)> {
+    if engine.hierarchy().is_some() {
+        return None;
+    }
+    let (mut u, mut lambda) = (displacement.clone(), multiplier.clone());
+    // An equality has one row here.
+    let second = problem.inequalities() + problem.equality_rows()..problem.rows();
+    for opposed in second.clone() {
+        let row = opposed - problem.equality_rows();
+        lambda[row] -= std::mem::take(&mut lambda[opposed]);
+    }
+    for row in (0..problem.rows()).filter(|&row| !set.contains(row)) {
+        lambda[row] = 0.0;
+    }
+    let size = largest(&problem.contact().mul_transposed(&lambda)).max(largest(problem.load()));
+    for _ in 0..MOST_CORRECTIONS {
+        let rest = problem.accurate_residual(&u, &lambda);
+        if largest(&rest) <= NEARLY * size {
+            return exact_rows(problem, &u, &lambda);
+        }
+        let missing: Vec<f64> = problem.accurate_violation(&u).iter().map(|violation| -violation).collect();
+        let [du, dl] = engine.held(set, &rest, &missing, watch).ok()??;
+        u.iter_mut().zip(du).for_each(|(u, du)| *u += du);
+        lambda.iter_mut().zip(dl).for_each(|(lambda, dl)| *lambda += dl);
+    }
+    None
+}
+
+/// The closed and the weak rows of an answer in which an equality has a multiplier of either sign on its first row; `None` if it is
+/// not exact.
+fn exact_rows(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Option<(ContactSet, Vec<usize>)> {
+    let mut sums = vec![ExactSum::default(); problem.dofs()];
+    for (i, j, stiffness) in problem.stiffness().lower().triplets() {
+        sums[i].add_product(stiffness, u[j]);
+        if i != j {
+            sums[j].add_product(stiffness, u[i]);
+        }
+    }
+    let mut distances = vec![ExactSum::default(); problem.rows()];
+    for (row, dof, b) in problem.contact().triplets() {
+        sums[dof].add_product(-b, lambda[row]);
+        distances[row].add_product(-b, u[dof]);
+    }
+    for (sum, &load) in sums.iter_mut().zip(problem.load()) {
+        sum.add(-load);
+        if sum.sign()? != 0 {
+            return None;
+        }
+    }
+    let equalities = problem.inequalities()..problem.rows();
+    let mut closed = problem.with_equality_rows(&ContactSet::default());
+    let mut weak = Vec::new();
+    for (row, distance) in distances.iter_mut().enumerate() {
+        let gap = problem.gap()[row];
+        let sign = match gap.is_finite() {
+            true => {
+                distance.add(gap);
+                distance.sign()?
+            }
+            false => 1,
+        };
+        if equalities.contains(&row) {
+            if sign != 0 {
+                return None;
+            }
+            continue;
+        }
+        match (sign, lambda[row]) {
+            (0, 0.0) => weak.push(row),
+            (0, force) if force < 0.0 => closed.insert(row),
+            (1, 0.0) => {}
+            _ => return None,
+        }
+    }
+    Some((closed, weak))
+}
