@@ -18,9 +18,8 @@ fn no_proven_or_one_sided_derivative_is_wrong_at_near_or_away_from_kinks() {
     for number in 0..PROBLEMS {
         let kink = Kink::of(47, number);
         let mut draws = Draws(number);
-        let [by_u, by_lambda] = [kink.case.dofs(), kink.case.rows()].map(|count| {
-            (0..count).map(|_| f64::from(draws.between(-8, 8))).collect::<Vec<f64>>()
-        });
+        let [by_u, by_lambda] = [kink.case.dofs(), kink.case.rows()]
+            .map(|count| (0..count).map(|_| f64::from(draws.between(-8, 8))).collect::<Vec<f64>>());
         let judged = kink.judged(&by_u, &by_lambda);
         if let Some(reason) = judged.wrong {
             wrong.push(format!("problem {number}, {:?}: {reason}", kink.place));

@@ -8,6 +8,7 @@ mod conditions;
 mod energy_norm;
 mod infeasible;
 mod mode;
+mod pressed;
 mod proof;
 mod reach;
 mod scales;

@@ -52,7 +52,7 @@ impl Evidence {
 impl ContactProblem {
     /// The rows for which an answer (u of length n, in m; lambda of length m, in N, `<= 0` in compression) proves, by
     /// its distance and force, that they are open or closed in the exact answer; `None` if K is not positive definite
-    /// by itself and no bound is known.
+    /// by itself, except for travels that forces drive against rows, and if no bound is known.
     ///
     /// # Errors
     /// As [`ContactProblem::certify`].
@@ -69,7 +69,8 @@ impl ContactProblem {
     pub(crate) fn prove_alone(&self, mut answer: WithEvidence) -> Result<Option<ProvenSet>, Error> {
         let norm = match answer.evidence.as_mut().and_then(|evidence| evidence.norm.take()) {
             Some(norm) => Some(norm),
-            None => EnergyNorm::of(&self.stiffness, &self.contact)?,
+            None if self.without_stiffness().is_empty() => EnergyNorm::of(&self.stiffness, &self.contact)?,
+            None => return self.prove_pressed(&answer),
         };
         Ok(norm.and_then(|norm| self.prove_by(&Bounding::Factor(norm), answer)))
     }
@@ -290,7 +291,7 @@ impl<'a> ComplianceFactor<'a> {
 
     /// The reach of all rows, if their compliance is known; otherwise upper bounds by one sweep, if the contact boundary is known: the
     /// length of a column is at most the sum of its magnitudes.
-    fn reach_at_once(&self) -> Option<Vec<f64>> {
+    pub(super) fn reach_at_once(&self) -> Option<Vec<f64>> {
         let all = 0..self.rows.shift.len();
         if self.rows.compliance.is_some() {
             return Some(all.map(|row| self.reach(row)).collect());

@@ -45,12 +45,7 @@ impl Change {
     ///
     /// # Errors
     /// [`Error::Shape`] and [`Error::Length`] for numbers that do not fit.
-    pub fn with_rows(
-        mut self,
-        change: &SparseMatrix,
-        displacement: &[f64],
-        multiplier: &[f64],
-    ) -> Result<Self, Error> {
+    pub fn with_rows(mut self, change: &SparseMatrix, displacement: &[f64], multiplier: &[f64]) -> Result<Self, Error> {
         let expected = (self.distance.len(), self.load.len());
         let found = (change.rows(), change.columns());
         if found != expected {
@@ -73,7 +68,13 @@ impl Change {
     /// [`Error::Length`] and [`Error::NotFinite`] for vectors that do not fit.
     pub(super) fn check(&self, dofs: usize, rows: usize) -> Result<(), Error> {
         check_vector("change of the load", &self.load, (dofs, "dofs"), f64::is_finite, "finite")?;
-        check_vector("change of the gaps", &self.distance, (rows, "contact and equality rows"), f64::is_finite, "finite")
+        check_vector(
+            "change of the gaps",
+            &self.distance,
+            (rows, "contact and equality rows"),
+            f64::is_finite,
+            "finite",
+        )
     }
 }
 

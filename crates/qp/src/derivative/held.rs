@@ -27,12 +27,7 @@ impl Derivatives {
     ///
     /// # Errors
     /// [`Error::Numerical`] and [`Error::Interrupted`].
-    pub(super) fn held(
-        &self,
-        closed: &ContactSet,
-        force: &[f64],
-        distances: &[f64],
-    ) -> Result<Option<Held>, Error> {
+    pub(super) fn held(&self, closed: &ContactSet, force: &[f64], distances: &[f64]) -> Result<Option<Held>, Error> {
         let watch = &self.settings.watch;
         let is_exact = self.engine.hierarchy().is_none();
         // Open rows have no part in the system; their distances only must fit the pattern of infinite gaps.

@@ -31,13 +31,13 @@ use std::sync::Arc;
 use crate::engine::{Engine, Factored};
 use crate::error::Error;
 use crate::linear::check_vector;
+use crate::method::Start;
 use crate::plan::WithFactor;
 use crate::prepared::Prepared;
 use crate::problem::ContactProblem;
 use crate::run::solved;
 use crate::settings::{Method, Settings};
 use crate::solution::{ContactSet, Solution};
-use crate::method::Start;
 use verdict::{Rows, rows_of};
 
 /// A derivative, with what is known about it.
@@ -160,8 +160,20 @@ impl Derivatives {
     /// [`Error::Length`] and [`Error::NotFinite`] for vectors that do not fit; [`Error::Numerical`] and [`Error::Interrupted`] of the solve.
     pub fn adjoint(&self, by_displacement: &[f64], by_multiplier: &[f64]) -> Result<Derivative<Adjoint>, Error> {
         let (problem, rows) = (&self.problem, self.given_rows());
-        check_vector("derivative by displacement", by_displacement, (problem.dofs(), "dofs"), f64::is_finite, "finite")?;
-        check_vector("derivative by multiplier", by_multiplier, (rows, "contact and equality rows"), f64::is_finite, "finite")?;
+        check_vector(
+            "derivative by displacement",
+            by_displacement,
+            (problem.dofs(), "dofs"),
+            f64::is_finite,
+            "finite",
+        )?;
+        check_vector(
+            "derivative by multiplier",
+            by_multiplier,
+            (rows, "contact and equality rows"),
+            f64::is_finite,
+            "finite",
+        )?;
         let distances: Vec<f64> = self.on_first_rows(by_multiplier).iter().map(|value| 0.0 - value).collect();
         let of = |closed: &ContactSet| {
             let found = self.held(closed, by_displacement, &distances)?;

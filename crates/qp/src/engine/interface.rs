@@ -136,7 +136,13 @@ pub(crate) trait Engine: Debug + Send + Sync {
     ///
     /// # Errors
     /// As [`Engine::make`].
-    fn held(&self, closed: &ContactSet, load: &[f64], gap: &[f64], watch: &Watch) -> Result<Option<[Vec<f64>; 2]>, Error>;
+    fn held(
+        &self,
+        closed: &ContactSet,
+        load: &[f64],
+        gap: &[f64],
+        watch: &Watch,
+    ) -> Result<Option<[Vec<f64>; 2]>, Error>;
 
     /// Values of the factor; zero if the methods factorise by themselves.
     fn factor_entries(&self) -> usize {

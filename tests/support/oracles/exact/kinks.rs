@@ -61,11 +61,11 @@ impl Kink {
         let factor: Vec<Vec<f64>> = (0..n).map(|_| (0..n).map(|_| small(2)).collect()).collect();
         let square = |i: usize, j: usize| -> f64 { (0..n).map(|k| factor[i][k] * factor[j][k]).sum() };
         let own = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
-        let stiffness: Vec<Vec<f64>> =
+        let mut stiffness: Vec<Vec<f64>> =
             (0..n).map(|i| (0..n).map(|j| unit * (square(i, j) + own(i, j))).collect()).collect();
         let mut contact: Vec<Vec<f64>> = (0..m).map(|_| (0..n).map(|_| unit * small(1)).collect()).collect();
         let u: Vec<f64> = (0..n).map(|_| small(32) / 8.0).collect();
-        let change_of_load = (0..n).map(|_| small(8) / 4.0).collect();
+        let mut change_of_load: Vec<f64> = (0..n).map(|_| small(8) / 4.0).collect();
         let change_of_gap = (0..m).map(|_| small(8) / 4.0).collect();
         if draws.one_in(10) && m > 1 {
             // A row twice: its forces are not unique.
@@ -85,14 +85,29 @@ impl Kink {
                 _ => gap[row] += f64::from(draws.between(1, 16)) / 4.0,
             }
         }
-        let load = (0..n)
+        let mut load: Vec<f64> = (0..n)
             .map(|dof| {
                 let elastic: f64 = stiffness[dof].iter().zip(&u).map(|(k, u)| k * u).sum();
                 let pressed: f64 = contact.iter().zip(&force).map(|(row, force)| row[dof] * force).sum();
                 off(elastic) - pressed
             })
             .collect();
-        Kink { place, case: Case { stiffness, load, contact, gap }, is_fraction, load: change_of_load, gap: change_of_gap }
+        if draws.one_in(4) {
+            // An obstacle that a force presses against some rows: one more dof, without stiffness.
+            let shares: Vec<f64> = (0..m).map(|_| f64::from(draws.between(0, 2))).collect();
+            let drive: f64 = -shares.iter().zip(&force).map(|(share, force)| share * force).sum::<f64>();
+            if drive > 0.0 {
+                let travel = f64::from(draws.between(-16, 16)) / 8.0;
+                gap.iter_mut().zip(&shares).for_each(|(gap, share)| *gap += share * travel);
+                contact.iter_mut().zip(&shares).for_each(|(row, &share)| row.push(share));
+                stiffness.iter_mut().for_each(|row| row.push(0.0));
+                stiffness.push(vec![0.0; n + 1]);
+                load.push(drive);
+                change_of_load.push(f64::from(draws.between(-8, 8)) / 4.0);
+            }
+        }
+        let case = Case { stiffness, load, contact, gap };
+        Kink { place, case, is_fraction, load: change_of_load, gap: change_of_gap }
     }
 
     /// The verdict of the program on the derivatives along the change, by tangent and adjoint, against the exact ones.
