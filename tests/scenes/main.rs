@@ -9,6 +9,7 @@ mod decks_coupled;
 mod decks_refused;
 mod decks_stepped;
 mod decks_tied;
+mod derivatives;
 mod dimensions;
 mod every_shape;
 mod inclined_frames;

@@ -26,6 +26,7 @@ pub mod program;
 pub mod random;
 pub mod rollers;
 pub mod scenes;
+pub mod slopes;
 pub mod space_scenes;
 pub mod triangles;
 pub mod verification;

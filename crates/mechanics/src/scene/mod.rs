@@ -15,12 +15,14 @@
 //! ```
 
 pub(crate) mod answers;
+pub(crate) mod derivatives;
 pub(crate) mod input;
 pub(crate) mod models;
 mod motions;
 
 pub use answers::answer::{Answer, Forces};
 pub use answers::segments::{ContactExtent, Segment};
+pub use derivatives::sensitivity::{ByParameter, Sensitivities, Sensitivity};
 pub use input::body::{Sides, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
 pub use input::deck::requests::{RequestedTable, Requests};
 pub(crate) use input::entry::refused;

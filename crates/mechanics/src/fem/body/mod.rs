@@ -7,6 +7,7 @@ mod point;
 mod region;
 
 pub use integration::Integration;
+pub(crate) use phase::PhaseNumber;
 pub use phase::{Phase, Temperature};
 pub(crate) use point::LocalPoint;
 pub use region::Region;

@@ -19,6 +19,19 @@ pub struct Phase {
     pub own: Option<OwnStress>,
 }
 
+/// A number of a phase.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PhaseNumber {
+    /// Young's modulus.
+    Young,
+    /// Poisson's ratio.
+    Poisson,
+    /// The temperature at the origin.
+    Temperature,
+    /// None: the derivative is zero.
+    Nothing,
+}
+
 /// The temperature above the stress-free one, linear in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Temperature {
@@ -101,6 +114,27 @@ impl Phase {
             }
         }
         Ok(Phase { own: Some(OwnStress { initial, ..self.own.unwrap_or(OwnStress::NONE) }), ..self })
+    }
+
+    /// The derivative of the phase: stresses of its strains are the derivatives of the stresses, at the same strain. `None` for a modulus
+    /// of an orthotropic material.
+    pub(super) fn derivative(&self, by: PhaseNumber) -> Option<Phase> {
+        let law = match by {
+            PhaseNumber::Young => self.material.by_young(&self.law)?,
+            PhaseNumber::Poisson => self.material.by_poisson(&self.law)?,
+            PhaseNumber::Temperature | PhaseNumber::Nothing => self.law.nothing(),
+        };
+        let own = self.own.filter(|_| by != PhaseNumber::Nothing).map(|own| match by {
+            PhaseNumber::Temperature => {
+                let temperature = Temperature { value: 1.0, gradient: [0.0; 3] };
+                OwnStress { initial: [0.0; 6], temperature, ..own }
+            }
+            _ => {
+                let per_degree = self.material.expansion().map_or([0.0; 6], |free| law.holding(&free));
+                OwnStress { initial: [0.0; 6], per_degree, ..own }
+            }
+        });
+        Some(Phase { law, own, ..self.clone() })
     }
 
     /// The stress at a place without any strain, if there is one.

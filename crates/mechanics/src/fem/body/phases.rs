@@ -1,6 +1,6 @@
 //! The phases of a body: the material of each element.
 
-use super::{ElasticBody, Phase, Region, Temperature};
+use super::{ElasticBody, Phase, PhaseNumber, Region, Temperature};
 use crate::error::Error;
 use crate::fem::geometry::Symmetric;
 use crate::fem::material::Material;
@@ -79,6 +79,13 @@ impl ElasticBody {
         let mut is_used = number.iter().map(Option::is_some);
         self.phases.retain(|_| is_used.next().unwrap_or_default());
         self.of_elements.iter_mut().for_each(|phase| *phase = number[*phase as usize].unwrap_or_default());
+    }
+
+    /// The body whose stresses are the derivatives of the stresses with respect to a number of each phase, at the same displacement: one
+    /// number for each phase. `None` for a modulus of an orthotropic material.
+    pub(crate) fn derivative(&self, by: &[PhaseNumber]) -> Option<Self> {
+        let phases = self.phases.iter().zip(by).map(|(phase, &by)| phase.derivative(by)).collect::<Option<_>>()?;
+        Some(ElasticBody { phases, ..self.clone() })
     }
 
     /// All phases, region by region; each has an element.

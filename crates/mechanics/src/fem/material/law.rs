@@ -73,6 +73,29 @@ impl Law {
         }
     }
 
+    /// The law without any stress.
+    pub(crate) fn nothing(&self) -> Self {
+        let stiffness = Stiffness::Isotropic(Lame { lambda: 0.0, mu: 0.0 });
+        match &self.stiffness {
+            Stiffness::Isotropic(_) => Law { stiffness, ..self.clone() },
+            // The axes of stresses without strain stay.
+            Stiffness::General(matrices) => {
+                let none = Matrices { stiffness: [[0.0; 6]; 6], ..(**matrices).clone() };
+                Law { stiffness: Stiffness::General(Box::new(none)), ..self.clone() }
+            }
+        }
+    }
+
+    /// The law of other constants.
+    pub(super) fn with_lame(&self, lame: Lame) -> Self {
+        Law { stiffness: Stiffness::Isotropic(lame), ..self.clone() }
+    }
+
+    /// The formulation in which the law holds.
+    pub(super) fn formulation(&self) -> &Formulation {
+        &self.formulation
+    }
+
     /// Returns `true` if the axes of the law are others at other places.
     pub fn turns(&self) -> bool {
         matches!(&self.stiffness, Stiffness::General(matrices) if matrices.around.is_some())

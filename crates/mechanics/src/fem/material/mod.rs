@@ -162,6 +162,34 @@ impl Material {
     }
 }
 
+/// The laws that are the derivatives of the law of an isotropic material; `None` for an orthotropic one.
+impl Material {
+    /// With respect to Young's modulus, to which all stresses are proportional.
+    pub(crate) fn by_young(&self, law: &Law) -> Option<Law> {
+        let Elasticity::Isotropic { young, .. } = self.elasticity else { return None };
+        let Stiffness::Isotropic(Lame { lambda, mu }) = law.stiffness else { return None };
+        Some(law.with_lame(Lame { lambda: lambda / young, mu: mu / young }))
+    }
+
+    /// With respect to Poisson's ratio.
+    pub(crate) fn by_poisson(&self, law: &Law) -> Option<Law> {
+        let Elasticity::Isotropic { young, poisson: nu } = self.elasticity else { return None };
+        let of_shear = -young / (1.0 + nu).powi(2) / 2.0;
+        let lame = match law.formulation() {
+            Formulation::Bar { .. } => Lame { lambda: 0.0, mu: 0.0 },
+            Formulation::PlaneStress { .. } => {
+                let square = ((1.0 - nu) * (1.0 + nu)).powi(2);
+                Lame { lambda: young * (1.0 + nu * nu) / square, mu: of_shear }
+            }
+            Formulation::PlaneStrain { .. } | Formulation::Axisymmetric | Formulation::Space => {
+                let square = ((1.0 + nu) * (1.0 - 2.0 * nu)).powi(2);
+                Lame { lambda: young * (1.0 + 2.0 * nu * nu) / square, mu: of_shear }
+            }
+        };
+        Some(law.with_lame(lame))
+    }
+}
+
 /// The Lamé constants in `formulation`.
 ///
 /// In plane stress lambda is E nu/(1 - nu^2), for the trace of the strains in the plane; in a bar lambda is 0 and mu is E/2, so that

@@ -168,6 +168,26 @@ impl Answer {
         &self.multiplier
     }
 
+    /// The values of all unknowns of the problem.
+    pub(crate) fn unknowns(&self) -> &[f64] {
+        &self.unknowns
+    }
+
+    /// The multiplier of each row, and then of each equation of a tie, in force.
+    pub(crate) fn all_multipliers(&self) -> Vec<f64> {
+        [self.multiplier.as_slice(), &self.of_ties].concat()
+    }
+
+    /// The answer with other multipliers of the rows: only its pressures are computed again.
+    ///
+    /// # Errors
+    /// [`qp::Error::Length`] if there is not one for each row.
+    pub(crate) fn with_multiplier(&self, multiplier: Vec<f64>) -> Result<Self, Error> {
+        let pressure = self.model.pressure(&multiplier)?;
+        let (forces, resultants) = (OnceLock::new(), OnceLock::new());
+        Ok(Answer { multiplier, pressure, forces, resultants, ..self.clone() })
+    }
+
     /// The closed rows.
     pub fn contact_set(&self) -> &ContactSet {
         &self.contact_set

@@ -119,6 +119,13 @@ impl Size {
 }
 
 impl Answer {
+    /// The estimated length of the contact with an obstacle along its boundary in the meshed part, in length, as in
+    /// [`ContactExtent::width`].
+    pub(crate) fn width_on(&self, obstacle: usize) -> f64 {
+        let Some(patch) = Patch::new(self, obstacle) else { return 0.0 };
+        patch.pieces().iter().map(|nodes| extent_of(&patch, nodes).0.estimate).sum()
+    }
+
     /// The contact segments of all obstacles, obstacle by obstacle, each in the order of its boundary.
     pub fn segments(&self) -> Vec<Segment> {
         (0..self.model().obstacles().len()).flat_map(|obstacle| self.segments_of(obstacle)).collect()

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::fem::geometry::dot;
 use crate::scene::Warning;
 use crate::scene::input::entry::{COORDINATE_ROUNDING, finite, point, wrong};
-use crate::scene::input::obstacle::ObstacleRow;
+use crate::scene::input::obstacle::{ObstacleRow, PlacedObstacle};
 use signorini_qp::SparseMatrix;
 
 /// One contact row: `normal . sum(share * u) <= gap` over its ends. Against a rigid obstacle its node is the only end.
@@ -69,20 +69,25 @@ pub(crate) struct Rows {
 /// If all dofs of a row are supported, no unknown can change it: it is left out if it is satisfied, and stays as an empty row with a
 /// negative gap if it is violated.
 pub(crate) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
+    build_with(parts, &parts.obstacles, scene_gap)
+}
+
+/// The same with other obstacles in their places.
+pub(crate) fn build_with(parts: &Parts, obstacles: &[PlacedObstacle], scene_gap: f64) -> Result<Rows, Error> {
     finite("gap", scene_gap)?;
     let (mesh, dofs) = (parts.body.mesh(), &parts.dofs);
     let dimension = parts.body.dimension();
     let rounding = COORDINATE_ROUNDING * mesh.size();
     let (mut rows, mut gap, mut entries, mut warnings) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for index in 0..parts.obstacles.len() {
-        let found = of_obstacle(parts, index, scene_gap)?;
+    for (index, obstacle) in obstacles.iter().enumerate() {
+        let found = of_obstacle(parts, (index, obstacle), scene_gap)?;
         let travel = parts.unknowns.travel(index);
         if found.is_empty() && travel.is_some() {
             let message = "no travel produces the force: on its way the obstacle meets no node of its boundary; check its place, its \
                            approach direction and its radius";
             return Err(wrong(format!("obstacles[{index}].force"), message));
         }
-        warnings.extend(parts.obstacles[index].warnings().iter().cloned());
+        warnings.extend(obstacle.warnings().iter().cloned());
         if found.is_empty() {
             warnings.push(Warning::NoContactRow { obstacle: index });
         }
@@ -101,7 +106,7 @@ pub(crate) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
                 free.extend(entries.into_iter().map(|(column, component)| (rows.len(), column, share * component)));
             }
             if let Some(travel) = travel {
-                free.push((rows.len(), travel, dot(row.normal, parts.obstacles[index].approach())));
+                free.push((rows.len(), travel, dot(row.normal, obstacle.approach())));
             }
             if !free.is_empty() || remaining < -rounding {
                 entries.extend(free);
@@ -111,13 +116,12 @@ pub(crate) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
         }
     }
     let contact = SparseMatrix::from_triplets(rows.len(), parts.unknowns.count(), &entries)?;
-    let across = (0..parts.obstacles.len()).flat_map(|index| across(parts, index, scene_gap)).collect();
+    let across = obstacles.iter().enumerate().flat_map(|one| across(one, scene_gap)).collect();
     Ok(Rows { rows, across, contact, gap, warnings })
 }
 
 /// The contact with an obstacle seen from the nodes of the other body.
-fn across(parts: &Parts, index: usize, scene_gap: f64) -> impl Iterator<Item = ContactRow> {
-    let obstacle = &parts.obstacles[index];
+fn across((index, obstacle): (usize, &PlacedObstacle), scene_gap: f64) -> impl Iterator<Item = ContactRow> {
     // Seen from there, the obstacle comes from the other side.
     let (shift, approach) = (obstacle.shift(scene_gap), obstacle.approach().map(|part| 0.0 - part));
     obstacle.across().iter().map(move |(node, facing)| {
@@ -128,9 +132,12 @@ fn across(parts: &Parts, index: usize, scene_gap: f64) -> impl Iterator<Item = C
 }
 
 /// The rows of an obstacle, in the order of its candidates.
-fn of_obstacle(parts: &Parts, index: usize, scene_gap: f64) -> Result<Vec<ContactRow>, Error> {
+fn of_obstacle(
+    parts: &Parts,
+    (index, obstacle): (usize, &PlacedObstacle),
+    scene_gap: f64,
+) -> Result<Vec<ContactRow>, Error> {
     let (nodes, dimension) = (parts.body.mesh().nodes(), parts.body.dimension());
-    let obstacle = &parts.obstacles[index];
     let mut rows = Vec::with_capacity(obstacle.candidates().len());
     let areas = parts.dofs.row_areas(obstacle.candidates());
     for (candidate, (node, tributary_area)) in areas.into_iter().enumerate() {

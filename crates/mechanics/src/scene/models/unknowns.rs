@@ -158,6 +158,16 @@ impl Unknowns {
         load
     }
 
+    /// The forces along the unknowns of forces along the free dofs, alone; none along travels.
+    pub fn force(&self, of_free: Vec<f64>) -> Vec<f64> {
+        let mut force = match &self.on_faces {
+            Some(on_faces) => on_faces.rows.mul(&of_free),
+            None => of_free,
+        };
+        force.resize(self.count(), 0.0);
+        force
+    }
+
     /// The same load with other forces on the pressed obstacles.
     pub fn pressed_by(&self, mut load: Vec<f64>, force: impl Fn(usize) -> f64) -> Vec<f64> {
         load.truncate(self.of_body());

@@ -145,6 +145,11 @@ impl PlacedObstacle {
         gap + self.gap
     }
 
+    /// The same obstacle shifted by `by` along its approach direction.
+    pub(crate) fn moved(&self, by: f64) -> Self {
+        PlacedObstacle { gap: self.gap + by, ..self.clone() }
+    }
+
     /// The force that presses it against its approach direction, in force, `>= 0`; `None` for an obstacle that stands
     /// still.
     pub fn force(&self) -> Option<f64> {

@@ -1,0 +1,208 @@
+//! The effect of a parameter on the data of a problem: changes of load, stiffness and rows, at an answer.
+
+use std::collections::HashMap;
+
+use super::differences::derivative;
+use super::parameter::{Kind, Parameter};
+use crate::error::Error;
+use crate::fem::ElasticBody;
+use crate::fem::assembly::internal_force;
+use crate::fem::body::PhaseNumber;
+use crate::fem::geometry::COORDINATES;
+use crate::scene::answers::answer::Answer;
+use crate::scene::input::obstacle::{PlacedObstacle, SideOrder};
+use crate::scene::input::schema::Scene;
+use crate::scene::models::rows::{self, Rows};
+use signorini_qp::{Change, SparseMatrix};
+
+/// What a parameter changes, per unit.
+#[derive(Clone, Debug)]
+pub(super) struct Effect {
+    /// On load, stiffness, rows and gaps.
+    pub change: Change,
+    /// The body whose stresses are the derivatives of the stresses, if a material or a temperature changes.
+    pub body: Option<ElasticBody>,
+    /// The changes of the normals of rows, [x, y, z]; none if they stay.
+    pub normals: HashMap<usize, [f64; 3]>,
+}
+
+/// The reason why an effect is not known, in one sentence.
+pub(super) type Why = String;
+
+impl Effect {
+    fn of(change: Change) -> Self {
+        Effect { change, body: None, normals: HashMap::new() }
+    }
+}
+
+/// The effect of a parameter of `scene` at an answer; `active` are the rows that may be closed.
+pub(super) fn effect(scene: &Scene, parameter: &Parameter, answer: &Answer, active: &[usize]) -> Result<Effect, Why> {
+    let parts = &answer.model().parts;
+    let of_load = |nodal: &[f64]| of_nodal_load(answer, nodal).map(Effect::of);
+    match &parameter.kind {
+        Kind::Gap | Kind::GapOf(_) | Kind::InShape(..) => of_rows(scene, parameter, answer, active),
+        Kind::Force(obstacle) => {
+            let mut change = unchanged(answer);
+            if let Some(travel) = parts.unknowns.travel(*obstacle) {
+                change.load[travel] = parts.share_of(*obstacle, 1.0);
+            }
+            Ok(Effect::of(change))
+        }
+        Kind::Load(index) => {
+            let mut nodal = vec![0.0; parts.body.nodal_dofs()];
+            scene.add_load(&parts.body, *index, &mut nodal).map_err(in_words)?;
+            of_load(&nodal)
+        }
+        Kind::InLoad(index, _) => {
+            let at = |by: f64| -> Result<Vec<f64>, Why> {
+                let mut nodal = vec![0.0; parts.body.nodal_dofs()];
+                let varied = scene.varied(parameter, by).map_err(in_words)?;
+                varied.add_load(&parts.body, *index, &mut nodal).map_err(in_words)?;
+                Ok(nodal)
+            };
+            let scale = if parameter.value == 0.0 { 1.0 } else { parameter.value.abs() };
+            let nodal = derivative(at, scale)?.ok_or_else(|| corner(parameter))?;
+            of_load(&nodal)
+        }
+        Kind::Young(_) | Kind::Poisson(_) | Kind::Temperature(_) => {
+            let body = derivative_of_body(scene, parameter, &parts.body)?;
+            let forces = internal_force(&body, answer.displacement()).map_err(in_words)?;
+            let nodal: Vec<f64> = forces.iter().map(|force| -force).collect();
+            Ok(Effect { body: Some(body), ..of_load(&nodal)? })
+        }
+        Kind::Places => Err("the places of all nodes are many parameters".to_string()),
+    }
+}
+
+/// No change of the problem of an answer.
+fn unchanged(answer: &Answer) -> Change {
+    let problem = answer.model().problem();
+    Change { load: vec![0.0; problem.dofs()], distance: vec![0.0; problem.inequalities() + problem.equality_rows()] }
+}
+
+/// The change by a load on the nodes (length `dim * n_nodes`, in force per unit).
+fn of_nodal_load(answer: &Answer, nodal: &[f64]) -> Result<Change, Why> {
+    let parts = &answer.model().parts;
+    let load = parts.unknowns.force(parts.dofs.restrict(nodal).map_err(in_words)?);
+    Ok(Change { load, ..unchanged(answer) })
+}
+
+/// The body of derivatives by a number of a material, or by a temperature.
+fn derivative_of_body(scene: &Scene, parameter: &Parameter, body: &ElasticBody) -> Result<ElasticBody, Why> {
+    let by = match parameter.kind {
+        Kind::Young(_) => PhaseNumber::Young,
+        Kind::Poisson(_) => PhaseNumber::Poisson,
+        _ => PhaseNumber::Temperature,
+    };
+    let none = || format!("`{}` belongs to no element", parameter.name);
+    let numbers: Vec<PhaseNumber> = match body.phases().len() {
+        1 => vec![by],
+        _ => {
+            // The phases that another value would change.
+            let by_value = if parameter.value == 0.0 { 1.0 } else { 1e-3 * parameter.value };
+            let varied = scene.varied(parameter, by_value).map_err(in_words)?;
+            let varied = varied.bodies().and_then(|bodies| varied.joined(bodies)).map_err(in_words)?;
+            if varied.phases().len() != body.phases().len() {
+                return Err(format!("`{}` joins or parts materials", parameter.name));
+            }
+            let pairs = body.phases().iter().zip(varied.phases());
+            pairs.map(|(own, other)| if own == other { PhaseNumber::Nothing } else { by }).collect()
+        }
+    };
+    if numbers.iter().all(|number| *number == PhaseNumber::Nothing) {
+        return Err(none());
+    }
+    body.derivative(&numbers).ok_or_else(|| format!("`{}` is not of an isotropic material", parameter.name))
+}
+
+/// The effect of a parameter of the obstacles: of the rows that may be closed.
+fn of_rows(scene: &Scene, parameter: &Parameter, answer: &Answer, active: &[usize]) -> Result<Effect, Why> {
+    let (model, dimension) = (answer.model(), answer.model().body().dimension());
+    let (parts, problem) = (&model.parts, model.problem());
+    let mut columns: Vec<(usize, usize)> = Vec::new();
+    for &row in active {
+        let ends = model.rows()[row].ends.iter().map(|end| end.0);
+        let of_axes = ends.flat_map(|node| (0..dimension).map(move |axis| (node, axis)));
+        let of_ends =
+            of_axes.flat_map(|(node, axis)| parts.unknowns.along(&parts.dofs, node, &COORDINATES[axis][..dimension]).0);
+        let travel = parts.unknowns.travel(model.rows()[row].obstacle);
+        let mut of_row: Vec<usize> = of_ends.map(|entry| entry.0).chain(travel).collect();
+        of_row.sort_unstable();
+        of_row.dedup();
+        columns.extend(of_row.into_iter().map(|column| (row, column)));
+    }
+    let at = |by: f64| -> Result<Vec<f64>, Why> {
+        let (obstacles, gap) = obstacles(scene, parameter, answer, by)?;
+        let Rows { rows, contact, gap, .. } = rows::build_with(parts, &obstacles, gap).map_err(in_words)?;
+        let of_node: HashMap<(usize, usize), usize> =
+            rows.iter().enumerate().map(|(index, row)| ((row.obstacle, row.node), index)).collect();
+        let entries: HashMap<(usize, usize), f64> =
+            contact.triplets().map(|(row, column, value)| ((row, column), value)).collect();
+        let mut values = Vec::with_capacity(4 * active.len() + columns.len());
+        let mut place = HashMap::new();
+        for &row in active {
+            let own = &model.rows()[row];
+            let Some(&found) = of_node.get(&(own.obstacle, own.node)) else {
+                return Err(format!("the obstacle ends at node {}, which presses on it", own.node));
+            };
+            place.insert(row, found);
+            values.push(gap[found]);
+            values.extend(rows[found].normal);
+        }
+        values.extend(columns.iter().map(|(row, column)| entries.get(&(place[row], *column)).copied().unwrap_or(0.0)));
+        Ok(values)
+    };
+    let scale = match parameter.unit.is_empty() {
+        // A direction or a slope.
+        true if matches!(parameter.kind, Kind::InShape(..)) => parameter.value.abs().max(1.0),
+        _ => parameter.value.abs().max(model.mesh().size()),
+    };
+    let found = derivative(at, scale)?.ok_or_else(|| corner(parameter))?;
+    let (of_rows, of_entries) = found.split_at(4 * active.len());
+    let mut change = unchanged(answer);
+    let mut normals = HashMap::new();
+    for (&row, values) in active.iter().zip(of_rows.chunks(4)) {
+        change.distance[row] = values[0];
+        if values[1..] != [0.0; 3] {
+            normals.insert(row, [values[1], values[2], values[3]]);
+        }
+    }
+    let entries: Vec<(usize, usize, f64)> =
+        columns.iter().zip(of_entries).map(|(&(row, column), &value)| (row, column, value)).collect();
+    let rows = SparseMatrix::from_triplets(change.distance.len(), problem.dofs(), &entries).map_err(in_words)?;
+    let (unknowns, multiplier) = (answer.unknowns(), answer.all_multipliers());
+    let change = change.with_rows(&rows, unknowns, &multiplier).map_err(in_words)?;
+    Ok(Effect { normals, ..Effect::of(change) })
+}
+
+/// The obstacles, and the gap of the scene, with a parameter changed.
+fn obstacles(
+    scene: &Scene,
+    parameter: &Parameter,
+    answer: &Answer,
+    by: f64,
+) -> Result<(Vec<PlacedObstacle>, f64), Why> {
+    let parts = &answer.model().parts;
+    let (mut obstacles, gap) = (parts.obstacles.clone(), answer.model().gap());
+    match &parameter.kind {
+        Kind::GapOf(index) => obstacles[*index] = obstacles[*index].moved(by),
+        Kind::InShape(index, _) => {
+            let varied = scene.varied(parameter, by).map_err(in_words)?;
+            let order = SideOrder::of(&parts.body, std::iter::empty());
+            let site = (&parts.body, &parts.dofs, &order);
+            let path = format!("obstacles[{index}]");
+            let spec = &varied.obstacles[*index];
+            obstacles[*index] = PlacedObstacle::of_scene(spec, &path, site, varied.files()).map_err(in_words)?;
+        }
+        _ => return Ok((obstacles, gap + by)),
+    }
+    Ok((obstacles, gap))
+}
+
+fn corner(parameter: &Parameter) -> Why {
+    format!("`{}` moves a node over a corner of the obstacle, or over an edge of its facets", parameter.name)
+}
+
+pub(super) fn in_words(error: impl Into<Error>) -> Why {
+    error.into().to_string()
+}

@@ -1,0 +1,437 @@
+//! Outputs of an answer, with their derivatives with respect to displacement and multipliers.
+
+use std::collections::HashMap;
+
+use super::effect::{Effect, Why, in_words};
+use crate::error::{Error, nearly};
+use crate::fem::ElasticBody;
+use crate::fem::assembly::internal_force;
+use crate::fem::element::TabulatedPoint;
+use crate::fem::geometry::{Symmetric, cross, distance, dot};
+use crate::scene::answers::answer::Answer;
+use crate::scene::input::entry::wrong;
+use crate::scene::models::model::Model;
+use crate::scene::models::rows::ContactRow;
+
+/// Values that are this close, relative, tie for the largest: they differ by rounding.
+const TIE: f64 = 1e-9;
+
+/// The step of a multiplier for the derivative of a width, relative to the largest.
+const STEP_OF_FORCE: f64 = 1e-4;
+
+/// Tolerance of a place on an element, in its reference coordinates.
+const ON_ELEMENT: f64 = 1e-9;
+
+/// Components of a stress by name; the last is the equivalent stress.
+const COMPONENTS: [&str; 7] = ["xx", "yy", "zz", "xy", "yz", "zx", "von-mises"];
+
+/// An output of an answer.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Output {
+    /// As `obstacles[0].force`.
+    pub name: String,
+    kind: Kind,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Kind {
+    /// The sum of the contact forces, on one obstacle or on all, of the whole body.
+    Force(Option<usize>),
+    /// The moment of the contact forces of an obstacle about an axis through the origin.
+    Moment(usize, usize),
+    Travel(usize),
+    PeakPressure,
+    /// At the candidate nearest to a place.
+    PressureAt([f64; 3]),
+    Width,
+    LargestDisplacement,
+    StrainEnergy,
+    /// A component of the stress of the element at a place.
+    StressAt([f64; 3], usize),
+}
+
+/// A smooth branch of an output: the output itself, or one of several values that tie for the largest.
+#[derive(Clone, Debug)]
+pub(super) struct Branch {
+    pub value: f64,
+    /// The derivative with respect to the unknowns of the problem.
+    pub by_displacement: Vec<f64>,
+    /// The derivative with respect to the multipliers of the rows, and of ties.
+    pub by_multiplier: Vec<f64>,
+    /// What it is of, in words, for ties: `node 7`.
+    pub of: String,
+    pub direct: Direct,
+}
+
+/// The dependence of an output on the data of the scene, at fixed displacement and multipliers.
+#[derive(Clone, Debug)]
+pub(super) enum Direct {
+    None,
+    /// Of a moment, on the normals of its rows.
+    Moment(usize, usize),
+    /// Of the pressure of a row, on its area.
+    Pressure(usize),
+    /// Of the strain energy, on the stiffness.
+    Energy,
+    /// Of a component of the stress at a point of an element, on its material.
+    Stress {
+        element: usize,
+        at: [f64; 3],
+        component: usize,
+    },
+    /// Of a width, on the places of nodes.
+    Width,
+}
+
+impl Output {
+    /// The outputs of a model by name; those at a place are named once, with a place for the coordinates.
+    pub fn names(model: &Model) -> Vec<String> {
+        let dimension = model.body().dimension();
+        let place = ["X", "X,Y", "X,Y,Z"][dimension - 1];
+        let mut names: Vec<String> = Vec::new();
+        if !model.obstacles().is_empty() {
+            names.extend(["force", "peak-pressure"].map(String::from));
+            names.push(format!("pressure@{place}"));
+            names.extend((dimension == 2).then(|| "width".to_string()));
+        }
+        for (index, _) in model.obstacles().iter().enumerate() {
+            names.push(format!("obstacles[{index}].force"));
+            match dimension {
+                2 if !model.body().formulation().is_axisymmetric() => names.push(format!("obstacles[{index}].moment")),
+                3 => names.extend((0..3).map(|axis| format!("obstacles[{index}].moment[{axis}]"))),
+                _ => {}
+            }
+            names.extend(model.is_pressed(index).then(|| format!("obstacles[{index}].travel")));
+        }
+        names.extend(["largest-displacement", "strain-energy"].map(String::from));
+        names.push(format!("stress@{place}:xx"));
+        names
+    }
+
+    /// The output of this name.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] with the outputs that there are.
+    pub fn of(name: &str, model: &Model) -> Result<Self, Error> {
+        let names = Self::names(model);
+        let kind = match name.split_once('@') {
+            Some((what, place)) => Self::at_place(what, place, model, name)?,
+            None if names.iter().any(|known| known == name) => Self::plain(name),
+            None => None,
+        };
+        kind.map(|kind| Output { name: name.to_string(), kind }).ok_or_else(|| {
+            let listed: Vec<String> = names.iter().map(|known| format!("`{known}`")).collect();
+            let meant = nearly(name, names.iter().map(String::as_str));
+            let components = COMPONENTS.join(", ");
+            let message = format!(
+                "there is no output `{name}`; there are {}, with the components {components} of a stress{meant}",
+                listed.join(", ")
+            );
+            wrong("--of", message)
+        })
+    }
+
+    fn plain(name: &str) -> Option<Kind> {
+        Some(match name {
+            "force" => Kind::Force(None),
+            "peak-pressure" => Kind::PeakPressure,
+            "width" => Kind::Width,
+            "largest-displacement" => Kind::LargestDisplacement,
+            "strain-energy" => Kind::StrainEnergy,
+            _ => {
+                let (index, what) = name.strip_prefix("obstacles[")?.split_once("].")?;
+                let index = index.parse().ok()?;
+                match what {
+                    "force" => Kind::Force(Some(index)),
+                    "travel" => Kind::Travel(index),
+                    "moment" => Kind::Moment(index, 2),
+                    axis => Kind::Moment(index, axis.strip_prefix("moment[")?.strip_suffix(']')?.parse().ok()?),
+                }
+            }
+        })
+    }
+
+    fn at_place(what: &str, place: &str, model: &Model, name: &str) -> Result<Option<Kind>, Error> {
+        let (place, component) = match place.split_once(':') {
+            Some((place, component)) => (place, Some(component)),
+            None => (place, None),
+        };
+        let numbers: Result<Vec<f64>, _> = place.split(',').map(|part| part.trim().parse::<f64>()).collect();
+        let dimension = model.body().dimension();
+        let at = numbers.ok().filter(|numbers| numbers.len() == dimension && numbers.iter().all(|x| x.is_finite()));
+        let Some(at) = at else {
+            return Err(wrong("--of", format!("the place of `{name}` needs {dimension} numbers, as `pressure@0.5,1`")));
+        };
+        let at = [0, 1, 2].map(|axis| at.get(axis).copied().unwrap_or(0.0));
+        Ok(match (what, component) {
+            ("pressure", None) if !model.obstacles().is_empty() => Some(Kind::PressureAt(at)),
+            ("stress", Some(component)) => {
+                COMPONENTS.iter().position(|known| *known == component).map(|component| Kind::StressAt(at, component))
+            }
+            _ => None,
+        })
+    }
+
+    /// The unit of the output.
+    pub fn unit(&self, model: &Model) -> String {
+        let units = model.units();
+        let product = || match (units.force.as_str(), units.length.as_str()) {
+            ("", "") => String::new(),
+            (force, length) => format!("{force} {length}"),
+        };
+        match self.kind {
+            Kind::Force(_) => units.force.clone(),
+            Kind::Moment(..) | Kind::StrainEnergy => product(),
+            Kind::Travel(_) | Kind::Width | Kind::LargestDisplacement => units.length.clone(),
+            Kind::PeakPressure | Kind::PressureAt(_) | Kind::StressAt(..) => units.pressure(),
+        }
+    }
+
+    /// The branches of the output at an answer; several if values tie for the largest.
+    ///
+    /// # Errors
+    /// A sentence if the output has no derivative here.
+    pub(super) fn branches(&self, answer: &Answer) -> Result<Vec<Branch>, Why> {
+        let model = answer.model();
+        let problem = model.problem();
+        let lambda = answer.multiplier();
+        let blank = || Branch {
+            value: 0.0,
+            by_displacement: vec![0.0; problem.dofs()],
+            by_multiplier: vec![0.0; problem.inequalities() + problem.equality_rows()],
+            of: String::new(),
+            direct: Direct::None,
+        };
+        let of_rows = |coefficient: &dyn Fn(&ContactRow) -> f64, direct: Direct| {
+            let mut branch = Branch { direct, ..blank() };
+            for (row, own) in model.rows().iter().enumerate() {
+                branch.by_multiplier[row] = coefficient(own);
+                branch.value += branch.by_multiplier[row] * lambda[row];
+            }
+            vec![branch]
+        };
+        Ok(match self.kind {
+            Kind::Force(None) => of_rows(&|_| -model.parts_of_whole(), Direct::None),
+            Kind::Force(Some(obstacle)) => {
+                let parts = model.parts.parts_of_obstacle(obstacle);
+                of_rows(&|row| if row.obstacle == obstacle { -parts } else { 0.0 }, Direct::None)
+            }
+            Kind::Moment(..) if model.parts_of_whole() > 1.0 => {
+                return Err("a moment on a part with planes of symmetry is not that of the whole".to_string());
+            }
+            Kind::Moment(obstacle, axis) => {
+                let arm = |row: &ContactRow| cross(model.place(row.node), row.normal)[axis];
+                let coefficient = |row: &ContactRow| if row.obstacle == obstacle { arm(row) } else { 0.0 };
+                of_rows(&coefficient, Direct::Moment(obstacle, axis))
+            }
+            Kind::Travel(obstacle) => {
+                let travel = model.parts.unknowns.travel(obstacle).ok_or("no force presses the obstacle")?;
+                let mut branch = Branch { value: answer.unknowns()[travel], ..blank() };
+                branch.by_displacement[travel] = 1.0;
+                vec![branch]
+            }
+            Kind::PeakPressure => {
+                let rows: Vec<usize> = (0..lambda.len()).filter(|&row| has_own_pressure(answer, row)).collect();
+                let pressure = |row: usize| answer.pressure()[row];
+                let largest = rows.iter().fold(0.0, |largest: f64, &row| largest.max(pressure(row)));
+                if largest == 0.0 {
+                    return Err("nothing presses".to_string());
+                }
+                let tied = rows.into_iter().filter(|&row| pressure(row) >= (1.0 - TIE) * largest);
+                tied.map(|row| of_pressure(answer, row, blank())).collect()
+            }
+            Kind::PressureAt(at) => {
+                let away = |row: &usize| distance(model.mesh().nodes()[model.rows()[*row].node], at);
+                let rows = (0..lambda.len()).filter(|&row| has_own_pressure(answer, row));
+                let nearest = rows.min_by(|a, b| away(a).total_cmp(&away(b))).ok_or("there are no candidates")?;
+                vec![of_pressure(answer, nearest, blank())]
+            }
+            Kind::Width => vec![width(answer, blank())?],
+            Kind::LargestDisplacement => {
+                let values = answer.displacement();
+                let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+                if largest == 0.0 {
+                    return Err("nothing moves".to_string());
+                }
+                let tied = (0..values.len()).filter(|&dof| values[dof].abs() >= (1.0 - TIE) * largest);
+                let of_dof = |dof: usize| {
+                    let mut nodal = vec![0.0; values.len()];
+                    nodal[dof] = values[dof].signum();
+                    let of = format!("node {}", dof / model.body().dimension());
+                    Ok(Branch { value: values[dof].abs(), by_displacement: of_nodal(model, &nodal)?, of, ..blank() })
+                };
+                tied.map(of_dof).collect::<Result<_, Why>>()?
+            }
+            Kind::StrainEnergy => {
+                if model.body().has_own_stress() {
+                    return Err(
+                        "the strain energy of a body with temperatures or initial stresses has no derivative here"
+                            .to_string(),
+                    );
+                }
+                let parts = model.parts_of_whole();
+                let forces = internal_force(model.body(), answer.displacement()).map_err(in_words)?;
+                let value = 0.5 * parts * forces.iter().zip(answer.displacement()).map(|(f, u)| f * u).sum::<f64>();
+                let by_displacement = of_nodal(model, &forces)?.iter().map(|force| parts * force).collect();
+                vec![Branch { value, by_displacement, direct: Direct::Energy, ..blank() }]
+            }
+            Kind::StressAt(place, component) => vec![stress(answer, place, component, blank())?],
+        })
+    }
+}
+
+/// Returns `true` if the pressure of a row is its own force over its own area.
+fn has_own_pressure(answer: &Answer, row: usize) -> bool {
+    let own = -answer.multiplier()[row] / answer.model().rows()[row].projected_area();
+    (own - answer.pressure()[row]).abs() <= TIE * own.abs()
+}
+
+fn of_pressure(answer: &Answer, row: usize, blank: Branch) -> Branch {
+    let own = &answer.model().rows()[row];
+    let mut branch = Branch { value: answer.pressure()[row], direct: Direct::Pressure(row), ..blank };
+    branch.by_multiplier[row] = -1.0 / own.projected_area();
+    Branch { of: format!("node {}", own.node), ..branch }
+}
+
+/// The estimated width of the contact: it depends on the forces of the rows next to its edges.
+fn width(answer: &Answer, blank: Branch) -> Result<Branch, Why> {
+    let model = answer.model();
+    let parts = model.parts_of_whole();
+    let of = |answer: &Answer| parts * (0..model.obstacles().len()).map(|index| answer.width_on(index)).sum::<f64>();
+    let lambda = answer.multiplier();
+    let step = STEP_OF_FORCE * lambda.iter().fold(0.0, |largest: f64, force| largest.max(force.abs()));
+    let mut branch = Branch { value: of(answer), direct: Direct::Width, ..blank };
+    if step == 0.0 {
+        return Err("nothing presses".to_string());
+    }
+    for row in answer.contact_set().iter() {
+        let at = |by: f64| {
+            let mut varied = lambda.to_vec();
+            varied[row] += by;
+            answer.with_multiplier(varied).map(|answer| of(&answer)).map_err(in_words)
+        };
+        // A row that is not at an edge leaves the width as it is.
+        let (near, far) = (at(step)? - at(-step)?, at(2.0 * step)? - at(-2.0 * step)?);
+        branch.by_multiplier[row] = (8.0 * near - far) / (12.0 * step);
+    }
+    Ok(branch)
+}
+
+/// The stress of the element at a place.
+fn stress(answer: &Answer, place: [f64; 3], component: usize, blank: Branch) -> Result<Branch, Why> {
+    let (model, body) = (answer.model(), answer.model().body());
+    let found = body.elements().enumerate().find_map(|(index, element)| {
+        let at = element.cell.weights_at(place, ON_ELEMENT).map(|_| element.cell.reference_coordinates(place));
+        at.map(|at| (index, at))
+    });
+    let (element, at) = found.ok_or_else(|| "the place lies in no element".to_string())?;
+    let own = stress_in(body, answer.displacement(), element, at).ok_or("the place lies in no element")?;
+    let dimension = body.dimension();
+    let mut unit = vec![0.0; body.nodal_dofs()];
+    let none = stress_in(body, &unit, element, at).unwrap_or_default();
+    let mut nodal = vec![0.0; body.nodal_dofs()];
+    for &node in body.mesh().element(element) {
+        for dof in dimension * node..dimension * (node + 1) {
+            unit[dof] = 1.0;
+            let moved = stress_in(body, &unit, element, at).unwrap_or_default();
+            unit[dof] = 0.0;
+            let by = [0, 1, 2, 3, 4, 5].map(|entry| moved[entry] - none[entry]);
+            nodal[dof] = by_component(&own, &by, component);
+        }
+    }
+    let direct = Direct::Stress { element, at, component };
+    Ok(Branch { value: of_component(&own, component), by_displacement: of_nodal(model, &nodal)?, direct, ..blank })
+}
+
+/// The stress of an element at reference coordinates.
+fn stress_in(body: &ElasticBody, displacement: &[f64], element: usize, at: [f64; 3]) -> Option<Symmetric> {
+    let tables = body.tabulated();
+    let element = body.element(element)?;
+    let point = TabulatedPoint::new(element.kind.reference(), at, 0.0);
+    Some(body.strained(&tables, displacement, &element).at(&point).1)
+}
+
+/// A component of a stress, or its equivalent stress.
+fn of_component(stress: &Symmetric, component: usize) -> f64 {
+    match stress.get(component) {
+        Some(&value) => value,
+        None => equivalent(stress),
+    }
+}
+
+/// The derivative of a component along a change of the stress.
+fn by_component(stress: &Symmetric, change: &Symmetric, component: usize) -> f64 {
+    if let Some(&value) = change.get(component) {
+        return value;
+    }
+    let mean = (stress[0] + stress[1] + stress[2]) / 3.0;
+    let normal: f64 = (0..3).map(|axis| (stress[axis] - mean) * change[axis]).sum();
+    let shear: f64 = (3..6).map(|entry| 2.0 * stress[entry] * change[entry]).sum();
+    let size = equivalent(stress);
+    if size > 0.0 { 1.5 * (normal + shear) / size } else { 0.0 }
+}
+
+/// The equivalent stress of von Mises.
+fn equivalent([xx, yy, zz, xy, yz, zx]: &Symmetric) -> f64 {
+    let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
+    (0.5 * normal + 3.0 * (xy * xy + yz * yz + zx * zx)).sqrt()
+}
+
+/// The derivative with respect to the unknowns, from that with respect to the displacements of the nodes.
+fn of_nodal(model: &Model, nodal: &[f64]) -> Result<Vec<f64>, Why> {
+    let parts = &model.parts;
+    Ok(parts.unknowns.force(parts.dofs.restrict(nodal).map_err(in_words)?))
+}
+
+impl Branch {
+    /// The derivative at fixed displacement and multipliers.
+    pub(super) fn direct(&self, answer: &Answer, effect: &Effect) -> Result<f64, Why> {
+        let (model, lambda) = (answer.model(), answer.multiplier());
+        Ok(match &self.direct {
+            Direct::None | Direct::Width => 0.0,
+            Direct::Moment(obstacle, axis) => {
+                let of_row = |(&row, normal): (&usize, &[f64; 3])| {
+                    let own = &model.rows()[row];
+                    if own.obstacle == *obstacle {
+                        lambda[row] * cross(model.place(own.node), *normal)[*axis]
+                    } else {
+                        0.0
+                    }
+                };
+                sorted(&effect.normals).iter().map(|(row, normal)| of_row((row, normal))).sum()
+            }
+            Direct::Pressure(row) => match effect.normals.get(row) {
+                Some(normal) => {
+                    let own = &model.rows()[*row];
+                    let facing = dot(own.normal, own.outward);
+                    let is_part = facing > 0.0 && facing < 1.0;
+                    if is_part { -self.value / facing * dot(*normal, own.outward) } else { 0.0 }
+                }
+                None => 0.0,
+            },
+            Direct::Energy => match &effect.body {
+                Some(body) => {
+                    let forces = internal_force(body, answer.displacement()).map_err(in_words)?;
+                    let work: f64 = forces.iter().zip(answer.displacement()).map(|(f, u)| f * u).sum();
+                    0.5 * model.parts_of_whole() * work
+                }
+                None => 0.0,
+            },
+            Direct::Stress { element, at, component } => match &effect.body {
+                Some(body) => {
+                    let own = stress_in(model.body(), answer.displacement(), *element, *at).unwrap_or_default();
+                    let change = stress_in(body, answer.displacement(), *element, *at).unwrap_or_default();
+                    by_component(&own, &change, *component)
+                }
+                None => 0.0,
+            },
+        })
+    }
+}
+
+/// In the order of the rows, so that sums are the same in every run.
+fn sorted(normals: &HashMap<usize, [f64; 3]>) -> Vec<(usize, [f64; 3])> {
+    let mut sorted: Vec<(usize, [f64; 3])> = normals.iter().map(|(&row, &normal)| (row, normal)).collect();
+    sorted.sort_unstable_by_key(|entry| entry.0);
+    sorted
+}

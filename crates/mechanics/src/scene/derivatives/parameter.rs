@@ -1,0 +1,253 @@
+//! The parameters of a scene: its numbers by name.
+
+use serde_json::Value;
+
+use crate::error::{Error, nearly};
+use crate::scene::input::entry::wrong;
+use crate::scene::input::schema::Scene;
+
+/// Names that an error lists, at most.
+const MOST_LISTED: usize = 40;
+
+/// Numbers of a shape that are no lengths: directions and slopes.
+const NO_LENGTHS: [&str; 4] = ["normal", "axis", "slope", "angle"];
+
+/// A number of a scene, or the places of all nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Parameter {
+    /// As `obstacles[0].radius`.
+    pub name: String,
+    pub kind: Kind,
+    /// Its value; zero for the places of the nodes.
+    pub value: f64,
+    /// Its unit, empty without one.
+    pub unit: String,
+}
+
+/// The part of a scene that a parameter is a number of.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Kind {
+    /// The gap of the scene.
+    Gap,
+    /// The gap of an obstacle.
+    GapOf(usize),
+    /// The force on an obstacle.
+    Force(usize),
+    /// A factor of a load, which is one.
+    Load(usize),
+    /// A number of a load, by its place in the text of the load.
+    InLoad(usize, String),
+    /// A number of the shape of an obstacle, by its place in the text of the shape.
+    InShape(usize, String),
+    /// Young's modulus of a material, by the place of the material in the text of the scene.
+    Young(String),
+    /// Poisson's ratio.
+    Poisson(String),
+    /// The temperature at the origin of an entry, by the place of the entry.
+    Temperature(String),
+    /// The coordinates of all nodes.
+    Places,
+}
+
+impl Scene {
+    /// The names of all numbers of the scene by which outputs have derivatives, and `nodes`.
+    pub fn parameters(&self) -> Vec<String> {
+        self.all_parameters().into_iter().map(|parameter| parameter.name).collect()
+    }
+
+    /// The same scene with another value of the parameter of this name; `loads[0]` is a factor of that load.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a name that does not exist, with those that do, and for a value that the scene does not allow.
+    pub fn with_parameter(&self, name: &str, value: f64) -> Result<Scene, Error> {
+        let parameter = self.parameter(name)?;
+        self.varied(&parameter, value - parameter.value)
+    }
+
+    /// The parameter of this name.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] with the names that there are.
+    pub(crate) fn parameter(&self, name: &str) -> Result<Parameter, Error> {
+        let all = self.all_parameters();
+        if let Some(found) = all.iter().find(|parameter| parameter.name == name) {
+            return Ok(found.clone());
+        }
+        let names = || all.iter().map(|parameter| parameter.name.as_str());
+        let listed: Vec<String> = names().take(MOST_LISTED).map(|name| format!("`{name}`")).collect();
+        let more =
+            if all.len() > MOST_LISTED { format!(" and {} more", all.len() - MOST_LISTED) } else { String::new() };
+        let meant = nearly(name, names());
+        Err(wrong("--to", format!("there is no parameter `{name}`; there are {}{more}{meant}", listed.join(", "))))
+    }
+
+    pub(crate) fn all_parameters(&self) -> Vec<Parameter> {
+        let (length, force) = (self.units.length.clone(), self.units.force.clone());
+        let (pressure, none) = (self.units.pressure(), String::new);
+        let mut all = Vec::new();
+        let mut add =
+            |name: String, kind: Kind, value: f64, unit: String| all.push(Parameter { name, kind, value, unit });
+        if !self.obstacles.is_empty() {
+            add("gap".into(), Kind::Gap, self.gap, length.clone());
+        }
+        for (index, obstacle) in self.obstacles.iter().enumerate() {
+            let named = |field: &str| format!("obstacles[{index}].{field}");
+            match obstacle.force {
+                Some(value) => add(named("force"), Kind::Force(index), value, force.clone()),
+                None => add(named("gap"), Kind::GapOf(index), obstacle.gap.unwrap_or(0.0), length.clone()),
+            }
+            if obstacle.shape.shape().other_boundary().is_some() {
+                continue;
+            }
+            for (pointer, value) in numbers_of(&obstacle.shape) {
+                let is_length = !NO_LENGTHS.iter().any(|word| pointer.split('/').any(|part| part == *word));
+                let unit = if is_length { length.clone() } else { none() };
+                add(named(&in_words(&pointer)), Kind::InShape(index, pointer), value, unit);
+            }
+        }
+        for (index, load) in self.loads.iter().enumerate() {
+            add(format!("loads[{index}]"), Kind::Load(index), 1.0, none());
+            for (pointer, value) in numbers_of(load) {
+                let name = in_words(&pointer);
+                let name = if name.starts_with('[') || name.is_empty() { name } else { format!(".{name}") };
+                // A load of one number is that number.
+                let name = if name.is_empty() { ".value".to_string() } else { name };
+                let unit = match pointer.split('/').nth(1) {
+                    Some("traction" | "pressure") if pointer.contains("/value") => pressure.clone(),
+                    Some("force") if pointer.contains("/value") => force.clone(),
+                    Some("nodal-forces") => force.clone(),
+                    _ => none(),
+                };
+                add(format!("loads[{index}]{name}"), Kind::InLoad(index, pointer), value, unit);
+            }
+        }
+        let text = serde_json::to_value(self).unwrap_or_default();
+        let mut materials = vec![(String::new(), "/material".to_string())];
+        let mut temperatures = Vec::new();
+        let bodies = std::iter::once((String::new(), String::new())).chain(
+            (0..self.further_bodies.len())
+                .map(|body| (format!("further-bodies[{body}]."), format!("/further-bodies/{body}"))),
+        );
+        for (name, place) in bodies {
+            if !name.is_empty() {
+                materials.push((name.clone(), format!("{place}/material")));
+            }
+            let count =
+                |key: &str| text.pointer(&format!("{place}/{key}")).and_then(Value::as_array).map_or(0, Vec::len);
+            materials.extend(
+                (0..count("materials"))
+                    .map(|part| (format!("{name}materials[{part}]."), format!("{place}/materials/{part}/material"))),
+            );
+            temperatures.extend(
+                (0..count("temperature"))
+                    .map(|entry| (format!("{name}temperature[{entry}]"), format!("{place}/temperature/{entry}"))),
+            );
+        }
+        let number = |place: &str, key: &str| text.pointer(&format!("{place}/{key}")).and_then(Value::as_f64);
+        for (name, place) in materials {
+            if let Some(value) = number(&place, "young") {
+                add(format!("{name}young"), Kind::Young(place.clone()), value, pressure.clone());
+            }
+            if let Some(value) = number(&place, "poisson") {
+                add(format!("{name}poisson"), Kind::Poisson(place), value, none());
+            }
+        }
+        for (name, place) in temperatures {
+            if let Some(value) = number(&place, "value") {
+                add(name, Kind::Temperature(place), value, "degree".into());
+            }
+        }
+        add("nodes".into(), Kind::Places, 0.0, length);
+        all
+    }
+
+    /// The scene with a parameter of its shapes, loads, materials or temperatures changed by `by`.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a value that the scene does not allow.
+    pub(crate) fn varied(&self, parameter: &Parameter, by: f64) -> Result<Scene, Error> {
+        let mut varied = self.clone();
+        let value = parameter.value + by;
+        let refused = |error: serde_json::Error| wrong(parameter.name.as_str(), error.to_string());
+        match &parameter.kind {
+            Kind::Gap => varied.gap = value,
+            Kind::GapOf(index) => varied.obstacles[*index].gap = Some(value),
+            Kind::Force(index) => varied.obstacles[*index].force = Some(value),
+            Kind::InLoad(index, pointer) => {
+                varied.loads[*index] = with_number(&varied.loads[*index], pointer, value).map_err(refused)?;
+            }
+            Kind::InShape(index, pointer) => {
+                let shape = &varied.obstacles[*index].shape;
+                varied.obstacles[*index].shape = with_number(shape, pointer, value).map_err(refused)?;
+            }
+            Kind::Young(place) | Kind::Poisson(place) | Kind::Temperature(place) => {
+                let key = match parameter.kind {
+                    Kind::Young(_) => "young",
+                    Kind::Poisson(_) => "poisson",
+                    _ => "value",
+                };
+                let changed: Scene = with_number(self, &format!("{place}/{key}"), value).map_err(refused)?;
+                let (folder, reads_outside) = (self.folder.clone(), self.reads_outside);
+                varied = Scene { folder, reads_outside, noted: self.noted.clone(), ..changed };
+            }
+            Kind::Load(index) => {
+                for (pointer, number) in numbers_of(&self.loads[*index]) {
+                    let number = match pointer.split('/').nth(1) {
+                        Some("centrifugal") if pointer.ends_with("/omega") => number * value.max(0.0).sqrt(),
+                        Some("body-force" | "gravity" | "nodal-forces") => number * value,
+                        _ if pointer.contains("/value") => number * value,
+                        _ => continue,
+                    };
+                    varied.loads[*index] = with_number(&varied.loads[*index], &pointer, number).map_err(refused)?;
+                }
+            }
+            Kind::Places => return Err(wrong("nodes", "the places of all nodes are no single number")),
+        }
+        Ok(varied)
+    }
+}
+
+/// All numbers of a part of a scene, with their places in its text.
+fn numbers_of(part: &impl serde::Serialize) -> Vec<(String, f64)> {
+    fn collect(value: &Value, place: String, found: &mut Vec<(String, f64)>) {
+        match value {
+            Value::Number(number) => found.extend(number.as_f64().map(|number| (place, number))),
+            Value::Array(entries) => {
+                entries.iter().enumerate().for_each(|(index, entry)| collect(entry, format!("{place}/{index}"), found));
+            }
+            Value::Object(fields) => {
+                fields.iter().for_each(|(key, field)| collect(field, format!("{place}/{key}"), found));
+            }
+            Value::Null | Value::Bool(_) | Value::String(_) => {}
+        }
+    }
+    let mut found = Vec::new();
+    collect(&serde_json::to_value(part).unwrap_or_default(), String::new(), &mut found);
+    found
+}
+
+/// The name of a number by its place, without the kind of its part: `apex[0]` of `/circle/apex/0`.
+fn in_words(place: &str) -> String {
+    let mut name = String::new();
+    for part in place.split('/').skip(2) {
+        match part.parse::<usize>() {
+            Ok(index) => name.push_str(&format!("[{index}]")),
+            Err(_) if name.is_empty() => name.push_str(part),
+            Err(_) => name.push_str(&format!(".{part}")),
+        }
+    }
+    name
+}
+
+/// A part of a scene with another number.
+fn with_number<T: serde::Serialize + serde::de::DeserializeOwned>(
+    part: &T,
+    place: &str,
+    value: f64,
+) -> Result<T, serde_json::Error> {
+    let mut text = serde_json::to_value(part)?;
+    if let Some(entry) = text.pointer_mut(place) {
+        *entry = Value::from(value);
+    }
+    serde_json::from_value(text)
+}

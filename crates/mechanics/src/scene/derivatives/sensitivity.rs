@@ -1,0 +1,276 @@
+//! The derivatives of outputs of a scene with respect to its parameters.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::effect::{Effect, Why, effect};
+use super::output::{Branch, Output};
+use super::parameter::{Kind, Parameter};
+use crate::error::Error;
+use crate::scene::answers::answer::Answer;
+use crate::scene::input::entry::wrong;
+use crate::scene::input::schema::Scene;
+use crate::scene::models::model::Model;
+use signorini_qp::{Adjoint, Derivative, Derivatives, Prepared, Settings, Solution};
+
+/// Derivatives of branches that are this close, relative, are one.
+const SAME: f64 = 1e-9;
+
+/// An output with its derivatives.
+#[derive(Clone, Debug)]
+pub struct Sensitivity {
+    /// As `force`, or `obstacles[0].moment`.
+    pub output: String,
+    /// Its value.
+    pub value: f64,
+    /// Its unit, empty without one.
+    pub unit: String,
+    /// The derivatives, in the order of the parameters.
+    pub by: Vec<ByParameter>,
+    /// What the output itself is not smooth at: values that tie.
+    pub notes: Vec<String>,
+}
+
+/// The derivative of an output with respect to a parameter.
+#[derive(Clone, Debug)]
+pub struct ByParameter {
+    /// As `obstacles[0].radius`, or `nodes`.
+    pub parameter: String,
+    /// The value of the parameter.
+    pub value: f64,
+    /// Its unit, empty without one.
+    pub unit: String,
+    /// The derivative, in the unit of the output over that of the parameter; of the places of all nodes the largest magnitude.
+    pub derivative: Derivative<f64>,
+    /// The change of the output in per cent for a parameter larger by one per cent; `None` if one of both is zero.
+    pub relative: Option<Derivative<f64>>,
+    /// For the places of all nodes, the derivative with respect to each coordinate, length `dim * n_nodes`.
+    pub places: Option<Derivative<Vec<f64>>>,
+}
+
+/// The answer of a scene, with the derivatives of outputs.
+#[derive(Debug)]
+pub struct Sensitivities {
+    /// The answer.
+    pub answer: Answer,
+    /// The solution behind it.
+    pub solution: Solution,
+    /// One entry for each output.
+    pub outputs: Vec<Sensitivity>,
+    /// The rows at a kink, or that the proof leaves undecided, from 0.
+    pub at_kink: Vec<usize>,
+    /// Seconds of the derivatives alone, without model, solve and proof.
+    pub seconds: f64,
+}
+
+impl Scene {
+    /// Solves the scene, and gives the derivatives of `outputs` with respect to `parameters`, by their names: see [`Scene::parameters`]
+    /// and [`Scene::outputs`].
+    ///
+    /// ```
+    /// use signorini_mechanics::Scene;
+    /// use signorini_qp::{Derivative, Settings};
+    ///
+    /// // A bar of 2 m and 5000 N/m, pulled with 20 N towards a wall at 0.001 m: the wall takes 20 - 5000 x 0.001 = 15 N.
+    /// let scene = Scene::from_json(
+    ///     r#"{
+    ///         "model": "bar", "gap": 0.001,
+    ///         "body": {"bar": {"area": 0.01, "x": {"points": [0, 2], "divisions": [4]}}},
+    ///         "material": {"young": 1e6, "poisson": 0},
+    ///         "supports": [{"on": {"boundary": "left"}, "x": 0}],
+    ///         "loads": [{"traction": {"boundary": "right", "value": [2000]}}],
+    ///         "obstacles": [{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [2], "normal": [1]}}}]
+    ///     }"#,
+    ///     "bar",
+    /// )?;
+    /// let found = scene.sensitivity(&["force"], &["gap", "young", "loads[0]"], &Settings::default())?;
+    /// let of = |place: usize| match found.outputs[0].by[place].derivative {
+    ///     Derivative::Proven(value) => value,
+    ///     _ => f64::NAN,
+    /// };
+    /// assert!((of(0) + 5000.0).abs() < 1e-6 && (of(1) + 5e-6).abs() < 1e-15 && (of(2) - 20.0).abs() < 1e-9);
+    /// # Ok::<(), signorini_mechanics::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a name that does not exist, with those that do, and for a scene of a motion; those of [`Scene::build`] and of
+    /// [`signorini_qp::solve`].
+    pub fn sensitivity(
+        &self,
+        outputs: &[&str],
+        parameters: &[&str],
+        settings: &Settings,
+    ) -> Result<Sensitivities, Error> {
+        let model = Arc::new(self.build()?);
+        Sensitivities::of(self, model, outputs, parameters, settings)
+    }
+
+    /// The names of the outputs that have derivatives; `X,Y` stands for the coordinates of a place.
+    ///
+    /// # Errors
+    /// As [`Scene::build`].
+    pub fn outputs(&self) -> Result<Vec<String>, Error> {
+        Ok(Output::names(&self.build()?))
+    }
+}
+
+impl Sensitivities {
+    /// As [`Scene::sensitivity`], for a scene with its model.
+    ///
+    /// # Errors
+    /// As [`Scene::sensitivity`].
+    pub fn of(
+        scene: &Scene,
+        model: Arc<Model>,
+        outputs: &[&str],
+        parameters: &[&str],
+        settings: &Settings,
+    ) -> Result<Self, Error> {
+        if scene.analysis.is_some() {
+            let message = "is a motion; derivatives are those of an equilibrium: leave it out";
+            return Err(wrong("analysis", message));
+        }
+        let outputs: Vec<Output> = outputs.iter().map(|name| Output::of(name, &model)).collect::<Result<_, _>>()?;
+        let parameters: Vec<Parameter> =
+            parameters.iter().map(|name| scene.parameter(name)).collect::<Result<_, _>>()?;
+        let explain = |error: signorini_qp::Error| model.explain(error);
+        let settings = settings.clone().with_proof();
+        let prepared = Prepared::for_gaps(model.problem(), 1, &settings).map_err(explain)?;
+        let solution = prepared.solve(model.problem().gap()).map_err(explain)?;
+        let answer = Answer::of(model.clone(), &solution)?;
+        let derivatives = prepared.derivatives(&solution).map_err(explain)?;
+        let clock = Instant::now();
+        let at = At { scene, answer: &answer, derivatives: &derivatives };
+        let outputs = at.all(&outputs, &parameters)?;
+        let (at_kink, seconds) = (derivatives.at_kink().to_vec(), clock.elapsed().as_secs_f64());
+        Ok(Sensitivities { answer, solution, outputs, at_kink, seconds })
+    }
+}
+
+/// An answer of a scene with its derivatives.
+struct At<'a> {
+    scene: &'a Scene,
+    answer: &'a Answer,
+    derivatives: &'a Derivatives,
+}
+
+impl At<'_> {
+    fn all(&self, outputs: &[Output], parameters: &[Parameter]) -> Result<Vec<Sensitivity>, Error> {
+        let active = self.active();
+        let of = |parameter: &Parameter| match parameter.kind {
+            Kind::Places => None,
+            _ => Some(effect(self.scene, parameter, self.answer, &active)),
+        };
+        let effects: Vec<Option<Result<Effect, Why>>> = parameters.iter().map(of).collect();
+        outputs.iter().map(|output| self.of_output(output, parameters, &effects)).collect()
+    }
+
+    /// The rows that may be closed.
+    fn active(&self) -> Vec<usize> {
+        let mut rows: Vec<usize> = self.answer.contact_set().iter().collect();
+        rows.extend(self.derivatives.closed().iter().flatten());
+        rows.extend(self.derivatives.at_kink());
+        rows.sort_unstable();
+        rows.dedup();
+        rows
+    }
+
+    fn of_output(
+        &self,
+        output: &Output,
+        parameters: &[Parameter],
+        effects: &[Option<Result<Effect, Why>>],
+    ) -> Result<Sensitivity, Error> {
+        let model = self.answer.model();
+        let unit = output.unit(model);
+        let unknown = |why: &Why| Derivative::Unknown { why: why.clone() };
+        let row = |parameter: &Parameter, derivative, relative, places| ByParameter {
+            parameter: parameter.name.clone(),
+            value: parameter.value,
+            unit: parameter.unit.clone(),
+            derivative,
+            relative,
+            places,
+        };
+        let (output, branches) = (output.name.clone(), output.branches(self.answer));
+        let branches = match branches {
+            Ok(branches) => branches,
+            Err(why) => {
+                let by = parameters.iter().map(|parameter| row(parameter, unknown(&why), None, None)).collect();
+                return Ok(Sensitivity { output, value: f64::NAN, unit, by, notes: vec![why] });
+            }
+        };
+        let value = branches[0].value;
+        let adjoints: Vec<Derivative<Adjoint>> = branches
+            .iter()
+            .map(|branch| self.derivatives.adjoint(&branch.by_displacement, &branch.by_multiplier))
+            .collect::<Result<_, _>>()?;
+        let mut by = Vec::with_capacity(parameters.len());
+        for (parameter, effect) in parameters.iter().zip(effects) {
+            by.push(match effect {
+                Some(Ok(effect)) => {
+                    let of_branches = branches.iter().zip(&adjoints);
+                    let found: Vec<Derivative<f64>> = of_branches
+                        .map(|(branch, adjoint)| self.along(branch, adjoint, effect))
+                        .collect::<Result<_, _>>()?;
+                    let derivative = joined(found);
+                    let share = parameter.value / value;
+                    let has_share = share.is_finite() && parameter.value != 0.0;
+                    let relative = has_share.then(|| derivative.map(|derivative| derivative * share));
+                    row(parameter, derivative, relative, None)
+                }
+                Some(Err(why)) => row(parameter, unknown(why), None, None),
+                None => {
+                    let why = "the places of nodes have no derivatives yet".to_string();
+                    row(parameter, unknown(&why), None, None)
+                }
+            });
+        }
+        let names: Vec<&str> = branches.iter().map(|branch| branch.of.as_str()).collect();
+        let notes = match names.len() {
+            1 => Vec::new(),
+            _ => vec![format!("{} tie for the largest value: the output itself has a kink", names.join(" and "))],
+        };
+        Ok(Sensitivity { output, value, unit, by, notes })
+    }
+
+    /// The derivative of a branch along the effect of a parameter: at a kink of the answer by tangents, which tell its sides apart.
+    fn along(&self, branch: &Branch, adjoint: &Derivative<Adjoint>, effect: &Effect) -> Result<Derivative<f64>, Error> {
+        let direct = match branch.direct(self.answer, effect) {
+            Ok(direct) => direct,
+            Err(why) => return Ok(Derivative::Unknown { why }),
+        };
+        if self.derivatives.at_kink().is_empty() {
+            return Ok(adjoint.map(|adjoint| adjoint.along(&effect.change) + direct));
+        }
+        let tangent = self.derivatives.tangent(&effect.change)?;
+        Ok(tangent.map(|tangent| {
+            signorini_qp::dot(&branch.by_displacement, &tangent.displacement)
+                + signorini_qp::dot(&branch.by_multiplier, &tangent.multiplier)
+                + direct
+        }))
+    }
+}
+
+/// The derivative of the largest of several branches that tie: theirs, if all agree.
+fn joined(mut branches: Vec<Derivative<f64>>) -> Derivative<f64> {
+    let values: Vec<f64> = branches.iter().flat_map(values_of).collect();
+    let size = values.iter().fold(0.0, |size: f64, value| size.max(value.abs()));
+    let agree = values.windows(2).all(|pair| (pair[0] - pair[1]).abs() <= SAME * size);
+    if branches.len() == 1 || (agree && branches.iter().all(|branch| branch.proven().is_some())) {
+        return branches.swap_remove(0);
+    }
+    match branches.iter().find(|branch| matches!(branch, Derivative::Unknown { .. })) {
+        Some(unknown) => unknown.clone(),
+        None => Derivative::Undecided { between: values, rows: Vec::new() },
+    }
+}
+
+fn values_of(derivative: &Derivative<f64>) -> Vec<f64> {
+    match derivative {
+        Derivative::Proven(value) => vec![*value],
+        Derivative::OneSided { left, right } => vec![*left, *right],
+        Derivative::Undecided { between, .. } => between.clone(),
+        Derivative::Unknown { .. } => Vec::new(),
+    }
+}
