@@ -16,6 +16,7 @@ mod new;
 mod options;
 mod outcome;
 mod progress;
+mod sensitivity;
 mod settings;
 mod shell;
 mod solve;
@@ -66,6 +67,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Solve(options) => solve::run(&options, &watch, &kept),
         Command::Compare(options) => compare::run(&options, &watch),
         Command::Sweep(options) => sweep::run(&options, &watch),
+        Command::Sensitivity(options) => sensitivity::run(&options, &watch),
         Command::Tradeoff(options) => tradeoff::run(&options, &watch),
         Command::Ccx(options) => Ok(ccx::run(&options, &watch)),
         Command::Draw(options) => draw::run(&options),

@@ -39,7 +39,7 @@ pub use page::About;
 pub use plots::medium::Medium;
 pub use plots::plot::{Plot, Series, line_plots};
 pub use plots::ticks::{Quantity, Scale};
-pub use reports::in_words::{InWords, Measured};
+pub use reports::in_words::{InWords, Measured, rows_at_kink, tables_of_places};
 pub use reports::motion_report::MotionReport;
 pub use reports::report::why_text;
 pub use text::printable;

@@ -1,11 +1,11 @@
 //! The arguments. Types of the argument parser are used only here and in `shell`, which describes them to shells and manuals.
 
+mod choice;
 mod limits;
 
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
@@ -14,6 +14,7 @@ use super::memory::parse_size;
 use crate::output::{Medium, Pictures, Wanted};
 use crate::qp::{Method, Precision};
 use crate::study::TotalErrorGoal;
+use choice::choice;
 use limits::DeckOptions;
 pub(super) use limits::Limits;
 
@@ -66,6 +67,13 @@ Example: signorini sweep examples/indentation.json --gaps -0.01:-0.10:10 --out s
 
 A problem directory is swept from g.mtx and f.mtx to g1.mtx and f1.mtx, on a straight line.")]
     Sweep(Sweep),
+    /// Solve a scene, and print the derivatives of its outputs with respect to its numbers, with the proof that they exist
+    #[command(after_help = "\
+Example: signorini sensitivity examples/indentation.json --of force,width --to gap,young,obstacles[0].radius
+         signorini sensitivity examples/indentation.json --of stress@0.5,0.4:xx --to nodes --out derivatives
+
+A name that does not exist is answered with those that do.")]
+    Sensitivity(Sensitivity),
     /// Solve a scene or a problem directory by every method, and print the seconds that each digit costs
     #[command(after_help = "Example: signorini tradeoff examples/indentation.json --refinements 2 --time 60")]
     Tradeoff(Tradeoff),
@@ -146,74 +154,6 @@ pub(super) enum Format {
     Text,
     /// One object, for other programs
     Json,
-}
-
-/// A choice of the library by its name on the command line.
-trait Choice: Copy + Send + Sync + 'static {
-    /// All choices, in the order of the help.
-    const ALL: &[Self];
-
-    /// Its name, and what it stands for.
-    fn in_words(self) -> (&'static str, &'static str);
-}
-
-/// Takes one of the names of a choice.
-fn choice<T: Choice>() -> impl TypedValueParser<Value = T> {
-    let names = T::ALL.iter().map(|one| PossibleValue::new(one.in_words().0).help(one.in_words().1));
-    PossibleValuesParser::new(names).try_map(|name| {
-        let named = T::ALL.iter().find(|one| one.in_words().0 == name);
-        named.copied().ok_or_else(|| format!("there is no `{name}`"))
-    })
-}
-
-impl Choice for Method {
-    const ALL: &[Self] = &[Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
-
-    fn in_words(self) -> (&'static str, &'static str) {
-        let help = match self {
-            Method::Qp(_) => "Convex QP by an interior-point method, its contact set settled by active-set steps",
-            Method::ActiveSet => "Active-set loop with Lagrange multipliers",
-            Method::Penalty(_) => "Penalty loop",
-            Method::Mprgp => "Projected conjugate gradients with multigrid, for bodies too large to factorise",
-            _ => "The program chooses",
-        };
-        (self.name(), help)
-    }
-}
-
-impl Choice for Precision {
-    const ALL: &[Self] = &[Precision::Auto, Precision::Double, Precision::Mixed];
-
-    fn in_words(self) -> (&'static str, &'static str) {
-        match self {
-            Precision::Double => ("double", "Double precision"),
-            Precision::Mixed => ("mixed", "Single precision, half the memory, refined in double precision"),
-            _ => ("auto", "Double, unless single precision reaches the requested --accuracy sooner"),
-        }
-    }
-}
-
-impl Choice for Pictures {
-    const ALL: &[Self] = &[Pictures::None, Pictures::Answer, Pictures::All];
-
-    fn in_words(self) -> (&'static str, &'static str) {
-        match self {
-            Pictures::None => ("none", "No picture"),
-            Pictures::Answer => ("answer", "The final answer of the command"),
-            Pictures::All => ("all", "Each iteration, penalty, gap and force as well"),
-        }
-    }
-}
-
-impl Choice for Medium {
-    const ALL: &[Self] = &[Medium::Screen, Medium::Paper];
-
-    fn in_words(self) -> (&'static str, &'static str) {
-        match self {
-            Medium::Screen => ("screen", "SVG and PNG, with a title"),
-            Medium::Paper => ("paper", "PDF and SVG, 85 or 170 mm wide, with letters on the panels and no title"),
-        }
-    }
 }
 
 impl Common {
@@ -437,6 +377,26 @@ pub(super) struct Common {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct Sensitivity {
+    /// Scene (a JSON file, - for standard input)
+    pub scene: PathBuf,
+    /// Outputs, such as force, width, peak-pressure, obstacles[0].travel, pressure@0.5,1, stress@0.5,0.4:xx
+    #[arg(long, value_name = "OUTPUTS", required = true)]
+    pub of: Vec<String>,
+    /// Parameters, such as gap, young, loads[0], obstacles[0].radius, or nodes for the places of all nodes [default: all numbers]
+    #[arg(long, value_name = "PARAMETERS")]
+    pub to: Vec<String>,
+    /// Name the rows that make a kink, or that the proof leaves undecided
+    #[arg(long)]
+    pub explain: bool,
+    /// Method that finds the contact set
+    #[arg(long, value_parser = choice::<Method>(), default_value = "auto")]
+    pub method: Method,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct Tradeoff {
     /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx; it has no mesh to refine)
     pub input: PathBuf,
@@ -552,7 +512,8 @@ impl Command {
         match self {
             Command::Solve(Solve { common, .. })
             | Command::Compare(Compare { common, .. })
-            | Command::Sweep(Sweep { common, .. }) => common.format,
+            | Command::Sweep(Sweep { common, .. })
+            | Command::Sensitivity(Sensitivity { common, .. }) => common.format,
             Command::Tradeoff(options) => options.format,
             Command::Verify(options) => options.format,
             Command::New(_) | Command::Ccx(_) | Command::Draw(_) | Command::Export(_) => Format::Text,
@@ -565,7 +526,8 @@ impl Command {
         match self {
             Command::Solve(Solve { common, .. })
             | Command::Compare(Compare { common, .. })
-            | Command::Sweep(Sweep { common, .. }) => common.threads,
+            | Command::Sweep(Sweep { common, .. })
+            | Command::Sensitivity(Sensitivity { common, .. }) => common.threads,
             Command::Verify(options) => options.threads,
             _ => None,
         }

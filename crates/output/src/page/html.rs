@@ -17,7 +17,7 @@ const SHELL: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 
 /// In the order of loading.
-const SCRIPTS: [&str; 16] = [
+const SCRIPTS: [&str; 17] = [
     include_str!("unpack.js"),
     include_str!("numbers.js"),
     include_str!("surface.js"),
@@ -33,6 +33,7 @@ const SCRIPTS: [&str; 16] = [
     include_str!("tradeoff.js"),
     include_str!("levels.js"),
     include_str!("along.js"),
+    include_str!("sensitivity.js"),
     include_str!("page.js"),
 ];
 

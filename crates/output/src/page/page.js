@@ -34,6 +34,7 @@ async function assemble() {
     if (data.sweep) sweepSection(page, data, shape, notes);
     else if (data.motion) motionSection(page, data, shape, notes);
     else if (data.states) answerSection(page, data, shape, summary);
+    sensitivitySection(page, data);
     if (data.report?.levels) levelsSection(page, data, still);
     questionSection(page, data, shape, summary);
     certificateSection(page, data);

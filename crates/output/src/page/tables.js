@@ -55,6 +55,7 @@ function table(host, columns, items) {
     const line = element("tr", body);
     columns.forEach(([, cell], i) => element("td", line, cell(item), kinds[i]));
   }
+  return made;
 }
 
 /** Names with their contents; an entry without content is left out. */

@@ -90,6 +90,21 @@ impl About {
         write_page(folder, &Page { sweep: Some(shown), states, plots, ..page }, packer, still(&first.answer)?.as_ref())
     }
 
+    /// The page of the derivatives of outputs: `report` is the object of `report.json`.
+    ///
+    /// # Errors
+    /// As [`write_answer`](Self::write_answer).
+    pub fn write_sensitivity(
+        &self,
+        folder: &Path,
+        (answer, summary): (&Answer, &Summary),
+        report: &impl Serialize,
+    ) -> Result<(), Error> {
+        let (mut packer, shape) = (Packer::default(), Shape::with_inside(answer.model()));
+        let page = of_answer(self, answer, summary, &summary.solution.history, (&shape, &mut packer))?;
+        write_page(folder, &Page { report: timeless(value(report)?), ..page }, packer, still(answer)?.as_ref())
+    }
+
     /// The page of a trade-off with its pictures.
     ///
     /// # Errors

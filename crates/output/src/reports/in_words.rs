@@ -2,11 +2,12 @@
 
 use super::motion_tradeoff::{motion_tradeoff_csv, motion_tradeoff_plot, motion_tradeoff_text};
 use super::report::{compare_text, solve_text, sweep_text, verify_text};
+use super::sensitivity::{kink_text, places_csv, sensitivity_text};
 use super::tradeoff::{tradeoff_csv, tradeoff_text};
 use super::tradeoff_plot::{total_error_plot, tradeoff_plot};
 use crate::draw::drawing::Drawing;
 use crate::plots::medium::Medium;
-use signorini_mechanics::scene::Units;
+use signorini_mechanics::scene::{Sensitivities, Units};
 use signorini_mechanics::study::{Agreement, MotionTradeoff, Summary, Sweep, Tradeoff, Verification};
 
 /// A result that is reported as a text for reading.
@@ -34,6 +35,23 @@ impl InWords for (&[Summary; 3], &Agreement) {
     fn text(&self, title: &str, units: &Units) -> String {
         compare_text(title, self.0, self.1, units)
     }
+}
+
+impl InWords for Sensitivities {
+    fn text(&self, title: &str, _: &Units) -> String {
+        sensitivity_text(title, self)
+    }
+}
+
+/// The rows at a kink, or undecided by the proof, in words; empty without any.
+pub fn rows_at_kink(found: &Sensitivities) -> String {
+    kink_text(found)
+}
+
+/// For each output with known derivatives with respect to the places of all nodes their table: the name of its file and its text.
+pub fn tables_of_places(found: &Sensitivities) -> Vec<(String, String)> {
+    let of_output = |(index, output)| Some((format!("nodes-{index}.csv"), places_csv(found.answer.model(), output)?));
+    found.outputs.iter().enumerate().filter_map(of_output).collect()
 }
 
 impl InWords for Sweep {

@@ -6,5 +6,6 @@ pub(crate) mod means;
 pub(crate) mod motion_report;
 pub(crate) mod motion_tradeoff;
 pub(crate) mod report;
+pub(crate) mod sensitivity;
 pub(crate) mod tradeoff;
 pub(crate) mod tradeoff_plot;

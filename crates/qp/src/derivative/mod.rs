@@ -28,6 +28,9 @@ pub use change::{Adjoint, Change, Tangent};
 
 use std::sync::Arc;
 
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
 use crate::engine::{Engine, Factored};
 use crate::error::Error;
 use crate::linear::check_vector;
@@ -93,6 +96,27 @@ impl<T> Derivative<T> {
             Derivative::Undecided { .. } => "undecided",
             Derivative::Unknown { .. } => "unknown",
         }
+    }
+}
+
+/// An object with its `verdict`, and `value`; `left` and `right`; `between` and `rows`; or `why`.
+impl<T: Serialize> Serialize for Derivative<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_map(None)?;
+        object.serialize_entry("verdict", self.verdict())?;
+        match self {
+            Derivative::Proven(value) => object.serialize_entry("value", value)?,
+            Derivative::OneSided { left, right } => {
+                object.serialize_entry("left", left)?;
+                object.serialize_entry("right", right)?;
+            }
+            Derivative::Undecided { between, rows } => {
+                object.serialize_entry("between", between)?;
+                object.serialize_entry("rows", rows)?;
+            }
+            Derivative::Unknown { why } => object.serialize_entry("why", why)?,
+        }
+        object.end()
     }
 }
 

@@ -3,6 +3,8 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use serde::Serialize;
+
 use super::effect::{Effect, Why, effect};
 use super::output::{Branch, Output};
 use super::parameter::{Kind, Parameter};
@@ -17,34 +19,39 @@ use signorini_qp::{Adjoint, Derivative, Derivatives, Prepared, Settings, Solutio
 const SAME: f64 = 1e-9;
 
 /// An output with its derivatives.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Sensitivity {
     /// As `force`, or `obstacles[0].moment`.
     pub output: String,
     /// Its value.
     pub value: f64,
     /// Its unit, empty without one.
+    #[serde(skip_serializing_if = "String::is_empty")]
     pub unit: String,
     /// The derivatives, in the order of the parameters.
     pub by: Vec<ByParameter>,
     /// What the output itself is not smooth at: values that tie.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
 }
 
 /// The derivative of an output with respect to a parameter.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct ByParameter {
     /// As `obstacles[0].radius`, or `nodes`.
     pub parameter: String,
     /// The value of the parameter.
     pub value: f64,
     /// Its unit, empty without one.
+    #[serde(skip_serializing_if = "String::is_empty")]
     pub unit: String,
     /// The derivative, in the unit of the output over that of the parameter; of the places of all nodes the largest magnitude.
     pub derivative: Derivative<f64>,
     /// The change of the output in per cent for a parameter larger by one per cent; `None` if one of both is zero.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub relative: Option<Derivative<f64>>,
     /// For the places of all nodes, the derivative with respect to each coordinate, length `dim * n_nodes`.
+    #[serde(skip)]
     pub places: Option<Derivative<Vec<f64>>>,
 }
 
