@@ -1,9 +1,8 @@
 //! Derivatives of scenes against differences of whole answers inside one proven contact set.
 
-use signorini::Scene;
-use signorini::Settings;
 use signorini::qp::{ContactSet, Derivative};
 use signorini::scene::Sensitivities;
+use signorini::{Prepared, Scene, Settings};
 
 /// Steps of the differences, relative to the size of the parameter.
 const STEPS: [f64; 4] = [1e-3, 1e-4, 1e-5, 1e-6];
@@ -92,4 +91,96 @@ fn differences(scene: &Scene, outputs: &[&str], name: &str, value: f64, scale: f
         });
     }
     best
+}
+
+/// The derivatives of a scene, and those that are wrong, or unknown without a reason of the output.
+pub struct Found {
+    pub all: Vec<Slope>,
+    pub wrong: Vec<Slope>,
+}
+
+/// Largest error of a derivative beside its difference, relative to the difference.
+const MOST: f64 = 1e-6;
+
+/// Parameters of a scene that are compared, at most.
+const MOST_PARAMETERS: usize = 14;
+
+/// Reasons for which an output or a parameter has no derivative, by their beginnings.
+const REASONS: [&str; 4] = [
+    "nothing presses",
+    "the strain energy of a body with temperatures",
+    "no bound on the error",
+    "a moment on a part with planes of symmetry",
+];
+
+/// The outputs of a scene, those at a place in its middle.
+fn outputs(scene: &Scene) -> Vec<String> {
+    let model = scene.build().unwrap();
+    let (low, high) = model.mesh().extent();
+    let dimension = model.mesh().dimension();
+    let middle: Vec<String> = (0..dimension).map(|axis| (0.47 * low[axis] + 0.53 * high[axis]).to_string()).collect();
+    let placed = |name: &String| name.replace(["X", "X,Y", "X,Y,Z"][dimension - 1], &middle.join(","));
+    let named = scene.outputs().unwrap();
+    let stresses = named.iter().filter(|name| name.starts_with("stress"));
+    let equivalent = stresses.map(|name| placed(name).replace(":xx", ":von-mises"));
+    named.iter().map(placed).chain(equivalent).collect()
+}
+
+/// The derivatives of all outputs of a scene with respect to its numbers, beside differences.
+///
+/// # Panics
+/// If the scene has no answer.
+pub fn wrong_slopes(scene: &Scene) -> Found {
+    let (outputs, parameters) = (outputs(scene), scene.parameters());
+    let outputs: Vec<&str> = outputs.iter().map(String::as_str).collect();
+    let numbers = parameters.iter().map(String::as_str).filter(|name| *name != "nodes");
+    let parameters: Vec<&str> = numbers.take(MOST_PARAMETERS).collect();
+    let model = scene.build().unwrap();
+    let all = slopes(scene, &outputs, &parameters, model.mesh().size());
+    let is_wrong = |slope: &&Slope| {
+        let size = slope.difference.map_or(0.0, |difference| difference.0.abs()).max(1e-300);
+        let has_reason = REASONS.iter().any(|reason| slope.why.starts_with(reason));
+        (slope.verdict == "unknown" && !has_reason) || slope.error(size).is_some_and(|error| error > MOST)
+    };
+    let wrong = all.iter().filter(is_wrong).cloned().collect();
+    Found { all, wrong }
+}
+
+/// The largest difference of the derivatives of all multipliers and forces with respect to the gap of the scene from the slope of the
+/// exact path around it, relative to the largest slope; `None` without a path along which rows keep their directions, or at a kink.
+///
+/// # Panics
+/// If the scene has no answer.
+pub fn off_path(scene: &Scene) -> Option<f64> {
+    let model = scene.build().unwrap();
+    let problem = model.problem();
+    let prepared = Prepared::new(problem, &Settings::default().with_proof()).ok()?;
+    let gap = model.gap();
+    let step = 1e-3 * model.mesh().size();
+    let [before, after] =
+        [-step, step].map(|by| model.with_gap(gap + by).ok().map(|model| model.problem().gap().to_vec()));
+    let (before, after) = (before?, after?);
+    let is_straight = problem.gap().iter().zip(before.iter().zip(&after)).all(|(&own, (a, b))| {
+        let middle = 0.5 * (a + b);
+        own == middle || (own - middle).abs() <= 1e-13 * own.abs().max(step)
+    });
+    let path = prepared.path(&before, &after).ok().filter(|_| is_straight)?;
+    let solution = prepared.solve(problem.gap()).ok()?;
+    let derivatives = prepared.derivatives(&solution).ok()?;
+    let change = signorini::qp::Change::of_gap(
+        before.iter().zip(&after).map(|(a, b)| if a == b { 0.0 } else { (b - a) / (2.0 * step) }).collect(),
+        problem.dofs(),
+    );
+    let tangent = derivatives.tangent(&change).ok()?;
+    let tangent = tangent.proven()?;
+    let piece = path.pieces().iter().find(|piece| piece.from < 0.5 && 0.5 < piece.to)?;
+    let [first, last] = [piece.from, piece.to].map(|t| path.multiplier_on(piece, t));
+    let length = 2.0 * step * (piece.to - piece.from);
+    let slopes: Vec<f64> = last.iter().zip(&first).map(|(b, a)| (b - a) / length).collect();
+    let largest = slopes.iter().fold(0.0, |largest: f64, slope| largest.max(slope.abs()));
+    // Multipliers at the ends of a short piece are close: their difference keeps fewer digits.
+    let values = first.iter().chain(&last).fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let rounding = 1e-15 * values / length;
+    let off = slopes.iter().zip(&tangent.multiplier).fold(0.0, |off: f64, (a, b)| off.max((a - b).abs()));
+    (largest > 0.0 && rounding <= 1e-12 * largest).then(|| off / largest)
 }
