@@ -13,7 +13,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use serde_json::json;
-use signorini::scene::Sensitivities;
+use signorini::scene::{ByParameter, Sensitivities};
 use signorini::{Method, Prepared, Scene, Settings};
 use support::draws::Draws;
 use support::oracles::exact::kinks::{Kink, Place};
@@ -119,7 +119,7 @@ fn cost() {
         }
         let text = json!({
             "model": model, "body": {body: sides}, "material": {"young": 1e7, "poisson": 0.3}, "supports": [support], "gap": -0.01,
-            "loads": [{"body-force": vec![0.0; 2 + usize::from(is_space)]}],
+            "loads": [{"pressure": {"boundary": "left", "value": 1e3}}],
             "obstacles": [{"boundary": "top", "approach": if is_space { "+z" } else { "+y" },
                            "shape": {shape: {"apex": apex, "radius": 1}}}]
         });
@@ -161,9 +161,11 @@ fn cost() {
         let found = derived(&numbers, &scene, &settings);
         let exact = derived(&numbers, &scene, &Settings::with_method(Method::ActiveSet));
         let pairs = found.outputs[0].by.iter().zip(&exact.outputs[0].by);
+        // Derivatives that symmetry makes zero have no relative error.
+        let share = |row: &ByParameter| row.relative.as_ref().and_then(|relative| relative.proven()).copied();
         error = pairs
+            .filter(|(_, exact)| share(exact).is_some_and(|share| share.abs() > 1e-9))
             .filter_map(|(a, b)| Some((a.derivative.proven()? / b.derivative.proven()? - 1.0).abs()))
-            .filter(|error| error.is_finite())
             .fold(0.0_f64, f64::max);
         found.seconds
     });

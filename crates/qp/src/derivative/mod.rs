@@ -33,7 +33,7 @@ use serde::{Serialize, Serializer};
 
 use crate::engine::{Engine, Factored};
 use crate::error::Error;
-use crate::linear::check_vector;
+use crate::linear::{check_vector, largest};
 use crate::method::Start;
 use crate::plan::WithFactor;
 use crate::prepared::Prepared;
@@ -233,8 +233,10 @@ impl Derivatives {
         match &self.rows {
             Rows::Kink { closed, weak } => {
                 let side = |sign: f64| self.one_sided(closed, weak, &change.times(sign));
-                let (right, left) = (side(1.0)?, side(-1.0)?.times(-1.0));
-                Ok(Derivative::OneSided { left, right })
+                match (side(-1.0)?, side(1.0)?) {
+                    (Some(left), Some(right)) => Ok(Derivative::OneSided { left: left.times(-1.0), right }),
+                    _ => self.between(closed, weak, of),
+                }
             }
             _ => self.by_linear_system(of),
         }
@@ -273,8 +275,9 @@ impl Derivatives {
         })
     }
 
-    /// The tangent for a growing parameter at a kink: a contact problem of the weak rows, with the pressing rows held.
-    fn one_sided(&self, closed: &ContactSet, weak: &[usize], change: &Change) -> Result<Tangent, Error> {
+    /// The tangent for a growing parameter at a kink: a contact problem of the weak rows, with the pressing rows held. `None` if its set
+    /// is not confirmed.
+    fn one_sided(&self, closed: &ContactSet, weak: &[usize], change: &Change) -> Result<Option<Tangent>, Error> {
         let problem = &self.problem;
         let distances = self.on_first_rows(&change.distance);
         let pick = |rows: &[usize]| rows.iter().map(|&row| distances[row]).collect::<Vec<f64>>();
@@ -288,11 +291,19 @@ impl Derivatives {
         let Settings { watch, memory, threads, .. } = self.settings.clone();
         let settings = Settings { watch, memory, threads, ..Settings::default() };
         let found = solved(&small, &Start::default(), &settings)?;
-        let mut multiplier = vec![0.0; problem.rows()];
-        weak.iter().zip(&found.multiplier).for_each(|(&row, &force)| multiplier[row] = force);
-        held.iter().zip(&found.equality_multiplier).for_each(|(&row, &force)| multiplier[row] = force);
-        let multiplier = problem.split(multiplier).concat();
-        Ok(Tangent { displacement: found.displacement, multiplier, error: found.certificate.energy_error_bound })
+        // The linear system of the set that was found gives the digits; the signs of its answer confirm the set.
+        let mut set = closed.clone();
+        found.contact_set.iter().for_each(|place| set.insert(weak[place]));
+        let Some(exact) = self.held(&set, &change.load, &distances)? else { return Ok(None) };
+        let (moved, forces) = (problem.contact().mul(&exact.displacement), largest(&exact.multiplier));
+        let lengths = largest(&moved).max(largest(&distances));
+        let is_met = |&row: &usize| match set.contains(row) {
+            true => exact.multiplier[row] <= SIGN_TOLERANCE * forces,
+            false => moved[row] - distances[row] <= SIGN_TOLERANCE * lengths,
+        };
+        let multiplier = problem.split(exact.multiplier.clone()).concat();
+        let tangent = Tangent { displacement: exact.displacement.clone(), multiplier, error: exact.error };
+        Ok(weak.iter().all(is_met).then_some(tangent))
     }
 
     /// Number of rows as they were given: those of B and the equality rows.
@@ -307,6 +318,9 @@ impl Derivatives {
         values
     }
 }
+
+/// Signs that are wrong by less than this, relative to the largest force or length, are rounding.
+const SIGN_TOLERANCE: f64 = 1e-10;
 
 /// The reason if the rows that press do not determine a linear system.
 const NOT_HELD: &str = "the rows that press do not hold the body, or follow from each other";

@@ -10,9 +10,9 @@ use crate::fem::assembly::internal_force;
 use crate::fem::body::PhaseNumber;
 use crate::fem::geometry::COORDINATES;
 use crate::scene::answers::answer::Answer;
-use crate::scene::input::obstacle::{PlacedObstacle, SideOrder};
+use crate::scene::input::obstacle::PlacedObstacle;
 use crate::scene::input::schema::Scene;
-use crate::scene::models::rows::{self, Rows};
+use crate::scene::models::rows::{self, Found};
 use signorini_qp::{Change, SparseMatrix};
 
 /// What a parameter changes, per unit.
@@ -51,6 +51,12 @@ pub(super) fn effect(scene: &Scene, parameter: &Parameter, answer: &Answer, acti
         Kind::Load(index) => {
             let mut nodal = vec![0.0; parts.body.nodal_dofs()];
             scene.add_load(&parts.body, *index, &mut nodal).map_err(in_words)?;
+            of_load(&nodal)
+        }
+        Kind::InLoad(index, _) if parameter.is_linear() => {
+            let mut nodal = vec![0.0; parts.body.nodal_dofs()];
+            let unit = scene.unit_load(parameter).map_err(in_words)?;
+            unit.add_load(&parts.body, *index, &mut nodal).map_err(in_words)?;
             of_load(&nodal)
         }
         Kind::InLoad(index, _) => {
@@ -133,11 +139,11 @@ fn of_rows(scene: &Scene, parameter: &Parameter, answer: &Answer, active: &[usiz
     }
     let at = |by: f64| -> Result<Vec<f64>, Why> {
         let (obstacles, gap) = obstacles(scene, parameter, answer, by)?;
-        let Rows { rows, contact, gap, .. } = rows::build_with(parts, &obstacles, gap).map_err(in_words)?;
+        let Found { rows, entries, gap, .. } = rows::found(parts, &obstacles, gap).map_err(in_words)?;
         let of_node: HashMap<(usize, usize), usize> =
             rows.iter().enumerate().map(|(index, row)| ((row.obstacle, row.node), index)).collect();
-        let entries: HashMap<(usize, usize), f64> =
-            contact.triplets().map(|(row, column, value)| ((row, column), value)).collect();
+        let mut of_entry: HashMap<(usize, usize), f64> = HashMap::new();
+        entries.into_iter().for_each(|(row, column, value)| *of_entry.entry((row, column)).or_insert(0.0) += value);
         let mut values = Vec::with_capacity(4 * active.len() + columns.len());
         let mut place = HashMap::new();
         for &row in active {
@@ -149,7 +155,7 @@ fn of_rows(scene: &Scene, parameter: &Parameter, answer: &Answer, active: &[usiz
             values.push(gap[found]);
             values.extend(rows[found].normal);
         }
-        values.extend(columns.iter().map(|(row, column)| entries.get(&(place[row], *column)).copied().unwrap_or(0.0)));
+        values.extend(columns.iter().map(|(row, column)| of_entry.get(&(place[row], *column)).copied().unwrap_or(0.0)));
         Ok(values)
     };
     let scale = match parameter.unit.is_empty() {
@@ -188,11 +194,10 @@ fn obstacles(
         Kind::GapOf(index) => obstacles[*index] = obstacles[*index].moved(by),
         Kind::InShape(index, _) => {
             let varied = scene.varied(parameter, by).map_err(in_words)?;
-            let order = SideOrder::of(&parts.body, std::iter::empty());
-            let site = (&parts.body, &parts.dofs, &order);
+            let site = (&parts.body, &parts.dofs);
             let path = format!("obstacles[{index}]");
-            let spec = &varied.obstacles[*index];
-            obstacles[*index] = PlacedObstacle::of_scene(spec, &path, site, varied.files()).map_err(in_words)?;
+            let shaped = obstacles[*index].shaped(&varied.obstacles[*index], &path, site, varied.files());
+            obstacles[*index] = shaped.map_err(in_words)?;
         }
         _ => return Ok((obstacles, gap + by)),
     }

@@ -192,11 +192,10 @@ impl Scene {
             }
             Kind::Load(index) => {
                 for (pointer, number) in numbers_of(&self.loads[*index]) {
-                    let number = match pointer.split('/').nth(1) {
-                        Some("centrifugal") if pointer.ends_with("/omega") => number * value.max(0.0).sqrt(),
-                        Some("body-force" | "gravity" | "nodal-forces") => number * value,
-                        _ if pointer.contains("/value") => number * value,
-                        _ => continue,
+                    let number = match is_linear_in(&pointer) {
+                        true => number * value,
+                        false if pointer.ends_with("/omega") => number * value.max(0.0).sqrt(),
+                        false => continue,
                     };
                     varied.loads[*index] = with_number(&varied.loads[*index], &pointer, number).map_err(refused)?;
                 }
@@ -204,6 +203,40 @@ impl Scene {
             Kind::Places => return Err(wrong("nodes", "the places of all nodes are no single number")),
         }
         Ok(varied)
+    }
+}
+
+impl Parameter {
+    /// Returns `true` for a number of a load to which its forces are proportional.
+    pub fn is_linear(&self) -> bool {
+        matches!(&self.kind, Kind::InLoad(_, pointer) if is_linear_in(pointer))
+    }
+}
+
+impl Scene {
+    /// The scene with a one in the place of a number to which a load is proportional, and zeros in those of its other components.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] if the load does not allow it.
+    pub(crate) fn unit_load(&self, parameter: &Parameter) -> Result<Scene, Error> {
+        let mut unit = self.clone();
+        let Kind::InLoad(index, own) = &parameter.kind else { return Ok(unit) };
+        for (pointer, _) in numbers_of(&self.loads[*index]) {
+            if is_linear_in(&pointer) {
+                let number = if pointer == *own { 1.0 } else { 0.0 };
+                unit.loads[*index] = with_number(&unit.loads[*index], &pointer, number)
+                    .map_err(|error| wrong(parameter.name.as_str(), error.to_string()))?;
+            }
+        }
+        Ok(unit)
+    }
+}
+
+/// Returns `true` for the place of a number to which a load is proportional.
+fn is_linear_in(pointer: &str) -> bool {
+    match pointer.split('/').nth(1) {
+        Some("body-force" | "gravity" | "nodal-forces") => true,
+        _ => pointer.contains("/value"),
     }
 }
 

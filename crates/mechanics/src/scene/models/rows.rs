@@ -69,11 +69,22 @@ pub(crate) struct Rows {
 /// If all dofs of a row are supported, no unknown can change it: it is left out if it is satisfied, and stays as an empty row with a
 /// negative gap if it is violated.
 pub(crate) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
-    build_with(parts, &parts.obstacles, scene_gap)
+    let Found { rows, entries, gap, warnings } = found(parts, &parts.obstacles, scene_gap)?;
+    let contact = SparseMatrix::from_triplets(rows.len(), parts.unknowns.count(), &entries)?;
+    let across = parts.obstacles.iter().enumerate().flat_map(|one| across(one, scene_gap)).collect();
+    Ok(Rows { rows, across, contact, gap, warnings })
 }
 
-/// The same with other obstacles in their places.
-pub(crate) fn build_with(parts: &Parts, obstacles: &[PlacedObstacle], scene_gap: f64) -> Result<Rows, Error> {
+/// The rows with the entries `(row, column, value)` of B, before they are a matrix.
+pub(crate) struct Found {
+    pub rows: Vec<ContactRow>,
+    pub entries: Vec<(usize, usize, f64)>,
+    pub gap: Vec<f64>,
+    warnings: Vec<Warning>,
+}
+
+/// The rows with all obstacles, in their places in the list, shifted by `scene_gap`.
+pub(crate) fn found(parts: &Parts, obstacles: &[PlacedObstacle], scene_gap: f64) -> Result<Found, Error> {
     finite("gap", scene_gap)?;
     let (mesh, dofs) = (parts.body.mesh(), &parts.dofs);
     let dimension = parts.body.dimension();
@@ -115,9 +126,7 @@ pub(crate) fn build_with(parts: &Parts, obstacles: &[PlacedObstacle], scene_gap:
             }
         }
     }
-    let contact = SparseMatrix::from_triplets(rows.len(), parts.unknowns.count(), &entries)?;
-    let across = obstacles.iter().enumerate().flat_map(|one| across(one, scene_gap)).collect();
-    Ok(Rows { rows, across, contact, gap, warnings })
+    Ok(Found { rows, entries, gap, warnings })
 }
 
 /// The contact with an obstacle seen from the nodes of the other body.

@@ -44,6 +44,33 @@ pub struct PlacedObstacle {
 }
 
 impl PlacedObstacle {
+    /// The same rigid obstacle with the shape of another description, at the same JSON path.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a shape that is not valid.
+    pub(crate) fn shaped(
+        &self,
+        spec: &ObstacleSpec,
+        path: &str,
+        (body, dofs): (&ElasticBody, &DofMap),
+        files: Files,
+    ) -> Result<Self, Error> {
+        let Some(approach) = spec.approach else { return Ok(self.clone()) };
+        let site = Site {
+            obstacle: path,
+            path: format!("{path}.shape.{}", spec.shape.about().name),
+            boundary: &spec.boundary,
+            approach,
+            rule: spec.rule,
+            body,
+            dofs,
+            candidates: &self.candidates,
+            order: &SideOrder::of(body, std::iter::empty()),
+            files,
+        };
+        Ok(PlacedObstacle { geometry: spec.shape.shape().place(&site)?, ..self.clone() })
+    }
+
     /// Checks the obstacle at the JSON path `path`.
     pub(crate) fn of_scene(
         spec: &ObstacleSpec,
