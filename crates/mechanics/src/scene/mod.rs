@@ -15,6 +15,7 @@
 //! ```
 
 pub(crate) mod answers;
+pub(crate) mod derivatives;
 pub(crate) mod input;
 pub(crate) mod models;
 mod motions;

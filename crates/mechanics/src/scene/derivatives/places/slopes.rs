@@ -1,0 +1,179 @@
+//! The change of the contact rows of an obstacle with the places of nodes.
+
+use std::collections::HashMap;
+
+use crate::fem::geometry::{distance, dot};
+use crate::scene::input::entry::point;
+use crate::scene::input::obstacle::{ObstacleRow, PlacedObstacle};
+use crate::scene::{Model, Rule};
+
+/// The steps of differences, in lengths of the shortest edge at a node: from one at which rounding is far below the tolerance of a kink to
+/// one within which a kink counts as at the node.
+const STEPS: [f64; 4] = [1e-3, 1e-4, 1e-5, 1e-6];
+
+/// Slopes from both sides that differ by more than this are those of a kink; normals are measured over the shortest edge.
+const KINK: f64 = 1e-5;
+
+/// The change of a row with places.
+pub(super) struct Slope {
+    /// Nodes, each with the change of the gap along x, y and z, dimensionless.
+    pub gap: Vec<(usize, [f64; 3])>,
+    /// `[k]`: the change of the normal with the place of its node along axis k, per length.
+    pub normal: [[f64; 3]; 3],
+}
+
+impl Slope {
+    /// The change of `vector . normal` with the place of the node along x, y and z.
+    pub fn of_normal(&self, vector: [f64; 3]) -> [f64; 3] {
+        self.normal.map(|by_axis| dot(by_axis, vector))
+    }
+}
+
+/// The rows of an obstacle at their nodes.
+pub(super) struct Slopes<'a> {
+    model: &'a Model,
+    number: usize,
+    obstacle: &'a PlacedObstacle,
+    candidate_of: HashMap<usize, usize>,
+    /// The shortest distance of a candidate to another node of its facets; none where facets are points.
+    edges: HashMap<usize, f64>,
+}
+
+impl<'a> Slopes<'a> {
+    /// The rows of obstacle `number`.
+    pub fn of(model: &'a Model, number: usize) -> Self {
+        let (obstacle, nodes) = (&model.obstacles()[number], model.mesh().nodes());
+        let candidates = obstacle.candidates().iter().enumerate();
+        let mut edges: HashMap<usize, f64> = HashMap::new();
+        for facet in model.mesh().boundary(obstacle.boundary()).into_iter().flat_map(|boundary| boundary.facets()) {
+            for (place, &node) in facet.iter().enumerate() {
+                for &other in &facet[..place] {
+                    let edge = distance(nodes[node], nodes[other]);
+                    [node, other].iter().for_each(|&end| {
+                        let own = edges.entry(end).or_insert(edge);
+                        *own = own.min(edge);
+                    });
+                }
+            }
+        }
+        let candidate_of = candidates.map(|(candidate, &(node, _))| (node, candidate)).collect();
+        Slopes { model, number, obstacle, candidate_of, edges }
+    }
+
+    /// Returns `true` if the direction of every row is fixed.
+    pub fn has_fixed_normals(&self) -> bool {
+        self.obstacle.rule() == Some(Rule::Approach)
+    }
+
+    /// Returns `true` if the obstacle is met from a node.
+    pub fn has_row(&self, node: usize) -> bool {
+        self.row(node, self.model.mesh().nodes()[node]).is_some()
+    }
+
+    /// The row of a node at another place.
+    fn row(&self, node: usize, at: [f64; 3]) -> Option<ObstacleRow> {
+        let candidate = *self.candidate_of.get(&node)?;
+        self.obstacle.row(candidate, at, self.obstacle.shift(self.model.gap())).ok()?
+    }
+
+    /// The change of the row of a node.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn at(&self, node: usize) -> Result<Slope, String> {
+        match self.candidate_of.get(&node).and_then(|&candidate| self.obstacle.facing(candidate)) {
+            Some(facing) if facing.area.is_some() => Err(format!(
+                "obstacles[{}]: the rows between meshes that do not match depend on the places of many nodes; their \
+                 derivative is not available yet",
+                self.number
+            )),
+            Some(_) if self.obstacle.rule() != Some(Rule::Approach) => Err(format!(
+                "obstacles[{}]: the rows between two bodies lie along the normals of both, which depend on the places of \
+                 many nodes; their derivative is available for the rule `approach`",
+                self.number
+            )),
+            Some(facing) => {
+                let is_fit = self.obstacle.between().is_some_and(|between| between.fit.is_some());
+                let ends = facing.ends.iter().filter(|_| !is_fit);
+                let gap = ends.map(|&(node, share)| (node, facing.normal.map(|part| 0.0 - share * part))).collect();
+                Ok(Slope { gap, normal: [[0.0; 3]; 3] })
+            }
+            None => self.of_rigid(node),
+        }
+    }
+
+    /// The change of the row against a rigid obstacle with the place of its node.
+    ///
+    /// Along the approach direction a gap changes by -1, and the gap along a normal by minus the normal; all else is a difference.
+    fn of_rigid(&self, node: usize) -> Result<Slope, String> {
+        let (nodes, rule) = (self.model.mesh().nodes(), self.obstacle.rule());
+        let approach = self.obstacle.approach();
+        let (mut gap, mut normal) = ([0.0; 3], [[0.0; 3]; 3]);
+        let row = self.row(node, nodes[node]).ok_or_else(|| self.without_slope(node))?;
+        for axis in 0..self.model.mesh().dimension() {
+            if rule == Some(Rule::Approach) && approach[axis] != 0.0 {
+                gap[axis] = 0.0 - approach[axis];
+                continue;
+            }
+            let found = match self.difference(node, axis) {
+                Some(found) => found,
+                None if self.is_symmetric(node, axis) => [0.0; 4],
+                None => return Err(self.without_slope(node)),
+            };
+            let [of_gap, of_normal @ ..] = found;
+            (gap[axis], normal[axis]) = (of_gap, of_normal);
+        }
+        if rule == Some(Rule::ClosestPoint) {
+            gap = row.normal.map(|part| 0.0 - part);
+        }
+        Ok(Slope { gap: vec![(node, gap)], normal })
+    }
+
+    /// Returns `true` if a node lies on a plane of symmetry normal to an axis, or on the axis of revolution.
+    fn is_symmetric(&self, node: usize, axis: usize) -> bool {
+        let (mesh, at) = (self.model.mesh(), self.model.mesh().nodes()[node]);
+        let is_on_axis = self.model.body().formulation().is_axisymmetric() && at[0] <= STEPS[3] * mesh.size();
+        self.model.axes_of_symmetry(&at)[axis] || (axis == 0 && is_on_axis)
+    }
+
+    fn without_slope(&self, node: usize) -> String {
+        let mesh = self.model.mesh();
+        format!(
+            "node {node} at {} meets a corner, an edge or an end of obstacles[{}], where its gap has no derivative with \
+             respect to its place",
+            point(&mesh.nodes()[node][..mesh.dimension()]),
+            self.number
+        )
+    }
+
+    /// The change of `[gap, normal x, y, z]` with the place of a node along an axis, by differences of fourth order; `None` at a kink.
+    fn difference(&self, node: usize, axis: usize) -> Option<[f64; 4]> {
+        let (at, mesh) = (self.model.mesh().nodes()[node], self.model.mesh());
+        let size = self.edges.get(&node).copied().unwrap_or_else(|| mesh.size());
+        let by_step = |share: &f64| {
+            let step = share * size;
+            let moved = |steps: f64| {
+                let mut at = at;
+                at[axis] += steps * step;
+                let ObstacleRow { normal: [x, y, z], gap } = self.row(node, at)?;
+                Some([gap, x, y, z])
+            };
+            let rows = [moved(-2.0)?, moved(-1.0)?, moved(0.0)?, moved(1.0)?, moved(2.0)?];
+            let slope = |part: usize, shares: [f64; 5]| {
+                let values: [f64; 5] = rows.map(|row| row[part]);
+                shares.iter().zip(values).map(|(share, value)| share * value).sum::<f64>() / step
+            };
+            let mut found = [0.0; 4];
+            for (part, found) in found.iter_mut().enumerate() {
+                let before = slope(part, [0.5, -2.0, 1.5, 0.0, 0.0]);
+                let after = slope(part, [0.0, 0.0, -1.5, 2.0, -0.5]);
+                *found = slope(part, [1.0, -8.0, 0.0, 8.0, -1.0].map(|share| share / 12.0));
+                let unit = if part == 0 { 1.0 } else { size };
+                let is_smooth = unit * (after - before).abs() <= KINK * (1.0 + unit * found.abs());
+                is_smooth.then_some(())?;
+            }
+            Some(found)
+        };
+        STEPS.iter().find_map(by_step)
+    }
+}
