@@ -39,7 +39,7 @@ pub(crate) use nodal_columns::{mass_columns, stiffness_columns};
 pub(crate) use positive_basis::PositiveBasis;
 pub use rigid_body_modes::rigid_body_modes;
 pub(crate) use shape_derivative::{
-    body_force_by_places, centrifugal_by_places, gravity_by_places, internal_work_by_places,
+    body_force_by_places, centrifugal_by_places, gravity_by_places, internal_work_by_places, interpolated,
 };
 pub(crate) use springs::Springs;
 pub use stiffness::stiffness;

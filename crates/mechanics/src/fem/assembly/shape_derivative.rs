@@ -198,7 +198,7 @@ fn force_by_places(
 }
 
 /// A field at a point of a cell with this number of nodes, from its values there.
-pub(super) fn interpolated(values: &PerNode<[f64; 3]>, shape: &PerNode<f64>, nodes: usize) -> [f64; 3] {
+pub(crate) fn interpolated(values: &PerNode<[f64; 3]>, shape: &PerNode<f64>, nodes: usize) -> [f64; 3] {
     values
         .iter()
         .zip(shape)

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::fem::assembly::{
     Density, FacetPoint, Kinks, Points, area_and_integral, body_force_by_places, centrifugal_by_places,
-    gravity_by_places, integral_by_places, turning_traction,
+    gravity_by_places, integral_by_places, interpolated, turning_traction,
 };
 use crate::fem::geometry::{cross, dot, minus};
 use crate::fem::{Boundary, ElasticBody};
@@ -165,13 +165,7 @@ pub(super) fn add_springs(
 
 /// A nodal field at a point of a facet.
 fn at_point(body: &ElasticBody, nodal: &[f64], point: &FacetPoint) -> [f64; 3] {
-    let dimension = body.dimension();
-    let mut sum = [0.0; 3];
-    for (&node, share) in point.nodes.iter().zip(point.shape) {
-        let own = &nodal[dimension * node..dimension * (node + 1)];
-        sum.iter_mut().zip(own).for_each(|(sum, part)| *sum += share * part);
-    }
-    sum
+    interpolated(&body.gather(nodal, point.nodes), &point.shape, point.nodes.len())
 }
 
 /// The factor of a profile at a place, and its change with the place.

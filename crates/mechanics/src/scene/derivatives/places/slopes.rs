@@ -2,9 +2,10 @@
 
 use std::collections::HashMap;
 
-use crate::fem::geometry::{distance, dot};
+use crate::fem::geometry::dot;
 use crate::scene::input::entry::point;
-use crate::scene::input::obstacle::{ObstacleRow, PlacedObstacle};
+use crate::scene::input::obstacle::{ObstacleRow, PlacedObstacle, shortest_edges};
+use crate::scene::models::condition::ON_THE_AXIS;
 use crate::scene::{Model, Rule};
 
 /// The steps of differences, in lengths of the shortest edge at a node: from one at which rounding is far below the tolerance of a kink to
@@ -35,8 +36,8 @@ pub(super) struct Slopes<'a> {
     number: usize,
     obstacle: &'a PlacedObstacle,
     candidate_of: HashMap<usize, usize>,
-    /// The shortest distance of a candidate to another node of its facets; none where facets are points.
-    edges: HashMap<usize, f64>,
+    /// The shortest edge of the facets at each node of the mesh; infinite where facets are points.
+    edges: Vec<f64>,
 }
 
 impl<'a> Slopes<'a> {
@@ -44,18 +45,8 @@ impl<'a> Slopes<'a> {
     pub fn of(model: &'a Model, number: usize) -> Self {
         let (obstacle, nodes) = (&model.obstacles()[number], model.mesh().nodes());
         let candidates = obstacle.candidates().iter().enumerate();
-        let mut edges: HashMap<usize, f64> = HashMap::new();
-        for facet in model.mesh().boundary(obstacle.boundary()).into_iter().flat_map(|boundary| boundary.facets()) {
-            for (place, &node) in facet.iter().enumerate() {
-                for &other in &facet[..place] {
-                    let edge = distance(nodes[node], nodes[other]);
-                    [node, other].iter().for_each(|&end| {
-                        let own = edges.entry(end).or_insert(edge);
-                        *own = own.min(edge);
-                    });
-                }
-            }
-        }
+        let boundary = model.mesh().boundary(obstacle.boundary());
+        let edges = boundary.map_or_else(Vec::new, |boundary| shortest_edges(boundary, nodes));
         let candidate_of = candidates.map(|(candidate, &(node, _))| (node, candidate)).collect();
         Slopes { model, number, obstacle, candidate_of, edges }
     }
@@ -132,7 +123,7 @@ impl<'a> Slopes<'a> {
     /// Returns `true` if a node lies on a plane of symmetry normal to an axis, or on the axis of revolution.
     fn is_symmetric(&self, node: usize, axis: usize) -> bool {
         let (mesh, at) = (self.model.mesh(), self.model.mesh().nodes()[node]);
-        let is_on_axis = self.model.body().formulation().is_axisymmetric() && at[0] <= STEPS[3] * mesh.size();
+        let is_on_axis = self.model.body().formulation().is_axisymmetric() && at[0] <= ON_THE_AXIS * mesh.size();
         self.model.axes_of_symmetry(&at)[axis] || (axis == 0 && is_on_axis)
     }
 
@@ -149,7 +140,8 @@ impl<'a> Slopes<'a> {
     /// The change of `[gap, normal x, y, z]` with the place of a node along an axis, by differences of fourth order; `None` at a kink.
     fn difference(&self, node: usize, axis: usize) -> Option<[f64; 4]> {
         let (at, mesh) = (self.model.mesh().nodes()[node], self.model.mesh());
-        let size = self.edges.get(&node).copied().unwrap_or_else(|| mesh.size());
+        let edge = self.edges.get(node).copied().filter(|edge| edge.is_finite());
+        let size = edge.unwrap_or_else(|| mesh.size());
         let by_step = |share: &f64| {
             let step = share * size;
             let moved = |steps: f64| {

@@ -255,6 +255,38 @@ fn obstacles_under_a_force_inclined_supports_and_planes_of_symmetry_take_part() 
     Moving::of(&pressed, |at| at[0] > 0.0).check(3);
 }
 
+#[test]
+fn nodes_on_an_axis_of_revolution_change_as_differences_say_where_they_can_move() {
+    for rule in ["approach", "closest-point"] {
+        let scene = scene(&format!(
+            r#"{{"model": "axisymmetric", {MATERIAL},
+                "body": {{"rectangle": {{"x": {{"points": [0, 1], "divisions": [2]}}, "y": {{"points": [0, 1], "divisions": [2]}},
+                    "element": "t6"}}}},
+                "supports": [{{"on": {{"boundary": "bottom"}}, "y": 0}}],
+                "loads": [{{"pressure": {{"boundary": "top", "value": 0.3}}}}, {{"traction": {{"boundary": "left", "value": [0.2, 0.1]}}}}],
+                {}}}"#,
+            obstacle("+y", rule, r#"{"circle": {"apex": [0, 1.1], "radius": 1.5}}"#)
+        ));
+        // Five nodes on the axis move along it.
+        Moving::of(&scene, |at| at[0] > 0.0).check(5);
+    }
+}
+
+#[test]
+fn bars_and_equations_between_nodes_take_part() {
+    let bar = scene(&format!(
+        r#"{{"model": "bar", {MATERIAL}, "body": {{"bar": {{"x": {{"points": [0, 2], "divisions": [4]}}, "area": 0.3}}}},
+            "supports": [{{"on": {{"boundary": "left"}}, "x": 0.01}}], "temperature": [{{"value": 0.5, "gradient": [0.3]}}],
+            "loads": [{{"body-force": [0.3]}}, {{"traction": {{"boundary": "right", "value": [0.2]}}}}],
+            "obstacles": [{{"boundary": "right", "approach": "+x", "shape": {{"plane": {{"point": [2.1], "normal": [1]}}}}}}]}}"#
+    ));
+    Moving::of(&bar, |_| true).check(0);
+    let terms = r#"[{"on": {"point": [1, 1]}, "x": 1}, {"on": {"point": [2, 0.5]}, "y": -0.5}]"#;
+    let tied = plane("plane-strain", "q4", &format!(r#""ties": [{{"equation": {{"terms": {terms}, "value": 0.1}}}}]"#));
+    // The places of both nodes name them.
+    Moving::of(&tied, |_| false).check(4);
+}
+
 /// A bar of matching blocks; all rows lie along the approach direction.
 #[test]
 fn pairs_of_nodes_along_a_direction_change_as_differences_say() {
