@@ -15,7 +15,8 @@ use crate::scene::models::rows::ContactRow;
 ///
 /// # Errors
 /// One sentence: what has no derivative, or none yet.
-#[allow(dead_code)] // For the gradients of pressures.
+// For the gradients of pressures.
+#[allow(dead_code)]
 pub(crate) fn areas_by_places(model: &Model, weights: &[f64]) -> Result<Vec<f64>, String> {
     model.check_multiplier(weights).map_err(|error| error.to_string())?;
     let mut gradient = vec![0.0; model.body().nodal_dofs()];

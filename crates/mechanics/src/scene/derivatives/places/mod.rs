@@ -21,7 +21,8 @@ mod slopes;
 #[cfg(test)]
 mod tests;
 
-#[allow(unused_imports)] // For the gradients of pressures.
+// For the gradients of pressures.
+#[allow(unused_imports)]
 pub(crate) use areas::areas_by_places;
 
 use crate::error::Error;
@@ -43,7 +44,8 @@ pub(crate) struct Pairing<'a> {
 ///
 /// # Errors
 /// One sentence: what depends on the places of nodes in a way that has no derivative, or none yet.
-#[allow(dead_code)] // For the gradients of results, which solve the adjoint problems.
+// For the gradients of results, which solve the adjoint problems.
+#[allow(dead_code)]
 pub(crate) fn by_places(scene: &Scene, pairing: &Pairing) -> Result<Vec<f64>, String> {
     refused(scene).map_or(Ok(()), Err)?;
     let said = |error: Error| error.to_string();

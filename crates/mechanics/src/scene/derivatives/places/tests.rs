@@ -247,7 +247,8 @@ fn obstacles_under_a_force_inclined_supports_and_planes_of_symmetry_take_part() 
         r#"{{"model": "plane-strain", {MATERIAL},
             "body": {{"rectangle": {{"x": {{"points": [0, 1], "divisions": [2]}}, "y": {{"points": [0, 1], "divisions": [2]}}}}}},
             "symmetry": ["x"],
-            "supports": [{{"on": {{"boundary": "bottom"}}, "normal": [0.0, -1]}}, {{"on": {{"boundary": "right"}}, "normal": [1, 0.4], "value": 0.03}}],
+            "supports": [{{"on": {{"boundary": "bottom"}}, "normal": [0.0, -1]}},
+                {{"on": {{"boundary": "right"}}, "normal": [1, 0.4], "value": 0.03}}],
             "obstacles": [{{"boundary": "top", "approach": "+y", "rule": "closest-point", "force": 2,
                 "shape": {{"circle": {{"apex": [0, 1.1], "radius": 1.5}}}}}}]}}"#
     ));
@@ -383,11 +384,13 @@ fn an_obstacle_of_a_user_takes_part() {
 
 #[test]
 fn what_has_no_derivative_yet_is_refused_with_one_sentence() {
-    let profile = r#""supports": [{"on": {"boundary": "top"}, "x": 0.1, "profile": {"along": [1, 0], "places": [1, 2], "factors": [0, 1]}}]"#;
+    let profile = r#""supports": [{"on": {"boundary": "top"}, "x": 0.1,
+        "profile": {"along": [1, 0], "places": [1, 2], "factors": [0, 1]}}]"#;
     let held = |rest: &str| {
         scene(&format!(
             r#"{{"model": "plane-strain", {MATERIAL},
-                "body": {{"rectangle": {{"x": {{"points": [1, 2], "divisions": [2]}}, "y": {{"points": [0, 1], "divisions": [2]}}}}}}, {rest}}}"#
+                "body": {{"rectangle": {{"x": {{"points": [1, 2], "divisions": [2]}},
+                    "y": {{"points": [0, 1], "divisions": [2]}}}}}}, {rest}}}"#
         ))
     };
     let bottom = r#""supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}]"#;
@@ -414,7 +417,8 @@ fn what_has_no_derivative_yet_is_refused_with_one_sentence() {
     assert!(reason(&mortar).contains("do not match"), "{}", reason(&mortar));
     let model = mortar.build().unwrap();
     assert!(areas_by_places(&model, &vec![1.0; model.rows().len()]).unwrap_err().contains("do not match"));
-    let turning = r#"{"orthotropic": {"young": [3, 1, 2], "poisson": [0.2, 0.3, 0.1], "shear": [0.6, 0.5, 0.4], "around": {"point": [0, 0]}}}"#;
+    let turning = r#"{"orthotropic": {"young": [3, 1, 2],
+        "poisson": [0.2, 0.3, 0.1], "shear": [0.6, 0.5, 0.4], "around": {"point": [0, 0]}}}"#;
     let around = Scene { material: Some(serde_json::from_str(turning).unwrap()), ..around };
     assert!(reason(&around).contains("turn around a line"));
 }
