@@ -54,7 +54,7 @@ const WINGS: [(&[&str], &[&str]); 5] = [
             "norms",
         ],
     ),
-    (&["scene"], &["input", "models", "motions", "answers"]),
+    (&["scene"], &["input", "models", "motions", "answers", "derivatives"]),
     (&["output"], &["text", "json", "draw", "file", "plots", "view", "picture", "reports", "page", "folder"]),
 ];
 

@@ -100,6 +100,11 @@ impl Formulation {
         }
     }
 
+    /// The change of the [measure](Self::measure) with the coordinate x.
+    pub(crate) fn measure_by_x(&self) -> f64 {
+        if self.is_axisymmetric() { TAU } else { 0.0 }
+    }
+
     /// Returns `true` if elements can lock near incompressibility. They cannot if the body is free to strain across the plane or the bar.
     pub fn can_lock(&self) -> bool {
         !matches!(self, Formulation::Bar { .. } | Formulation::PlaneStress { .. })

@@ -83,6 +83,27 @@ impl<T> Derivative<T> {
         }
     }
 
+}
+
+impl<T> Derivative<Result<T, String>> {
+    /// The same, unknown for the first reason that there is.
+    pub fn transposed(self) -> Derivative<T> {
+        let found = match self {
+            Derivative::Proven(value) => value.map(Derivative::Proven),
+            Derivative::OneSided { left, right } => {
+                left.and_then(|left| Ok(Derivative::OneSided { left, right: right? }))
+            }
+            Derivative::Undecided { between, rows } => {
+                let between = between.into_iter().collect::<Result<_, _>>();
+                between.map(|between| Derivative::Undecided { between, rows })
+            }
+            Derivative::Unknown { why } => Err(why),
+        };
+        found.unwrap_or_else(|why| Derivative::Unknown { why })
+    }
+}
+
+impl<T> Derivative<T> {
     /// The derivative, if it is proven.
     pub fn proven(&self) -> Option<&T> {
         if let Derivative::Proven(value) = self { Some(value) } else { None }

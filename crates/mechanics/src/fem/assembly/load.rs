@@ -35,7 +35,7 @@ pub fn add_traction_field(
     field: impl Fn([f64; 3], [f64; 3]) -> [f64; 3],
     load: &mut [f64],
 ) {
-    add_traction_with_kinks(body, boundary, Kinks { along: [0.0; 3], at: &[] }, field, load);
+    add_traction_with_kinks(body, boundary, Kinks::NONE, field, load);
 }
 
 /// Planes normal to a unit vector, at these coordinates along it, increasing.
@@ -45,6 +45,11 @@ pub(crate) struct Kinks<'a> {
     pub at: &'a [f64],
 }
 
+impl Kinks<'_> {
+    /// No kinks.
+    pub const NONE: Kinks<'static> = Kinks { along: [0.0; 3], at: &[] };
+}
+
 /// The same for a field with kinks: facets are cut at the kinks, and every piece has five quadrature points in each direction.
 pub(crate) fn add_traction_with_kinks(
     body: &ElasticBody,
@@ -52,6 +57,17 @@ pub(crate) fn add_traction_with_kinks(
     kinks: Kinks,
     field: impl Fn([f64; 3], [f64; 3]) -> [f64; 3],
     load: &mut [f64],
+) {
+    let visit = &mut |point: &FacetPoint| add_share(body, point, field(point.at, point.normal), load);
+    for_each_fine_point(body, boundary, kinks, visit);
+}
+
+/// Calls `visit` for five points in each direction of every facet, or of every piece of it between kinks.
+pub(super) fn for_each_fine_point(
+    body: &ElasticBody,
+    boundary: &Boundary,
+    kinks: Kinks,
+    visit: &mut dyn FnMut(&FacetPoint),
 ) {
     let (reference, nodes) = (boundary.kind.reference(), body.mesh().nodes());
     let whole = Tabulated::fine(reference);
@@ -66,7 +82,6 @@ pub(crate) fn add_traction_with_kinks(
             _ => Cow::Borrowed(&whole),
         }
     };
-    let visit = &mut |point: &FacetPoint| add_share(body, point, field(point.at, point.normal), load);
     for_each_point_of(body, boundary, &table_of, visit);
 }
 

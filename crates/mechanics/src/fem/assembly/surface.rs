@@ -8,7 +8,7 @@ use crate::fem::geometry::{length, unit};
 use crate::fem::mesh::{Boundary, FacetKind, Mesh};
 
 /// A quadrature point of a facet.
-pub(super) struct FacetPoint<'a> {
+pub(crate) struct FacetPoint<'a> {
     /// The nodes of the facet.
     pub nodes: &'a [usize],
     /// Values of its shape functions, node by node.
@@ -21,6 +21,10 @@ pub(super) struct FacetPoint<'a> {
     pub extent: f64,
     /// The same as an area; thickness, cross-section or circumference included.
     pub area: f64,
+    /// The facet in place.
+    pub cell: &'a Cell,
+    /// Derivatives of its shape functions, node by node.
+    pub derivative: &'a PerNode<[f64; 3]>,
 }
 
 /// Calls `visit` for every quadrature point of a boundary, facet by facet.
@@ -57,6 +61,8 @@ pub(super) fn for_each_point_of<'a>(
                 normal: vector.map(|component| sense * component / size),
                 extent,
                 area: extent * body.formulation().measure(place[0]),
+                cell: &cell,
+                derivative: &at.derivative,
             });
         }
     }
@@ -120,7 +126,12 @@ pub(crate) fn facet_sizes(body: &ElasticBody, boundary: &Boundary) -> Vec<(f64, 
 /// The nodes of a boundary in its order, each with its outward unit normal: the mean over the facets around the node. Zero if these
 /// cancel.
 pub fn node_normals(body: &ElasticBody, boundary: &Boundary) -> Vec<(usize, [f64; 3])> {
-    let nodes = boundary.nodes();
+    let sums = normal_sums(body, boundary);
+    boundary.nodes().into_iter().map(|node| (node, unit(sums.get(node).copied().unwrap_or_default()))).collect()
+}
+
+/// For each node of the mesh the integral of the square of its shape function times the outward normal of a boundary, in area.
+pub(crate) fn normal_sums(body: &ElasticBody, boundary: &Boundary) -> Vec<[f64; 3]> {
     let mut sums = vec![[0.0; 3]; body.mesh().nodes().len()];
     for_each_point(body, boundary, &mut |point| {
         for (&node, share) in point.nodes.iter().zip(point.shape) {
@@ -129,7 +140,7 @@ pub fn node_normals(body: &ElasticBody, boundary: &Boundary) -> Vec<(usize, [f64
             sums[node].iter_mut().zip(point.normal).for_each(|(sum, component)| *sum += weight * component);
         }
     });
-    nodes.into_iter().map(|node| (node, unit(sums.get(node).copied().unwrap_or_default()))).collect()
+    sums
 }
 
 /// The centre of each facet of a boundary, with the outward unit normal there.

@@ -168,6 +168,14 @@ impl ElasticBody {
         Ok(self)
     }
 
+    /// The same body with one of its nodal coordinates changed.
+    #[cfg(test)]
+    pub(crate) fn moved(&self, dof: usize, by: f64) -> Self {
+        let mut body = self.clone();
+        body.mesh = body.mesh.moved(dof / self.dimension(), dof % self.dimension(), by);
+        body
+    }
+
     /// The mesh with the elements of all regions, region by region.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
@@ -361,6 +369,16 @@ pub(crate) struct Strained<'a> {
     mean_dilatation: Option<f64>,
 }
 
+/// A displacement at a point of an element.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Elastic {
+    /// `[i][k]`: the derivative of component i along axis k.
+    pub slope: [[f64; 3]; 3],
+    pub strain: Symmetric,
+    /// The stress of the strain, without own stress; with the mean dilatation if the integration takes it.
+    pub stress: Symmetric,
+}
+
 impl Strained<'_> {
     /// A tabulated point of the element in place, and the stress there.
     #[inline]
@@ -369,6 +387,25 @@ impl Strained<'_> {
         let point = self.body.point(cell, at);
         let stress = self.element.stress(at, &point.strain(&self.local, cell.unit()), self.mean_dilatation);
         (point, stress)
+    }
+
+    /// The displacement at a tabulated point: its gradient, its strain, and the stress of this strain alone.
+    #[inline]
+    pub fn elastic(&self, at: &TabulatedPoint) -> Elastic {
+        let (cell, law) = (&self.element.cell, &self.element.phase.law);
+        let point = self.body.point(cell, at);
+        let strain = point.strain(&self.local, cell.unit());
+        let dilatation = self.mean_dilatation.unwrap_or_else(|| trace(&strain));
+        Elastic {
+            slope: point.slope(&self.local).map(|row| row.map(|entry| entry / cell.unit())),
+            strain,
+            stress: law.stress(&strain, dilatation, || cell.place(&at.shape)),
+        }
+    }
+
+    /// The dilatation that replaces that of every point, if the integration takes its mean.
+    pub fn mean_dilatation(&self) -> Option<f64> {
+        self.mean_dilatation
     }
 
     /// The strain at a tabulated point, and the stress there: tensor components `[xx, yy, zz, xy, yz, zx]`. In plane stress the strain

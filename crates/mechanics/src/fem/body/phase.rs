@@ -65,6 +65,13 @@ impl OwnStress {
         temperature: Temperature { value: 0.0, gradient: [0.0; 3] },
     };
 
+    /// The change of its work, per volume, on an engineering strain with the place along each axis, for a law along x, y and z.
+    #[inline]
+    pub fn work_by_place(&self, strain: &Symmetric) -> [f64; 3] {
+        let per_degree: f64 = self.per_degree.iter().zip(strain).map(|(stress, strain)| stress * strain).sum();
+        self.temperature.gradient.map(|slope| slope * per_degree)
+    }
+
     /// The stress at a place, where the law has these axes.
     #[inline]
     fn at(&self, place: [f64; 3], axes: &Option<[[f64; 3]; 3]>) -> Symmetric {

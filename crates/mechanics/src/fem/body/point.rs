@@ -36,7 +36,7 @@ impl LocalPoint {
 
     /// The derivative of each component of the displacement along each axis, per unit.
     #[inline]
-    fn slope(&self, displacement: &PerNode<[f64; 3]>) -> [[f64; 3]; 3] {
+    pub fn slope(&self, displacement: &PerNode<[f64; 3]>) -> [[f64; 3]; 3] {
         let mut slope = [[0.0; 3]; 3];
         for node in 1..self.nodes {
             // Relative to the first node: a translation then gives exactly zero strain.

@@ -1,7 +1,7 @@
 //! One cell in place: x = sum N_a x_a, the Jacobian J = dx/dxi, gradients dN/dx, area vectors.
 
 use super::{MAX_NODES, PerNode, ReferenceElement, Tabulated};
-use crate::fem::geometry::{cross, dot};
+use crate::fem::geometry::{COORDINATES, cross, dot};
 
 /// The Jacobian of an element that is inverted or has no volume.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -196,6 +196,18 @@ impl Cell {
             1 => [tangents[0][1], -tangents[0][0], 0.0],
             _ => cross(tangents[0], tangents[1]),
         }
+    }
+
+    /// The change of `along . area vector` with the place of each node of a facet, both in the unit of the cell.
+    pub fn area_vector_by_places(&self, derivative: &PerNode<[f64; 3]>, along: [f64; 3]) -> PerNode<[f64; 3]> {
+        let tangents = self.jacobian(derivative);
+        // An edge is a face with the second tangent along z.
+        let turned = match self.reference.dimension {
+            0 => [[0.0; 3]; 2],
+            1 => [cross(COORDINATES[2], along), [0.0; 3]],
+            _ => [cross(tangents[1], along), cross(along, tangents[0])],
+        };
+        derivative.map(|slope| [0, 1, 2].map(|axis| slope[0] * turned[0][axis] + slope[1] * turned[1][axis]))
     }
 }
 

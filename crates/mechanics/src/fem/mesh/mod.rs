@@ -142,6 +142,13 @@ impl Mesh {
         &self.nodes
     }
 
+    /// The same mesh with one coordinate of a node changed.
+    #[cfg(test)]
+    pub(crate) fn moved(mut self, node: usize, axis: usize, by: f64) -> Self {
+        self.nodes[node][axis] += by;
+        self
+    }
+
     /// The kinds of its elements, each once, in the order of their first element.
     pub fn kinds(&self) -> impl Iterator<Item = ElementKind> + '_ {
         let is_first = |place: usize| self.blocks[..place].iter().all(|block| block.kind != self.blocks[place].kind);

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use super::effect::{Effect, Why, in_words};
 use crate::error::{Error, nearly};
 use crate::fem::ElasticBody;
+use crate::fem::body::BodyElement;
 use crate::fem::assembly::internal_force;
 use crate::fem::element::TabulatedPoint;
 use crate::fem::geometry::{Symmetric, cross, distance, dot};
@@ -345,10 +346,13 @@ fn stress(answer: &Answer, place: [f64; 3], component: usize, blank: Branch) -> 
 
 /// The stress of an element at reference coordinates.
 fn stress_in(body: &ElasticBody, displacement: &[f64], element: usize, at: [f64; 3]) -> Option<Symmetric> {
-    let tables = body.tabulated();
-    let element = body.element(element)?;
+    Some(stress_of(body, displacement, &body.element(element)?, at))
+}
+
+/// The same of an element with any coordinates of its nodes.
+pub(super) fn stress_of(body: &ElasticBody, displacement: &[f64], element: &BodyElement, at: [f64; 3]) -> Symmetric {
     let point = TabulatedPoint::new(element.kind.reference(), at, 0.0);
-    Some(body.strained(&tables, displacement, &element).at(&point).1)
+    body.strained(&body.tabulated(), displacement, element).at(&point).1
 }
 
 /// A component of a stress, or its equivalent stress.
@@ -360,7 +364,7 @@ fn of_component(stress: &Symmetric, component: usize) -> f64 {
 }
 
 /// The derivative of a component along a change of the stress.
-fn by_component(stress: &Symmetric, change: &Symmetric, component: usize) -> f64 {
+pub(super) fn by_component(stress: &Symmetric, change: &Symmetric, component: usize) -> f64 {
     if let Some(&value) = change.get(component) {
         return value;
     }

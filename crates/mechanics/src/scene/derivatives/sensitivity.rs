@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::effect::{Effect, Why, effect};
 use super::output::{Branch, Output};
 use super::parameter::{Kind, Parameter};
+use super::places::{Pairing, by_places};
 use crate::error::Error;
 use crate::scene::answers::answer::Answer;
 use crate::scene::input::entry::wrong;
@@ -228,8 +229,10 @@ impl At<'_> {
                 }
                 Some(Err(why)) => row(parameter, unknown(why), None, None),
                 None => {
-                    let why = "the places of nodes have no derivatives yet".to_string();
-                    row(parameter, unknown(&why), None, None)
+                    let of_branches = branches.iter().zip(&adjoints);
+                    let found = of_branches.map(|(branch, adjoint)| self.by_places(branch, adjoint)).collect();
+                    let places = joined_places(found);
+                    row(parameter, places.map(|places| signorini_qp::largest(places)), None, Some(places))
                 }
             });
         }
@@ -239,6 +242,18 @@ impl At<'_> {
             _ => vec![format!("{} tie for the largest value: the output itself has a kink", names.join(" and "))],
         };
         Ok(Sensitivity { output, value, unit, by, notes })
+    }
+
+    /// The derivative of a branch with respect to the places of all nodes.
+    fn by_places(&self, branch: &Branch, adjoint: &Derivative<Adjoint>) -> Derivative<Vec<f64>> {
+        let rows = self.answer.model().rows().len();
+        let of_piece = |adjoint: &Adjoint| -> Result<Vec<f64>, Why> {
+            let pairing = Pairing { answer: self.answer, adjoint: &adjoint.displacement, forces: &adjoint.multiplier[..rows] };
+            let (mut gradient, direct) = (by_places(self.scene, &pairing)?, branch.direct_by_places(self.answer)?);
+            gradient.iter_mut().zip(direct).for_each(|(entry, direct)| *entry += direct);
+            Ok(gradient)
+        };
+        adjoint.map(of_piece).transposed()
     }
 
     /// The derivative of a branch along the effect of a parameter: at a kink of the answer by tangents, which tell its sides apart.
@@ -257,6 +272,23 @@ impl At<'_> {
                 + direct
         }))
     }
+}
+
+/// The derivatives of branches that tie, as one.
+fn joined_places(mut branches: Vec<Derivative<Vec<f64>>>) -> Derivative<Vec<f64>> {
+    if branches.len() == 1 {
+        return branches.swap_remove(0);
+    }
+    let mut between = Vec::new();
+    for branch in branches {
+        match branch {
+            Derivative::Proven(value) => between.push(value),
+            Derivative::OneSided { left, right } => between.extend([left, right]),
+            Derivative::Undecided { between: own, .. } => between.extend(own),
+            Derivative::Unknown { .. } => return branch,
+        }
+    }
+    Derivative::Undecided { between, rows: Vec::new() }
 }
 
 /// The derivative of the largest of several branches that tie: theirs, if all agree.

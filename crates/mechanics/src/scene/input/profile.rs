@@ -34,6 +34,15 @@ impl Profile {
         between(&self.points, dot(self.along, point))
     }
 
+    /// The change of the factor with the place along each axis, at a point off its kinks.
+    pub fn by_place(&self, point: [f64; 3]) -> [f64; 3] {
+        let after = self.places.partition_point(|&place| place <= dot(self.along, point));
+        match after.checked_sub(1).and_then(|before| self.points.get(before..after + 1)) {
+            Some(&[(from, first), (to, last)]) => self.along.map(|part| part * (last - first) / (to - from)),
+            _ => [0.0; 3],
+        }
+    }
+
     /// The places of its kinks.
     pub fn kinks(&self) -> Kinks<'_> {
         Kinks { along: self.along, at: &self.places }

@@ -10,7 +10,7 @@ use crate::scene::input::profile::Profile;
 use crate::scene::input::schema::{Place, Scene, SupportSpec};
 
 /// Radii below this times the body's size lie on the axis of revolution.
-pub(super) const ON_THE_AXIS: f64 = 1e-12;
+pub(crate) const ON_THE_AXIS: f64 = 1e-12;
 
 /// The normals of a flat boundary have one direction up to the rounding of coordinates: one minus the cosine of their angle.
 const FLAT: f64 = 1e-9;

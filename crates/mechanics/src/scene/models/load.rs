@@ -16,6 +16,26 @@ use crate::scene::input::schema::load::{CentrifugalSpec, ForceSpec, LoadSpec, Mo
 use crate::scene::input::schema::profile::ProfileSpec;
 use crate::scene::input::schema::{ModelSpec, Scene};
 
+/// A load of a scene, checked.
+pub(crate) enum Acting<'a> {
+    /// A traction, in force per area, times a factor over space.
+    Traction { boundary: &'a Boundary, traction: [f64; 3], profile: Option<Profile> },
+    /// A pressure, in force per area, times a factor over space.
+    Pressure { boundary: &'a Boundary, pressure: f64, profile: Option<Profile> },
+    /// A force that is spread evenly over the area of a boundary.
+    Spread { boundary: &'a Boundary, force: [f64; 3] },
+    /// Forces at nodes.
+    AtNodes(Vec<(usize, [f64; 3])>),
+    /// A moment.
+    Moment { boundary: &'a Boundary, moment: [f64; 3] },
+    /// A force per volume.
+    BodyForce([f64; 3]),
+    /// An acceleration of bodies that all have a density.
+    Gravity([f64; 3]),
+    /// A rotation by `omega` about an axis, a unit vector and a point, of bodies that all have a density.
+    Centrifugal { omega: f64, axis: ([f64; 3], [f64; 3]) },
+}
+
 impl Scene {
     pub(crate) fn load(&self, body: &ElasticBody) -> Result<Vec<f64>, Error> {
         let mut load = vec![0.0; body.nodal_dofs()];
@@ -30,25 +50,63 @@ impl Scene {
 
     /// Adds load number `index` to the nodal load.
     pub(crate) fn add_load(&self, body: &ElasticBody, index: usize, load: &mut [f64]) -> Result<(), Error> {
+        match self.acting(body, index)? {
+            Acting::Traction { boundary, traction, profile: None } => add_traction(body, boundary, traction, load),
+            Acting::Traction { boundary, traction, profile: Some(profile) } => {
+                let field = |at, _| traction.map(|component| profile.at(at) * component);
+                add_traction_with_kinks(body, boundary, profile.kinks(), field, load);
+            }
+            Acting::Pressure { boundary, pressure, profile: None } => add_pressure(body, boundary, pressure, load),
+            Acting::Pressure { boundary, pressure, profile: Some(profile) } => {
+                let field = |at, normal: [f64; 3]| normal.map(|component| -pressure * profile.at(at) * component);
+                add_traction_with_kinks(body, boundary, profile.kinks(), field, load);
+            }
+            Acting::Spread { boundary, force } => {
+                let path = format!("loads[{index}].force.boundary");
+                add_traction(body, boundary, spread(body, boundary, force, &path)?, load);
+            }
+            Acting::AtNodes(forces) => {
+                let dimension = body.dimension();
+                for (node, force) in forces {
+                    let entries = &mut load[dimension * node..dimension * (node + 1)];
+                    entries.iter_mut().zip(force).for_each(|(entry, component)| *entry += component);
+                }
+            }
+            Acting::Moment { boundary, moment } => add_moment(body, boundary, moment, load).ok_or_else(|| {
+                let name = &boundary.name;
+                let message = format!(
+                    "no turning traction on `{name}` has this moment: its facets lie on a straight line, or its size is \
+                     not finite"
+                );
+                wrong(format!("loads[{index}].moment.boundary"), message)
+            })?,
+            Acting::BodyForce(force) => add_body_force(body, force, load),
+            Acting::Gravity(acceleration) => add_gravity(body, acceleration, load)?,
+            Acting::Centrifugal { omega, axis } => add_centrifugal(body, omega, axis, load)?,
+        }
+        Ok(())
+    }
+
+    /// Load number `index` on a body.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] at the JSON path of a value that describes no load.
+    pub(crate) fn acting<'a>(&self, body: &'a ElasticBody, index: usize) -> Result<Acting<'a>, Error> {
         let placed = |kind: &str| PlacedLoad { body, path: format!("loads[{index}].{kind}"), model: self.model };
         match &self.loads[index] {
-            LoadSpec::Traction(spec) => placed("traction").add_traction(spec, load),
-            LoadSpec::Pressure(spec) => placed("pressure").add_pressure(spec, load),
-            LoadSpec::Force(spec) => placed("force").add_force(spec, load),
-            LoadSpec::NodalForces(forces) => placed("nodal-forces").add_nodal(forces, load),
-            LoadSpec::Moment(spec) => placed("moment").add_moment(spec, load),
-            LoadSpec::BodyForce(value) => {
-                let placed = placed("body-force");
-                add_body_force(body, placed.vector("", value)?, load);
-                Ok(())
-            }
+            LoadSpec::Traction(spec) => placed("traction").traction(spec),
+            LoadSpec::Pressure(spec) => placed("pressure").pressure(spec),
+            LoadSpec::Force(spec) => placed("force").force(spec),
+            LoadSpec::NodalForces(forces) => placed("nodal-forces").nodal(forces),
+            LoadSpec::Moment(spec) => placed("moment").moment(spec),
+            LoadSpec::BodyForce(value) => Ok(Acting::BodyForce(placed("body-force").vector("", value)?)),
             LoadSpec::Gravity(value) => {
                 let placed = placed("gravity");
                 let acceleration = placed.vector("", value)?;
                 placed.check_density()?;
-                add_gravity(body, acceleration, load)
+                Ok(Acting::Gravity(acceleration))
             }
-            LoadSpec::Centrifugal(spec) => placed("centrifugal").add_centrifugal(spec, load),
+            LoadSpec::Centrifugal(spec) => placed("centrifugal").centrifugal(spec),
         }
     }
 }
@@ -74,7 +132,7 @@ struct PlacedLoad<'a> {
     model: ModelSpec,
 }
 
-impl PlacedLoad<'_> {
+impl<'a> PlacedLoad<'a> {
     fn at(&self, field: &str) -> String {
         if field.is_empty() { self.path.clone() } else { format!("{}.{field}", self.path) }
     }
@@ -83,7 +141,7 @@ impl PlacedLoad<'_> {
         vector(&self.at(field), entries, self.body.dimension())
     }
 
-    fn boundary(&self, name: &str) -> Result<&Boundary, Error> {
+    fn boundary(&self, name: &str) -> Result<&'a Boundary, Error> {
         boundary(self.body.mesh(), name, &self.at("boundary"))
     }
 
@@ -91,73 +149,50 @@ impl PlacedLoad<'_> {
         spec.map(|spec| Profile::of(spec, &self.at("profile"), self.body.dimension())).transpose()
     }
 
-    fn add_traction(&self, spec: &TractionSpec, load: &mut [f64]) -> Result<(), Error> {
+    fn traction(&self, spec: &TractionSpec) -> Result<Acting<'a>, Error> {
         let boundary = self.boundary(&spec.boundary)?;
         let traction = self.vector("value", &spec.value)?;
-        match self.profile(spec.profile.as_ref())? {
-            None => add_traction(self.body, boundary, traction, load),
-            Some(profile) => {
-                let field = |at, _| traction.map(|component| profile.at(at) * component);
-                add_traction_with_kinks(self.body, boundary, profile.kinks(), field, load);
-            }
-        }
-        Ok(())
+        Ok(Acting::Traction { boundary, traction, profile: self.profile(spec.profile.as_ref())? })
     }
 
-    fn add_pressure(&self, spec: &PressureSpec, load: &mut [f64]) -> Result<(), Error> {
+    fn pressure(&self, spec: &PressureSpec) -> Result<Acting<'a>, Error> {
         let boundary = self.boundary(&spec.boundary)?;
         finite(self.at("value"), spec.value)?;
-        match self.profile(spec.profile.as_ref())? {
-            None => add_pressure(self.body, boundary, spec.value, load),
-            Some(profile) => {
-                let field = |at, normal: [f64; 3]| normal.map(|component| -spec.value * profile.at(at) * component);
-                add_traction_with_kinks(self.body, boundary, profile.kinks(), field, load);
-            }
-        }
-        Ok(())
+        Ok(Acting::Pressure { boundary, pressure: spec.value, profile: self.profile(spec.profile.as_ref())? })
     }
 
-    fn add_force(&self, spec: &ForceSpec, load: &mut [f64]) -> Result<(), Error> {
-        let dimension = self.body.dimension();
+    fn force(&self, spec: &ForceSpec) -> Result<Acting<'a>, Error> {
         match (&spec.at, &spec.boundary) {
             (Some(at), None) => {
                 let node = node_at(self.body.mesh(), at, &self.at("at"))?;
-                let force = self.vector("value", &spec.value)?;
-                let entries = &mut load[dimension * node..dimension * (node + 1)];
-                entries.iter_mut().zip(force).for_each(|(entry, component)| *entry += component);
-                Ok(())
+                Ok(Acting::AtNodes(vec![(node, self.vector("value", &spec.value)?)]))
             }
             (None, Some(name)) => {
                 let boundary = self.boundary(name)?;
-                let force = self.vector("value", &spec.value)?;
-                add_traction(self.body, boundary, spread(self.body, boundary, force, &self.at("boundary"))?, load);
-                Ok(())
+                Ok(Acting::Spread { boundary, force: self.vector("value", &spec.value)? })
             }
             (None, None) => Err(wrong(&*self.path, "acts nowhere; give `at`, a point, or a `boundary`")),
             (Some(_), Some(_)) => Err(wrong(&*self.path, "acts at a point and on a boundary; give only one")),
         }
     }
 
-    fn add_nodal(&self, forces: &BTreeMap<String, Vec<f64>>, load: &mut [f64]) -> Result<(), Error> {
-        let dimension = self.body.dimension();
+    fn nodal(&self, forces: &BTreeMap<String, Vec<f64>>) -> Result<Acting<'a>, Error> {
         if forces.is_empty() {
             return Err(wrong(
                 &*self.path,
                 "acts nowhere; give a set of nodes, or the number of a node, with its force",
             ));
         }
+        let mut at_nodes = Vec::new();
         for (name, force) in forces {
             let nodes = nodes_named(self.body.mesh(), name, &self.at(name))?;
             let force = self.vector(name, force)?;
-            for node in nodes {
-                let entries = &mut load[dimension * node..dimension * (node + 1)];
-                entries.iter_mut().zip(force).for_each(|(entry, component)| *entry += component);
-            }
+            at_nodes.extend(nodes.into_iter().map(|node| (node, force)));
         }
-        Ok(())
+        Ok(Acting::AtNodes(at_nodes))
     }
 
-    fn add_moment(&self, spec: &MomentSpec, load: &mut [f64]) -> Result<(), Error> {
+    fn moment(&self, spec: &MomentSpec) -> Result<Acting<'a>, Error> {
         if spec.at.is_some() {
             let message = "a node of a solid has no rotation and carries no moment; give a `boundary`, over which a traction turns";
             return Err(wrong(self.at("at"), message));
@@ -183,17 +218,10 @@ impl PlacedLoad<'_> {
             finite(format!("{}[{index}]", self.at("value")), entry)?;
             *place = entry;
         }
-        add_moment(self.body, boundary, moment, load).ok_or_else(|| {
-            let name = &boundary.name;
-            let message = format!(
-                "no turning traction on `{name}` has this moment: its facets lie on a straight line, or its size is \
-                 not finite"
-            );
-            wrong(self.at("boundary"), message)
-        })
+        Ok(Acting::Moment { boundary, moment })
     }
 
-    fn add_centrifugal(&self, spec: &CentrifugalSpec, load: &mut [f64]) -> Result<(), Error> {
+    fn centrifugal(&self, spec: &CentrifugalSpec) -> Result<Acting<'a>, Error> {
         finite(self.at("omega"), spec.omega)?;
         let given = spec.axis.as_ref().filter(|_| self.model == ModelSpec::Space);
         let axis = match (self.model, given) {
@@ -214,7 +242,7 @@ impl PlacedLoad<'_> {
             None => [0.0; 3],
         };
         self.check_density()?;
-        add_centrifugal(self.body, spec.omega, (axis, point), load)
+        Ok(Acting::Centrifugal { omega: spec.omega, axis: (axis, point) })
     }
 
     /// Checks that every material has a density.

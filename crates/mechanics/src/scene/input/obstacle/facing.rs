@@ -236,7 +236,7 @@ struct Way {
 }
 
 /// The shortest edge of the facets at each node of the mesh; infinite at nodes outside the boundary, and if facets are points.
-fn shortest_edges(boundary: &Boundary, nodes: &[[f64; 3]]) -> Vec<f64> {
+pub(crate) fn shortest_edges(boundary: &Boundary, nodes: &[[f64; 3]]) -> Vec<f64> {
     let mut shortest = vec![f64::INFINITY; nodes.len()];
     for facet in boundary.facets() {
         for (place, &node) in facet.iter().enumerate() {

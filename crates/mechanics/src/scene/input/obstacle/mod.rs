@@ -31,6 +31,7 @@ pub use circle::CircleSpec;
 pub use cone::ConeSpec;
 pub use cylinder::CylinderSpec;
 pub use facing::FacingSpec;
+pub(crate) use facing::shortest_edges;
 pub use height_map::HeightMapSpec;
 pub(crate) use order::SideOrder;
 pub(crate) use pairs::Between;

@@ -1,0 +1,219 @@
+//! Derivatives with respect to the places of all nodes: of the virtual work of stresses and of body forces.
+//!
+//! Every function adds to `gradient` (length `dim * n_nodes`, order `[x_0, y_0, x_1, ...]`) the change of a virtual work, in force times
+//! length, with each coordinate, in length; the nodal values of all fields stay as they are. They are derivatives of the sums over
+//! quadrature points themselves, so that nothing but rounding separates them from differences of these sums.
+//!
+//! A node that moves along V = N_a e_k changes the volume by div V, the gradient of a field u by `- grad u grad V`, and in a body of
+//! revolution the radius by V_r: volumes and hoop strains take part.
+
+use std::ops::Range;
+
+use crate::error::Error;
+use crate::fem::body::{BodyElement, ElasticBody, Integration, LocalPoint};
+use crate::fem::element::{MAX_NODES, PerKind, PerNode, Tabulated};
+use crate::fem::geometry::{COORDINATES, Symmetric, dot, minus, trace};
+use crate::fem::material::{Stiffness, engineering};
+use crate::fem::threads::in_order;
+
+/// A tensor: row, column.
+type Tensor = [[f64; 3]; 3];
+
+/// Adds the change of `virtual_displacement . internal_force(displacement)`, both nodal vectors (length `dim * n_nodes`, in length).
+///
+/// With the stress sigma of u, the stress tau of w without own stress, and the work sigma : eps(w) per volume it is the integral of
+/// `M : grad V`, M = (sigma : eps(w)) I - (grad w)' sigma - (grad u)' tau. With mean dilatation theta, the work has theta(u) and theta(w)
+/// in place of both traces. A temperature that changes along the body adds the change of its stress.
+///
+/// # Errors
+/// Why there is no derivative: a material whose axes turn around a line.
+pub(crate) fn internal_work_by_places(
+    body: &ElasticBody,
+    displacement: &[f64],
+    virtual_displacement: &[f64],
+    gradient: &mut [f64],
+) -> Result<(), String> {
+    if body.phases().iter().any(|phase| phase.law.turns()) {
+        return Err(
+            "the axes of a material turn around a line, so that its stiffness depends on the places of nodes; \
+                    this derivative is not available yet"
+                .into(),
+        );
+    }
+    let tables = body.tabulated();
+    let fields = [displacement, virtual_displacement];
+    let of_element = |index: usize| match body.element(index) {
+        Some(element) => of_stresses(body, &tables, &element, fields),
+        None => [[0.0; 3]; MAX_NODES],
+    };
+    let of_run = |run: Range<usize>| (run.start, run.map(of_element).collect::<Vec<_>>());
+    in_order(body.mesh().element_count(), of_run, |(first, of_elements)| {
+        for (index, of_nodes) in of_elements.iter().enumerate() {
+            add(body, body.mesh().element(first + index), of_nodes, gradient);
+        }
+    });
+    Ok(())
+}
+
+/// The change of the virtual work of the stresses of an element with the places of its nodes.
+fn of_stresses(
+    body: &ElasticBody,
+    tables: &PerKind<Tabulated>,
+    element: &BodyElement,
+    fields: [&[f64]; 2],
+) -> PerNode<[f64; 3]> {
+    let (cell, unit) = (&element.cell, element.cell.unit());
+    let scale = unit.powi(body.dimension() as i32 - 1);
+    let [moved, virtually] = fields.map(|field| body.strained(tables, field, element));
+    let lambda = match (&element.phase.law.stiffness, element.phase.integration) {
+        (Stiffness::Isotropic(lame), Integration::MeanDilatation) => lame.lambda,
+        _ => 0.0,
+    };
+    let [mean, virtual_mean] = [&moved, &virtually].map(|field| field.mean_dilatation().unwrap_or(0.0));
+    let mut of_nodes = [[0.0; 3]; MAX_NODES];
+    for at in &tables.at(element.kind).points {
+        let (point, [u, w]) = (body.point(cell, at), [&moved, &virtually].map(|field| field.elastic(at)));
+        let mut stress = u.stress;
+        if let Some(own) = element.own_stress(at) {
+            stress.iter_mut().zip(own).for_each(|(stress, own)| *stress += own);
+        }
+        // The mean is that of the strain: the volume of each point changes it by as much as its own dilatation is off the mean.
+        let work = work(&stress, &w.strain) + lambda * virtual_mean * (trace(&u.strain) - mean);
+        let (sigma, tau) = (rows(&stress), rows(&w.stress));
+        let energy_momentum = [0, 1, 2].map(|k| {
+            [0, 1, 2].map(|j| {
+                let turned = (0..3).map(|i| w.slope[i][k] * sigma[i][j] + u.slope[i][k] * tau[i][j]).sum::<f64>();
+                if k == j { work - turned } else { 0.0 - turned }
+            })
+        });
+        let hoop = work - stress[2] * w.strain[2] - w.stress[2] * u.strain[2];
+        let warming = element.phase.own.as_ref().map_or([0.0; 3], |own| own.work_by_place(&engineering(&w.strain)));
+        let weight = point.weight * scale;
+        for (local, of_node) in of_nodes.iter_mut().enumerate().take(element.nodes.len()) {
+            let moves = energy_momentum.map(|row| dot(row, point.gradients[local]));
+            for ((sum, moves), warming) in of_node.iter_mut().zip(moves).zip(warming) {
+                *sum += weight * (moves + unit * at.shape[local] * warming);
+            }
+            of_node[0] += weight * hoop * point.hoop[local];
+        }
+    }
+    of_nodes
+}
+
+/// The work of a stress on a strain, per volume.
+fn work(stress: &Symmetric, strain: &Symmetric) -> f64 {
+    stress.iter().zip(engineering(strain)).map(|(stress, strain)| stress * strain).sum()
+}
+
+fn rows([xx, yy, zz, xy, yz, zx]: &Symmetric) -> Tensor {
+    [[*xx, *xy, *zx], [*xy, *yy, *yz], [*zx, *yz, *zz]]
+}
+
+/// A force per volume at a place, and its change with the place: `[i][k]` is that of component i along axis k.
+struct ForceAt {
+    force: [f64; 3],
+    slope: Tensor,
+}
+
+/// Adds the change of `virtual_displacement . load`, the load of [`add_body_force`](super::add_body_force).
+pub(crate) fn body_force_by_places(
+    body: &ElasticBody,
+    force: [f64; 3],
+    virtual_displacement: &[f64],
+    gradient: &mut [f64],
+) {
+    let field = |_, _| ForceAt { force, slope: [[0.0; 3]; 3] };
+    force_by_places(body, &body.tabulated(), field, virtual_displacement, gradient);
+}
+
+/// The same for the load of [`add_gravity`](super::add_gravity).
+///
+/// # Errors
+/// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a material without density.
+pub(crate) fn gravity_by_places(
+    body: &ElasticBody,
+    acceleration: [f64; 3],
+    virtual_displacement: &[f64],
+    gradient: &mut [f64],
+) -> Result<(), Error> {
+    let densities = body.densities()?;
+    let field = |element: usize, _| {
+        let force = acceleration.map(|component| densities[element] * component);
+        ForceAt { force, slope: [[0.0; 3]; 3] }
+    };
+    force_by_places(body, &body.tabulated(), field, virtual_displacement, gradient);
+    Ok(())
+}
+
+/// The same for the load of [`add_centrifugal`](super::add_centrifugal).
+///
+/// # Errors
+/// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a material without density.
+pub(crate) fn centrifugal_by_places(
+    body: &ElasticBody,
+    omega: f64,
+    (axis, point): ([f64; 3], [f64; 3]),
+    virtual_displacement: &[f64],
+    gradient: &mut [f64],
+) -> Result<(), Error> {
+    let densities = body.densities()?;
+    let field = |element: usize, at: [f64; 3]| {
+        let factor = densities[element] * omega * omega;
+        let slope = [0, 1, 2].map(|i| [0, 1, 2].map(|k| factor * (COORDINATES[i][k] - axis[i] * axis[k])));
+        ForceAt { force: slope.map(|row| dot(row, minus(at, point))), slope }
+    };
+    force_by_places(body, &body.finely_tabulated(), field, virtual_displacement, gradient);
+    Ok(())
+}
+
+/// Adds the change of the virtual work of the body force `field(element, place)`.
+fn force_by_places(
+    body: &ElasticBody,
+    tables: &PerKind<Tabulated>,
+    field: impl Fn(usize, [f64; 3]) -> ForceAt,
+    virtual_displacement: &[f64],
+    gradient: &mut [f64],
+) {
+    for (index, element) in body.elements().enumerate() {
+        let (cell, unit) = (&element.cell, element.cell.unit());
+        let moved = body.gather(virtual_displacement, element.nodes);
+        let scale = unit.powi(body.dimension() as i32 - 1);
+        let mut of_nodes = [[0.0; 3]; MAX_NODES];
+        for at in &tables.at(element.kind).points {
+            let point: LocalPoint = body.point(cell, at);
+            let ForceAt { force, slope } = field(index, cell.place(&at.shape));
+            let moved = interpolated(&moved, &at.shape, element.nodes.len());
+            let (work, weight) = (dot(force, moved), point.weight * scale);
+            let by_place = [0, 1, 2].map(|k| unit * (0..3).map(|i| moved[i] * slope[i][k]).sum::<f64>());
+            for (local, of_node) in of_nodes.iter_mut().enumerate().take(element.nodes.len()) {
+                let of_volume = point.gradients[local];
+                for ((sum, of_volume), by_place) in of_node.iter_mut().zip(of_volume).zip(by_place) {
+                    *sum += weight * (work * of_volume + at.shape[local] * by_place);
+                }
+                of_node[0] += weight * work * point.hoop[local];
+            }
+        }
+        add(body, element.nodes, &of_nodes, gradient);
+    }
+}
+
+/// A field at a point of a cell with this number of nodes, from its values there.
+pub(crate) fn interpolated(values: &PerNode<[f64; 3]>, shape: &PerNode<f64>, nodes: usize) -> [f64; 3] {
+    values
+        .iter()
+        .zip(shape)
+        .take(nodes)
+        .fold([0.0; 3], |sum, (value, share)| [0, 1, 2].map(|axis| sum[axis] + share * value[axis]))
+}
+
+/// Adds vectors at some nodes to a nodal vector.
+pub(super) fn add(body: &ElasticBody, nodes: &[usize], vectors: &PerNode<[f64; 3]>, nodal: &mut [f64]) {
+    let dimension = body.dimension();
+    for (&node, vector) in nodes.iter().zip(vectors) {
+        let own = &mut nodal[dimension * node..dimension * (node + 1)];
+        own.iter_mut().zip(vector).for_each(|(sum, part)| *sum += part);
+    }
+}
+
+#[cfg(test)]
+mod tests;
