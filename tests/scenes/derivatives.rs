@@ -3,7 +3,8 @@
 //! REFERENCE: differences of whole answers inside one proven contact set, and the slope of the exact path. A short form of
 //! `cargo run --release --example derivatives -- scenes 200`.
 
-use signorini::Scene;
+use serde_json::{Value, json};
+use signorini::{Scene, Settings};
 use support::program::example;
 use support::slopes::{off_path, wrong_slopes};
 use support::{axis_scenes, key_scenes, plane_scenes, space_scenes};
@@ -35,4 +36,78 @@ fn derivatives_with_respect_to_the_gap_are_the_slopes_of_the_exact_path() {
     let scenes = (1..=12).map(|seed| plane_scenes::scene(seed).0);
     let off: Vec<f64> = scenes.filter_map(|scene| off_path(&scene)).collect();
     assert!(off.len() >= 3 && off.iter().all(|&off| off <= 1e-10), "{off:?}");
+}
+
+/// A stretch of a body moves all nodes: the derivative along it is that with respect to a coordinate of the body.
+#[test]
+fn derivatives_with_respect_to_the_places_of_nodes_are_those_of_a_stretched_body() {
+    let plane = json!({
+        "model": "plane-strain", "gap": -0.01,
+        "body": {"rectangle": {"x": {"points": [0, 1.1], "divisions": [12]}, "y": {"points": [0, 0.6], "divisions": [6]}, "element": "q8"}},
+        "material": {"young": 1e3, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+        "springs": [{"on": {"boundary": "left"}, "x": 50, "normal": 20}],
+        "loads": [{"pressure": {"boundary": "right", "value": 5}}, {"body-force": [1, -3]}],
+        "obstacles": [{"boundary": "top", "approach": "+y", "rule": "closest-point", "shape": {"circle": {"apex": [0.52, 0.6], "radius": 2}}}]
+    });
+    let mut axis = plane.clone();
+    axis["model"] = json!("axisymmetric");
+    axis["body"]["rectangle"]["element"] = json!("t6");
+    axis["obstacles"][0] =
+        json!({"boundary": "top", "approach": "+y", "shape": {"parabola": {"apex": [0, 0.6], "radius": 2}}});
+    axis["springs"] = json!([]);
+    let mut pressed = plane.clone();
+    pressed["body"]["rectangle"]["element"] = json!("q4");
+    pressed["gap"] = json!(0);
+    pressed["obstacles"][0] = json!({"boundary": "top", "approach": "+y", "force": 12, "shape": {"parabola": {"apex": [0.52, 0.6], "radius": 2}}});
+    let space = json!({
+        "model": "space", "gap": -0.02,
+        "body": {"box": {"x": {"points": [0, 1.1], "divisions": [5]}, "y": {"points": [0, 0.9], "divisions": [5]},
+                         "z": {"points": [0, 0.5], "divisions": [3]}, "element": "hex8"}},
+        "material": {"young": 1e3, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0}],
+        "loads": [{"traction": {"boundary": "right", "value": [1, 2, -3]}}],
+        "obstacles": [{"boundary": "top", "approach": "+z", "rule": "closest-point", "shape": {"sphere": {"apex": [0.53, 0.41, 0.5], "radius": 2}}}]
+    });
+    let outputs = ["force", "peak-pressure", "largest-displacement", "strain-energy"];
+    for (name, scene, shape) in [
+        ("plane", plane, "rectangle"),
+        ("axis", axis, "rectangle"),
+        ("pressed", pressed, "rectangle"),
+        ("space", space, "box"),
+    ] {
+        let read = |scene: &Value| Scene::from_json(&scene.to_string(), name).unwrap();
+        let own = read(&scene);
+        let found = own.sensitivity(&outputs, &["nodes"], &Settings::default()).unwrap();
+        let nodes = found.answer.model().mesh().nodes().to_vec();
+        let dimension = found.answer.model().mesh().dimension();
+        for along in 0..2 {
+            let key = ["x", "y"][along];
+            let length = scene["body"][shape][key]["points"][1].as_f64().unwrap();
+            let at = |by: f64| -> Vec<f64> {
+                let mut stretched = scene.clone();
+                stretched["body"][shape][key]["points"][1] = json!(length + by);
+                let found = read(&stretched).sensitivity(&outputs, &[], &Settings::default()).unwrap();
+                found.outputs.iter().map(|output| output.value).collect()
+            };
+            let step = 1e-5 * length;
+            let (a, b, c, d) = (at(-2.0 * step), at(-step), at(step), at(2.0 * step));
+            for (index, output) in found.outputs.iter().enumerate() {
+                let places = output.by[0].places.as_ref().unwrap();
+                let gradient = places.proven().unwrap_or_else(|| panic!("{name}, {}: {places:?}", output.output));
+                let moved: f64 = nodes
+                    .iter()
+                    .enumerate()
+                    .map(|(node, at)| gradient[dimension * node + along] * at[along] / length)
+                    .sum();
+                let difference = (8.0 * (c[index] - b[index]) - (d[index] - a[index])) / (12.0 * step);
+                let size = difference.abs().max(1e-3 * output.value.abs() / length);
+                assert!(
+                    (moved - difference).abs() <= 1e-6 * size,
+                    "{name}, {} along {key}: {moved} and {difference}",
+                    output.output
+                );
+            }
+        }
+    }
 }

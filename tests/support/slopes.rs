@@ -68,29 +68,31 @@ pub fn slopes(scene: &Scene, outputs: &[&str], parameters: &[&str], size: f64) -
     all
 }
 
-/// The difference of each output, with a bound on its error: by the step at which two orders agree best.
+/// The difference of each output, with a bound on its error: that of the two steps that agree best.
 fn differences(scene: &Scene, outputs: &[&str], name: &str, value: f64, scale: f64) -> Option<Vec<(f64, f64)>> {
     let (_, set) = solved(scene, outputs)?;
-    let mut best: Option<Vec<(f64, f64)>> = None;
-    for step in STEPS {
+    let of_step = |step: f64| {
         let by = step * scale;
         let at = |factor: f64| {
             let varied = scene.with_parameter(name, value + factor * by).ok()?;
             solved(&varied, outputs).filter(|(_, other)| *other == set).map(|(values, _)| values)
         };
-        let (Some(a), Some(b), Some(c), Some(d)) = (at(-2.0), at(-1.0), at(1.0), at(2.0)) else { continue };
+        let (a, b, c, d) = (at(-2.0)?, at(-1.0)?, at(1.0)?, at(2.0)?);
         let of = |index: usize| {
-            let (near, far) = ((c[index] - b[index]) / (2.0 * by), (d[index] - a[index]) / (4.0 * by));
-            let rounding = 1e-13 * c[index].abs().max(b[index].abs()) / by;
-            ((4.0 * near - far) / 3.0, (near - far).abs().powi(2) / near.abs().max(far.abs()).max(1e-300) + rounding)
+            let difference = (8.0 * (c[index] - b[index]) - (d[index] - a[index])) / (12.0 * by);
+            (difference, 1e-13 * c[index].abs().max(b[index].abs()) / by)
         };
-        let found: Vec<(f64, f64)> = (0..outputs.len()).map(of).collect();
-        best = Some(match best {
-            None => found,
-            Some(before) => before.into_iter().zip(found).map(|(a, b)| if a.1 <= b.1 { a } else { b }).collect(),
+        Some((0..outputs.len()).map(of).collect::<Vec<(f64, f64)>>())
+    };
+    let steps: Vec<Vec<(f64, f64)>> = STEPS.into_iter().filter_map(of_step).collect();
+    let of_output = |index: usize| {
+        let pairs = steps.windows(2).map(|pair| {
+            let [(wide, _), (narrow, rounding)] = [pair[0][index], pair[1][index]];
+            (narrow, (narrow - wide).abs() + rounding)
         });
-    }
-    best
+        pairs.min_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    (0..outputs.len()).map(of_output).collect()
 }
 
 /// The derivatives of a scene, and those that are wrong, or unknown without a reason of the output.

@@ -82,7 +82,6 @@ impl<T> Derivative<T> {
             Derivative::Unknown { why } => Derivative::Unknown { why: why.clone() },
         }
     }
-
 }
 
 impl<T> Derivative<Result<T, String>> {

@@ -7,11 +7,11 @@ const FIRST_STEP: f64 = 1e-3;
 /// Number of steps that are tried.
 const STEPS: usize = 5;
 
-/// Differences of two steps agree if they are closer than this, relative to the largest of the vector: the error of the fourth order is
-/// then about the square.
-const AGREEMENT: f64 = 1e-5;
+/// Differences of two steps agree if they are closer than this, relative to the largest of the vector. Where the vector is smooth, the
+/// error of the fourth order is about the square; where only its slope is continuous, this is the error.
+const AGREEMENT: f64 = 1e-7;
 
-/// Rounding of an entry, relative to its size.
+/// Rounding of an entry, relative to the largest.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The derivative of a vector at zero, with one entry for each of its entries; `None` at a corner, or where it is nowhere smooth. `scale`
@@ -34,8 +34,8 @@ pub(super) fn derivative<E>(at: impl Fn(f64) -> Result<Vec<f64>, E>, scale: f64)
         let own = 10.0 * step;
         let mut found = Vec::with_capacity(middle.len());
         let (mut size, mut off) = (0.0_f64, 0.0_f64);
-        let rounding =
-            |values: [f64; 3]| ROUNDING * values.iter().fold(0.0, |most: f64, value| most.max(value.abs())) / own;
+        let largest = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        let rounding = ROUNDING * largest(&middle).max(largest(&before)).max(largest(&after)) / own;
         for (entry, &middle) in middle.iter().enumerate() {
             let narrow = (near[entry] - near_before[entry]) / (2.0 * own);
             let wide = (after[entry] - before[entry]) / (4.0 * own);
@@ -43,7 +43,7 @@ pub(super) fn derivative<E>(at: impl Fn(f64) -> Result<Vec<f64>, E>, scale: f64)
             let jump = (near[entry] - 2.0 * middle + near_before[entry]) / own;
             let wide_jump = (after[entry] - 2.0 * middle + before[entry]) / (2.0 * own);
             let apart = (narrow - wide).abs().max((jump - 0.5 * wide_jump).abs());
-            off = off.max(apart - rounding([before[entry], middle, after[entry]]));
+            off = off.max(apart - rounding);
             size = size.max(narrow.abs()).max(wide.abs());
             found.push((4.0 * narrow - wide) / 3.0);
         }

@@ -19,7 +19,10 @@ impl Branch {
         match &self.direct {
             Direct::None => {}
             Direct::Width => {
-                return Err("the width depends on the places of its nodes themselves; that derivative is not available yet".into());
+                return Err(
+                    "the width depends on the places of its nodes themselves; that derivative is not available yet"
+                        .into(),
+                );
             }
             Direct::Pressure(row) => {
                 let mut weights = vec![0.0; model.rows().len()];
@@ -36,16 +39,23 @@ impl Branch {
                     return Err("the moment depends on normals that turn with the places of nodes; it is available for the rule `approach`".into());
                 }
                 if !model.dofs().basis.is_nodal() {
-                    return Err("the moment of coefficients on quadratic faces has no derivative with respect to places yet".into());
+                    return Err(
+                        "the moment of coefficients on quadratic faces has no derivative with respect to places yet"
+                            .into(),
+                    );
                 }
                 let dimension = body.dimension();
-                for (row, lambda) in model.rows().iter().zip(answer.multiplier()).filter(|one| one.0.obstacle == *obstacle) {
+                for (row, lambda) in
+                    model.rows().iter().zip(answer.multiplier()).filter(|one| one.0.obstacle == *obstacle)
+                {
                     for (along, direction) in COORDINATES.iter().enumerate().take(dimension) {
                         gradient[dimension * row.node + along] += lambda * cross(*direction, row.normal)[*axis];
                     }
                 }
             }
-            Direct::Stress { element, at, component } => add_stress(answer, (*element, *at, *component), &mut gradient)?,
+            Direct::Stress { element, at, component } => {
+                add_stress(answer, (*element, *at, *component), &mut gradient)?
+            }
         }
         Ok(gradient)
     }
@@ -61,7 +71,8 @@ fn add_stress(
     let dimension = body.dimension();
     let Some(own) = body.element(element) else { return Ok(()) };
     let places = body.coordinates(own.nodes);
-    let size = own.nodes.iter().enumerate().fold(0.0, |size: f64, (local, _)| size.max(distance(places[local], places[0])));
+    let size =
+        own.nodes.iter().enumerate().fold(0.0, |size: f64, (local, _)| size.max(distance(places[local], places[0])));
     let stress_at = |places: &_| -> Symmetric {
         let cell = Cell::new(own.kind.reference(), places);
         stress_of(body, answer.displacement(), &BodyElement { cell, ..own }, at)

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use super::effect::{Effect, Why, in_words};
 use crate::error::{Error, nearly};
 use crate::fem::ElasticBody;
-use crate::fem::body::BodyElement;
 use crate::fem::assembly::internal_force;
+use crate::fem::body::BodyElement;
 use crate::fem::element::TabulatedPoint;
 use crate::fem::geometry::{Symmetric, cross, distance, dot};
 use crate::scene::answers::answer::Answer;
@@ -284,7 +284,7 @@ impl Output {
 /// Returns `true` if the pressure of a row is its own force over its own area.
 fn has_own_pressure(answer: &Answer, row: usize) -> bool {
     let own = -answer.multiplier()[row] / answer.model().rows()[row].projected_area();
-    (own - answer.pressure()[row]).abs() <= TIE * own.abs()
+    own.is_finite() && (own - answer.pressure()[row]).abs() <= TIE * own.abs()
 }
 
 fn of_pressure(answer: &Answer, row: usize, blank: Branch) -> Branch {

@@ -248,7 +248,8 @@ impl At<'_> {
     fn by_places(&self, branch: &Branch, adjoint: &Derivative<Adjoint>) -> Derivative<Vec<f64>> {
         let rows = self.answer.model().rows().len();
         let of_piece = |adjoint: &Adjoint| -> Result<Vec<f64>, Why> {
-            let pairing = Pairing { answer: self.answer, adjoint: &adjoint.displacement, forces: &adjoint.multiplier[..rows] };
+            let pairing =
+                Pairing { answer: self.answer, adjoint: &adjoint.displacement, forces: &adjoint.multiplier[..rows] };
             let (mut gradient, direct) = (by_places(self.scene, &pairing)?, branch.direct_by_places(self.answer)?);
             gradient.iter_mut().zip(direct).for_each(|(entry, direct)| *entry += direct);
             Ok(gradient)
