@@ -84,7 +84,7 @@ pub fn exception(
 
 /// Makes the exception for an error of a problem without a scene.
 pub fn plain_exception(py: Python<'_>, error: impl Into<Error>) -> PyErr {
-    exception(py, error, |solution| Solution::object(py, solution))
+    exception(py, error, |solution| Solution::object(py, solution, None))
 }
 
 /// Returns the exception of a signal: an interrupt with the best solution, or the exception of the caller's own

@@ -6,6 +6,7 @@
 
 mod answered;
 mod arrays;
+mod derivative;
 mod errors;
 mod exceptions;
 mod many;
@@ -31,6 +32,10 @@ fn _signorini(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<solution::Solution>()?;
     module.add_class::<solution::Certificate>()?;
     module.add_class::<solution::Proven>()?;
+    module.add_class::<derivative::Gradient>()?;
+    module.add_class::<derivative::Vjp>()?;
+    module.add_class::<derivative::Tangent>()?;
+    module.add_class::<derivative::Jvp>()?;
     module.add_class::<prepared::Prepared>()?;
     module.add_class::<prepared::Path>()?;
     module.add_class::<prepared::Event>()?;
@@ -43,6 +48,8 @@ fn _signorini(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(many::solve_many, module)?)?;
     module.add_function(wrap_pyfunction!(solving::prepare, module)?)?;
     module.add_function(wrap_pyfunction!(solving::verify, module)?)?;
+    module.add_function(wrap_pyfunction!(derivative::vjp, module)?)?;
+    module.add_function(wrap_pyfunction!(derivative::jvp, module)?)?;
     module.add_function(wrap_pyfunction!(study::compare, module)?)?;
     module.add_function(wrap_pyfunction!(study::measured, module)?)?;
     module.add_function(wrap_pyfunction!(study::swept, module)?)?;

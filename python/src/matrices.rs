@@ -1,6 +1,7 @@
 //! Converts matrices of scipy, numpy and dolfinx into matrices of the library, and back.
 
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use signorini::qp::Error;
 use signorini::{SparseMatrix, SymmetricMatrix};
 
@@ -355,4 +356,11 @@ pub fn compressed<'py>(
     let indices = crate::arrays::of_indices(py, matrix.row_indices().map(|row| row as usize))?;
     let starts = crate::arrays::of_indices(py, matrix.column_starts().iter().copied())?;
     Ok((crate::arrays::of_reals(py, matrix.values())?, indices, starts))
+}
+
+/// Converts a matrix into a csc_array of scipy.
+pub fn csc<'py>(py: Python<'py>, matrix: &SparseMatrix) -> PyResult<Bound<'py, PyAny>> {
+    let shape = PyDict::new(py);
+    shape.set_item("shape", (matrix.rows(), matrix.columns()))?;
+    py.import("scipy.sparse")?.getattr("csc_array")?.call((compressed(py, matrix)?,), Some(&shape))
 }

@@ -12,7 +12,7 @@ use crate::arrays::{of_reals, reals};
 use crate::errors::bad_input;
 use crate::exceptions::plain_exception;
 use crate::exceptions::signalled;
-use crate::solution::{Solution, rows_of};
+use crate::solution::{Solution, Source, rows_of};
 use crate::work::{End, Place, run};
 
 /// A problem that is factorised once and then solved for many gaps, loads and starts.
@@ -26,6 +26,11 @@ pub struct Prepared {
 impl Prepared {
     pub fn new(problem: Arc<ContactProblem>, inner: signorini::Prepared, settings: Settings) -> Self {
         Prepared { problem, inner, settings }
+    }
+
+    fn source(&self) -> Source {
+        let (problem, settings, prepared) = (self.problem.clone(), self.settings.clone(), Some(self.inner.clone()));
+        Source { problem, settings, prepared }
     }
 
     fn gap(&self, g: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>> {
@@ -61,6 +66,8 @@ impl Prepared {
         }
         let place = Place::for_prepared(&self.problem, &self.inner);
         let prepared = self.inner.clone();
+        let of_load = load.clone().unwrap_or_else(|| self.problem.load().to_vec());
+        let of_gap = gap.clone();
         let find = move |watch: &Watch| {
             let mut prepared = watched(&prepared, settings, watch)?;
             if let Some(load) = load {
@@ -68,7 +75,10 @@ impl Prepared {
             }
             start.map_or(prepared.clone(), |start| prepared.starting_from(start)).solve(&gap)
         };
-        answered(py, place, find, |solution| Solution::object(py, solution))
+        answered(py, place, find, |solution| {
+            let source = self.source().at(of_load.clone(), of_gap.clone());
+            Solution::object(py, solution, Some(source.map_err(|error| plain_exception(py, error))?))
+        })
     }
 
     /// The attempts and steps that a solve makes, in order, each with its condition and its reason: text, a line each.
@@ -82,7 +92,7 @@ impl Prepared {
         let (prepared, settings) = (self.inner.clone(), self.settings.clone());
         let walk = move |watch: &Watch| watched(&prepared, settings, watch)?.path(&from, &to);
         match run(py, Place::for_problem(&self.problem), walk)? {
-            End::Done(Ok(inner)) => Ok(Path { problem: self.problem.clone(), inner: Arc::new(inner) }),
+            End::Done(Ok(inner)) => Ok(Path { source: self.source(), inner: Arc::new(inner) }),
             End::Done(Err(error)) => Err(plain_exception(py, error)),
             End::Signalled(signal, _) => Err(signalled(py, signal, None)),
         }
@@ -141,7 +151,8 @@ impl Event {
 /// The exact solutions for all gaps (1 - t) g0 + t g1 with t from 0 to 1. They are piecewise linear in t.
 #[pyclass(frozen, module = "signorini")]
 pub struct Path {
-    problem: Arc<ContactProblem>,
+    /// The problem at its own gaps.
+    source: Source,
     inner: Arc<signorini::Path>,
 }
 
@@ -191,7 +202,11 @@ impl Path {
     fn solution(&self, py: Python<'_>, t: f64) -> PyResult<Py<PyAny>> {
         let (t, path) = (place(py, t)?, self.inner.clone());
         let find = move |_: &Watch| path.solution(t);
-        answered(py, Place::for_problem(&self.problem), find, |solution| Solution::object(py, solution))
+        let (place, load) = (Place::for_problem(&self.source.problem), self.source.problem.load());
+        answered(py, place, find, |solution| {
+            let source = self.source.at(load.to_vec(), self.inner.gap(t));
+            Solution::object(py, solution, Some(source.map_err(|error| plain_exception(py, error))?))
+        })
     }
 
     fn __repr__(&self) -> String {

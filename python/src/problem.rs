@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use signorini::qp::NearNullSpace;
 use signorini::{ContactProblem, SparseMatrix};
 
@@ -111,7 +110,7 @@ impl Problem {
     /// Stiffness, n x n, with both triangles, as a csc_array of scipy.
     #[getter(K)]
     fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let lower = csc(py, self.inner.stiffness().lower())?;
+        let lower = matrices::csc(py, self.inner.stiffness().lower())?;
         let sparse = py.import("scipy.sparse")?;
         let below = sparse.getattr("tril")?.call1((&lower, -1))?;
         let both = lower.call_method1("__add__", (below.getattr("T")?,))?;
@@ -127,14 +126,14 @@ impl Problem {
     /// Contact rows, m x n, as a csc_array of scipy.
     #[getter(B)]
     fn contact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        csc(py, &self.inner.inequalities_given().0)
+        matrices::csc(py, &self.inner.inequalities_given().0)
     }
 
     /// Equality rows, p x n, as a csc_array of scipy; None without such rows.
     #[getter(E)]
     fn equality_matrix<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let has_rows = self.inner.equality_rows() > 0;
-        has_rows.then(|| csc(py, &self.inner.equalities_given().0)).transpose()
+        has_rows.then(|| matrices::csc(py, &self.inner.equalities_given().0)).transpose()
     }
 
     /// Values of the equality rows, length p, read-only; None without such rows.
@@ -182,11 +181,4 @@ impl Problem {
         let arguments = names.iter().map(|name| slf.getattr(*name)).collect::<PyResult<Vec<_>>>()?;
         Ok((py.get_type::<Problem>().into_any(), pyo3::types::PyTuple::new(py, arguments)?.into_any()))
     }
-}
-
-/// Converts a matrix into a csc_array of scipy.
-fn csc<'py>(py: Python<'py>, matrix: &SparseMatrix) -> PyResult<Bound<'py, PyAny>> {
-    let shape = PyDict::new(py);
-    shape.set_item("shape", (matrix.rows(), matrix.columns()))?;
-    py.import("scipy.sparse")?.getattr("csc_array")?.call((matrices::compressed(py, matrix)?,), Some(&shape))
 }

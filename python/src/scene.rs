@@ -17,7 +17,7 @@ use crate::exceptions::signalled;
 use crate::exceptions::{exception, plain_exception};
 use crate::options::Options;
 use crate::problem::Problem;
-use crate::solution::{Solution, as_object};
+use crate::solution::{Solution, Source, as_object};
 use crate::work::{End, Place, run};
 
 /// A contact scene: bodies, supports, loads and obstacles.
@@ -280,7 +280,10 @@ impl SceneSolution {
         goal: Goal,
     ) -> PyResult<Py<PyAny>> {
         let answer = Arc::new(answer);
-        let base = PyClassInitializer::from(Solution::new(solution));
+        let problem = answer.model().problem();
+        let settings = Options::default().settings(Some(problem))?;
+        let source = Source { problem: Arc::new(problem.clone()), settings, prepared: None };
+        let base = PyClassInitializer::from(Solution::new(solution, Some(source)));
         Ok(Py::new(py, base.add_subclass(SceneSolution { scene, answer, goal }))?.into_any())
     }
 

@@ -1,18 +1,56 @@
 //! Solutions and their certificates.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyList};
-use signorini::{ContactSet, Solution as Answer};
+use signorini::qp::{Derivatives, Error};
+use signorini::{ContactProblem, ContactSet, Prepared, Settings, Solution as Answer, Watch};
 
 use crate::arrays::{of_indices, of_reals};
+
+/// What a solution was computed from.
+#[derive(Clone)]
+pub struct Source {
+    /// The problem, with its load and gaps.
+    pub problem: Arc<ContactProblem>,
+    pub settings: Settings,
+    /// The prepared data, at any load and gaps.
+    pub prepared: Option<Prepared>,
+}
+
+impl Source {
+    /// The same at this load and these gaps.
+    ///
+    /// # Errors
+    /// Those of a load or gaps that do not fit.
+    pub fn at(&self, load: Vec<f64>, gap: Vec<f64>) -> Result<Self, Error> {
+        Ok(Source { problem: Arc::new(self.problem.with(load, gap)?), ..self.clone() })
+    }
+
+    /// The derivatives of an answer, by the prepared data if there are some.
+    ///
+    /// # Errors
+    /// Those of `Prepared::new` and `Prepared::derivatives`.
+    pub fn derivatives(&self, answer: &Answer, watch: &Watch) -> Result<Derivatives, Error> {
+        // The limit of time is that of the solve.
+        let mut settings = self.settings.clone().watched(watch);
+        settings.time = None;
+        let Some(prepared) = &self.prepared else { return self.problem.derivatives(answer, &settings) };
+        let prepared = prepared.with_settings(&settings)?.with_load(self.problem.load().to_vec())?;
+        prepared.with_gap(self.problem.inequalities_given().1.to_vec())?.derivatives(answer)
+    }
+}
 
 /// The solution of a contact problem. Its arrays are read-only.
 #[pyclass(frozen, module = "signorini", subclass)]
 pub struct Solution {
     pub inner: Arc<Answer>,
+    /// `None` for the answer that an exception of many problems carries.
+    pub source: Option<Source>,
+    /// Its derivatives, from the first that is asked for.
+    pub derivatives: Mutex<Option<Derivatives>>,
     displacement: PyOnceLock<Py<PyAny>>,
     multiplier: PyOnceLock<Py<PyAny>>,
     equality_multiplier: PyOnceLock<Py<PyAny>>,
@@ -20,9 +58,11 @@ pub struct Solution {
 }
 
 impl Solution {
-    pub fn new(answer: Answer) -> Self {
+    pub fn new(answer: Answer, source: Option<Source>) -> Self {
         Solution {
             inner: Arc::new(answer),
+            source,
+            derivatives: Mutex::default(),
             displacement: PyOnceLock::new(),
             multiplier: PyOnceLock::new(),
             equality_multiplier: PyOnceLock::new(),
@@ -31,8 +71,8 @@ impl Solution {
     }
 
     /// Makes the Python object of a solution.
-    pub fn object(py: Python<'_>, answer: Answer) -> PyResult<Py<PyAny>> {
-        Ok(Py::new(py, Solution::new(answer))?.into_any())
+    pub fn object(py: Python<'_>, answer: Answer, source: Option<Source>) -> PyResult<Py<PyAny>> {
+        Ok(Py::new(py, Solution::new(answer, source))?.into_any())
     }
 }
 
@@ -155,6 +195,32 @@ impl Solution {
         let of_each = self.inner.history.iter();
         let pairs = of_each.map(|iteration| Ok((rows_of(py, &iteration.contact_set)?, iteration.penalty)));
         PyList::new(py, pairs.collect::<PyResult<Vec<_>>>()?)
+    }
+
+    /// Returns the derivatives of an output with respect to all data.
+    #[pyo3(signature = (displacement = None, multiplier = None, equality_multiplier = None))]
+    fn vjp<'py>(
+        slf: &Bound<'py, Self>,
+        displacement: Option<Bound<'py, PyAny>>,
+        multiplier: Option<Bound<'py, PyAny>>,
+        equality_multiplier: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let arguments = (slf, displacement, multiplier, equality_multiplier);
+        slf.py().import("signorini._signorini")?.call_method1("_vjp", arguments)
+    }
+
+    /// Returns the derivatives of displacement and multipliers along a change of the data.
+    #[pyo3(signature = (load = None, gap = None, stiffness = None, rows = None, equality_values = None))]
+    fn jvp<'py>(
+        slf: &Bound<'py, Self>,
+        load: Option<Bound<'py, PyAny>>,
+        gap: Option<Bound<'py, PyAny>>,
+        stiffness: Option<Bound<'py, PyAny>>,
+        rows: Option<Bound<'py, PyAny>>,
+        equality_values: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let arguments = (slf, load, gap, stiffness, rows, equality_values);
+        slf.py().import("signorini._signorini")?.call_method1("_jvp", arguments)
     }
 
     /// Returns all scalar results, under the names that the program uses in its reports; the vectors are left out.

@@ -11,7 +11,7 @@ use crate::exceptions::{plain_exception, signalled};
 use crate::options::Options;
 use crate::prepared;
 use crate::problem::Problem;
-use crate::solution::{Certificate, Solution};
+use crate::solution::{Certificate, Solution, Source};
 use crate::work::{End, Place, run};
 
 /// Solves a contact problem. The returned solution is certified to `tolerance`.
@@ -40,8 +40,9 @@ pub fn solve<'py>(
     let settings = options.settings(Some(&inner))?;
     let start = start_of(start.as_ref(), &inner)?;
     let place = Place::for_problem(&inner);
+    let source = Source { problem: inner.clone(), settings: settings.clone(), prepared: None };
     let find = move |watch: &Watch| solve_from(&inner, start, &settings.watched(watch));
-    answered(py, place, find, |solution| Solution::object(py, solution))
+    answered(py, place, find, |solution| Solution::object(py, solution, Some(source.clone())))
 }
 
 /// Solves a contact problem by an interior-point method, certified to 1e-9; the active-set method makes the contact set

@@ -12,7 +12,7 @@ use crate::exceptions::signalled;
 use crate::options::Options;
 use crate::problem::Problem;
 use crate::scene::{Scene, SceneSolution, scene_exception};
-use crate::solution::{Solution, as_object};
+use crate::solution::{Solution, Source, as_object};
 use crate::work::{End, Place, run};
 
 /// One problem solved by interior point, active set and penalty.
@@ -60,8 +60,9 @@ pub fn compare(problem: &Bound<'_, PyAny>) -> PyResult<Comparison> {
     let inner = problem_of(problem)?.get().inner.clone();
     let settings = Options { proof: Some(false), ..Options::default() }.settings(Some(&inner))?;
     let place = Place::for_problem(&inner);
+    let source = Source { problem: inner.clone(), settings: settings.clone(), prepared: None };
     match run(py, place, move |watch: &Watch| study::compare(&inner, &settings.watched(watch)))? {
-        End::Done(Ok(found)) => comparison(py, found, |solution| Solution::object(py, solution)),
+        End::Done(Ok(found)) => comparison(py, found, |solution| Solution::object(py, solution, Some(source.clone()))),
         End::Done(Err(error)) => Err(plain_exception(py, error)),
         End::Signalled(signal, _) => Err(signalled(py, signal, None)),
     }

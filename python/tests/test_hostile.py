@@ -39,6 +39,14 @@ def solved(**options: Any) -> Callable[[], Any]:
     return lambda: sg.solve(two_springs(), **options)
 
 
+def vjp(*given: Any, **named: Any) -> Callable[[], Any]:
+    return lambda: sg.solve(two_springs()).vjp(*given, **named)
+
+
+def jvp(**changes: Any) -> Callable[[], Any]:
+    return lambda: sg.solve(two_springs()).jvp(**changes)
+
+
 def damaged(form: str, **arrays: Any) -> sparse.spmatrix:
     """The stiffness with some of its arrays replaced, which scipy has not checked."""
     matrix = K.asformat(form).copy()
@@ -181,6 +189,25 @@ HOSTILE: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "gap of another length": (lambda: sg.prepare(two_springs()).solve([1.0, 2.0]), ValueError, "length 2"),
     "load of another length": (lambda: sg.prepare(two_springs()).solve(f=[1.0]), ValueError, "length 1"),
     "gap of text": (lambda: sg.prepare(two_springs()).solve(["a"]), TypeError, "g is"),
+    "derivative by a short displacement": (vjp([1.0]), ValueError, "displacement has length 1, but the number of dofs is 2"),
+    "derivative by nan": (vjp([1.0, np.nan]), ValueError, "displacement has the value NaN at entry 1"),
+    "derivative by a long multiplier": (vjp(multiplier=[1.0, 1.0]), ValueError, "multiplier has length 2, but the number of contact rows"),
+    "derivative by inf": (vjp(multiplier=[np.inf]), ValueError, "multiplier has the value inf at entry 0"),
+    "derivative by an equality that is not there": (vjp(equality_multiplier=[1.0]), ValueError, "the number of equality rows is 0"),
+    "derivative by text": (vjp("up"), TypeError, "displacement is .* dtype"),
+    "derivative by a matrix": (vjp(np.ones((2, 1))), ValueError, r"displacement has the shape \(2, 1\)"),
+    "change of a short load": (jvp(load=[1.0]), ValueError, "load has length 1"),
+    "change of the load by nan": (jvp(load=[0.0, np.nan]), ValueError, "load has the value NaN at entry 1"),
+    "change of two gaps of one": (jvp(gap=[1.0, 2.0]), ValueError, "gap has length 2"),
+    "change of the gap by inf": (jvp(gap=[np.inf]), ValueError, "gap has the value inf at entry 0"),
+    "change of a value that is not there": (jvp(equality_values=[1.0]), ValueError, "equality_values has length 1"),
+    "change of another stiffness": (jvp(stiffness=np.eye(3)), ValueError, "change of the stiffness is 3 x 3"),
+    "change of the stiffness, not symmetric": (jvp(stiffness=[[0.0, 1.0], [0.0, 0.0]]), ValueError, "not symmetric"),
+    "change of the stiffness by nan": (jvp(stiffness=[[np.nan, 0.0], [0.0, 0.0]]), ValueError, "NaN"),
+    "change of the stiffness by text": (jvp(stiffness="more"), TypeError, "stiffness is"),
+    "change of wide rows": (jvp(rows=np.ones((1, 3))), ValueError, "rows is 1 x 3|1 x 3"),
+    "change of two rows of one": (jvp(rows=np.ones((2, 2))), ValueError, "rows is 2 x 2; it must have 1 rows"),
+    "change of the rows by inf": (jvp(rows=[[np.inf, 0.0]]), ValueError, "inf"),
     "scene of a number": (lambda: sg.Scene(3), TypeError, "not of a int"),  # type: ignore[arg-type]
     "scene of nothing": (lambda: sg.Scene({}), sg.SceneError, "is missing"),
     "scene that is no JSON": (lambda: sg.Scene({"body": {1, 2}}), TypeError, "no place for a set"),

@@ -72,7 +72,12 @@ fn python_files(folder: &Path, package: &str) -> BTreeMap<Module, BTreeSet<Modul
     let taken = |text: &str| {
         let mut taken = BTreeSet::new();
         for (module, names) in python_imports(text) {
-            let inside = module.strip_prefix(package).filter(|_| !package.is_empty()).unwrap_or(&module);
+            // The package has a module for another package of the same name, such as jax.
+            let inside = match module.strip_prefix(package) {
+                Some(inside) => inside,
+                None if module.starts_with('.') => &module,
+                None => continue,
+            };
             let inside = inside.trim_start_matches('.').split('.').next().unwrap();
             // What the package itself gives is one of its files, or stands in `__init__`.
             let own = names.iter().map(|name| if texts.contains_key(name) { name } else { "__init__" });

@@ -106,6 +106,16 @@ class Undecided(SignoriniError):
     code = "undecided"
 
 
+class NoDerivative(SignoriniError):
+    """A derivative was asked for that is not proven: the answer has a kink, or may have one; the sentence names the rows."""
+
+    code = "no-derivative"
+    verdict: str = ""
+    """`one-sided`, `undecided` or `unknown`."""
+    rows: NDArray[np.int64]
+    """Indices of the rows that may be open or closed, counted from 0; empty if nothing is known."""
+
+
 class OutOfTime(SignoriniError, TimeoutError):
     """A step that cannot be interrupted is estimated to take longer than the remaining time."""
 

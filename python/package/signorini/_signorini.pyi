@@ -11,6 +11,8 @@ __all__ = [
     "Certificate",
     "Comparison",
     "Event",
+    "Gradient",
+    "Jvp",
     "Path",
     "Prepared",
     "Problem",
@@ -18,12 +20,16 @@ __all__ = [
     "Scene",
     "SceneSolution",
     "Solution",
+    "Tangent",
     "TotalError",
+    "Vjp",
     "__version__",
+    "_jvp",
     "_measured",
     "_mortar_rows",
     "_solve_many",
     "_swept",
+    "_vjp",
     "compare",
     "prepare",
     "solve",
@@ -156,6 +162,39 @@ class Solution:
     @property
     def history(self) -> list[tuple[NDArray[np.int64], float]]:
         """The closed rows in each iteration, with the penalty in multiples of the local stiffness (0 without a penalty)."""
+    def vjp(
+        self,
+        displacement: ArrayLike | None = None,
+        multiplier: ArrayLike | None = None,
+        equality_multiplier: ArrayLike | None = None,
+    ) -> Vjp:
+        """Returns the derivatives of an output phi(u, multiplier, equality_multiplier) with respect to all data of the problem.
+
+        displacement: d phi / d u, length n. multiplier: d phi / d multiplier, length m. equality_multiplier: the same, length p. One that is
+        left out is zero. The unit of the result is that of phi over that of the data; what phi itself depends on the data is not in it.
+
+        The first derivative factorises K, unless the solution is one of `prepare`, whose factor it takes; the solution keeps what it needs
+        for more of them. Each costs one linear solve.
+
+        Raises `BadInput` for an array that does not fit or is not finite, `BadType` for an argument of a wrong type, and the exceptions
+        of `signorini.prepare`. A derivative that is not proven is no exception: the result says so.
+        """
+    def jvp(
+        self,
+        load: ArrayLike | None = None,
+        gap: ArrayLike | None = None,
+        stiffness: Any = None,
+        rows: Any = None,
+        equality_values: ArrayLike | None = None,
+    ) -> Jvp:
+        """Returns the derivatives of displacement and multipliers along a change of the data, per unit of a parameter.
+
+        load: df, length n. gap: dg, length m; the gap of a row without an obstacle stays infinite. stiffness: dK, n x n, symmetric, with
+        both triangles. rows: dB, m x n. equality_values: de, length p. stiffness and rows may have entries where K and B have none. What is
+        left out does not change.
+
+        Costs and exceptions are those of `vjp`.
+        """
     def to_dict(self) -> dict[str, Any]:
         """Returns all scalar results, under the names that the program uses in its reports; the vectors are left out."""
     def plot(self, ax: Any = None) -> Any:
@@ -243,6 +282,126 @@ class Proven:
     @property
     def undecided(self) -> NDArray[np.int64]:
         """Indices of the rows that are proven neither open nor closed, counted from 0."""
+
+@final
+class Gradient:
+    """The derivatives of an output phi with respect to all data, with some rows taken as closed and all others as open."""
+
+    @property
+    def load(self) -> NDArray[np.float64]:
+        """Derivatives with respect to the load f, length n."""
+    @property
+    def gap(self) -> NDArray[np.float64]:
+        """Derivatives with respect to the gaps g, length m; zero on open rows."""
+    @property
+    def equality_values(self) -> NDArray[np.float64]:
+        """Derivatives with respect to the values e of the equality rows, length p."""
+    @property
+    def stiffness(self) -> Any:
+        """Derivatives with respect to the entries of K, n x n, as a symmetric `csc_array` of scipy on the pattern of K.
+
+        For a symmetric change dK on that pattern d phi is `(stiffness * dK).sum()`, over both triangles: an entry off the diagonal and its
+        mirror image each have half of the derivative with respect to both of them moved together.
+        """
+    @property
+    def rows(self) -> Any:
+        """Derivatives with respect to the entries of B, m x n, as a `csc_array` of scipy on the pattern of B: d phi is `(rows * dB).sum()`."""
+    @property
+    def error(self) -> float:
+        """Relative error of the linear solve: with a factor its last correction, with multigrid a bound in the energy norm."""
+
+@final
+class Vjp:
+    """The derivatives of an output phi with respect to all data, with the verdict whether they exist.
+
+    Without a proof the derivatives raise `NoDerivative`, which names the rows; `between` has those of the pieces around.
+    """
+
+    @property
+    def verdict(self) -> str:
+        """`proven`: every row is proven to be closed and to press, or to be open, so that there is one derivative. `undecided`: the rows in
+        `rows_at_kink` are at a kink, or the proof leaves them open. `unknown`: no bound on the error of the solution is known."""
+    @property
+    def load(self) -> NDArray[np.float64]:
+        """Derivatives with respect to the load f, length n. Raises `NoDerivative` if it is not proven, as those that follow."""
+    @property
+    def gap(self) -> NDArray[np.float64]:
+        """Derivatives with respect to the gaps g, length m; zero on open rows."""
+    @property
+    def equality_values(self) -> NDArray[np.float64]:
+        """Derivatives with respect to the values e of the equality rows, length p."""
+    @property
+    def stiffness(self) -> Any:
+        """Derivatives with respect to the entries of K, as `Gradient.stiffness`: d phi is `(stiffness * dK).sum()` over both triangles."""
+    @property
+    def rows(self) -> Any:
+        """Derivatives with respect to the entries of B, m x n, as `Gradient.rows`."""
+    @property
+    def error(self) -> float:
+        """Relative error of the linear solve, as `Gradient.error`."""
+    @property
+    def between(self) -> list[Gradient]:
+        """If it is undecided: the derivatives with all rows of `rows_at_kink` open, then with all of them closed, as far as they exist.
+        Of several rows some may be open and others closed."""
+    @property
+    def rows_at_kink(self) -> NDArray[np.int64]:
+        """Indices of the rows that may be open or closed, counted from 0; empty if none is, or nothing is known."""
+    @property
+    def why(self) -> str:
+        """Why no derivative is proven, in one sentence; empty if it is."""
+
+@final
+class Tangent:
+    """The derivatives of displacement and multipliers along a change of the data, per unit of its parameter."""
+
+    @property
+    def displacement(self) -> NDArray[np.float64]:
+        """Derivatives of the displacement u, length n, in the unit of length per unit of the parameter."""
+    @property
+    def multiplier(self) -> NDArray[np.float64]:
+        """Derivatives of the multipliers, length m, in the unit of force per unit of the parameter; zero on open rows."""
+    @property
+    def equality_multiplier(self) -> NDArray[np.float64]:
+        """Derivatives of the multipliers of the equality rows, length p, in the unit of force per unit of the parameter."""
+    @property
+    def error(self) -> float:
+        """Relative error, as `Gradient.error`; at a kink the energy error bound of the small contact problem."""
+
+@final
+class Jvp:
+    """The derivatives of displacement and multipliers along a change of the data, with the verdict whether they exist."""
+
+    @property
+    def verdict(self) -> str:
+        """`proven`, `undecided` and `unknown` as `Vjp.verdict`. `one-sided`: gap and force of the rows in `rows_at_kink` are exactly zero, so
+        that `left` and `right` are the derivatives."""
+    @property
+    def displacement(self) -> NDArray[np.float64]:
+        """Derivatives of the displacement u, length n. Raises `NoDerivative` if it is not proven, as those that follow."""
+    @property
+    def multiplier(self) -> NDArray[np.float64]:
+        """Derivatives of the multipliers, length m; zero on open rows."""
+    @property
+    def equality_multiplier(self) -> NDArray[np.float64]:
+        """Derivatives of the multipliers of the equality rows, length p."""
+    @property
+    def error(self) -> float:
+        """Relative error of the linear solve, as `Tangent.error`."""
+    @property
+    def left(self) -> Tangent:
+        """The derivative for a falling parameter; the derivative if it is proven. Raises `NoDerivative` if it is undecided or unknown."""
+    @property
+    def right(self) -> Tangent:
+        """The derivative for a growing parameter, as `left`."""
+    @property
+    def between(self) -> list[Tangent]:
+        """If it is undecided: the derivatives with all rows of `rows_at_kink` open, then with all of them closed, as far as they exist."""
+    @property
+    def rows_at_kink(self) -> NDArray[np.int64]:
+        """Indices of the rows that may be open or closed, counted from 0; empty if none is, or nothing is known."""
+    @property
+    def why(self) -> str:
+        """Why no derivative is proven, in one sentence; empty if it is."""
 
 @final
 class Prepared:
@@ -604,6 +763,14 @@ def total_error(
     first mesh.
     """
 
+def _jvp(
+    solution: Solution,
+    load: ArrayLike | None,
+    gap: ArrayLike | None,
+    stiffness: Any,
+    rows: Any,
+    equality_values: ArrayLike | None,
+) -> Jvp: ...
 def _measured(
     problem: Problem | Scene, refinements: int, runs: int, most_full_dofs: int, time: float | None
 ) -> dict[str, Any]: ...
@@ -630,3 +797,9 @@ def _solve_many(
 def _swept(
     scene: Scene, over: str, values: ArrayLike, method: str | None, threads: int | None
 ) -> dict[str, Any]: ...
+def _vjp(
+    solution: Solution,
+    displacement: ArrayLike | None,
+    multiplier: ArrayLike | None,
+    equality_multiplier: ArrayLike | None,
+) -> Vjp: ...

@@ -41,6 +41,7 @@ use crate::problem::ContactProblem;
 use crate::run::solved;
 use crate::settings::{Method, Settings};
 use crate::solution::{ContactSet, Solution};
+use crate::watch::Watch;
 use verdict::{Rows, rows_of};
 
 /// A derivative, with what is known about it.
@@ -196,6 +197,11 @@ impl Derivatives {
         }
     }
 
+    /// The same under a watch that can stop the solves of its derivatives.
+    pub fn watched(&self, watch: &Watch) -> Self {
+        Derivatives { settings: self.settings.clone().watched(watch), ..self.clone() }
+    }
+
     /// The adjoint solution of an output with these derivatives with respect to the displacement u (length n) and to the multiplier lambda
     /// (length m, then one for each equality row), in the unit of the output over that of length, and of force. At a kink the gradient
     /// does not exist: it is undecided between both sides, and only [`tangent`](Self::tangent) tells them apart.
@@ -346,8 +352,8 @@ const SIGN_TOLERANCE: f64 = 1e-10;
 const NOT_HELD: &str = "the rows that press do not hold the body, or follow from each other";
 
 impl Prepared {
-    /// The derivatives of an answer of this problem, under the current load: the gaps are those of the problem that was prepared. If the
-    /// answer brings no proof of its rows, they are proven here.
+    /// The derivatives of an answer of this problem, under the current load, and at the gaps of the problem that was prepared or of
+    /// [`with_gap`](Self::with_gap). If the answer brings no proof of its rows, they are proven here.
     ///
     /// # Errors
     /// [`Error::Length`] for an answer that does not fit, and those of the proof.

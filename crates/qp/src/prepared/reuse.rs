@@ -134,6 +134,15 @@ impl Prepared {
         Ok(Prepared { problem, bench, ..self.clone() })
     }
 
+    /// The same problem at other gaps, one per contact row, in m; negative if the obstacle starts inside the body. A solve is given its
+    /// gaps: these are for [`derivatives`](Self::derivatives).
+    ///
+    /// # Errors
+    /// [`Error::Length`] and [`Error::NotFinite`] for gaps that do not fit.
+    pub fn with_gap(&self, gap: Vec<f64>) -> Result<Self, Error> {
+        Ok(Prepared { problem: self.problem.with_gap(gap)?, ..self.clone() })
+    }
+
     /// The same, solved from a start, such as the contact set at the last gap.
     pub fn starting_from(&self, start: impl Into<Start>) -> Self {
         Prepared { start: start.into(), ..self.clone() }
