@@ -5,7 +5,7 @@
 const FIRST_STEP: f64 = 1e-3;
 
 /// Number of steps that are tried.
-const STEPS: usize = 5;
+const STEPS: usize = 6;
 
 /// Differences of two steps agree if they are closer than this, relative to the largest of the vector. Where the vector is smooth, the
 /// error of the fourth order is about the square; where only its slope is continuous, this is the error.
