@@ -97,7 +97,7 @@ for features in "" faer nalgebra; do cargo clippy --quiet --package signorini-qp
 step "build";                       cargo test --quiet --workspace --no-run --all-features
 step "tests";                       cargo test --quiet --workspace --all-features
 step "examples and short forms of tools"
-for lesson in two_springs one_scene find_the_contact_set many_gaps judge_an_answer bouncing_mass; do example $lesson; done
+for lesson in two_springs one_scene find_the_contact_set many_gaps judge_an_answer bouncing_mass uniform_pressure; do example $lesson; done
 example verification --short
 example extremes --most 100
 for target in scene mesh matrix problem; do example fuzz $target 20000; done

@@ -5,6 +5,9 @@ use crate::text::printable;
 use signorini_mechanics::scene::{ByParameter, Model, Sensitivities, Sensitivity};
 use signorini_qp::Derivative;
 
+/// Changes in per cent below this are rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// Rows at a kink that a text names.
 const MOST_ROWS: usize = 12;
 
@@ -30,20 +33,11 @@ fn of_output(output: &Sensitivity) -> String {
         (unit, parameter) if unit == parameter => "-".to_string(),
         (unit, parameter) => format!("{unit} / {parameter}"),
     };
-    let in_words = |derivative: &Derivative<f64>| match derivative {
-        Derivative::Proven(value) => number(*value),
-        Derivative::OneSided { left, right } => format!("{} left, {} right", number(*left), number(*right)),
-        Derivative::Undecided { between, .. } => {
-            let between: Vec<String> = between.iter().map(|value| number(*value)).collect();
-            between.join(" or ")
-        }
-        Derivative::Unknown { .. } => "-".to_string(),
-    };
     let columns_of: [Column<ByParameter>; 5] = [
         ("parameter", &|row| row.parameter.clone()),
-        ("derivative", &|row| in_words(&row.derivative)),
+        ("derivative", &|row| in_words(&row.derivative, number)),
         ("unit", &of_unit),
-        ("% for 1 %", &|row| row.relative.as_ref().map_or_else(|| "-".to_string(), in_words)),
+        ("% for 1 %", &|row| row.relative.as_ref().map_or_else(|| "-".to_string(), |of| in_words(of, share))),
         ("verdict", &|row| row.derivative.verdict().to_string()),
     ];
     text += &columns(&table(by, &columns_of));
@@ -57,6 +51,18 @@ fn of_output(output: &Sensitivity) -> String {
     }
     reasons.iter().for_each(|reason| text += &format!("{}.\n", printable(reason)));
     text
+}
+
+/// A derivative, each of its numbers in words by `shown`.
+fn in_words(derivative: &Derivative<f64>, shown: fn(f64) -> String) -> String {
+    match derivative {
+        Derivative::Proven(value) => shown(*value),
+        Derivative::OneSided { left, right } => format!("{} left, {} right", shown(*left), shown(*right)),
+        Derivative::Undecided { between, .. } => {
+            between.iter().map(|value| shown(*value)).collect::<Vec<String>>().join(" or ")
+        }
+        Derivative::Unknown { .. } => "-".to_string(),
+    }
 }
 
 /// The rows that make a kink, or that the proof leaves undecided, with their nodes.
@@ -86,6 +92,15 @@ pub(crate) fn kink_text(found: &Sensitivities) -> String {
 
 fn number(value: f64) -> String {
     if value == 0.0 { "0".to_string() } else { format!("{value:.6e}") }
+}
+
+/// A change in per cent, to four digits; below 1e-9 it is rounding.
+fn share(value: f64) -> String {
+    match value.abs() {
+        size if size < ROUNDING => "0".to_string(),
+        size if size < 1e-3 => format!("{value:.3e}"),
+        size => format!("{value:.*}", (3 - size.log10().floor() as i32).clamp(0, 6) as usize),
+    }
 }
 
 fn with_unit(number: &str, unit: &str) -> String {
