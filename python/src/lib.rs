@@ -16,6 +16,7 @@ mod options;
 mod prepared;
 mod problem;
 mod scene;
+mod sensitivity;
 mod solution;
 mod solving;
 mod study;
@@ -54,6 +55,7 @@ fn _signorini(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(study::measured, module)?)?;
     module.add_function(wrap_pyfunction!(study::swept, module)?)?;
     module.add_function(wrap_pyfunction!(total_error::total_error, module)?)?;
+    module.add_function(wrap_pyfunction!(sensitivity::sensitivity, module)?)?;
     module.add_function(wrap_pyfunction!(mortar::mortar_rows, module)?)?;
     Ok(())
 }

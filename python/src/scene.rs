@@ -127,6 +127,25 @@ impl Scene {
         &self.inner.title
     }
 
+    /// Names of the numbers by which outputs have derivatives, and nodes for the places of all nodes.
+    #[getter]
+    fn parameters(&self) -> Vec<String> {
+        self.inner.parameters()
+    }
+
+    /// Names of the outputs that have derivatives; X,Y stands for the coordinates of a place.
+    #[getter]
+    fn outputs(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let model = self.model(py)?;
+        Ok(signorini::scene::outputs_of(&model))
+    }
+
+    /// Returns the same scene with another value of a parameter.
+    fn with_parameter(&self, py: Python<'_>, name: &str, value: f64) -> PyResult<Self> {
+        let inner = self.inner.with_parameter(name, value).map_err(|error| plain_exception(py, error))?;
+        Ok(Scene { inner: Arc::new(inner), file: self.file.clone(), model: Mutex::new(None) })
+    }
+
     /// Names of the units of length, force and pressure; empty strings if the scene names no units.
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

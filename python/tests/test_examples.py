@@ -70,3 +70,10 @@ def test_the_notebook_runs() -> None:
     shown = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     assert sum("image/png" in output.get("data", {}) for output in shown) == 3
     assert any("closed rows" in output.get("data", {}).get("text/html", "") for output in shown)
+
+
+def test_modulus_and_gap_follow_from_four_forces_within_their_uncertainty() -> None:
+    (young, gap), covariance, steps = example("identify").identify()
+    off = np.abs(np.array([young - 2.1e6, gap + 0.0004])) / np.sqrt(np.diag(covariance))
+    # The forces have errors of up to twice their standard deviation.
+    assert np.all(off < 3.0) and steps < 12

@@ -108,8 +108,10 @@ const MOST: f64 = 1e-6;
 const MOST_PARAMETERS: usize = 14;
 
 /// Reasons for which an output or a parameter has no derivative, by their beginnings.
-const REASONS: [&str; 4] = [
+const REASONS: [&str; 6] = [
     "nothing presses",
+    "nothing moves",
+    "scene, at `obstacles[0].shape",
     "the strain energy of a body with temperatures",
     "no bound on the error",
     "a moment on a part with planes of symmetry",

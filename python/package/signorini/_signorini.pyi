@@ -1,5 +1,6 @@
 """Types of the compiled module: it reads arrays in place, releases the interpreter while it works, and answers Ctrl-C."""
 
+from collections.abc import Sequence
 from os import PathLike
 from typing import Any, TypeAlias, final
 
@@ -32,6 +33,7 @@ __all__ = [
     "_vjp",
     "compare",
     "prepare",
+    "sensitivity",
     "solve",
     "solve_qp",
     "total_error",
@@ -504,6 +506,17 @@ class Scene:
     def title(self) -> str:
         """Title of the scene; empty if it has none."""
     @property
+    def parameters(self) -> list[str]:
+        """Names of the numbers by which outputs have derivatives, and "nodes" for the places of all nodes."""
+    @property
+    def outputs(self) -> list[str]:
+        """Names of the outputs that have derivatives; X,Y stands for the coordinates of a place."""
+    def with_parameter(self, name: str, value: float) -> Scene:
+        """Returns the same scene with another value of a parameter; "loads[0]" is a factor of that load.
+
+        Raises `SceneError` for a name that does not exist, and for a value that the scene does not allow.
+        """
+    @property
     def units(self) -> dict[str, str]:
         """Names of the units of `length`, `force` and `pressure`; empty strings if the scene names no units."""
     @property
@@ -739,6 +752,30 @@ def compare(problem: Problem | Scene) -> Comparison:
     """Solves a problem or a scene by interior point, active set and penalty, and compares the solutions.
 
     A solution that is not certified is returned as well; its certificate shows the residuals.
+    """
+
+def sensitivity(
+    scene: Scene,
+    of: str | Sequence[str],
+    to: str | Sequence[str] | None = None,
+    *,
+    method: str | None = None,
+    tolerance: float | None = None,
+    threads: int | None = None,
+    memory: float | None = None,
+) -> list[dict[str, Any]]:
+    """Solves a scene, and gives the derivatives of its outputs `of` with respect to its parameters `to`.
+
+    of: outputs by name, as "force", "peak-pressure", "obstacles[0].travel", "stress@0.5,0.4:xx". to: parameters by name, as "gap",
+    "young", "loads[0]", "obstacles[0].radius", or "nodes" for the places of all nodes; all numbers of the scene if left out. Others as
+    in `solve`.
+
+    One dictionary per output with `output`, `value`, `unit` and `by`; `by` has one dictionary per parameter with `parameter`, `value`,
+    `unit`, `derivative` and `relative` (per cent of the output for one per cent of the parameter). A derivative is a dictionary with its
+    `verdict` and `value` (proven), `left` and `right` (one-sided), `between` and `rows` (undecided), or `why` (unknown). For "nodes"
+    there are also `places`, the derivatives by the coordinates of each node, one row per node.
+
+    Raises `SceneError` for a name that does not exist, with those that do, and for a motion; and the exceptions of `solve`.
     """
 
 def total_error(

@@ -9,8 +9,8 @@ use crate::solution::ContactSet;
 /// Corrections of a solution by its own residual, at most.
 const MOST_CORRECTIONS: usize = 8;
 
-/// A correction below this, relative, is the last.
-const ENOUGH: f64 = 1e-13;
+/// A correction below this, relative, is the last: the next one would be about its square.
+const ENOUGH: f64 = 1e-9;
 
 /// A solution of the linear system.
 pub(super) struct Held {

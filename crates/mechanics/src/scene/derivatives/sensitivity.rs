@@ -118,8 +118,13 @@ impl Scene {
     /// # Errors
     /// As [`Scene::build`].
     pub fn outputs(&self) -> Result<Vec<String>, Error> {
-        Ok(Output::names(&self.build()?))
+        Ok(outputs_of(&self.build()?))
     }
+}
+
+/// As [`Scene::outputs`], of a model.
+pub fn outputs_of(model: &Model) -> Vec<String> {
+    Output::names(model)
 }
 
 impl Sensitivities {
