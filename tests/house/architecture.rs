@@ -33,6 +33,7 @@ const WINGS: [(&[&str], &[&str]); 5] = [
             "engine",
             "run",
             "prepared",
+            "derivative",
         ],
     ),
     (&[], &["error", "bytes", "fem", "motion", "continuum", "scene", "study"]),

@@ -99,7 +99,11 @@ fn share(value: f64) -> String {
     match value.abs() {
         size if size < ROUNDING => "0".to_string(),
         size if size < 1e-3 => format!("{value:.3e}"),
-        size => format!("{value:.*}", (3 - size.log10().floor() as i32).clamp(0, 6) as usize),
+        _ => {
+            let rounded = format!("{value:.3e}");
+            let exponent = rounded.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
+            format!("{value:.*}", (3 - exponent.unwrap_or(0)).clamp(0, 6) as usize)
+        }
     }
 }
 

@@ -15,17 +15,19 @@ pub struct Change {
 }
 
 impl Change {
-    /// A change of the load, df (length n), of a problem with this number of contact and equality rows.
+    /// A change of the load, df (length n, in force per unit of the parameter), of a problem with this number of contact and equality rows.
     pub fn of_load(load: Vec<f64>, rows: usize) -> Self {
         Change { load, distance: vec![0.0; rows] }
     }
 
-    /// A change of the gaps, dg: one entry for each row of B, then for each equality row, of a problem with this number of dofs.
+    /// A change of the gaps, dg, in length per unit of the parameter, positive if the obstacle moves away: one entry for each row of B, then
+    /// for each equality row, of a problem with this number of dofs.
     pub fn of_gap(gap: Vec<f64>, dofs: usize) -> Self {
         Change { load: vec![0.0; dofs], distance: gap }
     }
 
-    /// The same with a change of the stiffness, dK (n x n), at the displacement u of the answer.
+    /// The same with a change of the stiffness, dK (n x n), at the displacement u of the answer, length n, in
+    /// length.
     ///
     /// # Errors
     /// [`Error::Shape`] and [`Error::Length`] for numbers that do not fit.
@@ -40,8 +42,8 @@ impl Change {
         Ok(self)
     }
 
-    /// The same with a change of the rows, dB (rows x n), at the displacement u and the multiplier lambda of the answer, each with the
-    /// equality rows after those of B.
+    /// The same with a change of the rows, dB (rows x n), at the displacement u (length n, in length) and the multiplier lambda (in force,
+    /// `<= 0`) of the answer; equality rows follow those of B.
     ///
     /// # Errors
     /// [`Error::Shape`] and [`Error::Length`] for numbers that do not fit.
@@ -78,14 +80,15 @@ impl Change {
     }
 }
 
-/// The derivatives of an answer along a change of the data.
+/// The derivatives of displacement and multipliers along one change of load, gaps, stiffness and rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tangent {
     /// du, length n, in length per unit of the parameter.
     pub displacement: Vec<f64>,
-    /// dlambda, one entry for each row of B, then for each equality row, in force per unit of the parameter; zero on open rows.
+    /// dlambda, one entry for each row of B, then for each equality row, in force per unit of the parameter: negative if the pressure grows,
+    /// zero on open rows.
     pub multiplier: Vec<f64>,
-    /// As [`Adjoint::error`].
+    /// The relative accuracy of the linear solve, as in [`Adjoint::error`].
     pub error: f64,
 }
 
@@ -99,9 +102,10 @@ impl Tangent {
 /// The adjoint solution of an output: its derivatives with respect to all data of the problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Adjoint {
-    /// w, length n: the derivative with respect to the load.
+    /// w, length n: the derivative with respect to the load, in the unit of the output over force.
     pub displacement: Vec<f64>,
-    /// nu, one entry for each row of B, then for each equality row; zero on open rows. The derivative with respect to a gap is `-nu`.
+    /// nu, one entry for each row of B, then for each equality row, in the unit of the output over length; zero on open rows, of either sign
+    /// elsewhere. The derivative with respect to a gap is `-nu`.
     pub multiplier: Vec<f64>,
     /// The answer, u and lambda.
     pub(super) answer: [Vec<f64>; 2],
@@ -117,18 +121,19 @@ impl Adjoint {
         dot(&self.displacement, &change.load) - dot(&self.multiplier, &change.distance)
     }
 
-    /// The derivatives with respect to the load f, length n.
+    /// The derivatives with respect to the load f, length n, in the unit of the output over force.
     pub fn of_load(&self) -> &[f64] {
         &self.displacement
     }
 
-    /// The derivatives with respect to the gaps g, length m.
+    /// The derivatives with respect to the gaps g, length m, in the unit of the output over length: positive if the output grows as the
+    /// obstacle moves away.
     pub fn of_gap(&self) -> Vec<f64> {
         // Adding zero removes the sign of a zero.
         self.multiplier[..self.inequalities].iter().map(|nu| 0.0 - nu).collect()
     }
 
-    /// The derivatives with respect to the values e of the equality rows, length p.
+    /// The derivatives with respect to the values e of the equality rows, length p, in the unit of the output over length.
     pub fn of_equality_values(&self) -> Vec<f64> {
         self.multiplier[self.inequalities..].iter().map(|nu| 0.0 - nu).collect()
     }

@@ -44,7 +44,7 @@ use crate::solution::{ContactSet, Solution};
 use crate::watch::Watch;
 use verdict::{Rows, rows_of};
 
-/// A derivative, with what is known about it.
+/// A derivative together with the verdict of the proven rows: whether the exact answer is smooth there.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Derivative<T> {
     /// The derivative: it exists, because every row is proven to be closed and pressing, or open.
@@ -61,7 +61,7 @@ pub enum Derivative<T> {
         /// The derivatives with all of these rows open, and with all of them closed, if both exist. If there are several rows, the true
         /// derivative may belong to another combination of them.
         between: Vec<T>,
-        /// The rows, from 0.
+        /// Indices of these contact rows, from 0, in increasing order.
         rows: Vec<usize>,
     },
     /// Nothing is known.
@@ -104,7 +104,7 @@ impl<T> Derivative<Result<T, String>> {
 }
 
 impl<T> Derivative<T> {
-    /// The derivative, if it is proven.
+    /// Its value, if the exact answer is known to be smooth; otherwise `None`.
     pub fn proven(&self) -> Option<&T> {
         if let Derivative::Proven(value) = self { Some(value) } else { None }
     }

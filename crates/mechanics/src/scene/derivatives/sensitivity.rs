@@ -19,29 +19,29 @@ use signorini_qp::{Adjoint, Derivative, Derivatives, Prepared, Settings, Solutio
 /// Derivatives of branches that are this close, relative, are one.
 const SAME: f64 = 1e-9;
 
-/// An output with its derivatives.
+/// A number of an answer, such as a force, with its derivatives by numbers of the scene.
 #[derive(Clone, Debug, Serialize)]
 pub struct Sensitivity {
     /// As `force`, or `obstacles[0].moment`.
     pub output: String,
-    /// Its value.
+    /// The number at the answer, in its unit.
     pub value: f64,
     /// Its unit, empty without one.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub unit: String,
     /// The derivatives, in the order of the parameters.
     pub by: Vec<ByParameter>,
-    /// What the output itself is not smooth at: values that tie.
+    /// Sentences on kinks of the output itself: values that tie for the largest.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
 }
 
-/// The derivative of an output with respect to a parameter.
+/// One entry of a gradient: a number of the scene, and the change of the output with it.
 #[derive(Clone, Debug, Serialize)]
 pub struct ByParameter {
     /// As `obstacles[0].radius`, or `nodes`.
     pub parameter: String,
-    /// The value of the parameter.
+    /// The number in the scene, in its unit; zero for the places of nodes.
     pub value: f64,
     /// Its unit, empty without one.
     #[serde(skip_serializing_if = "String::is_empty")]
@@ -51,21 +51,22 @@ pub struct ByParameter {
     /// The change of the output in per cent for a parameter larger by one per cent; `None` if one of both is zero.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub relative: Option<Derivative<f64>>,
-    /// For the places of all nodes, the derivative with respect to each coordinate, length `dim * n_nodes`.
+    /// For the places of all nodes, the derivative with respect to each coordinate, length `dim * n_nodes`, in
+    /// the unit of the output over that of length.
     #[serde(skip)]
     pub places: Option<Derivative<Vec<f64>>>,
 }
 
-/// The answer of a scene, with the derivatives of outputs.
+/// A solved scene with the gradients that were asked for, and the rows at which they may not exist.
 #[derive(Debug)]
 pub struct Sensitivities {
-    /// The answer.
+    /// Displacements, pressures and forces, with the model.
     pub answer: Answer,
-    /// The solution behind it.
+    /// The certified solution of the contact problem behind it.
     pub solution: Solution,
-    /// One entry for each output.
+    /// The gradients, in the order of the names that were asked for.
     pub outputs: Vec<Sensitivity>,
-    /// The rows at a kink, or that the proof leaves undecided, from 0.
+    /// Indices of contact rows, from 0, in increasing order: those at a kink, or that the proof leaves undecided.
     pub at_kink: Vec<usize>,
     /// Seconds of the derivatives alone, without model, solve and proof.
     pub seconds: f64,
@@ -122,7 +123,7 @@ impl Scene {
     }
 }
 
-/// As [`Scene::outputs`], of a model.
+/// The names that [`Scene::outputs`] gives, for a scene whose model is built already.
 pub fn outputs_of(model: &Model) -> Vec<String> {
     Output::names(model)
 }
