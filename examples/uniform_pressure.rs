@@ -12,8 +12,8 @@ use signorini::qp::Change;
 use signorini::scene::Answer;
 use signorini::{Error, Model, Prepared, Scene, Settings};
 
-/// Half the width of the punch, which stands in the middle of a block of 1 m.
-const HALF: f64 = 0.2;
+/// Half the width of the punch, which stands in the middle of a block of 1 m: from node to node of 16, 32, 64 or more cells.
+const HALF: f64 = 3.0 / 16.0;
 
 /// The profile is flat, plus even polynomials up to twice this degree.
 const MODES: usize = 8;
@@ -80,7 +80,8 @@ fn block(cells: usize) -> Value {
         "body": {"rectangle": {"x": axis, "y": axis, "element": "q4"}},
         "material": {"young": 210e9, "poisson": 0.3},
         "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
-        "obstacles": [{"boundary": "top", "approach": "+y", "force": 1e6,
+        "parts": [{"name": "under the punch", "of": "top", "box": {"min": [0.5 - HALF, 1], "max": [0.5 + HALF, 1]}}],
+        "obstacles": [{"boundary": "under the punch", "approach": "+y", "force": 1e6,
                        "shape": {"table": {"points": [[0.5 - HALF, 1], [0.5 + HALF, 1]]}}}]
     })
 }

@@ -72,12 +72,26 @@ pub(super) fn effect(scene: &Scene, parameter: &Parameter, answer: &Answer, acti
         }
         Kind::Young(_) | Kind::Poisson(_) | Kind::Temperature(_) => {
             let body = derivative_of_body(scene, parameter, &parts.body)?;
+            if let (Kind::Young(_), true) = (&parameter.kind, is_proportional(answer)) {
+                let forces = answer.model().problem().stiffness().mul(answer.unknowns());
+                let load = forces.iter().map(|force| -force / parameter.value).collect();
+                return Ok(Effect { body: Some(body), ..Effect::of(Change { load, ..unchanged(answer) }) });
+            }
             let forces = internal_force(&body, answer.displacement()).map_err(in_words)?;
             let nodal: Vec<f64> = forces.iter().map(|force| -force).collect();
             Ok(Effect { body: Some(body), ..of_load(&nodal)? })
         }
         Kind::Places => Err("the places of all nodes are many parameters".to_string()),
     }
+}
+
+/// Returns `true` if the whole stiffness is proportional to one Young's modulus, and no force comes from elsewhere in the body.
+fn is_proportional(answer: &Answer) -> bool {
+    let parts = &answer.model().parts;
+    let is_moved =
+        || (0..parts.dofs.nodal_count()).any(|dof| parts.dofs.prescribed(dof).is_some_and(|value| value != 0.0));
+    let is_one = parts.body.phases().len() == 1 && !parts.body.has_own_stress();
+    is_one && parts.springs.is_empty() && parts.rigid_faces.is_empty() && !is_moved()
 }
 
 /// No change of the problem of an answer.
@@ -105,7 +119,7 @@ fn derivative_of_body(scene: &Scene, parameter: &Parameter, body: &ElasticBody) 
         1 => vec![by],
         _ => {
             // The phases that another value would change.
-            let by_value = if parameter.value == 0.0 { 1.0 } else { 1e-3 * parameter.value };
+            let by_value = if parameter.value == 0.0 { 0.1 } else { -1e-3 * parameter.value };
             let varied = scene.varied(parameter, by_value).map_err(in_words)?;
             let varied = varied.bodies().and_then(|bodies| varied.joined(bodies)).map_err(in_words)?;
             if varied.phases().len() != body.phases().len() {
