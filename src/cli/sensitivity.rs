@@ -7,6 +7,7 @@ use super::input::{Content, Input, Source};
 use super::options::Sensitivity;
 use super::outcome::{Outcome, Report, unfit, warn};
 use super::settings::settings;
+use super::solve::add_error_and_energy;
 use crate::Error;
 use crate::output::{InWords, Pictures, Wanted, rows_at_kink, tables_of_places, write_files};
 use crate::qp::Watch;
@@ -35,7 +36,8 @@ pub(super) fn run(options: &Sensitivity, watch: &Watch) -> Result<Outcome, Error
     let settings = settings(options.method, common, watch);
     let found = Sensitivities::of(&scene, model.clone(), &outputs, &parameters, &settings)?;
     watch.step("report", 0);
-    let summary = input.summary(found.solution.clone(), Some(&found.answer), settings.goal())?;
+    let mut summary = input.summary(found.solution.clone(), Some(&found.answer), settings.goal())?;
+    add_error_and_energy(&mut summary, &found.answer)?;
     let mut text = found.text(&input.title, &input.units);
     if options.explain {
         text += &rows_at_kink(&found);

@@ -16,7 +16,7 @@ use crate::Error;
 use crate::qp;
 use crate::qp::{Goal, Method, Settings, Solution, Start, Watch, read_vector};
 use crate::scene::{Answer, Scene};
-use crate::study::TotalErrorGoal;
+use crate::study::{Summary, TotalErrorGoal};
 
 /// Assembly that takes at most this many seconds is done even if no time is left: the report can then state the time that the rest
 /// needs.
@@ -145,6 +145,14 @@ fn best_of(input: &Input, start: &Start, settings: &Settings) -> Result<Solution
     }
 }
 
+/// Adds the estimated error of the mesh and the strain energy.
+pub(super) fn add_error_and_energy(summary: &mut Summary, answer: &Answer) -> Result<(), Error> {
+    let (of_mesh, energy) = answer.error_and_energy()?;
+    summary.discretisation_error = Some(of_mesh);
+    summary.strain_energy = Some(answer.model().parts_of_whole() * energy);
+    Ok(())
+}
+
 /// Reports an answer, and writes the output of `--out`.
 pub(super) fn reported(
     input: &Input,
@@ -159,9 +167,7 @@ pub(super) fn reported(
     if let Some(answer) = &answer
         && !watch.is_over()
     {
-        let (of_mesh, energy) = answer.error_and_energy()?;
-        summary.discretisation_error = Some(of_mesh);
-        summary.strain_energy = Some(answer.model().parts_of_whole() * energy);
+        add_error_and_energy(&mut summary, answer)?;
     }
     let mut text = summary.text(&input.title, &input.units);
     if options.explain {

@@ -227,8 +227,8 @@ impl At<'_> {
                     let found: Vec<Derivative<f64>> = of_branches
                         .map(|(branch, adjoint)| self.along(branch, adjoint, effect))
                         .collect::<Result<_, _>>()?;
-                    let derivative = joined(found);
                     let share = parameter.value / value;
+                    let derivative = joined(found, if parameter.value == 0.0 { 0.0 } else { 1.0 / share.abs() });
                     let has_share = share.is_finite() && parameter.value != 0.0;
                     let relative = has_share.then(|| derivative.map(|derivative| derivative * share));
                     row(parameter, derivative, relative, None)
@@ -298,10 +298,10 @@ fn joined_places(mut branches: Vec<Derivative<Vec<f64>>>) -> Derivative<Vec<f64>
     Derivative::Undecided { between, rows: Vec::new() }
 }
 
-/// The derivative of the largest of several branches that tie: theirs, if all agree.
-fn joined(mut branches: Vec<Derivative<f64>>) -> Derivative<f64> {
+/// The derivative of the largest of several branches that tie: theirs, if all agree. Derivatives far below `scale` are rounding.
+fn joined(mut branches: Vec<Derivative<f64>>, scale: f64) -> Derivative<f64> {
     let values: Vec<f64> = branches.iter().flat_map(values_of).collect();
-    let size = values.iter().fold(0.0, |size: f64, value| size.max(value.abs()));
+    let size = values.iter().fold(scale, |size: f64, value| size.max(value.abs()));
     let agree = values.windows(2).all(|pair| (pair[0] - pair[1]).abs() <= SAME * size);
     if branches.len() == 1 || (agree && branches.iter().all(|branch| branch.proven().is_some())) {
         return branches.swap_remove(0);
