@@ -1,21 +1,21 @@
-"""Compares derivatives of small quadratic programs with those of diffcp and cvxpylayers, away from kinks and at them, and prints a table.
+"""Compares derivatives of small quadratic programs with those of diffcp and cvxpylayers, at kinks and elsewhere, and prints a table.
 
     pip install -r reference/requirements-derivatives.txt
     python reference/derivatives.py [--count 100]
 
 The programs are those of kinks.py, whose exact derivatives are known by rational arithmetic; every second one is exactly at a kink. A random
-output a'u + c'lambda is differentiated with respect to load and gap: solve and gradient are one run, whose seconds are measured after a
-first run that is not. Every package gets the same doubles; diffcp and cvxpylayers see the factor of K by numpy, since their
-derivatives take no quadratic objective except in the mode `lpgd`. Their solver is Clarabel, asked for 1e-12.
+output a'u + c'lambda is differentiated with respect to load and gap. Solve and gradient are one run; its time is that of the second of
+two. Every package gets the same doubles. diffcp and cvxpylayers see the factor of K by numpy, since their derivatives take no quadratic
+objective except in the mode `lpgd`. Their solver is Clarabel, asked for 1e-12.
 
 | column | meaning |
 |---|---|
 | away | programs away from kinks whose gradient is returned |
 | error | the largest difference from the exact gradient, relative to its largest entry: median and largest over these programs |
-| seconds | the median over all programs |
+| ms | the time, median over all programs |
 | at kinks, says | number of programs at a kink in which the package says so: by a verdict, a warning or an exception |
-| open, closed, mean, other | the gradient that it returns nevertheless, to 1e-3: with the weak rows open, closed, the mean of both, another |
-| one side | programs at a kink in which that gradient, times a random change of the data, is the derivative to the left or to the right |
+| open, closed, mean, other | the gradient that it returns at kinks, to 1e-3: with the weak rows open, closed, the mean of both, another |
+| one side | programs at a kink in which that gradient, times a random change of load and gap, is the derivative to one side, to 1e-3 |
 
 The exit code is 1 if a derivative of signorini that it calls proven or one-sided is off by more than 1e-9, or proven at a kink.
 """
@@ -43,6 +43,8 @@ WRONG = 1e-9
 """Relative error above which a proven derivative of signorini is wrong."""
 ALIKE = 1e-3
 """Relative difference up to which a gradient at a kink counts as that of a piece."""
+TAU = 0.01
+"""The step of `lpgd`. At kinks a smaller one leaves less of the digits of the solver; a larger one may step over a kink that is near."""
 TIGHT = {"tol_gap_abs": 1e-12, "tol_gap_rel": 1e-12, "tol_feas": 1e-12}
 
 Gradient = tuple[np.ndarray, np.ndarray]
@@ -115,7 +117,8 @@ def by_lpgd(mode: str, tau: float) -> Callable[[kinks.Kink], Found]:
         P, A = sparse.csc_matrix(np.triu(given.stiffness)), sparse.csc_matrix(given.contact)
         cones = {diffcp.ZERO: 0, diffcp.POS: m}
         options = {"derivative_kwargs": {"tau": tau, "rho": 0.0}, **TIGHT}
-        *_, adjoint = diffcp.solve_and_derivative(A, given.gap.copy(), -given.load, cones, mode=mode, solve_method="Clarabel", P=P, **options)
+        b, c = given.gap.copy(), -given.load
+        *_, adjoint = diffcp.solve_and_derivative(A, b, c, cones, mode=mode, solve_method="Clarabel", P=P, **options)
         by_u, by_lambda = given.output
         _, db, dc = adjoint(by_u.copy(), -by_lambda, np.zeros(m))
         return Found((-dc[:n], db[:m]))
@@ -162,7 +165,7 @@ def packages() -> dict[str, Callable[[kinks.Kink], Found]]:
     found: dict[str, Callable[[kinks.Kink], Found]] = {"signorini": by_signorini}
     if installed("diffcp"):
         found |= {f"diffcp, {mode}": by_diffcp(mode) for mode in ("lsqr", "dense")}
-        found |= {f"diffcp, {mode}, tau 1e-4": by_lpgd(mode, 1e-4) for mode in ("lpgd", "lpgd_left", "lpgd_right")}
+        found |= {f"diffcp, {mode}, tau {TAU:g}": by_lpgd(mode, TAU) for mode in ("lpgd", "lpgd_left", "lpgd_right")}
     if installed("cvxpylayers") and installed("jax"):
         found["cvxpylayers, jax"] = by_cvxpylayers()
     return found
@@ -187,11 +190,15 @@ class Row:
     one_side: int = 0
 
     def text(self, name: str, away: int, at_kink: int) -> str:
-        error = f"{statistics.median(self.errors):.0e} | {max(self.errors):.0e}" if self.errors else "| "
+        error = f"{short(statistics.median(self.errors))} | {short(max(self.errors))}" if self.errors else " | "
         pieces = " | ".join(str(self.pieces[piece]) for piece in PIECES)
         says = f"{self.says} of {at_kink}"
         seconds = f"{1e3 * statistics.median(self.seconds):.2f}"
         return f"| {name} | {len(self.errors)} of {away} | {error} | {seconds} | {says} | {pieces} | {self.one_side} |"
+
+
+def short(error: float) -> str:
+    return f"{error:.0e}" if error else "0"
 
 
 PIECES = ("open", "closed", "mean", "other")
@@ -271,8 +278,10 @@ def table(programs: list[kinks.Kink]) -> tuple[list[str], bool]:
         if name == "signorini":
             is_right = max(row.errors, default=0.0) <= WRONG and not row.pieces
     claimed, named, worst = judge_sides([given for given in programs if given.weak])
-    lines += ["", f"signorini, `jvp` at the {at_kink} kinks: {claimed} one-sided, largest error {worst:.0e}; the weak rows named in {named}."]
-    versions = [f"{name} {importlib.metadata.version(name)}" for name in ("diffcp", "cvxpylayers", "jax", "clarabel") if installed(name)]
+    sides = f"{claimed} one-sided, their largest error {short(worst)}"
+    lines += ["", f"`jvp` of signorini at the {at_kink} kinks: {sides}; `vjp` names the weak rows of {named}."]
+    packages_here = (name for name in ("diffcp", "cvxpylayers", "jax", "clarabel") if installed(name))
+    versions = [f"{name} {importlib.metadata.version(name)}" for name in packages_here]
     lines.append(f"Versions: {', '.join(versions) or 'no other package'}.")
     return lines, is_right and worst <= WRONG
 

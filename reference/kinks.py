@@ -24,7 +24,7 @@ MOST_ROWS = 6
 
 @dataclass(frozen=True)
 class Kink:
-    """A problem with its exact answer, a change of load and gap, and the derivatives of an output by u and lambda. All numbers are doubles."""
+    """A problem whose exact answer is known, a change of load and gap, and the derivatives of an output by u and lambda: all doubles."""
 
     stiffness: np.ndarray
     load: np.ndarray

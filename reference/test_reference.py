@@ -4,7 +4,9 @@ import unittest
 
 import numpy as np
 
+import derivatives
 import elastic_block
+import kinks
 import oracles
 import raw_problems
 from compare import distance, weak_rows
@@ -190,6 +192,37 @@ class Oracles(unittest.TestCase):
         scales = scales_of(elastic_block.indentation(-0.03, columns=8, layers=4))
         self.assertEqual(np.frexp(scales.displacement)[0], 0.5)
         self.assertEqual(np.frexp(scales.stiffness)[0], 0.5)
+
+
+class Kinks(unittest.TestCase):
+    def test_exact_one_sided_derivatives_are_slopes_of_enumerated_answers(self):
+        def output(given, step: float) -> float:
+            (df, dg), (by_u, by_lambda) = given.change, given.output
+            moved = problem_of(given.stiffness, given.load + step * df, given.contact, given.gap + step * dg)
+            answer = oracles.enumerate_contact_sets(moved)
+            return by_u @ answer.displacement + by_lambda @ answer.multiplier
+
+        for given in kinks.kinks(20, seed=3):
+            for sign in (-1, 1):
+                # The answer is linear up to the next kink.
+                near, far = sign * 2.0**-14, sign * 2.0**-13
+                slope = (output(given, far) - output(given, near)) / (far - near)
+                self.assertAlmostEqual(slope, given.along(sign), delta=1e-8 * (1 + abs(slope)))
+
+    def test_away_from_kinks_the_gradient_gives_the_derivative_along_every_change(self):
+        for given in kinks.kinks(10, seed=4)[::2]:
+            along = sum(gradient @ change for gradient, change in zip(given.gradient(with_weak=False), given.change, strict=True))
+            self.assertAlmostEqual(along, given.along(1), delta=ROUNDING * 1e3)
+            self.assertEqual(given.along(1), given.along(-1))
+
+    def test_derivatives_of_the_package_are_exact_and_no_kink_is_called_smooth(self):
+        programs = kinks.kinks(10)
+        row = derivatives.judge(derivatives.by_signorini, programs)
+        self.assertEqual((len(row.errors), row.says, sum(row.pieces.values())), (5, 5, 0))
+        self.assertLess(max(row.errors), derivatives.WRONG)
+        claimed, named, worst = derivatives.judge_sides(programs[1::2])
+        self.assertEqual((claimed, named), (5, 5))
+        self.assertLess(worst, derivatives.WRONG)
 
 
 class Data(unittest.TestCase):

@@ -416,8 +416,10 @@ pub fn jvp(
     distance.extend(given(py, "equality_values", equality_values, equalities)?);
     let stiffness = stiffness.map(|stiffness| matrices::stiffness("stiffness", stiffness)).transpose()?;
     let rows = rows.map(|rows| matrices::rows("rows", rows, dofs.0)).transpose()?;
-    if let Some(rows) = rows.as_ref().filter(|rows| rows.rows() != of_rows.0) {
-        let sentence = format!("rows is {} x {}; it must have {} rows, as B has", rows.rows(), dofs.0, of_rows.0);
+    let shape = (of_rows.0, dofs.0);
+    if let Some(rows) = rows.as_ref().filter(|rows| (rows.rows(), rows.columns()) != shape) {
+        let found = (rows.rows(), rows.columns());
+        let sentence = format!("rows is {} x {}; it must be {} x {}, as B is", found.0, found.1, shape.0, shape.1);
         return Err(bad_input(py, sentence));
     }
     let changed = || -> Result<Change, Error> {

@@ -103,9 +103,16 @@ def test_a_prepared_problem_gives_derivatives_at_the_gap_and_load_of_each_soluti
         assert found.verdict == expected.verdict == "proven"
         assert np.allclose(found.load, expected.load, rtol=1e-9, atol=1e-12)
         assert np.allclose(found.gap, expected.gap, rtol=1e-9, atol=1e-12)
-    on_path = prepared.path(g, 0.5 * g).solution(0.3)
-    along = sg.solve(problem.replace(g=0.85 * g)).vjp(by)
-    assert np.allclose(on_path.vjp(by).gap, along.gap, rtol=1e-9, atol=1e-12)
+
+
+def test_a_solution_on_a_path_has_the_derivatives_at_its_gap() -> None:
+    K, f, B, g = bar(6)
+    on_path = sg.prepare(sg.Problem(K, f, B, g)).path(g, 0.5 * g).solution(0.3)
+    found = on_path.vjp(multiplier=[-1.0])
+    # The force is 3 - g, and the stiffness of the bar is 1; a softer spring takes less.
+    assert np.allclose(found.gap, [-1.0]) and found.verdict == "proven"
+    first = sparse.csc_array(([1.0], ([0], [0])), shape=K.shape)
+    assert np.isclose((found.stiffness * first).sum(), -0.85 / 6 / 6)
 
 
 def test_solutions_without_a_proof_and_by_every_method_have_the_same_derivatives() -> None:
@@ -154,7 +161,7 @@ def test_a_kink_has_a_derivative_on_each_side_and_no_gradient() -> None:
 
 
 def test_a_row_too_near_to_a_kink_is_undecided_or_right() -> None:
-    for exponent in range(30, 54):
+    for exponent in range(30, 53):
         for sign in (-1, 1):
             gap = 1.5 + sign * 2.0**-exponent
             solution = sg.solve(touching().replace(g=[gap]))

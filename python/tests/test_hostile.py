@@ -205,8 +205,9 @@ HOSTILE: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "change of the stiffness, not symmetric": (jvp(stiffness=[[0.0, 1.0], [0.0, 0.0]]), ValueError, "not symmetric"),
     "change of the stiffness by nan": (jvp(stiffness=[[np.nan, 0.0], [0.0, 0.0]]), ValueError, "NaN"),
     "change of the stiffness by text": (jvp(stiffness="more"), TypeError, "stiffness is"),
-    "change of wide rows": (jvp(rows=np.ones((1, 3))), ValueError, "rows is 1 x 3|1 x 3"),
-    "change of two rows of one": (jvp(rows=np.ones((2, 2))), ValueError, "rows is 2 x 2; it must have 1 rows"),
+    "change of wide rows": (jvp(rows=np.ones((1, 3))), ValueError, "rows is 1 x 3; it must be 1 x 2"),
+    "change of wide sparse rows": (jvp(rows=sparse.csr_array((1, 3))), ValueError, "rows is 1 x 3; it must have 2 columns"),
+    "change of two rows of one": (jvp(rows=np.ones((2, 2))), ValueError, "rows is 2 x 2; it must be 1 x 2"),
     "change of the rows by inf": (jvp(rows=[[np.inf, 0.0]]), ValueError, "inf"),
     "scene of a number": (lambda: sg.Scene(3), TypeError, "not of a int"),  # type: ignore[arg-type]
     "scene of nothing": (lambda: sg.Scene({}), sg.SceneError, "is missing"),

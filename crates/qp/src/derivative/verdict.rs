@@ -14,6 +14,9 @@ const MOST_CORRECTIONS: usize = 4;
 /// Forces that are left in an answer that is exact in doubles: rounding of their sums in twice the precision, relative.
 const NEARLY: f64 = 1e-25;
 
+/// Values of an answer that may be a zero, relative to the largest. Whether they are is decided exactly.
+const DUST: f64 = 1e-20;
+
 /// What is known about the rows of the exact answer. Sets are those of all rows of the problem, one row of each equality included.
 #[derive(Clone, Debug)]
 pub(super) enum Rows {
@@ -115,7 +118,9 @@ fn exact_answer(
     for _ in 0..MOST_CORRECTIONS {
         let rest = problem.accurate_residual(&u, &lambda);
         if largest(&rest) <= NEARLY * size {
-            return exact_rows(problem, &u, &lambda);
+            // A zero of the exact answer is approached, but never met.
+            let found = exact_rows(problem, &u, &lambda);
+            return found.or_else(|| exact_rows(problem, &without_dust(&u), &without_dust(&lambda)));
         }
         let missing: Vec<f64> = problem.accurate_violation(&u).iter().map(|violation| -violation).collect();
         let [du, dl] = engine.held(set, &rest, &missing, watch).ok()??;
@@ -123,6 +128,12 @@ fn exact_answer(
         lambda.iter_mut().zip(dl).for_each(|(lambda, dl)| *lambda += dl);
     }
     None
+}
+
+/// The values with zeros for those that are rounding beside the largest.
+fn without_dust(values: &[f64]) -> Vec<f64> {
+    let least = DUST * largest(values);
+    values.iter().map(|&value| if value.abs() <= least { 0.0 } else { value }).collect()
 }
 
 /// The closed and the weak rows of an answer in which an equality has a multiplier of either sign on its first row; `None` if it is
