@@ -17,6 +17,7 @@ mod plan;
 mod process;
 mod promised;
 mod schema;
+mod sensitivity;
 mod terminal;
 mod time;
 mod total_error;

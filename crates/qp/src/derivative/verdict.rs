@@ -50,8 +50,11 @@ pub(super) fn rows_of(
         None => proven_here(problem, engine, [&displacement, &multiplier], watch)?,
     };
     let Some(ProvenSet { open, closed }) = proven else {
-        let why = "no bound on the error of the answer is known, so that no row is proven".to_string();
-        return Ok(Rows::Unknown { why });
+        let why = match problem.has_free_mode() {
+            true => "contact alone holds the body: no row is proven",
+            false => "no bound on the error of the answer is known: no row is proven",
+        };
+        return Ok(Rows::Unknown { why: why.to_string() });
     };
     let of_rows = |row: &usize| !open.contains(*row) && !closed.contains(*row);
     let undecided: Vec<usize> = (0..problem.inequalities()).filter(of_rows).collect();

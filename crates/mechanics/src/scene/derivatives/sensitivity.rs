@@ -141,7 +141,7 @@ impl Sensitivities {
         settings: &Settings,
     ) -> Result<Self, Error> {
         if scene.analysis.is_some() {
-            let message = "is a motion; derivatives are those of an equilibrium: leave it out";
+            let message = "a motion has no derivatives here, only an equilibrium has; leave `analysis` out";
             return Err(wrong("analysis", message));
         }
         let outputs: Vec<Output> = outputs.iter().map(|name| Output::of(name, &model)).collect::<Result<_, _>>()?;
