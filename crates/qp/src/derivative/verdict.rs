@@ -84,10 +84,14 @@ fn proven_here(
     [displacement, multiplier]: [&[f64]; 2],
     watch: &Watch,
 ) -> Result<Option<ProvenSet>, Error> {
+    let answer = || WithEvidence { displacement, multiplier, evidence: None };
+    // Travels have no bound by the data of an engine.
+    if engine.hierarchy().is_none() && !problem.without_stiffness().is_empty() {
+        return problem.prove_alone(answer());
+    }
     let by = engine.bounding(watch, 0.0);
     let (two_sided, of_rows) = problem.two_sided(multiplier);
     let evidence = two_sided.examine(&by, displacement, &of_rows)?.evidence;
-    let answer = || WithEvidence { displacement, multiplier, evidence: None };
     match problem.prove_by(&by, WithEvidence { evidence, ..answer() }) {
         Some(proven) => Ok(Some(proven)),
         None if engine.hierarchy().is_some() => Ok(None),
