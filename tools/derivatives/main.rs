@@ -23,6 +23,9 @@ use support::{axis_scenes, key_scenes, plane_scenes, space_scenes};
 /// Runs of a time, of which the least counts.
 const RUNS: usize = 3;
 
+/// The random scene of a seed, with the name of its elements.
+type Random = fn(u64) -> (Scene, &'static str);
+
 fn main() -> ExitCode {
     let mut words = std::env::args().skip(1);
     let what = words.next();
@@ -79,7 +82,7 @@ fn path(count: u64) -> usize {
 }
 
 fn scenes(count: u64) -> usize {
-    let kinds: [(&str, fn(u64) -> (Scene, &'static str)); 4] = [
+    let kinds: [(&str, Random); 4] = [
         ("plane", plane_scenes::scene),
         ("axis", axis_scenes::scene),
         ("space", space_scenes::scene),
