@@ -235,10 +235,7 @@ impl Derivatives {
                 error: held.error,
             }))
         };
-        match &self.rows {
-            Rows::Kink { closed, weak } => self.between(closed, weak, of),
-            _ => self.by_linear_system(of),
-        }
+        self.by_linear_system(of)
     }
 
     /// The derivatives of displacement and multipliers along a change of the data.
@@ -268,7 +265,7 @@ impl Derivatives {
         }
     }
 
-    /// What one linear system gives, away from a kink.
+    /// What one linear system gives: at a kink, and for undecided rows, on the pieces on both sides.
     fn by_linear_system<T>(
         &self,
         of: impl Fn(&ContactSet) -> Result<Option<T>, Error>,

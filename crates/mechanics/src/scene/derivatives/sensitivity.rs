@@ -283,19 +283,12 @@ impl At<'_> {
 
 /// The derivatives of branches that tie, as one.
 fn joined_places(mut branches: Vec<Derivative<Vec<f64>>>) -> Derivative<Vec<f64>> {
-    if branches.len() == 1 {
-        return branches.swap_remove(0);
+    let is_unknown = |branch: &Derivative<Vec<f64>>| matches!(branch, Derivative::Unknown { .. });
+    let alone = if branches.len() == 1 { Some(0) } else { branches.iter().position(is_unknown) };
+    match alone {
+        Some(place) => branches.swap_remove(place),
+        None => Derivative::Undecided { between: branches.iter().flat_map(values_of).collect(), rows: Vec::new() },
     }
-    let mut between = Vec::new();
-    for branch in branches {
-        match branch {
-            Derivative::Proven(value) => between.push(value),
-            Derivative::OneSided { left, right } => between.extend([left, right]),
-            Derivative::Undecided { between: own, .. } => between.extend(own),
-            Derivative::Unknown { .. } => return branch,
-        }
-    }
-    Derivative::Undecided { between, rows: Vec::new() }
 }
 
 /// The derivative of the largest of several branches that tie: theirs, if all agree. Derivatives far below `scale` are rounding.
@@ -312,10 +305,11 @@ fn joined(mut branches: Vec<Derivative<f64>>, scale: f64) -> Derivative<f64> {
     }
 }
 
-fn values_of(derivative: &Derivative<f64>) -> Vec<f64> {
+/// All values of a derivative.
+fn values_of<T: Clone>(derivative: &Derivative<T>) -> Vec<T> {
     match derivative {
-        Derivative::Proven(value) => vec![*value],
-        Derivative::OneSided { left, right } => vec![*left, *right],
+        Derivative::Proven(value) => vec![value.clone()],
+        Derivative::OneSided { left, right } => vec![left.clone(), right.clone()],
         Derivative::Undecided { between, .. } => between.clone(),
         Derivative::Unknown { .. } => Vec::new(),
     }
