@@ -56,8 +56,10 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
     let soft: [&[f64]; 2] = [&[1.0, -1.0], &[-1.0, 1.0 + f64::EPSILON]];
     let held_within_rounding = Dense::new(&soft, &[1.0, 1.0], &[&[0.0, -1.0]], &[0.5]).problem()?;
     let plane = scene(("[4]", "[4]"))?.build()?;
-    // Enough for the program and one solve; the program is smaller without debug assertions.
-    let for_one = Settings::default().with_memory(if cfg!(debug_assertions) { 21e6 } else { 12e6 });
+    let refused = solve(plane.problem(), &Settings::default().with_memory(1.0)).unwrap_err();
+    let qp::Error::NoRoom { factor, .. } = refused else { panic!("{refused}") };
+    // One solve has room, a thousand answers have none.
+    let for_one = Settings::default().with_memory(factor + 1e5);
     let still = unprepared.path(&[0.5], &[0.4]);
     let hasty = Prepared::new(&spring_and_wall, &Settings::default().with_time(Duration::ZERO));
     let stopped = Settings::default();

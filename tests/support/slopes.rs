@@ -43,11 +43,18 @@ fn solved(scene: &Scene, outputs: &[&str]) -> Option<(Vec<f64>, ContactSet)> {
 pub fn slopes(scene: &Scene, outputs: &[&str], parameters: &[&str], size: f64) -> Vec<Slope> {
     let found = scene.sensitivity(outputs, parameters, &Settings::default()).unwrap();
     let mut all = Vec::new();
+    let of_materials = |name: &str| {
+        let alike = found.outputs[0].by.iter().filter(|by| by.parameter.ends_with(name));
+        alike.fold(0.0, |most: f64, by| most.max(by.value))
+    };
+    // The stiffness against a change of volume.
+    let stiffness = of_materials("young") / (1.0 - 2.0 * of_materials("poisson"));
     for (place, &parameter) in parameters.iter().enumerate() {
         let value = found.outputs[0].by[place].value;
         let is_number = parameter != "nodes";
         let scale = if value != 0.0 && !parameter.contains("gap") { value.abs() } else { size };
-        let differences = if is_number { differences(scene, outputs, parameter, value, scale) } else { None };
+        let differences =
+            if is_number { differences(scene, outputs, (parameter, value, scale), stiffness / size) } else { None };
         for (index, output) in found.outputs.iter().enumerate() {
             let by = &output.by[place];
             let (found, why) = match &by.derivative {
@@ -68,9 +75,18 @@ pub fn slopes(scene: &Scene, outputs: &[&str], parameters: &[&str], size: f64) -
     all
 }
 
-/// The difference of each output, with a bound on its error: that of the two steps that agree best.
-fn differences(scene: &Scene, outputs: &[&str], name: &str, value: f64, scale: f64) -> Option<Vec<(f64, f64)>> {
+/// The difference of each output with a parameter of this name, value and scale, with a bound on its error: that of the two steps that agree
+/// best. `stress` is that of the body if it were strained by its largest displacement over its size, per displacement: where nothing is
+/// strained, a stress is the rounding of terms of this size.
+fn differences(
+    scene: &Scene,
+    outputs: &[&str],
+    (name, value, scale): (&str, f64, f64),
+    stress: f64,
+) -> Option<Vec<(f64, f64)>> {
     let (_, set) = solved(scene, outputs)?;
+    let displacement = outputs.iter().position(|name| *name == "largest-displacement");
+    let largest = |values: &[f64]| displacement.map_or(0.0, |index| values[index]);
     let of_step = |step: f64| {
         let by = step * scale;
         let at = |factor: f64| {
@@ -84,6 +100,12 @@ fn differences(scene: &Scene, outputs: &[&str], name: &str, value: f64, scale: f
             let (kind, _) = outputs[index].split_once(':').unwrap_or((outputs[index], ""));
             let alike = (0..outputs.len()).filter(|&other| outputs[other].starts_with(kind));
             let size = alike.fold(0.0, |size: f64, other| size.max(c[other].abs()).max(b[other].abs()));
+            let of_rigid = match kind {
+                "strain-energy" => stress * largest(&c).powi(2),
+                kind if kind.starts_with("stress") => stress * largest(&c),
+                _ => 0.0,
+            };
+            let size = size.max(of_rigid);
             (difference, 1e-12 * size / by)
         };
         Some((0..outputs.len()).map(of).collect::<Vec<(f64, f64)>>())
@@ -112,14 +134,13 @@ const MOST: f64 = 1e-6;
 const MOST_PARAMETERS: usize = 14;
 
 /// Reasons for which an output or a parameter has no derivative, by their beginnings.
-const REASONS: [&str; 7] = [
+const REASONS: [&str; 6] = [
     "nothing presses",
     "nothing moves",
     "scene, at `obstacles[0].shape",
     "the strain energy of a body with temperatures",
     "no bound on the error",
     "contact alone holds the body",
-    "a moment on a part with planes of symmetry",
 ];
 
 /// The outputs of a scene, those at a place in its middle.

@@ -31,7 +31,7 @@ impl ContactProblem {
     ///
     /// # Errors
     /// As [`ContactProblem::certify`].
-    pub(super) fn prove_pressed(&self, answer: &WithEvidence) -> Result<Option<ProvenSet>, Error> {
+    pub(super) fn prove_pressed(&self, answer: WithEvidence) -> Result<Option<ProvenSet>, Error> {
         let (Some(travels), None) = (self.travels(), self.far_units(answer.displacement)) else { return Ok(None) };
         let is_body = |dof: &usize| travels.iter().all(|travel| travel.dof != *dof);
         let dofs: Vec<usize> = (0..self.dofs()).filter(is_body).collect();
@@ -43,8 +43,11 @@ impl ContactProblem {
         let stiffness = SymmetricMatrix::from_lower(lower)?;
         let body = ContactProblem::new(stiffness, of_body(&self.load), contact, self.gap.clone())?;
         let Some(norm) = EnergyNorm::of(&body.stiffness, &body.contact)? else { return Ok(None) };
-        let examined = self.examine(&Bounding::OwnFactor, answer.displacement, answer.multiplier)?;
-        let Some(evidence) = examined.evidence.filter(|evidence| evidence.error.is_finite()) else { return Ok(None) };
+        let evidence = match answer.evidence {
+            Some(evidence) => Some(evidence),
+            None => self.examine(&Bounding::OwnFactor, answer.displacement, answer.multiplier)?.evidence,
+        };
+        let Some(evidence) = evidence.filter(|evidence| evidence.error.is_finite()) else { return Ok(None) };
         let displacement = of_body(answer.displacement);
         let mut violation = body.accurate_violation(&displacement);
         let error = ROUNDED_BOUND * evidence.error;

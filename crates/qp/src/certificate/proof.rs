@@ -70,7 +70,7 @@ impl ContactProblem {
         let norm = match answer.evidence.as_mut().and_then(|evidence| evidence.norm.take()) {
             Some(norm) => Some(norm),
             None if self.without_stiffness().is_empty() => EnergyNorm::of(&self.stiffness, &self.contact)?,
-            None => return self.prove_pressed(&answer),
+            None => return self.prove_pressed(answer),
         };
         Ok(norm.and_then(|norm| self.prove_by(&Bounding::Factor(norm), answer)))
     }
@@ -81,6 +81,7 @@ impl ContactProblem {
         let proven = match by {
             Bounding::Factor(norm) => self.prove_in(norm, answer),
             Bounding::Cycles(multigrid, watch) => self.prove_by_cycles(multigrid, watch, answer),
+            Bounding::OwnFactor if !self.without_stiffness().is_empty() => self.prove_pressed(answer).ok().flatten(),
             Bounding::Nothing | Bounding::OwnFactor | Bounding::Pieces(_) => None,
         };
         proven.map(|proven| self.with_equalities_closed(proven))

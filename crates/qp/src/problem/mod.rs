@@ -53,6 +53,7 @@ pub struct ContactProblem {
     pub(crate) gap: Vec<f64>,
     near_null: Option<Arc<NearNullSpace>>,
     diagonal: FoundOnce<Diagonal>,
+    semidefinite: FoundOnce<bool>,
     parts: FoundOnce<Parts>,
     free_mode: FoundOnce<bool>,
     opposed: FoundOnce<OpposedRows>,
@@ -122,6 +123,7 @@ impl ContactProblem {
         let rounded = empty_rows::settle(&without_entries, &mut gap);
         let (diagonal, parts, free_mode) = (FoundOnce::default(), FoundOnce::default(), FoundOnce::default());
         let (opposed, equalities, two_sided) = (FoundOnce::default(), FoundOnce::default(), Vec::new());
+        let semidefinite = FoundOnce::default();
         let near_null = None;
         Ok(ContactProblem {
             stiffness,
@@ -130,6 +132,7 @@ impl ContactProblem {
             gap,
             near_null,
             diagonal,
+            semidefinite,
             parts,
             free_mode,
             opposed,
@@ -227,6 +230,18 @@ impl ContactProblem {
     /// The diagonal of K, computed at its first use.
     pub(crate) fn diagonal(&self) -> &Diagonal {
         self.diagonal.get_or_init(|| Diagonal::of(&self.stiffness))
+    }
+
+    /// Returns `true` if K is positive semidefinite, to rounding. One factorisation, at the first use.
+    ///
+    /// # Errors
+    /// Those of the factorisation, for example for lack of memory.
+    pub(crate) fn is_semidefinite(&self) -> Result<bool, Error> {
+        if let Some(&found) = self.semidefinite.get() {
+            return Ok(found);
+        }
+        let found = self.stiffness.is_semidefinite()?;
+        Ok(*self.semidefinite.get_or_init(|| found))
     }
 
     /// The dofs without stiffness, in increasing order.

@@ -65,6 +65,12 @@ impl PositiveBasis {
         }
     }
 
+    /// The nodes whose values make up the coefficient at a node, each with its share.
+    pub fn shares(&self, node: usize) -> impl Iterator<Item = (usize, f64)> {
+        let nodes = std::iter::once(node).chain(self.ends(node).into_iter().flatten());
+        nodes.map(move |of| (of, self.coefficient(node, |node| f64::from(u8::from(node == of)))))
+    }
+
     /// The coefficient of the position: the point at which a force on a coefficient acts, for its moment.
     pub fn place(&self, nodes: &[[f64; 3]], node: usize) -> [f64; 3] {
         [0, 1, 2].map(|axis| self.coefficient(node, |node| nodes[node][axis]))

@@ -5,6 +5,7 @@
 //! estimated at the zero of this line through the last two nodes. A zero far beyond the open node contradicts that node: the edge is then
 //! taken in the middle.
 
+use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::fem::assembly::facet_sizes;
@@ -27,6 +28,8 @@ const ROUNDING_OF_NORMALS: f64 = 1e-12;
 pub(crate) struct StraightCell {
     /// The nodes around it.
     pub nodes: Vec<usize>,
+    /// The number of its facet in the boundary, from 0.
+    pub facet: usize,
     /// The length or area of the facet, in proportion to that of its straight cells.
     stretch: f64,
     /// The same with thickness, cross-section or circumference.
@@ -43,6 +46,8 @@ pub(crate) struct Patch<'a> {
     cells_of: BTreeMap<usize, Vec<usize>>,
     /// The closed nodes in the order of the boundary.
     closed: Vec<usize>,
+    /// A node at another place than in the mesh, and its way there.
+    moved: Cell<Option<(usize, [f64; 3])>>,
 }
 
 impl<'a> Patch<'a> {
@@ -59,14 +64,16 @@ impl<'a> Patch<'a> {
             return None;
         }
         let closed = boundary.nodes().into_iter().filter(|node| row_of.contains_key(node)).collect();
-        let mut patch = Patch { answer, row_of, cells: Vec::new(), cells_of: BTreeMap::new(), closed };
-        for (facet, (extent, area)) in boundary.facets().zip(facet_sizes(model.body(), boundary)) {
-            let straight = boundary.kind.straight_cells(facet);
+        let mut patch =
+            Patch { answer, row_of, cells: Vec::new(), cells_of: BTreeMap::new(), closed, moved: Cell::default() };
+        let sizes = facet_sizes(model.body(), boundary);
+        for (facet, (nodes, (extent, area))) in boundary.facets().zip(sizes).enumerate() {
+            let straight = boundary.kind.straight_cells(nodes);
             let sizes = straight.iter().map(|cell| patch.straight_sizes(&patch.places(cell)));
             let (sum, area_sum) = sizes.fold((0.0, 0.0), |sum, (extent, area)| (sum.0 + extent, sum.1 + area));
             let ratio = |whole: f64, sum: f64| if sum > 0.0 { whole / sum } else { 1.0 };
             let (stretch, enlargement) = (ratio(extent, sum), ratio(area, area_sum));
-            patch.cells.extend(straight.into_iter().map(|nodes| StraightCell { nodes, stretch, enlargement }));
+            patch.cells.extend(straight.into_iter().map(|nodes| StraightCell { nodes, facet, stretch, enlargement }));
         }
         for (index, cell) in patch.cells.iter().enumerate() {
             for &node in cell.nodes.iter().filter(|node| patch.row_of.contains_key(node)) {
@@ -74,6 +81,21 @@ impl<'a> Patch<'a> {
             }
         }
         Some(patch)
+    }
+
+    /// Moves one node from its place in the mesh, and all others back to theirs; the stretches of facets stay.
+    pub fn set_moved(&self, node: usize, by: [f64; 3]) {
+        self.moved.set(Some((node, by)));
+    }
+
+    /// The answer whose patch this is.
+    pub fn answer(&self) -> &Answer {
+        self.answer
+    }
+
+    /// The cells of the boundary, facet by facet.
+    pub fn cells(&self) -> &[StraightCell] {
+        &self.cells
     }
 
     /// The cells with a closed node of these, each once.
@@ -141,9 +163,14 @@ impl<'a> Patch<'a> {
     /// The mean pressure of nodes around a node, itself or not, in force per area. A node on a plane of symmetry has the mirror images of
     /// its neighbours around it as well.
     pub fn mean_around(&self, node: usize, around: &BTreeSet<usize>) -> f64 {
-        let images = |other: usize| self.answer.model().images_around(node, other).len() as f64;
+        let images = |other: usize| self.images_around(node, other).len() as f64;
         let count: f64 = around.iter().map(|&other| images(other)).sum();
         around.iter().map(|&other| images(other) * self.pressure(other)).sum::<f64>() / count
+    }
+
+    /// The places of the node `other` and its mirror images that are around a node in the whole.
+    fn images_around(&self, node: usize, other: usize) -> Vec<[f64; 3]> {
+        self.answer.model().parts.symmetry.images_around(&self.place(node), &self.place(other))
     }
 
     /// Returns `true` if all nodes around a node are closed.
@@ -172,7 +199,11 @@ impl<'a> Patch<'a> {
     }
 
     pub fn place(&self, node: usize) -> [f64; 3] {
-        self.answer.model().mesh().nodes()[node]
+        let at = self.answer.model().mesh().nodes()[node];
+        match self.moved.get() {
+            Some((moved, by)) if moved == node => [0, 1, 2].map(|axis| at[axis] + by[axis]),
+            _ => at,
+        }
     }
 
     pub fn places(&self, nodes: &[usize]) -> Vec<[f64; 3]> {
@@ -221,8 +252,7 @@ impl<'a> Patch<'a> {
             dot(before, way) / (length(before) * length(way))
         };
         // The whole has mirror images of nodes around a node on a plane of symmetry.
-        let images =
-            |node: usize| self.answer.model().images_around(closed, node).into_iter().map(move |at| (node, at));
+        let images = |node: usize| self.images_around(closed, node).into_iter().map(move |at| (node, at));
         let inner = self
             .around(closed)
             .filter(|&node| self.is_closed(node))

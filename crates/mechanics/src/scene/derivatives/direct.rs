@@ -2,14 +2,14 @@
 
 use super::differences::derivative;
 use super::effect::Why;
-use super::output::{Branch, Direct, by_component, stress_of};
-use super::places::areas_by_places;
+use super::output::{Branch, Direct, by_component, moment_of, stress_of};
+use super::places::{Slopes, add_width, areas_by_places};
 use crate::fem::assembly::internal_work_by_places;
 use crate::fem::body::BodyElement;
 use crate::fem::element::Cell;
-use crate::fem::geometry::{COORDINATES, Symmetric, cross, distance};
+use crate::fem::geometry::{COORDINATES, Symmetric, distance};
 use crate::scene::answers::answer::Answer;
-use crate::scene::input::schema::Rule;
+use crate::scene::models::rows::ContactRow;
 
 impl Branch {
     /// The change with the place of each node, length `dim * n_nodes`, per length.
@@ -19,10 +19,16 @@ impl Branch {
         match &self.direct {
             Direct::None => {}
             Direct::Width => {
-                return Err(
-                    "the width depends on the places of its nodes themselves; that derivative is not available yet"
-                        .into(),
-                );
+                // The width depends on the pressures, the forces of rows over their areas.
+                let rows = model.rows().iter().zip(answer.multiplier()).zip(&self.by_multiplier);
+                let weight = |((row, lambda), by_force): ((&ContactRow, &f64), &f64)| match *by_force {
+                    0.0 => 0.0,
+                    by_force => -by_force * lambda / row.projected_area(),
+                };
+                gradient = areas_by_places(model, &rows.map(weight).collect::<Vec<f64>>())?;
+                for obstacle in 0..model.obstacles().len() {
+                    add_width(answer, obstacle, model.parts_of_whole(), &mut gradient)?;
+                }
             }
             Direct::Pressure(row) => {
                 let mut weights = vec![0.0; model.rows().len()];
@@ -34,31 +40,38 @@ impl Branch {
                 internal_work_by_places(body, displacement, displacement, &mut gradient)?;
                 gradient.iter_mut().for_each(|entry| *entry *= 0.5 * model.parts_of_whole());
             }
-            Direct::Moment(obstacle, axis) => {
-                if model.obstacles()[*obstacle].rule() != Some(Rule::Approach) {
-                    return Err("the moment depends on normals that turn with the places of nodes; it is available for the rule `approach`".into());
-                }
-                if !model.dofs().basis.is_nodal() {
-                    return Err(
-                        "the moment of coefficients on quadratic faces has no derivative with respect to places yet"
-                            .into(),
-                    );
-                }
-                let dimension = body.dimension();
-                for (row, lambda) in
-                    model.rows().iter().zip(answer.multiplier()).filter(|one| one.0.obstacle == *obstacle)
-                {
-                    for (along, direction) in COORDINATES.iter().enumerate().take(dimension) {
-                        gradient[dimension * row.node + along] += lambda * cross(*direction, row.normal)[*axis];
-                    }
-                }
-            }
+            Direct::Moment(obstacle, axis) => add_moment(answer, *obstacle, *axis, &mut gradient)?,
             Direct::Stress { element, at, component } => {
                 add_stress(answer, (*element, *at, *component), &mut gradient)?
             }
         }
         Ok(gradient)
     }
+}
+
+/// Adds the change of the moment `sum of lambda (r x n)` of an obstacle about an axis through the origin: with the places r of rows, which
+/// are those of their coefficients, and with normals that turn.
+fn add_moment(answer: &Answer, obstacle: usize, axis: usize, gradient: &mut [f64]) -> Result<(), Why> {
+    let (model, dimension) = (answer.model(), answer.model().body().dimension());
+    let slopes = Slopes::of(model, obstacle);
+    let rows = model.rows().iter().zip(answer.multiplier());
+    for (row, &lambda) in rows.filter(|(row, lambda)| row.obstacle == obstacle && **lambda != 0.0) {
+        let mut add = |node: usize, change: [f64; 3]| {
+            let own = &mut gradient[dimension * node..dimension * (node + 1)];
+            own.iter_mut().zip(change).for_each(|(sum, part)| *sum += lambda * part);
+        };
+        let moment = |at: [f64; 3], force: [f64; 3]| moment_of(model, obstacle, at, force, axis);
+        let at_origin = moment([0.0; 3], row.normal);
+        let of_place = COORDINATES.map(|direction| moment(direction, row.normal) - at_origin);
+        for (node, share) in model.dofs().basis.shares(row.node) {
+            add(node, of_place.map(|change| share * change));
+        }
+        if !slopes.has_fixed_normals() || row.is_mean {
+            let place = model.place(row.node);
+            add(row.node, slopes.at(row.node)?.of_normal(COORDINATES.map(|force| moment(place, force))));
+        }
+    }
+    Ok(())
 }
 
 /// Adds the change of a component of the stress at reference coordinates of an element: the point moves with the element.

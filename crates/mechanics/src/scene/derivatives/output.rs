@@ -8,7 +8,7 @@ use crate::fem::ElasticBody;
 use crate::fem::assembly::internal_force;
 use crate::fem::body::BodyElement;
 use crate::fem::element::TabulatedPoint;
-use crate::fem::geometry::{Symmetric, cross, distance, dot};
+use crate::fem::geometry::{Symmetric, distance, dot};
 use crate::scene::answers::answer::Answer;
 use crate::scene::input::entry::wrong;
 use crate::scene::models::model::Model;
@@ -38,7 +38,7 @@ pub(crate) struct Output {
 enum Kind {
     /// The sum of the contact forces, on one obstacle or on all, of the whole body.
     Force(Option<usize>),
-    /// The moment of the contact forces of an obstacle about an axis through the origin.
+    /// The moment of the contact forces of an obstacle about an axis through the origin, of the whole body.
     Moment(usize, usize),
     Travel(usize),
     PeakPressure,
@@ -217,11 +217,8 @@ impl Output {
                 let parts = model.parts.parts_of_obstacle(obstacle);
                 of_rows(&|row| if row.obstacle == obstacle { -parts } else { 0.0 }, Direct::None)
             }
-            Kind::Moment(..) if model.parts_of_whole() > 1.0 => {
-                return Err("a moment on a part with planes of symmetry is not that of the whole".to_string());
-            }
             Kind::Moment(obstacle, axis) => {
-                let arm = |row: &ContactRow| cross(model.place(row.node), row.normal)[axis];
+                let arm = |row: &ContactRow| moment_of(model, obstacle, model.place(row.node), row.normal, axis);
                 let coefficient = |row: &ContactRow| if row.obstacle == obstacle { arm(row) } else { 0.0 };
                 of_rows(&coefficient, Direct::Moment(obstacle, axis))
             }
@@ -279,6 +276,11 @@ impl Output {
             Kind::StressAt(place, component) => vec![stress(answer, place, component, blank())?],
         })
     }
+}
+
+/// The moment of a force of an obstacle at a place about an axis through the origin, in the whole body.
+pub(super) fn moment_of(model: &Model, obstacle: usize, at: [f64; 3], force: [f64; 3], axis: usize) -> f64 {
+    model.parts.symmetry.moment(model.obstacles()[obstacle].approach(), at, force, axis)
 }
 
 /// Returns `true` if the pressure of a row is its own force over its own area.
@@ -397,7 +399,7 @@ impl Branch {
                 let of_row = |(&row, normal): (&usize, &[f64; 3])| {
                     let own = &model.rows()[row];
                     if own.obstacle == *obstacle {
-                        lambda[row] * cross(model.place(own.node), *normal)[*axis]
+                        lambda[row] * moment_of(model, *obstacle, model.place(own.node), *normal, *axis)
                     } else {
                         0.0
                     }

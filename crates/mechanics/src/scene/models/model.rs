@@ -218,12 +218,6 @@ impl Model {
         self.parts.symmetry.share_plane(&nodes[node], &nodes[other])
     }
 
-    /// The places of the node `other` and its mirror images that are around a node in the whole.
-    pub(crate) fn images_around(&self, node: usize, other: usize) -> Vec<[f64; 3]> {
-        let nodes = self.mesh().nodes();
-        self.parts.symmetry.images_around(&nodes[node], &nodes[other])
-    }
-
     /// The title of the scene, as reports and pictures print it.
     pub fn title(&self) -> &str {
         &self.parts.title

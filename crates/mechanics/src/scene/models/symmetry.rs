@@ -3,7 +3,7 @@
 use super::held::{Component, Held, Holder};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::{COORDINATES, unit};
+use crate::fem::geometry::{COORDINATES, cross, unit};
 use crate::fem::mesh::Boundary;
 use crate::scene::input::entry::{COORDINATE_ROUNDING, number, wrong};
 use crate::scene::input::schema::{ModelSpec, Scene, SymmetryPlane};
@@ -130,6 +130,21 @@ impl Symmetry {
         all
     }
 
+    /// The moment about an axis through the origin of a force of one obstacle at a place, with its mirror images. Planes normal to the
+    /// `approach` direction make a second obstacle, whose forces do not count.
+    pub fn moment(&self, approach: [f64; 3], at: [f64; 3], force: [f64; 3], axis: usize) -> f64 {
+        let mut all = vec![(at, force)];
+        for &(normal, plane) in self.planes.iter().filter(|plane| approach[plane.0] == 0.0) {
+            let image = |&(mut at, mut force): &([f64; 3], [f64; 3])| {
+                (at[normal], force[normal]) = (2.0 * plane - at[normal], -force[normal]);
+                (at, force)
+            };
+            let beyond: Vec<_> = all.iter().map(image).collect();
+            all.extend(beyond);
+        }
+        all.into_iter().map(|(at, force)| cross(at, force)[axis]).sum()
+    }
+
     /// Returns `true` for each axis across which a place lies on a plane.
     pub fn axes_at(&self, at: &[f64; 3]) -> [bool; 3] {
         [0, 1, 2].map(|axis| self.planes.iter().any(|plane| plane.0 == axis && self.lies_on(*plane, at)))
@@ -171,6 +186,14 @@ impl Symmetry {
 #[cfg(test)]
 mod tests {
     use super::Symmetry;
+
+    #[test]
+    fn a_moment_counts_the_mirror_images_of_one_obstacle() {
+        let symmetry = Symmetry { planes: vec![(0, 4.0), (2, 1.0)], rounding: 1e-12 };
+        // The image of the force lies at x = 3, and that across z belongs to a second obstacle.
+        let of = |axis: usize| symmetry.moment([0.0, 0.0, 1.0], [5.0, 2.0, 3.0], [0.5, 0.0, -1.0], axis);
+        assert_eq!([of(0), of(1), of(2)], [-4.0, 8.0, 0.0]);
+    }
 
     #[test]
     fn images_around_an_edge_lie_beyond_planes_away_from_the_origin() {

@@ -211,7 +211,7 @@ impl ContactProblem {
         let Some(held) = springs.added_to(&stiffness, &self.contact)? else { return Ok(None) };
         let Some(norm) = EnergyNorm::of(&held, &self.contact)? else { return Ok(None) };
         let springs = Some(Arc::new(springs));
-        Ok(self.stiffness.is_semidefinite()?.then_some(EnergyNorm { springs, loose, ..norm }))
+        Ok(self.is_semidefinite()?.then_some(EnergyNorm { springs, loose, ..norm }))
     }
 
     /// The dofs without stiffness on which neither a load nor a row acts, if there are some.

@@ -20,8 +20,11 @@ mod rows;
 mod slopes;
 #[cfg(test)]
 mod tests;
+mod widths;
 
 pub(crate) use areas::areas_by_places;
+pub(super) use slopes::Slopes;
+pub(crate) use widths::add_width;
 
 use crate::error::Error;
 use crate::fem::assembly::internal_work_by_places;

@@ -65,10 +65,11 @@ fn add_row(
 
 /// The nodes whose gaps make up the gap of a row of the problem, with their shares: the node alone, or those of its coefficient. A node
 /// that the obstacle does not reach has the gap of the row.
-fn shares_of_gap(pairing: &Pairing, row: &ContactRow, slopes: &Slopes) -> Vec<(usize, f64)> {
-    let dofs = pairing.answer.model().dofs();
+fn shares_of_gap<'a>(
+    pairing: &'a Pairing,
+    row: &'a ContactRow,
+    slopes: &'a Slopes,
+) -> impl Iterator<Item = (usize, f64)> + 'a {
     let owner = |node: usize| if node == row.node || slopes.has_row(node) { node } else { row.node };
-    let members = std::iter::once(row.node).chain(dofs.basis.ends(row.node).into_iter().flatten());
-    let share = |of: usize| dofs.coefficient(row.node, |node| f64::from(u8::from(owner(node) == of)));
-    members.map(|node| (node, share(node))).filter(|entry| entry.1 != 0.0).collect()
+    pairing.answer.model().dofs().basis.shares(row.node).map(move |(node, share)| (owner(node), share))
 }

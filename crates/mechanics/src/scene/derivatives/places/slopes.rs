@@ -10,7 +10,7 @@ use crate::scene::models::condition::ON_THE_AXIS;
 use crate::scene::{Model, Rule};
 
 /// The change of a row with places.
-pub(super) struct Slope {
+pub(in crate::scene::derivatives) struct Slope {
     /// Nodes, each with the change of the gap along x, y and z, dimensionless.
     pub gap: Vec<(usize, [f64; 3])>,
     /// `[k]`: the change of the normal with the place of its node along axis k, per length.
@@ -25,7 +25,7 @@ impl Slope {
 }
 
 /// The rows of an obstacle at their nodes.
-pub(super) struct Slopes<'a> {
+pub(in crate::scene::derivatives) struct Slopes<'a> {
     model: &'a Model,
     number: usize,
     obstacle: &'a PlacedObstacle,

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::*;
 use crate::scene::Model;
+use crate::scene::derivatives::output::Output;
 use crate::scene::input::obstacle::{Obstacle, ObstacleRow};
 use signorini_qp::{ContactSet, dot};
 
@@ -105,6 +106,24 @@ impl<'a> Moving<'a> {
             model.rows().iter().zip(&weights).map(|(row, weight)| weight * row.projected_area()).sum::<f64>()
         };
         assert_close(&found, &self.differences(areas), 0);
+    }
+
+    /// Checks the change of an output at fixed displacement and multipliers. The rows of `closed` press, those in the middle most.
+    fn check_output(&self, name: &str, closed: std::ops::Range<usize>, most_skipped: usize) {
+        let answer = |model: &Model| {
+            let rows = 0..model.rows().len();
+            let set: ContactSet = rows.clone().map(|row| closed.contains(&row)).collect();
+            let force = |row: usize| match closed.contains(&row) {
+                true => -1.0 - ((row - closed.start) * (closed.end - 1 - row)) as f64,
+                false => 0.0,
+            };
+            let forces: Vec<f64> = rows.map(force).collect();
+            Answer::new(Arc::new(model.clone()), &random(model.problem().dofs(), 1), &forces, &set).unwrap()
+        };
+        let branch = |answer: &Answer| Output::of(name, answer.model()).unwrap().branches(answer).unwrap().remove(0);
+        let at_rest = answer(&self.model(None).unwrap());
+        let found = branch(&at_rest).direct_by_places(&at_rest).unwrap();
+        assert_close(&found, &self.differences(|model| branch(&answer(model)).value), most_skipped);
     }
 }
 
@@ -220,6 +239,48 @@ fn rows_against_rigid_obstacles_in_space_change_as_differences_say() {
             let scene = space("hex8", &obstacle("+z", rule, shape));
             Moving::of(&scene, |_| true).check(0);
             Moving::of(&scene, |_| true).check_areas();
+        }
+    }
+}
+
+#[test]
+fn widths_change_as_differences_say() {
+    let curved = r#"{"circle": {"apex": [1.4, 1.1], "radius": 1.5}}"#;
+    // Straight edges; quadratic ones, of which a half is covered; the whole of a boundary.
+    for (element, closed) in [("q4", 0..2), ("q4", 0..1), ("q8", 1..4), ("t6", 0..2), ("q8", 0..5)] {
+        for (model, rule) in
+            [("plane-strain", "approach"), ("plane-stress", "closest-point"), ("axisymmetric", "approach")]
+        {
+            let scene = plane(model, element, &obstacle("+y", rule, curved));
+            Moving::of(&scene, |_| true).check_output("width", closed.clone(), 0);
+        }
+    }
+    let symmetric = scene(&format!(
+        r#"{{"model": "plane-strain", {MATERIAL}, "symmetry": ["x"],
+            "body": {{"rectangle": {{"x": {{"points": [0, 1], "divisions": [4]}}, "y": {{"points": [0, 1], "divisions": [1]}}}}}},
+            "supports": [{{"on": {{"boundary": "bottom"}}, "y": 0}}], {}}}"#,
+        obstacle("+y", "approach", r#"{"circle": {"apex": [0, 1.1], "radius": 1.5}}"#)
+    ));
+    for closed in [0..1, 0..2, 0..3] {
+        Moving::of(&symmetric, |at| at[0] > 0.0).check_output("width", closed, 2);
+    }
+}
+
+#[test]
+fn moments_change_as_differences_say() {
+    for rule in ["approach", "closest-point"] {
+        for element in ["q4", "t6"] {
+            let scene = plane(
+                "plane-strain",
+                element,
+                &obstacle("+y", rule, r#"{"circle": {"apex": [1.4, 1.1], "radius": 1.5}}"#),
+            );
+            Moving::of(&scene, |_| true).check_output("obstacles[0].moment", 0..3, 0);
+        }
+        for element in ["hex8", "hex20"] {
+            let sphere = r#"{"sphere": {"apex": [0.1, 0.05, 1.1], "radius": 2}}"#;
+            let scene = space(element, &obstacle("+z", rule, sphere));
+            Moving::of(&scene, |_| true).check_output("obstacles[0].moment[1]", 0..5, 0);
         }
     }
 }
