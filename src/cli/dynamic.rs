@@ -15,7 +15,7 @@ use crate::output::{MotionFolder, MotionReport, Pictures, Wanted};
 use crate::qp;
 use crate::qp::Watch;
 use crate::scene::{Dynamics, Model, Scene};
-use crate::study::{MotionSummary, RunSeconds};
+use crate::study::{MotionError, MotionSummary, RunSeconds};
 
 pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outcome, Error> {
     let clock = Instant::now();
@@ -49,8 +49,13 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     watch.step("report", 0);
     warn(&summary.warnings().iter().map(|warning| format!("warning: {}\n", warning.message)).collect::<String>());
     let seconds = RunSeconds::new(assemble, factor, clock.elapsed().as_secs_f64());
-    let motion =
-        MotionReport { model: &model, dynamics: &dynamics, method: settings.method, summary: &summary, seconds };
+    let is_whole = summary.steps == dynamics.steps;
+    let error = match options.refine_in_time && is_whole {
+        true => Some(MotionError::of(scene, dynamics.step, &summary, &settings)?),
+        false => None,
+    };
+    let method = settings.method;
+    let motion = MotionReport { model: &model, dynamics: &dynamics, method, summary: &summary, error, seconds };
     let report = Report::new(&motion, motion.text(&title))?;
     let (format, status) = (options.common.format, motion.status());
     let (Some(folder), Some(path)) = (folder, &options.common.out) else {
@@ -80,7 +85,7 @@ struct Run<'a> {
 impl<'a> Run<'a> {
     fn new(model: &'a Arc<Model>, dynamics: &'a Dynamics, integrator: Integrator) -> Self {
         let (seen, obstacles) = (integrator.observe(), model.obstacles().len());
-        let summary = MotionSummary::starting(&seen, obstacles, dynamics.window, dynamics.step);
+        let summary = MotionSummary::starting(&seen, obstacles, dynamics.windows, dynamics.step);
         Run { model, dynamics, integrator, summary, folder: None }
     }
 
@@ -116,7 +121,7 @@ impl<'a> Run<'a> {
 
     /// All remaining steps, until the watch stops them.
     fn advance(&mut self, watch: &Watch) -> Result<(), Error> {
-        let Dynamics { steps: last, frames, step, .. } = *self.dynamics;
+        let Dynamics { steps: last, frames, .. } = *self.dynamics;
         // A frame ends when the share of the steps reaches the next whole number of frames.
         let frames_until = |step: usize| step as u128 * frames as u128 / last as u128;
         while self.integrator.state().steps < last {
@@ -127,7 +132,7 @@ impl<'a> Run<'a> {
             };
             let seen = self.integrator.observe();
             let state = self.integrator.state();
-            self.summary.add(&seen, &self.model.obstacle_forces(&state.multiplier), step);
+            self.summary.add(&seen, &self.model.obstacle_forces(&state.multiplier));
             if let Some(folder) = &mut self.folder {
                 folder.observe(self.model, &seen, state, &self.dynamics.resultants(self.model, &self.integrator)?)?;
                 if frames_until(state.steps) > frames_until(state.steps - 1) {

@@ -111,6 +111,7 @@ fn an_obstacle_shape_is_named_in_two_files() {
 #[test]
 fn a_time_scheme_is_named_in_two_files() {
     for (scheme, file) in [
+        ("FoxGoodwin", "fox_goodwin"),
         ("Midpoint", "midpoint"),
         ("Trapezoidal", "trapezoidal"),
         ("ContactStabilised", "contact_stabilised"),

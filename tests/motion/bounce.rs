@@ -10,7 +10,10 @@ use signorini::{Scene, Settings};
 use support::closed_forms::ImpactingBar;
 
 /// Accuracy of the default scheme at its default step, a Courant number of 0.5, on 100 cells along the wave.
-const ENERGY: f64 = 1e-3;
+const ENERGY: f64 = 2e-3;
+
+/// Energy that the contact of a bar of 50 cells takes, most of it for as long as it lasts.
+const TAKEN: f64 = 2.5e-2;
 const PRESSURE: f64 = 5e-3;
 const SPREAD: f64 = 1e-2;
 const REBOUND: f64 = 1e-2;
@@ -30,6 +33,10 @@ const FLIGHT: f64 = 1e-2;
 /// Largest change of energy by a flat impact: each of the few steps in which contact begins or ends has an error below
 /// 1e-5.
 const BLOW: f64 = 1e-4;
+
+/// Energy that the contact keeps while it lasts, on 100 cells: up to one and a half times that of the contact node. Rounding of a change.
+const STOPPED: f64 = 0.0076;
+const ROUNDING: f64 = 1e-10;
 
 /// Observations of a body after each step.
 struct Seen {
@@ -127,12 +134,12 @@ fn a_dropped_bar_bounces_in_agreement_with_waves_and_gravity() {
             {"boundary": "left", "approach": "-x", "shape": {"plane": {"point": [-height], "normal": [-1]}}}],
         "analysis": {"dynamic": {"duration": fall + 3.0 * period + 10.0, "initial": []}}
     }));
-    // A contact is a sequence of steps with a force; an interruption shorter than the time of a wave belongs to it.
+    // A contact is a sequence of steps with a force; an interruption shorter than three times that of a wave belongs to it.
     let mut contacts: Vec<[f64; 3]> = Vec::new();
     for at in seen.all.iter().filter(|at| at.force > 0.0) {
         let middle = at.time - seen.step / 2.0;
         match contacts.last_mut() {
-            Some([_, end, impulse]) if middle - *end < 1.0 => {
+            Some([_, end, impulse]) if middle - *end < 3.0 => {
                 (*end, *impulse) = (middle, *impulse + at.force * seen.step)
             }
             _ => contacts.push([middle, middle, at.force * seen.step]),
@@ -141,7 +148,8 @@ fn a_dropped_bar_bounces_in_agreement_with_waves_and_gravity() {
     assert_eq!(contacts.len(), 4);
     let [begin, end, impulse] = contacts[0];
     assert!((begin - fall).abs() <= seen.step, "{begin}");
-    assert!((end - begin - contact).abs() <= CONTACT_TIME * contact, "{}", end - begin);
+    // The first and the last step with a force.
+    assert!((end - begin - contact).abs() <= CONTACT_TIME * contact + 2.0 * seen.step, "{}", end - begin);
     // The centre of mass departs with the speed of its arrival, lower by twice the static compression under the weight.
     assert!((impulse / (2.0 * speed + gravity * contact) - 1.0).abs() <= REBOUND / 2.0, "{impulse}");
     let left = ((fall + contact) / seen.step).round() as usize + 20;
@@ -161,13 +169,13 @@ fn a_dropped_bar_bounces_in_agreement_with_waves_and_gravity() {
     let start = seen.all[0].energy();
     let scale = speed * speed / 2.0;
     let most = seen.all.iter().map(|at| (at.energy() - start).abs() / scale).fold(0.0, f64::max);
-    assert!(most <= ENERGY, "{most}");
+    assert!(most <= TAKEN, "{most}");
     assert!(seen.all.iter().all(|at| at.penetration <= PENETRATION));
 }
 
 #[test]
 fn a_flat_impact_keeps_its_energy_at_any_time_within_a_step() {
-    for courant in [0.5, 1.0, 1.5] {
+    for (scheme, courant) in [("midpoint", 0.5), ("midpoint", 1.0), ("midpoint", 1.5), ("fox-goodwin", 1.0)] {
         let step = courant * 0.1 / 30.0;
         for arrival in [0.0, 0.25, 0.5, 0.75] {
             let wall = 10.0 + (20.0 + arrival) * 10.0 * step;
@@ -178,11 +186,14 @@ fn a_flat_impact_keeps_its_energy_at_any_time_within_a_step() {
                 "obstacles": [
                     {"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [wall], "normal": [1]}}}],
                 "analysis": {"dynamic": {
-                    "duration": 0.9, "step": step, "initial": [{"velocity": {"value": [10]}}]}}
+                    "duration": 0.9, "scheme": scheme, "step": step, "initial": [{"velocity": {"value": [10]}}]}}
             }));
-            let change = |at: &Observation| (at.energy() / seen.all[0].energy() - 1.0).abs();
-            let most = seen.all.iter().map(change).fold(0.0, f64::max);
-            assert!(most <= BLOW, "{courant}, {arrival}: {most}");
+            let change = |at: &Observation| at.energy() / seen.all[0].energy() - 1.0;
+            let [least, most] = [f64::min, f64::max].map(|which| seen.all.iter().map(change).fold(0.0, which));
+            let allowed = if scheme == "midpoint" { [BLOW; 2] } else { [STOPPED, ROUNDING] };
+            assert!(-least <= allowed[0] && most <= allowed[1], "{scheme}, {courant}, {arrival}: {least}, {most}");
+            let last = change(&seen.all[seen.all.len() - 1]).abs();
+            assert!(last <= allowed[1], "{scheme}, {courant}, {arrival}: {last}");
             // A corrected force is still a pressure, and its impulse equals the change of momentum of the bar.
             let impulse: f64 = seen.all.iter().map(|at| at.force * seen.step).sum();
             let momentum = 10.0 * (10.0 - seen.centre[seen.centre.len() - 1][1]);

@@ -7,14 +7,14 @@ use signorini::{ContactProblem, Error, Precision, Scene, Settings, SparseMatrix,
 use support::impact::cases::cases;
 use support::impact::measure::run;
 
-/// Accuracy of the default scheme at its default step, a Courant number of 0.5, on 100 cells.
+/// Accuracy of the midpoint rule at a Courant number of 0.5, on 100 cells.
 const ENERGY: f64 = 1e-3;
 const PRESSURE: f64 = 5e-3;
 const REBOUND: f64 = 1e-2;
 const PENETRATION: f64 = 1e-10;
 
 #[test]
-fn the_default_scheme_has_exact_energy_pressure_and_rebound_without_penetration() {
+fn the_midpoint_rule_has_exact_energy_pressure_and_rebound_without_penetration() {
     for case in &cases() {
         for courant in [0.5, 1.0, 1.5] {
             let run = run(case, SchemeSpec::Midpoint, courant, 100).unwrap();
@@ -32,7 +32,7 @@ fn the_default_scheme_has_exact_energy_pressure_and_rebound_without_penetration(
 }
 
 #[test]
-fn the_displacement_error_of_the_default_scheme_falls_with_cell_and_step() {
+fn the_displacement_error_of_the_midpoint_rule_falls_with_cell_and_step() {
     // The velocity jumps at the wave fronts: there, the error of a scheme of second order falls with the power 2/3.
     for case in &cases() {
         let error = |cells| run(case, SchemeSpec::Midpoint, 1.0, cells).unwrap().displacement_error;
@@ -59,7 +59,13 @@ fn the_schemes_that_warn_of_energy_growth_gain_energy() {
         let run = run(case, scheme, 0.5, 100).unwrap();
         assert!(run.scheme.gains_energy() && run.energy[1] > least, "{scheme:?}: {:?}", run.energy);
     }
-    for scheme in [Scheme::Midpoint, Scheme::ContactStabilised, Scheme::CentralDifference { restitution: 0.0 }] {
+    let kept = [
+        Scheme::FoxGoodwin,
+        Scheme::Midpoint,
+        Scheme::ContactStabilised,
+        Scheme::CentralDifference { restitution: 0.0 },
+    ];
+    for scheme in kept {
         assert!(!scheme.gains_energy());
     }
 }
@@ -120,6 +126,7 @@ fn every_scheme_is_of_second_order_without_contact() {
     let (damped, t) = (omega * (1.0 - zeta * zeta).sqrt(), 3.0);
     let exact = (-zeta * omega * t).exp() * ((damped * t).cos() + zeta * omega / damped * (damped * t).sin());
     for scheme in [
+        Scheme::FoxGoodwin,
         Scheme::Midpoint,
         Scheme::Trapezoidal,
         Scheme::ContactStabilised,
@@ -162,12 +169,12 @@ fn a_run_that_is_resumed_goes_on_bit_for_bit() {
     let new =
         || Integrator::new(dynamics.problem.clone(), dynamics.scheme, dynamics.step, &Settings::default()).unwrap();
     let (mut whole, mut second) = (new(), new());
-    // The bar touches the wall from step 300 to step 700.
-    for _ in 0..450 {
+    // The bar touches the wall from step 150 to step 350.
+    for _ in 0..225 {
         whole.advance().unwrap();
     }
     second.resume(whole.state().clone()).unwrap();
-    for _ in 0..400 {
+    for _ in 0..200 {
         whole.advance().unwrap();
         second.advance().unwrap();
     }

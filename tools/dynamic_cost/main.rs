@@ -10,7 +10,7 @@
 use std::time::Instant;
 
 use serde_json::json;
-use signorini::motion::{Integrator, Scheme};
+use signorini::motion::Integrator;
 use signorini::qp::Cholesky;
 use signorini::{Scene, Settings, SparseMatrix, SymmetricMatrix};
 
@@ -29,11 +29,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let scene = Scene::from_json(&block(cells).to_string(), "block")?;
         let model = scene.build()?;
         let Some(dynamics) = scene.dynamics(&model)? else { continue };
-        let (problem, step) = (dynamics.problem, dynamics.step);
+        let (problem, scheme, step) = (dynamics.problem, dynamics.scheme, dynamics.step);
         let matrix = effective(problem.mass(), problem.statics().stiffness(), 4.0 / (step * step))?;
         let cholesky = factor(&matrix)?;
         let clock = Instant::now();
-        let mut integrator = Integrator::new(problem, Scheme::Midpoint, step, &Settings::default())?;
+        let mut integrator = Integrator::new(problem, scheme, step, &Settings::default())?;
         let preparation = clock.elapsed().as_secs_f64();
         let (mut solves, mut steps, mut closed) = (Vec::new(), Vec::new(), 0);
         for _ in 0..STEPS {

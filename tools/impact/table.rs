@@ -2,18 +2,18 @@
 
 use signorini::output::{Drawing, Plot, Quantity, Series, line_plots};
 
-use support::impact::measure::{Case, Run};
+use support::impact::measure::{Case, Moved, Run};
 
-const HEADING: &str = "| scheme | CFL | displacement error | contact time | pressure | spread | largest force | on the mean | impulse | rebound | energy at the end | largest energy | penetration |\n\
-                       | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+const HEADING: &str = "| scheme | CFL | displacement error | contact time | pressure | spread | largest force | peak | on the mean | impulse | rebound | energy at the end | largest energy | penetration |\n\
+                       | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
 
 fn row(case: &Case, name: &str, courant: &str, run: &Run) -> String {
     let rebound = case.rebound.map_or("-".to_string(), |_| format!("{:.5}", run.rebound));
     let [mean, spread] = run.pressure;
     let [end, most] = run.energy;
-    let [largest, averaged] = run.peaks;
+    let [largest, averaged, peak] = run.peaks;
     format!(
-        "| {name} | {courant} | {:.2e} | {:.4} | {mean:.5} | {spread:.1e} | {largest:.1} | {averaged:.1} | {:.5} | {rebound} | {end:.5} | {most:.5} | {:.1e} |\n",
+        "| {name} | {courant} | {:.2e} | {:.4} | {mean:.5} | {spread:.1e} | {largest:.1} | {peak:.1} | {averaged:.1} | {:.5} | {rebound} | {end:.5} | {most:.5} | {:.1e} |\n",
         run.displacement_error, run.duration, run.impulse, run.penetration
     )
 }
@@ -25,8 +25,9 @@ pub fn of_runs(case: &Case, runs: &[Run]) -> String {
     let window = runs.first().map_or(0.0, |run| run.window);
     let mut text = format!("{}, 100 cells; the mean is over {window:.4}\n\n{HEADING}", case.name);
     text += &format!(
-        "| exact | | 0 | {:.4} | {:.5} | 0 | {:.1} | {:.1} | {:.5} | {rebound} | 1 | 1 | 0 |\n",
+        "| exact | | 0 | {:.4} | {:.5} | 0 | {:.1} | {:.1} | {:.1} | {:.5} | {rebound} | 1 | 1 | 0 |\n",
         end - begin,
+        case.pressure,
         case.pressure,
         case.pressure,
         case.pressure,
@@ -41,7 +42,7 @@ pub fn of_runs(case: &Case, runs: &[Run]) -> String {
     text + "\n"
 }
 
-/// Returns the table of the default scheme on finer and finer meshes, with the convergence rate of its displacement
+/// Returns the table of the midpoint rule on finer and finer meshes, with the convergence rate of its displacement
 /// error.
 pub fn of_meshes(case: &Case, courant: f64, cells: &[usize], runs: &[Run]) -> String {
     let mut text = format!(
@@ -61,6 +62,27 @@ pub fn of_meshes(case: &Case, courant: f64, cells: &[usize], runs: &[Run]) -> St
         text += &row(case, &cells[index].to_string(), &rate, run);
     }
     text + "\n"
+}
+
+/// The heading of the table of bodies whose contact is no point, and one of its rows; `reference` is the peak to compare with.
+pub const BODIES: &str = "| body | cells | scheme | CFL | step | peak over reference | largest force over reference | impulse | energy at the end | growth | seconds |\n\
+                          | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+
+/// A row of that table.
+pub fn of_body(name: &str, cells: usize, moved: &Moved, reference: f64) -> String {
+    let summary = &moved.summary;
+    let end = summary.over_initial().map_or(f64::NAN, |[end, _]| end);
+    format!(
+        "| {name} | {cells} | {} | {} | {:.3e} | {:.4} | {:.4} | {:.6e} | {end:.5} | {:.1e} | {:.2} |\n",
+        moved.scheme,
+        moved.courant,
+        moved.step,
+        summary.contact.peak_force() / reference,
+        summary.contact.force_max / reference,
+        summary.contact.impulse,
+        summary.growth(),
+        moved.seconds
+    )
 }
 
 /// Draws pressure and energy over time at CFL 1; central differences run at 0.9.

@@ -207,6 +207,9 @@ pub(super) struct Solve {
     #[arg(long, value_name = "X1,Y1:X2,Y2", allow_hyphen_values = true, value_parser = parse_line, requires = "out",
           conflicts_with_all = ["total_error", "resume", "plan"])]
     pub along: Vec<Line>,
+    /// Estimate the errors of peak force, impulse and release of a motion by two more runs: with half the step, and with half the cells too
+    #[arg(long, conflicts_with_all = ["total_error", "plan"])]
+    pub refine_in_time: bool,
     /// Continue the motion in the folder of --out; the scene may have a longer duration than before
     #[arg(long, requires = "out")]
     pub resume: bool,

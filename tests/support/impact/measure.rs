@@ -6,6 +6,7 @@ use signorini::motion::{Integrator, Observation, Scheme};
 use signorini::study::MotionSummary;
 use signorini::{Error, Scene, Settings, qp};
 use std::fs;
+use std::time::Instant;
 
 /// A bar with a known motion.
 pub struct Case {
@@ -43,11 +44,58 @@ pub struct Run {
     /// Energy at the end and the largest energy, both divided by the energy at the start.
     pub energy: [f64; 2],
     pub penetration: f64,
-    /// Largest force of a step, and the largest mean force over a window of time.
-    pub peaks: [f64; 2],
+    /// Largest force of a step, the largest mean force over a window of time, and over the time of a wave through a few cells.
+    pub peaks: [f64; 3],
     /// Length of that window, in time.
     pub window: f64,
     pub history: Vec<Observation>,
+}
+
+/// A scene that was moved by a scheme.
+pub struct Moved {
+    pub scheme: &'static str,
+    pub courant: f64,
+    pub step: f64,
+    pub summary: MotionSummary,
+    /// Seconds of all steps.
+    pub seconds: f64,
+}
+
+/// Moves a scene by a scheme, in steps of `courant` times the time of a wave through its smallest cell.
+///
+/// # Errors
+/// Those of the scene and of the steps.
+pub fn moved(scene: &Value, scheme: SchemeSpec, courant: f64) -> Result<Moved, Error> {
+    let mut scene = scene.clone();
+    scene["analysis"]["dynamic"]["scheme"] = json!(scheme);
+    scene["analysis"]["dynamic"]["courant"] = json!(courant);
+    let scene: Scene = serde_json::from_value(scene).expect("a scene");
+    let dynamics = scene.dynamics(&scene.build()?)?.expect("a motion");
+    let step = dynamics.step;
+    let mut integrator = Integrator::new(dynamics.problem, dynamics.scheme, step, &Settings::default())?;
+    let mut summary = MotionSummary::starting(&integrator.observe(), 0, dynamics.windows, step);
+    let clock = Instant::now();
+    for _ in 0..dynamics.steps {
+        integrator.advance()?;
+        summary.add(&integrator.observe(), &[]);
+    }
+    Ok(Moved { scheme: scheme.name(), courant, step, summary, seconds: clock.elapsed().as_secs_f64() })
+}
+
+/// The scene of this name in `tools/impact`, with cells of its axes or of its zone of contact.
+pub fn scene_of(name: &str, cells: usize) -> Value {
+    let path = crate::root().join(format!("tools/impact/{name}.json"));
+    let mut scene: Value = serde_json::from_str(&fs::read_to_string(path).expect("a scene")).expect("JSON");
+    if let Some(rectangle) = scene["body"].get_mut("rectangle") {
+        (rectangle["x"]["divisions"], rectangle["y"]["divisions"]) = (json!([cells]), json!([cells]));
+    }
+    if let Some(bar) = scene["body"].get_mut("bar") {
+        bar["x"]["divisions"] = json!([cells]);
+    }
+    if let Some(disc) = scene["body"].get_mut("disc") {
+        disc["zone"]["divisions"] = json!(cells);
+    }
+    scene
 }
 
 /// Runs `case` on `cells` cells. The time step is `courant` times the time that a wave takes through a cell.
@@ -63,11 +111,7 @@ pub fn with_value(
     courant: f64,
     cells: usize,
 ) -> Result<Run, Error> {
-    let path = crate::root().join(format!("tools/impact/{}.json", case.scene));
-    let mut scene: Value = serde_json::from_str(&fs::read_to_string(path).expect("a scene")).expect("JSON");
-    if let Some(bar) = scene["body"].get_mut("bar") {
-        bar["x"]["divisions"] = json!([cells]);
-    }
+    let mut scene = scene_of(case.scene, cells);
     scene["analysis"]["dynamic"]["scheme"] = json!(scheme);
     scene["analysis"]["dynamic"]["courant"] = json!(courant);
     let scene: Scene = serde_json::from_value(scene).expect("a scene");
@@ -84,7 +128,8 @@ pub fn with_value(
     let [begin, end] = case.contact;
     let after = end + (end - begin) / 2.0;
     let first = integrator.observe();
-    let mut summary = MotionSummary::starting(&first, 0, dynamics.window, dynamics.step);
+    let mut summary = MotionSummary::starting(&first, 0, dynamics.windows, dynamics.step);
+    let mut until_then = summary.clone();
     let (mut history, mut squares, mut speed) = (vec![first], 0.0, 0.0);
     let ones = vec![1.0; integrator.problem().statics().dofs()];
     let inertia = integrator.problem().mass().mul(&ones);
@@ -99,7 +144,10 @@ pub fn with_value(
             speed = -momentum / inertia.iter().sum::<f64>();
         }
         let seen = integrator.observe();
-        summary.add(&seen, &[], dynamics.step);
+        summary.add(&seen, &[]);
+        if time <= after {
+            until_then.add(&seen, &[]);
+        }
         history.push(seen);
     }
     let step = dynamics.step;
@@ -113,21 +161,20 @@ pub fn with_value(
         .collect();
     let mean = inside.iter().sum::<f64>() / inside.len() as f64;
     let spread = (inside.iter().map(|p| (p - mean).powi(2)).sum::<f64>() / inside.len() as f64).sqrt();
-    let until = || history[1..].iter().filter(|seen| seen.time <= after);
     Ok(Run {
         scheme: dynamics.scheme,
         courant,
         displacement_error: (squares / dynamics.steps as f64).sqrt() / case.reach,
-        duration: until().filter(|seen| seen.force > 0.0).count() as f64 * step,
+        duration: until_then.contact.duration,
         pressure: [mean, spread],
-        impulse: until().map(|seen| seen.force * step).sum(),
+        impulse: until_then.contact.impulse,
         rebound: speed,
         energy: [
             integrator.observe().energy() / first.energy(),
             history.iter().map(Observation::energy).fold(0.0, f64::max) / first.energy(),
         ],
         penetration: history.iter().map(|seen| seen.penetration).fold(0.0, f64::max),
-        peaks: [summary.contact.force_max, summary.contact.force_mean_max()],
+        peaks: [summary.contact.force_max, summary.contact.force_mean_max(), summary.contact.peak_force()],
         window: summary.window_steps() as f64 * step,
         history,
     })

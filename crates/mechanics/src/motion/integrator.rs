@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::step::Advance;
+use super::step::{Advance, HalfStep};
 use super::{Balance, DynamicProblem, Observation, Scheme, State};
 use crate::bytes;
 use crate::error::Error;
@@ -114,7 +114,12 @@ impl Integrator {
             return Err(qp::Error::Numerical { step: "time integration", reason }.into());
         }
         let times = self.load_times.iter().map(|share| (self.state.steps as f64 + share) * self.step);
-        next.work += self.problem.work(times, &self.state.displacement, &next.displacement);
+        let halves = [&self.state, &next].map(|state| self.scheme.half_step(&self.problem, self.step, state));
+        let moved = match &halves {
+            [Some(from), Some(to)] => [&from.displacement, &to.displacement],
+            _ => [&self.state.displacement, &next.displacement],
+        };
+        next.work += self.problem.work(times, moved);
         self.before = Some(std::mem::replace(&mut self.state, next));
         Ok(&self.state)
     }
@@ -169,17 +174,23 @@ impl Integrator {
     /// The current energies, force and penetration.
     pub fn observe(&self) -> Observation {
         let State { displacement, velocity, elastic, momentum, multiplier, contact_set, .. } = &self.state;
-        let [strain, potential] = self.problem.energies(displacement, elastic, self.time());
+        let half = self.scheme.half_step(&self.problem, self.step, &self.state);
+        let (moved, forces, kinetic) = match &half {
+            Some(HalfStep { displacement, elastic, kinetic }) => (displacement, elastic, *kinetic),
+            None => (displacement, elastic, dot(velocity, momentum) / 2.0),
+        };
+        let [strain, potential] = self.problem.energies(moved, forces, self.time());
         Observation {
             time: self.time(),
             force: multiplier.iter().fold(0.0, |force, lambda| force - lambda),
             closed: contact_set.count(),
             penetration: self.problem.penetration(displacement),
-            kinetic: dot(velocity, momentum) / 2.0,
+            kinetic,
             strain,
             potential,
             work: self.state.work,
             penalties: self.state.penalties,
+            acting: self.scheme.acting(self.step, self.state.steps),
         }
     }
 }

@@ -25,6 +25,8 @@ pub struct DynamicProblem {
     velocity: Vec<f64>,
     /// Forces on the free dofs from prescribed displacements, and the strain energy of these displacements.
     held: (Vec<f64>, f64),
+    /// An upper bound on the largest angular frequency without damping.
+    frequency: Option<f64>,
 }
 
 impl DynamicProblem {
@@ -53,6 +55,7 @@ impl DynamicProblem {
             displacement: zeros.clone(),
             velocity: zeros.clone(),
             held: (zeros, 0.0),
+            frequency: None,
         })
     }
 
@@ -104,6 +107,16 @@ impl DynamicProblem {
     pub fn holding(mut self, forces: Vec<f64>, energy: f64) -> Self {
         self.held = (forces, energy);
         self
+    }
+
+    /// The same with an upper bound on the largest angular frequency of K and M without damping, per time, positive. `fox-goodwin` finds one
+    /// itself if M is diagonal; without a bound it is of second order.
+    pub fn bounded_by(self, frequency: f64) -> Self {
+        DynamicProblem { frequency: Some(frequency), ..self }
+    }
+
+    pub(super) fn given_frequency(&self) -> Option<f64> {
+        self.frequency
     }
 
     /// The problem without inertia: stiffness, constant load, contact rows and gaps.
@@ -190,7 +203,7 @@ impl DynamicProblem {
 
     /// Work of the loads between two displacements, with the mean of their values at some times, without the part that holds prescribed
     /// displacements.
-    pub(super) fn work(&self, times: impl ExactSizeIterator<Item = f64>, from: &[f64], to: &[f64]) -> f64 {
+    pub(super) fn work(&self, times: impl ExactSizeIterator<Item = f64>, [from, to]: [&Vec<f64>; 2]) -> f64 {
         let count = times.len() as f64;
         let moved: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
         times.map(|t| dot(&self.load_at(t), &moved)).sum::<f64>() / count - dot(&self.held.0, &moved)

@@ -24,6 +24,12 @@ pub struct State {
     pub penalties: usize,
     /// Contact multiplier of the last step, one entry per contact row, in force, `<= 0`.
     pub multiplier: Vec<f64>,
+    /// Energy that each contact row took from its node when the node stopped, in force times length; only `fox-goodwin` stores it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub kept: Vec<f64>,
+    /// K v, one entry per dof, in force over time; empty in schemes that do not need it, and before the first step.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rate: Vec<f64>,
     /// Rows that were closed in the last step: the start of the search in the next step. Code that writes a state lists them itself.
     #[serde(skip)]
     pub contact_set: ContactSet,
@@ -69,6 +75,8 @@ pub struct Observation {
     pub work: f64,
     /// Penalties that the last step tried; 0 in schemes without a loop over penalties.
     pub penalties: usize,
+    /// Between which times the force acted, `[from, to]`, in time, since the start of the motion.
+    pub acting: [f64; 2],
 }
 
 impl Observation {

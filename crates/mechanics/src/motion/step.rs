@@ -5,7 +5,7 @@ use std::fmt;
 use super::{Balance, DynamicProblem, State};
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use signorini_qp::{ContactProblem, ContactSet, Prepared, Settings, SymmetricMatrix};
+use signorini_qp::{ContactProblem, ContactSet, Prepared, Settings, SymmetricMatrix, dot};
 
 /// The description of a scheme.
 pub struct About {
@@ -24,6 +24,10 @@ pub struct About {
     /// The times in a step at which it evaluates the loads, from 0 to 1, with equal weights; the work of the loads is measured at these
     /// times.
     pub load_times: &'static [f64],
+    /// `true` if it uses a bound on the largest frequency of the mesh.
+    pub uses_frequency: bool,
+    /// `true` if it moves a bar exactly in steps of the time of a wave through a cell.
+    pub is_exact_in_bars: bool,
     /// The forms of the mass with which its energy grows whenever bodies touch.
     pub unstable_in_contact: &'static [MassForm],
     /// Prepares a motion in steps of one length, with the value of the parameter.
@@ -54,6 +58,42 @@ pub(super) trait Advance: fmt::Debug + Send + Sync {
     fn advance(&self, problem: &DynamicProblem, step: f64, state: &State) -> Result<State, Error>;
     /// The balance of forces that the step from `before` to `after` solved, with the multiplier of `after`, at some dofs.
     fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance;
+    /// The middle of the last step, if a scheme measures its energy there and not at the end.
+    fn half_step(&self, _: &DynamicProblem, _step: f64, _: &State) -> Option<HalfStep> {
+        None
+    }
+    /// The times between which the contact forces of step number `steps` act, counted from 1.
+    fn acting(&self, step: f64, steps: usize) -> [f64; 2] {
+        [(steps as f64 - 1.0) * step, steps as f64 * step]
+    }
+}
+
+/// Displacement and kinetic energy in the middle of a step.
+pub(super) struct HalfStep {
+    /// Displacement, one entry per dof, in length.
+    pub displacement: Vec<f64>,
+    /// Its elastic forces, one entry per dof, in force.
+    pub elastic: Vec<f64>,
+    /// Kinetic energy, in force times length.
+    pub kinetic: f64,
+}
+
+/// The middle of the last step of length `step` (zero before the first), in which the dofs moved with `velocity`, of this momentum M v and
+/// this rate K v of the elastic forces; the mass of the scheme is `M + scaling K`.
+///
+/// The energy there, with the kinetic part `v'(M + scaling K - step^2/4 K) v/2`, is the one that leapfrog preserves.
+pub(super) fn halfway(
+    step: f64,
+    scaling: f64,
+    state: &State,
+    (velocity, momentum): (&[f64], &[f64]),
+    rate: &[f64],
+) -> HalfStep {
+    HalfStep {
+        displacement: plus(&state.displacement, -step / 2.0, velocity),
+        elastic: plus(&state.elastic, -step / 2.0, rate),
+        kinetic: dot(velocity, momentum) / 2.0 + (scaling / 2.0 - step * step / 8.0) * dot(velocity, rate),
+    }
 }
 
 /// A prepared matrix for a sequence of contact problems on the rows of a motion.

@@ -25,7 +25,7 @@ const EXPLICIT: [usize; 2] = [1, 2];
 /// One scheme at one length of its step, with its seconds and its errors against a reference of smaller steps.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MotionPoint {
-    /// Name of the scheme in scenes, as `midpoint`.
+    /// Name of the scheme in scenes, as `fox-goodwin`.
     pub scheme: &'static str,
     /// Length of each step, in time.
     pub step: f64,
@@ -50,7 +50,7 @@ pub struct MotionPoint {
 pub struct MotionTradeoff {
     /// Number of unknown displacements n.
     pub dofs: usize,
-    /// Length of each step of the reference, in time, which uses the scheme `midpoint`.
+    /// Length of each step of the reference, in time, which uses the scheme `fox-goodwin`.
     pub reference_step: f64,
     /// One entry for each scheme and length of a step, scheme by scheme.
     pub points: Vec<MotionPoint>,
@@ -143,14 +143,14 @@ fn relative(value: f64, scale: f64) -> f64 {
 
 fn run(dynamics: Dynamics, settings: &Settings) -> Result<Run, Error> {
     let clock = Instant::now();
-    let Dynamics { problem, scheme, step, steps, window, .. } = dynamics;
+    let Dynamics { problem, scheme, step, steps, windows, .. } = dynamics;
     let first = problem.displacement().to_vec();
     let mut integrator = Integrator::new(problem, scheme, step, settings)?;
-    let mut summary = super::MotionSummary::starting(&integrator.observe(), 0, window, step);
+    let mut summary = super::MotionSummary::starting(&integrator.observe(), 0, windows, step);
     let mut samples = Vec::with_capacity(SAMPLES);
     for number in 1..=steps {
         integrator.advance()?;
-        summary.add(&integrator.observe(), &[], step);
+        summary.add(&integrator.observe(), &[]);
         if number % (steps / SAMPLES).max(1) == 0 {
             samples.push(integrator.state().displacement.clone());
         }
@@ -168,13 +168,15 @@ fn run(dynamics: Dynamics, settings: &Settings) -> Result<Run, Error> {
 /// The motion of the scene by a scheme with its own form of the mass, in this number of steps or in the default number.
 fn with(scene: &Scene, model: &Model, scheme: SchemeSpec, steps: Option<usize>) -> Result<Dynamics, Error> {
     let mut scene = scene.clone();
+    let mut step = None;
     if let Some(AnalysisSpec::Dynamic(spec)) = &mut scene.analysis {
-        (spec.mass, spec.courant) = (None, None);
-        spec.step = steps.map(|steps| spec.duration / steps as f64);
+        step = steps.map(|steps| spec.duration / steps as f64);
+        (spec.mass, spec.courant, spec.step) = (None, None, step);
         *spec = spec.clone().with_scheme(scheme);
     }
     let mut found = scene.dynamics(model)?.ok_or_else(still)?;
-    found.steps = steps.unwrap_or(found.steps);
+    // The default scheme has a step of its own in bars.
+    (found.step, found.steps) = (step.unwrap_or(found.step), steps.unwrap_or(found.steps));
     Ok(found)
 }
 

@@ -178,6 +178,13 @@ function sweepTable(page, data) {
   );
 }
 
+/// The peak of the contact force with its estimated error, if there is one.
+function peakForce({ peak_force: peak, estimated_error: error }, units) {
+  const off = peak.error === null ? "" : ` ± ${shown(peak.error, 2)}`,
+    unresolved = error && !error.resolved ? "; not resolved: it moves by more than a tenth with half the cells" : "";
+  return `${inUnit(peak.value, units.force)}${off}, over ${shown(peak.window)}${unresolved}`;
+}
+
 function motionSection(page, data, shape, notes) {
   const { motion, units, report, states } = data,
     own = section(page, "The motion", "answer");
@@ -193,6 +200,7 @@ function motionSection(page, data, shape, notes) {
         ? "none"
         : `from ${shown(contact.first)} to ${shown(contact.last)}, for ${shown(contact.duration)} in all`,
     ],
+    ["peak force", contact.first !== null && peakForce(contact, units)],
     ["impulse", !several && shown(contact.impulse)],
     [
       "largest force",

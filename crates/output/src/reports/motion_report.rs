@@ -6,11 +6,14 @@ use serde_json::json;
 use super::report::{columns, entry, in_unit, plural, quantity, table, warnings_text};
 use crate::text::printable;
 use signorini_mechanics::scene::{Dynamics, Model};
-use signorini_mechanics::study::{MotionContact, MotionSummary, RunSeconds, Status};
+use signorini_mechanics::study::{MotionContact, MotionError, MotionSummary, RunSeconds, Status};
 use signorini_qp::Method;
 
 /// The interval over which the force is averaged.
 const WINDOW: &str = "a fifth of the time that a pressure wave takes through the body";
+
+/// What is printed for a peak that the mesh does not resolve.
+const NOT_RESOLVED: &str = "the peak force is not resolved: it moves by more than a tenth with half the cells";
 
 /// The request and the result of a run: [`text`](Self::text) prints both.
 #[derive(Debug)]
@@ -23,6 +26,8 @@ pub struct MotionReport<'a> {
     pub method: Method,
     /// The steps so far.
     pub summary: &'a MotionSummary,
+    /// The estimated errors of the numbers, if they were asked for.
+    pub error: Option<MotionError>,
     /// Their cost in time.
     pub seconds: RunSeconds,
 }
@@ -68,11 +73,22 @@ impl MotionReport<'_> {
                     obstacle_lines(model, summary).into_iter().for_each(|text| line("", text));
                     line("", format!("the {over},"));
                 } else {
+                    let peak = summary.peak_steps() as f64 * dynamics.step;
+                    let force = quantity(contact.peak_force(), &units.force);
+                    line("", format!("peak force {force}, over {peak:.6e} ({})", plural(summary.peak_steps(), "step")));
                     let force = quantity(contact.force_max, &units.force);
                     line("", format!("impulse {:.6e}, largest force {force} in one step,", contact.impulse));
                     line("", format!("{} on the {over}:", quantity(mean, &units.force)));
                 }
                 line("", WINDOW.into());
+                if let Some(MotionError { peak_force, impulse, release, resolved }) = self.error {
+                    let release = release.map_or(String::new(), |release| format!(", release {release:.1e}"));
+                    let force = quantity(peak_force, &units.force);
+                    line("", format!("estimated errors: peak force {force}, impulse {impulse:.1e}{release}"));
+                    if !resolved {
+                        line("", NOT_RESOLVED.into());
+                    }
+                }
             }
             _ => line("contact", "none".into()),
         }
@@ -121,11 +137,16 @@ impl Serialize for MotionReport<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let MotionReport { model, dynamics, summary, .. } = self;
         let energies = |[kinetic, strain, potential]: [f64; 3]| json!({"kinetic": kinetic, "strain": strain, "potential": potential, "total": kinetic + strain + potential});
-        let contact = |of: &MotionContact| {
+        let contact = |of: &MotionContact, error: Option<f64>| {
             json!({
                 "first": of.first,
                 "last": of.last,
                 "duration": of.duration,
+                "peak_force": {
+                    "value": of.peak_force(),
+                    "window": summary.peak_steps() as f64 * dynamics.step,
+                    "error": error,
+                },
                 "force_max": of.force_max,
                 "force_mean_max": of.force_mean_max(),
                 "impulse": of.impulse,
@@ -133,12 +154,15 @@ impl Serialize for MotionReport<'_> {
         };
         let obstacles: Vec<_> = named(model, summary)
             .map(|(name, of)| {
-                let mut one = contact(of);
+                let mut one = contact(of, None);
                 one["of"] = json!(name);
                 one
             })
             .collect();
-        let mut of_all = contact(&summary.contact);
+        let mut of_all = contact(&summary.contact, self.error.map(|error| error.peak_force));
+        if let Some(error) = &self.error {
+            of_all["estimated_error"] = json!(error);
+        }
         of_all["force_window"] = json!({
             "of": WINDOW,
             "time": summary.window_steps() as f64 * dynamics.step,

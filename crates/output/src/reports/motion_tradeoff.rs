@@ -25,7 +25,7 @@ pub(crate) fn motion_tradeoff_text(title: &str, tradeoff: &MotionTradeoff) -> St
         ],
     );
     format!(
-        "{}\n\n{} dofs; errors against `midpoint` on the same mesh with the step {:.3e}\n{}\nA star: no other row \
+        "{}\n\n{} dofs; errors against `fox-goodwin` on the same mesh with the step {:.3e}\n{}\nA star: no other row \
          is both faster and as accurate.\n",
         printable(title),
         tradeoff.dofs,

@@ -21,6 +21,19 @@ pub struct SymmetricMatrix {
 }
 
 impl SymmetricMatrix {
+    /// The same without entries beside the diagonal that are at most `share` of the root of the product of their diagonal entries.
+    pub fn without_rounding(&self, share: f64) -> Self {
+        let diagonal = self.diagonal();
+        let is_rounding = |i: usize, j: usize, value: f64| {
+            i != j && value * value <= share * share * (diagonal[i] * diagonal[j]).abs()
+        };
+        let kept: Vec<_> = self.lower.triplets().filter(|&(i, j, value)| !is_rounding(i, j, value)).collect();
+        match SparseMatrix::from_triplets(self.dim(), self.dim(), &kept) {
+            Ok(lower) if kept.len() < self.lower.entries() => SymmetricMatrix { lower },
+            _ => self.clone(),
+        }
+    }
+
     /// From a matrix with both triangles, which must be alike (mirrored entries may differ by rounding, 1e-10 of the
     /// larger diagonal entry; the lower one is taken).
     ///

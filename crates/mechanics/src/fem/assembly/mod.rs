@@ -34,7 +34,7 @@ pub use internal_force::internal_force;
 pub(crate) use load::{Kinks, add_centrifugal, add_gravity, add_moment, add_traction_with_kinks, turning_traction};
 pub use load::{add_body_force, add_body_force_field, add_pressure, add_traction, add_traction_field, free_load};
 pub use mass::{MassForm, mass};
-pub(crate) use mass::{free_mass, nodal_mass};
+pub(crate) use mass::{free_mass, least_over_lumped, nodal_mass};
 pub(crate) use nodal_columns::{mass_columns, stiffness_columns};
 pub(crate) use positive_basis::PositiveBasis;
 pub use rigid_body_modes::rigid_body_modes;

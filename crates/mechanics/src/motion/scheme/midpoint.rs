@@ -42,6 +42,8 @@ pub(super) static ABOUT: About = About {
     gains_energy: false,
     penetrates: false,
     is_explicit: false,
+    uses_frequency: false,
+    is_exact_in_bars: false,
     load_times: &[0.5],
     // A node with mass that is held at the wall at the middle of a step is as far inside the wall at one end as it was outside at the
     // other. A step that starts inside by d gains the energy 2 |lambda| d, one that starts outside loses it, and nothing balances the

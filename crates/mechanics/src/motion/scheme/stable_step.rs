@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::motion::DynamicProblem;
 use signorini_qp as qp;
-use signorini_qp::largest;
+use signorini_qp::{SymmetricMatrix, largest};
 
 /// Steps of the iteration for the largest frequency; each gives a bound, later bounds are sharper.
 const STEPS: usize = 60;
@@ -31,11 +31,19 @@ pub(crate) fn stable_step(problem: &DynamicProblem) -> Result<f64, Error> {
         let allowed = "zero in an explicit scheme: take a lumped mass";
         return Err(qp::Error::Setting { name: "entry of the mass beside its diagonal", value, allowed }.into());
     }
-    let mut x = vec![1.0; diagonal.len()];
+    let omega = frequency_bound(problem.statics().stiffness(), &diagonal);
+    let [of_mass, of_stiffness] = problem.damping();
+    let ratio = if omega > 0.0 { of_mass / (2.0 * omega) + of_stiffness * omega / 2.0 } else { 0.0 };
+    Ok(2.0 / omega * (ratio.hypot(1.0) - ratio))
+}
+
+/// An upper bound on the largest angular frequency, per time, of a stiffness with a positive diagonal mass, without damping.
+pub(crate) fn frequency_bound(stiffness: &SymmetricMatrix, mass: &[f64]) -> f64 {
+    let mut x = vec![1.0; mass.len()];
     let mut bound = f64::INFINITY;
     for _ in 0..STEPS {
-        let mut product = problem.statics().stiffness().mul_abs(&x);
-        product.iter_mut().zip(&diagonal).for_each(|(p, m)| *p /= m);
+        let mut product = stiffness.mul_abs(&x);
+        product.iter_mut().zip(mass).for_each(|(p, m)| *p /= m);
         bound = product.iter().zip(&x).fold(0.0, |most: f64, (p, x)| most.max(p / x)).min(bound);
         let size = largest(&product);
         if size <= 0.0 {
@@ -44,10 +52,7 @@ pub(crate) fn stable_step(problem: &DynamicProblem) -> Result<f64, Error> {
         // The mean with the last vector stays positive and does not oscillate.
         x.iter_mut().zip(&product).for_each(|(x, p)| *x = (*x + p / size) / 2.0);
     }
-    let omega = bound.sqrt();
-    let [of_mass, of_stiffness] = problem.damping();
-    let ratio = if omega > 0.0 { of_mass / (2.0 * omega) + of_stiffness * omega / 2.0 } else { 0.0 };
-    Ok(2.0 / omega * (ratio.hypot(1.0) - ratio))
+    bound.sqrt()
 }
 
 /// Checks that `step` is stable.
@@ -64,6 +69,18 @@ pub(super) fn check_step(problem: &DynamicProblem, step: f64) -> Result<(), Erro
 }
 
 impl DynamicProblem {
+    /// An upper bound on the largest angular frequency without damping, per time: the given one, or that of a positive diagonal mass;
+    /// `None` if none is known.
+    pub(super) fn largest_frequency(&self) -> Option<f64> {
+        let diagonal = self.mass().diagonal();
+        let is_diagonal = || {
+            let beside = self.mass().lower().triplets().any(|(row, column, value)| row != column && value != 0.0);
+            !beside && diagonal.iter().all(|&mass| mass > 0.0)
+        };
+        let bound = || is_diagonal().then(|| frequency_bound(self.statics().stiffness(), &diagonal));
+        self.given_frequency().or_else(bound)
+    }
+
     /// A step, in time, up to which central differences with the diagonal mass of `problem` are stable: `2/omega (sqrt(1 + xi^2) - xi)` with
     /// an upper bound of the largest frequency omega and its damping ratio xi.
     ///

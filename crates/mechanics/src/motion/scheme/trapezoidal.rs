@@ -12,6 +12,8 @@ pub(super) const ABOUT: About = About {
     gains_energy: true,
     penetrates: false,
     is_explicit: false,
+    uses_frequency: false,
+    is_exact_in_bars: false,
     load_times: &[0.0, 1.0],
     unstable_in_contact: &[],
     prepare: |problem, step, _, settings| Ok(Box::new(Newmark::new(problem, step, 0.0, settings, settings)?)),

@@ -254,7 +254,7 @@ pub enum Warning {
     },
     /// The scheme can gain energy.
     #[error(
-        "the scheme `{scheme}` can gain energy at every impact: it is for comparison only; take `midpoint` or \
+        "the scheme `{scheme}` can gain energy at every impact: it is for comparison only; take `fox-goodwin` or \
          `contact-stabilised` for answers"
     )]
     GainsEnergy {

@@ -3,9 +3,10 @@
 use super::loads_in_time::NodalLoads;
 use super::moving_supports::MovingSupports;
 use crate::error::{Error, nearly};
-use crate::fem::assembly::{MassForm, free_load, free_mass, internal_force, nodal_mass};
+use crate::fem::Formulation;
+use crate::fem::assembly::{MassForm, free_load, free_mass, internal_force, least_over_lumped, nodal_mass};
 use crate::fem::body::{ElasticBody, Phase};
-use crate::motion::{DynamicProblem, Integrator, MOST_IN_CONTACT, Scheme, SchemeSpec, stable_step};
+use crate::motion::{DynamicProblem, Integrator, MOST_IN_CONTACT, Scheme, SchemeSpec, frequency_bound, stable_step};
 use crate::scene::input::entry::{COORDINATE_ROUNDING, located, number, point, refused, vector, wrong};
 use crate::scene::input::schema::analysis::PATH;
 use crate::scene::input::schema::{AnalysisSpec, DynamicSpec, FieldSpec, PenetrationSpec, Scene};
@@ -33,6 +34,10 @@ const COURANT: [f64; 2] = [0.5, 0.9];
 /// force of a single step contains them.
 const WINDOW: f64 = 0.2;
 
+/// The peak of the force is a mean over the time of a wave through this many of the smallest cells: it holds one period of the shortest
+/// waves of the mesh, and shrinks with the cells.
+const PEAK_CELLS: f64 = 4.0;
+
 /// A motion to be computed: the problem, the scheme, its steps, and the times and points of its output.
 #[derive(Clone, Debug)]
 pub struct Dynamics {
@@ -46,9 +51,9 @@ pub struct Dynamics {
     pub steps: usize,
     /// Number of states to be written, besides the first.
     pub frames: usize,
-    /// Time over which contact forces are averaged, for a peak without the oscillations of the mesh: a fifth of the time in which a
-    /// pressure wave crosses the body along the first contact normal; zero without contact rows.
-    pub window: f64,
+    /// The two times over which contact forces are averaged, in time: `[0]` a fifth of the time in which a pressure wave crosses the body
+    /// along the first contact normal (zero without contact rows), `[1]` that of a wave through four of the smallest cells, for the peak.
+    pub windows: [f64; 2],
     /// Points with output at every step.
     pub watched: Vec<WatchedPoint>,
     /// The data for the reactions of the supports.
@@ -118,13 +123,18 @@ impl Scene {
         let loads = self.loads_in_time(model.body(), spec)?;
         let nodal_mass = nodal_mass_of(model, form)?;
         let mass = free_mass(model.body(), model.dofs(), &nodal_mass)?;
-        let problem = Self::starting(model, spec, Self::moving(model, spec, mass, &loads)?)?;
+        let mut problem = Self::starting(model, spec, Self::moving(model, spec, mass, &loads)?)?;
+        if scheme.uses_frequency() {
+            let lumped = free_mass(model.body(), model.dofs(), &nodal_mass_of(model, MassForm::Lumped)?)?;
+            let of_lumped = frequency_bound(problem.statics().stiffness(), &lumped.diagonal());
+            problem = problem.bounded_by(of_lumped / least_over_lumped(model.body(), form)?.sqrt());
+        }
         let supports = MovingSupports::new(model, &nodal_mass, problem.damping(), &loads)?;
         let (step, steps) = spec.steps(model.body(), &problem, scheme)?;
         let name = scheme.name();
         let warnings = scheme.gains_energy().then_some(Warning::GainsEnergy { scheme: name }).into_iter().collect();
-        let window = WINDOW * crossing_time(model).unwrap_or(0.0);
-        Ok(Some(Dynamics { problem, scheme, step, steps, frames: spec.frames, window, watched, supports, warnings }))
+        let windows = [WINDOW * crossing_time(model).unwrap_or(0.0), PEAK_CELLS * wave_time(model.body())];
+        Ok(Some(Dynamics { problem, scheme, step, steps, frames: spec.frames, windows, watched, supports, warnings }))
     }
 
     /// Mass, damping, loads in time: the motion from rest.
@@ -190,7 +200,8 @@ impl Dynamics {
     /// The resultants of contact forces and support reactions of the last step, obstacle by obstacle and then support by
     /// support. `integrator` moves [`problem`](Self::problem), that of `model`.
     ///
-    /// Both are those of the balance that the scheme solved in the step: at its middle (`midpoint`, `contact-stabilised`), at its end
+    /// Both are those of the balance that the scheme solved in the step: at its beginning (`fox-goodwin`), at its middle (`midpoint`,
+    /// `contact-stabilised`), at its end
     /// (`trapezoidal`, `penalty`, `penalty-loop`), `1 + alpha` times that of the end minus `alpha` times that of the beginning (`hht`),
     /// the mean of both ends (`central-difference`). The reactions on the body are, at supported dofs,
     ///
@@ -265,6 +276,9 @@ impl DynamicSpec {
     fn steps(&self, body: &ElasticBody, problem: &DynamicProblem, scheme: Scheme) -> Result<(f64, usize), Error> {
         let stable = if scheme.is_explicit() { Some(stable_step(problem)?) } else { None };
         let share = if problem.statics().rows() > 0 { MOST_IN_CONTACT } else { 1.0 };
+        // The step at which the scheme moves a bar exactly, whatever the scene asks for.
+        let is_bar = matches!(body.formulation(), Formulation::Bar { .. });
+        let exact = (scheme.is_exact_in_bars() && is_bar).then(|| wave_time(body));
         let step = match (self.step, self.courant) {
             (Some(_), Some(_)) => return Err(wrong(format!("{PATH}.courant"), "give `step` or `courant`, not both")),
             (Some(step), None) => {
@@ -300,12 +314,19 @@ impl DynamicSpec {
                 (courant * unit).min(self.duration)
             }
         };
-        let count = (self.duration / step * (1.0 - STEP_ROUNDING)).ceil();
-        if count > MOST_STEPS {
-            let message = format!("{count:.2e} steps of {} are too many; take a longer step", number(step));
-            return Err(wrong(format!("{PATH}.step"), message));
+        let count = |step: f64| (self.duration / step * (1.0 - STEP_ROUNDING)).ceil();
+        let too_many = |step: f64| {
+            let message = format!("{:.2e} steps of {} are too many; take a longer step", count(step), number(step));
+            wrong(format!("{PATH}.step"), message)
+        };
+        if count(step) > MOST_STEPS {
+            return Err(too_many(step));
         }
-        Ok((step, (count as usize).max(1)))
+        let step = exact.filter(|step| step.is_finite()).map_or(step, |exact| exact.min(self.duration));
+        if count(step) > MOST_STEPS {
+            return Err(too_many(step));
+        }
+        Ok((step, (count(step) as usize).max(1)))
     }
 
     /// The initial displacement and velocity of all nodes.

@@ -36,7 +36,7 @@ pub struct DynamicSpec {
     /// The scheme.
     #[serde(default)]
     pub scheme: SchemeSpec,
-    /// The form of the mass. If left out: `redistributed` for `midpoint`, `lumped` for `central-difference`, `consistent` for the others.
+    /// The form of the mass. If left out: `averaged` for `fox-goodwin`, `lumped` for `central-difference`, `redistributed` for `midpoint`, `consistent` for the others.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mass: Option<MassForm>,
     /// Damping of `hht`: from -1/3 to 0, -0.1 if left out.
