@@ -21,6 +21,10 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     let clock = Instant::now();
     let model = Arc::new(scene.build_within(options.common.limits.most_memory())?);
     let Some(dynamics) = scene.dynamics(&model)? else { return Ok(Outcome::done(String::new())) };
+    if options.refine_in_time {
+        // A mesh that cannot be refined is refused before the first step.
+        scene.refined(2)?;
+    }
     warn(&warnings(&model));
     warn(&dynamics.warnings.iter().map(|warning| format!("warning: {warning}\n")).collect::<String>());
     let (title, common) = (scene_title(&model, &options.input), &options.common);

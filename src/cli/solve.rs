@@ -46,6 +46,10 @@ pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome
         let goal = TotalErrorGoal { total_error: bound, force_error: options.force_error };
         return total_error::run(options, scene, goal, watch, kept);
     }
+    if options.refine_in_time {
+        let message = "the scene has no `analysis`, so that there is no motion to refine; leave --refine-in-time out";
+        return unfit("analysis", message);
+    }
     if options.resume {
         let message = "the scene has no `analysis`, so that there is no motion to resume; leave --resume out";
         return unfit("analysis", message);

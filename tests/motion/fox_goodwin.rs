@@ -182,6 +182,10 @@ fn the_command_prints_the_estimated_errors() {
     assert_eq!(run["contact"]["estimated_error"]["peak_force"], of_peak["error"]);
     let text = desk.run(&["solve", "block.json", "--refine-in-time"]).ends_with(0).stdout;
     assert!(text.contains("estimated errors: peak force"), "{text}");
+    let mut still = scene_of("block", 10);
+    still.as_object_mut().unwrap().remove("analysis");
+    desk.write("still.json", still.to_string());
+    desk.run(&["solve", "still.json", "--refine-in-time"]).fails_with(1, &["no motion to refine"]);
     let plain = desk.run(&["solve", "block.json", "--format", "json"]).ends_with(0).json();
     assert!(plain["contact"]["peak_force"]["error"].is_null() && plain["contact"].get("estimated_error").is_none());
 }

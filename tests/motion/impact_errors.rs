@@ -101,6 +101,9 @@ fn the_state_of_another_problem_is_not_resumed() {
     let mut state = one.state().clone();
     state.velocity.pop();
     refused(one.resume(state), "length", &["velocity has length 1", "2 dofs"]);
+    let mut state = one.state().clone();
+    state.kept = vec![0.0; 3];
+    refused(one.resume(state), "length", &["kept energy has length 3"]);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use serde_json::{Value, json};
 use support::program::Desk;
 
-/// A bar of 20 cells that flies against a wall, with 120 steps per unit of time.
+/// A bar of 20 cells that flies against a wall, with 60 steps per unit of time.
 fn bar(duration: f64, frames: usize) -> Value {
     json!({
         "model": "bar",
@@ -45,7 +45,7 @@ fn a_resumed_motion_goes_on_to_a_longer_duration_bit_for_bit() {
     assert_eq!(end(&desk, "parts"), end(&desk, "whole"));
     // A motion is resumed neither to an earlier time nor with another scene.
     let back = desk.run(&["solve", "short.json", "--out", "parts", "--resume"]);
-    back.fails_with(1, &["at `analysis.dynamic.duration`", "already reached step 205"]);
+    back.fails_with(1, &["at `analysis.dynamic.duration`", "already reached step 103"]);
     let mut other = bar(1.7034, 12);
     other["material"]["young"] = json!(901);
     desk.write("other.json", other.to_string());

@@ -142,7 +142,9 @@ impl Integrator {
             ("multiplier", state.multiplier.len(), rows, "contact rows"),
             ("contact set", state.contact_set.rows(), rows, "contact rows"),
         ];
-        for (name, found, expected, of) in lengths {
+        // Only some schemes have these.
+        let own = [("kept energy", state.kept.len(), rows, "contact rows"), ("rate", state.rate.len(), dofs, "dofs")];
+        for (name, found, expected, of) in lengths.into_iter().chain(own.into_iter().filter(|one| one.1 > 0)) {
             qp::Error::check_length(name, found, expected, of)?;
         }
         (self.state, self.before) = (state.with_forces(&self.problem), None);

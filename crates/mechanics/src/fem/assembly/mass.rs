@@ -119,11 +119,7 @@ pub(crate) fn least_over_lumped(body: &ElasticBody, form: MassForm) -> Result<f6
                     |(row, mass): (usize, &f64)| (f64::from(u8::from(row == column)) - mass / lumped[column]).abs();
                 of_column.iter().enumerate().map(apart).sum::<f64>()
             };
-            1.0 - element
-                .columns()
-                .enumerate()
-                .map(|(column, of_column)| off((column, &*of_column)))
-                .fold(0.0, f64::max)
+            1.0 - element.columns().enumerate().map(|(column, of_column)| off((column, of_column))).fold(0.0, f64::max)
         };
         Ok(element_masses(body)?.iter().map(of_element).fold(1.0, f64::min).max(0.0))
     };
