@@ -16,14 +16,17 @@ const MOST_GROWTH: f64 = 0.01;
 /// Times, forces and impulse of the obstacles of a motion: of all together, or of one.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionContact {
-    /// Time at which the first contact began; `None` if nothing touched.
+    /// Time at which the first contact began, `None` if nothing touched: its first two steps count by their forces over that of the third.
     pub first: Option<f64>,
-    /// Time at which the last contact ended, or that of the last force.
+    /// Time at which the last contact ended, or the end of the last step with a force; its last two steps count likewise.
     pub last: Option<f64>,
     /// Sum of the lengths of all contacts, in time.
     pub duration: f64,
-    /// The contact forces of the last two steps, and the number of contacts so far.
+    /// The contact forces of the last two steps, the older one first, and of the step before them.
     forces: [f64; 2],
+    third_last: f64,
+    /// The steps of the contact that lasts, and the number of contacts so far.
+    run: usize,
     contacts: usize,
     /// Largest contact force of a single step, in force, `>= 0`; it does not converge in a mesh that oscillates behind a wave front.
     pub force_max: f64,
@@ -44,30 +47,35 @@ impl MotionContact {
 
     /// Adds a step with its contact force, which acted from one time to another.
     fn add(&mut self, force: f64, [from, to]: [f64; 2]) {
-        let [before, last] = self.forces;
-        self.forces = [last, force];
+        let length = to - from;
         if force > 0.0 {
-            let middle = (from + to) / 2.0;
-            if last > 0.0 {
-                self.duration += self.last.map_or(0.0, |last| middle - last);
+            if self.run == 0 {
+                self.contacts += 1;
+                self.first.get_or_insert(from);
             }
-            if last > 0.0 && before == 0.0 {
-                let late = (to - from) * late(last / force);
-                self.duration -= late;
-                if self.contacts == 1 {
-                    self.first = self.first.map(|first| first + late);
-                }
-            }
-            self.contacts += usize::from(last == 0.0);
-            self.first.get_or_insert(middle);
-            self.last = Some(middle);
-            self.impulse += force * (to - from);
+            self.run += 1;
+            self.last = Some(to);
+            self.duration += length;
+            self.impulse += force * length;
             self.force_max = self.force_max.max(force);
-        } else if before > 0.0 && last > 0.0 {
-            let early = (to - from) * late(last / before);
+        }
+        let [before, last] = self.forces;
+        if force > 0.0 && self.run == 3 {
+            let late = length * missing([before, last], force);
+            self.duration -= late;
+            if self.contacts == 1 {
+                self.first = self.first.map(|first| first + late);
+            }
+        }
+        if force == 0.0 && self.run > 2 {
+            let early = length * missing([before, last], self.third_last);
             self.duration -= early;
             self.last = self.last.map(|last| last - early);
         }
+        if force == 0.0 {
+            self.run = 0;
+        }
+        (self.third_last, self.forces) = (before, [last, force]);
         self.force_mean.add(force);
         self.peak.add(force);
     }
@@ -83,10 +91,9 @@ impl MotionContact {
     }
 }
 
-/// The share of a step by which a contact begins after the middle of its first step, from the force of that step over that of the next; at
-/// the end likewise. A constant force that begins at the share s of a step after that middle has `(1 - s)/(2 - s)`.
-fn late(ratio: f64) -> f64 {
-    if ratio < 0.5 { (1.0 - 2.0 * ratio) / (1.0 - ratio) } else { 0.0 }
+/// What is missing in two steps at the beginning or the end of a contact, in steps, beside the force of the step next to them.
+fn missing(forces: [f64; 2], beside: f64) -> f64 {
+    forces.into_iter().map(|force| (1.0 - force / beside).clamp(0.0, 1.0)).sum()
 }
 
 /// The summary of a run, gathered step by step; its size does not depend on the number of steps.
