@@ -50,6 +50,38 @@ fn a_bar_moves_exactly_whatever_step_is_asked_for() {
     }
 }
 
+/// A bar of length L that falls on a wall with the velocity v presses with `rho c v + rho g c t` for the time 2 L/c: 300, rising to 500.
+#[test]
+fn a_falling_bar_presses_as_wave_and_weight_say() {
+    for (cells, close) in [(100, 0.03), (400, 0.015)] {
+        for courant in [0.3, 1.5] {
+            let mut scene = scene_of("falling_bar", cells);
+            scene["analysis"]["dynamic"]["courant"] = json!(courant);
+            let scene: Scene = serde_json::from_value(scene).unwrap();
+            let dynamics = scene.dynamics(&scene.build().unwrap()).unwrap().unwrap();
+            let mut integrator =
+                Integrator::new(dynamics.problem, dynamics.scheme, dynamics.step, &Settings::default()).unwrap();
+            let mut summary = MotionSummary::starting(&integrator.observe(), 0, dynamics.windows, dynamics.step);
+            for _ in 0..dynamics.steps {
+                integrator.advance().unwrap();
+                let seen = integrator.observe();
+                let at = (seen.acting[0] + seen.acting[1]) / 2.0 - 1.0;
+                // Farther from both jumps than two cells.
+                let (two_cells, end) = (20.0 / (30.0 * cells as f64), 2.0 / 3.0);
+                if at.abs() > two_cells && (at - end).abs() > two_cells {
+                    let exact = if (0.0..end).contains(&at) { 300.0 + 300.0 * at } else { 0.0 };
+                    assert!((seen.force - exact).abs() <= close * 500.0, "{cells}, {courant}, {at}: {}", seen.force);
+                }
+                summary.add(&seen, &[]);
+            }
+            let peak = summary.contact.peak_force() / 500.0;
+            assert!((peak - 1.0).abs() <= close, "{cells}, {courant}: {peak}");
+            assert!((summary.contact.impulse / (800.0 / 3.0) - 1.0).abs() <= 5e-4, "{}", summary.contact.impulse);
+            assert!((summary.contact.duration * 1.5 - 1.0).abs() <= 2e-3, "{}", summary.contact.duration);
+        }
+    }
+}
+
 #[test]
 fn the_peak_of_a_block_converges_for_every_step() {
     let speed = (900.0_f64 * 0.7 / (1.3 * 0.4)).sqrt();
