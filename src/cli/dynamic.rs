@@ -88,7 +88,7 @@ struct Run<'a> {
 
 impl<'a> Run<'a> {
     fn new(model: &'a Arc<Model>, dynamics: &'a Dynamics, integrator: Integrator) -> Self {
-        let (seen, obstacles) = (integrator.observe(), model.obstacles().len());
+        let (seen, obstacles) = (model.of_whole(integrator.observe()), model.obstacles().len());
         let summary = MotionSummary::starting(&seen, obstacles, dynamics.windows, dynamics.step);
         Run { model, dynamics, integrator, summary, folder: None }
     }
@@ -98,7 +98,7 @@ impl<'a> Run<'a> {
         let Run { model, dynamics, integrator, summary, .. } = &self;
         let mut folder = MotionFolder::new(path, scene, model, &dynamics.watched)?;
         let resultants = dynamics.resultants(model, integrator)?;
-        folder.observe(model, &integrator.observe(), integrator.state(), &resultants)?;
+        folder.observe(model, &model.of_whole(integrator.observe()), integrator.state(), &resultants)?;
         folder.frame(model, 0.0, integrator.state(), summary)?;
         Ok(Run { folder: Some(folder), ..self })
     }
@@ -134,9 +134,9 @@ impl<'a> Run<'a> {
                 Err(Error::Qp(qp::Error::Interrupted)) => break,
                 advanced => advanced.map_err(|error| self.model.explain(error))?,
             };
-            let seen = self.integrator.observe();
+            let seen = self.model.of_whole(self.integrator.observe());
             let state = self.integrator.state();
-            self.summary.add(&seen, &self.model.obstacle_forces(&state.multiplier));
+            self.summary.add(&seen, &self.model.whole_obstacle_forces(&state.multiplier));
             if let Some(folder) = &mut self.folder {
                 folder.observe(self.model, &seen, state, &self.dynamics.resultants(self.model, &self.integrator)?)?;
                 if frames_until(state.steps) > frames_until(state.steps - 1) {

@@ -8,5 +8,6 @@ mod impact_errors;
 mod peaks;
 mod penalty_loop;
 mod reactions;
+mod symmetry;
 mod trust;
 mod watch;

@@ -63,14 +63,15 @@ fn summary_of(scene: &Scene, step: f64, settings: &Settings) -> Result<MotionSum
     let still = || Error::Scene { path: "analysis".into(), message: "the scene does not move".into() };
     let dynamics = scene.dynamics(&model)?.ok_or_else(still)?;
     let mut integrator = Integrator::new(dynamics.problem, dynamics.scheme, dynamics.step, settings)?;
-    let mut summary = MotionSummary::starting(&integrator.observe(), 0, dynamics.windows, dynamics.step);
+    let mut summary =
+        MotionSummary::starting(&model.of_whole(integrator.observe()), 0, dynamics.windows, dynamics.step);
     for number in 1..=dynamics.steps {
         settings.watch.part("step", number, dynamics.steps);
         if settings.watch.is_over() {
             return Err(qp::Error::Interrupted.into());
         }
         integrator.advance()?;
-        summary.add(&integrator.observe(), &[]);
+        summary.add(&model.of_whole(integrator.observe()), &[]);
     }
     Ok(summary)
 }

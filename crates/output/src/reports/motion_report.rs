@@ -55,6 +55,10 @@ impl MotionReport<'_> {
         let (nodes, elements) = (model.mesh().nodes().len(), model.mesh().element_count());
         let (dofs, rows) = (model.problem().dofs(), plural(model.rows().len(), "contact row"));
         line("model", format!("{nodes} nodes, {elements} elements, {dofs} dofs, {rows}"));
+        let parts = model.parts_of_whole();
+        if parts > 1.0 {
+            line("", format!("one of {parts} parts; forces and energies are those of the whole"));
+        }
         line("status", self.status().words().into());
         let steps = plural(summary.steps, "step");
         line("motion", format!("{}, {steps} of {:.6e}", dynamics.scheme.name(), dynamics.step));
@@ -198,6 +202,9 @@ impl Serialize for MotionReport<'_> {
             },
             "seconds": self.seconds,
         });
+        if model.parts_of_whole() > 1.0 {
+            report["parts_of_whole"] = json!(model.parts_of_whole() as usize);
+        }
         let [all, most] = summary.penalties;
         if let Some(fields) = report.as_object_mut().filter(|_| all > 0) {
             fields.insert("penalties".into(), json!({"all": all, "most_in_a_step": most}));

@@ -9,6 +9,7 @@ use super::suspect::suspect_rows;
 use crate::error::Error;
 use crate::fem::geometry::distance;
 use crate::fem::{DofMap, ElasticBody, Mesh, free_load, rigid_body_modes, stiffness};
+use crate::motion::Observation;
 use crate::scene::input::entry::{finite, wrong};
 use crate::scene::input::obstacle::PlacedObstacle;
 use crate::scene::{Units, Warning};
@@ -198,6 +199,20 @@ impl Model {
         let mut forces = vec![0.0; self.obstacles().len()];
         self.rows().iter().zip(multiplier).for_each(|(row, lambda)| forces[row.obstacle] -= lambda);
         forces
+    }
+
+    /// The numbers of a motion of the whole body, from those of the meshed part: its force and its energies.
+    pub fn of_whole(&self, seen: Observation) -> Observation {
+        let whole = |of_part: f64| self.parts_of_whole() * of_part;
+        let [force, kinetic, strain] = [seen.force, seen.kinetic, seen.strain].map(whole);
+        Observation { force, kinetic, strain, potential: whole(seen.potential), work: whole(seen.work), ..seen }
+    }
+
+    /// The sum of the contact forces on each obstacle of the whole body, in force, `>= 0`, one entry per obstacle in the order of the
+    /// scene, for the multipliers of the rows (in force, `<= 0`).
+    pub fn whole_obstacle_forces(&self, multiplier: &[f64]) -> Vec<f64> {
+        let of_parts = self.obstacle_forces(multiplier).into_iter().enumerate();
+        of_parts.map(|(obstacle, force)| self.parts.parts_of_obstacle(obstacle) * force).collect()
     }
 
     /// Number of copies of an obstacle in the whole: a plane of symmetry normal to its approach direction gives it a mirror image.

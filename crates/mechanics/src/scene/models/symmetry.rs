@@ -26,9 +26,6 @@ impl Scene {
     pub(crate) fn planes_of_symmetry(&self, body: &ElasticBody) -> Result<Symmetry, Error> {
         let rounding = COORDINATE_ROUNDING * body.mesh().size();
         let mut symmetry = Symmetry { planes: Vec::new(), rounding };
-        if !self.symmetry.is_empty() && self.analysis.is_some() {
-            return Err(wrong("symmetry", "planes of symmetry are for equilibria only; a motion has only supports"));
-        }
         for (index, plane) in self.symmetry.iter().enumerate() {
             let (path, name, axis) = (format!("symmetry[{index}]"), plane.name(), plane.axis());
             if axis >= self.model.dimension() {

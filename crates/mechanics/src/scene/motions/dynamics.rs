@@ -169,6 +169,22 @@ impl Scene {
     /// The same from the initial state, after a check.
     fn starting(model: &Model, spec: &DynamicSpec, problem: DynamicProblem) -> Result<DynamicProblem, Error> {
         let (displacement, velocity) = spec.initial(model.body())?;
+        let (mesh, dimension) = (model.mesh(), model.body().dimension());
+        for (node, at) in mesh.nodes().iter().enumerate() {
+            let on_planes = model.axes_of_symmetry(at);
+            let crosses = |&axis: &usize| {
+                let dof = dimension * node + axis;
+                on_planes[axis] && (displacement[dof] != 0.0 || velocity[dof] != 0.0)
+            };
+            if let Some(axis) = (0..dimension).find(crosses) {
+                let message = format!(
+                    "node {node} at {} lies on a plane of symmetry and starts across it, along {}",
+                    point(&at[..dimension]),
+                    ["x", "y", "z"][axis]
+                );
+                return Err(wrong(format!("{PATH}.initial"), message));
+            }
+        }
         let mut displacement = model.dofs().restrict(&displacement)?;
         if let Some(deepest) = deepest(model, &displacement) {
             if spec.initial_penetration == PenetrationSpec::Refuse {
