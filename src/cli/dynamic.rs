@@ -136,7 +136,7 @@ impl<'a> Run<'a> {
             };
             let seen = self.model.of_whole(self.integrator.observe());
             let state = self.integrator.state();
-            self.summary.add(&seen, &self.model.whole_obstacle_forces(&state.multiplier));
+            self.summary.add(&seen, &self.model.obstacle_forces(&state.multiplier));
             if let Some(folder) = &mut self.folder {
                 folder.observe(self.model, &seen, state, &self.dynamics.resultants(self.model, &self.integrator)?)?;
                 if frames_until(state.steps) > frames_until(state.steps - 1) {

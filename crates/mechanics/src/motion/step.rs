@@ -5,7 +5,7 @@ use std::fmt;
 use super::{Balance, DynamicProblem, State};
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use signorini_qp::{ContactProblem, ContactSet, Prepared, Settings, SymmetricMatrix, dot};
+use signorini_qp::{ContactProblem, ContactSet, Prepared, Settings, SparseMatrix, SymmetricMatrix, dot};
 
 /// The description of a scheme.
 pub struct About {
@@ -184,6 +184,13 @@ pub(super) fn next(
         ..State::default()
     }
     .with_forces(problem)
+}
+
+/// The sum of the squares of the coefficients of each row.
+pub(super) fn squares_of_rows(contact: &SparseMatrix) -> Vec<f64> {
+    let mut squares = vec![0.0; contact.rows()];
+    contact.triplets().for_each(|(row, _, b)| squares[row] += b * b);
+    squares
 }
 
 /// `a + factor b`, entry by entry.

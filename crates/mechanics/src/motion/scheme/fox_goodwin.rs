@@ -24,7 +24,7 @@
 
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{About, Advance, Found, HalfStep, Stepping, halfway, next, plus};
+use crate::motion::step::{About, Advance, Found, HalfStep, Stepping, halfway, next, plus, squares_of_rows};
 use crate::motion::{Balance, DynamicProblem, State};
 use signorini_qp::{SparseMatrix, SymmetricMatrix};
 
@@ -214,13 +214,6 @@ fn elastic_rate(problem: &DynamicProblem, state: &State) -> Vec<f64> {
         true => problem.statics().stiffness().mul(&state.velocity),
         false => state.rate.clone(),
     }
-}
-
-/// The sum of the squares of the coefficients of each row.
-fn squares_of_rows(contact: &SparseMatrix) -> Vec<f64> {
-    let mut squares = vec![0.0; contact.rows()];
-    contact.triplets().for_each(|(row, _, b)| squares[row] += b * b);
-    squares
 }
 
 /// `b'A b` for the coefficients b of each row.

@@ -193,11 +193,13 @@ impl Model {
         self.parts.symmetry.axes_at(at)
     }
 
-    /// The sum of the contact forces on each obstacle and pair of bodies, in force, `>= 0`, for the multipliers of the rows (in force,
-    /// `<= 0`).
+    /// The sum of the contact forces on each obstacle and pair of bodies, one entry per obstacle in the order of the scene, in force,
+    /// `>= 0`, for the multipliers of the rows (in force, `<= 0`); with planes of symmetry that of the whole body.
     pub fn obstacle_forces(&self, multiplier: &[f64]) -> Vec<f64> {
         let mut forces = vec![0.0; self.obstacles().len()];
-        self.rows().iter().zip(multiplier).for_each(|(row, lambda)| forces[row.obstacle] -= lambda);
+        for (row, lambda) in self.rows().iter().zip(multiplier) {
+            forces[row.obstacle] -= self.parts.parts_of_obstacle(row.obstacle) * lambda;
+        }
         forces
     }
 
@@ -206,13 +208,6 @@ impl Model {
         let whole = |of_part: f64| self.parts_of_whole() * of_part;
         let [force, kinetic, strain] = [seen.force, seen.kinetic, seen.strain].map(whole);
         Observation { force, kinetic, strain, potential: whole(seen.potential), work: whole(seen.work), ..seen }
-    }
-
-    /// The sum of the contact forces on each obstacle of the whole body, in force, `>= 0`, one entry per obstacle in the order of the
-    /// scene, for the multipliers of the rows (in force, `<= 0`).
-    pub fn whole_obstacle_forces(&self, multiplier: &[f64]) -> Vec<f64> {
-        let of_parts = self.obstacle_forces(multiplier).into_iter().enumerate();
-        of_parts.map(|(obstacle, force)| self.parts.parts_of_obstacle(obstacle) * force).collect()
     }
 
     /// Number of copies of an obstacle in the whole: a plane of symmetry normal to its approach direction gives it a mirror image.

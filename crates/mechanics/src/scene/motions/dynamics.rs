@@ -216,10 +216,10 @@ impl Dynamics {
     /// The resultants of contact forces and support reactions of the last step, obstacle by obstacle and then support by
     /// support. `integrator` moves [`problem`](Self::problem), that of `model`.
     ///
-    /// Both are those of the balance that the scheme solved in the step: at its beginning (`fox-goodwin`), at its middle (`midpoint`,
-    /// `contact-stabilised`), at its end
-    /// (`trapezoidal`, `penalty`, `penalty-loop`), `1 + alpha` times that of the end minus `alpha` times that of the beginning (`hht`),
-    /// the mean of both ends (`central-difference`). The reactions on the body are, at supported dofs,
+    /// Both are those of the balance that the scheme solved in the step: at its beginning (`fox-goodwin`), at its middle
+    /// (`midpoint`, `contact-stabilised`), at its end (`trapezoidal`, `penalty`, `penalty-loop`), `1 + alpha` times that of the
+    /// end minus `alpha` times that of the beginning (`hht`), the mean of both ends (`central-difference`). The reactions on the
+    /// body are, at supported dofs,
     ///
     /// ```text
     /// R = M a + C v + K u - f(t) - B' lambda
