@@ -19,6 +19,9 @@ const OF_HIERARCHY: [f64; 2] = [270.0, 16.0];
 /// Workspace of a factorisation, beside its factor.
 const WORKSPACE: f64 = 1.15;
 
+/// Most bytes of a released block that the allocator keeps for smaller requests (in glibc, the largest threshold of its own mappings).
+const MOST_KEPT: f64 = (32_u32 << 20) as f64;
+
 /// Bytes of a value of a dense matrix on the contact dofs; a method keeps several such matrices.
 const OF_DENSE: f64 = 64.0;
 
@@ -49,6 +52,12 @@ pub(crate) fn of_hierarchy(dofs: f64, entries: f64) -> f64 {
 /// Bytes of a Cholesky factor with this number of `values` of `size` bytes each, and of its workspace.
 pub(crate) fn of_factor(values: f64, size: usize) -> f64 {
     WORKSPACE * size as f64 * values
+}
+
+/// Bytes of the same if a factor before it was released, whose memory may not serve it.
+pub(crate) fn of_next_factor(values: f64) -> f64 {
+    let size = size_of::<f64>();
+    of_factor(values, size) + (size as f64 * values).min(MOST_KEPT)
 }
 
 /// Bytes of the dense matrices on this number of contact dofs.

@@ -108,7 +108,7 @@ impl Estimate {
         Estimate {
             direct_bytes: bytes::START
                 + bytes::of_problem(dofs, problem.stiffness().entries() as f64)
-                + bytes::of_factor(direct.factor_entries, size_of::<f64>()),
+                + bytes::of_next_factor(direct.factor_entries),
             factor_entries: direct.factor_entries,
             direct_seconds: times * direct.seconds,
             multigrid_bytes: if takes_travels(problem) { multigrid_bytes(problem) } else { f64::INFINITY },
@@ -178,7 +178,7 @@ pub(crate) fn check_memory(problem: &ContactProblem, kept: Kept, most: Option<f6
             (values, factors + beside + of_interior_point(values as f64, by_interior_point))
         }
         Kept::OneFactor { values } => {
-            (values, bytes::of_factor(values as f64, size_of::<f64>()) + bytes::OF_SET * stiffness_entries)
+            (values, bytes::of_next_factor(values as f64) + bytes::OF_SET * stiffness_entries)
         }
     };
     let is_factor = !matches!(kept, Kept::Nothing | Kept::Multigrid);
