@@ -134,11 +134,10 @@ const MOST: f64 = 1e-6;
 const MOST_PARAMETERS: usize = 14;
 
 /// Reasons for which an output or a parameter has no derivative, by their beginnings.
-const REASONS: [&str; 6] = [
+const REASONS: [&str; 5] = [
     "nothing presses",
     "nothing moves",
     "scene, at `obstacles[0].shape",
-    "the strain energy of a body with temperatures",
     "no bound on the error",
     "contact alone holds the body",
 ];

@@ -15,6 +15,7 @@ mod internal_force;
 mod load;
 mod mass;
 mod nodal_columns;
+mod own_energy;
 mod pattern;
 mod positive_basis;
 mod redistribution;
@@ -36,10 +37,12 @@ pub use load::{add_body_force, add_body_force_field, add_pressure, add_traction,
 pub use mass::{MassForm, mass};
 pub(crate) use mass::{free_mass, least_over_lumped, nodal_mass};
 pub(crate) use nodal_columns::{mass_columns, stiffness_columns};
+pub(crate) use own_energy::{own_energy, own_energy_change};
 pub(crate) use positive_basis::PositiveBasis;
 pub use rigid_body_modes::rigid_body_modes;
 pub(crate) use shape_derivative::{
     body_force_by_places, centrifugal_by_places, gravity_by_places, internal_work_by_places, interpolated,
+    own_energy_by_places,
 };
 pub(crate) use springs::Springs;
 pub use stiffness::stiffness;

@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody, Integration, LocalPoint};
-use crate::fem::element::{MAX_NODES, PerKind, PerNode, Tabulated};
+use crate::fem::element::{MAX_NODES, PerKind, PerNode, Tabulated, TabulatedPoint};
 use crate::fem::geometry::{COORDINATES, Symmetric, dot, minus, trace};
 use crate::fem::material::{Stiffness, engineering};
 use crate::fem::threads::in_order;
@@ -101,7 +101,7 @@ fn of_stresses(
 }
 
 /// The work of a stress on a strain, per volume.
-fn work(stress: &Symmetric, strain: &Symmetric) -> f64 {
+pub(super) fn work(stress: &Symmetric, strain: &Symmetric) -> f64 {
     stress.iter().zip(engineering(strain)).map(|(stress, strain)| stress * strain).sum()
 }
 
@@ -174,21 +174,50 @@ fn force_by_places(
     virtual_displacement: &[f64],
     gradient: &mut [f64],
 ) {
+    let work = |index: usize, element: &BodyElement, at: &TabulatedPoint| {
+        let ForceAt { force, slope } = field(index, element.cell.place(&at.shape));
+        let moved = interpolated(&body.gather(virtual_displacement, element.nodes), &at.shape, element.nodes.len());
+        WorkAt { work: dot(force, moved), slope: [0, 1, 2].map(|k| (0..3).map(|i| moved[i] * slope[i][k]).sum()) }
+    };
+    work_by_places(body, tables, work, gradient);
+}
+
+/// Adds the change of [`own_energy`](super::own_energy) with the place of each node, for materials whose axes do not turn.
+pub(crate) fn own_energy_by_places(body: &ElasticBody, gradient: &mut [f64]) {
+    let energy = |_, element: &BodyElement, at: &TabulatedPoint| match (element.own_strain(at), &element.phase.own) {
+        (Some([stress, strain]), Some(own)) => {
+            WorkAt { work: work(&stress, &strain) / 2.0, slope: own.work_by_place(&engineering(&strain)) }
+        }
+        _ => WorkAt { work: 0.0, slope: [0.0; 3] },
+    };
+    work_by_places(body, &body.tabulated(), energy, gradient);
+}
+
+/// Work per volume at a point of an element, and its change with the place.
+struct WorkAt {
+    work: f64,
+    slope: [f64; 3],
+}
+
+/// Adds the change of the work of the whole body.
+fn work_by_places(
+    body: &ElasticBody,
+    tables: &PerKind<Tabulated>,
+    work_at: impl Fn(usize, &BodyElement, &TabulatedPoint) -> WorkAt,
+    gradient: &mut [f64],
+) {
     for (index, element) in body.elements().enumerate() {
         let (cell, unit) = (&element.cell, element.cell.unit());
-        let moved = body.gather(virtual_displacement, element.nodes);
         let scale = unit.powi(body.dimension() as i32 - 1);
         let mut of_nodes = [[0.0; 3]; MAX_NODES];
         for at in &tables.at(element.kind).points {
             let point: LocalPoint = body.point(cell, at);
-            let ForceAt { force, slope } = field(index, cell.place(&at.shape));
-            let moved = interpolated(&moved, &at.shape, element.nodes.len());
-            let (work, weight) = (dot(force, moved), point.weight * scale);
-            let by_place = [0, 1, 2].map(|k| unit * (0..3).map(|i| moved[i] * slope[i][k]).sum::<f64>());
+            let WorkAt { work, slope } = work_at(index, &element, at);
+            let weight = point.weight * scale;
             for (local, of_node) in of_nodes.iter_mut().enumerate().take(element.nodes.len()) {
                 let of_volume = point.gradients[local];
-                for ((sum, of_volume), by_place) in of_node.iter_mut().zip(of_volume).zip(by_place) {
-                    *sum += weight * (work * of_volume + at.shape[local] * by_place);
+                for ((sum, of_volume), slope) in of_node.iter_mut().zip(of_volume).zip(slope) {
+                    *sum += weight * (work * of_volume + unit * at.shape[local] * slope);
                 }
                 of_node[0] += weight * work * point.hoop[local];
             }

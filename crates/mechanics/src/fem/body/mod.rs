@@ -438,4 +438,10 @@ impl BodyElement<'_> {
     pub fn own_stress(&self, at: &TabulatedPoint) -> Option<Symmetric> {
         self.phase.own_stress(self.cell.place(&at.shape))
     }
+
+    /// The stress at a tabulated point without any strain, and the strain that it would cause if it could, if there is one.
+    pub fn own_strain(&self, at: &TabulatedPoint) -> Option<[Symmetric; 2]> {
+        let stress = self.own_stress(at)?;
+        Some([stress, self.phase.law.strain(&stress, || self.cell.place(&at.shape))])
+    }
 }

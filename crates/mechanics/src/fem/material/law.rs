@@ -126,16 +126,25 @@ impl Law {
     }
 
     /// `sigma : C^-1 : sigma` at a place, twice the density of the complementary energy, of the components whose strain the formulation has.
-    ///
-    /// In an isotropic material it is (s : s - lambda/(2 mu + n lambda) (tr s)^2)/(2 mu), with n normal components.
     pub fn complementary_energy(&self, stress: &Symmetric, place: impl Fn() -> [f64; 3]) -> f64 {
+        let stress = local(stress, &self.axes(place));
+        self.local_strain(&stress).iter().zip(stress).map(|(strain, stress)| strain * stress).sum()
+    }
+
+    /// The strain `C^-1 sigma` of a stress at a place, of the components that the formulation has.
+    pub fn strain(&self, stress: &Symmetric, place: impl Fn() -> [f64; 3]) -> Symmetric {
+        let axes = self.axes(place);
+        let [xx, yy, zz, xy, yz, zx] = self.local_strain(&local(stress, &axes));
+        back([xx, yy, zz, xy / 2.0, yz / 2.0, zx / 2.0], &axes)
+    }
+
+    /// The engineering strain of a stress, both along the axes of the law.
+    ///
+    /// In an isotropic material the strain is (s - lambda/(2 mu + n lambda) tr s I)/(2 mu), with n normal components.
+    fn local_strain(&self, stress: &Symmetric) -> Symmetric {
         let &Lame { lambda, mu } = match &self.stiffness {
             Stiffness::Isotropic(lame) => lame,
-            Stiffness::General(matrices) => {
-                let stress = local(stress, &matrices.axes(place));
-                let strain = product(&matrices.compliance, &stress);
-                return strain.iter().zip(stress).map(|(strain, stress)| strain * stress).sum();
-            }
+            Stiffness::General(matrices) => return product(&matrices.compliance, stress),
         };
         let normals = match self.formulation {
             Formulation::Bar { .. } => 1,
@@ -143,9 +152,11 @@ impl Law {
             Formulation::Axisymmetric | Formulation::Space => 3,
         };
         let trace: f64 = stress[..normals].iter().sum();
-        let normal: f64 = stress[..normals].iter().map(|component| component * component).sum();
-        let shear: f64 = stress[3..].iter().map(|component| component * component).sum();
-        (normal + 2.0 * shear - lambda / (2.0 * mu + normals as f64 * lambda) * trace * trace) / (2.0 * mu)
+        let across = lambda / (2.0 * mu + normals as f64 * lambda) * trace;
+        let mut strain = stress.map(|component| component / mu);
+        strain[..normals].iter_mut().zip(stress).for_each(|(strain, own)| *strain = (own - across) / (2.0 * mu));
+        strain[normals..3].fill(0.0);
+        strain
     }
 
     /// The stiffness against a strain along one direction alone, which gives the speed of pressure waves; in an orthotropic material the

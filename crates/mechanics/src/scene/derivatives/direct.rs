@@ -4,7 +4,7 @@ use super::differences::derivative;
 use super::effect::Why;
 use super::output::{Branch, Direct, by_component, moment_of, stress_of};
 use super::places::{Slopes, add_width, areas_by_places};
-use crate::fem::assembly::internal_work_by_places;
+use crate::fem::assembly::{internal_work_by_places, own_energy_by_places};
 use crate::fem::body::BodyElement;
 use crate::fem::element::Cell;
 use crate::fem::geometry::{COORDINATES, Symmetric, distance};
@@ -36,9 +36,15 @@ impl Branch {
                 gradient = areas_by_places(model, &weights)?;
             }
             Direct::Energy => {
+                // The mean of the works of the last and of the first internal forces, and the energy before them.
                 let displacement = answer.displacement();
                 internal_work_by_places(body, displacement, displacement, &mut gradient)?;
-                gradient.iter_mut().for_each(|entry| *entry *= 0.5 * model.parts_of_whole());
+                if body.has_own_stress() {
+                    internal_work_by_places(body, &vec![0.0; displacement.len()], displacement, &mut gradient)?;
+                }
+                gradient.iter_mut().for_each(|entry| *entry *= 0.5);
+                own_energy_by_places(body, &mut gradient);
+                gradient.iter_mut().for_each(|entry| *entry *= model.parts_of_whole());
             }
             Direct::Moment(obstacle, axis) => add_moment(answer, *obstacle, *axis, &mut gradient)?,
             Direct::Stress { element, at, component } => {

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::effect::{Effect, Why, in_words};
 use crate::error::{Error, nearly};
 use crate::fem::ElasticBody;
-use crate::fem::assembly::internal_force;
+use crate::fem::assembly::{internal_force, own_energy, own_energy_change};
 use crate::fem::body::BodyElement;
 use crate::fem::element::TabulatedPoint;
 use crate::fem::geometry::{Symmetric, distance, dot};
@@ -72,7 +72,7 @@ pub(super) enum Direct {
     Moment(usize, usize),
     /// Of the pressure of a row, on its area.
     Pressure(usize),
-    /// Of the strain energy, on the stiffness.
+    /// Of the strain energy, on stiffness and own stress.
     Energy,
     /// Of a component of the stress at a point of an element, on its material.
     Stress {
@@ -261,15 +261,9 @@ impl Output {
                 tied.map(of_dof).collect::<Result<_, Why>>()?
             }
             Kind::StrainEnergy => {
-                if model.body().has_own_stress() {
-                    return Err(
-                        "the strain energy of a body with temperatures or initial stresses has no derivative here"
-                            .to_string(),
-                    );
-                }
                 let parts = model.parts_of_whole();
                 let forces = internal_force(model.body(), answer.displacement()).map_err(in_words)?;
-                let value = 0.5 * parts * forces.iter().zip(answer.displacement()).map(|(f, u)| f * u).sum::<f64>();
+                let value = parts * (work_to(answer, model.body())? + own_energy(model.body()));
                 let by_displacement = of_nodal(model, &forces)?.iter().map(|force| parts * force).collect();
                 vec![Branch { value, by_displacement, direct: Direct::Energy, ..blank() }]
             }
@@ -281,6 +275,15 @@ impl Output {
 /// The moment of a force of an obstacle at a place about an axis through the origin, in the whole body.
 pub(super) fn moment_of(model: &Model, obstacle: usize, at: [f64; 3], force: [f64; 3], axis: usize) -> f64 {
     model.parts.symmetry.moment(model.obstacles()[obstacle].approach(), at, force, axis)
+}
+
+/// The work that the internal forces of a body do up to the displacement of an answer: they grow linearly from those of its own stress.
+fn work_to(answer: &Answer, body: &ElasticBody) -> Result<f64, Why> {
+    let displacement = answer.displacement();
+    let [first, last] = [&vec![0.0; displacement.len()], displacement].map(|at| internal_force(body, at));
+    let mean =
+        first.map_err(in_words)?.into_iter().zip(last.map_err(in_words)?).map(|(first, last)| (first + last) / 2.0);
+    Ok(mean.zip(displacement).map(|(force, u)| force * u).sum())
 }
 
 /// Returns `true` if the pressure of a row is its own force over its own area.
@@ -417,9 +420,8 @@ impl Branch {
             },
             Direct::Energy => match &effect.body {
                 Some(body) => {
-                    let forces = internal_force(body, answer.displacement()).map_err(in_words)?;
-                    let work: f64 = forces.iter().zip(answer.displacement()).map(|(f, u)| f * u).sum();
-                    0.5 * model.parts_of_whole() * work
+                    let change = work_to(answer, body)? + own_energy_change(model.body(), body);
+                    model.parts_of_whole() * change
                 }
                 None => 0.0,
             },

@@ -3,8 +3,9 @@
 use super::*;
 use crate::fem::assembly::{
     Density, FacetPoint, Kinks, Points, add_body_force, add_centrifugal, add_gravity, area_and_integral,
-    integral_by_places, internal_force, outward,
+    integral_by_places, internal_force, outward, own_energy, own_energy_change,
 };
+use crate::fem::body::PhaseNumber;
 use crate::fem::element::ElementKind;
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::length;
@@ -120,6 +121,55 @@ fn the_work_of_stresses_changes_as_differences_say_for_all_elements_and_formulat
                 slope[kind.dimension()..].fill(0.0);
                 let warm = body.with_temperature(&[0], 0.4, slope).unwrap().with_initial_stress(&[0], stress).unwrap();
                 check_internal(&warm, &mut random, &format!("{case} warm"));
+            }
+        }
+    }
+}
+
+/// GOAL: the energy of temperatures and initial stresses, and its derivatives by places, by moduli and by the temperature. CONDITIONS: every
+/// element in every formulation. REFERENCE: differences, and the work that the stress of the strain `C^-1 sigma_0` does on it.
+#[test]
+fn the_energy_of_own_stress_changes_as_differences_say() {
+    let mut random = Random(6);
+    for kind in ElementKind::ALL {
+        for formulation in formulations(kind) {
+            let mut stress = [0.0; 6];
+            formulation.stresses().iter().for_each(|&component| stress[component] = random.next());
+            let mut slope = [0.3, -0.2, 0.5];
+            slope[kind.dimension()..].fill(0.0);
+            let warmed = |body: ElasticBody, temperature: f64| {
+                let warm = body.with_temperature(&[0], temperature, slope).unwrap();
+                warm.with_initial_stress(&[0], stress).unwrap()
+            };
+            for (name, material) in [("isotropic", isotropic()), ("orthotropic", orthotropic(&formulation))] {
+                let case = format!("{} {} {name}", kind.name(), formulation.name());
+                let body = warmed(distorted(kind, formulation, material, &mut random), 0.4);
+                let mut found = vec![0.0; body.nodal_dofs()];
+                own_energy_by_places(&body, &mut found);
+                assert_close(&found, &differences(&body, own_energy), &case);
+            }
+            let mesh = distorted(kind, formulation, isotropic(), &mut random).mesh().clone();
+            let of = |[young, poisson, temperature]: [f64; 3]| {
+                let material = Material::new(young, poisson).unwrap().with_expansion([0.2; 3]).unwrap();
+                warmed(ElasticBody::new(mesh.clone(), material, formulation).unwrap(), temperature)
+            };
+            let numbers = [2.0, 0.3, 0.4];
+            for (index, by) in
+                [PhaseNumber::Young, PhaseNumber::Poisson, PhaseNumber::Temperature].into_iter().enumerate()
+            {
+                let at = |steps: f64| {
+                    let mut varied = numbers;
+                    varied[index] += steps * STEP;
+                    own_energy(&of(varied))
+                };
+                let expected = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * STEP);
+                let body = of(numbers);
+                let found = own_energy_change(&body, &body.derivative(&[by]).unwrap());
+                let (scale, case) = (own_energy(&body), format!("{} {} {by:?}", kind.name(), formulation.name()));
+                assert!(
+                    (found - expected).abs() <= CLOSE * scale.max(expected.abs()),
+                    "{case}: {found} is not {expected}"
+                );
             }
         }
     }

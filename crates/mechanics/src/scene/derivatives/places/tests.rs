@@ -203,6 +203,23 @@ fn the_residual_changes_as_differences_say_for_loads_springs_and_stresses_in_spa
     Moving::of(&space("tet4", rest), |_| true).check(0);
 }
 
+/// With temperatures and initial stresses.
+#[test]
+fn the_strain_energy_changes_as_differences_say() {
+    let warm = r#""temperature": [{"value": 0.5, "gradient": [0.3, 0.2]}], "initial-stress": [{"xx": 0.2, "xy": 0.1}]"#;
+    for (model, element) in [("plane-strain", "q8"), ("plane-stress", "q4"), ("axisymmetric", "t6")] {
+        let shape = obstacle("+y", "closest-point", r#"{"parabola": {"apex": [1.4, 1.1], "radius": 1.5}}"#);
+        Moving::of(&plane(model, element, &format!("{warm}, {shape}")), |_| true).check_output(
+            "strain-energy",
+            0..2,
+            0,
+        );
+    }
+    let shape = obstacle("+z", "closest-point", r#"{"sphere": {"apex": [0.1, 0, 1.1], "radius": 1.5}}"#);
+    let warm = r#""temperature": [{"value": 0.5, "gradient": [0.3, 0.2, 0.1]}]"#;
+    Moving::of(&space("hex8", &format!("{warm}, {shape}")), |_| true).check_output("strain-energy", 0..2, 0);
+}
+
 #[test]
 fn rows_against_rigid_obstacles_in_the_plane_change_as_differences_say() {
     let shapes = [
