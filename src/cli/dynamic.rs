@@ -98,7 +98,7 @@ impl<'a> Run<'a> {
         let Run { model, dynamics, integrator, summary, .. } = &self;
         let mut folder = MotionFolder::new(path, scene, model, &dynamics.watched)?;
         let resultants = dynamics.resultants(model, integrator)?;
-        folder.observe(model, &model.of_whole(integrator.observe()), integrator.state(), &resultants)?;
+        folder.observe(model, (&model.of_whole(integrator.observe()), 0.0), integrator.state(), &resultants)?;
         folder.frame(model, 0.0, integrator.state(), summary)?;
         Ok(Run { folder: Some(folder), ..self })
     }
@@ -138,9 +138,15 @@ impl<'a> Run<'a> {
             let state = self.integrator.state();
             self.summary.add(&seen, &self.model.obstacle_forces(&state.multiplier));
             if let Some(folder) = &mut self.folder {
-                folder.observe(self.model, &seen, state, &self.dynamics.resultants(self.model, &self.integrator)?)?;
+                let seen_with_mean = (&seen, self.summary.contact.mean_force());
+                folder.observe(
+                    self.model,
+                    seen_with_mean,
+                    state,
+                    &self.dynamics.resultants(self.model, &self.integrator)?,
+                )?;
                 if frames_until(state.steps) > frames_until(state.steps - 1) {
-                    folder.frame(self.model, seen.time, state, &self.summary)?;
+                    folder.frame(&self.dynamics.model_at(self.model, seen.time)?, seen.time, state, &self.summary)?;
                 }
             }
         }

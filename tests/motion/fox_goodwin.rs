@@ -4,7 +4,7 @@
 
 use serde_json::json;
 use signorini::motion::SchemeSpec;
-use signorini::motion::{DynamicProblem, Integrator, Scheme};
+use signorini::motion::{DynamicProblem, Integrator, Scheme, TimeFunction};
 use signorini::study::{MotionError, MotionSummary};
 use signorini::{ContactProblem, Scene, Settings, SparseMatrix, SymmetricMatrix};
 use support::impact::cases::cases;
@@ -126,13 +126,19 @@ fn the_energy_of_random_motions_never_grows() {
         let statics = ContactProblem::new(stiffness, load, contact, gap).unwrap();
         let velocity = (0..dofs).map(|_| 4.0 * random() - 2.0).collect();
         let problem = DynamicProblem::new(statics, mass).unwrap().starting_from(vec![0.0; dofs], velocity).unwrap();
+        let shift: Vec<f64> = (0..dofs).map(|_| random() - 0.5).collect();
         let mut runs = vec![(Scheme::FoxGoodwin, 10.0_f64.powf(2.0 * random() - 1.5))];
         if number % 2 == 0 {
             let explicit = Scheme::CentralDifference { restitution: 0.0 };
             runs.push((explicit, (0.1 + 0.89 * random()) * problem.stable_step().unwrap()));
         }
         for (scheme, step) in runs {
-            let mut integrator = Integrator::new(problem.clone(), scheme, step, &Settings::default()).unwrap();
+            let mut problem = problem.clone();
+            if scheme == Scheme::FoxGoodwin && number % 5 == 0 {
+                let factor = TimeFunction::Sine { frequency: 0.3 / step * random(), phase: random() };
+                problem = problem.with_moving_gaps(factor, shift.clone()).unwrap();
+            }
+            let mut integrator = Integrator::new(problem, scheme, step, &Settings::default()).unwrap();
             let mut summary = MotionSummary::starting(&integrator.observe(), 0, [step; 2], step);
             for _ in 0..40 {
                 integrator.advance().unwrap();

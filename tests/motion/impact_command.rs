@@ -43,7 +43,7 @@ fn a_motion_prints_a_report_and_writes_history_series_and_plots() {
     assert!(report["energy"]["change"].as_f64().unwrap().abs() < 5e-3, "{report}");
     let history = fs::read_to_string(desk.path("out/history.csv")).unwrap();
     assert_eq!(history.lines().count(), 2 + report["steps"].as_u64().unwrap() as usize);
-    assert!(history.lines().all(|line| line.split(',').count() == 8));
+    assert!(history.lines().all(|line| line.split(',').count() == 9));
     let series = fs::read_to_string(desk.path("out/series.pvd")).unwrap();
     for number in 0..=12 {
         let name = format!("series-{number:05}.vtu");

@@ -1,6 +1,7 @@
 //! Motion: schemes compared with closed forms, the command, refused input.
 
 mod bounce;
+mod driven;
 mod fox_goodwin;
 mod impact;
 mod impact_command;

@@ -44,10 +44,14 @@ impl Integrator {
         scheme.check()?;
         let reach = largest(problem.displacement())
             .max(problem.statics().gap().iter().filter(|gap| gap.is_finite()).fold(0.0, |max, gap| gap.abs().max(max)));
-        let penetration = problem.penetration(problem.displacement());
+        let penetration = problem.penetration(problem.displacement(), 0.0);
         if penetration > GAP_ROUNDING * reach {
             let allowed = "zero: no contact row may be violated at the start";
             return Err(qp::Error::Setting { name: "initial penetration", value: penetration, allowed }.into());
+        }
+        if problem.has_moving_gaps() && !scheme.follows_obstacles() {
+            let allowed = "zero: only `fox-goodwin` follows obstacles that move";
+            return Err(qp::Error::Setting { name: "shift", value: 1.0, allowed }.into());
         }
         if !scheme.allows(MassForm::Redistributed) && !problem.massless().is_empty() {
             let allowed = "positive: dofs without mass are for the midpoint rule";
@@ -119,7 +123,12 @@ impl Integrator {
             [Some(from), Some(to)] => [&from.displacement, &to.displacement],
             _ => [&self.state.displacement, &next.displacement],
         };
-        next.work += self.problem.work(times, moved);
+        let ends = |steps: usize| match halves {
+            [Some(_), Some(_)] => [steps.saturating_sub(1), steps],
+            _ => [steps, steps],
+        };
+        let of_gaps = [self.state.steps, next.steps].map(|steps| ends(steps).map(|end| end as f64 * self.step));
+        next.work += self.problem.work(times, moved) + self.problem.work_of_obstacles(&next.multiplier, of_gaps);
         self.before = Some(std::mem::replace(&mut self.state, next));
         Ok(&self.state)
     }
@@ -186,7 +195,7 @@ impl Integrator {
             time: self.time(),
             force: multiplier.iter().fold(0.0, |force, lambda| force - lambda),
             closed: contact_set.count(),
-            penetration: self.problem.penetration(displacement),
+            penetration: self.problem.penetration(displacement, self.time()),
             kinetic,
             strain,
             potential,

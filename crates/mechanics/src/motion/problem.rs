@@ -21,6 +21,8 @@ pub struct DynamicProblem {
     /// c_m and c_k.
     damping: [f64; 2],
     loads: Vec<(TimeFunction, Vec<f64>)>,
+    /// Changes of the gaps with time, one entry per row each, in length.
+    shifts: Vec<(TimeFunction, Vec<f64>)>,
     displacement: Vec<f64>,
     velocity: Vec<f64>,
     /// Forces on the free dofs from prescribed displacements, and the strain energy of these displacements.
@@ -52,6 +54,7 @@ impl DynamicProblem {
             mass,
             damping: [0.0; 2],
             loads: Vec::new(),
+            shifts: Vec::new(),
             displacement: zeros.clone(),
             velocity: zeros.clone(),
             held: (zeros, 0.0),
@@ -85,19 +88,25 @@ impl DynamicProblem {
         Ok(self)
     }
 
+    /// The same with obstacles that move: `shift` (one entry per row, in length, positive away from the body) times a factor that changes
+    /// with time is added to the gaps, less its value at the start. Only `fox-goodwin` follows such obstacles.
+    ///
+    /// # Errors
+    /// As [`TimeFunction::check`]; [`qp::Error::Length`] and [`qp::Error::NotFinite`] for shifts of another length or not finite.
+    pub fn with_moving_gaps(mut self, factor: TimeFunction, shift: Vec<f64>) -> Result<Self, Error> {
+        factor.check()?;
+        check_finite("shift", &shift, (self.statics.rows(), "contact rows"))?;
+        self.shifts.push((factor, shift));
+        Ok(self)
+    }
+
     /// The same from another displacement and velocity (length n each, in length and length over time).
     ///
     /// # Errors
     /// [`qp::Error::Length`] and [`qp::Error::NotFinite`] for vectors of another length or not finite.
     pub fn starting_from(mut self, displacement: Vec<f64>, velocity: Vec<f64>) -> Result<Self, Error> {
-        for (name, values) in [("initial displacement", &displacement), ("initial velocity", &velocity)] {
-            qp::Error::check_length(name, values.len(), self.statics.dofs(), "dofs")?;
-            if let Some((index, &value)) = values.iter().enumerate().find(|entry| !entry.1.is_finite()) {
-                return Err(
-                    qp::Error::NotFinite { name, at: format!("entry {index}"), value, allowed: "finite" }.into()
-                );
-            }
-        }
+        check_finite("initial displacement", &displacement, (self.statics.dofs(), "dofs"))?;
+        check_finite("initial velocity", &velocity, (self.statics.dofs(), "dofs"))?;
         (self.displacement, self.velocity) = (displacement, velocity);
         Ok(self)
     }
@@ -166,15 +175,63 @@ impl DynamicProblem {
         (0..).zip(self.mass.diagonal()).filter(|entry| entry.1 == 0.0).map(|(dof, _)| dof).collect()
     }
 
-    /// The deepest penetration, `max(B u - g, 0)`, in length, at a displacement u of length n, in length.
-    pub fn penetration(&self, displacement: &[f64]) -> f64 {
-        self.remaining_gap(displacement).into_iter().fold(0.0, |deepest, gap| (-gap).max(deepest))
+    /// The gaps at time `t`, one entry per row, in length.
+    pub fn gap_at(&self, t: f64) -> Vec<f64> {
+        let mut gap = self.statics.gap().to_vec();
+        for (factor, shift) in &self.shifts {
+            let change = factor.at(t) - factor.at(0.0);
+            gap.iter_mut().zip(shift).for_each(|(gap, shift)| *gap += change * shift);
+        }
+        gap
     }
 
-    /// The remaining gaps after a displacement, `g - B u`, one entry per row.
+    /// Returns `true` if obstacles move.
+    pub(super) fn has_moving_gaps(&self) -> bool {
+        !self.shifts.is_empty()
+    }
+
+    /// The velocities along the rows, `B v`, less those of the obstacles between two times.
+    pub(super) fn relative_velocity(&self, velocity: &[f64], [from, to]: [f64; 2]) -> Vec<f64> {
+        let of_body = self.statics.contact().mul(velocity);
+        match self.has_moving_gaps() {
+            false => of_body,
+            true => {
+                let gaps = self.gap_at(to).into_iter().zip(self.gap_at(from));
+                of_body
+                    .into_iter()
+                    .zip(gaps)
+                    .map(|(along, (to_gap, from_gap))| along - (to_gap - from_gap) / (to - from))
+                    .collect()
+            }
+        }
+    }
+
+    /// The work that obstacles do with these multipliers while they move between two times, each the mean of two.
+    pub(super) fn work_of_obstacles(&self, multiplier: &[f64], [from, to]: [[f64; 2]; 2]) -> f64 {
+        if !self.has_moving_gaps() {
+            return 0.0;
+        }
+        let mean = |times: [f64; 2]| {
+            let [one, other] = times.map(|t| dot(multiplier, &self.gap_at(t)));
+            (one + other) / 2.0
+        };
+        mean(to) - mean(from)
+    }
+
+    /// The deepest penetration, `max(B u - g, 0)`, in length, at a displacement u of length n, in length, at time `t`.
+    pub fn penetration(&self, displacement: &[f64], t: f64) -> f64 {
+        self.remaining_gap_at(displacement, t).into_iter().fold(0.0, |deepest, gap| (-gap).max(deepest))
+    }
+
+    /// The remaining gaps after a displacement, `g - B u`, one entry per row, of obstacles that stand still.
     pub(super) fn remaining_gap(&self, displacement: &[f64]) -> Vec<f64> {
+        self.remaining_gap_at(displacement, 0.0)
+    }
+
+    /// The same at time `t`.
+    pub(super) fn remaining_gap_at(&self, displacement: &[f64], t: f64) -> Vec<f64> {
         let moved = |row: usize| self.by_row.column(row).map(|(dof, b)| b * displacement[dof]).sum::<f64>();
-        self.statics.gap().iter().enumerate().map(|(row, gap)| gap - moved(row)).collect()
+        self.gap_at(t).into_iter().enumerate().map(|(row, gap)| gap - moved(row)).collect()
     }
 
     /// `mass M + damping C + stiffness K`.
@@ -215,5 +272,16 @@ impl DynamicProblem {
         let of_held = dot(forces, displacement);
         let strain = dot(displacement, elastic) / 2.0 - of_held + energy;
         [strain, 0.0 + of_held - dot(&self.load_at(t), displacement)]
+    }
+}
+
+/// Checks length and values of a vector.
+fn check_finite(name: &'static str, values: &[f64], (expected, of): (usize, &'static str)) -> Result<(), Error> {
+    qp::Error::check_length(name, values.len(), expected, of)?;
+    match values.iter().enumerate().find(|entry| !entry.1.is_finite()) {
+        Some((index, &value)) => {
+            Err(qp::Error::NotFinite { name, at: format!("entry {index}"), value, allowed: "finite" }.into())
+        }
+        None => Ok(()),
     }
 }

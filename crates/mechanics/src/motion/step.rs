@@ -26,6 +26,8 @@ pub struct About {
     pub load_times: &'static [f64],
     /// `true` if it uses a bound on the largest frequency of the mesh.
     pub uses_frequency: bool,
+    /// `true` if it follows obstacles that move.
+    pub follows_obstacles: bool,
     /// `true` if it moves a bar exactly in steps of the time of a wave through a cell.
     pub is_exact_in_bars: bool,
     /// The forms of the mass with which its energy grows whenever bodies touch.

@@ -30,7 +30,7 @@ pub struct MotionContact {
     contacts: usize,
     /// Largest contact force of a single step, in force, `>= 0`; it does not converge in a mesh that oscillates behind a wave front.
     pub force_max: f64,
-    /// Mean of the contact force over a window of time, and its largest value.
+    /// Mean of the contact force over a window of time, and its largest value; each half of a step is one of its values.
     force_mean: MovingMean,
     /// The same over the time of a wave through a few cells.
     peak: MovingMean,
@@ -41,12 +41,12 @@ pub struct MotionContact {
 impl MotionContact {
     /// Nothing touched yet; the force and its peak are averaged over the whole numbers of steps that are nearest to `steps`.
     fn averaged_over(steps: [f64; 2]) -> Self {
-        let [force_mean, peak] = steps.map(MovingMean::over);
+        let [force_mean, peak] = steps.map(|steps| MovingMean::over(2.0 * steps.round().max(1.0)));
         MotionContact { force_mean, peak, ..MotionContact::default() }
     }
 
-    /// Adds a step with its contact force, which acted from one time to another.
-    fn add(&mut self, force: f64, [from, to]: [f64; 2]) {
+    /// Adds a step with its contact force, which acted from one time to another: for half of a `step`, or for all of it.
+    fn add(&mut self, force: f64, [from, to]: [f64; 2], step: f64) {
         let length = to - from;
         if force > 0.0 {
             if self.run == 0 {
@@ -76,13 +76,20 @@ impl MotionContact {
             self.run = 0;
         }
         (self.third_last, self.forces) = (before, [last, force]);
-        self.force_mean.add(force);
-        self.peak.add(force);
+        for _ in 0..if length < 0.75 * step { 1 } else { 2 } {
+            self.force_mean.add(force);
+            self.peak.add(force);
+        }
     }
 
     /// Largest mean of the contact force over any window of [`MotionSummary::window_steps`] steps, in force.
     pub fn force_mean_max(&self) -> f64 {
         self.force_mean.largest
+    }
+
+    /// The mean of the contact force over the last [`MotionSummary::peak_steps`] steps, in force, `>= 0`.
+    pub fn mean_force(&self) -> f64 {
+        self.peak.latest
     }
 
     /// The peak of the contact force: its largest mean over [`MotionSummary::peak_steps`] steps, in force.
@@ -149,9 +156,10 @@ impl MotionSummary {
     /// Adds one step in which the obstacles pressed with these forces, one entry per obstacle, in force, `>= 0`.
     pub fn add(&mut self, seen: &Observation, of_obstacles: &[f64]) {
         self.steps += 1;
+        let step = seen.time - self.time;
         self.time = seen.time;
-        self.contact.add(seen.force, seen.acting);
-        self.obstacles.iter_mut().zip(of_obstacles).for_each(|(one, &force)| one.add(force, seen.acting));
+        self.contact.add(seen.force, seen.acting, step);
+        self.obstacles.iter_mut().zip(of_obstacles).for_each(|(one, &force)| one.add(force, seen.acting, step));
         self.penetration_max = self.penetration_max.max(seen.penetration);
         self.energy_last = [seen.kinetic, seen.strain, seen.potential];
         let [least, most] = self.energy_range;
@@ -165,12 +173,12 @@ impl MotionSummary {
 
     /// Steps of the window over which the force is averaged.
     pub fn window_steps(&self) -> usize {
-        self.contact.force_mean.steps()
+        self.contact.force_mean.steps() / 2
     }
 
     /// Steps over which the peak of the force is averaged.
     pub fn peak_steps(&self) -> usize {
-        self.contact.peak.steps()
+        self.contact.peak.steps() / 2
     }
 
     /// Kinetic and strain energy at the start.

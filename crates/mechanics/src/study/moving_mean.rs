@@ -19,15 +19,19 @@ pub(super) struct MovingMean {
     sums: VecDeque<f64>,
     /// Steps in the current bin, and the sum of their forces.
     filling: (usize, f64),
-    /// The largest mean so far.
+    /// The mean over the last window, and the largest so far.
+    pub latest: f64,
     pub largest: f64,
 }
 
 impl MovingMean {
-    /// The mean over the whole number of steps nearest to `steps`, at least one.
+    /// The mean over the whole number of steps nearest to `steps`, at least one; a bin of several has an even number of them.
     pub fn over(steps: f64) -> Self {
         let steps = (steps.round() as usize).max(1);
-        let per_bin = steps.div_ceil(MOST_BINS);
+        let per_bin = match steps.div_ceil(MOST_BINS) {
+            1 => 1,
+            several => several.next_multiple_of(2),
+        };
         MovingMean { per_bin, bins: (steps / per_bin).max(1), ..MovingMean::default() }
     }
 
@@ -48,7 +52,8 @@ impl MovingMean {
         if self.sums.len() > self.bins {
             self.sums.pop_front();
         }
-        self.largest = self.largest.max(self.sums.iter().sum::<f64>() / self.steps() as f64);
+        self.latest = self.sums.iter().sum::<f64>() / self.steps() as f64;
+        self.largest = self.largest.max(self.latest);
     }
 }
 

@@ -39,7 +39,7 @@ const HISTORY: &str = "history.csv";
 const WATCH: &str = "watch.csv";
 const RESULTANTS: &str = "resultants.csv";
 const CHECKPOINT: &str = "checkpoint.json";
-const HEADING: &str = "time,force,closed,penetration,kinetic,strain,potential,energy\n";
+const HEADING: &str = "time,force,closed,penetration,kinetic,strain,potential,energy,mean_force\n";
 
 /// Largest number of points of a plot over time; if there are more steps, some are left out.
 const MOST_POINTS: usize = 4000;
@@ -71,6 +71,9 @@ struct Frame {
     displacement: Vec<f64>,
     multiplier: Vec<f64>,
     closed: Vec<usize>,
+    /// How far each obstacle has moved; empty if none moves by a table.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    moved: Vec<f64>,
 }
 
 /// The state of a run.
@@ -149,28 +152,28 @@ impl MotionFolder {
         Ok((MotionFolder { times: found.frame_times, ..run }, state, found.summary))
     }
 
-    /// Adds a line to the history, to the resultants, and to the watched points: `seen`, the current state of `integrator`, and the
-    /// `resultants` of its last step, as [`Dynamics::resultants`](signorini_mechanics::scene::Dynamics::resultants).
+    /// Adds a line to the history, to the resultants, and to the watched points: `seen` with the mean force over the window of the peak,
+    /// the current state of `integrator`, and the `resultants` of its last step, as [`Dynamics::resultants`](signorini_mechanics::scene::Dynamics::resultants).
     ///
     /// # Errors
     /// [`qp::Error::File`]; [`qp::Error::Length`] for the state of another model.
     pub fn observe(
         &mut self,
         model: &Model,
-        seen: &Observation,
+        (seen, mean_force): (&Observation, f64),
         state: &State,
         resultants: &[Resultant],
     ) -> Result<(), Error> {
         let Observation { time, force, closed, penetration, kinetic, strain, potential, .. } = seen;
         let energy = seen.energy();
         self.history.add(&format!(
-            "{time:e},{force:e},{closed},{penetration:e},{kinetic:e},{strain:e},{potential:e},{energy:e}"
+            "{time:e},{force:e},{closed},{penetration:e},{kinetic:e},{strain:e},{potential:e},{energy:e},{mean_force:e}"
         ))?;
         self.resultants.add(&resultants_line(model, seen.time, resultants))?;
         let Some((watched, table)) = &mut self.watch else { return Ok(()) };
         let nodal = [
             model.nodal_displacement(&state.displacement)?,
-            model.dofs().expand_motion(&state.velocity)?,
+            model.nodal_velocity(&state.velocity)?,
             model.contact_forces(&state.multiplier)?,
         ];
         let mut line = format!("{time:e}");
@@ -200,13 +203,14 @@ impl MotionFolder {
         self.watch.as_mut().map_or(Ok(()), |(_, table)| table.write())?;
         let (number, closed) = (self.times.len(), state.contact_set.iter().collect::<Vec<usize>>());
         let answer = Answer::new(model.clone(), &state.displacement, &state.multiplier, &state.contact_set)?;
-        let vtu = fields(&Source { answer: &answer, velocity: Some(&model.dofs().expand_motion(&state.velocity)?) })?;
+        let vtu = fields(&Source { answer: &answer, velocity: Some(&model.nodal_velocity(&state.velocity)?) })?;
         write_atomically(&self.folder.join(vtu_name(number)), vtu.as_bytes())?;
         let frame = Frame {
             time,
             displacement: state.displacement.clone(),
             multiplier: state.multiplier.clone(),
             closed: closed.clone(),
+            moved: model.moved_obstacles().to_vec(),
         };
         write_atomically(&self.frame_path(number), compact_json(&frame)?.as_bytes())?;
         self.times.push(time);
@@ -245,7 +249,11 @@ impl MotionFolder {
         let text = read_text_capped(&path, MOST_OF_TABLE)?;
         let frame: Frame = serde_json::from_str(&text).map_err(|error| not_ours(&path, "frame of a motion", &error))?;
         let set = closed_of(model.rows().len(), &frame.closed);
-        Ok((frame.time, Answer::new(model.clone(), &frame.displacement, &frame.multiplier, &set)?))
+        let model = match frame.moved.is_empty() {
+            true => model.clone(),
+            false => Arc::new(model.with_moved_obstacles(&frame.moved)?),
+        };
+        Ok((frame.time, Answer::new(model, &frame.displacement, &frame.multiplier, &set)?))
     }
 
     /// Draws force and energies over time (`history`), and an animation of a body in the plane (`motion.png`).
@@ -303,7 +311,7 @@ impl MotionFolder {
     }
 
     /// The rows of the history; if it is long, only some rows, each with the largest force since the previous one.
-    fn read_history(&self) -> Result<Vec<[f64; 8]>, Error> {
+    fn read_history(&self) -> Result<Vec<[f64; 9]>, Error> {
         let path = self.folder.join(HISTORY);
         let fail = |source| qp::Error::File { action: "read", path: path.clone(), source };
         let open = || std::fs::File::open(&path).map(BufReader::new).map_err(fail);
@@ -312,7 +320,7 @@ impl MotionFolder {
         let (mut rows, mut force) = (Vec::new(), 0.0_f64);
         for (number, line) in open()?.lines().enumerate().skip(1) {
             let line = line.map_err(fail)?;
-            let mut row = [f64::NAN; 8];
+            let mut row = [f64::NAN; 9];
             row.iter_mut().zip(line.split(',')).for_each(|(value, text)| *value = text.parse().unwrap_or(f64::NAN));
             force = force.max(row[1]);
             if number % every == 0 || every == 1 {
@@ -332,7 +340,7 @@ fn closed_of(rows: usize, closed: &[usize]) -> ContactSet {
     set
 }
 
-/// The columns of the resultants: force, moment and centre of each obstacle, and of each support.
+/// The columns of the resultants: force, moment and centre of each obstacle, of each support, and of each spring.
 fn resultants_heading(model: &Model) -> String {
     let axes = &["x", "y", "z"][..model.mesh().dimension()];
     let turns: &[&str] = match (axes.len(), model.body().formulation().is_axisymmetric()) {
@@ -341,7 +349,7 @@ fn resultants_heading(model: &Model) -> String {
         _ => &[],
     };
     let mut heading = String::from("time");
-    for name in model.obstacle_names().into_iter().chain(model.support_names()) {
+    for name in model.obstacle_names().into_iter().chain(model.support_names()).chain(model.spring_names()) {
         for (quantity, axes) in [("f", axes), ("m", turns), ("c", axes)] {
             axes.iter().for_each(|axis| {
                 let _ = write!(heading, ",{name} {quantity}_{axis}");
@@ -351,7 +359,7 @@ fn resultants_heading(model: &Model) -> String {
     heading + "\n"
 }
 
-/// A line of the resultants at one time: first the obstacles, then the supports; cells are empty for resultants that are not given.
+/// A line of the resultants at one time: first the obstacles, then the supports, then the springs; cells are empty for resultants that are not given.
 fn resultants_line(model: &Model, time: f64, resultants: &[Resultant]) -> String {
     let mut line = format!("{time:e}");
     for of in resultants {

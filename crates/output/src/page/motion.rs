@@ -14,7 +14,7 @@ use signorini_mechanics::scene::Answer;
 pub(crate) struct MotionFrames<'a> {
     /// Time, contact force, number of closed rows, penetration, kinetic, strain, potential and total energy, step after
     /// step.
-    pub history: &'a [[f64; 8]],
+    pub history: &'a [[f64; 9]],
     /// The times of the frames.
     pub times: &'a [f64],
     /// The answer of a frame.
@@ -23,7 +23,7 @@ pub(crate) struct MotionFrames<'a> {
 
 #[derive(Debug, Serialize)]
 pub(super) struct MotionShown {
-    /// Eight columns, as in `history.csv`.
+    /// Nine columns, as in `history.csv`.
     history: Packed,
     times: Vec<f64>,
     /// The kept frame with the largest contact force, at which the page opens; the first without contact.

@@ -82,7 +82,7 @@ pub(crate) fn sweep_plots(sweep: &Sweep) -> Vec<Plot> {
 }
 
 /// Contact force and energies over the time of a motion; `history` has the columns of `history.csv`.
-pub(crate) fn history_plots(model: &Model, history: &[[f64; 8]]) -> Vec<Plot> {
+pub(crate) fn history_plots(model: &Model, history: &[[f64; 9]]) -> Vec<Plot> {
     let line = |name: &str, column: usize| Series::new(name, history.iter().map(|row| [row[0], row[column]]).collect());
     let units = model.units();
     let work = format!("{} {}", units.force, units.length);
@@ -90,7 +90,11 @@ pub(crate) fn history_plots(model: &Model, history: &[[f64; 8]]) -> Vec<Plot> {
     let energies = vec![line("kinetic", 4), line("strain", 5), line("potential", 6), line("total", 7)];
     let time = || Quantity::new("time t", units.time());
     vec![
-        Plot::new(time(), Quantity::new(force, &units.force), vec![line("force", 1)]),
+        Plot::new(
+            time(),
+            Quantity::new(force, &units.force),
+            vec![line("of each step", 1), line("mean, as the peak", 8)],
+        ),
         Plot::new(time(), Quantity::new("energy", work.trim()), energies),
     ]
 }

@@ -67,6 +67,21 @@ impl Springs {
         forces
     }
 
+    /// The force that holds the nodes for which `place` gives a number against the displacement of all nodes: entries `(nodal dof of the
+    /// displacement, dimension * number + axis of the force, force per length)`.
+    pub fn columns(&self, place: impl Fn(usize) -> Option<usize>, dimension: usize) -> Vec<(usize, usize, f64)> {
+        let mut entries = Vec::new();
+        for (a, b, block) in &self.pairs {
+            let Some(place) = place(*a) else { continue };
+            for (i, of_row) in block.iter().enumerate().take(dimension) {
+                let of_force = dimension * place + i;
+                let nonzero = of_row.iter().enumerate().take(dimension).filter(|entry| *entry.1 != 0.0);
+                entries.extend(nonzero.map(|(j, &value)| (dimension * b + j, of_force, value)));
+            }
+        }
+        entries
+    }
+
     /// The motions that the springs resist: sums of displacements of nodes along vectors, of which the longest is a unit vector.
     pub fn resisted(&self) -> Vec<Vec<(usize, [f64; 3])>> {
         if !self.elongation.is_empty() {

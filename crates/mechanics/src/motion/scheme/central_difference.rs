@@ -36,6 +36,7 @@ pub(super) static ABOUT: About = About {
     penetrates: false,
     is_explicit: true,
     uses_frequency: false,
+    follows_obstacles: false,
     is_exact_in_bars: false,
     load_times: &[0.0],
     unstable_in_contact: &[],

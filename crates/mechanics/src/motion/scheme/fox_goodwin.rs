@@ -14,6 +14,9 @@
 //! u_n. A row with a force has `B u+ = g`, and `B u- <= g`: contact forces only take energy. What they take is kinetic energy of the
 //! contact nodes that stop, a share that falls with the cell size.
 //!
+//! **Obstacles that move** have their gap at the end of a step; what they put in is the work of the contact forces along the mean change of the
+//! gap, `(g+ - g-)/2`, and rows have velocities relative to them.
+//!
 //! **At release** a node gets back what it lost when it stopped, up to the velocity with which it would follow its neighbours if it had no
 //! mass. In a bar that hits a wall, at any time within a step, this restores the motion exactly.
 //!
@@ -24,9 +27,9 @@
 
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{About, Advance, Found, HalfStep, Stepping, halfway, next, plus, squares_of_rows};
+use crate::motion::step::{About, Advance, Found, HalfStep, Stepping, halfway, next, plus};
 use crate::motion::{Balance, DynamicProblem, State};
-use signorini_qp::{SparseMatrix, SymmetricMatrix};
+use signorini_qp::SparseMatrix;
 
 /// The beta of fourth order.
 const FOURTH_ORDER: f64 = 1.0 / 12.0;
@@ -49,6 +52,7 @@ pub(super) static ABOUT: About = About {
     penetrates: false,
     is_explicit: false,
     uses_frequency: true,
+    follows_obstacles: true,
     is_exact_in_bars: true,
     load_times: &[0.0],
     unstable_in_contact: &[],
@@ -58,12 +62,16 @@ pub(super) static ABOUT: About = About {
         let matrix =
             problem.combination(1.0 / (step * step), 0.5 / step, scaling / (step * step))?.without_rounding(CANCELLED);
         let inertia = problem.combination(1.0, 0.0, scaling)?;
-        let contact = problem.statics().contact();
-        let squares = squares_of_rows(contact);
-        let masses = along_rows(contact, &inertia).iter().zip(&squares).map(|(m, b)| m / (b * b)).collect();
-        let stiffness = along_rows(contact, problem.statics().stiffness());
-        let stiffness = stiffness.iter().zip(&squares).map(|(k, b)| k / (b * b)).collect();
-        Ok(Box::new(FoxGoodwin { scaling, masses, stiffness, stepping: Stepping::of(problem, matrix, settings)? }))
+        let (contact, stiffness) = (problem.statics().contact(), problem.statics().stiffness().diagonal());
+        let of = |entries: Vec<_>| SparseMatrix::from_triplets(contact.rows(), contact.columns(), &entries);
+        let elastic = || contact.triplets().filter(|entry| stiffness[entry.1] != 0.0);
+        let of_nodes = of(elastic().collect())?;
+        let following = of(elastic().map(|(row, dof, b)| (row, dof, b / stiffness[dof])).collect())?;
+        let inertia = inertia.diagonal();
+        let equal = masses_along(&of_nodes, &inertia, &vec![1.0; contact.rows()]);
+        let [masses, of_nodes] = [contact, &of_nodes].map(|rows| masses_along(rows, &inertia, &equal));
+        let stepping = Stepping::of(problem, matrix, settings)?;
+        Ok(Box::new(FoxGoodwin { scaling, masses, of_nodes, following, stepping }))
     },
 };
 
@@ -71,9 +79,12 @@ pub(super) static ABOUT: About = About {
 struct FoxGoodwin {
     /// `beta dt^2`, in time squared.
     scaling: f64,
-    /// The mass that a force along each row moves, if only the dofs of the row move, per square of its coefficients; and their stiffness.
+    /// The mass that a force along each row moves, if only the dofs of rows move; and that of nodes alone, without obstacles that have a
+    /// mass of their own.
     masses: Vec<f64>,
-    stiffness: Vec<f64>,
+    of_nodes: Vec<f64>,
+    /// The motion along each row in which nodes without mass would follow forces on the dofs.
+    following: SparseMatrix,
     stepping: Stepping,
 }
 
@@ -95,12 +106,12 @@ impl Advance for FoxGoodwin {
         if !is_first {
             problem.damp(0.5, &state.velocity, &mut force);
         }
-        let found =
-            self.stepping.solve(force.clone(), problem.remaining_gap(&state.displacement), &state.contact_set)?;
+        let room = problem.remaining_gap_at(&state.displacement, (state.steps as f64 + 1.0) * step);
+        let found = self.stepping.solve(force.clone(), room.clone(), &state.contact_set)?;
         let end = self.after(problem, step, state, &found, None);
         match self.released(problem, step, state, &found, &end) {
             None => Ok(end),
-            Some(pull) => self.let_go(problem, step, state, (&force, pull), end),
+            Some(pull) => self.let_go(problem, step, state, (&force, pull, room), end),
         }
     }
 
@@ -138,8 +149,7 @@ impl FoxGoodwin {
         let share = if state.steps == 0 { 0.5 } else { 1.0 };
         let velocity: Vec<f64> = found.change.iter().map(|w| w / step).collect();
         let displacement = plus(&state.displacement, 1.0, &found.change);
-        let contact = problem.statics().contact();
-        let [before, now] = [&state.velocity, &velocity].map(|velocity| contact.mul(velocity));
+        let [before, now] = along_rows_of_step(problem, step, state, &velocity);
         let forces = pull.map_or_else(|| found.multiplier.clone(), |pull| plus(&found.multiplier, 1.0, pull));
         let work = |row: usize| forces[row] * (before[row] + now[row]) / 2.0 * step;
         let kept = |(row, kept): (usize, &f64)| {
@@ -170,10 +180,10 @@ impl FoxGoodwin {
         if state.kept.iter().all(|&kept| kept <= 0.0) {
             return None;
         }
-        let contact = problem.statics().contact();
         let left = plus(&problem.load_at(end.steps as f64 * step), -1.0, &end.elastic);
-        let [left, before, now] = [&left, &state.velocity, &end.velocity].map(|values| contact.mul(values));
-        let room = problem.remaining_gap(&state.displacement);
+        let follow = self.following.mul(&left);
+        let [before, now] = along_rows_of_step(problem, step, state, &end.velocity);
+        let room = problem.remaining_gap_at(&state.displacement, state.steps as f64 * step);
         let pull = |(row, &kept): (usize, &f64)| {
             let mass = self.masses[row];
             // The velocity that was stopped, if it was all of the energy.
@@ -181,7 +191,7 @@ impl FoxGoodwin {
             // A contact that ends within a step presses until then: its node was at the obstacle a step ago.
             let was_closed = room[row] + step * before[row] <= CLOSE * step * stopped;
             // The impulse after which the neighbours do not pull, and the one that gives back all energy.
-            let to_follow = -left[row] / self.stiffness[row] * mass / step;
+            let to_follow = -follow[row] * self.of_nodes[row] / step;
             let parting = -(before[row] + now[row]) / 2.0 - found.multiplier[row] * step / (2.0 * mass);
             let of_energy = mass * (parting.hypot(stopped) - parting);
             let is_due = kept > 0.0 && was_closed && to_follow > NEGLIGIBLE * mass * stopped;
@@ -197,15 +207,24 @@ impl FoxGoodwin {
         problem: &DynamicProblem,
         step: f64,
         state: &State,
-        (force, pull): (&[f64], Vec<f64>),
+        (force, pull, room): (&[f64], Vec<f64>, Vec<f64>),
         end: State,
     ) -> Result<State, Error> {
         let contact = problem.statics().contact();
         let pulled = plus(force, 1.0, &contact.mul_transposed(&pull));
-        let found = self.stepping.solve(pulled, problem.remaining_gap(&state.displacement), &state.contact_set)?;
+        let found = self.stepping.solve(pulled, room, &state.contact_set)?;
         let let_go = self.after(problem, step, state, &found, Some(&pull));
         Ok(if let_go.kept.iter().sum::<f64>() >= 0.0 { let_go } else { end })
     }
+}
+
+/// The velocities along the rows, less those of their obstacles, in the step that led to a state and in the next one.
+fn along_rows_of_step(problem: &DynamicProblem, step: f64, state: &State, velocity: &[f64]) -> [Vec<f64>; 2] {
+    let time = state.steps as f64 * step;
+    [
+        problem.relative_velocity(&state.velocity, [time - step, time]),
+        problem.relative_velocity(velocity, [time, time + step]),
+    ]
 }
 
 /// K v, one entry per dof, in force over time.
@@ -216,15 +235,15 @@ fn elastic_rate(problem: &DynamicProblem, state: &State) -> Vec<f64> {
     }
 }
 
-/// `b'A b` for the coefficients b of each row.
-fn along_rows(contact: &SparseMatrix, matrix: &SymmetricMatrix) -> Vec<f64> {
-    let mut sums = vec![0.0; contact.rows()];
-    for (i, j, value) in matrix.lower().triplets() {
-        let twice = if i == j { 1.0 } else { 2.0 };
-        for (row, b) in contact.column(i) {
-            let other: f64 = contact.column(j).filter(|entry| entry.0 == row).map(|entry| entry.1).sum();
-            sums[row] += twice * value * b * other;
-        }
+/// The mass that a force along each row moves if the dofs have the masses S: `1/(b'S^-1 b)`, or its share in the mass of dofs that several
+/// rows have, with forces on all rows in proportion to `others`, if that is less.
+fn masses_along(contact: &SparseMatrix, masses: &[f64], others: &[f64]) -> Vec<f64> {
+    let of_all = contact.mul_transposed(others);
+    let (mut alone, mut together) = (vec![0.0; contact.rows()], vec![0.0; contact.rows()]);
+    for (row, dof, b) in contact.triplets() {
+        alone[row] += b * b / masses[dof];
+        together[row] += b * of_all[dof] / masses[dof];
     }
-    sums
+    let of_row = |((alone, together), own): ((f64, f64), &f64)| 1.0 / (together / own).max(alone);
+    alone.into_iter().zip(together).zip(others).map(of_row).collect()
 }

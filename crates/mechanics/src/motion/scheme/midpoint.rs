@@ -43,6 +43,7 @@ pub(super) static ABOUT: About = About {
     penetrates: false,
     is_explicit: false,
     uses_frequency: false,
+    follows_obstacles: false,
     is_exact_in_bars: false,
     load_times: &[0.5],
     // A node with mass that is held at the wall at the middle of a step is as far inside the wall at one end as it was outside at the

@@ -231,6 +231,11 @@ impl Scheme {
         self.about().uses_frequency
     }
 
+    /// Returns `true` if it follows obstacles that move.
+    pub(crate) fn follows_obstacles(self) -> bool {
+        self.about().follows_obstacles
+    }
+
     /// Returns `true` if it moves a bar exactly in steps of the time of a wave through a cell.
     pub(crate) fn is_exact_in_bars(self) -> bool {
         self.about().is_exact_in_bars

@@ -13,6 +13,7 @@ pub(super) const ABOUT: About = About {
     penetrates: false,
     is_explicit: false,
     uses_frequency: false,
+    follows_obstacles: false,
     is_exact_in_bars: false,
     load_times: &[0.0, 1.0],
     unstable_in_contact: &[],

@@ -119,7 +119,7 @@ impl Answer {
 
     /// The whole shift of an obstacle along its approach direction, in length: the gap of the scene plus its own gap, minus its travel.
     pub fn shift(&self, obstacle: usize) -> f64 {
-        self.model.obstacles()[obstacle].shift(self.model.gap()) - self.travel(obstacle).unwrap_or(0.0)
+        self.model.shift_of(obstacle) - self.travel(obstacle).unwrap_or(0.0)
     }
 
     /// The remaining gap at the node of each row, one entry per contact row, in length, `>= 0` up to rounding.

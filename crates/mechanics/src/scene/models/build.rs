@@ -85,9 +85,18 @@ impl Scene {
         let unknowns = Unknowns::of(nodes, &dofs, body.dimension(), &rigid_faces, &obstacles)?;
         let ties = self.tied(&body, &dofs, &unknowns)?;
         warnings.extend(ties.warnings.iter().cloned());
-        if let Some(index) = unknowns.pressed.first().filter(|_| moves) {
-            let message = "an obstacle without mass has no motion of its own; let it stand still, or load the body";
-            return Err(wrong(format!("obstacles[{index}].force"), message));
+        for &index in &unknowns.pressed {
+            let (key, message) = match (moves, obstacles[index].inertia()) {
+                (true, None) => (
+                    "force",
+                    "in a motion an obstacle that a force presses needs its `mass`; give it, or let the obstacle stand",
+                ),
+                (false, Some(_)) => {
+                    ("mass", "only a motion has masses; leave it out of an equilibrium, or give `analysis`")
+                }
+                _ => continue,
+            };
+            return Err(wrong(format!("obstacles[{index}].{key}"), message));
         }
         Model::new(
             Parts {

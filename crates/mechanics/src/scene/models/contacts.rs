@@ -64,6 +64,8 @@ impl Scene {
                     rule: Rule::ClosestPoint,
                     gap: None,
                     force: None,
+                    mass: None,
+                    speed: None,
                     shape: ShapeSpec::other_body(found[1].name.clone(), reach),
                 });
                 for side in found {

@@ -14,7 +14,7 @@ use crate::scene::input::entry::{finite, wrong};
 use crate::scene::input::obstacle::PlacedObstacle;
 use crate::scene::{Units, Warning};
 use signorini_qp as qp;
-use signorini_qp::{ContactProblem, NearNullSpace, Settings, Solution, SymmetricMatrix, solve};
+use signorini_qp::{ContactProblem, NearNullSpace, Settings, Solution, SymmetricMatrix, dot, solve};
 
 /// Tributary areas below this, relative to the largest, are rounding of zero; radii, relative to the size of the body.
 const NO_AREA: f64 = 1e-12;
@@ -47,6 +47,8 @@ const NO_AREA: f64 = 1e-12;
 pub struct Model {
     pub(crate) parts: Arc<Parts>,
     gap: f64,
+    /// How far each obstacle has moved along its approach direction in a motion, in length; empty if none has.
+    moved: Vec<f64>,
     rows: Vec<ContactRow>,
     across: Vec<ContactRow>,
     warnings: Vec<Warning>,
@@ -71,7 +73,7 @@ impl Model {
         let force = |obstacle: usize| parts.share_of(obstacle, parts.obstacles[obstacle].force().unwrap_or(0.0));
         let load = free_load(&parts.body, &parts.dofs, &parts.acting_load()?)?;
         let load = parts.unknowns.load(load, &of_free, force);
-        let stiffness = parts.unknowns.stiffness(of_free)?;
+        let stiffness = parts.unknowns.congruent(of_free)?;
         let modes = rigid_body_modes(&parts.body, &parts.dofs).into_iter();
         let modes = modes.map(|mode| parts.unknowns.of_motion(mode, |_| 0.0)).collect();
         let near_null = NearNullSpace::of_modes(modes).map(Arc::new);
@@ -91,7 +93,7 @@ impl Model {
         let problem = parts.tied(problem)?;
         let suspect = suspect_rows(&parts, &built.rows);
         let warnings = parts.warnings.iter().cloned().chain(built.warnings).chain(suspect).collect();
-        Ok(Model { parts, gap, rows: built.rows, across: built.across, warnings, problem })
+        Ok(Model { parts, gap, moved: Vec::new(), rows: built.rows, across: built.across, warnings, problem })
     }
 
     /// The same scene with another scene-wide gap: only the contact rows are built again.
@@ -107,6 +109,41 @@ impl Model {
         let (stiffness, load) = (self.problem.stiffness().clone(), self.problem.load().to_vec());
         let near_null = self.problem.near_null().cloned();
         Self::with_rows(self.parts.clone(), gap, built, (stiffness, load, near_null))
+    }
+
+    /// The same with obstacles that have moved along their approach directions, one entry per obstacle, in length: rows keep the normals
+    /// that they have.
+    ///
+    /// # Errors
+    /// [`qp::Error::NotFinite`] for gaps that are not finite.
+    pub fn with_moved_obstacles(&self, moved: &[f64]) -> Result<Self, Error> {
+        let mut model = Model { moved: moved.to_vec(), ..self.clone() };
+        let mut gap = self.problem.gap().to_vec();
+        for (obstacle, by) in moved.iter().enumerate() {
+            let shifts = self.row_shifts(obstacle, *by);
+            gap.iter_mut().zip(&shifts).for_each(|(gap, shift)| *gap += shift);
+            model.rows.iter_mut().zip(&shifts).for_each(|(row, shift)| row.gap += shift);
+        }
+        model.problem = self.problem.with_gap(gap)?;
+        Ok(model)
+    }
+
+    /// The displacements of the obstacles along their approach directions in a motion, one entry per obstacle, in length, positive away from
+    /// the body; empty if none moves.
+    pub fn moved_obstacles(&self) -> &[f64] {
+        &self.moved
+    }
+
+    /// The whole shift of an obstacle along its approach direction, without its travel: that of the scene, its own, and that of a motion.
+    pub(crate) fn shift_of(&self, obstacle: usize) -> f64 {
+        self.obstacles()[obstacle].shift(self.gap) + self.moved.get(obstacle).copied().unwrap_or(0.0)
+    }
+
+    /// The changes of the gaps of all rows if an obstacle moves by `by` along its approach direction.
+    pub(crate) fn row_shifts(&self, obstacle: usize, by: f64) -> Vec<f64> {
+        let approach = self.obstacles()[obstacle].approach();
+        let of_row = |row: &ContactRow| if row.obstacle == obstacle { by * dot(&row.normal, &approach) } else { 0.0 };
+        self.rows.iter().map(of_row).collect()
     }
 
     /// Returns `true` if a force presses the obstacle.
@@ -304,6 +341,14 @@ impl Model {
     /// [`qp::Error::Length`] if `displacement` does not have one entry per free dof.
     pub fn nodal_displacement(&self, displacement: &[f64]) -> Result<Vec<f64>, Error> {
         self.parts.dofs.expand(&self.parts.unknowns.displacement(displacement)?)
+    }
+
+    /// Nodal velocities, length `dim * n_nodes`, in length over time, from those of the unknowns; supports stand still.
+    ///
+    /// # Errors
+    /// As [`Model::nodal_displacement`].
+    pub fn nodal_velocity(&self, velocity: &[f64]) -> Result<Vec<f64>, Error> {
+        self.parts.dofs.expand_motion(&self.parts.unknowns.motion(velocity)?)
     }
 
     /// Travel of an obstacle that a force presses, against its approach direction, in length, in a solution with these `displacement`s;

@@ -196,6 +196,11 @@ impl Model {
         (0..self.parts.supports).map(|index| format!("supports[{index}]"))
     }
 
+    /// The names of the springs in reports: `springs[i]`.
+    pub fn spring_names(&self) -> impl Iterator<Item = String> {
+        (0..self.parts.springs.len()).map(|index| format!("springs[{index}]"))
+    }
+
     /// The resultants of the support reactions, support by support, from the force on each held node; its part along free dofs is left
     /// out.
     pub(crate) fn support_resultants(&self, reaction: impl Fn(usize) -> [f64; 3]) -> Vec<Resultant> {
@@ -239,11 +244,11 @@ impl Model {
 
     /// The resultants of the springs on the body, in the order of the scene, at a nodal displacement.
     pub(crate) fn spring_resultants(&self, displacement: &[f64]) -> Vec<Resultant> {
-        let of_springs = |(index, springs): (usize, &Springs)| {
+        let of_springs = |(springs, name): (&Springs, String)| {
             let forces = springs.forces(displacement, self.body().dimension());
-            self.sum_of(&forces).resultant(self, format!("springs[{index}]"))
+            self.sum_of(&forces).resultant(self, name)
         };
-        self.parts.springs.iter().enumerate().map(of_springs).collect()
+        self.parts.springs.iter().zip(self.spring_names()).map(of_springs).collect()
     }
 
     /// The forces on the nodes of those rigid faces for which `keeps` returns `true`, among all forces that hold the body.

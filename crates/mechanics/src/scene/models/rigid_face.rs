@@ -52,9 +52,6 @@ impl Scene {
     /// [`Error::Scene`] for a face that is not a boundary, shares nodes with another face or has motions or forces that the model does
     /// not have, and for a node at which a support or a plane of symmetry contradicts the motion of its face.
     pub(crate) fn rigid_faces(&self, body: &ElasticBody, held: &mut Held) -> Result<Vec<RigidFace>, Error> {
-        if !self.rigid_faces.is_empty() && self.analysis.is_some() {
-            return Err(wrong("rigid-faces", "rigid faces are for equilibria only; a motion has only supports"));
-        }
         let mut owner: BTreeMap<usize, usize> = BTreeMap::new();
         let mut faces = Vec::with_capacity(self.rigid_faces.len());
         for (index, spec) in self.rigid_faces.iter().enumerate() {

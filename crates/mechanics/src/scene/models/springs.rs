@@ -15,9 +15,6 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] for springs without a direction, a positive stiffness or a place.
     pub(crate) fn springs(&self, body: &ElasticBody) -> Result<Vec<Springs>, Error> {
-        if !self.springs.is_empty() && self.analysis.is_some() {
-            return Err(wrong("springs", "springs are for equilibria only; a motion has only supports"));
-        }
         let placed = |(index, spec): (usize, &SpringSpec)| spec.placed(&format!("springs[{index}]"), body);
         self.springs.iter().enumerate().map(placed).collect()
     }

@@ -4,7 +4,7 @@
 //! The nodes of a rigid face follow its motions: u = R y + u_0 with the displacement u of the free dofs and the unknowns y, so that
 //! the stiffness is R' K R and the load R' (f - K u_0).
 //!
-//! A pressed obstacle moves along its approach direction `a` alone, by the travel `d` against it: one more unknown without stiffness,
+//! A pressed obstacle, and one with a mass in a motion, moves along its approach direction `a` alone, by the travel `d` against it: one more unknown without stiffness,
 //! with the force F as its load. Each of its rows holds `n . u + (n . a) d <= gap`, so that the forces of its rows along `a` add up to
 //! F.
 
@@ -25,7 +25,7 @@ pub(crate) struct Unknowns {
     /// Number of free dofs.
     free: usize,
     on_faces: Option<FaceMotions>,
-    /// The pressed obstacles, in the order of their unknowns, which come last.
+    /// The obstacles with a travel, in the order of their unknowns, which come last.
     pub pressed: Vec<usize>,
 }
 
@@ -82,9 +82,9 @@ impl Unknowns {
         faces: &[RigidFace],
         obstacles: &[PlacedObstacle],
     ) -> Result<Self, Error> {
-        let is_pressed = |index: &usize| obstacles[*index].force().is_some();
+        let has_travel = |index: &usize| obstacles[*index].has_travel();
         let on_faces = if faces.is_empty() { None } else { Some(FaceMotions::of(nodes, dofs, dimension, faces)?) };
-        let pressed = (0..obstacles.len()).filter(is_pressed).collect();
+        let pressed = (0..obstacles.len()).filter(has_travel).collect();
         Ok(Unknowns { free: dofs.free().len(), on_faces, pressed })
     }
 
@@ -134,7 +134,15 @@ impl Unknowns {
             .map_or(Cow::Borrowed(of_body), |on_faces| Cow::Owned(on_faces.rows.mul_transposed(of_body))))
     }
 
-    /// The unknowns of a motion of the free dofs in which the faces move rigidly, with a value for each pressed obstacle.
+    /// The unknowns of a displacement of the free dofs, next to it on rigid faces, with a value for each obstacle with a travel.
+    pub fn of_displacement(&self, mut of_free: Vec<f64>, of_travel: impl Fn(usize) -> f64) -> Vec<f64> {
+        if let Some(on_faces) = &self.on_faces {
+            of_free.iter_mut().zip(&on_faces.offset).for_each(|(of_free, offset)| *of_free -= offset);
+        }
+        self.of_motion(of_free, of_travel)
+    }
+
+    /// The unknowns of a motion of the free dofs in which the faces move rigidly, with a value for each obstacle with a travel.
     pub fn of_motion(&self, of_free: Vec<f64>, of_travel: impl Fn(usize) -> f64) -> Vec<f64> {
         let mut values = match &self.on_faces {
             Some(on_faces) => on_faces.nearest(&of_free),
@@ -175,11 +183,11 @@ impl Unknowns {
         load
     }
 
-    /// The stiffness of the unknowns from that of the free dofs: travels have none.
+    /// The stiffness or the mass `R'A R` of the unknowns from that of the free dofs: travels have none.
     ///
     /// # Errors
-    /// None for a stiffness of the free dofs.
-    pub fn stiffness(&self, of_free: SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
+    /// None for a matrix of the free dofs.
+    pub fn congruent(&self, of_free: SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
         let Some(on_faces) = &self.on_faces else { return Ok(of_free.with_empty(self.pressed.len())) };
         let mut entries = Vec::with_capacity(of_free.lower().entries());
         for (i, j, value) in of_free.lower().triplets() {
@@ -197,6 +205,11 @@ impl Unknowns {
             }
         }
         Ok(SymmetricMatrix::from_lower(SparseMatrix::from_triplets(self.count(), self.count(), &entries)?)?)
+    }
+
+    /// Returns `true` if there are rigid faces.
+    pub fn has_faces(&self) -> bool {
+        self.on_faces.is_some()
     }
 
     /// The displacement of a node along a vector, or its coefficient, in the unknowns, and its prescribed part.
@@ -235,8 +248,21 @@ impl Unknowns {
     /// None for a stiffness of the unknowns.
     pub fn on_springs(&self, stiffness: &SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
         let spring = stiffness.diagonal().into_iter().fold(0.0, f64::max);
-        let springs = (self.of_body()..self.count()).map(|unknown| (unknown, unknown, spring));
-        let entries: Vec<_> = stiffness.lower().triplets().chain(springs).collect();
+        self.with_travels(stiffness, |_| spring)
+    }
+
+    /// A matrix of the unknowns with a diagonal entry for the travel of each obstacle.
+    ///
+    /// # Errors
+    /// None for a matrix of the unknowns.
+    pub fn with_travels(
+        &self,
+        matrix: &SymmetricMatrix,
+        of_obstacle: impl Fn(usize) -> f64,
+    ) -> Result<SymmetricMatrix, Error> {
+        let own =
+            (self.of_body()..).zip(&self.pressed).map(|(unknown, &obstacle)| (unknown, unknown, of_obstacle(obstacle)));
+        let entries: Vec<_> = matrix.lower().triplets().chain(own).collect();
         Ok(SymmetricMatrix::from_lower(SparseMatrix::from_triplets(self.count(), self.count(), &entries)?)?)
     }
 }

@@ -4,16 +4,19 @@ use super::loads_in_time::NodalLoads;
 use super::moving_supports::MovingSupports;
 use crate::error::{Error, nearly};
 use crate::fem::Formulation;
-use crate::fem::assembly::{MassForm, free_load, free_mass, internal_force, least_over_lumped, nodal_mass};
+use crate::fem::assembly::{MassForm, free_mass, internal_force, least_over_lumped, nodal_mass, stiffness};
 use crate::fem::body::{ElasticBody, Phase};
-use crate::motion::{DynamicProblem, Integrator, MOST_IN_CONTACT, Scheme, SchemeSpec, frequency_bound, stable_step};
-use crate::scene::input::entry::{COORDINATE_ROUNDING, located, number, point, refused, vector, wrong};
+use crate::motion::{
+    DynamicProblem, Integrator, MOST_IN_CONTACT, Scheme, SchemeSpec, TimeFunction, frequency_bound, stable_step,
+};
+use crate::scene::input::entry::{COORDINATE_ROUNDING, finite, located, number, point, refused, vector, wrong};
 use crate::scene::input::schema::analysis::PATH;
 use crate::scene::input::schema::{AnalysisSpec, DynamicSpec, FieldSpec, PenetrationSpec, Scene};
 use crate::scene::models::resultants::without_rounding;
 use crate::scene::{Model, Resultant, Warning, WatchedPoint};
 use signorini_qp as qp;
 use signorini_qp::{ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, dot, solve};
+use std::sync::Arc;
 
 /// Steps and durations that differ by less than this, relative, are equal up to rounding.
 const STEP_ROUNDING: f64 = 1e-12;
@@ -58,8 +61,17 @@ pub struct Dynamics {
     pub watched: Vec<WatchedPoint>,
     /// The data for the reactions of the supports.
     supports: MovingSupports,
+    obstacles: Vec<MovingObstacle>,
     /// Warnings for the reader of the answer.
     pub warnings: Vec<Warning>,
+}
+
+/// An obstacle that moves along its approach direction, by `shift` times the growth of its factor since the start.
+#[derive(Clone, Debug)]
+struct MovingObstacle {
+    obstacle: usize,
+    shift: f64,
+    factor: TimeFunction,
 }
 
 impl Scene {
@@ -122,19 +134,20 @@ impl Scene {
         let watched = watched.collect::<Result<_, Error>>()?;
         let loads = self.loads_in_time(model.body(), spec)?;
         let nodal_mass = nodal_mass_of(model, form)?;
-        let mass = free_mass(model.body(), model.dofs(), &nodal_mass)?;
-        let mut problem = Self::starting(model, spec, Self::moving(model, spec, mass, &loads)?)?;
+        let mass = mass_of(model, &nodal_mass)?;
+        let moving = Self::moving(model, spec, mass, &loads)?;
+        let (moving, obstacles) = spec.with_moving_obstacles(model, moving, scheme)?;
+        let mut problem = Self::starting(model, spec, moving)?;
         if scheme.uses_frequency() {
-            let lumped = free_mass(model.body(), model.dofs(), &nodal_mass_of(model, MassForm::Lumped)?)?;
-            let of_lumped = frequency_bound(problem.statics().stiffness(), &lumped.diagonal());
-            problem = problem.bounded_by(of_lumped / least_over_lumped(model.body(), form)?.sqrt());
+            problem = problem.bounded_by(largest_frequency(model, form)?);
         }
         let supports = MovingSupports::new(model, &nodal_mass, problem.damping(), &loads)?;
         let (step, steps) = spec.steps(model.body(), &problem, scheme)?;
         let name = scheme.name();
         let warnings = scheme.gains_energy().then_some(Warning::GainsEnergy { scheme: name }).into_iter().collect();
         let windows = [WINDOW * crossing_time(model).unwrap_or(0.0), PEAK_CELLS * wave_time(model.body())];
-        Ok(Some(Dynamics { problem, scheme, step, steps, frames: spec.frames, windows, watched, supports, warnings }))
+        let frames = spec.frames;
+        Ok(Some(Dynamics { problem, scheme, step, steps, frames, windows, watched, supports, obstacles, warnings }))
     }
 
     /// Mass, damping, loads in time: the motion from rest.
@@ -144,11 +157,18 @@ impl Scene {
         mass: SymmetricMatrix,
         loads: &NodalLoads,
     ) -> Result<DynamicProblem, Error> {
-        let (body, dofs) = (model.body(), model.dofs());
-        let statics = model.problem().with_load(free_load(body, dofs, &loads.constant)?)?;
-        let lifted = dofs.expand(&vec![0.0; dofs.free().len()])?;
-        let energy = dot(&lifted, &internal_force(body, &lifted)?) / 2.0;
-        let held = free_load(body, dofs, &vec![0.0; body.nodal_dofs()])?;
+        let (parts, body) = (&model.parts, model.body());
+        let of_nodal = |nodal: &[f64]| Ok::<_, Error>(parts.unknowns.force(parts.dofs.restrict(nodal)?));
+        let changing: Vec<f64> = loads.constant.iter().zip(&parts.load).map(|(constant, all)| constant - all).collect();
+        let statics = model.problem();
+        let constant = statics.load().iter().zip(of_nodal(&changing)?).map(|(all, changing)| all + changing).collect();
+        let statics = statics.with_load(constant)?;
+        // The prescribed displacements alone.
+        let lifted = model.nodal_displacement(&vec![0.0; statics.dofs()])?;
+        let mut forces = parts.spring_forces(&lifted);
+        forces.iter_mut().zip(internal_force(body, &lifted)?).for_each(|(spring, internal)| *spring -= internal);
+        let energy = -dot(&lifted, &forces) / 2.0;
+        let held = of_nodal(&forces)?;
         let mut problem = DynamicProblem::new(statics, mass)?
             .with_damping(spec.damping.mass, spec.damping.stiffness)
             .map_err(|error| match error {
@@ -161,7 +181,7 @@ impl Scene {
             })?
             .holding(held, energy);
         for (factor, load) in &loads.changing {
-            problem = problem.with_load(factor.clone(), dofs.restrict(load)?)?;
+            problem = problem.with_load(factor.clone(), of_nodal(load)?)?;
         }
         Ok(problem)
     }
@@ -185,15 +205,18 @@ impl Scene {
                 return Err(wrong(format!("{PATH}.initial"), message));
             }
         }
-        let mut displacement = model.dofs().restrict(&displacement)?;
+        let unknowns = &model.parts.unknowns;
+        let mut displacement = unknowns.of_displacement(model.dofs().restrict(&displacement)?, |_| 0.0);
         if let Some(deepest) = deepest(model, &displacement) {
             if spec.initial_penetration == PenetrationSpec::Refuse {
                 return Err(deepest);
             }
-            let mass = free_mass(model.body(), model.dofs(), &nodal_mass_of(model, MassForm::Lumped)?)?;
+            let mass = mass_of(model, &nodal_mass_of(model, MassForm::Lumped)?)?;
             displacement = projected(model.problem(), mass, &displacement)?;
         }
-        let problem = problem.starting_from(displacement, model.dofs().restrict(&velocity)?)?;
+        let speed = |obstacle: usize| model.obstacles()[obstacle].inertia().map_or(0.0, |inertia| inertia.speed);
+        let velocity = unknowns.of_motion(model.dofs().restrict(&velocity)?, speed);
+        let problem = problem.starting_from(displacement, velocity)?;
         let energy = problem.initial_energy();
         if !energy.is_finite() {
             let message = format!("displacements and velocities are too large: their energy is {energy}");
@@ -212,9 +235,31 @@ fn nodal_mass_of(model: &Model, form: MassForm) -> Result<SparseMatrix, Error> {
     })
 }
 
+/// The mass of the unknowns of a model, from that of its nodes.
+fn mass_of(model: &Model, nodal_mass: &SparseMatrix) -> Result<SymmetricMatrix, Error> {
+    let parts = &model.parts;
+    let of_body = parts.unknowns.congruent(free_mass(&parts.body, &parts.dofs, nodal_mass)?)?;
+    let of_obstacle = |obstacle: usize| {
+        parts.share_of(obstacle, parts.obstacles[obstacle].inertia().map_or(0.0, |inertia| inertia.mass))
+    };
+    parts.unknowns.with_travels(&of_body, of_obstacle)
+}
+
+/// A bound on the largest frequency of a model with its mass in this form. Rigid faces and obstacles with a mass only reduce it: it is that
+/// of the free dofs.
+fn largest_frequency(model: &Model, form: MassForm) -> Result<f64, Error> {
+    let parts = &model.parts;
+    let lumped = free_mass(&parts.body, &parts.dofs, &nodal_mass_of(model, MassForm::Lumped)?)?.diagonal();
+    let of_lumped = match parts.unknowns.count() == lumped.len() && !parts.unknowns.has_faces() {
+        true => frequency_bound(model.problem().stiffness(), &lumped),
+        false => frequency_bound(&parts.on_springs(stiffness(&parts.body, &parts.dofs)?)?, &lumped),
+    };
+    Ok(of_lumped / least_over_lumped(&parts.body, form)?.sqrt())
+}
+
 impl Dynamics {
-    /// The resultants of contact forces and support reactions of the last step, obstacle by obstacle and then support by
-    /// support. `integrator` moves [`problem`](Self::problem), that of `model`.
+    /// The resultants of contact forces, support reactions and springs of the last step, obstacle by obstacle, then support by
+    /// support, then spring by spring. `integrator` moves [`problem`](Self::problem), that of `model`.
     ///
     /// Both are those of the balance that the scheme solved in the step: at its beginning (`fox-goodwin`), at its middle
     /// (`midpoint`, `contact-stabilised`), at its end (`trapezoidal`, `penalty`, `penalty-loop`), `1 + alpha` times that of the
@@ -238,9 +283,38 @@ impl Dynamics {
         let mut all = model.contact_resultants(multiplier)?;
         if let Some(balance) = integrator.balance(&self.supports.around) {
             all.extend(model.support_resultants(self.supports.reactions(model, balance, multiplier)));
+            all.extend(self.spring_resultants(model, integrator)?);
         }
         without_rounding(&mut all);
         Ok(all)
+    }
+
+    /// The model with its obstacles where they are at time `time` of the motion.
+    ///
+    /// # Errors
+    /// As [`Model::with_moved_obstacles`].
+    pub fn model_at(&self, model: &Arc<Model>, time: f64) -> Result<Arc<Model>, Error> {
+        if self.obstacles.is_empty() {
+            return Ok(model.clone());
+        }
+        let mut moved = vec![0.0; model.obstacles().len()];
+        for MovingObstacle { obstacle, shift, factor } in &self.obstacles {
+            moved[*obstacle] += shift * (factor.at(time) - factor.at(0.0));
+        }
+        Ok(Arc::new(model.with_moved_obstacles(&moved)?))
+    }
+
+    /// The forces of springs, damping included, in the balance of the last step.
+    fn spring_resultants(&self, model: &Model, integrator: &Integrator) -> Result<Vec<Resultant>, Error> {
+        let everywhere: Vec<usize> = (0..self.problem.statics().dofs()).collect();
+        let Some(balance) = integrator.balance(&everywhere).filter(|_| !model.parts.springs.is_empty()) else {
+            return Ok(Vec::new());
+        };
+        let [_, of_stiffness] = self.problem.damping();
+        let nodal = model.nodal_displacement(&balance.displacement)?;
+        let damped = model.nodal_velocity(&balance.velocity)?;
+        let stretched: Vec<f64> = nodal.iter().zip(damped).map(|(u, v)| u + of_stiffness * v).collect();
+        Ok(model.spring_resultants(&stretched))
     }
 }
 
@@ -286,6 +360,44 @@ impl DynamicSpec {
             return Err(wrong(format!("{PATH}.{name}"), message));
         }
         Ok(())
+    }
+
+    /// The motion with the obstacles that move in time.
+    fn with_moving_obstacles(
+        &self,
+        model: &Model,
+        mut problem: DynamicProblem,
+        scheme: Scheme,
+    ) -> Result<(DynamicProblem, Vec<MovingObstacle>), Error> {
+        let mut found = Vec::new();
+        for (index, moving) in self.obstacles_in_time.iter().enumerate() {
+            let path = format!("{PATH}.obstacles-in-time[{index}]");
+            let Some(obstacle) = model.obstacles().get(moving.obstacle) else {
+                let count = model.obstacles().len();
+                let message = format!(
+                    "there is no obstacles[{}]; the scene has {count} obstacles, counted from 0",
+                    moving.obstacle
+                );
+                return Err(wrong(format!("{path}.obstacle"), message));
+            };
+            let own = match (obstacle.rigid(), obstacle.has_travel()) {
+                (None, _) => Some("another body moves by its own loads and supports"),
+                (_, true) => Some("an obstacle with a `mass` moves by its own inertia and force"),
+                _ => None,
+            };
+            if let Some(message) = own {
+                return Err(wrong(format!("{path}.obstacle"), message));
+            }
+            if !scheme.follows_obstacles() {
+                let message = format!("the scheme `{}` has obstacles at rest only; take `fox-goodwin`", scheme.name());
+                return Err(wrong(path, message));
+            }
+            finite(format!("{path}.shift"), moving.shift)?;
+            let (factor, shifts) = (moving.factor.function(&path)?, model.row_shifts(moving.obstacle, moving.shift));
+            problem = problem.with_moving_gaps(factor.clone(), shifts)?;
+            found.push(MovingObstacle { obstacle: moving.obstacle, shift: moving.shift, factor });
+        }
+        Ok((problem, found))
     }
 
     /// The step and the number of steps.

@@ -72,7 +72,14 @@ impl LoadInTimeSpec {
             let message = format!("there is no loads[{}]; the scene has {loads} loads, counted from 0", self.load);
             return Err(wrong(format!("{path}.load"), message));
         }
-        let (name, function) = match &self.factor {
+        self.factor.function(path)
+    }
+}
+
+impl FactorSpec {
+    /// The function, checked; `path` is the JSON path of the entry that has the factor.
+    pub(crate) fn function(&self, path: &str) -> Result<TimeFunction, Error> {
+        let (name, function) = match self {
             FactorSpec::Table(table) => {
                 let path = format!("{path}.factor.table");
                 let (times, factors) = (&table.times, &table.factors);

@@ -8,14 +8,14 @@ use crate::motion::Balance;
 use crate::scene::Model;
 use signorini_qp::SparseMatrix;
 
-/// Stiffness, mass and loads of the nodes with supported dofs, and the free dofs coupled to them: all data that a step needs.
+/// Stiffness, mass and loads of the nodes with supported dofs, and the unknowns coupled to them: all data that a step needs.
 ///
 /// Prescribed displacements are constant: supported dofs have neither velocity nor acceleration.
 #[derive(Clone, Debug)]
 pub(crate) struct MovingSupports {
     /// The nodes, increasing; empty if the scene has no support.
     nodes: Vec<usize>,
-    /// The free dofs that share an element with them, increasing: those whose motion [`reactions`](Self::reactions) needs.
+    /// The unknowns that share an element or a spring with them, increasing: those whose motion [`reactions`](Self::reactions) needs.
     pub around: Vec<usize>,
     /// Force on the nodes per displacement of these dofs, transposed: `around.len() x (dim * nodes.len())`.
     stiffness: SparseMatrix,
@@ -29,7 +29,7 @@ pub(crate) struct MovingSupports {
     loads: NodalLoads,
 }
 
-/// The effect of each free dof on a force: entries (free dof, force, coefficient).
+/// The effect of each unknown on a force: entries (unknown, force, coefficient).
 type Effects = Vec<(usize, usize, f64)>;
 
 impl MovingSupports {
@@ -39,23 +39,30 @@ impl MovingSupports {
     /// # Errors
     /// [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) if the stiffness overflows.
     pub fn new(model: &Model, mass: &SparseMatrix, damping: [f64; 2], loads: &NodalLoads) -> Result<Self, Error> {
-        let (body, dofs) = (model.body(), model.dofs());
+        let (body, dofs, parts) = (model.body(), model.dofs(), &model.parts);
         let dimension = body.dimension();
+        // The displacement of a node along an axis, times a value, in the unknowns.
+        let along = |node: usize, axis: usize, value: f64| {
+            parts.unknowns.along(dofs, node, &along_axis(axis, value)[..dimension])
+        };
         let is_held = |node: usize| (dimension * node..dimension * (node + 1)).any(|dof| dofs.number(dof).is_none());
         let count = if model.parts.supports > 0 { model.mesh().nodes().len() } else { 0 };
         let nodes: Vec<usize> = (0..count).filter(|&node| is_held(node)).collect();
         let mut holding = vec![0.0; dimension * nodes.len()];
         let (mut elastic, mut inertia): (Effects, Effects) = (Vec::new(), Vec::new());
-        for (row, force, value) in stiffness_columns(body, &nodes)?.triplets() {
-            let along = dofs.along(row / dimension, &along_axis(row % dimension, value)[..dimension]);
-            holding[force] += along.prescribed;
-            elastic.extend(along.free.into_iter().map(|(dof, coefficient)| (dof, force, coefficient)));
+        let of_body = stiffness_columns(body, &nodes)?;
+        let of_springs =
+            parts.springs.iter().flat_map(|one| one.columns(|node| nodes.binary_search(&node).ok(), dimension));
+        for (row, force, value) in of_body.triplets().chain(of_springs) {
+            let (free, prescribed) = along(row / dimension, row % dimension, value);
+            holding[force] += prescribed;
+            elastic.extend(free.into_iter().map(|(unknown, coefficient)| (unknown, force, coefficient)));
         }
         for (node, place, value) in mass_columns(body, &nodes, mass)?.triplets() {
             for axis in 0..dimension {
-                let along = dofs.along(node, &along_axis(axis, value)[..dimension]);
                 let force = dimension * place + axis;
-                inertia.extend(along.free.into_iter().map(|(dof, coefficient)| (dof, force, coefficient)));
+                let free = along(node, axis, value).0;
+                inertia.extend(free.into_iter().map(|(unknown, coefficient)| (unknown, force, coefficient)));
             }
         }
         let mut around: Vec<usize> = elastic.iter().chain(&inertia).map(|entry| entry.0).collect();

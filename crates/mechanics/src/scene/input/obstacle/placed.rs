@@ -11,7 +11,7 @@ use crate::fem::assembly::{DofMap, node_normals, tributary_areas};
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{length, unit};
 use crate::scene::Warning;
-use crate::scene::input::entry::{boundary, finite, number, wrong};
+use crate::scene::input::entry::{boundary, finite, number, positive, wrong};
 use crate::scene::input::files::Files;
 use crate::scene::input::schema::approach::{Approach, Rule};
 use crate::scene::input::schema::obstacle::ObstacleSpec;
@@ -41,6 +41,16 @@ pub struct PlacedObstacle {
     gap: f64,
     /// The force that presses it against its approach direction, in force.
     force: Option<f64>,
+    inertia: Option<Inertia>,
+}
+
+/// The inertia of an obstacle that moves along its approach direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Inertia {
+    /// Its mass, positive.
+    pub mass: f64,
+    /// The velocity towards the body with which it starts, in length over time.
+    pub speed: f64,
 }
 
 impl PlacedObstacle {
@@ -79,7 +89,8 @@ impl PlacedObstacle {
         files: Files,
     ) -> Result<Self, Error> {
         let (mut candidates, mut outward) = candidates(body, &spec.boundary, &format!("{path}.boundary"))?;
-        let (gap, force) = pressing(spec, path)?;
+        let (gap, force, inertia) = (spec.gap.unwrap_or(0.0), spec.force, inertia(spec, path)?);
+        check_pressing(spec, path)?;
         let dimension = body.dimension();
         let needs_none = spec.shape.shape().other_boundary().is_some() && spec.rule == Rule::ClosestPoint;
         let named = match spec.approach {
@@ -120,9 +131,14 @@ impl PlacedObstacle {
             files,
         };
         let (mut approach, geometry) = (site.direction(), shape.place(&site)?);
-        if force.is_some() && matches!(geometry, Geometry::Body(_)) {
-            let message = "another body is pressed by its own loads; give it one instead";
-            return Err(wrong(format!("{path}.force"), message));
+        let own = [
+            ("force", force.is_some(), "another body is pressed by its own loads; give it one instead"),
+            ("mass", inertia.is_some(), "another body has the mass of its own material; give it a density instead"),
+        ];
+        if let Some((key, _, message)) =
+            own.into_iter().find(|one| one.1).filter(|_| matches!(geometry, Geometry::Body(_)))
+        {
+            return Err(wrong(format!("{path}.{key}"), message));
         }
         let (mut boundary, rule) = (spec.boundary.clone(), Some(spec.rule));
         if let (Geometry::Body(between), Some(other)) = (&geometry, shape.other_boundary())
@@ -134,7 +150,7 @@ impl PlacedObstacle {
         if spec.approach.is_none() {
             approach = mean_direction(&outward);
         }
-        Ok(PlacedObstacle { boundary, candidates, outward, approach, dimension, geometry, rule, gap, force })
+        Ok(PlacedObstacle { boundary, candidates, outward, approach, dimension, geometry, rule, gap, force, inertia })
     }
 
     /// A user-defined obstacle, at `path`.
@@ -149,8 +165,8 @@ impl PlacedObstacle {
         check_direction(approach, dimension)
             .map_err(|reason| wrong(format!("{path}.approach"), format!("the approach direction {reason}")))?;
         let (boundary, geometry) = (boundary.into(), Geometry::Rigid(obstacle));
-        let (rule, gap, force) = (None, 0.0, None);
-        Ok(PlacedObstacle { boundary, candidates, outward, approach, dimension, geometry, rule, gap, force })
+        let (rule, gap, force, inertia) = (None, 0.0, None, None);
+        Ok(PlacedObstacle { boundary, candidates, outward, approach, dimension, geometry, rule, gap, force, inertia })
     }
 
     /// Name of the boundary that contains its candidates.
@@ -181,6 +197,16 @@ impl PlacedObstacle {
     /// still.
     pub fn force(&self) -> Option<f64> {
         self.force
+    }
+
+    /// Its mass and its speed at the start of a motion; `None` for an obstacle without mass.
+    pub(crate) fn inertia(&self) -> Option<Inertia> {
+        self.inertia
+    }
+
+    /// Returns `true` if its travel along the approach direction is an unknown.
+    pub(crate) fn has_travel(&self) -> bool {
+        self.force.is_some() || self.inertia.is_some()
     }
 
     /// The rule for its rows; `None` for a user-defined obstacle.
@@ -295,8 +321,20 @@ fn mean_direction(outward: &[[f64; 3]]) -> [f64; 3] {
     if mean == [0.0; 3] { [1.0, 0.0, 0.0] } else { mean }
 }
 
-/// The shift of an obstacle in addition to the gap of the scene, and the force that presses it.
-fn pressing(spec: &ObstacleSpec, path: &str) -> Result<(f64, Option<f64>), Error> {
+/// The mass and the speed of an obstacle.
+fn inertia(spec: &ObstacleSpec, path: &str) -> Result<Option<Inertia>, Error> {
+    let speed = spec.speed.unwrap_or(0.0);
+    finite(format!("{path}.speed"), speed)?;
+    let Some(mass) = spec.mass else {
+        let message = "only an obstacle with a `mass` has a speed of its own; give it one";
+        return spec.speed.map_or(Ok(None), |_| Err(wrong(format!("{path}.speed"), message)));
+    };
+    positive(&format!("{path}.mass"), mass)?;
+    Ok(Some(Inertia { mass, speed }))
+}
+
+/// Checks the shift of an obstacle in addition to the gap of the scene, and the force that presses it.
+fn check_pressing(spec: &ObstacleSpec, path: &str) -> Result<(), Error> {
     finite(format!("{path}.gap"), spec.gap.unwrap_or(0.0))?;
     if let Some(force) = spec.force {
         finite(format!("{path}.force"), force)?;
@@ -307,11 +345,11 @@ fn pressing(spec: &ObstacleSpec, path: &str) -> Result<(f64, Option<f64>), Error
             );
             return Err(wrong(format!("{path}.force"), message));
         }
-        if spec.gap.is_some() {
+        if spec.gap.is_some() && spec.mass.is_none() {
             return Err(wrong(path, "gives both gap and force; the force determines the gap, so give only one"));
         }
     }
-    Ok((spec.gap.unwrap_or(0.0), spec.force))
+    Ok(())
 }
 
 /// The nodes of a boundary with their tributary areas, and the outward normals there.

@@ -69,6 +69,9 @@ pub struct DynamicSpec {
     /// The change of the loads of the scene with time; a load that is not mentioned is constant.
     #[serde(default)]
     pub loads_in_time: Vec<LoadInTimeSpec>,
+    /// Obstacles that move along their approach direction, with any number of entries for each. Only `fox-goodwin` follows them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub obstacles_in_time: Vec<ObstacleInTimeSpec>,
     /// States of the body that are written and shown, evenly over the duration, besides the first; at most 10000.
     #[serde(default = "frames")]
     #[schemars(extend("minimum" = 1, "maximum" = 10000))]
@@ -148,6 +151,19 @@ pub struct LoadInTimeSpec {
     /// Number of the entry of `loads`, from 0.
     pub load: usize,
     /// Its factor over time.
+    pub factor: FactorSpec,
+}
+
+/// The motion of one rigid obstacle, as that of a cam or of a shaker.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ObstacleInTimeSpec {
+    /// Number of the entry of `obstacles`, from 0.
+    pub obstacle: usize,
+    /// Its shift along its approach direction where the factor is 1 larger than at the start, in length; a negative shift moves it towards
+    /// the body.
+    pub shift: f64,
+    /// The factor over time.
     pub factor: FactorSpec,
 }
 

@@ -35,6 +35,14 @@ pub struct ObstacleSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub force: Option<f64>,
+    /// The mass of an obstacle that moves along its approach direction in a motion, positive, as a hammer does; for a body of revolution that
+    /// of the full circle. It starts at its `gap`, with its `speed`, under its `force`, if it has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub mass: Option<f64>,
+    /// The velocity towards the body with which an obstacle with `mass` starts, in length over time; 0 if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed: Option<f64>,
     /// The surface of the obstacle.
     pub shape: ShapeSpec,
 }
