@@ -227,3 +227,22 @@ fn the_command_prints_the_estimated_errors() {
     let plain = desk.run(&["solve", "block.json", "--format", "json"]).ends_with(0).json();
     assert!(plain["contact"]["peak_force"]["error"].is_null() && plain["contact"].get("estimated_error").is_none());
 }
+
+/// The bar of period 3: it touches its obstacle from 1 to 2, from 4 to 5, ...
+#[test]
+fn ten_bounces_of_a_bar_come_when_waves_say() {
+    let mut scene = scene_of("bouncing_bar", 100);
+    scene["analysis"]["dynamic"]["duration"] = json!(30);
+    let scene: Scene = serde_json::from_value(scene).unwrap();
+    let dynamics = scene.dynamics(&scene.build().unwrap()).unwrap().unwrap();
+    let mut integrator =
+        Integrator::new(dynamics.problem, dynamics.scheme, dynamics.step, &Settings::default()).unwrap();
+    for _ in 0..dynamics.steps {
+        integrator.advance().unwrap();
+        let seen = integrator.observe();
+        let at = (seen.acting[0] + seen.acting[1]) / 2.0;
+        let exact = if (1.0..2.0).contains(&(at % 3.0)) { 0.5 } else { 0.0 };
+        let jump = (at % 3.0 - 1.0).abs().min((at % 3.0 - 2.0).abs());
+        assert!(jump < 2.0 / 100.0 || (seen.force - exact).abs() <= EXACT, "{at}: {} {exact}", seen.force);
+    }
+}

@@ -102,6 +102,8 @@ pub(super) fn halfway(
 #[derive(Debug)]
 pub(super) struct Stepping {
     prepared: Prepared,
+    /// Of the matrix.
+    diagonal: Vec<f64>,
 }
 
 /// The result of a step: change of the displacement, multipliers, closed rows.
@@ -126,7 +128,8 @@ impl Stepping {
 
     /// Factorises the matrix of `problem`; its load and gaps only determine which rows exist.
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
-        Stepping { prepared: Prepared::new(problem, settings)? }.under(settings)
+        let diagonal = problem.stiffness().diagonal();
+        Stepping { prepared: Prepared::new(problem, settings)?, diagonal }.under(settings)
     }
 
     /// The same matrix with other settings.
@@ -134,11 +137,17 @@ impl Stepping {
         // A step is completed or not done at all: there is no partial step.
         let mut unhurried = settings.clone().watched(&settings.watch.unhurried());
         unhurried.time = None;
-        Ok(Stepping { prepared: self.prepared.with_settings(&unhurried)? })
+        Ok(Stepping { prepared: self.prepared.with_settings(&unhurried)?, diagonal: self.diagonal.clone() })
     }
 
     /// Solves with a force and gaps, from the set of the last step.
-    pub fn solve(&self, force: Vec<f64>, gap: Vec<f64>, start: &ContactSet) -> Result<Found, Error> {
+    ///
+    /// A gap that is the rounding of the change is none: a part of the body that had to follow it would move by rounding alone, which no
+    /// certificate can judge.
+    pub fn solve(&self, force: Vec<f64>, mut gap: Vec<f64>, start: &ContactSet) -> Result<Found, Error> {
+        let changes = force.iter().zip(&self.diagonal).map(|(force, diagonal)| (force / diagonal).abs());
+        let rounding = f64::EPSILON * changes.filter(|change| change.is_finite()).fold(0.0, f64::max);
+        gap.iter_mut().filter(|gap| gap.abs() <= rounding).for_each(|gap| *gap = 0.0);
         let boundary = self.prepared.with_load(force)?.starting_from(start).step(&gap)?;
         let change = boundary.displacement();
         Ok(Found { change, multiplier: boundary.multiplier, contact_set: boundary.contact_set })

@@ -26,7 +26,7 @@ pub use derivatives::sensitivity::{ByParameter, Sensitivities, Sensitivity, outp
 pub use input::body::{Sides, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
 pub use input::deck::requests::{RequestedTable, Requests};
 pub(crate) use input::entry::refused;
-pub use input::obstacle::{Obstacle, ObstacleRow, PlacedObstacle};
+pub use input::obstacle::{Inertia, Obstacle, ObstacleRow, PlacedObstacle};
 pub use input::schema::{Rule, Scene, Units};
 pub use input::size::Size;
 pub use input::warning::Warning;

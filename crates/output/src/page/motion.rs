@@ -56,7 +56,7 @@ impl MotionShown {
             states.push(State::of(&answer, frame as f64, shape, packer)?);
         }
         let shown = MotionShown {
-            history: packer.exact(&frames.history.concat(), 8),
+            history: packer.exact(&frames.history.concat(), frames.history.first().map_or(1, |row| row.len())),
             times: frames.times.to_vec(),
             opens,
             closed: closed.packed(packer),

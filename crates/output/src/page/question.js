@@ -40,9 +40,9 @@ function questionSection(page, data, shape, summary) {
       obstacles.some(({ force }) => force === undefined) &&
         `${inUnit(question.gap, units.length)}: the shift of every obstacle ${obstacles.some(({ force }) => force !== undefined) ? "without a force " : ""}along its approach direction, negative towards the body`,
     ],
-    ...obstacles.map(({ boundary, approach, is_body, force }, index) => [
+    ...obstacles.map(({ boundary, approach, is_body, force, inertia }, index) => [
       `obstacles[${index}]`,
-      `${is_body ? "another body" : "rigid"}, faces the boundary ${boundary} in the direction ${vectorShown(approach.slice(0, shape.dimension), "")}${force === undefined ? "" : `, pressed by ${inUnit(force, units.force)}`}`,
+      `${is_body ? "another body" : "rigid"}, faces the boundary ${boundary} in the direction ${vectorShown(approach.slice(0, shape.dimension), "")}${inertia === undefined ? "" : `, of mass ${shown(inertia[0])}, starts with the speed ${shown(inertia[1])}`}${force === undefined ? "" : `, pressed by ${inUnit(force, units.force)}`}`,
     ]),
     ["loads", ifGiven(loads, ({ force }) => `${vectorShown(force, units.force)} in all`)],
     ["supports", supportWords(question, shape.dimension, ofPart(data))],

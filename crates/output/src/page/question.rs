@@ -57,6 +57,9 @@ struct ObstacleShown {
     /// The force that presses it, in force, on the whole body.
     #[serde(skip_serializing_if = "Option::is_none")]
     force: Option<f64>,
+    /// Its mass, and the speed towards the body with which it starts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    inertia: Option<[f64; 2]>,
     /// `true` if it is the surface of another body.
     is_body: bool,
     /// In the plane: points [x, y].
@@ -169,6 +172,7 @@ fn obstacle(model: &Model, index: usize, packer: &mut Packer) -> ObstacleShown {
         approach: obstacle.approach(),
         shift,
         force: model.pressing_force_on(index),
+        inertia: obstacle.inertia().map(|inertia| [inertia.mass, inertia.speed]),
         is_body: obstacle.rigid().is_none(),
         outline: (!points.is_empty()).then(|| packer.exact(&points, 2)),
         patch: if obstacle.rigid().is_some() { patch(model, index, packer) } else { None },

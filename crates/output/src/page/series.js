@@ -216,6 +216,7 @@ function motionSection(page, data, shape, notes) {
         ["obstacle", one => one.of],
         ["from#", one => shown(one.first)],
         ["to#", one => shown(one.last)],
+        [`peak [${units.force}]#`, one => shown(one.peak_force.value)],
         ["impulse#", one => shown(one.impulse)],
         [`largest force in one step [${units.force}]#`, one => shown(one.force_max)],
         [`largest, ${mean} [${units.force}]#`, one => shown(one.force_mean_max)],
@@ -226,7 +227,7 @@ function motionSection(page, data, shape, notes) {
     label = "The body at the time of the slider",
     settings = { name: "time", range, facts: "facts", label, frames };
   const { output, facts, panel } = slidingPanel(own, data, shape, settings, value => go(value));
-  const columns = 8,
+  const columns = 9,
     count = motion.history.length / columns,
     ofAll = several ? " of all obstacles" : "",
     marks = dataPlots(section(page, "Force and energies", "curves"), data);

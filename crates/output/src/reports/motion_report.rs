@@ -73,13 +73,13 @@ impl MotionReport<'_> {
                 line("contact", format!("from {first:.6e} to {last:.6e}, for {:.6e} in all", contact.duration));
                 let (mean, window) = (contact.force_mean_max(), summary.window_steps() as f64 * dynamics.step);
                 let over = format!("mean over {window:.6e} ({})", plural(summary.window_steps(), "step"));
+                let peak = summary.peak_steps() as f64 * dynamics.step;
+                let force = quantity(contact.peak_force(), &units.force);
+                line("", format!("peak force {force}, over {peak:.6e} ({})", plural(summary.peak_steps(), "step")));
                 if several {
                     obstacle_lines(model, summary).into_iter().for_each(|text| line("", text));
                     line("", format!("the {over},"));
                 } else {
-                    let peak = summary.peak_steps() as f64 * dynamics.step;
-                    let force = quantity(contact.peak_force(), &units.force);
-                    line("", format!("peak force {force}, over {peak:.6e} ({})", plural(summary.peak_steps(), "step")));
                     let force = quantity(contact.force_max, &units.force);
                     line("", format!("impulse {:.6e}, largest force {force} in one step,", contact.impulse));
                     line("", format!("{} on the {over}:", quantity(mean, &units.force)));
@@ -128,6 +128,7 @@ fn obstacle_lines(model: &Model, summary: &MotionSummary) -> Vec<String> {
             ("obstacle", &|(name, _)| name.clone()),
             ("from", &|(_, of)| time(of.first)),
             ("to", &|(_, of)| time(of.last)),
+            (&in_unit("peak", &units.force), &|(_, of)| force(of.peak_force())),
             ("impulse", &|(_, of)| force(of.impulse)),
             (&in_unit("largest", &units.force), &|(_, of)| force(of.force_max)),
             (&in_unit("mean", &units.force), &|(_, of)| force(of.force_mean_max())),

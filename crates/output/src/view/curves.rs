@@ -93,7 +93,7 @@ pub(crate) fn history_plots(model: &Model, history: &[[f64; 9]]) -> Vec<Plot> {
         Plot::new(
             time(),
             Quantity::new(force, &units.force),
-            vec![line("of each step", 1), line("mean, as the peak", 8)],
+            vec![line("of each step", 1), line("mean over the window of the peak, at its end", 8)],
         ),
         Plot::new(time(), Quantity::new("energy", work.trim()), energies),
     ]

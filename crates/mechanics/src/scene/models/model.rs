@@ -154,7 +154,8 @@ impl Model {
     /// The force that presses an obstacle, on the whole body; `None` if none does.
     pub fn pressing_force_on(&self, obstacle: usize) -> Option<f64> {
         let parts = self.parts.parts_of_obstacle(obstacle);
-        self.parts.unknowns.travel(obstacle).map(|unknown| parts * self.problem.load()[unknown])
+        let force = self.parts.unknowns.travel(obstacle).map(|unknown| parts * self.problem.load()[unknown]);
+        force.filter(|&force| force > 0.0)
     }
 
     /// The force on each obstacle that a force presses, in their order, in force.

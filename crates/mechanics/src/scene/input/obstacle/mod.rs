@@ -36,7 +36,7 @@ pub use height_map::HeightMapSpec;
 pub(crate) use order::SideOrder;
 pub(crate) use pairs::Between;
 pub use parabola::ParabolaSpec;
-pub use placed::PlacedObstacle;
+pub use placed::{Inertia, PlacedObstacle};
 pub use plane::PlaneSpec;
 pub use row::{Obstacle, ObstacleRow};
 pub use sphere::SphereSpec;

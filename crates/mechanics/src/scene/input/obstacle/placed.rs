@@ -46,8 +46,8 @@ pub struct PlacedObstacle {
 
 /// The inertia of an obstacle that moves along its approach direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Inertia {
-    /// Its mass, positive.
+pub struct Inertia {
+    /// The mass of the whole obstacle, positive, in mass.
     pub mass: f64,
     /// The velocity towards the body with which it starts, in length over time.
     pub speed: f64,
@@ -200,7 +200,7 @@ impl PlacedObstacle {
     }
 
     /// Its mass and its speed at the start of a motion; `None` for an obstacle without mass.
-    pub(crate) fn inertia(&self) -> Option<Inertia> {
+    pub fn inertia(&self) -> Option<Inertia> {
         self.inertia
     }
 
