@@ -32,8 +32,9 @@ pub struct MotionContact {
     pub force_max: f64,
     /// Mean of the contact force over a window of time, and its largest value; each half of a step is one of its values.
     force_mean: MovingMean,
-    /// The same over the time of a wave through a few cells.
+    /// The same over the time of a wave through a few cells, and over twice that time.
     peak: MovingMean,
+    wide: MovingMean,
     /// Integral of the contact force over time, in force times time, `>= 0`.
     pub impulse: f64,
 }
@@ -41,8 +42,9 @@ pub struct MotionContact {
 impl MotionContact {
     /// Nothing touched yet; the force and its peak are averaged over the whole numbers of steps that are nearest to `steps`.
     fn averaged_over(steps: [f64; 2]) -> Self {
-        let [force_mean, peak] = steps.map(|steps| MovingMean::over(2.0 * steps.round().max(1.0)));
-        MotionContact { force_mean, peak, ..MotionContact::default() }
+        let halves = steps.map(|steps| 2.0 * steps.round().max(1.0));
+        let [force_mean, peak] = halves.map(MovingMean::over);
+        MotionContact { force_mean, peak, wide: MovingMean::over(2.0 * halves[1]), ..MotionContact::default() }
     }
 
     /// Adds a step with its contact force, which acted from one time to another: for half of a `step`, or for all of it.
@@ -79,12 +81,18 @@ impl MotionContact {
         for _ in 0..if length < 0.75 * step { 1 } else { 2 } {
             self.force_mean.add(force);
             self.peak.add(force);
+            self.wide.add(force);
         }
     }
 
     /// Largest mean of the contact force over any window of [`MotionSummary::window_steps`] steps, in force.
     pub fn force_mean_max(&self) -> f64 {
         self.force_mean.largest
+    }
+
+    /// The largest mean of the contact force over twice as many steps, in force.
+    pub(super) fn wide_peak(&self) -> f64 {
+        self.wide.largest
     }
 
     /// The mean of the contact force over the last [`MotionSummary::peak_steps`] steps, in force, `>= 0`.

@@ -13,7 +13,8 @@ use signorini_qp::Settings;
 /// A peak that changes by more than this share on the finer mesh is not resolved.
 const RESOLVED: f64 = 0.1;
 
-/// Estimated errors of the numbers of a motion: how far they move with half the step, and with half the step and half the cells, together.
+/// Estimated errors of the numbers of a motion: how far they move with half the step, and with half the step and half the cells, together;
+/// of the peak at least how far it moves over twice its window, whose oscillations behind a wave front are the same on every mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MotionError {
     /// Of the peak of the contact force, in force, `>= 0`.
@@ -22,7 +23,7 @@ pub struct MotionError {
     pub impulse: f64,
     /// Of the time at which the last contact ended, in time, `>= 0`; `None` if nothing touches in one of the runs.
     pub release: Option<f64>,
-    /// `true` if the peak moves by at most a tenth.
+    /// `true` if the error of the peak is at most a tenth of it.
     pub resolved: bool,
 }
 
@@ -41,7 +42,8 @@ impl MotionError {
             let own = value(summary);
             (value(&same) - own).abs() + (value(&finer) - own).abs()
         };
-        let peak_force = apart(&|summary| summary.contact.peak_force());
+        let of_window = (summary.contact.peak_force() - summary.contact.wide_peak()).abs();
+        let peak_force = apart(&|summary| summary.contact.peak_force()).max(of_window);
         let release = |summary: &MotionSummary| summary.contact.last.unwrap_or(f64::NAN);
         let release = Some(apart(&release)).filter(|apart| apart.is_finite());
         Ok(MotionError {

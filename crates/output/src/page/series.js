@@ -181,7 +181,7 @@ function sweepTable(page, data) {
 /// The peak of the contact force with its estimated error, if there is one.
 function peakForce({ peak_force: peak, estimated_error: error }, units) {
   const off = peak.error === null ? "" : ` ± ${shown(peak.error, 2)}`,
-    unresolved = error && !error.resolved ? "; not resolved: it moves by more than a tenth with half the cells" : "";
+    unresolved = error && !error.resolved ? "; not resolved: its estimated error is more than a tenth of it" : "";
   return `${inUnit(peak.value, units.force)}${off}, over ${shown(peak.window)}${unresolved}`;
 }
 

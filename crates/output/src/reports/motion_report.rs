@@ -13,7 +13,7 @@ use signorini_qp::Method;
 const WINDOW: &str = "a fifth of the time that a pressure wave takes through the body";
 
 /// What is printed for a peak that the mesh does not resolve.
-const NOT_RESOLVED: &str = "the peak force is not resolved: it moves by more than a tenth with half the cells";
+const NOT_RESOLVED: &str = "the peak force is not resolved: its estimated error is more than a tenth of it";
 
 /// The request and the result of a run: [`text`](Self::text) prints both.
 #[derive(Debug)]
