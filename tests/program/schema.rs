@@ -236,7 +236,8 @@ fn every_integer_of_the_schema_refuses_all_that_is_no_whole_number_in_digits() {
     let mut moving = scene();
     moving["format"] = json!(1);
     moving["analysis"] = json!({"dynamic": {
-        "duration": 1e-3, "frames": 2, "watch": [{"node": 0}], "loads-in-time": [{"load": 0, "factor": {"ramp": {"end": 1}}}]
+        "duration": 1e-3, "frames": 2, "watch": [{"node": 0}], "loads-in-time": [{"load": 0, "factor": {"ramp": {"end": 1}}}],
+        "obstacles-in-time": [{"obstacle": 0, "shift": 0.1, "factor": {"ramp": {"end": 1}}}]
     }});
     let mut stepped = scene();
     stepped["body"] = json!({"deck": {"file": "part.inp", "step": 1}});
