@@ -5,7 +5,7 @@
 use serde_json::{Value, json};
 use signorini::motion::{Integrator, Observation};
 use signorini::study::MotionSummary;
-use signorini::{Scene, Settings};
+use support::impact::measure::set_up;
 use support::program::Desk;
 
 /// Rounding over some hundred steps, relative to the largest force or displacement.
@@ -14,6 +14,9 @@ const ROUNDING: f64 = 1e-9;
 /// The force of a hammer over the first one, from its second step on 100 cells: the step is a fifth of the time in which it decays, and the
 /// error is that of central differences.
 const HAMMER: f64 = 0.01;
+
+/// The energy of a damped motion at the start, relative: its first half step is of second order.
+const FIRST_STEP: f64 = 1e-4;
 
 /// The impulse of a rigid face, relative: its last step.
 const RELEASE: f64 = 0.02;
@@ -27,11 +30,7 @@ struct Run {
 }
 
 fn run(scene: &Value) -> Run {
-    let scene = Scene::from_json(&scene.to_string(), "scene").unwrap();
-    let model = scene.build().unwrap();
-    let dynamics = scene.dynamics(&model).unwrap().unwrap();
-    let mut integrator =
-        Integrator::new(dynamics.problem, dynamics.scheme, dynamics.step, &Settings::default()).unwrap();
+    let (model, dynamics, mut integrator) = set_up(scene).unwrap();
     let mut summary = MotionSummary::starting(&integrator.observe(), 0, dynamics.windows, dynamics.step);
     let mut seen = Vec::new();
     for _ in 0..dynamics.steps {
@@ -227,16 +226,11 @@ fn the_forces_of_springs_are_in_the_balance() {
         "supports": [{"on": {"boundary": "left"}, "x": 0}],
         "springs": [{"on": {"boundary": "left"}, "y": 30}, {"on": {"boundary": "top"}, "x": 20, "normal": 10}]
     }));
-    let scene = Scene::from_json(&scene.to_string(), "scene").unwrap();
-    let model = scene.build().unwrap();
-    let dynamics = scene.dynamics(&model).unwrap().unwrap();
-    let mut integrator =
-        Integrator::new(dynamics.problem.clone(), dynamics.scheme, dynamics.step, &Settings::default()).unwrap();
+    let (model, dynamics, mut integrator) = set_up(&scene).unwrap();
     // The mass of all nodes, those at the support included.
-    let mut free: Value = serde_json::to_value(&scene).unwrap();
+    let mut free = scene.clone();
     free.as_object_mut().unwrap().remove("supports");
-    let free: Scene = serde_json::from_value(free).unwrap();
-    let of_free = free.dynamics(&free.build().unwrap()).unwrap().unwrap().problem;
+    let of_free = set_up(&free).unwrap().1.problem;
     let momentum = |integrator: &Integrator| {
         let nodal = of_free.mass().mul(&model.nodal_velocity(&integrator.state().velocity).unwrap());
         [0, 1].map(|axis| nodal.iter().skip(axis).step_by(2).sum::<f64>())
@@ -256,6 +250,32 @@ fn the_forces_of_springs_are_in_the_balance() {
         }
         before = now;
     }
+}
+
+/// GOAL: what is lost is split into what damping and what the scheme took. REFERENCE: a bar that swings freely loses energy by damping alone.
+#[test]
+fn the_energy_that_damping_takes_is_not_that_of_the_scheme() {
+    let swinging = |damping: Value| {
+        let initial = json!([{"velocity": {"value": [-30], "gradient": [[6]]}}]);
+        run(&bar(40, json!({"gap": 100}), json!({"duration": 2, "damping": damping, "initial": initial})))
+    };
+    for damping in [json!({"mass": 0.3}), json!({"stiffness": 2e-3}), json!({"mass": 0.2, "stiffness": 1e-3})] {
+        let summary = swinging(damping.clone()).summary;
+        let [of_damping, of_scheme] =
+            [summary.damped, summary.taken_by_scheme()].map(|energy| energy / summary.initial_energy());
+        assert!(of_damping > 0.05 && of_scheme.abs() < FIRST_STEP, "{damping}: {of_damping} {of_scheme}");
+    }
+    // A damping c M leaves `exp(-2 c t)` of the energy of a body that moves as a whole.
+    let whole = run(&bar(
+        40,
+        json!({"gap": 100}),
+        json!({"duration": 2, "damping": {"mass": 0.3}, "initial": [{"velocity": {"value": [5]}}]}),
+    ));
+    let left = 1.0 - whole.summary.damped / whole.summary.initial_energy();
+    assert!((left / (-2.0 * 0.3 * 2.0_f64).exp() - 1.0).abs() < 0.02, "{left}");
+    // A hammer loses energy to the node that it meets, and not by damping.
+    let hit = hammer(100, 0.7).summary;
+    assert!(hit.damped == 0.0 && (hit.taken_by_scheme() / hit.initial_energy() - 1.0 / 11.0).abs() < 1e-6);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use signorini::motion::{DynamicProblem, Integrator, Scheme, TimeFunction};
 use signorini::study::{MotionError, MotionSummary};
 use signorini::{ContactProblem, Scene, Settings, SparseMatrix, SymmetricMatrix};
 use support::impact::cases::cases;
-use support::impact::measure::{moved, run, scene_of};
+use support::impact::measure::{moved, run, scene_of, set_up};
 use support::program::Desk;
 
 /// Rounding over 1,800 steps of a bar.
@@ -233,10 +233,7 @@ fn the_command_prints_the_estimated_errors() {
 fn ten_bounces_of_a_bar_come_when_waves_say() {
     let mut scene = scene_of("bouncing_bar", 100);
     scene["analysis"]["dynamic"]["duration"] = json!(30);
-    let scene: Scene = serde_json::from_value(scene).unwrap();
-    let dynamics = scene.dynamics(&scene.build().unwrap()).unwrap().unwrap();
-    let mut integrator =
-        Integrator::new(dynamics.problem, dynamics.scheme, dynamics.step, &Settings::default()).unwrap();
+    let (_, dynamics, mut integrator) = set_up(&scene).unwrap();
     for _ in 0..dynamics.steps {
         integrator.advance().unwrap();
         let seen = integrator.observe();

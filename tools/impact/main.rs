@@ -9,12 +9,12 @@ mod table;
 use std::path::Path;
 
 use serde_json::json;
-use signorini::motion::{Integrator, SchemeSpec};
+use signorini::motion::SchemeSpec;
 use signorini::output::write_files;
 use signorini::study::MotionError;
 use signorini::{Error, Scene, Settings};
 use support::impact::cases::cases;
-use support::impact::measure::{Run, moved, run, scene_of};
+use support::impact::measure::{Run, moved, run, scene_of, set_up};
 
 /// Time steps as multiples of the time that a wave takes through a cell.
 const COURANT: [f64; 3] = [0.5, 1.0, 1.5];
@@ -137,7 +137,7 @@ fn bounces() -> Result<(), Error> {
     println!("| body | cells | contacts begin at | energy at the end |\n| --- | --- | --- | --- |");
     for (name, meshes) in [("jumping_bar", &[100, 200, 400, 800][..]), ("bouncing_block", &[8, 16, 32, 64])] {
         for &cells in meshes {
-            let (begins, energy) = contacts(scene_of(name, cells))?;
+            let (begins, energy) = contacts(&scene_of(name, cells))?;
             let shown: Vec<String> = begins.iter().map(|begin| format!("{begin:.3}")).collect();
             println!("| {name} | {cells} | {} | {energy:.5} |", shown.join(", "));
         }
@@ -147,10 +147,8 @@ fn bounces() -> Result<(), Error> {
 
 /// The beginnings of the contacts of a motion, and the total energy at its end over that at the first contact: less than 1 by what the
 /// scheme took.
-fn contacts(scene: serde_json::Value) -> Result<(Vec<f64>, f64), Error> {
-    let scene: Scene = serde_json::from_value(scene).expect("a scene");
-    let dynamics = scene.dynamics(&scene.build()?)?.expect("a motion");
-    let mut integrator = Integrator::new(dynamics.problem, dynamics.scheme, dynamics.step, &Settings::default())?;
+fn contacts(scene: &serde_json::Value) -> Result<(Vec<f64>, f64), Error> {
+    let (_, dynamics, mut integrator) = set_up(scene)?;
     let (mut begins, mut last, mut fallen) = (Vec::new(), f64::NEG_INFINITY, 0.0);
     for _ in 0..dynamics.steps {
         integrator.advance()?;

@@ -1,8 +1,8 @@
 //! One run of one scheme, compared with a closed form.
 
 use serde_json::{Value, json};
-use signorini::motion::SchemeSpec;
-use signorini::motion::{Integrator, Observation, Scheme};
+use signorini::motion::{Integrator, Observation, Scheme, SchemeSpec};
+use signorini::scene::{Dynamics, Model};
 use signorini::study::MotionSummary;
 use signorini::{Error, Scene, Settings, qp};
 use std::fs;
@@ -69,10 +69,8 @@ pub fn moved(scene: &Value, scheme: SchemeSpec, courant: f64) -> Result<Moved, E
     let mut scene = scene.clone();
     scene["analysis"]["dynamic"]["scheme"] = json!(scheme);
     scene["analysis"]["dynamic"]["courant"] = json!(courant);
-    let scene: Scene = serde_json::from_value(scene).expect("a scene");
-    let dynamics = scene.dynamics(&scene.build()?)?.expect("a motion");
+    let (_, dynamics, mut integrator) = set_up(&scene)?;
     let step = dynamics.step;
-    let mut integrator = Integrator::new(dynamics.problem, dynamics.scheme, step, &Settings::default())?;
     let mut summary = MotionSummary::starting(&integrator.observe(), 0, dynamics.windows, step);
     let clock = Instant::now();
     for _ in 0..dynamics.steps {
@@ -80,6 +78,19 @@ pub fn moved(scene: &Value, scheme: SchemeSpec, courant: f64) -> Result<Moved, E
         summary.add(&integrator.observe(), &[]);
     }
     Ok(Moved { scheme: scheme.name(), courant, step, summary, seconds: clock.elapsed().as_secs_f64() })
+}
+
+/// The model of a scene, its motion, and an integrator at the start.
+///
+/// # Errors
+/// Those of the scene and of the integrator.
+pub fn set_up(scene: &Value) -> Result<(Model, Dynamics, Integrator), Error> {
+    let scene: Scene = serde_json::from_value(scene.clone()).expect("a scene");
+    let model = scene.build()?;
+    let dynamics = scene.dynamics(&model)?.expect("a motion");
+    let problem = dynamics.problem.clone();
+    let integrator = Integrator::new(problem, dynamics.scheme, dynamics.step, &Settings::default())?;
+    Ok((model, dynamics, integrator))
 }
 
 /// The scene of this name in `tools/impact`, with cells of its axes or of its zone of contact.

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::step::{Advance, HalfStep};
+use super::step::{Advance, HalfStep, plus};
 use super::{Balance, DynamicProblem, Observation, Scheme, State};
 use crate::bytes;
 use crate::error::Error;
@@ -49,9 +49,10 @@ impl Integrator {
             let allowed = "zero: no contact row may be violated at the start";
             return Err(qp::Error::Setting { name: "initial penetration", value: penetration, allowed }.into());
         }
-        if problem.has_moving_gaps() && !scheme.follows_obstacles() {
-            let allowed = "zero: only `fox-goodwin` follows obstacles that move";
-            return Err(qp::Error::Setting { name: "shift", value: 1.0, allowed }.into());
+        let shift = problem.largest_shift();
+        if shift > 0.0 && !scheme.follows_obstacles() {
+            let allowed = "zero: the scheme has obstacles at rest only";
+            return Err(qp::Error::Setting { name: "shift of a contact row", value: shift, allowed }.into());
         }
         if !scheme.allows(MassForm::Redistributed) && !problem.massless().is_empty() {
             let allowed = "positive: dofs without mass are for the midpoint rule";
@@ -123,12 +124,22 @@ impl Integrator {
             [Some(from), Some(to)] => [&from.displacement, &to.displacement],
             _ => [&self.state.displacement, &next.displacement],
         };
-        let ends = |steps: usize| match halves {
-            [Some(_), Some(_)] => [steps.saturating_sub(1), steps],
-            _ => [steps, steps],
+        next.work += self.problem.work(times, moved);
+        let time = |steps: usize| steps as f64 * self.step;
+        let (now, then) = (time(self.state.steps), time(next.steps));
+        next.work += match &halves {
+            // From the middle of one step to that of the next.
+            [Some(_), Some(_)] => {
+                let before = time(self.state.steps.saturating_sub(1));
+                self.problem.work_of_obstacles(&next.multiplier, [before, then]) / 2.0
+            }
+            _ => self.problem.work_of_obstacles(&next.multiplier, [now, then]),
         };
-        let of_gaps = [self.state.steps, next.steps].map(|steps| ends(steps).map(|end| end as f64 * self.step));
-        next.work += self.problem.work(times, moved) + self.problem.work_of_obstacles(&next.multiplier, of_gaps);
+        if self.problem.damping() != [0.0; 2] {
+            let everywhere: Vec<usize> = (0..next.displacement.len()).collect();
+            let balance = self.scheme.balance(self.step, &self.state, &next, &everywhere);
+            next.damped += self.problem.damping_work(&balance.velocity, &plus(moved[1], -1.0, moved[0]));
+        }
         self.before = Some(std::mem::replace(&mut self.state, next));
         Ok(&self.state)
     }
@@ -200,6 +211,7 @@ impl Integrator {
             strain,
             potential,
             work: self.state.work,
+            damped: self.state.damped,
             penalties: self.state.penalties,
             acting: self.scheme.acting(self.step, self.state.steps),
         }

@@ -178,44 +178,45 @@ impl DynamicProblem {
     /// The gaps at time `t`, one entry per row, in length.
     pub fn gap_at(&self, t: f64) -> Vec<f64> {
         let mut gap = self.statics.gap().to_vec();
-        for (factor, shift) in &self.shifts {
-            let change = factor.at(t) - factor.at(0.0);
-            gap.iter_mut().zip(shift).for_each(|(gap, shift)| *gap += change * shift);
+        if let Some(growth) = self.growth_of_gaps(0.0, t) {
+            gap.iter_mut().zip(growth).for_each(|(gap, growth)| *gap += growth);
         }
         gap
     }
 
-    /// Returns `true` if obstacles move.
-    pub(super) fn has_moving_gaps(&self) -> bool {
-        !self.shifts.is_empty()
+    /// The growth of the gaps from one time to another, one entry per row; `None` if no obstacle moves.
+    fn growth_of_gaps(&self, from: f64, to: f64) -> Option<Vec<f64>> {
+        let mut shifts = self.shifts.iter().map(|(factor, shift)| (factor.at(to) - factor.at(from), shift));
+        let (factor, shift) = shifts.next()?;
+        let mut growth: Vec<f64> = shift.iter().map(|shift| factor * shift).collect();
+        shifts.for_each(|(factor, shift)| growth.iter_mut().zip(shift).for_each(|(sum, shift)| *sum += factor * shift));
+        Some(growth)
+    }
+
+    /// The largest shift of a row by an obstacle that moves; 0 if none moves.
+    pub(super) fn largest_shift(&self) -> f64 {
+        self.shifts.iter().fold(0.0, |largest, (_, shift)| qp::largest(shift).max(largest))
     }
 
     /// The velocities along the rows, `B v`, less those of the obstacles between two times.
     pub(super) fn relative_velocity(&self, velocity: &[f64], [from, to]: [f64; 2]) -> Vec<f64> {
-        let of_body = self.statics.contact().mul(velocity);
-        match self.has_moving_gaps() {
-            false => of_body,
-            true => {
-                let gaps = self.gap_at(to).into_iter().zip(self.gap_at(from));
-                of_body
-                    .into_iter()
-                    .zip(gaps)
-                    .map(|(along, (to_gap, from_gap))| along - (to_gap - from_gap) / (to - from))
-                    .collect()
-            }
+        let mut along = self.statics.contact().mul(velocity);
+        if let Some(growth) = self.growth_of_gaps(from, to) {
+            along.iter_mut().zip(growth).for_each(|(along, growth)| *along -= growth / (to - from));
         }
+        along
     }
 
-    /// The work that obstacles do with these multipliers while they move between two times, each the mean of two.
-    pub(super) fn work_of_obstacles(&self, multiplier: &[f64], [from, to]: [[f64; 2]; 2]) -> f64 {
-        if !self.has_moving_gaps() {
-            return 0.0;
-        }
-        let mean = |times: [f64; 2]| {
-            let [one, other] = times.map(|t| dot(multiplier, &self.gap_at(t)));
-            (one + other) / 2.0
-        };
-        mean(to) - mean(from)
+    /// The work that obstacles do with these multipliers while they move from one time to another.
+    pub(super) fn work_of_obstacles(&self, multiplier: &[f64], [from, to]: [f64; 2]) -> f64 {
+        self.growth_of_gaps(from, to).map_or(0.0, |growth| dot(multiplier, &growth))
+    }
+
+    /// The work that damping takes, `w'C v`, while the dofs with the velocity v move by w.
+    pub(super) fn damping_work(&self, velocity: &[f64], moved: &[f64]) -> f64 {
+        let mut force = vec![0.0; velocity.len()];
+        self.damp(-1.0, velocity, &mut force);
+        dot(&force, moved)
     }
 
     /// The deepest penetration, `max(B u - g, 0)`, in length, at a displacement u of length n, in length, at time `t`.

@@ -18,8 +18,11 @@ pub struct State {
     pub velocity: Vec<f64>,
     /// Acceleration a, one entry per dof, in length over time squared; only schemes of Newmark's kind and central differences store it.
     pub acceleration: Vec<f64>,
-    /// Work of the loads since the start, in energy; forces that hold prescribed displacements do none.
+    /// Work of loads and of obstacles that move since the start, in force times length; forces that hold prescribed displacements do none.
     pub work: f64,
+    /// Energy that damping took since the start, in force times length.
+    #[serde(default)]
+    pub damped: f64,
     /// Penalties that the last step tried; 0 in schemes without a loop over penalties.
     pub penalties: usize,
     /// Contact multiplier of the last step, one entry per contact row, in force, `<= 0`.
@@ -71,8 +74,10 @@ pub struct Observation {
     pub strain: f64,
     /// Potential of the loads, `-f'u`, in force times length.
     pub potential: f64,
-    /// Work of the loads since the start, in force times length.
+    /// Work of loads and of obstacles that move since the start, in force times length.
     pub work: f64,
+    /// Energy that damping took since the start, in force times length.
+    pub damped: f64,
     /// Penalties that the last step tried; 0 in schemes without a loop over penalties.
     pub penalties: usize,
     /// Between which times the force acted, `[from, to]`, in time, since the start of the motion.

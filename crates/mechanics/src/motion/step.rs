@@ -5,7 +5,7 @@ use std::fmt;
 use super::{Balance, DynamicProblem, State};
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use signorini_qp::{ContactProblem, ContactSet, Prepared, Settings, SparseMatrix, SymmetricMatrix, dot};
+use signorini_qp::{ContactProblem, ContactSet, Prepared, Settings, SymmetricMatrix, dot};
 
 /// The description of a scheme.
 pub struct About {
@@ -188,6 +188,7 @@ pub(super) fn next(
         steps: before.steps + 1,
         acceleration: before.acceleration.clone(),
         work: before.work,
+        damped: before.damped,
         displacement,
         velocity,
         multiplier,
@@ -195,13 +196,6 @@ pub(super) fn next(
         ..State::default()
     }
     .with_forces(problem)
-}
-
-/// The sum of the squares of the coefficients of each row.
-pub(super) fn squares_of_rows(contact: &SparseMatrix) -> Vec<f64> {
-    let mut squares = vec![0.0; contact.rows()];
-    contact.triplets().for_each(|(row, _, b)| squares[row] += b * b);
-    squares
 }
 
 /// `a + factor b`, entry by entry.

@@ -134,8 +134,10 @@ pub struct MotionSummary {
     pub energy_scale: f64,
     /// Total number of penalties in all steps, and the largest number in one step; 0 in schemes without a loop over penalties.
     pub penalties: [usize; 2],
-    /// Work of the loads since the start, in force times length.
+    /// Work of loads and of obstacles that move since the start, in force times length.
     pub work: f64,
+    /// Energy that damping took since the start, in force times length.
+    pub damped: f64,
     /// The largest work of the loads so far, in force times length, `>= 0`.
     pub work_max: f64,
     /// The largest excess of kinetic and strain energy over the work of the loads, `>= 0`, in force times length.
@@ -174,7 +176,7 @@ impl MotionSummary {
         self.energy_range = [least.min(seen.energy()), most.max(seen.energy())];
         self.energy_scale = self.energy_scale.max(seen.kinetic + seen.strain);
         self.penalties = [self.penalties[0] + seen.penalties, self.penalties[1].max(seen.penalties)];
-        self.work = seen.work;
+        (self.work, self.damped) = (seen.work, seen.damped);
         self.work_max = self.work_max.max(seen.work);
         self.excess_max = self.excess_max.max(seen.kinetic + seen.strain - self.initial_energy() - seen.work);
     }
@@ -192,6 +194,12 @@ impl MotionSummary {
     /// Kinetic and strain energy at the start.
     pub fn initial_energy(&self) -> f64 {
         self.energy_first[0] + self.energy_first[1]
+    }
+
+    /// The energy that the scheme took: what the start, the loads and the obstacles put in, less what is there and what damping took, in force
+    /// times length; negative if it gave some.
+    pub fn taken_by_scheme(&self) -> f64 {
+        self.initial_energy() + self.work - self.damped - self.energy_last[0] - self.energy_last[1]
     }
 
     /// Present and largest kinetic and strain energy, in this order, over the initial one, relative; `None` for a

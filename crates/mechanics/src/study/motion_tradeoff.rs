@@ -73,7 +73,8 @@ impl MotionTradeoff {
         let of = |scheme, steps: usize| with(scene, &model, scheme, Some(steps));
         let reference = run(of(SchemeSpec::default(), SAMPLES * quarter * REFERENCE)?, settings)?;
         let mut runs = Vec::new();
-        for scheme in SchemeSpec::ALL {
+        let follows = |scheme: &SchemeSpec| !own.has_moving_obstacles() || scheme.with(None).follows_obstacles();
+        for scheme in SchemeSpec::ALL.into_iter().filter(follows) {
             let counts: Vec<usize> = if scheme.is_explicit() {
                 let fewest = with(scene, &model, scheme, None)?.steps.div_ceil(SAMPLES);
                 EXPLICIT.iter().map(|times| SAMPLES * fewest * times).collect()

@@ -340,7 +340,7 @@ fn closed_of(rows: usize, closed: &[usize]) -> ContactSet {
     set
 }
 
-/// The columns of the resultants: force, moment and centre of each obstacle, of each support, and of each spring.
+/// The columns of the resultants: force, moment and centre of each obstacle, of each support, and of each spring, and the travel of an obstacle with a mass.
 fn resultants_heading(model: &Model) -> String {
     let axes = &["x", "y", "z"][..model.mesh().dimension()];
     let turns: &[&str] = match (axes.len(), model.body().formulation().is_axisymmetric()) {
@@ -349,11 +349,16 @@ fn resultants_heading(model: &Model) -> String {
         _ => &[],
     };
     let mut heading = String::from("time");
-    for name in model.obstacle_names().into_iter().chain(model.support_names()).chain(model.spring_names()) {
+    let travels = model.obstacles().iter().map(|obstacle| obstacle.inertia().is_some()).chain(std::iter::repeat(false));
+    let names = model.obstacle_names().into_iter().chain(model.support_names()).chain(model.spring_names());
+    for (name, has_travel) in names.zip(travels) {
         for (quantity, axes) in [("f", axes), ("m", turns), ("c", axes)] {
             axes.iter().for_each(|axis| {
                 let _ = write!(heading, ",{name} {quantity}_{axis}");
             });
+        }
+        if has_travel {
+            let _ = write!(heading, ",{name} travel");
         }
     }
     heading + "\n"
@@ -365,7 +370,7 @@ fn resultants_line(model: &Model, time: f64, resultants: &[Resultant]) -> String
     for of in resultants {
         // A zero force has no centre.
         let centre = (0..of.force.len()).map(|axis| of.centre.as_ref().map(|at| at[axis]));
-        for value in of.force.iter().chain(&of.moment).copied().map(Some).chain(centre) {
+        for value in of.force.iter().chain(&of.moment).copied().map(Some).chain(centre).chain(of.travel.map(Some)) {
             let _ = match value {
                 Some(value) => write!(line, ",{value:e}"),
                 None => write!(line, ","),

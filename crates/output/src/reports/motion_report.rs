@@ -106,6 +106,9 @@ impl MotionReport<'_> {
             line("", format!("kinetic and strain over those at the start: {last:.6} at the end, {largest:.6} at most"));
         }
         line("", format!("change {:.2e}, largest gain {:.2e}", summary.energy_change(), summary.energy_gain()));
+        let taken = [summary.damped, summary.taken_by_scheme()]
+            .map(|energy| energy / summary.energy_scale.max(f64::MIN_POSITIVE));
+        line("", format!("taken by damping {:.2e}, by the scheme {:.2e}, of the largest energy", taken[0], taken[1]));
         let RunSeconds { assemble, factor, solve, .. } = self.seconds;
         line("seconds", format!("{assemble:.3} to assemble, {factor:.3} to factorise, {solve:.3} for the steps"));
         text + &warnings_text(&summary.warnings())
@@ -193,6 +196,8 @@ impl Serialize for MotionReport<'_> {
                 "last_over_initial": summary.over_initial().map(|[last, _]| last),
                 "largest_over_initial": summary.over_initial().map(|[_, largest]| largest),
                 "work": summary.work,
+                "damped": summary.damped,
+                "taken_by_scheme": summary.taken_by_scheme(),
                 "growth": summary.growth(),
             },
             "model": {

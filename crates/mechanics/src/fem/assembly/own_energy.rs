@@ -24,8 +24,11 @@ pub(crate) fn own_energy_change(body: &ElasticBody, derivative: &ElasticBody) ->
     })
 }
 
-/// The integral of a density over the body.
+/// The integral of a density over the body; zero without own stress.
 fn sum_over_points(body: &ElasticBody, density: impl Fn(usize, &BodyElement, &TabulatedPoint) -> f64) -> f64 {
+    if !body.has_own_stress() {
+        return 0.0;
+    }
     let tables = body.tabulated();
     let of_element = |(index, element): (usize, BodyElement)| {
         let points = tables.at(element.kind).points.iter();

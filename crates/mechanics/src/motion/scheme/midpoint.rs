@@ -19,7 +19,7 @@
 
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{About, Advance, Found, Stepping, next, plus, squares_of_rows};
+use crate::motion::step::{About, Advance, Found, Stepping, next, plus};
 use crate::motion::{Balance, DynamicProblem, State};
 use signorini_qp::{ContactProblem, ContactSet, Settings, SparseMatrix, SymmetricMatrix, dot, largest};
 
@@ -230,7 +230,8 @@ impl Midpoint {
 
 /// The multiplier of each row, from the component of `force` along the row.
 fn along_rows(contact: &SparseMatrix, force: &[f64]) -> Vec<f64> {
-    let squares = squares_of_rows(contact);
+    let mut squares = vec![0.0; contact.rows()];
+    contact.triplets().for_each(|(row, _, b)| squares[row] += b * b);
     let share_of_row = |(along, square): (f64, &f64)| if *square > 0.0 { along / square } else { 0.0 };
     contact.mul(force).into_iter().zip(&squares).map(share_of_row).collect()
 }

@@ -280,10 +280,12 @@ pub(super) fn moment_of(model: &Model, obstacle: usize, at: [f64; 3], force: [f6
 /// The work that the internal forces of a body do up to the displacement of an answer: they grow linearly from those of its own stress.
 fn work_to(answer: &Answer, body: &ElasticBody) -> Result<f64, Why> {
     let displacement = answer.displacement();
-    let [first, last] = [&vec![0.0; displacement.len()], displacement].map(|at| internal_force(body, at));
-    let mean =
-        first.map_err(in_words)?.into_iter().zip(last.map_err(in_words)?).map(|(first, last)| (first + last) / 2.0);
-    Ok(mean.zip(displacement).map(|(force, u)| force * u).sum())
+    let work = |at: &[f64]| -> Result<f64, Why> {
+        let forces = internal_force(body, at).map_err(in_words)?;
+        Ok(forces.iter().zip(displacement).map(|(force, u)| force * u).sum())
+    };
+    let first = if body.has_own_stress() { work(&vec![0.0; displacement.len()])? } else { 0.0 };
+    Ok((first + work(displacement)?) / 2.0)
 }
 
 /// Returns `true` if the pressure of a row is its own force over its own area.

@@ -245,7 +245,15 @@ impl Model {
     pub fn of_whole(&self, seen: Observation) -> Observation {
         let whole = |of_part: f64| self.parts_of_whole() * of_part;
         let [force, kinetic, strain] = [seen.force, seen.kinetic, seen.strain].map(whole);
-        Observation { force, kinetic, strain, potential: whole(seen.potential), work: whole(seen.work), ..seen }
+        Observation {
+            force,
+            kinetic,
+            strain,
+            potential: whole(seen.potential),
+            work: whole(seen.work),
+            damped: whole(seen.damped),
+            ..seen
+        }
     }
 
     /// Number of copies of an obstacle in the whole: a plane of symmetry normal to its approach direction gives it a mirror image.

@@ -4,8 +4,8 @@
 //! The nodes of a rigid face follow its motions: u = R y + u_0 with the displacement u of the free dofs and the unknowns y, so that
 //! the stiffness is R' K R and the load R' (f - K u_0).
 //!
-//! A pressed obstacle, and one with a mass in a motion, moves along its approach direction `a` alone, by the travel `d` against it: one more unknown without stiffness,
-//! with the force F as its load. Each of its rows holds `n . u + (n . a) d <= gap`, so that the forces of its rows along `a` add up to
+//! A pressed obstacle, and one with a mass in a motion, moves along its approach direction `a` alone, by the travel `d` against it: one more
+//! unknown without stiffness, with the force F as its load. Each of its rows holds `n . u + (n . a) d <= gap`, so that the forces of its rows along `a` add up to
 //! F.
 
 use std::borrow::Cow;
@@ -260,6 +260,9 @@ impl Unknowns {
         matrix: &SymmetricMatrix,
         of_obstacle: impl Fn(usize) -> f64,
     ) -> Result<SymmetricMatrix, Error> {
+        if self.pressed.is_empty() {
+            return Ok(matrix.clone());
+        }
         let own =
             (self.of_body()..).zip(&self.pressed).map(|(unknown, &obstacle)| (unknown, unknown, of_obstacle(obstacle)));
         let entries: Vec<_> = matrix.lower().triplets().chain(own).collect();

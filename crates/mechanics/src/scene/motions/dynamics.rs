@@ -1,5 +1,7 @@
 //! The motion of a scene: mass, scheme, step, initial state, loads in time.
 
+use std::sync::Arc;
+
 use super::loads_in_time::NodalLoads;
 use super::moving_supports::MovingSupports;
 use crate::error::{Error, nearly};
@@ -16,7 +18,6 @@ use crate::scene::models::resultants::without_rounding;
 use crate::scene::{Model, Resultant, Warning, WatchedPoint};
 use signorini_qp as qp;
 use signorini_qp::{ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, dot, solve};
-use std::sync::Arc;
 
 /// Steps and durations that differ by less than this, relative, are equal up to rounding.
 const STEP_ROUNDING: f64 = 1e-12;
@@ -245,14 +246,16 @@ fn mass_of(model: &Model, nodal_mass: &SparseMatrix) -> Result<SymmetricMatrix, 
     parts.unknowns.with_travels(&of_body, of_obstacle)
 }
 
-/// A bound on the largest frequency of a model with its mass in this form. Rigid faces and obstacles with a mass only reduce it: it is that
-/// of the free dofs.
+/// A bound on the largest frequency of a model with its mass in this form. Rigid faces only reduce it: it is that of the free dofs.
 fn largest_frequency(model: &Model, form: MassForm) -> Result<f64, Error> {
     let parts = &model.parts;
-    let lumped = free_mass(&parts.body, &parts.dofs, &nodal_mass_of(model, MassForm::Lumped)?)?.diagonal();
-    let of_lumped = match parts.unknowns.count() == lumped.len() && !parts.unknowns.has_faces() {
-        true => frequency_bound(model.problem().stiffness(), &lumped),
-        false => frequency_bound(&parts.on_springs(stiffness(&parts.body, &parts.dofs)?)?, &lumped),
+    let lumped = nodal_mass_of(model, MassForm::Lumped)?;
+    let of_lumped = match parts.unknowns.has_faces() {
+        false => frequency_bound(model.problem().stiffness(), &mass_of(model, &lumped)?.diagonal()),
+        true => {
+            let mass = free_mass(&parts.body, &parts.dofs, &lumped)?.diagonal();
+            frequency_bound(&parts.on_springs(stiffness(&parts.body, &parts.dofs)?)?, &mass)
+        }
     };
     Ok(of_lumped / least_over_lumped(&parts.body, form)?.sqrt())
 }
@@ -281,12 +284,20 @@ impl Dynamics {
         let [found, expected] = [integrator.problem(), &self.problem].map(|problem| problem.statics().dofs());
         qp::Error::check_length("displacement", found, expected, "free dofs")?;
         let mut all = model.contact_resultants(multiplier)?;
+        for (index, resultant) in all.iter_mut().enumerate() {
+            resultant.travel = model.travel(&integrator.state().displacement, index)?;
+        }
         if let Some(balance) = integrator.balance(&self.supports.around) {
             all.extend(model.support_resultants(self.supports.reactions(model, balance, multiplier)));
             all.extend(self.spring_resultants(model, integrator)?);
         }
         without_rounding(&mut all);
         Ok(all)
+    }
+
+    /// Returns `true` if obstacles move in time.
+    pub(crate) fn has_moving_obstacles(&self) -> bool {
+        !self.obstacles.is_empty()
     }
 
     /// The model with its obstacles where they are at time `time` of the motion.
@@ -306,10 +317,11 @@ impl Dynamics {
 
     /// The forces of springs, damping included, in the balance of the last step.
     fn spring_resultants(&self, model: &Model, integrator: &Integrator) -> Result<Vec<Resultant>, Error> {
-        let everywhere: Vec<usize> = (0..self.problem.statics().dofs()).collect();
-        let Some(balance) = integrator.balance(&everywhere).filter(|_| !model.parts.springs.is_empty()) else {
+        if model.parts.springs.is_empty() {
             return Ok(Vec::new());
-        };
+        }
+        let everywhere: Vec<usize> = (0..self.problem.statics().dofs()).collect();
+        let Some(balance) = integrator.balance(&everywhere) else { return Ok(Vec::new()) };
         let [_, of_stiffness] = self.problem.damping();
         let nodal = model.nodal_displacement(&balance.displacement)?;
         let damped = model.nodal_velocity(&balance.velocity)?;

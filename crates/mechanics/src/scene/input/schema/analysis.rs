@@ -160,8 +160,8 @@ pub struct LoadInTimeSpec {
 pub struct ObstacleInTimeSpec {
     /// Number of the entry of `obstacles`, from 0.
     pub obstacle: usize,
-    /// Its shift along its approach direction where the factor is 1 larger than at the start, in length; a negative shift moves it towards
-    /// the body.
+    /// Its displacement along its approach direction when the factor has grown by 1 since the start, in length; a negative shift moves it
+    /// towards the body.
     pub shift: f64,
     /// The factor over time.
     pub factor: FactorSpec,
