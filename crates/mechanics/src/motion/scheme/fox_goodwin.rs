@@ -68,10 +68,10 @@ pub(super) static ABOUT: About = About {
         let of_nodes = of(elastic().collect())?;
         let following = of(elastic().map(|(row, dof, b)| (row, dof, b / stiffness[dof])).collect())?;
         let inertia = inertia.diagonal();
-        let equal = masses_along(&of_nodes, &inertia, &vec![1.0; contact.rows()]);
-        let [masses, of_nodes] = [contact, &of_nodes].map(|rows| masses_along(rows, &inertia, &equal));
+        let of_nodes = masses_along(&of_nodes, &inertia, &vec![1.0; contact.rows()]);
+        let masses = masses_along(contact, &inertia, &of_nodes);
         let stepping = Stepping::of(problem, matrix, settings)?;
-        Ok(Box::new(FoxGoodwin { scaling, masses, of_nodes, following, stepping }))
+        Ok(Box::new(FoxGoodwin { scaling, masses, following, stepping }))
     },
 };
 
@@ -79,10 +79,8 @@ pub(super) static ABOUT: About = About {
 struct FoxGoodwin {
     /// `beta dt^2`, in time squared.
     scaling: f64,
-    /// The mass that a force along each row moves, if only the dofs of rows move; and that of nodes alone, without obstacles that have a
-    /// mass of their own.
+    /// The mass that a force along each row moves, if only the dofs of rows move.
     masses: Vec<f64>,
-    of_nodes: Vec<f64>,
     /// The motion along each row in which nodes without mass would follow forces on the dofs.
     following: SparseMatrix,
     stepping: Stepping,
@@ -191,7 +189,7 @@ impl FoxGoodwin {
             // A contact that ends within a step presses until then: its node was at the obstacle a step ago.
             let was_closed = room[row] + step * before[row] <= CLOSE * step * stopped;
             // The impulse after which the neighbours do not pull, and the one that gives back all energy.
-            let to_follow = -follow[row] * self.of_nodes[row] / step;
+            let to_follow = -follow[row] * mass / step;
             let parting = -(before[row] + now[row]) / 2.0 - found.multiplier[row] * step / (2.0 * mass);
             let of_energy = mass * (parting.hypot(stopped) - parting);
             let is_due = kept > 0.0 && was_closed && to_follow > NEGLIGIBLE * mass * stopped;
