@@ -11,6 +11,7 @@ mod errors;
 mod exceptions;
 mod many;
 mod matrices;
+mod modes;
 mod mortar;
 mod options;
 mod prepared;
@@ -56,6 +57,7 @@ fn _signorini(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(study::swept, module)?)?;
     module.add_function(wrap_pyfunction!(total_error::total_error, module)?)?;
     module.add_function(wrap_pyfunction!(sensitivity::sensitivity, module)?)?;
+    module.add_function(wrap_pyfunction!(modes::modes, module)?)?;
     module.add_function(wrap_pyfunction!(mortar::mortar_rows, module)?)?;
     Ok(())
 }

@@ -1,13 +1,16 @@
 //! `signorini export`: the problem of a scene as files of Matrix Market or PETSc.
 
-use super::input::{build, rests, scene_of, warnings};
+use std::borrow::Cow;
+
+use super::input::{build, scene_of, warnings};
 use super::options::{Export, Form};
 use super::outcome::{Outcome, unfit, warn};
 use crate::Error;
+use crate::fem::MassForm;
 use crate::output::{tables_of_model, write_streamed};
-use crate::qp::PetscLayout;
 use crate::qp::file::Streamed;
-use crate::scene::{Meaning, Model};
+use crate::qp::{ContactProblem, PetscLayout, SymmetricMatrix};
+use crate::scene::{Dynamics, Meaning, Model, Scene};
 
 /// Bytes of a megabyte.
 const MEGABYTE: f64 = 1e6;
@@ -15,19 +18,25 @@ const MEGABYTE: f64 = 1e6;
 pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
     let scene = scene_of(&options.scene, &options.limits)?;
     scene.check_size_of_model(options.limits.most_memory())?;
-    rests(&scene)?;
     let model = build(&scene, &options.scene, &options.limits)?;
     warn(&warnings(&model));
+    let Inertia { statics: problem, mass, damping } = Inertia::of(&scene, &model)?;
     let layout;
-    let files = match options.format {
-        Form::MatrixMarket => model.problem().files(),
+    let mut files = match options.format {
+        Form::MatrixMarket => problem.files(),
+        Form::Petsc if mass.is_some() => {
+            let message = "the form petsc has no mass; take --format matrix-market, or leave `analysis` out";
+            return unfit("--format", message);
+        }
         Form::Petsc => {
             layout = layout_of(&model)?;
-            model.problem().petsc_files(&layout)
+            problem.petsc_files(&layout)
         }
     };
-    let files: Vec<Streamed> = files.into_iter().chain(tables_of_model(&model)).collect();
-    let (folder, problem) = (&options.directory, model.problem());
+    files.extend(mass.iter().map(|mass| mass.file("M.mtx")));
+    files.extend(damping.iter().map(|damping| damping.file("C.mtx")));
+    files.extend(tables_of_model(&model));
+    let folder = &options.directory;
     let bytes: u64 = files.iter().map(Streamed::bytes).sum();
     warn(&format!("writing {bytes} bytes ({:.1} MB) into {}\n", bytes as f64 / MEGABYTE, folder.display()));
     write_streamed(folder, &files)?;
@@ -40,6 +49,27 @@ pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
         problem.rows()
     );
     Ok(Outcome::done(text))
+}
+
+/// A problem with the mass of its analysis, and the damping of a motion.
+struct Inertia<'a> {
+    statics: Cow<'a, ContactProblem>,
+    mass: Option<SymmetricMatrix>,
+    damping: Option<SymmetricMatrix>,
+}
+
+impl<'a> Inertia<'a> {
+    fn of(scene: &Scene, model: &'a Model) -> Result<Self, Error> {
+        let still = Inertia { statics: Cow::Borrowed(model.problem()), mass: None, damping: None };
+        if scene.modes().is_some() {
+            return Ok(Inertia { mass: Some(model.mass(MassForm::Consistent)?), ..still });
+        }
+        let Some(Dynamics { problem, .. }) = scene.dynamics(model)? else { return Ok(still) };
+        let [of_mass, of_stiffness] = problem.damping();
+        let damping = problem.statics().stiffness().combined(of_stiffness, of_mass, problem.mass())?;
+        let (statics, mass) = (Cow::Owned(problem.statics().clone()), Some(problem.mass().clone()));
+        Ok(Inertia { statics, mass, damping: Some(damping) })
+    }
 }
 
 /// The places of the dofs of a model in PETSc's files.

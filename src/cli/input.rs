@@ -125,13 +125,19 @@ pub(super) fn still_model(path: &Path, limits: &Limits) -> Result<Model, Error> 
     build(&scene, path, limits)
 }
 
-/// Refuses a scene that asks for its motion.
+/// Refuses a scene that asks for its motion or its modes.
 pub(super) fn rests(scene: &Scene) -> Result<(), Error> {
     if scene.analysis.is_none() {
         return Ok(());
     }
-    let message = "the scene is a motion, which only the commands `solve` and `tradeoff` compute; remove `analysis` \
-                   for its equilibrium";
+    let message = match scene.modes() {
+        Some(_) => {
+            "the scene asks for its modes, which only the command `solve` computes; remove `analysis` for its equilibrium"
+        }
+        None => {
+            "the scene is a motion, which only the commands `solve` and `tradeoff` compute; remove `analysis` for its equilibrium"
+        }
+    };
     unfit("analysis", message)
 }
 
@@ -169,4 +175,12 @@ pub(super) fn scene_title(model: &Model, path: &Path) -> String {
 /// The warnings of a scene, one line each.
 pub(super) fn warnings(model: &Model) -> String {
     model.warnings().iter().map(|warning| format!("warning: {warning}\n")).collect()
+}
+
+/// Adds the estimated error of the mesh and the strain energy.
+pub(super) fn add_error_and_energy(summary: &mut Summary, answer: &Answer) -> Result<(), Error> {
+    let (of_mesh, energy) = answer.error_and_energy()?;
+    summary.discretisation_error = Some(of_mesh);
+    summary.strain_energy = Some(answer.model().parts_of_whole() * energy);
+    Ok(())
 }

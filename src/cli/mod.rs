@@ -12,6 +12,7 @@ mod input;
 mod interrupt;
 mod line;
 mod memory;
+mod modes;
 mod new;
 mod options;
 mod outcome;

@@ -3,11 +3,10 @@
 use serde_json::json;
 
 use super::about::about;
-use super::input::{Content, Input, Source};
+use super::input::{Content, Input, Source, add_error_and_energy};
 use super::options::Sensitivity;
 use super::outcome::{Outcome, Report, unfit, warn};
 use super::settings::settings;
-use super::solve::add_error_and_energy;
 use crate::Error;
 use crate::output::{InWords, Pictures, Wanted, rows_at_kink, tables_of_places, write_files};
 use crate::qp::Watch;

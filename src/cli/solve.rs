@@ -6,8 +6,9 @@ use std::path::Path;
 use super::about::about;
 use super::along;
 use super::dynamic;
-use super::input::{Input, Source};
+use super::input::{Input, Source, add_error_and_energy};
 use super::interrupt::Kept;
+use super::modes;
 use super::options::{Accuracy, Solve};
 use super::outcome::{Outcome, Report, unfit, warn};
 use super::settings::settings;
@@ -16,7 +17,7 @@ use crate::Error;
 use crate::qp;
 use crate::qp::{Goal, Method, Settings, Solution, Start, Watch, read_vector};
 use crate::scene::{Answer, Scene};
-use crate::study::{Summary, TotalErrorGoal};
+use crate::study::TotalErrorGoal;
 
 /// Assembly that takes at most this many seconds is done even if no time is left: the report can then state the time that the rest
 /// needs.
@@ -30,10 +31,13 @@ pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome
     let watch = &options.time.map_or_else(|| watch.clone(), |time| watch.within(time));
     let source = Source::read(&options.input, &options.common.limits)?;
     let mut report_seconds = 0.0;
-    if let Source::Scene(scene, _) = &source {
+    if let Source::Scene(scene, read_seconds) = &source {
         report_seconds = REPORT * assembly_seconds(scene, options, watch)?;
-        if scene.analysis.is_some() {
+        if scene.dynamic().is_some() {
             return motion(options, scene, watch);
+        }
+        if scene.modes().is_some() {
+            return modes::run(options, scene, *read_seconds, watch);
         }
     }
     if let Some(bound) = options.total_error {
@@ -147,14 +151,6 @@ fn best_of(input: &Input, start: &Start, settings: &Settings) -> Result<Solution
         }
         solved => solved.map_err(|error| input.explain(error)),
     }
-}
-
-/// Adds the estimated error of the mesh and the strain energy.
-pub(super) fn add_error_and_energy(summary: &mut Summary, answer: &Answer) -> Result<(), Error> {
-    let (of_mesh, energy) = answer.error_and_energy()?;
-    summary.discretisation_error = Some(of_mesh);
-    summary.strain_energy = Some(answer.model().parts_of_whole() * energy);
-    Ok(())
 }
 
 /// Reports an answer, and writes the output of `--out`.

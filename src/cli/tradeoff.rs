@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::about::about;
-use super::input::{Input, build, read_scene, scene_title, warnings};
+use super::input::{Input, build, read_scene, rests, scene_title, warnings};
 use super::options;
 use super::outcome::{OfPart, Outcome, Report, warn};
 use crate::Error;
@@ -29,7 +29,10 @@ pub(super) fn run(options: &options::Tradeoff, watch: &Watch) -> Result<Outcome,
         return reported(options, watch, &about(&input.title), &measured, &measured, "");
     }
     let scene = read_scene(&options.input, &options.limits)?;
-    let moves = scene.analysis.is_some();
+    let moves = scene.dynamic().is_some();
+    if !moves {
+        rests(&scene)?;
+    }
     let model = if moves {
         scene.build_within(options.limits.most_memory())?
     } else {

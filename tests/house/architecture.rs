@@ -172,6 +172,7 @@ fn libraries_stay_in_their_rooms() {
             &[
                 "qp/linear/cholesky.rs",
                 "qp/linear/dense_factor.rs",
+                "qp/linear/eigen",
                 "qp/linear/factor.rs",
                 "qp/linear/of_faer.rs",
                 "qp/linear/ordering.rs",

@@ -294,7 +294,7 @@ fn obstacles_that_cannot_move_so_are_refused() {
         (bar(4, json!({"mass": 0}), json!({"duration": 1})), "obstacles[0].mass"),
         (bar(4, json!({"speed": 1}), json!({"duration": 1})), "only an obstacle with a `mass` has a speed"),
         (bar(4, json!({"force": 1}), json!({"duration": 1})), "needs its `mass`"),
-        (equilibrium, "only a motion has masses"),
+        (equilibrium, "only motions and modes have masses"),
         (bar(4, json!({}), moving(json!({"obstacle": 1}))), "there is no obstacles[1]"),
         (bar(4, json!({"mass": 1}), moving(json!({}))), "by its own inertia"),
         (bar(4, json!({}), midpoint), "take `fox-goodwin`"),

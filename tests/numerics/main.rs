@@ -15,6 +15,7 @@ mod extremes;
 mod findings;
 mod hostile;
 mod methods;
+mod modes;
 mod obstacle_problems;
 mod penalty_ladder;
 mod precision;

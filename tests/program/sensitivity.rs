@@ -46,7 +46,7 @@ fn names_that_do_not_exist_and_inputs_without_derivatives_are_answered_in_one_se
     let mut moving = scene();
     moving["material"]["density"] = json!(1);
     moving["analysis"] = json!({"dynamic": {"step": 0.1, "duration": 1}});
-    derivatives(&desk, &moving, &["--of", "force"]).fails_with(1, &["a motion has no derivatives here"]);
+    derivatives(&desk, &moving, &["--of", "force"]).fails_with(1, &["only an equilibrium has derivatives here"]);
 }
 
 #[test]

@@ -17,6 +17,7 @@ mod inclined_supports;
 mod loads;
 mod materials;
 mod mesh_scenes;
+mod modes;
 mod mortar;
 mod obstacle_rows;
 mod obstacles_in_space;

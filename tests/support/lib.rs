@@ -17,6 +17,7 @@ pub mod gmsh_forms;
 pub mod impact;
 pub mod key_scenes;
 pub mod manufactured;
+pub mod modal;
 pub mod oracles;
 pub mod pair_scenes;
 pub mod plane_scenes;

@@ -32,6 +32,7 @@ pub use draw::drawing::Drawing;
 pub use file::{remove_files, write_atomically, write_files, write_streamed};
 pub use folder::calculix::CalculixFiles;
 pub use folder::gallery::{Pictures, Wanted};
+pub use folder::modes::ModesShown;
 pub use folder::motion::MotionFolder;
 pub use folder::tables::of_model as tables_of_model;
 pub use folder::vtu::{Array, Unstructured};

@@ -39,6 +39,7 @@ mod linear;
 mod matrix_market;
 pub mod memory;
 mod method;
+mod modes;
 mod panics;
 mod petsc;
 mod plan;
@@ -141,6 +142,13 @@ pub fn each_of_many<T: Send>(
 /// As [`solve`].
 pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
     solve(problem, &Settings::with_method(Method::qp()))
+}
+
+impl SymmetricMatrix {
+    /// The matrix as a Matrix Market file of this name, by its lower triangle.
+    pub fn file(&self, name: &'static str) -> file::Streamed<'_> {
+        matrix_market::symmetric_file(name, self)
+    }
 }
 
 impl ContactProblem {

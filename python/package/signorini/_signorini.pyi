@@ -33,6 +33,7 @@ __all__ = [
     "_vjp",
     "compare",
     "prepare",
+    "modes",
     "sensitivity",
     "solve",
     "solve_qp",
@@ -776,6 +777,28 @@ def sensitivity(
     there are also `places`, the derivatives by the coordinates of each node, one row per node.
 
     Raises `SceneError` for a name that does not exist, with those that do, and for a motion; and the exceptions of `solve`.
+    """
+
+def modes(
+    scene: Scene,
+    count: int,
+    *,
+    method: str | None = None,
+    tolerance: float | None = None,
+    threads: int | None = None,
+    memory: float | None = None,
+) -> dict[str, Any]:
+    """The lowest natural vibrations of a scene about its equilibrium: closed contact rows stay closed, open ones stay open.
+
+    count: number of modes, from 1 to 1000. Every material needs a density. Others as in `solve`.
+
+    A dictionary with `modes`, `closed` and `undecided` (row indices), `unproven` (the reason if no row is proven, or None),
+    `is_complete` (no frequency below the last is missed), `rigid_motions`, `mass` (of the whole bodies) and `seconds`. Each mode is a
+    dictionary with `frequency` in one over time, `frequency_open` (with undecided rows open), `residual` (dimensionless),
+    `participation` and `effective_mass` (in mass) for each axis, `opens` and `closes` (the `amplitude` in length, with `row`, `node` and
+    `obstacle`; None if no row does), and `displacement`, one row per node, with mass 1.
+
+    Raises `SceneError` for a count that is not allowed and for a material without density; and the exceptions of `solve`.
     """
 
 def total_error(

@@ -2,6 +2,7 @@
 
 mod dual;
 pub mod exact;
+pub mod modes;
 pub mod promises;
 
 use nalgebra::{DMatrix, DVector};

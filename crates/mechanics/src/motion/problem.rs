@@ -239,14 +239,13 @@ impl DynamicProblem {
     pub(super) fn combination(&self, mass: f64, damping: f64, stiffness: f64) -> Result<SymmetricMatrix, Error> {
         let [of_mass, of_stiffness] = self.damping;
         let (m, k) = (mass + damping * of_mass, stiffness + damping * of_stiffness);
-        let parts = [(m, &self.mass), (k, self.statics.stiffness())];
-        let entries: Vec<_> = parts
-            .into_iter()
-            .filter(|part| part.0 != 0.0)
-            .flat_map(|(factor, matrix)| matrix.lower().triplets().map(move |(i, j, value)| (i, j, factor * value)))
-            .collect();
-        let dofs = self.statics.dofs();
-        Ok(SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries)?)?)
+        let stiffness = self.statics.stiffness();
+        Ok(match (m == 0.0, k == 0.0) {
+            // A mass alone may be diagonal.
+            (_, true) => self.mass.times(m)?,
+            (true, _) => stiffness.times(k)?,
+            _ => stiffness.combined(k, m, &self.mass)?,
+        })
     }
 
     /// Subtracts `factor C v` from a force.

@@ -18,6 +18,7 @@ pub(crate) mod answers;
 pub(crate) mod derivatives;
 pub(crate) mod input;
 pub(crate) mod models;
+mod modes;
 mod motions;
 
 pub use answers::answer::{Answer, Forces};
@@ -36,5 +37,6 @@ pub use models::rows::ContactRow;
 pub use models::set_up::HeldNode;
 pub use models::set_up::Hold;
 pub use models::unknowns::Meaning;
+pub use modes::ModalAnalysis;
 pub use motions::dynamics::Dynamics;
 pub use motions::watched::WatchedPoint;

@@ -4,6 +4,7 @@ pub(crate) mod calculix;
 mod fields;
 // A motion needs only its fields and the scene of a picture.
 pub(crate) mod gallery;
+pub(crate) mod modes;
 pub(crate) mod motion;
 mod motion_table;
 mod msh;

@@ -17,7 +17,7 @@ const SHELL: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 
 /// In the order of loading.
-const SCRIPTS: [&str; 17] = [
+const SCRIPTS: [&str; 18] = [
     include_str!("unpack.js"),
     include_str!("numbers.js"),
     include_str!("surface.js"),
@@ -34,6 +34,7 @@ const SCRIPTS: [&str; 17] = [
     include_str!("levels.js"),
     include_str!("along.js"),
     include_str!("sensitivity.js"),
+    include_str!("modes.js"),
     include_str!("page.js"),
 ];
 

@@ -8,6 +8,7 @@ mod along;
 mod body;
 mod html;
 mod model;
+mod modes;
 mod motion;
 mod packed;
 mod plots;

@@ -6,6 +6,7 @@ use serde_json::Value;
 use super::about::About;
 use super::along::AlongShown;
 use super::body::{Body, Shape};
+use super::modes::ModeShown;
 use super::motion::MotionShown;
 use super::packed::{Packed, Packer};
 use super::plots::PlotShown;
@@ -66,6 +67,8 @@ pub(super) struct Page<'a> {
     pub sweep: Option<SweepShown<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<MotionShown>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub modes: Vec<ModeShown>,
 }
 
 /// The names of units.
@@ -128,6 +131,7 @@ impl<'a> Page<'a> {
             plots: Vec::new(),
             sweep: None,
             motion: None,
+            modes: Vec::new(),
         }
     }
 

@@ -20,7 +20,7 @@ async function assemble() {
   const began = performance.now(),
     page = document.getElementById("page"),
     data = await unpackedData();
-  const summary = data.report?.methods?.[0] ?? data.report?.answer ?? data.report,
+  const summary = data.report?.methods?.[0] ?? data.report?.answer ?? (data.report?.modes ? null : data.report),
     notes = data.body ? [EXACTNESS] : [];
   // Black is invisible on a dark page.
   data.colours.lines = data.colours.lines.map(colour => (colour === "#000000" ? "var(--ink)" : colour));
@@ -35,6 +35,7 @@ async function assemble() {
     else if (data.motion) motionSection(page, data, shape, notes);
     else if (data.states) answerSection(page, data, shape, summary);
     sensitivitySection(page, data);
+    modesSection(page, data, shape);
     if (data.report?.levels) levelsSection(page, data, still);
     questionSection(page, data, shape, summary);
     certificateSection(page, data);

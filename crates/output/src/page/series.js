@@ -208,6 +208,10 @@ function motionSection(page, data, shape, notes) {
         `${inUnit(contact.force_max, units.force)} in one step, ${inUnit(contact.force_mean_max, units.force)} on ${mean}`,
     ],
     ["energy", `change ${shown(report.energy.change, 3)}, largest gain ${shown(report.energy.gain, 3)}`],
+    [
+      "energy taken",
+      `${shown(report.energy.damped, 3)} ${workUnit(units)} by damping, ${shown(report.energy.taken_by_scheme, 3)} ${workUnit(units)} by the scheme`,
+    ],
   ]);
   if (several)
     table(

@@ -31,6 +31,7 @@ function input(host, type, settings, label = null) {
 function pressed(host, text, act) {
   const button = Object.assign(element("button", host, text), { type: "button" });
   button.addEventListener("click", act);
+  return button;
 }
 
 /** A legend: each entry has a text, and the shapes of its mark as [name, attributes] in a square of 20. */

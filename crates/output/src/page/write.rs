@@ -11,6 +11,7 @@ use super::along::AlongShown;
 use super::body::Shape;
 use super::html::write_page;
 use super::model::Page;
+use super::modes::modes_shown;
 use super::motion::{MotionFrames, MotionShown};
 use super::packed::Packer;
 use super::plots::PlotShown;
@@ -27,7 +28,7 @@ use crate::reports::report::proven_text;
 use crate::view::along::Along;
 use crate::view::curves::{error_plot, history_plots, sweep_plots};
 use signorini_mechanics::Error;
-use signorini_mechanics::scene::{Answer, Model, Units};
+use signorini_mechanics::scene::{Answer, ModalAnalysis, Model, Units};
 use signorini_mechanics::study::{Agreement, Summary, Sweep, TotalError};
 use signorini_qp::Iteration;
 
@@ -103,6 +104,25 @@ impl About {
         let (mut packer, shape) = (Packer::default(), Shape::with_inside(answer.model()));
         let page = of_answer(self, answer, summary, &summary.solution.history, (&shape, &mut packer))?;
         write_page(folder, &Page { report: timeless(value(report)?), ..page }, packer, still(answer)?.as_ref())
+    }
+
+    /// The page of natural vibrations about an equilibrium: `report` is the object of `report.json`.
+    ///
+    /// # Errors
+    /// As [`write_answer`](Self::write_answer).
+    pub fn write_modes(
+        &self,
+        folder: &Path,
+        (found, summary): (&ModalAnalysis, Option<&Summary>),
+        report: &impl Serialize,
+    ) -> Result<(), Error> {
+        let (mut packer, shape, answer) = (Packer::default(), Shape::of(found.answer.model()), &found.answer);
+        let page = match summary {
+            Some(summary) => of_answer(self, answer, summary, &summary.solution.history, (&shape, &mut packer))?,
+            None => Page::of_model(self, answer.model(), &shape, &mut packer),
+        };
+        let modes = modes_shown(found, &shape, &mut packer)?;
+        write_page(folder, &Page { report: timeless(value(report)?), modes, ..page }, packer, still(answer)?.as_ref())
     }
 
     /// The page of a trade-off with its pictures.

@@ -1,5 +1,6 @@
 //! What the reports have in common: a text for reading, and for measurements a table and plots.
 
+use super::modes::modes_text;
 use super::motion_tradeoff::{motion_tradeoff_csv, motion_tradeoff_plot, motion_tradeoff_text};
 use super::report::{compare_text, solve_text, sweep_text, verify_text};
 use super::sensitivity::{kink_text, places_csv, sensitivity_text};
@@ -7,7 +8,7 @@ use super::tradeoff::{tradeoff_csv, tradeoff_text};
 use super::tradeoff_plot::{total_error_plot, tradeoff_plot};
 use crate::draw::drawing::Drawing;
 use crate::plots::medium::Medium;
-use signorini_mechanics::scene::{Sensitivities, Units};
+use signorini_mechanics::scene::{ModalAnalysis, Sensitivities, Units};
 use signorini_mechanics::study::{Agreement, MotionTradeoff, Summary, Sweep, Tradeoff, Verification};
 
 /// A result that is reported as a text for reading.
@@ -40,6 +41,12 @@ impl InWords for (&[Summary; 3], &Agreement) {
 impl InWords for Sensitivities {
     fn text(&self, title: &str, _: &Units) -> String {
         sensitivity_text(title, self)
+    }
+}
+
+impl InWords for ModalAnalysis {
+    fn text(&self, title: &str, units: &Units) -> String {
+        modes_text(title, self, units)
     }
 }
 

@@ -3,6 +3,7 @@
 pub(crate) mod certificate;
 pub(crate) mod in_words;
 pub(crate) mod means;
+pub(crate) mod modes;
 pub(crate) mod motion_report;
 pub(crate) mod motion_tradeoff;
 pub(crate) mod report;

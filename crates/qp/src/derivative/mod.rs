@@ -197,6 +197,11 @@ impl Derivatives {
         }
     }
 
+    /// The reason, in words, if nothing is known about the rows.
+    pub fn why_unknown(&self) -> Option<&str> {
+        if let Rows::Unknown { why } = &self.rows { Some(why) } else { None }
+    }
+
     /// The same under a watch that can stop the solves of its derivatives.
     pub fn watched(&self, watch: &Watch) -> Self {
         Derivatives { settings: self.settings.clone().watched(watch), ..self.clone() }

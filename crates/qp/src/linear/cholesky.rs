@@ -255,7 +255,11 @@ impl Analysis {
 
     /// The structure of the lower triangle of P A P', rows in no order, and its entries as `entry(row, column, value)`
     /// makes them.
-    fn permuted<T: Real>(&self, lower: &SparseMatrix, entry: impl Fn(usize, usize, f64) -> T) -> Permuted<T> {
+    pub(crate) fn permuted<T: Real>(
+        &self,
+        lower: &SparseMatrix,
+        entry: impl Fn(usize, usize, f64) -> T,
+    ) -> Permuted<T> {
         let order = self.structure.order();
         let mut place = vec![0; order.len()];
         order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
@@ -274,7 +278,13 @@ impl Analysis {
         Permuted { starts, rows, values }
     }
 
-    fn supernodes(&self) -> Option<&supernodal::SymbolicSupernodalCholesky<usize>> {
+    /// The columns of the matrix in the order of elimination.
+    pub(crate) fn order(&self) -> &[usize] {
+        self.structure.order()
+    }
+
+    /// The block columns; `None` for a whole triangle, and for a matrix without columns.
+    pub(crate) fn supernodes(&self) -> Option<&supernodal::SymbolicSupernodalCholesky<usize>> {
         let Structure::Sparse(symbolic) = &self.structure else { return None };
         match symbolic.raw() {
             fc::SymbolicCholeskyRaw::Supernodal(inner) => Some(inner),
@@ -290,6 +300,14 @@ impl Cholesky {
     /// [`Error::NotConvex`] for a matrix that is not positive definite, [`Error::Numerical`] for a lack of memory.
     pub fn of(matrix: &SymmetricMatrix) -> Result<Self, Error> {
         Ok(Cholesky::factorised(matrix)?)
+    }
+
+    /// The same with this number of threads.
+    ///
+    /// # Errors
+    /// As [`Cholesky::of`].
+    pub fn on(matrix: &SymmetricMatrix, threads: usize) -> Result<Self, Error> {
+        Ok(Analysis::of(matrix)?.with_threads(threads).factor(matrix)?)
     }
 
     /// The same with an error that names the pivot.
@@ -363,8 +381,16 @@ impl Cholesky {
         LowerTriangle::new(size, block.unwrap_or_default())
     }
 
+    /// Structure and values of a factor in block columns of doubles.
+    pub(crate) fn block_columns(&self) -> Option<(&supernodal::SymbolicSupernodalCholesky<usize>, &[f64])> {
+        match &self.values {
+            Values::Double(values) => Some((self.supernodes()?, values)),
+            Values::Single(_) | Values::Dense(_) => None,
+        }
+    }
+
     /// The structure of the factor, in block columns.
-    pub(super) fn supernodes(&self) -> Option<&supernodal::SymbolicSupernodalCholesky<usize>> {
+    pub(crate) fn supernodes(&self) -> Option<&supernodal::SymbolicSupernodalCholesky<usize>> {
         self.analysis.supernodes()
     }
 
@@ -379,8 +405,8 @@ impl Cholesky {
     }
 
     /// The columns of the matrix in the order of elimination.
-    pub(super) fn order(&self) -> &[usize] {
-        self.analysis.structure.order()
+    pub(crate) fn order(&self) -> &[usize] {
+        self.analysis.order()
     }
 
     /// The smallest pivot, min over j of L_jj^2: small relative to the diagonal of A if A is close to singular.

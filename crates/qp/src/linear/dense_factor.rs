@@ -37,7 +37,7 @@ pub(super) fn factorise(size: usize, mut values: Vec<f64>, threads: usize) -> Re
 }
 
 /// The way of faer to work on this number of threads.
-pub(super) fn par(threads: usize) -> Par {
+pub fn par(threads: usize) -> Par {
     if threads > 1 { Par::rayon(threads) } else { Par::Seq }
 }
 

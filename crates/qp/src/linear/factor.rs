@@ -52,7 +52,7 @@ impl From<FaerError> for FactorError {
 }
 
 /// Calls faer; a panic in the call is a failure like any other.
-pub(super) fn call<T>(work: impl FnOnce() -> Result<T, FactorError>) -> Result<T, FactorError> {
+pub fn call<T>(work: impl FnOnce() -> Result<T, FactorError>) -> Result<T, FactorError> {
     guarded(work).map_err(FactorError::Failed)?
 }
 
@@ -114,7 +114,7 @@ impl Real for f32 {
 pub(super) type Factor<'a, T> = supernodal::SupernodalLltRef<'a, usize, T>;
 
 /// The lower triangle of a matrix in compressed columns, in the order of elimination; the rows of a column are in any order.
-pub(super) struct Permuted<T> {
+pub(crate) struct Permuted<T> {
     pub starts: Vec<usize>,
     pub rows: Vec<usize>,
     pub values: Vec<T>,

@@ -133,6 +133,87 @@ impl SymmetricMatrix {
         Self::from_lower(SparseMatrix::from_triplets(self.dim(), self.dim(), &entries)?)
     }
 
+    /// The matrix `R'A R`; column i of `rows` holds row i of R (n x m), for A (n x n).
+    ///
+    /// # Errors
+    /// [`Error::Shape`] for a matrix R of another height, [`Error::NotFinite`] if entries overflow.
+    pub fn congruent(&self, rows: &SparseMatrix) -> Result<Self, Error> {
+        if rows.columns() != self.dim() {
+            let (found, expected) = ((rows.columns(), rows.rows()), (self.dim(), rows.rows()));
+            return Err(Error::Shape { name: "change of unknowns", found, expected });
+        }
+        let mut entries = Vec::with_capacity(self.lower.entries());
+        for (i, j, value) in self.lower.triplets() {
+            for (p, a) in rows.column(i) {
+                for (q, b) in rows.column(j) {
+                    // Entries off the diagonal have a mirror image (j, i).
+                    match (i == j, p >= q) {
+                        (true, true) => entries.push((p, q, a * value * b)),
+                        (true, false) => {}
+                        (false, true) if p == q => entries.push((p, p, 2.0 * a * value * b)),
+                        (false, true) => entries.push((p, q, a * value * b)),
+                        (false, false) => entries.push((q, p, a * value * b)),
+                    }
+                }
+            }
+        }
+        Self::from_lower(SparseMatrix::from_triplets(rows.rows(), rows.rows(), &entries)?)
+    }
+
+    /// The matrix `a A + b B`, with a place for every entry of both.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] for a matrix of another size, [`Error::NotFinite`] if entries overflow.
+    pub fn combined(&self, own: f64, factor: f64, other: &Self) -> Result<Self, Error> {
+        if other.dim() != self.dim() {
+            let (found, expected) = ((other.dim(), other.dim()), (self.dim(), self.dim()));
+            return Err(Error::Shape { name: "mass", found, expected });
+        }
+        let places = self.lower.entries().max(other.lower.entries());
+        let (mut starts, mut rows, mut values) =
+            (Vec::with_capacity(self.dim() + 1), Vec::with_capacity(places), Vec::with_capacity(places));
+        starts.push(0);
+        for column in 0..self.dim() {
+            let mut others = other.lower.column(column).peekable();
+            let mut push = |row: usize, value: f64| {
+                rows.push(row as u32);
+                values.push(value);
+            };
+            for (row, value) in self.lower.column(column) {
+                while let Some((above, entry)) = others.next_if(|entry| entry.0 < row) {
+                    push(above, factor * entry);
+                }
+                let shared = others.next_if(|entry| entry.0 == row).map_or(0.0, |entry| factor * entry.1);
+                push(row, own * value + shared);
+            }
+            others.for_each(|(row, entry)| push(row, factor * entry));
+            starts.push(rows.len());
+        }
+        finite(SparseMatrix::from_parts(self.dim(), starts, rows, values))
+    }
+
+    /// Every entry multiplied by a number, which may have a unit.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] if entries overflow.
+    pub fn times(&self, factor: f64) -> Result<Self, Error> {
+        finite(self.lower.with_values(self.lower.values().iter().map(|value| factor * value).collect()))
+    }
+
+    /// The matrix P A P' with its columns in another order: column `order[k]` of A becomes column k.
+    pub(crate) fn ordered(&self, order: &[usize]) -> Self {
+        let mut place = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
+        let entries: Vec<_> = (self.lower.triplets())
+            .map(|(i, j, value)| (place[i].max(place[j]), place[i].min(place[j]), value))
+            .collect();
+        match SparseMatrix::from_triplets(self.dim(), self.dim(), &entries) {
+            Ok(lower) => SymmetricMatrix { lower },
+            // Not reached: places and values are those of a valid matrix.
+            Err(_) => self.clone(),
+        }
+    }
+
     /// Number of rows and of columns.
     pub fn dim(&self) -> usize {
         self.lower.columns()
@@ -234,6 +315,17 @@ impl SymmetricMatrix {
             y[column - first] += sum;
         }
         y
+    }
+}
+
+/// The matrix of a sorted lower triangle without entries that overflow.
+fn finite(lower: SparseMatrix) -> Result<SymmetricMatrix, Error> {
+    let beyond = lower.triplets().find(|entry| !entry.2.is_finite());
+    match beyond {
+        Some((row, column, value)) => {
+            Err(Error::NotFinite { name: "matrix", at: format!("({row}, {column})"), value, allowed: "finite" })
+        }
+        None => Ok(SymmetricMatrix { lower }),
     }
 }
 

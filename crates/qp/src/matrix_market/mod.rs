@@ -17,11 +17,16 @@ pub use directory::{STIFFNESS, read_other_end, read_problem, read_vector, soluti
 use std::io::{self, Write};
 
 use crate::file::Streamed;
-use crate::linear::SparseMatrix;
+use crate::linear::{SparseMatrix, SymmetricMatrix};
 
 /// The Matrix Market file of a vector in any unit, as text: an array of one column, one entry per line, in the order of the vector.
 pub fn format_vector(vector: &[f64]) -> String {
     Streamed::new("vector", |out| write_columns(out, &[vector])).text()
+}
+
+/// A matrix by its lower triangle, under this name.
+pub fn symmetric_file<'a>(name: &'static str, matrix: &'a SymmetricMatrix) -> Streamed<'a> {
+    Streamed::new(name, |out| write_entries(out, matrix.lower(), "symmetric"))
 }
 
 /// Writes a sparse matrix with `symmetry` `general`, or the lower triangle of a matrix with `symmetry` `symmetric`.

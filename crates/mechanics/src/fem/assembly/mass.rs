@@ -165,6 +165,15 @@ fn lumped(element: &ElementMass) -> Vec<f64> {
 pub(crate) fn free_mass(body: &ElasticBody, dofs: &DofMap, nodal: &SparseMatrix) -> Result<SymmetricMatrix, Error> {
     body.check_nodal("dof map", dofs.nodal_count())?;
     let dimension = body.dimension();
+    let nodal = match dofs.basis.is_nodal() {
+        true => nodal.clone(),
+        false => {
+            let values =
+                (0..nodal.columns()).flat_map(|node| dofs.basis.values(node).map(move |(of, share)| (of, node, share)));
+            let values = SparseMatrix::from_triplets(nodal.rows(), nodal.columns(), &values.collect::<Vec<_>>())?;
+            SymmetricMatrix::from_lower(nodal.clone())?.congruent(&values)?.lower().clone()
+        }
+    };
     let mut entries = Vec::with_capacity(dimension * nodal.entries());
     for (row, column, value) in nodal.triplets() {
         let [of_row, of_column] = [row, column].map(|node| dofs.axes(node));

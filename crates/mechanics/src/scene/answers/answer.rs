@@ -100,6 +100,18 @@ impl Answer {
         })
     }
 
+    /// The answer with its nodes moved by `factor` times a nodal motion (length `dim * n_nodes`, together in length): the equilibrium at a moment of a
+    /// vibration. Contact rows, pressures and the values of the unknowns stay.
+    ///
+    /// # Errors
+    /// [`qp::Error::Length`] for a motion of another mesh.
+    pub fn moved_by(&self, motion: &[f64], factor: f64) -> Result<Self, Error> {
+        qp::Error::check_length("motion", motion.len(), self.displacement.len(), "nodal dofs")?;
+        let displacement = self.displacement.iter().zip(motion).map(|(own, moved)| own + factor * moved).collect();
+        let (stress, forces, resultants) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
+        Ok(Answer { displacement, stress, forces, resultants, ..self.clone() })
+    }
+
     /// The discretised scene to which the answer belongs.
     pub fn model(&self) -> &Arc<Model> {
         &self.model

@@ -141,24 +141,33 @@ impl Sensitivities {
         settings: &Settings,
     ) -> Result<Self, Error> {
         if scene.analysis.is_some() {
-            let message = "a motion has no derivatives here, only an equilibrium has; leave `analysis` out";
+            let message = "only an equilibrium has derivatives here, no motion and no modes; leave `analysis` out";
             return Err(wrong("analysis", message));
         }
         let outputs: Vec<Output> = outputs.iter().map(|name| Output::of(name, &model)).collect::<Result<_, _>>()?;
         let parameters: Vec<Parameter> =
             parameters.iter().map(|name| scene.parameter(name)).collect::<Result<_, _>>()?;
-        let explain = |error: signorini_qp::Error| model.explain(error);
-        let settings = settings.clone().with_proof();
-        let prepared = Prepared::for_gaps(model.problem(), 1, &settings).map_err(explain)?;
-        let solution = prepared.solve(model.problem().gap()).map_err(explain)?;
-        let answer = Answer::of(model.clone(), &solution)?;
-        let derivatives = prepared.derivatives(&solution).map_err(explain)?;
+        let (answer, solution, derivatives) = proven(&model, settings)?;
         let clock = Instant::now();
         let at = At { scene, answer: &answer, derivatives: &derivatives };
         let outputs = at.all(&outputs, &parameters)?;
         let (at_kink, seconds) = (derivatives.at_kink().to_vec(), clock.elapsed().as_secs_f64());
         Ok(Sensitivities { answer, solution, outputs, at_kink, seconds })
     }
+}
+
+/// The answer of a model, with a proof of its rows.
+///
+/// # Errors
+/// Those of [`signorini_qp::solve`].
+pub(crate) fn proven(model: &Arc<Model>, settings: &Settings) -> Result<(Answer, Solution, Derivatives), Error> {
+    let explain = |error: signorini_qp::Error| model.explain(error);
+    let settings = settings.clone().with_proof();
+    let prepared = Prepared::for_gaps(model.problem(), 1, &settings).map_err(explain)?;
+    let solution = prepared.solve(model.problem().gap()).map_err(explain)?;
+    let answer = Answer::of(model.clone(), &solution)?;
+    let derivatives = prepared.derivatives(&solution).map_err(explain)?;
+    Ok((answer, solution, derivatives))
 }
 
 /// An answer of a scene with its derivatives.

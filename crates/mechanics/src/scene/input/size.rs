@@ -1,6 +1,6 @@
 //! The size of a scene before it is built: dofs, entries, factor, bytes.
 
-use super::schema::Scene;
+use super::schema::{AnalysisSpec, ModesSpec, Scene};
 use crate::bytes;
 use crate::error::Error;
 use crate::fem::ElasticBody;
@@ -68,8 +68,12 @@ impl Scene {
             size.multigrid_bytes += mesh + Estimate::bytes_of_hierarchy(dofs, entries);
             size.model_bytes += mesh + bytes::of_model(dofs, entries);
         }
-        if self.analysis.is_some() {
-            size.bytes += bytes::of_motion(size.dofs, size.stiffness_entries);
+        match &self.analysis {
+            Some(AnalysisSpec::Dynamic(_)) => size.bytes += bytes::of_motion(size.dofs, size.stiffness_entries),
+            Some(AnalysisSpec::Modes(ModesSpec { count })) => {
+                size.bytes += bytes::of_modes(*count as f64, size.dofs, size.stiffness_entries, size.factor_entries);
+            }
+            None => {}
         }
         size
     }

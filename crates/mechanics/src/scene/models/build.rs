@@ -80,7 +80,7 @@ impl Scene {
         warnings.extend(unit_of_young(&body, &self.units));
         warnings.extend(self.suspect(&body, &dofs)?);
         let (title, units) = (self.title.clone(), self.units.clone());
-        let moves = self.analysis.is_some();
+        let (moves, vibrates) = (self.dynamic().is_some(), self.modes().is_some());
         let nodes = body.mesh().nodes();
         let unknowns = Unknowns::of(nodes, &dofs, body.dimension(), &rigid_faces, &obstacles)?;
         let ties = self.tied(&body, &dofs, &unknowns)?;
@@ -91,8 +91,8 @@ impl Scene {
                     "force",
                     "in a motion an obstacle that a force presses needs its `mass`; give it, or let the obstacle stand",
                 ),
-                (false, Some(_)) => {
-                    ("mass", "only a motion has masses; leave it out of an equilibrium, or give `analysis`")
+                (false, Some(_)) if !vibrates => {
+                    ("mass", "only motions and modes have masses; leave it out of an equilibrium, or give `analysis`")
                 }
                 _ => continue,
             };
@@ -116,6 +116,7 @@ impl Scene {
                 ties,
                 warnings,
                 moves,
+                vibrates,
             },
             self.gap,
         )

@@ -64,10 +64,10 @@ impl Scene {
     }
 
     fn described(&self) -> impl Iterator<Item = DescribedBody<'_>> {
-        let (model, moves) = (self.model, self.analysis.is_some());
+        let (model, has_mass) = (self.model, self.analysis.is_some());
         let of_body = move |material, parts, place: &str| {
             let place = place.into();
-            BodyMaterials { material, parts, place, model, moves }
+            BodyMaterials { material, parts, place, model, has_mass }
         };
         let materials = of_body(self.material.as_ref(), &self.materials, "");
         let unstrained = Unstrained { temperature: &self.temperature, stress: &self.initial_stress };
@@ -146,7 +146,7 @@ impl DescribedBody<'_> {
             other => self.at_body(other),
         };
         let body = ElasticBody::new(self.mesh()?, first, formulation).map_err(at_body)?;
-        let body = self.unstrained.placed(self.materials.placed(body)?, &self.place, self.scene.analysis.as_ref())?;
+        let body = self.unstrained.placed(self.materials.placed(body)?, &self.place, self.scene.dynamic())?;
         body.with_integration(self.spec.shape().integration()).map_err(|error| match error {
             Error::Mesh { message } => wrong(self.path(".integration"), message),
             other => other,

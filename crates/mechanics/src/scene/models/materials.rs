@@ -16,7 +16,7 @@ pub(crate) struct BodyMaterials<'a> {
     pub place: String,
     pub model: ModelSpec,
     /// `true` if the analysis is dynamic and needs densities.
-    pub moves: bool,
+    pub has_mass: bool,
 }
 
 impl BodyMaterials<'_> {
@@ -119,7 +119,7 @@ impl BodyMaterials<'_> {
         };
         match spec.density {
             Some(density) => material.with_density(density).map_err(at),
-            None if self.moves => Err(wrong(path, "a dynamic analysis needs a `density`; give it")),
+            None if self.has_mass => Err(wrong(path, "motions and modes need a `density`; give it")),
             None => Ok(material),
         }
     }

@@ -8,6 +8,7 @@ mod elastic;
 mod explain;
 mod facing;
 pub(crate) mod held;
+mod inertia;
 pub(crate) mod load;
 mod materials;
 pub(crate) mod model;

@@ -59,7 +59,7 @@ impl Model {
     /// Rows first: they decide whether the body is held, before anything expensive is built.
     pub(crate) fn new(parts: Parts, gap: f64) -> Result<Self, Error> {
         let built = rows::build(&parts, gap)?;
-        if !parts.moves {
+        if !(parts.moves || parts.vibrates && built.rows.is_empty()) {
             RigidBodyModes::of_parts(&parts).check_held(&parts, &built.rows)?;
         }
         let stiffness = stiffness(&parts.body, &parts.dofs).and_then(|of_body| parts.on_springs(of_body));

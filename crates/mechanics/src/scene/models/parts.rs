@@ -36,8 +36,10 @@ pub(crate) struct Parts {
     pub unknowns: Unknowns,
     pub ties: Ties,
     pub warnings: Vec<Warning>,
-    /// `true` if the analysis is dynamic: inertia then resists motions that no support holds.
+    /// `true` if inertia resists motions that no support holds: in a motion.
     pub moves: bool,
+    /// `true` if the natural vibrations are asked for: without contact rows they need no equilibrium.
+    pub vibrates: bool,
 }
 
 impl Parts {

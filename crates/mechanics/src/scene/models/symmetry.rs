@@ -73,6 +73,11 @@ fn flat_end(body: &ElasticBody, axis: usize, rounding: f64) -> Result<f64, Strin
 }
 
 impl Symmetry {
+    /// Returns `true` if a plane lies across this axis.
+    pub fn crosses(&self, axis: usize) -> bool {
+        self.planes.iter().any(|plane| plane.0 == axis)
+    }
+
     /// Prescribes the displacement of the nodes on the planes.
     pub fn hold(&self, body: &ElasticBody, held: &mut Held) {
         for &(axis, at) in &self.planes {

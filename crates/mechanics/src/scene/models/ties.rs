@@ -59,7 +59,7 @@ impl Scene {
     /// [`Error::Scene`] for a boundary or a node that does not exist, surfaces that do not face each other, an equation without terms, and
     /// for one that supports contradict.
     pub(crate) fn tied(&self, body: &ElasticBody, dofs: &DofMap, unknowns: &Unknowns) -> Result<Ties, Error> {
-        if !self.ties.is_empty() && self.analysis.is_some() {
+        if !self.ties.is_empty() && self.dynamic().is_some() {
             return Err(wrong("ties", "ties are for equilibria only; a motion has only supports"));
         }
         let surfaces = self.tied_surfaces().flatten().filter_map(|name| body.mesh().boundary(name));

@@ -188,23 +188,10 @@ impl Unknowns {
     /// # Errors
     /// None for a matrix of the free dofs.
     pub fn congruent(&self, of_free: SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
-        let Some(on_faces) = &self.on_faces else { return Ok(of_free.with_empty(self.pressed.len())) };
-        let mut entries = Vec::with_capacity(of_free.lower().entries());
-        for (i, j, value) in of_free.lower().triplets() {
-            for (p, a) in on_faces.rows.column(i) {
-                for (q, b) in on_faces.rows.column(j) {
-                    // Entries off the diagonal have a mirror image (j, i).
-                    match (i == j, p >= q) {
-                        (true, true) => entries.push((p, q, a * value * b)),
-                        (true, false) => {}
-                        (false, true) if p == q => entries.push((p, p, 2.0 * a * value * b)),
-                        (false, true) => entries.push((p, q, a * value * b)),
-                        (false, false) => entries.push((q, p, a * value * b)),
-                    }
-                }
-            }
-        }
-        Ok(SymmetricMatrix::from_lower(SparseMatrix::from_triplets(self.count(), self.count(), &entries)?)?)
+        Ok(match &self.on_faces {
+            Some(on_faces) => of_free.congruent(&on_faces.rows)?.with_empty(self.pressed.len()),
+            None => of_free.with_empty(self.pressed.len()),
+        })
     }
 
     /// Returns `true` if there are rigid faces.

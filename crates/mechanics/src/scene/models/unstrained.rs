@@ -4,7 +4,7 @@ use super::selection::{Selection, centroids};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::scene::input::entry::{finite, point, vector, wrong};
-use crate::scene::input::schema::{AnalysisSpec, InitialStressSpec, TemperatureSpec};
+use crate::scene::input::schema::{DynamicSpec, InitialStressSpec, TemperatureSpec};
 
 /// The names of the components of a stress, in their order.
 const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
@@ -24,10 +24,10 @@ impl Unstrained<'_> {
         &self,
         mut body: ElasticBody,
         place: &str,
-        analysis: Option<&AnalysisSpec>,
+        motion: Option<&DynamicSpec>,
     ) -> Result<ElasticBody, Error> {
         for (name, count) in [("temperature", self.temperature.len()), ("initial-stress", self.stress.len())] {
-            if analysis.is_some() && count > 0 {
+            if motion.is_some() && count > 0 {
                 let message = format!("a dynamic analysis has no `{name}`: only an equilibrium has; leave it out");
                 return Err(wrong(format!("{place}{name}"), message));
             }

@@ -6,7 +6,7 @@ use super::loads_in_time::NodalLoads;
 use super::moving_supports::MovingSupports;
 use crate::error::{Error, nearly};
 use crate::fem::Formulation;
-use crate::fem::assembly::{MassForm, free_mass, internal_force, least_over_lumped, nodal_mass, stiffness};
+use crate::fem::assembly::{MassForm, free_mass, internal_force, least_over_lumped, stiffness};
 use crate::fem::body::{ElasticBody, Phase};
 use crate::motion::{
     DynamicProblem, Integrator, MOST_IN_CONTACT, Scheme, SchemeSpec, TimeFunction, frequency_bound, stable_step,
@@ -17,7 +17,7 @@ use crate::scene::input::schema::{AnalysisSpec, DynamicSpec, FieldSpec, Penetrat
 use crate::scene::models::resultants::without_rounding;
 use crate::scene::{Model, Resultant, Warning, WatchedPoint};
 use signorini_qp as qp;
-use signorini_qp::{ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, dot, solve};
+use signorini_qp::{ContactProblem, Method, Settings, SymmetricMatrix, dot, solve};
 
 /// Steps and durations that differ by less than this, relative, are equal up to rounding.
 const STEP_ROUNDING: f64 = 1e-12;
@@ -78,7 +78,10 @@ struct MovingObstacle {
 impl Scene {
     /// The specification of the motion, if the scene has one.
     pub fn dynamic(&self) -> Option<&DynamicSpec> {
-        self.analysis.as_ref().map(|AnalysisSpec::Dynamic(spec)| spec)
+        match &self.analysis {
+            Some(AnalysisSpec::Dynamic(spec)) => Some(spec),
+            _ => None,
+        }
     }
 
     /// The motion of `model`, which this scene built; `None` for a static scene.
@@ -134,8 +137,8 @@ impl Scene {
         let watched = spec.watch.iter().enumerate().map(|(index, spec)| WatchedPoint::new(model, spec, &path(index)));
         let watched = watched.collect::<Result<_, Error>>()?;
         let loads = self.loads_in_time(model.body(), spec)?;
-        let nodal_mass = nodal_mass_of(model, form)?;
-        let mass = mass_of(model, &nodal_mass)?;
+        let nodal_mass = model.nodal_mass(form)?;
+        let mass = model.mass_of(&nodal_mass)?;
         let moving = Self::moving(model, spec, mass, &loads)?;
         let (moving, obstacles) = spec.with_moving_obstacles(model, moving, scheme)?;
         let mut problem = Self::starting(model, spec, moving)?;
@@ -212,7 +215,7 @@ impl Scene {
             if spec.initial_penetration == PenetrationSpec::Refuse {
                 return Err(deepest);
             }
-            let mass = mass_of(model, &nodal_mass_of(model, MassForm::Lumped)?)?;
+            let mass = model.mass(MassForm::Lumped)?;
             displacement = projected(model.problem(), mass, &displacement)?;
         }
         let speed = |obstacle: usize| model.obstacles()[obstacle].inertia().map_or(0.0, |inertia| inertia.speed);
@@ -227,31 +230,12 @@ impl Scene {
     }
 }
 
-/// The mass of the nodes of a model, in one of its forms; the lower triangle.
-fn nodal_mass_of(model: &Model, form: MassForm) -> Result<SparseMatrix, Error> {
-    let contact_nodes: Vec<usize> = model.rows().iter().flat_map(|row| row.ends.iter().map(|end| end.0)).collect();
-    nodal_mass(model.body(), form, &contact_nodes).map_err(|error| match error {
-        Error::Mesh { message } => wrong("body", message),
-        other => located(other, "material."),
-    })
-}
-
-/// The mass of the unknowns of a model, from that of its nodes.
-fn mass_of(model: &Model, nodal_mass: &SparseMatrix) -> Result<SymmetricMatrix, Error> {
-    let parts = &model.parts;
-    let of_body = parts.unknowns.congruent(free_mass(&parts.body, &parts.dofs, nodal_mass)?)?;
-    let of_obstacle = |obstacle: usize| {
-        parts.share_of(obstacle, parts.obstacles[obstacle].inertia().map_or(0.0, |inertia| inertia.mass))
-    };
-    parts.unknowns.with_travels(&of_body, of_obstacle)
-}
-
 /// A bound on the largest frequency of a model with its mass in this form. Rigid faces only reduce it: it is that of the free dofs.
 fn largest_frequency(model: &Model, form: MassForm) -> Result<f64, Error> {
     let parts = &model.parts;
-    let lumped = nodal_mass_of(model, MassForm::Lumped)?;
+    let lumped = model.nodal_mass(MassForm::Lumped)?;
     let of_lumped = match parts.unknowns.has_faces() {
-        false => frequency_bound(model.problem().stiffness(), &mass_of(model, &lumped)?.diagonal()),
+        false => frequency_bound(model.problem().stiffness(), &model.mass_of(&lumped)?.diagonal()),
         true => {
             let mass = free_mass(&parts.body, &parts.dofs, &lumped)?.diagonal();
             frequency_bound(&parts.on_springs(stiffness(&parts.body, &parts.dofs)?)?, &mass)

@@ -1,4 +1,4 @@
-//! The analysis of a scene: its equilibrium, or, if requested, its motion.
+//! The analysis of a scene: its equilibrium, or, if requested, its motion or its natural vibrations.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,15 +6,29 @@ use serde::{Deserialize, Serialize};
 use crate::fem::MassForm;
 use crate::motion::SchemeSpec;
 
-/// The JSON path of the fields in a scene.
+/// The JSON path of the fields of a motion in a scene.
 pub(crate) const PATH: &str = "analysis.dynamic";
 
-/// The analysis; a scene without one is static.
+/// The JSON path of the fields of a request for modes in a scene.
+pub(crate) const MODES: &str = "analysis.modes";
+
+/// What is computed beyond the equilibrium; a scene without it is static.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum AnalysisSpec {
     /// The motion from given displacements and velocities.
     Dynamic(DynamicSpec),
+    /// The natural vibrations about the equilibrium.
+    Modes(ModesSpec),
+}
+
+/// The natural vibrations about the equilibrium: rows that are closed there stay closed. Every material needs a density.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModesSpec {
+    /// Number of the lowest modes, at most 1000.
+    #[schemars(extend("minimum" = 1, "maximum" = 1000))]
+    pub count: usize,
 }
 
 /// The motion of the bodies: the scene integrated in time. Every material needs a density.

@@ -19,7 +19,9 @@ pub(crate) mod spring;
 mod symmetry;
 mod tie;
 
-pub use analysis::{AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, PenetrationSpec, WatchSpec};
+pub use analysis::{
+    AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, ModesSpec, PenetrationSpec, WatchSpec,
+};
 pub use approach::Rule;
 pub use body::{FurtherBodySpec, InitialStressSpec, MaterialPartSpec, MaterialSpec, OrthotropicSpec, TemperatureSpec};
 pub use condition::{Place, SupportSpec};

@@ -135,7 +135,7 @@ impl RigidBodyModes {
     pub fn check_held(&self, parts: &Parts, rows: &[ContactRow]) -> Result<(), Error> {
         let free = self.free(parts, rows);
         let Some(first) = free.first() else { return Ok(()) };
-        let names: Vec<String> = free.iter().map(|motion| self.describe(motion, Sense::Either)).collect();
+        let names = self.names(&free);
         let of_free = parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(parts, dof), first)).collect();
         let travels = self.travels(parts, first);
         let travel = |obstacle: usize| {
@@ -144,6 +144,11 @@ impl RigidBodyModes {
         let direction = parts.unknowns.of_motion(of_free, travel);
         let advice = self.advice(parts, rows, &free);
         Err(qp::Error::UnderHeld { mode: format!("{}: {advice}", names.join(", ")), direction }.into())
+    }
+
+    /// Motions in words.
+    pub fn names(&self, motions: &[Vec<f64>]) -> Vec<String> {
+        motions.iter().map(|motion| self.describe(motion, Sense::Either)).collect()
     }
 
     /// A basis of the motions that nothing resists: unit motions first.
