@@ -58,5 +58,5 @@ def test_a_mode_has_mass_one() -> None:
 def test_a_scene_without_density_is_refused() -> None:
     scene = json.loads(json.dumps(BLOCK))
     del scene["material"]["density"]
-    with pytest.raises(sg.SceneError, match="motions and modes need a `density`"):
+    with pytest.raises(sg.SceneError, match="an analysis needs a `density`"):
         sg.modes(sg.Scene(scene), 1)

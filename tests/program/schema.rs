@@ -239,11 +239,13 @@ fn every_integer_of_the_schema_refuses_all_that_is_no_whole_number_in_digits() {
         "duration": 1e-3, "frames": 2, "watch": [{"node": 0}], "loads-in-time": [{"load": 0, "factor": {"ramp": {"end": 1}}}],
         "obstacles-in-time": [{"obstacle": 0, "shift": 0.1, "factor": {"ramp": {"end": 1}}}]
     }});
+    let mut vibrating = scene();
+    vibrating["analysis"] = json!({"modes": {"count": 3}});
     let mut stepped = scene();
     stepped["body"] = json!({"deck": {"file": "part.inp", "step": 1}});
     let examples = examples().into_iter().map(|name| fs::read_to_string(example(&name)).unwrap());
     let mut kept: BTreeMap<String, (String, Value)> = BTreeMap::new();
-    for scene in examples.map(|text| serde_json::from_str(&text).unwrap()).chain([moving, stepped]) {
+    for scene in examples.map(|text| serde_json::from_str(&text).unwrap()).chain([moving, vibrating, stepped]) {
         conforms(&scene, &schema, &schema).unwrap();
         let mut found = BTreeMap::new();
         integers_of(&scene, "", "", &schema, &mut found);

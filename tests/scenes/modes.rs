@@ -213,7 +213,7 @@ fn no_mode_of_random_scenes_is_missed_or_wrong() {
 fn what_has_no_modes_is_refused_in_one_sentence() {
     let mut weightless = bar(10, 0.0, 1.0);
     weightless["material"].as_object_mut().unwrap().remove("density");
-    assert!(refusal(&weightless, 1).contains("motions and modes need a `density`"));
+    assert!(refusal(&weightless, 1).contains("an analysis needs a `density`"));
     for count in [0, 1001] {
         assert!(refusal(&bar(10, 0.0, 1.0), count).contains("it must be from 1 to 1000"));
     }

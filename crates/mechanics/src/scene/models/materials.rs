@@ -119,7 +119,7 @@ impl BodyMaterials<'_> {
         };
         match spec.density {
             Some(density) => material.with_density(density).map_err(at),
-            None if self.has_mass => Err(wrong(path, "motions and modes need a `density`; give it")),
+            None if self.has_mass => Err(wrong(path, "an analysis needs a `density`; give it")),
             None => Ok(material),
         }
     }
