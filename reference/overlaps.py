@@ -23,7 +23,7 @@ SAMPLES = {True: 6, False: 3}
 
 
 def functions(count, s, t=None):
-    """Returns the shape functions of a face with so many nodes, one row for each point."""
+    """Returns the shape functions of a face with `count` nodes, one row for each point."""
     if count == 2:
         return np.stack([1 - s, s], axis=1)
     if count == 3 and t is None:

@@ -132,7 +132,7 @@ def contradictory(name: str, random: np.random.Generator) -> Program:
 
 
 def unbounded(name: str, random: np.random.Generator) -> Program:
-    """Returns a feasible program whose objective falls for ever along d: P d = 0, A d = 0, G d <= 0, q'd < 0, no bounds."""
+    """Returns a feasible program whose objective falls without end along d: P d = 0, A d = 0, G d <= 0, q'd < 0, no bounds."""
     n = int(random.integers(4, 20))
     d = random.integers(-3, 4, n)
     d[random.integers(n)] = 1

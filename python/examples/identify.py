@@ -1,10 +1,10 @@
 """Finds Young's modulus and the gap of a test from four measured forces, with their uncertainty.
 
-A rigid cylinder is pressed into a rubber pad to four depths. The machine knows each step of its travel to a micrometre, but neither where
-the cylinder first touches nor the modulus. Each force is measured to 2 %. The derivatives of the forces, each with the proof that it
-exists, give the step of Gauss and Newton and the covariance.
+A rigid cylinder is pressed into a rubber pad to four depths. The machine knows each step of its travel to a micrometre,
+but neither where the cylinder first touches nor the modulus. Each force is measured to 2 %. The derivatives of the
+forces, each with the proof that it exists, give the step of Gauss and Newton and the covariance.
 
-python identify.py
+Needs nothing but signorini: `pip install signorini`. Then run `python identify.py`.
 """
 
 from __future__ import annotations

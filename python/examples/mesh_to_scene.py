@@ -1,7 +1,9 @@
 """Turns a mesh in the format of Gmsh, made by pygmsh or meshio, into a scene, and computes its press force.
 
-`by_pygmsh` needs Gmsh. Without it, `by_meshio` makes a similar mesh with meshio alone and writes it in the same format: the names of
-the physical groups are the names of the body and its boundaries.
+`by_pygmsh` needs Gmsh. Without it, `by_meshio` makes a similar mesh with meshio alone and writes it in the same format:
+the names of the physical groups are the names of the body and its boundaries.
+
+Needs meshio: `pip install signorini meshio`. `by_pygmsh` also needs pygmsh, which brings Gmsh: `pip install pygmsh`.
 """
 
 from __future__ import annotations

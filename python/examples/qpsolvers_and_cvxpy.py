@@ -1,8 +1,11 @@
 """Solves a quadratic program by signorini, by the solvers of qpsolvers, and by cvxpy.
 
-`register` adds signorini to the solvers of qpsolvers. Then `qpsolvers.solve_qp(..., solver="signorini")`, and every program that is
-built on qpsolvers, can use it. The interface is `signorini_.py` beside this file, which has the form of a module in the folder
-`solvers` of qpsolvers: it can be put there unchanged.
+`register` adds signorini to the solvers of qpsolvers. Then `qpsolvers.solve_qp(..., solver="signorini")`, and every
+program that is built on qpsolvers, can use it. The interface is `signorini_.py` beside this file, which has the form of
+a module in the folder `solvers` of qpsolvers: it can be put there unchanged.
+
+Needs scipy, qpsolvers and cvxpy: `pip install "signorini[sparse]" qpsolvers cvxpy`. The solvers clarabel, osqp and
+highs of qpsolvers are compared if they are installed: `pip install clarabel osqp highspy`.
 """
 
 from __future__ import annotations

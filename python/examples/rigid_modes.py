@@ -5,8 +5,11 @@ In dolfinx these arrays are available without a copy, after `A = fem.assemble_ma
     K = A.to_scipy()                                # signorini.Problem also takes A itself
     x = V.tabulate_dof_coordinates()                # one row per node
 
-Fixed dofs stay in K with a diagonal entry of their own. All dofs of a node therefore follow each other, and the modes can be computed
-from `coordinates`. This example assembles such arrays of an elastic cube by scikit-fem, so that it does not need dolfinx.
+Fixed dofs stay in K with a diagonal entry of their own. All dofs of a node therefore follow each other, and the modes
+can be computed from `coordinates`. This example assembles such arrays of an elastic cube by scikit-fem, so that it does
+not need dolfinx.
+
+Needs scipy and scikit-fem: `pip install "signorini[sparse]" scikit-fem`.
 """
 
 from __future__ import annotations

@@ -6,6 +6,8 @@ optimality conditions of every answer from the matrices of the problem, and
 bounds the distance from the minimum if there is only one. The cost matrix may
 be singular. Nearly linear programs are a non-goal.
 
+It needs signorini with scipy: ``pip install "signorini[sparse]" qpsolvers``.
+
 **Warm-start:** this solver interface supports warm starting
 """
 

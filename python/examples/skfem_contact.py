@@ -1,8 +1,10 @@
 """Contact of an elastic block, assembled by scikit-fem, with a rigid parabola; the result is compared with a scene.
 
-The unit block in plane strain is fixed at its bottom, as in `examples/indentation.json`. The obstacle above it is the parabola
-y = 1 - d + (x - 1/2)^2 / (2 R); the contact rows are u_y <= gap at the nodes of the top. The scene assembles the same block by
-itself, so that the two forces must agree.
+The unit block in plane strain is fixed at its bottom, as in `examples/indentation.json`. The obstacle above it is the
+parabola y = 1 - d + (x - 1/2)^2 / (2 R); the contact rows are u_y <= gap at the nodes of the top. The scene assembles
+the same block by itself, so that the two forces must agree.
+
+Needs scipy and scikit-fem: `pip install "signorini[sparse]" scikit-fem`.
 """
 
 from __future__ import annotations

@@ -1,9 +1,12 @@
 """Contact of a membrane, assembled by scikit-fem, with a plane obstacle.
 
-A circular membrane of unit tension, fixed at its rim, is pressed by p = 4 onto a plane at the depth c = 0.5. Without the plane its sag
-would be u = (1 - r^2) p / 4, with u = 1 at the centre. With the plane it is flat up to a radius a and sags freely from there to the rim:
+A circular membrane of unit tension, fixed at its rim, is pressed by p = 4 onto a plane at the depth c = 0.5. Without
+the plane its sag would be u = (1 - r^2) p / 4, with u = 1 at the centre. With the plane it is flat up to a radius a and
+sags freely from there to the rim:
 
     u = c for r <= a,    u = p/4 (1 - r^2) + p a^2/2 log r beyond,    with  p/4 (1 - a^2) + p a^2/2 log a = c
+
+Needs scipy and scikit-fem: `pip install "signorini[sparse]" scikit-fem`.
 """
 
 from __future__ import annotations

@@ -1,12 +1,15 @@
-"""Two blocks meshed and assembled by scikit-fem touch along meshes that do not match; the answer is compared with its closed form.
+"""Two blocks meshed and assembled by scikit-fem touch along meshes that do not match, beside the closed form.
 
-The upper block [0, 1] x [1, 2] has triangles, the lower block [0, 1] x [0, 1] has quadrilaterals of other sizes. The pressure p on top
-passes through the contact. In plane strain both blocks have uniform stresses, sigma_y = -p, so that their strains are
+The upper block [0, 1] x [1, 2] has triangles, the lower block [0, 1] x [0, 1] has quadrilaterals of other sizes. The
+pressure p on top passes through the contact. In plane strain both blocks have uniform stresses, sigma_y = -p, so that
+their strains are
 
     eps_x = nu (1 + nu) p / E,  eps_y = -(1 - nu^2) p / E.
 
-`sg.mortar_rows` makes the contact rows from the nodes and edges of both surfaces. scikit-fem knows nothing of contact, and signorini
-nothing of the elements.
+`sg.mortar_rows` makes the contact rows from the nodes and edges of both surfaces. scikit-fem knows nothing of contact,
+and signorini nothing of the elements.
+
+Needs scipy and scikit-fem: `pip install "signorini[sparse]" scikit-fem`.
 """
 
 from __future__ import annotations

@@ -14,7 +14,9 @@ use crate::matrices;
 use crate::solution::{Solution, Source};
 use crate::work::{End, Place, run};
 
-/// The derivatives of an output with respect to all data, on one piece of the answer.
+/// The derivatives of an output phi with respect to all data, with some rows taken as closed and all others as open.
+///
+/// Each is in the unit of phi over that of the data. `Vjp.between` has such pieces. Arrays are read-only.
 #[pyclass(frozen, module = "signorini")]
 #[derive(Clone)]
 pub struct Gradient {
@@ -24,39 +26,48 @@ pub struct Gradient {
 
 #[pymethods]
 impl Gradient {
-    /// Derivatives with respect to the load f, length n.
+    /// Derivatives with respect to the load f, shape (n,).
     #[getter]
     fn load<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, self.inner.of_load())
     }
 
-    /// Derivatives with respect to the gaps g, length m.
+    /// Derivatives with respect to the gaps g, shape (m,); zero on open rows. Positive: phi grows as the obstacle moves
+    /// away.
     #[getter]
     fn gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, &self.inner.of_gap())
     }
 
-    /// Derivatives with respect to the values e of the equality rows, length p.
+    /// Derivatives with respect to the values e of the equality rows, shape (p,).
     #[getter]
     fn equality_values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, &self.inner.of_equality_values())
     }
 
-    /// Derivatives with respect to the entries of K, n x n, with both triangles, as a csc_array of scipy.
+    /// Derivatives with respect to the entries of K, shape (n, n): a symmetric `csc_array` of scipy on the pattern of
+    /// K.
+    ///
+    /// For a symmetric change dK on that pattern d phi is `(stiffness * dK).sum()`, over both triangles. An entry off
+    /// the diagonal and its mirror image each have half of the derivative with respect to both of them moved together.
+    /// Needs scipy.
     #[getter]
     fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let both = self.inner.of_stiffness(&self.problem).and_then(|lower| shared_out(&lower));
         matrices::csc(py, &both.map_err(|error| plain_exception(py, error))?)
     }
 
-    /// Derivatives with respect to the entries of B, m x n, as a csc_array of scipy.
+    /// Derivatives with respect to the entries of B, shape (m, n): a `csc_array` of scipy on the pattern of B.
+    ///
+    /// For a change dB d phi is `(rows * dB).sum()`. Needs scipy.
     #[getter]
     fn rows<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let rows = self.inner.of_rows(&self.problem);
         matrices::csc(py, &rows.map_err(|error| plain_exception(py, error))?)
     }
 
-    /// Relative error of the linear solve.
+    /// Relative error of the linear solve: with a factor its last correction, with multigrid a bound in the energy
+    /// norm.
     #[getter]
     fn error(&self) -> f64 {
         self.inner.error
@@ -77,7 +88,9 @@ fn shared_out(lower: &SparseMatrix) -> Result<SparseMatrix, qp::Error> {
     SparseMatrix::from_triplets(lower.rows(), lower.columns(), &places.flatten().collect::<Vec<_>>())
 }
 
-/// The derivatives of displacement and multipliers along a change of the data, on one piece of the answer or to one side.
+/// The derivatives of displacement and multipliers along a change of the data, per unit of its parameter.
+///
+/// They belong to one side of a kink, or to one piece of the solution: see `Jvp`. Arrays are read-only.
 #[pyclass(frozen, module = "signorini")]
 #[derive(Clone)]
 pub struct Tangent {
@@ -87,25 +100,25 @@ pub struct Tangent {
 
 #[pymethods]
 impl Tangent {
-    /// Derivatives of the displacement u, length n.
+    /// Derivatives of the displacement u, shape (n,), in length per unit of the parameter.
     #[getter]
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, &self.inner.displacement)
     }
 
-    /// Derivatives of the multipliers, length m.
+    /// Derivatives of the contact multipliers, shape (m,), in force per unit of the parameter; zero on open rows.
     #[getter]
     fn multiplier<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, &self.inner.multiplier[..self.problem.inequalities()])
     }
 
-    /// Derivatives of the multipliers of the equality rows, length p.
+    /// Derivatives of the multipliers of the equality rows, shape (p,), in force per unit of the parameter.
     #[getter]
     fn equality_multiplier<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, &self.inner.multiplier[self.problem.inequalities()..])
     }
 
-    /// Relative error of the linear solve.
+    /// Relative error, as `Gradient.error`; at a kink the error bound of the small contact problem, in the energy norm.
     #[getter]
     fn error(&self) -> f64 {
         self.inner.error
@@ -175,7 +188,11 @@ impl<T: Clone> Judged<T> {
     }
 }
 
-/// The derivatives of an output with respect to all data, with the verdict whether they exist.
+/// The derivatives of an output phi with respect to all data, with the verdict whether they exist. `Solution.vjp` makes
+/// it.
+///
+/// If the verdict is not "proven", `load`, `gap`, `equality_values`, `stiffness`, `rows` and `error` raise
+/// `NoDerivative`, which names the rows. `between` then has the derivatives of the pieces around.
 #[pyclass(frozen, module = "signorini")]
 pub struct Vjp {
     of: Judged<Gradient>,
@@ -183,61 +200,75 @@ pub struct Vjp {
 
 #[pymethods]
 impl Vjp {
-    /// 'proven', 'undecided' or 'unknown'.
+    /// "proven", "undecided" or "unknown".
+    ///
+    /// "proven": every row is proven to be closed and to press, or to be open, so that there is one derivative.
+    /// "undecided": the rows in `rows_at_kink` are at a kink, or the proof does not decide them. "unknown": no bound on
+    /// the error of the solution is known.
     #[getter]
     fn verdict(&self) -> &'static str {
         self.of.derivative.verdict()
     }
 
-    /// Derivatives with respect to the load f, length n.
+    /// Derivatives with respect to the load f, shape (n,). Raises `NoDerivative` if they are not proven.
     #[getter]
     fn load<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.of.proven(py)?.load(py)
     }
 
-    /// Derivatives with respect to the gaps g, length m.
+    /// Derivatives with respect to the gaps g, shape (m,); zero on open rows. Raises `NoDerivative` if they are not
+    /// proven.
     #[getter]
     fn gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.of.proven(py)?.gap(py)
     }
 
-    /// Derivatives with respect to the values e of the equality rows, length p.
+    /// Derivatives with respect to the values e, shape (p,). Raises `NoDerivative` if they are not proven.
     #[getter]
     fn equality_values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.of.proven(py)?.equality_values(py)
     }
 
-    /// Derivatives with respect to the entries of K, n x n, with both triangles, as a csc_array of scipy.
+    /// Derivatives with respect to the entries of K, shape (n, n), as `Gradient.stiffness`: d phi is `(stiffness *
+    /// dK).sum()` over both triangles.
+    ///
+    /// Raises `NoDerivative` if they are not proven.
     #[getter]
     fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.of.proven(py)?.stiffness(py)
     }
 
-    /// Derivatives with respect to the entries of B, m x n, as a csc_array of scipy.
+    /// Derivatives with respect to the entries of B, shape (m, n), as `Gradient.rows`.
+    ///
+    /// Raises `NoDerivative` if they are not proven.
     #[getter]
     fn rows<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.of.proven(py)?.rows(py)
     }
 
-    /// Relative error of the linear solve.
+    /// Relative error of the linear solve, as `Gradient.error`. Raises `NoDerivative` if nothing is proven.
     #[getter]
     fn error(&self, py: Python<'_>) -> PyResult<f64> {
         Ok(self.of.proven(py)?.error())
     }
 
-    /// The derivatives with all rows at the kink open, and with all of them closed, as far as they exist.
+    /// List of `Gradient`: with all rows of `rows_at_kink` open, then with all of them closed, as far as these exist.
+    ///
+    /// It is empty if the verdict is not "undecided". Of several rows some may be open and others closed; these pieces
+    /// are not in the list.
     #[getter]
     fn between<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         self.of.between(py)
     }
 
-    /// Indices of the rows that may be open or closed, counted from 0.
+    /// Indices of the rows that may be open or closed, counted from 0; empty if there are no such rows, or nothing is
+    /// known.
     #[getter]
     fn rows_at_kink<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_indices(py, self.of.rows.iter().copied())
     }
 
-    /// Why no derivative is proven; empty if it is.
+    /// Why no derivative is proven, in one sentence; empty if it is.
     #[getter]
     fn why(&self) -> String {
         self.of.why()
@@ -249,6 +280,9 @@ impl Vjp {
 }
 
 /// The derivatives of displacement and multipliers along a change of the data, with the verdict whether they exist.
+///
+/// `Solution.jvp` makes it. If the verdict is not "proven", `displacement`, `multiplier`, `equality_multiplier` and
+/// `error` raise `NoDerivative`, which names the rows.
 #[pyclass(frozen, module = "signorini")]
 pub struct Jvp {
     of: Judged<Tangent>,
@@ -266,63 +300,79 @@ impl Jvp {
 
 #[pymethods]
 impl Jvp {
-    /// 'proven', 'one-sided', 'undecided' or 'unknown'.
+    /// "proven", "one-sided", "undecided" or "unknown".
+    ///
+    /// "one-sided": gap and force of the rows in `rows_at_kink` are exactly zero, and `left` and `right` are the
+    /// derivatives. The others are those of `Vjp.verdict`.
     #[getter]
     fn verdict(&self) -> &'static str {
         self.of.derivative.verdict()
     }
 
-    /// Derivatives of the displacement u, length n.
+    /// Derivatives of the displacement u, shape (n,), in length per unit of the parameter.
+    ///
+    /// Raises `NoDerivative` if they are not proven.
     #[getter]
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.of.proven(py)?.displacement(py)
     }
 
-    /// Derivatives of the multipliers, length m.
+    /// Derivatives of the contact multipliers, shape (m,), in force per unit of the parameter; zero on open rows.
+    ///
+    /// Raises `NoDerivative` if they are not proven.
     #[getter]
     fn multiplier<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.of.proven(py)?.multiplier(py)
     }
 
-    /// Derivatives of the multipliers of the equality rows, length p.
+    /// Derivatives of the multipliers of the equality rows, shape (p,), in force per unit of the parameter.
+    ///
+    /// Raises `NoDerivative` if they are not proven.
     #[getter]
     fn equality_multiplier<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.of.proven(py)?.equality_multiplier(py)
     }
 
-    /// Relative error of the linear solve.
+    /// Relative error of the linear solve, as `Tangent.error`. Raises `NoDerivative` if nothing is proven.
     #[getter]
     fn error(&self, py: Python<'_>) -> PyResult<f64> {
         Ok(self.of.proven(py)?.error())
     }
 
-    /// The derivative for a falling parameter.
+    /// The `Tangent` for a falling parameter; the derivative itself if it is proven.
+    ///
+    /// Raises `NoDerivative` if it is undecided or unknown.
     #[getter]
     fn left(&self, py: Python<'_>) -> PyResult<Tangent> {
         let [left, _] = self.sides(py)?;
         Ok(left)
     }
 
-    /// The derivative for a growing parameter.
+    /// The `Tangent` for a growing parameter; the derivative itself if it is proven.
+    ///
+    /// Raises `NoDerivative` if it is undecided or unknown.
     #[getter]
     fn right(&self, py: Python<'_>) -> PyResult<Tangent> {
         let [_, right] = self.sides(py)?;
         Ok(right)
     }
 
-    /// The derivatives with all undecided rows open, and with all of them closed, as far as they exist.
+    /// List of `Tangent`: with all rows of `rows_at_kink` open, then with all of them closed, as far as these exist.
+    ///
+    /// It is empty if the verdict is not "undecided".
     #[getter]
     fn between<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         self.of.between(py)
     }
 
-    /// Indices of the rows that may be open or closed, counted from 0.
+    /// Indices of the rows that may be open or closed, counted from 0; empty if there are no such rows, or nothing is
+    /// known.
     #[getter]
     fn rows_at_kink<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_indices(py, self.of.rows.iter().copied())
     }
 
-    /// Why no derivative is proven; empty if it is.
+    /// Why no derivative is proven, in one sentence; empty if it is.
     #[getter]
     fn why(&self) -> String {
         self.of.why()

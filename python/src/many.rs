@@ -123,7 +123,8 @@ impl Kept {
     }
 }
 
-/// Solves many problems of one size: the arrays of their answers, by name, with the exceptions of those without a certified one.
+/// Solves many problems of one size. Returns the arrays of their solutions, by name, and the exceptions of problems
+/// without a certified solution.
 #[pyfunction]
 #[pyo3(name = "_solve_many")]
 #[pyo3(signature = (K, f, B, g, method, accuracy, time, threads, tolerance, proof))]

@@ -12,7 +12,42 @@ use crate::scene::Scene;
 use crate::solution::as_object;
 use crate::work::{End, Place, run};
 
-/// The `count` lowest natural vibrations of a scene about its equilibrium.
+/// Returns the lowest natural vibrations of a scene about its equilibrium. Closed rows stay closed, open rows stay
+/// open.
+///
+/// Parameters
+/// ----------
+/// scene : Scene
+///     The scene, with a density of every material.
+/// count : int
+///     Number of modes, from 1 to 1000.
+/// method, tolerance, threads, memory : optional
+///     As in `signorini.solve`; they are for the equilibrium.
+///
+/// Returns
+/// -------
+/// dict
+///     "modes" has one dictionary per mode, by increasing frequency. "closed" has the indices of the rows that stay
+///     closed, from 0, "undecided" those of them that may be open. "unproven" is the reason if no row is proven,
+///     otherwise None. "is_complete" says that no frequency below the last is missed. "rigid_motions" names the motions
+///     without energy. "mass" is that of the whole bodies. "seconds" is the time of the modes alone.
+///
+///     A mode has "frequency", in one over time; "frequency_open", the same with undecided rows open, if there are
+///     some; "residual", dimensionless; "participation", in the root of mass, and "effective_mass", in mass, for each
+///     axis; and "displacement", shape (nodes, dim), in one over the root of mass, scaled to mass 1. "opens" and
+///     "closes" say when the first closed row opens and the first open row closes: a dictionary with the "amplitude" of
+///     the mode, in length, and with "row", "node" and "obstacle", from 0; None if no row does.
+///
+/// Raises
+/// ------
+/// SceneError
+///     The count is out of its range, a material has no density, or the scene cannot be built.
+/// BadInput
+///     An option has a value that is not allowed.
+/// BadType, TypeError or OverflowError
+///     An argument has a wrong type, or `count` is negative.
+/// SignoriniError or Interrupted
+///     As `signorini.solve`.
 #[pyfunction]
 #[pyo3(signature = (scene, count, *, method = None, tolerance = None, threads = None, memory = None))]
 pub fn modes<'py>(

@@ -15,7 +15,7 @@ use crate::exceptions::signalled;
 use crate::solution::{Solution, Source, rows_of};
 use crate::work::{End, Place, run};
 
-/// A problem that is factorised once and then solved for many gaps, loads and starts.
+/// A problem that is factorised once and then solved for many gaps, loads and starts. `signorini.prepare` makes it.
 #[pyclass(frozen, module = "signorini")]
 pub struct Prepared {
     problem: Arc<ContactProblem>,
@@ -45,7 +45,31 @@ fn watched(prepared: &signorini::Prepared, settings: Settings, watch: &Watch) ->
 
 #[pymethods]
 impl Prepared {
-    /// Solves the problem with the gaps g (length m) and the load f (length n); both default to those of the problem.
+    /// Solves the problem for these gaps and this load.
+    ///
+    /// Parameters
+    /// ----------
+    /// g : array, shape (m,), optional
+    ///     Gaps, in length; those of the problem by default. With a factor `inf` must be in the same rows as in the
+    ///     problem.
+    /// f : array, shape (n,), optional
+    ///     Load, in force; that of the problem by default.
+    /// start : Solution or array, optional
+    ///     As in `signorini.solve`; mostly the solution for the gaps before. It changes the number of iterations.
+    /// time : float, optional
+    ///     Limit in seconds, positive, for this solve. No limit by default.
+    ///
+    /// Returns
+    /// -------
+    /// Solution
+    ///     It is certified as that of `signorini.solve`.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     An array does not fit the problem, or `time` is not positive.
+    /// SignoriniError, TypeError or Interrupted
+    ///     As `signorini.solve`.
     #[pyo3(signature = (g = None, f = None, *, start = None, time = None))]
     fn solve(
         &self,
@@ -81,12 +105,37 @@ impl Prepared {
         })
     }
 
-    /// The attempts and steps that a solve makes, in order, each with its condition and its reason: text, a line each.
+    /// Returns what a solve tries, in order, each with its condition and its reason: a text, one line each. It solves
+    /// nothing.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The attempts, and the steps that may follow in each.
     fn plan(&self) -> String {
         self.inner.plan()
     }
 
-    /// Computes the exact solution for all gaps on the straight line from g0 to g1 (length m each).
+    /// Computes the exact solutions for all gaps on the straight line from g0 to g1.
+    ///
+    /// Parameters
+    /// ----------
+    /// g0 : array, shape (m,)
+    ///     The first gaps, in length.
+    /// g1 : array, shape (m,)
+    ///     The last gaps, in length. A gap that is `inf` in g0 is `inf` here too.
+    ///
+    /// Returns
+    /// -------
+    /// Path
+    ///     The solutions as functions of t: t = 0 belongs to g0, t = 1 to g1.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     An array does not fit the problem; the problem was not condensed; or only contact rows hold the body.
+    /// SignoriniError or Interrupted
+    ///     As `signorini.solve`, for both ends.
     fn path(&self, py: Python<'_>, g0: &Bound<'_, PyAny>, g1: &Bound<'_, PyAny>) -> PyResult<Path> {
         let (from, to) = (reals("g0", g0)?, reals("g1", g1)?);
         let (prepared, settings) = (self.inner.clone(), self.settings.clone());
@@ -98,13 +147,13 @@ impl Prepared {
         }
     }
 
-    /// Number of unknowns of the problem.
+    /// Number of unknowns n of the problem.
     #[getter]
     fn dofs(&self) -> usize {
         self.inner.dofs()
     }
 
-    /// Number of unknowns after condensation, on which the methods work.
+    /// Number of unknowns on which the methods work; smaller than `dofs` if the problem is condensed.
     #[getter]
     fn condensed_dofs(&self) -> usize {
         self.inner.condensed_dofs()
@@ -132,11 +181,11 @@ impl Prepared {
 /// A point of a path at which a row closes or opens.
 #[pyclass(frozen, module = "signorini", get_all)]
 pub struct Event {
-    /// Parameter t of the event, from 0 to 1.
+    /// Place t of the event on the path, from 0 to 1.
     at: f64,
     /// Index of the row, counted from 0.
     row: usize,
-    /// True if the row closes, False if it opens.
+    /// True if the row closes as t grows, False if it opens.
     touches: bool,
 }
 
@@ -149,6 +198,8 @@ impl Event {
 }
 
 /// The exact solutions for all gaps (1 - t) g0 + t g1 with t from 0 to 1. They are piecewise linear in t.
+///
+/// `Prepared.path` makes it.
 #[pyclass(frozen, module = "signorini")]
 pub struct Path {
     /// The problem at its own gaps.
@@ -164,7 +215,7 @@ fn place(py: Python<'_>, t: f64) -> PyResult<f64> {
 
 #[pymethods]
 impl Path {
-    /// All points at which a row closes or opens, in the order of t.
+    /// List of all points at which a row closes or opens, in the order of t.
     #[getter]
     fn events<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let of_each = self.inner.events().iter();
@@ -172,33 +223,110 @@ impl Path {
         PyList::new(py, events.collect::<PyResult<Vec<_>>>()?)
     }
 
-    /// Increasing values of t between which the solution is linear: 0, every event, 1.
+    /// Places t between which the solution is linear, increasing: 0, every event, 1. Read-only.
     #[getter]
     fn corners<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, &self.inner.corners())
     }
 
-    /// Returns the gaps at t, length m.
+    /// Returns the gaps at t.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float
+    ///     Place on the path, from 0 to 1.
+    ///
+    /// Returns
+    /// -------
+    /// array, shape (m,)
+    ///     In length, read-only.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput or TypeError
+    ///     t is outside of [0, 1], or no number.
     fn gap<'py>(&self, py: Python<'py>, t: f64) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, &self.inner.gap(place(py, t)?))
     }
 
-    /// Returns the multipliers at t, length m, <= 0 in compression.
+    /// Returns the contact multipliers at t.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float
+    ///     Place on the path, from 0 to 1.
+    ///
+    /// Returns
+    /// -------
+    /// array, shape (m,)
+    ///     In force, <= 0 in compression, read-only.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput or TypeError
+    ///     t is outside of [0, 1], or no number.
     fn multiplier<'py>(&self, py: Python<'py>, t: f64) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, &self.inner.multiplier(place(py, t)?))
     }
 
-    /// Returns the multipliers of the equality rows at t, length p, of either sign.
+    /// Returns the multipliers of the equality rows at t.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float
+    ///     Place on the path, from 0 to 1.
+    ///
+    /// Returns
+    /// -------
+    /// array, shape (p,)
+    ///     In force, of either sign, read-only.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput or TypeError
+    ///     t is outside of [0, 1], or no number.
     fn equality_multiplier<'py>(&self, py: Python<'py>, t: f64) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, &self.inner.equality_multiplier(place(py, t)?))
     }
 
-    /// Returns the indices of the closed rows at t; at an event, those just before it.
+    /// Returns the closed rows at t; at an event, those just before it.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float
+    ///     Place on the path, from 0 to 1.
+    ///
+    /// Returns
+    /// -------
+    /// array of int
+    ///     Indices of the rows, counted from 0, increasing, read-only.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput or TypeError
+    ///     t is outside of [0, 1], or no number.
     fn contact_set<'py>(&self, py: Python<'py>, t: f64) -> PyResult<Bound<'py, PyAny>> {
         rows_of(py, &self.inner.contact_set(place(py, t)?))
     }
 
-    /// Returns the certified solution at t.
+    /// Returns the whole solution at t, with its certificate.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float
+    ///     Place on the path, from 0 to 1.
+    ///
+    /// Returns
+    /// -------
+    /// Solution
+    ///     It is certified as that of `Prepared.solve`.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput or TypeError
+    ///     t is outside of [0, 1], or no number.
+    /// SignoriniError or Interrupted
+    ///     As `signorini.solve`.
     fn solution(&self, py: Python<'_>, t: f64) -> PyResult<Py<PyAny>> {
         let (t, path) = (place(py, t)?, self.inner.clone());
         let find = move |_: &Watch| path.solution(t);

@@ -11,7 +11,52 @@ use crate::errors::bad_input;
 use crate::exceptions::plain_exception;
 use crate::matrices;
 
-/// The contact problem: minimise 1/2 u'K u - f'u  subject to  B u - g <= 0. The arrays are checked once, here.
+/// Frictionless contact of elastic bodies as a convex quadratic program.
+///
+///     minimise 1/2 u'K u - f'u  subject to  B u - g <= 0,  E u = e
+///
+/// n is the number of unknowns (dofs), m that of contact rows, p that of equality rows. Any consistent system of units
+/// can be used; "length" and "force" below are its units. The arrays are checked once, here. A problem can be pickled,
+/// with scipy.
+///
+/// Parameters
+/// ----------
+/// K : matrix, shape (n, n)
+///     Stiffness after supports, in force per length. It is symmetric to rounding (1e-10 of its diagonal) and positive
+///     semidefinite. Both triangles must be given; the values are taken from the lower one. A matrix is a sparse matrix
+///     of scipy, an array of numpy, or an object with `to_scipy()`, such as a matrix of dolfinx.
+/// f : array, shape (n,)
+///     External load, in force, positive along the axes.
+/// B : matrix, shape (m, n), optional
+///     Contact rows, positive towards the obstacle. Without B and g the problem has no contact rows.
+/// g : array, shape (m,), optional
+///     Gaps before the deformation, in length. A negative gap means that the obstacle starts inside the body. The
+///     values `inf`, 1e20 and 1e30 mean that the row has no obstacle.
+/// near_null : array, shape (n, k), optional
+///     Displacements of almost zero energy, one per column, such as the rigid-body modes. The columns are independent.
+///     Multigrid needs them for bodies in space.
+/// E : matrix, shape (p, n), optional
+///     Equality rows. They may follow from each other.
+/// e : array, shape (p,), optional
+///     Values of the equality rows, in length.
+/// coordinates : array, shape (nodes, 1 or 2 or 3), optional
+///     Coordinates of the nodes, in length, instead of `near_null`: the rigid-body modes are computed from them. All
+///     dofs must be free, and the dofs of each node must follow each other.
+///
+/// Raises
+/// ------
+/// BadInput
+///     An array has a wrong shape, or a value that is not allowed. K is not symmetric. B is given without g, or E
+///     without e.
+/// BadType
+///     An array has a wrong type, for example complex numbers.
+/// NotConvex
+///     K has a negative diagonal entry.
+///
+/// Warns
+/// -----
+/// UserWarning
+///     A row without entries has a gap or a value that is rounding beside the largest one (16 eps). It counts as 0.
 #[pyclass(frozen, module = "signorini")]
 pub struct Problem {
     pub inner: Arc<ContactProblem>,
@@ -107,7 +152,7 @@ impl Problem {
         self.inner.equality_rows()
     }
 
-    /// Stiffness, n x n, with both triangles, as a csc_array of scipy.
+    /// Stiffness, shape (n, n), in force per length, with both triangles: a new `csc_array` of scipy. Needs scipy.
     #[getter(K)]
     fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let lower = matrices::csc(py, self.inner.stiffness().lower())?;
@@ -117,39 +162,39 @@ impl Problem {
         sparse.getattr("csc_array")?.call1((both,))
     }
 
-    /// External load, length n, read-only.
+    /// External load, shape (n,), in force, read-only.
     #[getter]
     fn f<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, self.inner.load())
     }
 
-    /// Contact rows, m x n, as a csc_array of scipy.
+    /// Contact rows, shape (m, n), positive towards the obstacle: a new `csc_array` of scipy. Needs scipy.
     #[getter(B)]
     fn contact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         matrices::csc(py, &self.inner.inequalities_given().0)
     }
 
-    /// Equality rows, p x n, as a csc_array of scipy; None without such rows.
+    /// Equality rows, shape (p, n): a new `csc_array` of scipy. None if there are no such rows. Needs scipy.
     #[getter(E)]
     fn equality_matrix<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let has_rows = self.inner.equality_rows() > 0;
         has_rows.then(|| matrices::csc(py, &self.inner.equalities_given().0)).transpose()
     }
 
-    /// Values of the equality rows, length p, read-only; None without such rows.
+    /// Values of the equality rows, shape (p,), in length, read-only. None if there are no such rows.
     #[getter]
     fn e<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let has_rows = self.inner.equality_rows() > 0;
         has_rows.then(|| of_reals(py, self.inner.equalities_given().1)).transpose()
     }
 
-    /// Initial gaps, length m, read-only.
+    /// Gaps before the deformation, shape (m,), in length, read-only. `inf` for a row without an obstacle.
     #[getter]
     fn g<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, self.inner.inequalities_given().1)
     }
 
-    /// Displacements of almost zero energy, n x k, one per column; None if none were given.
+    /// Displacements of almost zero energy, shape (n, k), one per column. None if none were given.
     #[getter]
     fn near_null<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let Some(space) = self.inner.near_null() else { return Ok(None) };
@@ -157,8 +202,26 @@ impl Problem {
         of_table(py, &values, space.dofs())?.getattr("T").map(Some)
     }
 
-    /// Returns a problem with the load f (length n), the gaps g (length m), or both replaced; the matrices are shared, and so are the
-    /// equality rows.
+    /// Returns the same problem with another load, other gaps, or both.
+    ///
+    /// Parameters
+    /// ----------
+    /// f : array, shape (n,), optional
+    ///     The new load, in force. Without it the load does not change.
+    /// g : array, shape (m,), optional
+    ///     The new gaps, in length. Without it the gaps do not change.
+    ///
+    /// Returns
+    /// -------
+    /// Problem
+    ///     It shares K, B, E and e with this problem; nothing is copied except f and g.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     An array has a wrong length, or a value that is not allowed.
+    /// BadType
+    ///     An array has a wrong type.
     #[pyo3(signature = (*, f = None, g = None))]
     fn replace(&self, py: Python<'_>, f: Option<&Bound<'_, PyAny>>, g: Option<&Bound<'_, PyAny>>) -> PyResult<Problem> {
         let load = f.map_or_else(|| Ok(self.inner.load().to_vec()), |f| reals("f", f))?;

@@ -20,7 +20,41 @@ use crate::problem::Problem;
 use crate::solution::{Solution, Source, as_object};
 use crate::work::{End, Place, run};
 
-/// A contact scene: bodies, supports, loads and obstacles.
+/// A contact scene: bodies, supports, loads and obstacles. `docs/scenes.md` describes its keys.
+///
+/// The mesh and the matrices are built when something first needs them. `solve`, `compare`, `problem`, `nodes`,
+/// `elements`, `element_kinds`, `rows`, `outputs` and `warnings` then raise what building raises: `SceneError` for a
+/// scene that cannot be built or that moves, `FileError` for a mesh file that cannot be read, `TooLarge` if the memory
+/// does not suffice, and `Interrupted`.
+///
+/// Parameters
+/// ----------
+/// source : str, path or dict
+///     The name of a JSON file, the name of a deck of CalculiX (`.inp`), or a dictionary with the same keys as the
+///     JSON. Its numbers may be numbers or arrays of numpy.
+/// folder : str or path, optional
+///     The folder of the files that a dictionary names. The current folder by default.
+/// allow_outside : bool, optional
+///     True lets the scene read files outside of its folder. False by default.
+/// without_friction : bool, optional
+///     True leaves the friction of a deck out. False (the default) refuses such a deck.
+/// linear : bool, optional
+///     A deck that asks for large displacements (NLGEOM) is solved with small ones. True does so whatever its strains
+///     are. False (the default) refuses strains and rotations above 5 %.
+/// step : int, optional
+///     The step of a deck, from 1. The last step by default.
+///
+/// Raises
+/// ------
+/// SceneError
+///     A value is not allowed; the exception has its JSON path, and line and column in a file. Or an option for decks
+///     is given for another source.
+/// FileError
+///     A file cannot be read.
+/// BadType or TypeError
+///     An argument has a wrong type, or the dictionary cannot be written as JSON.
+/// OverflowError
+///     `step` is negative.
 #[pyclass(frozen, module = "signorini")]
 pub struct Scene {
     pub inner: Arc<signorini::Scene>,
@@ -127,26 +161,46 @@ impl Scene {
         &self.inner.title
     }
 
-    /// Names of the numbers by which outputs have derivatives, and nodes for the places of all nodes.
+    /// Names of the numbers of the scene by which outputs have derivatives, and "nodes" for the places of all nodes.
     #[getter]
     fn parameters(&self) -> Vec<String> {
         self.inner.parameters()
     }
 
-    /// Names of the outputs that have derivatives; X,Y stands for the coordinates of a place.
+    /// Names of the outputs that have derivatives. X,Y stands for the coordinates of a place, in length.
     #[getter]
     fn outputs(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         let model = self.model(py)?;
         Ok(signorini::scene::outputs_of(&model))
     }
 
-    /// Returns the same scene with another value of a parameter.
+    /// Returns the same scene with another value of one parameter.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     One of `parameters`, for example "gap" or "young". "loads[0]" is a factor of that load.
+    /// value : float
+    ///     The new value, in the unit of the parameter.
+    ///
+    /// Returns
+    /// -------
+    /// Scene
+    ///     A new scene; this one does not change.
+    ///
+    /// Raises
+    /// ------
+    /// SceneError
+    ///     The name does not exist, or the scene does not allow the value.
+    /// TypeError
+    ///     An argument has a wrong type.
     fn with_parameter(&self, py: Python<'_>, name: &str, value: f64) -> PyResult<Self> {
         let inner = self.inner.with_parameter(name, value).map_err(|error| plain_exception(py, error))?;
         Ok(Scene { inner: Arc::new(inner), file: self.file.clone(), model: Mutex::new(None) })
     }
 
-    /// Names of the units of length, force and pressure; empty strings if the scene names no units.
+    /// Names of the units, a dictionary with "length", "force" and "pressure". They are empty if the scene names no
+    /// units.
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (named, units) = (PyDict::new(py), &self.inner.units);
@@ -156,13 +210,13 @@ impl Scene {
         Ok(named)
     }
 
-    /// The contact problem in the free dofs.
+    /// The contact problem in the free dofs, a `Problem`. Supported dofs are left out.
     #[getter]
     fn problem(&self, py: Python<'_>) -> PyResult<Problem> {
         Ok(self.model(py)?.problem().clone().into())
     }
 
-    /// Coordinates of the nodes, one row per node, in the unit of length.
+    /// Coordinates of the nodes, shape (nodes, dim), in length, read-only. dim is 1, 2 or 3.
     #[getter]
     fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let model = self.model(py)?;
@@ -171,8 +225,9 @@ impl Scene {
         of_table(py, &values, dimension)
     }
 
-    /// Node numbers of the elements, one row per element, counted from 0, in the order of VTK; -1 after the last node of an element with
-    /// fewer nodes than others have.
+    /// Node numbers of the elements, shape (elements, most nodes of an element), counted from 0, in the order of VTK.
+    ///
+    /// An element that has fewer nodes than others has -1 after its last node.
     #[getter]
     fn elements<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let model = self.model(py)?;
@@ -184,7 +239,7 @@ impl Scene {
         of_indices(py, padded)?.call_method1("reshape", (mesh.element_count(), most))
     }
 
-    /// Names of the kinds of the elements, one per element, for example Q4.
+    /// Names of the kinds of the elements, one per element, for example "Q4".
     #[getter]
     fn element_kinds(&self, py: Python<'_>) -> PyResult<Vec<&'static str>> {
         let model = self.model(py)?;
@@ -192,7 +247,11 @@ impl Scene {
         Ok((0..mesh.element_count()).map(|element| mesh.kind_of(element).name()).collect())
     }
 
-    /// Node, obstacle, normal, gap and tributary area of each contact row, as a dictionary of arrays.
+    /// What the m contact rows mean, a dictionary of arrays.
+    ///
+    /// "node" and "obstacle" have shape (m,) and count from 0. "normal" has shape (m, dim): a unit vector towards the
+    /// obstacle. "gap" has shape (m,), in length, negative if the obstacle starts inside the body. "area" has shape
+    /// (m,), the tributary area; force over area is the pressure.
     #[getter]
     fn rows<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let model = self.model(py)?;
@@ -209,13 +268,30 @@ impl Scene {
         Ok(table)
     }
 
-    /// Warnings about the scene, one sentence each.
+    /// Warnings about the scene, a list with one sentence each.
     #[getter]
     fn warnings(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         Ok(self.model(py)?.warnings().iter().map(ToString::to_string).collect())
     }
 
-    /// Solves the scene. Arguments and exceptions are those of signorini.solve.
+    /// Solves the scene. The solution is certified as that of `signorini.solve`.
+    ///
+    /// Parameters
+    /// ----------
+    /// method, accuracy, time, start, threads, tolerance, memory, precision, condense, proof : optional
+    ///     As in `signorini.solve`.
+    ///
+    /// Returns
+    /// -------
+    /// SceneSolution
+    ///     The displacements of all nodes, with stresses, pressures and forces.
+    ///
+    /// Raises
+    /// ------
+    /// SceneError, FileError or TooLarge
+    ///     The scene cannot be built.
+    /// SignoriniError, TypeError or Interrupted
+    ///     As `signorini.solve`.
     #[pyo3(signature = (
         *, method = None, accuracy = None, time = None, start = None, threads = None, tolerance = None, memory = None,
         precision = None, condense = true, proof = true
@@ -251,7 +327,20 @@ impl Scene {
         })
     }
 
-    /// Solves the scene by interior point, active set and penalty, and compares the solutions.
+    /// Solves the scene by interior point, active set and penalty, and compares the solutions:
+    /// `signorini.compare(scene)`.
+    ///
+    /// Returns
+    /// -------
+    /// Comparison
+    ///     The three solutions and their differences.
+    ///
+    /// Raises
+    /// ------
+    /// SceneError, FileError or TooLarge
+    ///     The scene cannot be built.
+    /// SignoriniError or Interrupted
+    ///     As `signorini.compare`.
     fn compare<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("signorini._signorini")?.call_method1("compare", (slf,))
     }
@@ -265,7 +354,10 @@ impl Scene {
     }
 }
 
-/// The solution of a scene, with stresses, pressures and forces. Nodal arrays have one row per node.
+/// The solution of a scene: a `Solution` with stresses, pressures and forces. `Scene.solve` makes it.
+///
+/// Arrays of nodes have one row per node, supported nodes included, with dim columns (1, 2 or 3). Arrays are read-only.
+/// Units are those of the scene.
 #[pyclass(frozen, module = "signorini", extends = Solution)]
 pub struct SceneSolution {
     scene: Py<Scene>,
@@ -326,43 +418,44 @@ impl SceneSolution {
 
 #[pymethods]
 impl SceneSolution {
-    /// The scene that was solved.
+    /// The scene that was solved, a `Scene`.
     #[getter]
     fn scene(&self, py: Python<'_>) -> Py<Scene> {
         self.scene.clone_ref(py)
     }
 
-    /// Displacements of all nodes, supported ones included, one row per node, in the unit of length.
+    /// Displacements of all nodes, shape (nodes, dim), in length, along the axes.
     #[getter]
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_table(py, self.answer.displacement(), self.dimension())
     }
 
-    /// Contact pressure of each row, length m, >= 0, in the unit of pressure.
+    /// Contact pressure of each row, shape (m,), >= 0, in pressure.
     #[getter]
     fn pressure<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, self.answer.pressure())
     }
 
-    /// Remaining gap of each row after deformation, length m, in the unit of length.
+    /// Gap of each row after the deformation, shape (m,), in length; 0 except for rounding where the row is closed.
     #[getter]
     fn remaining_gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         of_reals(py, &self.answer.remaining_gaps())
     }
 
-    /// Stress at the nodes, one row per node: xx, yy, zz, xy, yz, zx; tension is positive.
+    /// Stress at the nodes, shape (nodes, 6): xx, yy, zz, xy, yz, zx, in pressure; tension is positive.
     #[getter]
     fn stress<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.stresses(py, |field| &field.nodes)
     }
 
-    /// Stress at the centres of the elements, one row per element: xx, yy, zz, xy, yz, zx; tension is positive.
+    /// Stress at the centres of the elements, shape (elements, 6): xx, yy, zz, xy, yz, zx, in pressure; tension is
+    /// positive.
     #[getter]
     fn element_stress<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.stresses(py, |field| &field.elements)
     }
 
-    /// Von Mises stress at the nodes, one value per node, >= 0.
+    /// Von Mises stress at the nodes, shape (nodes,), >= 0, in pressure.
     #[getter]
     fn von_mises<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let field = self.answer.stress().map_err(|error| plain_exception(py, error))?;
@@ -370,28 +463,43 @@ impl SceneSolution {
         of_reals(py, &values)
     }
 
-    /// Contact forces on the body at the nodes, one row per node, along the axes.
+    /// Contact forces on the body at the nodes, shape (nodes, dim), in force, along the axes.
     #[getter]
     fn contact_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let forces = self.answer.forces().map_err(|error| plain_exception(py, error))?;
         of_table(py, &forces.contact, self.dimension())
     }
 
-    /// Support reactions on the body at the nodes, one row per node, along the axes.
+    /// Forces of the supports on the body at the nodes, shape (nodes, dim), in force, along the axes.
     #[getter]
     fn reactions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let forces = self.answer.forces().map_err(|error| plain_exception(py, error))?;
         of_table(py, &forces.reactions, self.dimension())
     }
 
-    /// Resultant force, moment and centre of each obstacle, support and load, one dictionary for each.
+    /// Sums of the forces on the body, one dictionary for each obstacle, each support, and the loads.
+    ///
+    /// "of" names the source, for example "obstacles[0]". "force" has dim components, in force. "moment" is about the
+    /// origin, in force times length. "centre" is a point on the line of action, in length, or None if the forces
+    /// cancel. "nodes" is the number of nodes on which they act. "travel" of an obstacle that a force presses, "motion"
+    /// of a rigid face and "shortening" of a bolt are in length.
     #[getter]
     fn resultants<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let all = self.answer.resultants().map_err(|error| plain_exception(py, error))?;
         Ok(as_object(py, &all)?.cast_into()?)
     }
 
-    /// Returns the report that `signorini solve --format json` prints; only the seconds of the assembly are left out.
+    /// Returns the report that `signorini solve --format json` prints, without the seconds of the assembly.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     Its keys are those of the program. A number that is not finite is None.
+    ///
+    /// Raises
+    /// ------
+    /// SceneError
+    ///     Strains or rotations are above 5 %, and the deck asks for large displacements.
     fn report<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let (py, own) = (slf.py(), slf.get());
         let solution = (*slf.as_super().get().inner).clone();
@@ -404,13 +512,41 @@ impl SceneSolution {
         slf.py().import("signorini._show")?.call_method1("scene_html", (slf,))
     }
 
-    /// Draws the deformed mesh with its von Mises stress and returns the axes. Needs matplotlib.
+    /// Draws the deformed mesh with its von Mises stress; for a body in space or a bar the contact force of each row.
+    ///
+    /// Needs matplotlib: `pip install "signorini[plot]"`.
+    ///
+    /// Parameters
+    /// ----------
+    /// ax : Axes of matplotlib, optional
+    ///     Where to draw. A new figure by default.
+    ///
+    /// Returns
+    /// -------
+    /// Axes of matplotlib
+    ///     `ax`, or the new axes.
+    ///
+    /// Raises
+    /// ------
+    /// ImportError
+    ///     matplotlib is not installed.
     #[pyo3(signature = (ax = None))]
     fn plot<'py>(slf: &Bound<'py, Self>, ax: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("signorini._show")?.call_method1("scene_plot", (slf, ax))
     }
 
-    /// Returns the mesh with displacement, stress and von Mises stress as a grid of pyvista. Needs pyvista.
+    /// Returns the undeformed mesh with its results. Needs pyvista: `pip install "signorini[pyvista]"`.
+    ///
+    /// Returns
+    /// -------
+    /// UnstructuredGrid of pyvista
+    ///     `point_data` has "displacement", shape (nodes, 3), "stress", shape (nodes, 6), and "von_mises", shape
+    ///     (nodes,).
+    ///
+    /// Raises
+    /// ------
+    /// ImportError
+    ///     pyvista is not installed.
     fn to_pyvista<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("signorini._show")?.call_method1("scene_to_pyvista", (slf,))
     }

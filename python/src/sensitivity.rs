@@ -28,7 +28,43 @@ fn names(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
     })
 }
 
-/// Solves a scene, and gives the derivatives of its outputs `of` with respect to its parameters `to`.
+/// Solves a scene, and returns the derivatives of its outputs with respect to its parameters.
+///
+/// Parameters
+/// ----------
+/// scene : Scene
+///     The scene, at rest.
+/// of : str or list of str
+///     Outputs, for example "force", "peak-pressure", "obstacles[0].travel" or "stress@0.5,0.4:xx". `Scene.outputs` has
+///     all names.
+/// to : str or list of str, optional
+///     Parameters, for example "gap", "young", "loads[0]" or "obstacles[0].radius"; "nodes" stands for the places of
+///     all nodes. All numbers of the scene by default. `Scene.parameters` has all names.
+/// method, tolerance, threads, memory : optional
+///     As in `signorini.solve`.
+///
+/// Returns
+/// -------
+/// list of dict
+///     One dictionary per output, with "output", "value", "unit" and "by". "by" has one dictionary per parameter, with
+///     "parameter", "value", "unit", "derivative" and "relative": per cent of the output for one per cent of the
+///     parameter.
+///
+///     A derivative is a dictionary with a "verdict". If it is "proven", "value" is the derivative, in the unit of the
+///     output over that of the parameter. If it is "one-sided", "left" and "right" are those to both sides. If it is
+///     "undecided", "between" has those with the "rows" open and closed. If it is "unknown", "why" says the reason. For
+///     "nodes" there is also "places", shape (nodes, dim): the derivatives by the coordinates.
+///
+/// Raises
+/// ------
+/// SceneError
+///     A name does not exist; the sentence has those that do. Or the scene moves, or cannot be built.
+/// BadInput
+///     An option has a value that is not allowed.
+/// BadType or TypeError
+///     An argument has a wrong type.
+/// SignoriniError or Interrupted
+///     As `signorini.solve`.
 #[pyfunction]
 #[pyo3(signature = (scene, of, to = None, *, method = None, tolerance = None, threads = None, memory = None))]
 pub fn sensitivity<'py>(

@@ -43,13 +43,15 @@ impl Source {
     }
 }
 
-/// The solution of a contact problem. Its arrays are read-only.
+/// The solution of a contact problem with n dofs, m contact rows and p equality rows. Its arrays are read-only.
+///
+/// Units are those of the problem. `signorini.solve`, `Prepared.solve` and other functions make it.
 #[pyclass(frozen, module = "signorini", subclass)]
 pub struct Solution {
     pub inner: Arc<Answer>,
     /// `None` for the answer that an exception of many problems carries.
     pub source: Option<Source>,
-    /// Its derivatives, from the first that is asked for.
+    /// Multipliers of the equality rows, shape (p,), in force, of either sign; empty without such rows.
     pub derivatives: Mutex<Option<Derivatives>>,
     displacement: PyOnceLock<Py<PyAny>>,
     multiplier: PyOnceLock<Py<PyAny>>,
@@ -98,37 +100,37 @@ pub fn as_object<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResul
 
 #[pymethods]
 impl Solution {
-    /// Displacements, length n, in the order of the unknowns of K and in the problem's unit of length.
+    /// Displacements, shape (n,), in length, in the order of the unknowns of K.
     #[getter]
     fn u(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         once(py, &self.displacement, || Ok(of_reals(py, &self.inner.displacement)?.unbind()))
     }
 
-    /// Contact multipliers, length m, in the unit of force: the force on the body along each row, <= 0 in compression.
+    /// Contact multipliers, shape (m,), in force: the force on the body along each row, <= 0 in compression.
     #[getter]
     fn multiplier(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         once(py, &self.multiplier, || Ok(of_reals(py, &self.inner.multiplier)?.unbind()))
     }
 
-    /// Multipliers of the equality rows, length p, in the unit of force, of either sign; empty without such rows.
+    /// Multipliers of the equality rows, shape (p,), in force, of either sign; empty without such rows.
     #[getter]
     fn equality_multiplier(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         once(py, &self.equality_multiplier, || Ok(of_reals(py, &self.inner.equality_multiplier)?.unbind()))
     }
 
-    /// Indices of the closed rows, counted from 0, in increasing order.
+    /// Indices of the closed rows, counted from 0, increasing.
     #[getter]
     fn contact_set(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         once(py, &self.closed, || Ok(rows_of(py, &self.inner.contact_set)?.unbind()))
     }
 
-    /// Total contact force -sum(multiplier), >= 0, in the unit of force.
+    /// Total contact force `-sum(multiplier)`, >= 0, in force.
     #[getter]
     fn contact_force(&self) -> f64 {
         self.inner.contact_force()
     }
 
-    /// Name of the method: qp, active-set, penalty or mprgp, with a suffix for a variant.
+    /// Name of the method: "qp", "active-set", "penalty" or "mprgp", with a suffix for a variant.
     #[getter]
     fn method(&self) -> &str {
         &self.inner.method
@@ -140,25 +142,25 @@ impl Solution {
         self.inner.iterations
     }
 
-    /// The residuals of all conditions and the error bound, recomputed from the original problem.
+    /// The residuals of all conditions and the error bound, recomputed from the problem: a `Certificate`.
     #[getter]
     fn certificate(&self) -> Certificate {
         Certificate { inner: self.inner.certificate }
     }
 
-    /// Upper bound on the relative error of u in the energy norm; inf if none is known.
+    /// Upper bound on the relative error of u in the energy norm; `inf` if none is known.
     #[getter]
     fn energy_error_bound(&self) -> f64 {
         self.inner.certificate.energy_error_bound
     }
 
-    /// Rows that are proven open or closed; None if `proof=False` was given or no error bound is known.
+    /// The rows that are proven open or closed: a `Proven`. None with `proof=False`, or if no error bound is known.
     #[getter]
     fn proven(&self) -> Option<Proven> {
         self.inner.proven.as_ref().map(|_| Proven { of: self.inner.clone() })
     }
 
-    /// Explanation in words: why this method was chosen, and which methods were tried before it.
+    /// Why this method was chosen, and which methods were tried before it, in words.
     #[getter]
     fn why(&self) -> String {
         let answer = &self.inner;
@@ -178,7 +180,8 @@ impl Solution {
         self.inner.seconds.solve
     }
 
-    /// Seconds of the steps `factor`, `certificate` and `proof`, and of the whole `solve`, which contains them.
+    /// Seconds of the steps, a dictionary: "factor", "certificate", "proof", and "solve" for the whole, which contains
+    /// them.
     #[getter]
     fn seconds_of<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (by_step, seconds) = (PyDict::new(py), self.inner.seconds);
@@ -189,7 +192,9 @@ impl Solution {
         Ok(by_step)
     }
 
-    /// The closed rows in each iteration, with the penalty in multiples of the local stiffness (0 without a penalty).
+    /// List of pairs, one per iteration: the indices of the closed rows, and the penalty.
+    ///
+    /// The penalty is in multiples of the local stiffness; it is 0 for a method without a penalty.
     #[getter]
     fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let of_each = self.inner.history.iter();
@@ -197,7 +202,36 @@ impl Solution {
         PyList::new(py, pairs.collect::<PyResult<Vec<_>>>()?)
     }
 
-    /// Returns the derivatives of an output with respect to all data.
+    /// Returns the derivatives of an output phi(u, multiplier, equality_multiplier) with respect to all data of the
+    /// problem.
+    ///
+    /// The first derivative factorises K, except for a solution of `prepare`, whose factor is used. Each costs one
+    /// linear solve. If phi itself depends on the data, that part is not in the result.
+    ///
+    /// Parameters
+    /// ----------
+    /// displacement : array, shape (n,), optional
+    ///     d phi / d u. Zero by default.
+    /// multiplier : array, shape (m,), optional
+    ///     d phi / d multiplier. Zero by default.
+    /// equality_multiplier : array, shape (p,), optional
+    ///     d phi / d equality_multiplier. Zero by default.
+    ///
+    /// Returns
+    /// -------
+    /// Vjp
+    ///     The derivatives, with the verdict whether they exist. Their unit is that of phi over that of the data. A
+    ///     derivative that is not proven is no exception here; the result says so.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     An array has a wrong length, or a value that is not finite. Or the solution was carried by an exception in
+    ///     `Solutions.errors`: it does not keep its problem.
+    /// BadType
+    ///     An argument has a wrong type.
+    /// SignoriniError or Interrupted
+    ///     As `signorini.prepare`.
     #[pyo3(signature = (displacement = None, multiplier = None, equality_multiplier = None))]
     fn vjp<'py>(
         slf: &Bound<'py, Self>,
@@ -209,7 +243,37 @@ impl Solution {
         slf.py().import("signorini._signorini")?.call_method1("_vjp", arguments)
     }
 
-    /// Returns the derivatives of displacement and multipliers along a change of the data.
+    /// Returns the derivatives of displacement and multipliers along a change of the data, per unit of a parameter.
+    ///
+    /// Costs are those of `vjp`.
+    ///
+    /// Parameters
+    /// ----------
+    /// load : array, shape (n,), optional
+    ///     Change df of the load. What is not given does not change.
+    /// gap : array, shape (m,), optional
+    ///     Change dg of the gaps, positive if the obstacle moves away. It must be finite; the gap of a row without an
+    ///     obstacle stays infinite.
+    /// stiffness : matrix, shape (n, n), optional
+    ///     Change dK, symmetric, with both triangles. It may have entries where K has none.
+    /// rows : matrix, shape (m, n), optional
+    ///     Change dB. It may have entries where B has none.
+    /// equality_values : array, shape (p,), optional
+    ///     Change de of the values of the equality rows.
+    ///
+    /// Returns
+    /// -------
+    /// Jvp
+    ///     The derivatives, with the verdict whether they exist.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     An array has a wrong shape, or a value that is not finite; dK is not symmetric; or as in `vjp`.
+    /// BadType
+    ///     An argument has a wrong type.
+    /// SignoriniError or Interrupted
+    ///     As `signorini.prepare`.
     #[pyo3(signature = (load = None, gap = None, stiffness = None, rows = None, equality_values = None))]
     fn jvp<'py>(
         slf: &Bound<'py, Self>,
@@ -223,7 +287,12 @@ impl Solution {
         slf.py().import("signorini._signorini")?.call_method1("_jvp", arguments)
     }
 
-    /// Returns all scalar results, under the names that the program uses in its reports; the vectors are left out.
+    /// Returns all scalar results; the vectors are left out.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     Its keys are those in the reports of the program. A number that is not finite is None.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         as_object(py, &*self.inner)
     }
@@ -245,14 +314,33 @@ impl Solution {
         slf.py().import("signorini._show")?.call_method1("solution_html", (slf,))
     }
 
-    /// Draws the contact force of each row and returns the axes. Needs matplotlib.
+    /// Draws the contact force of each row. Needs matplotlib: `pip install "signorini[plot]"`.
+    ///
+    /// Parameters
+    /// ----------
+    /// ax : Axes of matplotlib, optional
+    ///     Where to draw. A new figure by default.
+    ///
+    /// Returns
+    /// -------
+    /// Axes of matplotlib
+    ///     `ax`, or the new axes.
+    ///
+    /// Raises
+    /// ------
+    /// ImportError
+    ///     matplotlib is not installed.
     #[pyo3(signature = (ax = None))]
     fn plot<'py>(slf: &Bound<'py, Self>, ax: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("signorini._show")?.call_method1("solution_plot", (slf, ax))
     }
 }
 
-/// Relative residuals of the conditions that define the solution, and a bound on the error.
+/// Residuals of the conditions that define the solution, and a bound on the error. All are relative, except
+/// `energy_error`.
+///
+/// A *part* is a group of dofs that K and B couple with each other, and with no other dof. The energy norm of u is the
+/// root of u'K u. `docs/certificate.md` has the formulas.
 #[pyclass(frozen, module = "signorini", eq)]
 #[derive(Clone, PartialEq)]
 pub struct Certificate {
@@ -261,19 +349,23 @@ pub struct Certificate {
 
 #[pymethods]
 impl Certificate {
-    /// Residual of equilibrium, K u - f - B' multiplier = 0, at each dof relative to its own terms. It does not decide.
+    /// Residual of the equilibrium K u - f - B' multiplier - E' equality_multiplier = 0, relative to its terms at each
+    /// dof.
+    ///
+    /// It explains an error and does not decide.
     #[getter]
     fn stationarity(&self) -> f64 {
         self.inner.stationarity
     }
 
-    /// Relative penetration into the obstacle, a violation of B u - g <= 0.
+    /// Depth in the obstacle, a violation of B u - g <= 0, relative to the lengths of the row. It decides.
     #[getter]
     fn penetration(&self) -> f64 {
         self.inner.penetration
     }
 
-    /// Relative size of the multipliers of the wrong sign: an obstacle would pull on the body. It must be zero.
+    /// Largest multiplier of the wrong sign, relative to the forces at its dofs: an obstacle would pull. It must be
+    /// zero.
     #[getter]
     fn adhesion(&self) -> f64 {
         self.inner.adhesion
@@ -291,43 +383,50 @@ impl Certificate {
         self.inner.duality_gap
     }
 
-    /// Residual of equilibrium above rounding, relative to the largest force on the part.
+    /// Residual of the equilibrium above rounding, relative to the largest force on the part. It decides.
     #[getter]
     fn imbalance(&self) -> f64 {
         self.inner.imbalance
     }
 
-    /// Relative force of a row over its relative open distance, the smaller of the two.
+    /// Relative force of a row or its relative open distance, the smaller of the two: a row that presses without
+    /// touching.
+    ///
+    /// It decides.
     #[getter]
     fn open_force(&self) -> f64 {
         self.inner.open_force
     }
 
-    /// Upper bound on the error of u in the energy norm, in the square root of the problem's unit of energy; inf if none is known.
+    /// Upper bound on the error of u in the energy norm, in the root of force times length; `inf` if none is known.
     #[getter]
     fn energy_error(&self) -> f64 {
         self.inner.energy_error
     }
 
-    /// Upper bound on the relative error of u in the energy norm; inf if none is known, or for a body at rest.
+    /// Upper bound on the relative error of u in the energy norm; `inf` if none is known, or for a body at rest.
     #[getter]
     fn energy_error_bound(&self) -> f64 {
         self.inner.energy_error_bound
     }
 
-    /// The tolerance that is met without the excuse of rounding or, if none is, with it; inf if none is met.
+    /// The smallest tolerance that the solution meets without the excuse of rounding or, if there is none, with it.
+    ///
+    /// `inf` if it meets none.
     #[getter]
     fn met_tolerance(&self) -> f64 {
         self.inner.met_tolerance
     }
 
-    /// 'tolerance' or 'rounding', the way in which the goal is met; None if it is not.
+    /// How the goal is met: "tolerance", or "rounding" if the error is no more than rounding of u to doubles.
+    ///
+    /// None if the goal is not met, or if nothing was asked for, as in `verify`.
     #[getter]
     fn met(&self) -> Option<&'static str> {
         self.inner.met()
     }
 
-    /// True if no part moves: there is no relative error, and `rest_error` bounds the error.
+    /// True if no part moves. Then there is no relative error, and `rest_error` bounds the error.
     #[getter]
     fn at_rest(&self) -> bool {
         self.inner.at_rest
@@ -339,19 +438,19 @@ impl Certificate {
         self.inner.rest_error
     }
 
-    /// The dof, from 0, at which loads and contact forces cancel most digits of the elastic force.
+    /// Index of the dof, from 0, at which loads and contact forces cancel most digits of the elastic force.
     #[getter]
     fn worst_dof(&self) -> usize {
         self.inner.worst_dof()
     }
 
-    /// Digits of the elastic force that doubles can hold at that dof, from 0 to 16.
+    /// Digits of the elastic force that doubles can hold at `worst_dof`, from 0 to 16.
     #[getter]
     fn digits_left(&self) -> f64 {
         self.inner.digits_left()
     }
 
-    /// Largest error bound over the whole problem and over each of its uncoupled parts that moves.
+    /// Largest relative error bound of the whole problem and of each part that moves.
     #[getter]
     fn part_error_bound(&self) -> f64 {
         self.inner.part_error_bound
@@ -363,24 +462,59 @@ impl Certificate {
         self.inner.bound_is_measured
     }
 
-    /// Name and value of the largest of the numbers that decide.
+    /// Name and value of the largest of the numbers that decide, a pair.
     #[getter]
     fn worst(&self) -> (&'static str, f64) {
         self.inner.worst()
     }
 
-    /// Returns True if all conditions hold to `tolerance` and the error bound is at most `tolerance` or explained by
-    /// rounding.
+    /// Returns whether the solution is certified to a tolerance.
+    ///
+    /// Parameters
+    /// ----------
+    /// tolerance : float
+    ///     Relative, for example 1e-9.
+    ///
+    /// Returns
+    /// -------
+    /// bool
+    ///     True if no row pulls, all conditions hold to `tolerance`, and the error bound of every part is at most
+    ///     `tolerance` or explained by rounding of u to doubles.
+    ///
+    /// Raises
+    /// ------
+    /// TypeError
+    ///     `tolerance` is no number.
     fn meets(&self, tolerance: f64) -> bool {
         self.inner.meets(tolerance)
     }
 
-    /// Returns True if all conditions hold to `tolerance`. The error bound is not compared.
+    /// Returns whether all conditions hold to a tolerance. The error bound is not compared.
+    ///
+    /// Parameters
+    /// ----------
+    /// tolerance : float
+    ///     Relative, for example 1e-9.
+    ///
+    /// Returns
+    /// -------
+    /// bool
+    ///     True if no row pulls and all other conditions hold to `tolerance`.
+    ///
+    /// Raises
+    /// ------
+    /// TypeError
+    ///     `tolerance` is no number.
     fn conditions_hold(&self, tolerance: f64) -> bool {
         self.inner.conditions_hold(tolerance)
     }
 
-    /// Returns all numbers, under the names that the program uses in its reports.
+    /// Returns all numbers of the certificate.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     Its keys are those in the reports of the program. A number that is not finite is None.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         as_object(py, &self.inner)
     }
@@ -392,7 +526,7 @@ impl Certificate {
     }
 }
 
-/// Rows that the error bound proves to be open or closed in the exact solution.
+/// The rows that the error bound proves to be open or closed in the exact solution. Arrays of int, read-only.
 #[pyclass(frozen, module = "signorini")]
 pub struct Proven {
     of: Arc<Answer>,
@@ -410,19 +544,19 @@ impl Proven {
 
 #[pymethods]
 impl Proven {
-    /// Indices of the rows that are proven open, counted from 0.
+    /// Indices of the rows that are proven open, counted from 0, increasing.
     #[getter]
     fn open<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.rows(py, |proven| proven.open.iter().collect())
     }
 
-    /// Indices of the rows that are proven closed, counted from 0.
+    /// Indices of the rows that are proven closed, counted from 0, increasing.
     #[getter]
     fn closed<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.rows(py, |proven| proven.closed.iter().collect())
     }
 
-    /// Indices of the rows that are proven neither open nor closed, counted from 0.
+    /// Indices of the rows that are proven neither open nor closed, counted from 0, increasing.
     #[getter]
     fn undecided<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.rows(py, |proven| proven.undecided().collect())

@@ -14,7 +14,76 @@ use crate::problem::Problem;
 use crate::solution::{Certificate, Solution, Source};
 use crate::work::{End, Place, run};
 
-/// Solves a contact problem. The returned solution is certified to `tolerance`.
+/// Solves a contact problem. The solution is certified: its conditions and its error are recomputed from the problem.
+///
+/// Parameters
+/// ----------
+/// problem : Problem
+///     The problem.
+/// method : str, optional
+///     "auto" (the default) chooses by estimates of time and memory. "active-set" exchanges closed rows, by one factor
+///     of K, and ends with an exact linear solve. "qp" is an interior-point method; the active set makes its contact
+///     set exact. "penalty" puts stiff springs on the closed rows, with an error of about 1e-8. "mprgp" takes multigrid
+///     instead of a factor, for large bodies.
+/// accuracy : float or "exact", optional
+///     A relative error of u in the energy norm that is good enough, for example 1e-3. It is positive and replaces
+///     `tolerance`. "exact" makes "auto" take the active set. Without it `tolerance` decides.
+/// time : float, optional
+///     Limit in seconds, positive. After it the best solution so far is taken; it must still be certified. A
+///     factorisation that has begun is finished first. No limit by default.
+/// start : Solution or array, optional
+///     Where the method starts. A solution of a problem of the same size; or the indices of closed rows, from 0, as an
+///     array of numpy with an integer dtype; or a displacement, shape (n,), as an array of real numbers. It changes the
+///     number of iterations. If the solve fails, it is repeated without the start.
+/// threads : int, optional
+///     Number of threads, from 1 to 64, or to four times the processors if that is more. By default a factorisation has
+///     one, and multigrid on 50,000 dofs or more has those of the machine, at most 8. Threads change no bit of the
+///     solution.
+/// tolerance : float, optional
+///     Largest relative residual, and largest relative error of u in the energy norm, of a certified solution. It is
+///     positive; the default is 1e-9.
+/// memory : float, optional
+///     Limit in bytes, positive. "auto" avoids methods whose estimate is larger; another method is refused. The default
+///     is the memory that the machine has available.
+/// precision : str, optional
+///     Precision of the factor; the solution is always in double precision. "double" and "mixed" name it: "mixed"
+///     factorises in single precision, with half the memory, and refines the solution. "auto" (the default) takes
+///     "double", except if `accuracy` is given and "mixed" reaches it in less time.
+/// condense : bool, optional
+///     True (the default) reduces the problem to the dofs of its contact rows if an estimate shows that it pays. False
+///     never does.
+/// proof : bool, optional
+///     True (the default) proves which rows are open and which are closed (`Solution.proven`). False saves that time.
+///
+/// Returns
+/// -------
+/// Solution
+///     Its certificate meets `tolerance`, or `accuracy`.
+///
+/// Raises
+/// ------
+/// BadInput
+///     An option has a value that is not allowed, or `start` does not fit the problem.
+/// BadType or TypeError
+///     An argument has a wrong type.
+/// Infeasible
+///     Rows contradict each other. The exception names them, with a proof.
+/// Unbounded
+///     The load moves the body away without end.
+/// UnderHeld
+///     Supports and contact do not hold the body, so that the solution is not unique.
+/// NotConvex
+///     K has a negative eigenvalue.
+/// NotCertified
+///     The tolerance is not reached. The exception carries the best solution.
+/// Undecided
+///     It could not be decided whether the problem has one solution.
+/// OutOfTime or TooLarge
+///     The time or the memory does not suffice.
+/// NumericalError
+///     A computation fails, for example by overflow.
+/// Interrupted
+///     Ctrl-C was pressed. The exception carries the best solution so far, if there is one.
 #[pyfunction]
 #[pyo3(signature = (
     problem, *, method = None, accuracy = None, time = None, start = None, threads = None, tolerance = None, memory = None,
@@ -45,8 +114,24 @@ pub fn solve<'py>(
     answered(py, place, find, |solution| Solution::object(py, solution, Some(source.clone())))
 }
 
-/// Solves a contact problem by an interior-point method, certified to 1e-9; the active-set method makes the contact set
-/// exact.
+/// Solves a contact problem by the interior-point method; the active-set method makes its contact set exact.
+///
+/// It does the same as `solve(problem, method="qp")`.
+///
+/// Parameters
+/// ----------
+/// problem : Problem
+///     The problem.
+///
+/// Returns
+/// -------
+/// Solution
+///     It is certified to 1e-9.
+///
+/// Raises
+/// ------
+/// SignoriniError or Interrupted
+///     As `solve`.
 #[pyfunction]
 pub fn solve_qp(problem: &Bound<'_, Problem>) -> PyResult<Py<PyAny>> {
     let method = pyo3::types::PyString::new(problem.py(), "qp").into_any();
@@ -54,6 +139,38 @@ pub fn solve_qp(problem: &Bound<'_, Problem>) -> PyResult<Py<PyAny>> {
 }
 
 /// Factorises a problem once, to solve it for several gaps, loads or starts.
+///
+/// Parameters
+/// ----------
+/// problem : Problem
+///     The problem.
+/// gaps : int, optional
+///     Number of solves that you expect, 10 by default. "auto" chooses the method by it. More or fewer solves are
+///     allowed.
+/// method, accuracy, threads, tolerance, memory, precision, condense, proof : optional
+///     As in `solve`. They hold for each solve.
+///
+/// Returns
+/// -------
+/// Prepared
+///     The factor of K, or a multigrid hierarchy, with the methods that use it.
+///
+/// Raises
+/// ------
+/// BadInput
+///     An option has a value that is not allowed.
+/// BadType or TypeError
+///     An argument has a wrong type.
+/// OverflowError
+///     `gaps` is negative.
+/// Infeasible
+///     Rows contradict each other at the gaps of the problem.
+/// TooLarge
+///     The memory does not suffice.
+/// NumericalError
+///     A computation fails.
+/// Interrupted
+///     Ctrl-C was pressed.
 #[pyfunction]
 #[pyo3(signature = (
     problem, *, gaps = 10, method = None, accuracy = None, threads = None, tolerance = None, memory = None,
@@ -85,8 +202,34 @@ pub fn prepare<'py>(
     }
 }
 
-/// Returns the certificate of any displacement u (length n), multiplier (length m, <= 0 in compression) and multiplier of the equality
-/// rows (length p, of either sign).
+/// Returns the certificate of a solution that comes from elsewhere.
+///
+/// Parameters
+/// ----------
+/// problem : Problem
+///     The problem.
+/// u : array, shape (n,)
+///     Displacement, in length.
+/// multiplier : array, shape (m,)
+///     Contact multipliers, in force, <= 0 in compression.
+/// equality_multiplier : array, shape (p,), optional
+///     Multipliers of the equality rows, in force, of either sign. Needed if the problem has such rows.
+///
+/// Returns
+/// -------
+/// Certificate
+///     The residuals and the bound on the error of u, whether they are small or not.
+///
+/// Raises
+/// ------
+/// BadInput
+///     An array has a wrong length, or a value that is not finite.
+/// BadType or TypeError
+///     An argument has a wrong type.
+/// NumericalError
+///     The factorisation of K fails.
+/// Interrupted
+///     Ctrl-C was pressed.
 #[pyfunction]
 #[pyo3(signature = (problem, u, multiplier, equality_multiplier = None))]
 pub fn verify(

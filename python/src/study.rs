@@ -15,7 +15,9 @@ use crate::scene::{Scene, SceneSolution, scene_exception};
 use crate::solution::{Solution, Source, as_object};
 use crate::work::{End, Place, run};
 
-/// One problem solved by interior point, active set and penalty.
+/// One problem solved by interior point, active set and penalty. `signorini.compare` makes it.
+///
+/// For a problem the solutions are `Solution`, for a scene `SceneSolution`. They may miss the tolerance.
 #[pyclass(frozen, module = "signorini", get_all)]
 pub struct Comparison {
     /// The solution of the interior-point method.
@@ -24,7 +26,11 @@ pub struct Comparison {
     active_set: Py<PyAny>,
     /// The solution of the penalty method.
     penalty: Py<PyAny>,
-    /// Differences between the three solutions, under the names that the program uses in its reports.
+    /// Differences between the three solutions, a dictionary.
+    ///
+    /// "active_set" and "penalty" compare these with the interior point: the relative differences "displacement",
+    /// "multiplier" and "energy", and "rows", the number of rows that only one of them closes. "exact_methods" is
+    /// `agrees`, and "penalty_within_its_bound" says that the penalty is as near as its certificate states.
     agreement: Py<PyAny>,
     /// True if the solutions of interior point and active set are certified and agree.
     agrees: bool,
@@ -51,6 +57,24 @@ fn comparison(
 }
 
 /// Solves a problem or a scene by interior point, active set and penalty, and compares the solutions.
+///
+/// Parameters
+/// ----------
+/// problem : Problem or Scene
+///     What is solved.
+///
+/// Returns
+/// -------
+/// Comparison
+///     The three solutions, certified or not, and their differences.
+///
+/// Raises
+/// ------
+/// BadType
+///     The argument is neither a `Problem` nor a `Scene`.
+/// SignoriniError or Interrupted
+///     As `signorini.solve`, except `NotCertified`; for a scene also as `Scene.solve`. `Interrupted` carries no
+///     solution.
 #[pyfunction]
 pub fn compare(problem: &Bound<'_, PyAny>) -> PyResult<Comparison> {
     let py = problem.py();

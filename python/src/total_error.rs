@@ -14,7 +14,11 @@ use crate::scene::{Scene, SceneSolution, scene_exception};
 use crate::solution::as_object;
 use crate::work::{End, Place, run};
 
-/// An answer with its error against the continuum: u is the exact displacement, v the answer.
+/// An answer with its error against the continuum: u is the exact displacement of the linear model, v the answer.
+///
+/// With a guarantee `nodes`, `elements` and `displacement` describe v. v keeps the distance of the obstacles between
+/// its nodes too, so that it may differ from `solution`. Without a guarantee they are those of `solution`.
+/// `signorini.total_error` makes it.
 #[pyclass(frozen, module = "signorini")]
 pub struct TotalError {
     /// What was found, without the answer on the last mesh.
@@ -68,37 +72,42 @@ impl TotalError {
         self.found.reason.as_deref()
     }
 
-    /// The interval that contains the exact contact force, in the unit of force; None if it is not known.
+    /// Two numbers, in force, between which the exact contact force lies; None if they are not known.
     #[getter]
     fn force_interval(&self) -> Option<(f64, f64)> {
         self.found.guarantee.as_ref()?.force_interval.map(<(f64, f64)>::from)
     }
 
-    /// One dictionary per mesh, from the first to the last, under the names that the program uses in its reports.
+    /// One dictionary per mesh, from the first to the last; the keys are those in the reports of the program.
+    ///
+    /// All have "elements", "dofs", "total_error", "contact_force" (in force) and "seconds". With a guarantee there are
+    /// also "stress_dofs", "mean_stress_error", "force_interval" where it is known, "displacement_seconds" and
+    /// "stress_seconds". Otherwise there are "contact_rows", "method", "discretisation_error", "energy_error_bound" and
+    /// "depth_between_nodes".
     #[getter]
     fn levels<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         as_object(py, &self.found.levels)
     }
 
-    /// Why no finer mesh was made: goal, time, memory, or mesh if the mesh of a file cannot be refined.
+    /// Why no finer mesh was made: "goal", "time", "memory", or "mesh" if the mesh of a file cannot be refined.
     #[getter]
     fn ended<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         as_object(py, &self.found.ended)
     }
 
-    /// certified if the goal is met, otherwise not_certified.
+    /// "certified" if the goal is met, otherwise "not_certified".
     #[getter]
     fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         as_object(py, &self.found.status)
     }
 
-    /// Size of the problem on the last mesh, under the names that the program uses in its reports.
+    /// Size of the problem on the last mesh, a dictionary with the keys of the reports of the program, such as "dofs".
     #[getter]
     fn model<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         as_object(py, &self.found.model)
     }
 
-    /// Coordinates of the nodes of the last mesh, one row per node, in the unit of length.
+    /// Coordinates of the nodes of the last mesh, shape (nodes, dim), in length.
     #[getter]
     fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         match &self.found.guarantee {
@@ -108,6 +117,9 @@ impl TotalError {
     }
 
     /// Node numbers of the elements of the last mesh, one row per element, counted from 0, in the order of VTK.
+    ///
+    /// With a guarantee in the plane they are triangles with six nodes: three corners, then the middles of the sides
+    /// 0-1, 1-2 and 2-0.
     #[getter]
     fn elements<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         match &self.found.guarantee {
@@ -120,7 +132,7 @@ impl TotalError {
         }
     }
 
-    /// The displacement v of each node of the last mesh, one row per node, in the unit of length.
+    /// The displacement v of each node of the last mesh, shape (nodes, dim), in length, along the axes.
     #[getter]
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         match &self.found.guarantee {
@@ -129,13 +141,20 @@ impl TotalError {
         }
     }
 
-    /// The solution of the scene on the last mesh, which its scene has; None if time or memory ended before it.
+    /// The solution of the scene on the last mesh, a `SceneSolution`; its `scene` has that mesh.
+    ///
+    /// None if time or memory ended before it.
     #[getter]
     fn solution(&self, py: Python<'_>) -> Option<Py<PyAny>> {
         self.solution.as_ref().map(|solution| solution.clone_ref(py))
     }
 
-    /// Returns all numbers, under the names that the program uses in its reports.
+    /// Returns all numbers; the arrays are left out.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     Its keys are those in the reports of the program. A number that is not finite is None.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         as_object(py, &self.found)
     }
@@ -152,7 +171,41 @@ fn of_answer<'py>(py: Python<'py>, answer: &ContinuumAnswer, vectors: &[[f64; 3]
     of_table(py, &answer.components(vectors), answer.dimension())
 }
 
-/// Refines the mesh of a scene until its error against the continuum is at most `goal`, relative in the energy norm.
+/// Refines the mesh of a scene until its error against the continuum is small enough.
+///
+/// The error is guaranteed where `docs/accuracy.md` says so, and estimated otherwise.
+///
+/// Parameters
+/// ----------
+/// scene : Scene
+///     The scene, at rest.
+/// goal : float
+///     Largest error |u - v| / |v| in the energy norm, above 0 and below 1: 0.01 is 1 %.
+/// force_error : float, optional
+///     Largest error of the contact force, above 0 and below 1: half the width of its interval over the force. Only
+///     with a guarantee.
+/// time : float, optional
+///     Limit in seconds, positive. After it the finest mesh so far is taken. No limit by default.
+/// threads, memory : optional
+///     As in `signorini.solve`.
+///
+/// Returns
+/// -------
+/// TotalError
+///     The error that was reached, with the answer. It is returned even if it misses the goal: see its `status`.
+///
+/// Raises
+/// ------
+/// BadInput
+///     An error, or another option, is out of its range.
+/// BadType or TypeError
+///     An argument has a wrong type.
+/// SceneError
+///     The scene cannot be built, has no answer in the continuum, or has no guarantee although `force_error` is given.
+/// Interrupted
+///     Ctrl-C was pressed. The exception carries the `TotalError` so far in `solution`, if there is one.
+/// SignoriniError
+///     As `signorini.solve`, for the first mesh.
 #[pyfunction]
 #[pyo3(signature = (scene, goal, *, force_error = None, time = None, threads = None, memory = None))]
 pub fn total_error<'py>(

@@ -4,7 +4,7 @@
 #[derive(Clone, Debug)]
 pub(super) struct Line {
     pub text: String,
-    /// Both ends, a number for each coordinate.
+    /// Both ends of the line, a number for each coordinate, in length.
     pub ends: [Vec<f64>; 2],
 }
 

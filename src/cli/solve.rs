@@ -141,7 +141,7 @@ pub(super) fn assembly_seconds(scene: &Scene, options: &Solve, watch: &Watch) ->
     }
 }
 
-/// The answer, certified or not.
+/// The answer, certified or not; a refusal of the certificate becomes a warning.
 fn best_of(input: &Input, start: &Start, settings: &Settings) -> Result<Solution, Error> {
     match input.problem().solve_from(start, settings) {
         Err(error @ qp::Error::NotCertified { .. }) => {

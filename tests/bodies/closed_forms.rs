@@ -1,5 +1,9 @@
-//! The closed forms of bar and patch test, compared with linear solves in which the contact is a support; and all
-//! closed forms, compared with numbers that can be checked by hand.
+//! GOAL: the closed forms of `tests/support/closed_forms` are right.
+//!
+//! CONDITIONS: bar and patch test with the contact replaced by a support; bars, Hertz contacts, punches, obstacle
+//! problems, bars in impact and exact blocks at single places.
+//!
+//! REFERENCE: linear solves for bar and patch test; numbers that can be checked by hand.
 
 use serde_json::{Value, json};
 use signorini::fem::{ElementKind, Integration};

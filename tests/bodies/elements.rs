@@ -3,6 +3,8 @@
 //!
 //! MESH: a bar of 5 cells, a 2 x 1 rectangle of 4 x 3 cells, a 2 x 1 x 1.5 box of 3 x 3 x 2 cells; inner nodes are
 //! moved by up to a fifth of a cell; E = 7, nu = 0.3.
+//!
+//! REFERENCE: the prescribed field itself, and its stress by Hooke's law.
 
 use signorini::fem::{
     self, DofMap, ElasticBody, ElementKind, ExactState, Formulation, Integration, Material, Mesh, Stress, error_norms,

@@ -75,7 +75,7 @@ struct Said {
     mesh: Mesh,
     /// The coordinates of the nodes, bit by bit.
     bits: Vec<[u64; 3]>,
-    /// Dimension, tag and name of each physical group.
+    /// Dimension, tag and name of each physical group, as they were read.
     groups: Vec<(usize, u64, String)>,
     bodies: Vec<String>,
 }

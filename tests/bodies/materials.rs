@@ -38,6 +38,9 @@ fn off_axis(degrees: f64) -> [[f64; 3]; 3] {
     [[xx, xy, xs], [xy, yy, ys], [xs, ys, shear]]
 }
 
+/// GOAL: an orthotropic sheet under uniform stress, along and off its axes.
+/// CONDITIONS: plane stress, a distorted mesh; axes turned by five angles, one stress component at a time.
+/// REFERENCE: R. M. Jones, *Mechanics of Composite Materials*, 2nd ed. 1999, equation 2.88, in `off_axis`.
 #[test]
 fn a_thin_sheet_has_the_strains_of_the_textbook_along_and_off_the_axes() {
     for degrees in [0.0, 30.0, 45.0, 90.0, -70.0] {
@@ -54,8 +57,10 @@ fn a_thin_sheet_has_the_strains_of_the_textbook_along_and_off_the_axes() {
     }
 }
 
-/// In plane strain, E2 and nu12 are replaced by 1/E2' = (1 - nu23 nu32)/E2 and so on; the stress across the plane is
-/// nu31 s1 + nu32 s2.
+/// GOAL: an orthotropic body in plane strain.
+/// CONDITIONS: a uniform stress along the axes of the material, on a distorted mesh.
+/// REFERENCE: Hooke's law: E2 and nu12 are replaced by 1/E2' = (1 - nu23 nu32)/E2 and so on; the stress across the
+/// plane is nu31 s1 + nu32 s2.
 #[test]
 fn plane_strain_has_the_reduced_moduli_and_the_stress_across_the_plane() {
     let body = ElasticBody::new(distorted(ElementKind::T6), carbon(0.0), STRAIN).unwrap();
@@ -84,8 +89,10 @@ fn turned_material_axes_give_the_stiffness_of_permuted_moduli() {
     assert!(difference(&one, &other) < ROUNDING * largest(&one), "{:e}", difference(&one, &other));
 }
 
-/// Two layers in tension along the layers: each has a different stress. The estimate compares each layer with its nodal
+/// GOAL: two layers in tension.
+/// CONDITIONS: plane stress, nu = 0; the load is along the layers. The estimate compares each layer with its nodal
 /// stress, so that an exact mesh has no estimated error.
+/// REFERENCE: equal strain: each layer has the stress E times the strain.
 #[test]
 fn layers_in_tension_have_equal_strain_and_no_estimated_error() {
     let mesh = rectangle(&[0.0, 0.7, 2.0], &[0.0, 0.4, 1.0], ElementKind::Q4).unwrap();

@@ -2,6 +2,8 @@
 //!
 //! MESH: a 2 x 1 rectangle of 4 x 3 cells; inner nodes are moved by up to a fifth of a cell; E = 7, nu = 0.3, thickness
 //! 0.5.
+//!
+//! REFERENCE: the prescribed field itself, and its stress by Hooke's law, written out in three dimensions.
 
 use signorini::fem::{self, Formulation, Stress};
 use support::bodies::{VARIANTS, difference, distorted_body, largest, nodal, solve_held};

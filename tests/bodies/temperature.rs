@@ -17,9 +17,10 @@ fn everywhere(body: &ElasticBody) -> Vec<usize> {
     (0..body.mesh().element_count()).collect()
 }
 
-/// 20 degrees warmer, with E = 7 and nu = 0.3, on distorted meshes of every element and integration: a free body
-/// expands uniformly without force. In plane strain the stress across the plane is -E alpha T, and the expansion in the
-/// plane is larger by nu times alpha T.
+/// GOAL: free thermal expansion.
+/// CONDITIONS: 20 degrees warmer, with E = 7 and nu = 0.3, on distorted meshes of every element and integration.
+/// REFERENCE: the strain alpha T without force; in plane strain the stress across the plane is -E alpha T, and the
+/// expansion in the plane is larger by nu times alpha T.
 #[test]
 fn a_uniformly_warmed_free_body_has_no_stress_on_any_mesh() {
     for (name, body) in all() {
@@ -52,7 +53,9 @@ fn a_uniformly_warmed_free_body_has_no_stress_on_any_mesh() {
     }
 }
 
-/// T = 5 + 3 x - 2 y bends a thin sheet without stress: u_x = a (5 x + 3 (x^2 - y^2)/2 - 2 x y), u_y = a (5 y - (y^2 - x^2) + 3 x y).
+/// GOAL: thermal bending without stress.
+/// CONDITIONS: a thin sheet with T = 5 + 3 x - 2 y; quadratic elements.
+/// REFERENCE: u_x = a (5 x + 3 (x^2 - y^2)/2 - 2 x y), u_y = a (5 y - (y^2 - x^2) + 3 x y).
 #[test]
 fn a_linear_temperature_bends_a_thin_sheet_without_stress() {
     // Only rectangular quadrilaterals represent all quadratic functions.
@@ -72,8 +75,9 @@ fn a_linear_temperature_bends_a_thin_sheet_without_stress() {
     }
 }
 
-/// An orthotropic sheet turned by 30 degrees expands along the axes of the material: the thermal strain is transformed
-/// as a tensor.
+/// GOAL: thermal expansion of an orthotropic sheet.
+/// CONDITIONS: plane stress; the axes of the material are turned by 30 degrees.
+/// REFERENCE: the thermal strain, transformed as a tensor; no stress.
 #[test]
 fn an_orthotropic_sheet_expands_along_the_axes_of_its_material() {
     let (sine, cosine) = f64::to_radians(30.0).sin_cos();

@@ -13,7 +13,7 @@ use signorini::fem::GmshFile;
 use signorini::qp::read_problem;
 use signorini::{Error, Scene, solve_qp};
 
-/// Largest length of a sentence; a longer one says too much.
+/// Largest number of letters of an error message.
 const LONGEST: usize = 400;
 
 fn folder() -> PathBuf {

@@ -15,7 +15,7 @@ use serde_json::Value;
 use signorini::qp::read_problem;
 use support::program::Desk;
 
-/// Largest length of a sentence; a longer one says too much.
+/// Largest number of letters of an error message about a PETSc file.
 const LONGEST: usize = 300;
 
 /// Files that are read only if there is no `near_null.petsc`.

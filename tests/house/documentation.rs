@@ -1,10 +1,11 @@
 //! Documentation of what users see: it says more than a name, every array has its shape, its unit and its sign, and every
-//! function that can fail names its errors.
+//! function that can fail names its errors. No two items of the crates, public or not, begin with the same sentence.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
 use std::path::Path;
 
-use crate::imports::{House, Source};
+use crate::imports::{CRATES, House, Source, rust_files};
 
 /// Words that carry no information beside a name.
 const EMPTY: [&str; 28] = [
@@ -225,6 +226,50 @@ fn front(house: &House) -> Vec<Item> {
         })
     };
     house.files.iter().flat_map(of_file).collect()
+}
+
+/// The first sentence of each comment of documentation, with the number of its first line and the code below it.
+fn first_sentences(text: &str) -> Vec<(String, usize, &str)> {
+    let sign = |line: &str| ["///", "//!"].into_iter().find(|sign| line.trim_start().starts_with(*sign));
+    let lines: Vec<&str> = text.lines().collect();
+    let (mut found, mut at) = (Vec::new(), 0);
+    for comment in lines.chunk_by(|a, b| sign(a) == sign(b)) {
+        let first = at + 1;
+        at += comment.len();
+        let Some(sign) = sign(comment[0]) else { continue };
+        let text: Vec<&str> = comment.iter().map(|line| line.trim_start()[sign.len()..].trim()).collect();
+        let text = text.join(" ");
+        let sentence = text.split(". ").next().unwrap().trim_end_matches('.').to_string();
+        let code = lines[at..].iter().map(|line| line.trim()).find(|line| !line.starts_with('#'));
+        found.push((sentence, first, code.unwrap_or_default()));
+    }
+    found
+}
+
+/// The help of options is left out: an option of several commands has the same help in each.
+#[test]
+fn no_two_items_of_the_crates_begin_with_the_same_sentence() {
+    let text = "/// The rows that\n/// are closed. Increasing.\n#[inline]\npub fn a() {}\n    /// The rows that are closed.\n    b: B,";
+    let sentence = || "The rows that are closed".to_string();
+    assert_eq!(first_sentences(text), [(sentence(), 1, "pub fn a() {}"), (sentence(), 5, "b: B,")]);
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut places: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for path in CRATES.iter().flat_map(|of_crate| rust_files(&root.join(of_crate.0))) {
+        let file = path.strip_prefix(root).unwrap();
+        if file.starts_with("src/cli/options") {
+            continue;
+        }
+        for (sentence, line, code) in first_sentences(&fs::read_to_string(&path).unwrap()) {
+            places.entry(sentence).or_default().push(format!("{}:{line}: {code}", file.display()));
+        }
+    }
+    assert!(places.len() > 6000, "{} sentences", places.len());
+    // A comment that begins with a heading, such as `# Errors`, has no sentence before it.
+    let is_sentence = |text: &str| !text.starts_with('#') && text.split_whitespace().count() >= 3;
+    let repeated = places.iter().filter(|(sentence, places)| is_sentence(sentence) && places.len() > 1);
+    let repeated: Vec<String> =
+        repeated.map(|(sentence, places)| format!("{sentence}\n  {}", places.join("\n  "))).collect();
+    assert!(repeated.is_empty(), "{} sentences stand twice:\n{}", repeated.len(), repeated.join("\n"));
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! GOAL: bodies that are thrown or dropped hit the wall and bounce back in agreement with the waves in them.
 //!
-//! REFERENCE: `exact_solutions::ImpactingBar`, in a block with the modulus of its lateral supports; a falling bar, whose
+//! CONDITIONS: a block with lateral supports that is thrown at a wall; a bar that is dropped onto it.
+//!
+//! REFERENCE: `closed_forms::ImpactingBar`, in a block with the modulus of its lateral supports; a falling bar, whose
 //! contact is the sum of the impact wave and of the wave of a weight that is applied at once (K. F. Graff, *Wave Motion
 //! in Elastic Solids*, Oxford, 1975, section 2.4).
 

@@ -1,5 +1,8 @@
 //! GOAL: hammers, obstacles that move in time, springs and rigid faces in motions.
 //!
+//! CONDITIONS: bars and blocks under hammers of a given mass or force, beside moving walls, on springs and behind rigid
+//! faces.
+//!
 //! REFERENCE: waves in bars, an oscillator of one dof, and the same motion described in another way.
 
 use serde_json::{Value, json};
@@ -252,7 +255,9 @@ fn the_forces_of_springs_are_in_the_balance() {
     }
 }
 
-/// GOAL: what is lost is split into what damping and what the scheme took. REFERENCE: a bar that swings freely loses energy by damping alone.
+/// GOAL: what is lost is split into what damping and what the scheme took.
+/// CONDITIONS: a bar that swings freely, damped by its mass, by its stiffness, and by both.
+/// REFERENCE: it loses energy by damping alone.
 #[test]
 fn the_energy_that_damping_takes_is_not_that_of_the_scheme() {
     let swinging = |damping: Value| {

@@ -1,6 +1,10 @@
 //! GOAL: with the default scheme the peak of the contact force converges for every step, and the energy never grows.
 //!
-//! REFERENCE: waves in bars (`exact_solutions::ImpactingBar`); the first force of a block, `rho c v` on its whole side; fine meshes.
+//! CONDITIONS: bars that are thrown and dropped, blocks, random motions; steps from 0.3 to 1.5 of the time of a wave through
+//! a cell.
+//!
+//! REFERENCE: waves in bars (`closed_forms::ImpactingBar`); the first force of a block, `rho c v` on its whole side; fine
+//! meshes.
 
 use serde_json::json;
 use signorini::motion::SchemeSpec;

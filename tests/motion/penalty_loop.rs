@@ -1,7 +1,9 @@
 //! GOAL: in every step of a motion, the classical penalty loop ends below its threshold, however small the threshold
 //! is.
 //!
-//! REFERENCE: `exact_solutions::ImpactingBar`, a bar whose contact force is constant.
+//! CONDITIONS: a bar of 100 cells that flies against a wall; thresholds from 1e-2 to 1e-8.
+//!
+//! REFERENCE: `closed_forms::ImpactingBar`, a bar whose contact force is constant.
 
 use signorini::motion::{Observation, SchemeSpec};
 use support::impact::{cases::cases, measure::Run, measure::with_value};

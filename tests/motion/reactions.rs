@@ -1,6 +1,8 @@
 //! GOAL: in every step of a motion, the support reactions balance the other forces and the inertia, including supported
 //! dofs.
 //!
+//! CONDITIONS: a block with rollers and contact rows on supported dofs; a bar with a clamp.
+//!
 //! REFERENCE: the momentum of the whole body with the mass of all nodes, supported or free; the static answer; a bar
 //! that is clamped at one end and suddenly pulled at the other, whose clamp carries twice the force (K. F. Graff, *Wave
 //! Motion in Elastic Solids*, Oxford, 1975, section 2.4).

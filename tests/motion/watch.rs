@@ -7,7 +7,7 @@ use crate::impact_command::{bar, with};
 use serde_json::{Value, json};
 use support::program::Desk;
 
-/// Rounding of a few operations.
+/// Relative rounding of the forces, means and sums of a table.
 const ROUNDING: f64 = 1e-12;
 
 /// The heading and the rows of a table.

@@ -11,7 +11,7 @@ use support::bodies::{clamped_block, difference, largest};
 use support::oracles::{Dense, Draws, random};
 use support::scenes::built;
 
-/// Both answers are certified to 1e-9; the condition numbers of these bodies are at most 1e3.
+/// Difference of two answers with oblique rows: both are certified to 1e-9, and the condition numbers are at most 1e3.
 const SAME: f64 = 1e-6;
 
 /// Rounding of random problems with condition numbers below 1e4.

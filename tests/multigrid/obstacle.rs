@@ -1,8 +1,9 @@
 //! GOAL: if every unknown has a bound, the cycles of MPRGP do not grow with the mesh, and its contact set is proven.
 //!
 //! CONDITIONS: a loaded membrane over a staircase (deal.II's step-41), bilinear cells on a square of side 2; a clamped
-//! plate of thirteen points over a bowl, whose stiffness is not an M-matrix; a block in space under a sphere. The
-//! proofs are compared with the contact set of the active set, for the answer itself and for perturbed answers.
+//! plate of thirteen points over a bowl, whose stiffness is not an M-matrix; a block in space under a sphere.
+//!
+//! REFERENCE: the contact set of the active set, for the answer itself and for perturbed answers.
 
 use signorini::{ContactProblem, ContactSet, Method, ProvenSet, Settings, Start, solve};
 use support::bodies::clamped_block;

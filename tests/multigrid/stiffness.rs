@@ -7,7 +7,7 @@ use signorini::{Method, Settings, solve};
 
 use support::scenes::built;
 
-/// Cycles of an answer, for every ratio. Measured 11.
+/// Largest number of cycles of an answer with faces that match, for every ratio of the stiffnesses. Measured 11.
 const MOST_CYCLES: usize = 16;
 
 /// A slab on a block, `n` cells along each side; its left end is pushed down by 0.01 while its right end is lifted by as much.

@@ -32,7 +32,7 @@ fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus/findings").join(name)
 }
 
-/// A problem with its exact answer.
+/// A kept problem with its stored exact answer.
 struct Finding {
     name: &'static str,
     problem: ContactProblem,

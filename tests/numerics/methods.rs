@@ -19,7 +19,9 @@ fn agree(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
     }
 }
 
-/// Two springs in a row, the second end in front of a wall: k = 2 and 1, force 3, gap 1.
+/// GOAL: two springs in a row against a wall.
+/// CONDITIONS: k = 2 and 1, a force of 3 at the second end, a gap of 1 there.
+/// REFERENCE: derived in the test: u = (1/3, 1), lambda = -7/3.
 #[test]
 fn two_springs_pressed_against_a_wall_have_the_answer_of_the_closed_form() {
     let dense = Dense::new(&[&[3.0, -1.0], &[-1.0, 1.0]], &[0.0, 3.0], &[&[0.0, 1.0]], &[1.0]);
@@ -369,7 +371,7 @@ fn empty_and_unloaded_problems_have_the_answer_zero() {
     }
 }
 
-/// An interior-point method that is told 1e-12 may end far from it. The plan then makes another attempt, and keeps the better answer.
+/// An interior-point method with the tolerance 1e-12 may end far from it. The plan then makes another attempt, and keeps the better answer.
 #[test]
 fn an_interior_point_that_comes_no_further_is_followed_by_a_better_attempt() {
     const TOLD: InteriorPoint = InteriorPoint { polish: false, tolerance: 1e-12 };
@@ -398,7 +400,7 @@ fn an_interior_point_that_comes_no_further_is_followed_by_a_better_attempt() {
             Err(Error::NotCertified { solution, .. }) if solution.method == "qp-unpolished" => continue,
             Err(error) => panic!("case {case}: {error}"),
         };
-        // Told to accept everything, the same method shows how far it came, with its true bound.
+        // Without a tolerance of the certificate, the same method shows how far it came, with its true bound.
         if solution.method != "qp-unpolished" {
             let mut accepting = settings.clone();
             accepting.tolerance = None;

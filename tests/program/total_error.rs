@@ -66,8 +66,10 @@ fn a_nearly_incompressible_block_takes_less_than_15000_unknowns() {
     assert!(report["levels"].as_array().unwrap().last().unwrap()["dofs"].as_f64().unwrap() < 15_000.0, "{report}");
 }
 
-/// A quadratic displacement is exact on the first mesh. With the modulus M of a column that cannot bulge, the head
-/// would move by b h^2/2M; the plane presses it back.
+/// GOAL: a column under its weight between a plane and its foot.
+/// CONDITIONS: plane strain and plane stress; the sides cannot bulge. The quadratic displacement is exact on the first
+/// mesh.
+/// REFERENCE: the head would move by b h^2/2M with the modulus M of a confined column; the plane presses it back.
 #[test]
 fn a_column_under_its_weight_is_exact() {
     for (model, modulus) in [("plane-strain", 100.0 * 0.7 / (1.3 * 0.4)), ("plane-stress", 100.0 / (1.0 - 0.09))] {
@@ -137,8 +139,9 @@ fn new_nodes_are_placed_on_known_circles() {
     assert!((force / forces[0] - 1.0).abs() < 1e-2, "{force}");
 }
 
-/// Lame's quarter of a ring of radii 1 and 2 under internal pressure, outside in front of a plane that it does not
-/// reach. Its potential energy is minus half the work of the pressure.
+/// GOAL: a thick ring under internal pressure.
+/// CONDITIONS: plane strain; a quarter of a ring of radii 1 and 2, in front of a plane that it does not reach.
+/// REFERENCE: Lamé: the potential energy is minus half the work of the pressure.
 #[test]
 fn a_pressed_ring_has_the_energy_of_lame() {
     let scene = json!({
@@ -374,7 +377,7 @@ fn a_circle_narrower_than_the_boundary_before_it_has_a_bound() {
     assert!(forces[0][1] < forces[1][0] && forces[1][1] < forces[2][0], "{forces:?}");
 }
 
-/// However short the time is, the end of the first mesh is not told as a fault of the bound.
+/// A time limit that ends on the first mesh, however short it is, is not reported as a fault of the bound.
 #[test]
 fn a_first_mesh_that_is_cut_short_is_no_failed_check() {
     let mut scene = classical(0.3);

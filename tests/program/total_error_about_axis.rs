@@ -34,7 +34,9 @@ fn bound_with_energy(scene: &Value, moved: f64) -> f64 {
     report["total_error"]["bound"].as_f64().unwrap()
 }
 
-/// The thick cylinder of Lame: the bound is the one that a prototype printed.
+/// GOAL: a thick cylinder under internal pressure.
+/// CONDITIONS: about the axis, without axial strain; the bound is at most the one that a prototype printed.
+/// REFERENCE: Lamé: the potential energy is minus half the work of the pressure.
 #[test]
 fn a_thick_cylinder_about_an_axis_has_the_energy_of_lame() {
     let ratio = INNER * INNER / (OUTER * OUTER - INNER * INNER);
@@ -42,7 +44,9 @@ fn a_thick_cylinder_about_an_axis_has_the_energy_of_lame() {
     assert!(bound_with_energy(&cylinder(None), moved) < 2.25e-3);
 }
 
-/// The same cylinder in an elastic bed: springs take the pressure `q` at its outer side that makes `q = k u` there.
+/// GOAL: a thick cylinder in an elastic bed.
+/// CONDITIONS: as the cylinder above; springs take the pressure `q` at its outer side that makes `q = k u` there.
+/// REFERENCE: Lamé: u = A r + B/r with the condition of the springs.
 #[test]
 fn a_thick_cylinder_in_springs_has_the_energy_of_lame() {
     const STIFFNESS: f64 = 0.7;
@@ -56,7 +60,9 @@ fn a_thick_cylinder_in_springs_has_the_energy_of_lame() {
     bound_with_energy(&cylinder(Some(STIFFNESS)), moved);
 }
 
-/// A solid column on a bed of springs under a plane: `p = 0.001 / (h / E + 1 / k)`.
+/// GOAL: a solid column on a bed of springs under a plane.
+/// CONDITIONS: about the axis, nu = 0; the plane starts 0.001 inside the column.
+/// REFERENCE: springs in series: `p = 0.001 / (h / E + 1 / k)`.
 #[test]
 fn a_column_about_an_axis_on_springs_has_its_energy_and_force() {
     let mut scene = column("axisymmetric");
@@ -85,7 +91,10 @@ fn a_column_about_an_axis_on_springs_has_its_energy_and_force() {
     );
 }
 
-/// In plane strain a temperature has a stress across the plane, which does no work: the column stays exact.
+/// GOAL: a confined column that is warmed.
+/// CONDITIONS: plane strain, plane stress and a body of revolution; in plane strain the temperature has a stress across
+/// the plane, which does no work.
+/// REFERENCE: the exact displacement is in the space of the elements in the plane: the bound is rounding.
 #[test]
 fn a_warm_column_is_exact() {
     for model in ["plane-strain", "plane-stress", "axisymmetric"] {

@@ -10,7 +10,7 @@ use support::bodies::cube_under;
 use support::closed_forms::PointContact;
 use support::scenes::built;
 
-/// Rounding of a few operations on distances of order one.
+/// Rounding of distances of order one to concave surfaces.
 const ROUNDING: f64 = 1e-14;
 
 fn square(rule: &str, shape: Value, gap: f64) -> Model {

@@ -48,6 +48,10 @@ fn bar(element: &str, loads: Value, gap: f64) -> Value {
     })
 }
 
+/// GOAL: an elastic bar against a wall.
+/// CONDITIONS: a strip in plane stress with nu = 0, under an end force and under a load per length; gaps that close,
+/// just close, stay open, and are negative.
+/// REFERENCE: `closed_forms::Bar`, exact at the nodes: the wall takes max(0, F - EA g/L) of an end force.
 #[test]
 fn bar_against_a_wall_is_exact_at_the_nodes() {
     let closed = |gap| Bar { length: 2.0, axial_stiffness: 1e3 * 0.1, gap };
@@ -101,6 +105,10 @@ fn patch(element: &str, state: &str, loads: Value, supports: Value, gap: f64) ->
     })
 }
 
+/// GOAL: the contact patch test.
+/// CONDITIONS: a block on a plane under a uniform load, graded meshes of T3 and Q4, plane strain and plane stress;
+/// every exact method.
+/// REFERENCE: `closed_forms::ContactPatch`: a uniform pressure, and the strains -p/E' and across it.
 #[test]
 fn uniform_pressure_on_a_plane_is_exact_on_every_mesh() {
     let p = 3e2;
@@ -132,6 +140,9 @@ fn uniform_pressure_on_a_plane_is_exact_on_every_mesh() {
     }
 }
 
+/// GOAL: the contact patch test with a prescribed displacement.
+/// CONDITIONS: the top of a block moves down by 0.01; free and confined sides; gaps from -0.002 to 0.02.
+/// REFERENCE: `closed_forms::ContactPatch`: p = E' (0.01 - g)/0.8, zero while the gap is open.
 #[test]
 fn block_pressed_by_a_prescribed_displacement_has_the_pressure_of_the_closed_form() {
     for (supports, sides) in [
@@ -288,8 +299,9 @@ fn the_history_of_the_active_set_begins_with_the_empty_set_and_ends_with_the_ans
     assert_eq!(history.len(), solution.iterations);
 }
 
-/// Bars in series with stiffness ratios up to 1e12, pushed against a wall: u_1 = k2 g / (k1 + k2), lambda from the
-/// closed form.
+/// GOAL: two bars in series against a wall.
+/// CONDITIONS: ratios of their stiffnesses from 1e-12 to 1e12; the force is twice the one that closes the gap.
+/// REFERENCE: u_1 = k2 g / (k1 + k2), lambda = -F/2.
 #[test]
 fn bars_in_series_keep_their_digits_over_twelve_decades_of_stiffness() {
     use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
@@ -348,8 +360,9 @@ fn pressure_on_the_axis_of_revolution_is_finite_and_near_the_largest() {
     assert!(peaks.iter().all(|peak| (peak / 0.07 - 1.0).abs() < 0.1), "{peaks:?}");
 }
 
-/// A half cylinder of radius 1 whose cut moves rigidly by delta = 0.01 onto a plane and can expand sideways: with E = 1
-/// and nu = 0.3, delta = F/(pi E*) (2 ln(4R/a) - 1) and p0 = a E*/(2R) give F = 4.983922e-3, p0 = 0.041753222.
+/// GOAL: a half cylinder on a rigid plane.
+/// CONDITIONS: plane strain, radius 1, E = 1, nu = 0.3; the cut moves rigidly by delta = 0.01 and can expand sideways.
+/// REFERENCE: Hertz: delta = F/(pi E*) (2 ln(4R/a) - 1) and p0 = a E*/(2R) give F = 4.983922e-3, p0 = 0.041753222.
 #[test]
 fn a_half_cylinder_of_quadratic_elements_has_the_force_and_the_pressure_of_hertz() {
     for element in ["q8", "t6"] {

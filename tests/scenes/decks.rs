@@ -79,7 +79,9 @@ pub fn step(cards: &str) -> String {
     format!("*STEP\n*STATIC\n{cards}*END STEP\n")
 }
 
-/// A pressure of -3 pulls at the end: sigma = 3 along x, in plane strain with sigma_z = nu sigma.
+/// GOAL: uniaxial tension of every element of a deck.
+/// CONDITIONS: a pressure of -3 pulls at the end; solids, plane stress and plane strain.
+/// REFERENCE: sigma = 3 along x, in plane strain with sigma_z = nu sigma.
 #[test]
 fn every_element_stretches_as_in_closed_form() {
     const E: f64 = 200.0;
@@ -96,7 +98,10 @@ fn every_element_stretches_as_in_closed_form() {
     }
 }
 
-/// A disc of radius 2 that a pressure of 3 presses all around: u_r = -(1 - nu) p r/E, u_y = 2 nu p y/E.
+/// GOAL: a disc under radial pressure.
+/// CONDITIONS: a disc of radius 2 that a pressure of 3 presses all around, free across its plane; every axisymmetric
+/// element.
+/// REFERENCE: u_r = -(1 - nu) p r/E, u_y = 2 nu p y/E.
 #[test]
 fn an_axisymmetric_disc_shrinks_as_in_closed_form() {
     for element in ["CAX3", "CAX4", "CAX6", "CAX8", "CAX8R"] {
@@ -126,7 +131,9 @@ fn loads_of_one_step_add_up() {
     compare(&answer, |[x, y, z]| [3.0 * x / 200.0, -0.75 * y / 200.0, -0.75 * z / 200.0]);
 }
 
-/// Forces on nodes, by sets and by numbers, and gravity: with nu = 0 a bar under its own weight and a force at its end.
+/// GOAL: a bar under its own weight, and forces on nodes by sets and by numbers.
+/// CONDITIONS: nu = 0; gravity along the bar; a force at its end.
+/// REFERENCE: u = rho g (L x - x^2/2)/E, exact at the nodes.
 #[test]
 fn a_hanging_bar_carries_its_weight_and_a_force() {
     let deck = block("C3D20").replace("200., 0.25", "200., 0.") + SYMMETRIC;
@@ -159,7 +166,9 @@ fn supports_of_the_step_replace_those_of_the_model() {
     compare(&freed, |[x, ..]| [2.0 * x / 200.0, 0.0, 0.0]);
 }
 
-/// A free block expands by alpha (T - T0).
+/// GOAL: free thermal expansion, by *EXPANSION and *TEMPERATURE.
+/// CONDITIONS: a free block, isotropic, and orthotropic with turned axes.
+/// REFERENCE: the strain alpha (T - T0) along each axis of the material.
 #[test]
 fn a_warmed_block_expands_freely() {
     let cards = "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nALL, 20.\n";
@@ -303,6 +312,9 @@ fn stack(pair: &str, gap: f64) -> String {
 
 const HARD: &str = "*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD\n";
 
+/// GOAL: the contact patch test of a deck.
+/// CONDITIONS: two stacked blocks under a pressure, with and without a gap, which cards change.
+/// REFERENCE: uniaxial stress: the strains of one block, and the gap in addition.
 #[test]
 fn stacked_blocks_in_contact_shorten_as_one() {
     let pair = |first: &str| format!("{HARD}*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE\n{first}, MASTER\n");

@@ -34,7 +34,9 @@ fn bar(element: &'static str) -> String {
 
 const PRELOAD: &str = "*PRE-TENSION SECTION, SURFACE=CUT, NODE=5000\n";
 
-/// The tension 3, or its shortening 3 x 3 / 200, draws the parts towards the cut; a cooler bar is drawn by less.
+/// GOAL: a bolt between fixed walls, by *PRE-TENSION SECTION.
+/// CONDITIONS: a bar of length 3; the tension 3, its shortening 3 x 3 / 200, and a cooler bar, which is drawn by less.
+/// REFERENCE: a uniform strain: the parts move towards the cut.
 #[test]
 fn a_bolt_between_walls_has_the_displacements_of_closed_form() {
     for element in ["C3D4", "C3D8", "C3D10", "C3D20", "CPE4", "CPS8"] {

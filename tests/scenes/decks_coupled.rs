@@ -206,7 +206,10 @@ fn couplings_that_cannot_be_read_are_refused_with_their_line() {
     }
 }
 
-/// The plate at the end of a bar of stiffness EA/L = 100 on a spring of 50, which node 9003 holds at a distance 1.
+/// GOAL: a bar on a spring, by the spring elements of a deck.
+/// CONDITIONS: the plate at the end of a bar of stiffness EA/L = 100 on a spring of 50, which node 9003 holds at a
+/// distance 1.
+/// REFERENCE: springs in parallel under a force, and in series under a displacement of node 9003.
 #[test]
 fn springs_hold_a_bar_as_in_closed_form() {
     let deck = bar("C3D8", [2, 2, 2], 0.25, SYMMETRIC) + &following([2, 2, 2]) + "*BOUNDARY\n9003, 1, 3\n";

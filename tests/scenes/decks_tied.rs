@@ -39,6 +39,9 @@ fn stretched(answer: &Answer, strain: f64) {
     compare(answer, |[x, y, z]| [strain * x, -0.25 * strain * y, -0.25 * strain * z]);
 }
 
+/// GOAL: the patch test of tied surfaces of a deck.
+/// CONDITIONS: two tied blocks in tension, by *TIE and by a tied contact pair; six pairs of elements.
+/// REFERENCE: uniaxial stress: the strain 3/200.
 #[test]
 fn tied_surfaces_stretch_as_one_bar() {
     const TIE: &str = "*TIE, NAME=T, POSITION TOLERANCE=0.1, ADJUST=NO\nSLAVE, MASTER\n";

@@ -28,6 +28,10 @@ fn bar(gap: f64, loads: Value) -> Value {
     })
 }
 
+/// GOAL: an elastic bar against a wall, as a model on a line.
+/// CONDITIONS: an end force as force, traction and pressure, and a load per length; gaps that close, just close, stay
+/// open, and are negative.
+/// REFERENCE: `closed_forms::Bar`, exact at the nodes.
 #[test]
 fn a_bar_against_a_wall_is_exact_at_its_nodes() {
     for gap in [0.03, 0.5, 0.08, -0.01] {
@@ -103,6 +107,9 @@ fn check_patch(model: &Model, down: usize, what: &str) {
     assert!(balance < 1e-12, "{what}: balance {balance:e}");
 }
 
+/// GOAL: the contact patch test in space.
+/// CONDITIONS: a block on a plane under a uniform load; Hex8, also with mean dilatation, and Tet4.
+/// REFERENCE: uniaxial stress: u_z = -p z/E, and nu p/E across it.
 #[test]
 fn uniform_pressure_in_space_is_exact_on_every_mesh() {
     for (element, integration) in [("hex8", "standard"), ("hex8", "mean-dilatation"), ("tet4", "standard")] {
@@ -128,6 +135,9 @@ fn disc(element: &str, integration: &str) -> Value {
     })
 }
 
+/// GOAL: the contact patch test about an axis.
+/// CONDITIONS: a disc on a plane under a uniform load, without a support; every element of the plane.
+/// REFERENCE: uniaxial stress: u_y = -p y/E, u_r = nu p r/E.
 #[test]
 fn uniform_pressure_on_a_disc_is_exact_on_every_mesh_and_needs_no_support() {
     for (element, integration) in

@@ -37,7 +37,9 @@ pub fn refused(scene: &Value, path: &str, phrases: &[&str]) {
     phrases.iter().for_each(|phrase| assert!(error.to_string().contains(phrase), "{error}"));
 }
 
-/// A bar of 3 m whose last metre is four times as stiff as the rest, pulled to 0.01 m: springs of 50 and 400 in series.
+/// GOAL: a bar of two materials.
+/// CONDITIONS: a bar of 3 m whose last metre is four times as stiff as the rest, stretched by 0.01 m.
+/// REFERENCE: springs of 50 and 400 in series.
 #[test]
 fn a_layered_bar_has_the_stiffness_of_springs_in_series() {
     let answer = answer(&json!({
@@ -54,8 +56,9 @@ fn a_layered_bar_has_the_stiffness_of_springs_in_series() {
     assert!(answer.stress().unwrap().elements.iter().all(|stress| (stress.sigma_xx - force).abs() < ROUNDING));
 }
 
-/// A strip of two layers, nu = 0, bent to the curvature 0.01 about its neutral axis: the moment agrees with the
-/// parallel-axis theorem, and the force is zero.
+/// GOAL: a strip of two layers in pure bending.
+/// CONDITIONS: plane stress, nu = 0; the ends turn to the curvature 0.01 about the neutral axis.
+/// REFERENCE: the parallel-axis theorem: M = sum of E I times the curvature, and no force.
 #[test]
 fn a_bent_strip_of_two_layers_has_the_stiffness_of_the_parallel_axis_theorem() {
     let (layers, curvature, length) = ([(100.0, 0.0, 0.6), (700.0, 0.6, 1.0)], 0.01, 4.0);
@@ -301,6 +304,9 @@ fn of_ring(r: f64) -> f64 {
     r * (hoop / 400.0 - 0.1 / 100.0 * radial)
 }
 
+/// GOAL: a ring of cylindrical orthotropy under internal pressure.
+/// CONDITIONS: plane stress; a quarter of a ring of the radii 1 and 2, E2/E1 = 4, axes around its middle; two meshes.
+/// REFERENCE: S. G. Lekhnitskii, *Anisotropic Plates*, rings with cylindrical anisotropy, in `of_ring`.
 #[test]
 fn axes_around_a_line_give_the_ring_of_closed_form() {
     let error = |cells: usize| {

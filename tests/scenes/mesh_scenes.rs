@@ -39,6 +39,10 @@ fn pressed(model: &str, body: Value, vertical: &str, rollers: &[(&str, &str)]) -
     })
 }
 
+/// GOAL: uniform compression of a block, the contact patch test, on meshes of Gmsh.
+/// CONDITIONS: plane strain, plane stress, a body of revolution and space; rollers at the side, a strain of 0.01
+/// against a plane.
+/// REFERENCE: p = E' 0.01, with E' = E/(1-nu^2) in plane strain and otherwise E.
 #[test]
 fn uniform_compression_is_exact_on_unstructured_meshes() {
     let gmsh = |file: &str| json!({"gmsh": {"file": file}});
@@ -229,9 +233,9 @@ fn an_unstructured_half_disc_has_the_contact_force_of_a_structured_one() {
     assert!((one / other - 1.0).abs() < 0.01, "{one} and {other}");
 }
 
-/// GOAL: a thick ring under external pressure; a quarter with planes of symmetry.
-///
-/// REFERENCE: Lamé, plane strain: u(b) = -p b (1 + nu) ((1 - 2 nu) b^2 + a^2) / (E (b^2 - a^2)).
+/// GOAL: a thick ring under external pressure.
+/// CONDITIONS: plane strain; a quarter with planes of symmetry, radii 1 and 2; an obstacle that it does not reach.
+/// REFERENCE: Lamé: u(b) = -p b (1 + nu) ((1 - 2 nu) b^2 + a^2) / (E (b^2 - a^2)).
 #[test]
 fn a_ring_under_external_pressure_has_the_displacement_of_lame() {
     let axis = |points: [f64; 2], cells: usize| json!({"points": points, "divisions": [cells]});

@@ -43,6 +43,10 @@ fn strip(cells: usize, element: &str) -> Value {
     })
 }
 
+/// GOAL: frequencies converge with twice the order of the elements.
+/// CONDITIONS: a strip that vibrates as a bar, 6 and 12 cells; T3, Q4, T6, Q8.
+/// REFERENCE: the frequency 3/4 of its second mode, (2n - 1)/4 with n = 2; the order 2p of eigenvalues by elements of
+/// order p.
 #[test]
 fn frequencies_converge_with_the_order_of_the_elements() {
     for (element, order) in [("t3", 2.0), ("q4", 2.0), ("t6", 4.0), ("q8", 4.0)] {
@@ -52,8 +56,10 @@ fn frequencies_converge_with_the_order_of_the_elements() {
     }
 }
 
-/// CONDITIONS: the bar touches the wall, or does not. REFERENCE: f = n/2 between two walls, (2n - 1)/4 with a free end; the force of the
-/// mode `a sin(n pi x)` on the wall is `a n pi`.
+/// GOAL: longitudinal vibrations of a bar.
+/// CONDITIONS: the bar touches the wall, or does not.
+/// REFERENCE: f = n/2 between two walls, (2n - 1)/4 with a free end; the force of the mode `a sin(n pi x)` on the wall
+/// is `a n pi`.
 #[test]
 fn a_bar_vibrates_as_its_end_does() {
     let closed = modes(&bar(200, 0.01, 0.03), 3);
@@ -93,8 +99,10 @@ fn a_bar_vibrates_as_its_end_does() {
     );
 }
 
-/// CONDITIONS: a steel beam of 1 m and 2 cm under its weight, with a stop under its end or below it. REFERENCE: Euler and Bernoulli,
-/// `f = (b / L)^2 sqrt(E I / rho A) / 2 pi` with b = 3.926602 and 7.068583 on the stop, 1.875104 and 4.694091 without it.
+/// GOAL: bending vibrations of a cantilever.
+/// CONDITIONS: a steel beam of 1 m and 2 cm under its weight, with a stop under its end or below it.
+/// REFERENCE: Euler and Bernoulli: `f = (b / L)^2 sqrt(E I / rho A) / 2 pi` with b = 3.926602 and 7.068583 on the stop,
+/// 1.875104 and 4.694091 without it.
 #[test]
 fn a_cantilever_on_a_stop_is_stiffer_than_one_above_it() {
     let beam = |gap: f64| {
@@ -120,8 +128,9 @@ fn a_cantilever_on_a_stop_is_stiffer_than_one_above_it() {
     }
 }
 
-/// CONDITIONS: a thin free ring. REFERENCE: R. Hoppe, 1871: `w_n^2 = n^2 (n^2 - 1)^2 / (n^2 + 1) E I / (rho A R^4)`, each twice; three rigid
-/// motions.
+/// GOAL: bending vibrations of a ring.
+/// CONDITIONS: a thin free ring.
+/// REFERENCE: R. Hoppe, 1871: `w_n^2 = n^2 (n^2 - 1)^2 / (n^2 + 1) E I / (rho A R^4)`, each twice; three rigid motions.
 #[test]
 fn a_free_ring_has_three_rigid_motions_and_every_frequency_twice() {
     let ring = json!({
@@ -141,8 +150,9 @@ fn a_free_ring_has_three_rigid_motions_and_every_frequency_twice() {
     }
 }
 
-/// CONDITIONS: a block without lateral strain rests on a plane under its weight. REFERENCE: a column that stands on one end,
-/// f = c / 4 H, with 8 / pi^2 of the mass.
+/// GOAL: vibrations of a block on a plane.
+/// CONDITIONS: a block without lateral strain rests on a plane under its weight.
+/// REFERENCE: a column that stands on one end: f = c / 4 H, with 8 / pi^2 of the mass.
 #[test]
 fn a_block_on_a_plane_vibrates_as_a_column() {
     let block = json!({

@@ -112,6 +112,10 @@ fn all_pairs(elements: [&'static str; 4]) -> impl Iterator<Item = [&'static str;
     (0..16).map(move |pair| [elements[pair % 4], elements[(pair % 4 + pair / 4) % 4]])
 }
 
+/// GOAL: the contact patch test of meshes that do not match, in the plane and about the axis.
+/// CONDITIONS: two blocks of two materials, all pairs of elements, from 1 to 7 cells along the contact; the rows on
+/// either body.
+/// REFERENCE: a uniform pressure, and the strains of the blocks under it.
 #[test]
 fn a_uniform_pressure_passes_between_any_two_meshes_in_the_plane_and_about_the_axis() {
     let mut state = 11;
@@ -161,8 +165,10 @@ fn rest_of_pressure(model: &Model, boundary: &str, from: f64) -> Vec<(usize, f64
     forces
 }
 
-/// The wider surface ends inside an edge of the other, or a thousandth or a hundredth of an edge beyond a node. On the rest of the wider
-/// surface the pressure is a load.
+/// GOAL: the contact patch test of surfaces that cover each other in part.
+/// CONDITIONS: the wider surface ends inside an edge of the other, or a thousandth or a hundredth of an edge beyond a
+/// node. On the rest of the wider surface the pressure is a load.
+/// REFERENCE: a uniform pressure, and the strains of the blocks under it.
 #[test]
 fn a_uniform_pressure_passes_where_surfaces_cover_each_other_in_part() {
     let mut state = 13;
@@ -201,6 +207,9 @@ fn a_uniform_pressure_passes_where_surfaces_cover_each_other_in_part() {
     }
 }
 
+/// GOAL: the contact patch test of meshes that do not match, in space.
+/// CONDITIONS: two blocks of two materials, all pairs of elements; means over areas and pairs of nodes.
+/// REFERENCE: a uniform pressure, and the strains of the blocks under it.
 #[test]
 fn a_uniform_pressure_passes_between_any_two_meshes_in_space() {
     let mut state = 17;
@@ -261,8 +270,10 @@ fn a_uniform_pressure_passes_between_any_two_meshes_in_space() {
     }
 }
 
-/// A body on two others, whose joint lies inside facets of the upper body, or a thousandth of a facet beyond its nodes: its nodes near the
-/// joint carry a row against each of them.
+/// GOAL: the contact patch test of a body on two others.
+/// CONDITIONS: their joint lies inside facets of the upper body, or a thousandth of a facet beyond its nodes: its nodes
+/// near the joint carry a row against each of them.
+/// REFERENCE: a uniform pressure, and the strains of the blocks under it.
 #[test]
 fn a_uniform_pressure_passes_to_two_bodies_whose_joint_lies_inside_facets() {
     let mut state = 23;
@@ -336,8 +347,11 @@ fn a_uniform_pressure_passes_to_two_bodies_whose_joint_lies_inside_facets() {
     }
 }
 
-/// Plane stress without Poisson's ratio under the pressure `1 + x/2`: `stress_yy = -(1 + x/2)` and nothing else, so that `u_y` is linear in
-/// x and y each, and `u_x` quadratic in y.
+/// GOAL: a contact patch test of second order.
+/// CONDITIONS: plane stress without Poisson's ratio under the pressure `1 + x/2`; quadratic elements on meshes that do
+/// not match.
+/// REFERENCE: `stress_yy = -(1 + x/2)` and nothing else, so that `u_y` is linear in x and y each, and `u_x` quadratic
+/// in y.
 #[test]
 fn quadratic_edges_pass_a_linear_pressure() {
     let mut state = 19;
@@ -409,8 +423,10 @@ fn matching_meshes_have_the_same_answer_as_pairs() {
     }
 }
 
-/// A shaft pressed into a hub, both full circles, plane strain: `fit` gives the interference, or the meshes overlap. The pressure of linear
-/// elements is that of a polygon.
+/// GOAL: a shaft pressed into a hub.
+/// CONDITIONS: plane strain, both full circles, meshes that do not match; `fit` gives the interference, or the meshes
+/// overlap. The pressure of linear elements is that of a polygon.
+/// REFERENCE: Lamé: a uniform pressure.
 #[test]
 fn a_press_fit_has_the_pressure_of_lame() {
     let interference = 1e-3;
@@ -466,7 +482,10 @@ fn a_press_fit_has_the_pressure_of_lame() {
     }
 }
 
-/// The force, and the root of the mean square of the error of the pressure inside 0.8 a, relative to its peak, by the formula of Hertz.
+/// GOAL: the contact of two cylinders whose meshes do not match.
+/// CONDITIONS: plane strain; radii 1 and 2, E = 1 and 3, nu = 0.3; the force, and the root of the mean square of the
+/// error of the pressure inside 0.8 a, relative to its peak.
+/// REFERENCE: Hertz: p = p0 sqrt(1 - x^2/a^2); the force on meshes that match.
 #[test]
 fn discs_of_other_meshes_have_the_force_of_matching_ones_and_the_pressure_of_hertz() {
     let moduli = [1.0, 3.0];

@@ -8,7 +8,7 @@ use signorini::Model;
 use support::bodies::clamped_square;
 use support::scenes::built;
 
-/// Rounding of a few operations on distances of order one.
+/// Rounding of distances of order one in the plane.
 const ROUNDING: f64 = 1e-14;
 
 /// A golden-section search finds the place of a minimum to the square root of rounding; the distance itself is then

@@ -8,7 +8,7 @@ use signorini::{Model, Scene, solve_qp};
 use support::bodies::cube_under;
 use support::scenes::built;
 
-/// Rounding of a few operations on distances of order one.
+/// Rounding of distances of order one in space.
 const ROUNDING: f64 = 1e-14;
 
 /// A search finds the place of a minimum to the square root of rounding; the distance itself is then exact to rounding.

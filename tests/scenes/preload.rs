@@ -52,6 +52,10 @@ fn preload(key: &str, value: f64) -> Value {
     json!({"boundary": "top", "to": "far.bottom", key: value})
 }
 
+/// GOAL: a bolt between fixed walls.
+/// CONDITIONS: a bar of length 2 + 3 with nu = 0, cut at 2; a tension of 3, or its shortening; all elements, meshes
+/// that match and do not.
+/// REFERENCE: the uniform strain 3/E: the cut is drawn together by 3 (2 + 3)/E.
 #[test]
 fn a_bar_between_walls_has_the_tension_and_the_shortening_of_closed_form() {
     let elements = ["t3", "q4", "t6", "q8", "tet4", "hex8", "tet10", "hex20"];
@@ -144,6 +148,11 @@ fn half_a_bolt_has_the_tension_of_its_half() {
     }
 }
 
+/// GOAL: a preloaded bolted joint under an external load.
+/// CONDITIONS: a bolt and a column of the same stiffness; a given tension, or a given shortening; loads up to and
+/// beyond the opening of the seat.
+/// REFERENCE: two springs in parallel: under a given tension the seat carries 3 - F of a load F, under a given shortening
+/// max(0, 3 - F/2), and the bolt the rest.
 #[test]
 fn a_bolted_joint_carries_a_load_until_its_seat_opens() {
     let (column, bolt) = (YOUNG / 2.0, YOUNG / 2.0);

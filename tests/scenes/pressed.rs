@@ -73,8 +73,9 @@ fn a_prescribed_force_gives_the_travel_of_an_obstacle_moved_to_that_force() {
     }
 }
 
-/// Half a cylinder of radius 1 supported on its cut; a plane presses from below with the force for which Hertz gives
-/// the approach 0.01.
+/// GOAL: a half cylinder under a rigid plane that a force presses.
+/// CONDITIONS: plane strain, radius 1, supported on its cut; the force for which Hertz gives the approach 0.01.
+/// REFERENCE: Hertz: delta = F/(pi E*) (2 ln(4R/a) - 1), p0 = a E*/(2R).
 #[test]
 fn a_plane_pressed_on_half_a_cylinder_has_the_travel_of_hertz() {
     let (force, line) = (4.983922e-3, LineContact { modulus: 1.0 / 0.91, radius: 1.0 });
@@ -93,9 +94,10 @@ fn a_plane_pressed_on_half_a_cylinder_has_the_travel_of_hertz() {
     assert!((peak / line.peak_pressure(force) - 1.0).abs() < 0.01, "{peak}");
 }
 
-/// GOAL        a thin ring between two plates, each pressed with the force F
-/// REFERENCE   S. Timoshenko, *Strength of Materials* II, thin ring under two opposite forces: the diameter shortens by
-/// (pi/4 - 2/pi) F R^3/(E I); the axial and shear stiffness contribute less than a hundredth here
+/// GOAL: a thin ring between two plates.
+/// CONDITIONS: plane stress, thickness 0.05 of the radius 1; each plate is pressed with the force F.
+/// REFERENCE: S. Timoshenko, *Strength of Materials* II, thin ring under two opposite forces: the diameter shortens by
+/// (pi/4 - 2/pi) F R^3/(E I); the axial and shear stiffness contribute less than a hundredth here.
 #[test]
 fn two_plates_on_a_ring_have_equal_travel_as_for_a_thin_ring() {
     let (force, height) = (1e-3, 0.05);

@@ -208,8 +208,10 @@ fn the_pressure_of_a_single_closed_node_has_no_uncertainty() {
     assert_eq!(segments[0].extent.pressure_uncertainty, None);
 }
 
-/// Half cylinders of Hertz on meshes whose nodes have different positions relative to the edge: the width is within its
-/// uncertainty, and on average closer than the sum of tributary lengths.
+/// GOAL: the width of the contact of a half cylinder lies within its uncertainty, and on average closer than the sum of
+/// tributary lengths.
+/// CONDITIONS: meshes whose nodes have different positions relative to the edge; every element of the plane.
+/// REFERENCE: Hertz: a^2 = 4 F R/(pi E*).
 #[test]
 fn the_width_of_hertz_lies_within_its_uncertainty() {
     let (mut ours, mut tributary, mut meshes) = (0.0, 0.0, 0.0);
@@ -241,7 +243,9 @@ fn the_width_of_hertz_lies_within_its_uncertainty() {
     assert!(ours < tributary, "the mean errors are {} and {}", ours / meshes, tributary / meshes);
 }
 
-/// A quarter of a ball in space: the area is within its uncertainty, and closer than the sum of tributary areas.
+/// GOAL: the area of the contact of a ball lies within its uncertainty, and closer than the sum of tributary areas.
+/// CONDITIONS: a quarter of a half ball in space, at three approaches.
+/// REFERENCE: Hertz: a^3 = 3 F R/(4 E*).
 #[test]
 fn the_area_of_hertz_lies_within_its_uncertainty() {
     let mut scene = quarter_ball(6, 2.0);

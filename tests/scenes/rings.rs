@@ -1,4 +1,9 @@
 //! GOAL: a pressure that changes around a curved interface passes between rings whose meshes do not match.
+//!
+//! CONDITIONS: plane strain; a ring with a bore pressed into another with an interference, under an outer pressure
+//! `a + b cos 2t`; three pairs of materials.
+//!
+//! REFERENCE: Lamé for the mean of the pressure; the stress function of J. H. Michell, 1899, for its part with cos 2t.
 
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};

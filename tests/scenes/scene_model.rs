@@ -90,6 +90,9 @@ fn reactions_of_a_free_body_carry_its_loads() {
     assert!((0..reactions.len()).filter(free).all(|dof| reactions[dof] == 0.0));
 }
 
+/// GOAL: uniform stretch of a bar.
+/// CONDITIONS: plane stress; both ends are prescribed.
+/// REFERENCE: uniaxial stress: u_x = 0.01 x, sigma_xx = E 0.01, and -nu times the strain across it.
 #[test]
 fn prescribed_displacements_at_both_ends_stretch_a_bar_uniformly() {
     // Uniform stretch of a bar in plane stress with both ends prescribed: u_x = 0.01 x, sigma_xx = E 0.01.

@@ -9,8 +9,10 @@ fn resultant(answer: &Answer, of: &str) -> Vec<f64> {
     all.iter().find(|resultant| resultant.of == of).unwrap_or_else(|| panic!("there is no {of}: {all:?}")).force.clone()
 }
 
-/// A bar of stiffness EA/L = 50 between a spring of 200 and a pull of 3; the spring is at the end node, or on the end
-/// boundary.
+/// GOAL: a bar on a spring.
+/// CONDITIONS: a bar of stiffness EA/L = 50 between a spring of 200 and a pull of 3; the spring is at the end node, or
+/// on the end boundary.
+/// REFERENCE: springs in series: 3/200, and 3/200 + 3/50.
 #[test]
 fn a_bar_on_a_spring_has_the_displacement_of_both_in_series() {
     let bar = |on: Value| {
@@ -34,9 +36,9 @@ fn a_bar_on_a_spring_has_the_displacement_of_both_in_series() {
     }
 }
 
-/// GOAL        a long beam on an elastic foundation under a force in the middle
-/// PARAMETERS  E = 1000, height 1, foundation k = 0.05 per area: beta = (k/(4 E I))^(1/4), beta L = 7 on each side
-/// REFERENCE   M. Hetenyi, *Beams on Elastic Foundation*, infinite beam: w = P beta/(2 k) under the force
+/// GOAL: a long beam on an elastic foundation under a force in the middle.
+/// CONDITIONS: E = 1000, height 1, foundation k = 0.05 per area: beta = (k/(4 E I))^(1/4), beta L = 7 on each side.
+/// REFERENCE: M. Hetenyi, *Beams on Elastic Foundation*, infinite beam: w = P beta/(2 k) under the force.
 #[test]
 fn a_beam_on_an_elastic_foundation_has_the_deflection_of_hetenyi() {
     let (young, foundation, force): (f64, f64, f64) = (1000.0, 0.05, 1.0);
@@ -62,8 +64,9 @@ fn a_beam_on_an_elastic_foundation_has_the_deflection_of_hetenyi() {
     assert!(across.abs() < 1e-9 && (up - force).abs() < 1e-9, "{across} {up}");
 }
 
-/// A block held only by a foundation, its top moved down: the foundation carries the force, for quadratic faces as
-/// well.
+/// GOAL: a block on a foundation of springs under a rigid plane.
+/// CONDITIONS: the top moves down by 0.03; linear and quadratic faces in space, nu = 0.
+/// REFERENCE: springs of 500 and 1000 in series.
 #[test]
 fn a_foundation_carries_the_contact_force_with_every_element() {
     for element in ["tet4", "hex8", "tet10", "hex20"] {

@@ -15,7 +15,7 @@ use signorini::{Error, Model, Scene, solve_qp};
 use support::triangles::Triangles;
 use tempfile::TempDir;
 
-/// Rounding of a few operations on distances of order one.
+/// Rounding of distances of order one to triangles.
 const ROUNDING: f64 = 1e-14;
 
 /// The model of a scene in a folder.

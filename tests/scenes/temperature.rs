@@ -17,6 +17,9 @@ fn bar(supports: Value) -> Value {
     })
 }
 
+/// GOAL: a heated bar between fixed ends.
+/// CONDITIONS: a bar with nothing but its temperature.
+/// REFERENCE: the stress -E alpha T.
 #[test]
 fn a_heated_clamped_bar_has_the_stress_e_alpha_t() {
     let answer = answer(&bar(json!([{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "right"}, "x": 0}])));
@@ -43,7 +46,9 @@ fn the_last_temperature_of_an_element_applies() {
     assert!(answer.discretisation_error().unwrap() < ROUNDING);
 }
 
-/// The end would move by 0.06 and meets a wall at 0.02: a spring of stiffness 25 is compressed by the difference.
+/// GOAL: a heated bar against a wall.
+/// CONDITIONS: the free end would move by 0.06 and meets the wall at 0.02; EA/L = 25.
+/// REFERENCE: a spring of stiffness 25, compressed by the difference.
 #[test]
 fn a_heated_bar_is_compressed_by_its_expansion_beyond_the_gap() {
     let mut scene = bar(json!([{"on": {"boundary": "left"}, "x": 0}]));
@@ -54,8 +59,9 @@ fn a_heated_bar_is_compressed_by_its_expansion_beyond_the_gap() {
     assert!((answer.forces().unwrap().reactions[0] - 1.0).abs() < ROUNDING);
 }
 
-/// A body on three pins that is warmed, bent by a temperature gradient and given an initial stress can deform freely:
-/// no stress, no reaction.
+/// GOAL: a body on statically determinate supports under a temperature and an initial stress.
+/// CONDITIONS: plane stress; three pins; uniform warming, a temperature gradient and a uniform initial stress.
+/// REFERENCE: the body deforms freely: no stress, no reaction.
 #[test]
 fn a_heated_body_on_statically_determinate_pins_has_neither_stress_nor_reactions() {
     let answer = answer(&json!({
@@ -76,10 +82,9 @@ fn a_heated_body_on_statically_determinate_pins_has_neither_stress_nor_reactions
     assert_eq!(answer.discretisation_error().unwrap(), 0.0);
 }
 
-/// Half of a strip of two metals, 40 times as long as thick: the curvature in its middle.
-///
-/// # Source
-/// S. Timoshenko, *Analysis of bi-metal thermostats*, J. Opt. Soc. Am. 11 (1925) 233-255, equation 4.
+/// GOAL: the bimetal strip.
+/// CONDITIONS: half of a strip of two metals, 40 times as long as thick, warmed uniformly: the curvature in its middle.
+/// REFERENCE: S. Timoshenko, *Analysis of bi-metal thermostats*, J. Opt. Soc. Am. 11 (1925) 233-255, equation 4.
 #[test]
 fn a_bimetal_strip_has_the_curvature_of_timoshenko() {
     let (thin, thick, e1, e2, a1, a2, warmer) = (0.3, 0.7, 210.0, 100.0, 1.2e-5, 1.9e-5, 50.0);
@@ -105,10 +110,9 @@ fn a_bimetal_strip_has_the_curvature_of_timoshenko() {
     assert!((found / expected - 1.0).abs() < 1e-7, "{found} {expected}");
 }
 
-/// A thick ring, free inside and outside and supported along its axis, whose temperature grows with the radius.
-///
-/// # Source
-/// S. Timoshenko, J. N. Goodier, *Theory of Elasticity*, 3rd ed. 1970, article 151.
+/// GOAL: thermal stresses of a thick ring.
+/// CONDITIONS: free inside and outside, supported along its axis; the temperature grows linearly with the radius.
+/// REFERENCE: S. Timoshenko, J. N. Goodier, *Theory of Elasticity*, 3rd ed. 1970, article 151.
 #[test]
 fn a_thick_ring_with_a_linear_temperature_has_the_stresses_of_the_closed_form() {
     let (young, nu, expansion, slope, inner, outer) = (200.0, 0.3, 1e-3, 10.0, 1.0_f64, 2.0_f64);

@@ -60,6 +60,10 @@ impl Stack {
     }
 }
 
+/// GOAL: the patch test of tied surfaces.
+/// CONDITIONS: two tied blocks in tension; all pairs of elements in the plane and in space, meshes that match and do
+/// not.
+/// REFERENCE: uniaxial stress: the strain 0.03, and -nu times that across it.
 #[test]
 fn a_uniform_tension_passes_between_any_two_meshes() {
     let plane = ["t3", "q4", "t6", "q8"].map(|upper| ["t3", "q4", "t6", "q8"].map(|lower| [upper, lower]));
@@ -124,7 +128,7 @@ fn two_tied_bodies_with_matching_meshes_are_one_body() {
     }
 }
 
-/// Three bodies that meet at a line, each tied to both others: the equations along the line repeat each other, but for rounding.
+/// Three bodies that meet at a line, each tied to both others: the equations along the line repeat each other, except for rounding.
 #[test]
 fn bodies_that_are_tied_in_a_ring_have_an_answer() {
     for (elements, counts) in

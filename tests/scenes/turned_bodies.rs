@@ -15,7 +15,7 @@ use support::program::Desk;
 /// Rounding times the condition number of the stiffness, below 1e4 here.
 const CLOSED_FORM: f64 = 1e-11;
 
-/// Rounding of a few operations.
+/// Relative rounding of a displacement along rotated axes.
 const ROUNDING: f64 = 1e-14;
 
 /// A rotation: the images of the coordinate axes.
@@ -206,6 +206,10 @@ fn a_rotated_box_on_rollers_under_a_sphere_has_the_rotated_answer() {
     }
 }
 
+/// GOAL: the contact patch test in rotated axes.
+/// CONDITIONS: a block turned by 25 degrees, on rollers and a plane that are turned with it; plane strain and plane
+/// stress.
+/// REFERENCE: `closed_forms::ContactPatch`, rotated.
 #[test]
 fn uniform_pressure_on_an_inclined_plane_is_exact_on_inclined_rollers() {
     let (p, turn) = (3.0, in_plane(25.0));
@@ -234,6 +238,10 @@ fn uniform_pressure_on_an_inclined_plane_is_exact_on_inclined_rollers() {
     }
 }
 
+/// GOAL: an inclined bar against a wall.
+/// CONDITIONS: a strip with nu = 0 on rollers, turned by 40 degrees; gaps that close and stay open; rollers that push
+/// its end.
+/// REFERENCE: `closed_forms::Bar`, rotated.
 #[test]
 fn an_inclined_bar_on_rollers_agrees_with_the_closed_form() {
     // Without lateral contraction a strip on rollers is a bar: length 2, cross-section 1, EA = 1000.

@@ -47,6 +47,9 @@ fn pair_of_discs(moduli: [f64; 2], ratios: [f64; 2], approach: f64, element: &st
     })
 }
 
+/// GOAL: contact of two equal bodies.
+/// CONDITIONS: two half cylinders that approach by 0.01, against one on a rigid plane that approaches by half of it.
+/// REFERENCE: symmetry: the same rows, forces and displacements.
 #[test]
 fn two_equal_bodies_have_the_answer_of_one_body_on_a_rigid_plane_at_half_the_approach() {
     for element in ["t3", "q4", "t6", "q8"] {
@@ -81,6 +84,9 @@ fn two_equal_bodies_have_the_answer_of_one_body_on_a_rigid_plane_at_half_the_app
     }
 }
 
+/// GOAL: the contact of two elastic cylinders.
+/// CONDITIONS: plane strain; equal radii of 1, E = 1 and 3, nu = 0.3 and 0.2; the cuts approach by 0.012.
+/// REFERENCE: Hertz with 1/E* = 1/E1' + 1/E2' and R = 1/2; each half is compressed by F/(pi E') (2 ln(4R/a) - 1).
 #[test]
 fn cylinders_of_two_materials_have_the_force_and_pressure_of_hertz() {
     let (moduli, ratios, approach) = ([1.0, 3.0], [0.3, 0.2], 0.012);
@@ -132,6 +138,10 @@ fn stack(model: &str, bodies: [Value; 2], sides: &[(&str, &str)]) -> Value {
     })
 }
 
+/// GOAL: the contact patch test of two bodies node to node.
+/// CONDITIONS: stacks of two blocks, discs or bars of two materials with one mesh along their contact, compressed;
+/// every dimension and element.
+/// REFERENCE: columns in series: the same uniform pressure everywhere.
 #[test]
 fn two_bodies_pressed_together_have_the_exact_uniform_pressure() {
     let axis = |points: [f64; 2], divisions: usize| json!({"points": points, "divisions": [divisions]});
@@ -191,6 +201,9 @@ fn shrink_fit(candidates: &str, other: &str, interference: f64, element: &str) -
     })
 }
 
+/// GOAL: a sleeve shrunk onto a ring.
+/// CONDITIONS: plane strain; radii 1, 2, 3 and the interference 1e-4; the rows on either body.
+/// REFERENCE: Lamé: p = delta/b over the sum of the radial compliances of both rings.
 #[test]
 fn a_shrink_fit_has_the_pressure_of_lame() {
     let (a, b, c, interference): (f64, f64, f64, f64) = (1.0, 2.0, 3.0, 1e-4);

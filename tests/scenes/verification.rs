@@ -1,6 +1,7 @@
 //! Every answer of `cargo run --release --example verification` has at most the error stated here.
 //!
 //! GOAL        classical contact problems, with the scenes of the command itself
+//! CONDITIONS  those of `tests/support/verification`
 //! REFERENCE   closed forms of `tests/support/closed_forms`
 
 use serde_json::json;

@@ -22,8 +22,10 @@ pub fn problem(
     Ok(ContactProblem::new(stiffness, load, contact, gap)?)
 }
 
-/// The membrane of step-41 of deal.II under a load of -10 above a staircase: bilinear cells on (-1, 1)^2, `n` unknowns
-/// along a side.
+/// The obstacle problem of a membrane under a load of -10 above a staircase: `n` unknowns along a side.
+///
+/// CONDITIONS: bilinear cells on (-1, 1)^2, zero on the boundary.
+/// REFERENCE: step-41 of deal.II.
 pub fn membrane(n: usize) -> Result<ContactProblem, Error> {
     let h = 2.0 / (n + 1) as f64;
     let at = |i: usize, j: usize| j * n + i;

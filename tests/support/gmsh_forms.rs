@@ -35,7 +35,7 @@ pub struct Part {
 
 /// The content of a file.
 pub struct Drawing {
-    /// Dimension, tag and name of each physical group.
+    /// Dimension, tag and name of each physical group that is written.
     pub names: Vec<(i32, i32, &'static str)>,
     /// Tag and coordinates of each node.
     pub nodes: Vec<(u64, [f64; 3])>,

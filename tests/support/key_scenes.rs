@@ -6,7 +6,7 @@ use signorini::Scene;
 
 use super::brackets::Draws;
 
-/// Elements of the scene's own mesh.
+/// Elements of the meshes of these scenes, as in the plane.
 pub const ELEMENTS: [&str; 4] = super::plane_scenes::ELEMENTS;
 
 /// A block under a rigid obstacle with some of the keys, and the name of its element.

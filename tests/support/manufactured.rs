@@ -24,7 +24,7 @@ pub struct NodalPressure {
 
 /// A block whose exact solution is known, discretised and solved.
 pub struct SolvedBlock<'a> {
-    /// Number of free dofs.
+    /// Number of free dofs of the block.
     pub unknowns: usize,
     /// The pressure at the contact rows, in increasing x.
     pub pressure: Vec<NodalPressure>,

@@ -5,13 +5,13 @@ use signorini::Scene;
 
 use super::brackets::{Column, Draws, of_pressed_column};
 
-/// Elements of the scene's own mesh.
+/// Elements of the meshes of scenes in the plane.
 pub const ELEMENTS: [&str; 4] = ["t3", "t6", "q4", "q8"];
 
 /// The error of a mesh is known to a few percent if the bound of the last mesh is this many times smaller.
 pub const CLEAR: f64 = 20.0;
 
-/// A block under a rigid obstacle, and the name of its element.
+/// A random block in the plane under a rigid obstacle, and the name of its element.
 pub fn scene(seed: u64) -> (Scene, &'static str) {
     let mut draws = Draws::new(seed);
     let (width, height) = (draws.between(0.5, 2.0), draws.between(0.3, 1.2));

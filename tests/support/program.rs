@@ -81,7 +81,7 @@ impl Desk {
         fs::write(path, content).unwrap();
     }
 
-    /// Writes a problem directory.
+    /// Writes a problem directory with the texts of its files.
     pub fn problem(&self, name: &str, files: &Problem) {
         for (file, text) in [("K", &files.k), ("f", &files.f), ("B", &files.b), ("g", &files.g)] {
             self.write(&format!("{name}/{file}.mtx"), text);

@@ -6,7 +6,7 @@ use signorini::Scene;
 use super::brackets::{Column, Draws};
 use super::gmsh_forms::{Drawing, FORMS, Part};
 
-/// Elements of the scene's own mesh.
+/// Elements of the meshes of scenes in space.
 pub const ELEMENTS: [&str; 4] = ["tet4", "tet10", "hex8", "hex20"];
 
 /// Poisson's ratios.
@@ -24,7 +24,8 @@ const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
 /// Largest move of a node along an axis, over the size of the box; the smallest cells have 0.15 of it.
 const MOVED: f64 = 0.04;
 
-/// A block under a rigid obstacle, and the name of its element. The nodes of some meshes of tetrahedra are moved.
+/// A random block in space under a rigid obstacle, and the name of its element. The nodes of some meshes of tetrahedra
+/// are moved.
 ///
 /// # Panics
 /// Never: the scene is valid.

@@ -20,7 +20,7 @@ use support::oracles::exact::kinks::{Kink, Place};
 use support::slopes::{off_path, wrong_slopes};
 use support::{axis_scenes, key_scenes, plane_scenes, space_scenes};
 
-/// Runs of a time, of which the least counts.
+/// Runs of a derivative, of which the fastest counts.
 const RUNS: usize = 3;
 
 /// The random scene of a seed, with the name of its elements.

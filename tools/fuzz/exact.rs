@@ -16,7 +16,7 @@ use support::oracles::exact::stiffness::KINDS;
 use support::oracles::exact::table::Table;
 use support::oracles::exact::trial::{Trial, draw};
 
-/// The options of the command line.
+/// The options of `fuzz exact`.
 struct Options {
     problems: u64,
     seed: u64,

@@ -33,7 +33,7 @@ const USAGE: &str =
     "usage: fuzz promises PROBLEMS [SEED] --program PATH [--against PATH] [--save FOLDER] [--only NUMBER]
        fuzz promises --chains PROBLEMS [SEED] --program PATH [--against PATH] [--save FOLDER] [--only NUMBER]";
 
-/// The options of the command line.
+/// The options of `fuzz promises`.
 struct Options {
     problems: u64,
     seed: u64,

@@ -1,5 +1,9 @@
 //! Prints the errors of every time integration scheme for two bars whose impact is known exactly.
 //!
+//! GOAL: displacement, contact force, rebound and energy of every scheme at several steps.
+//! CONDITIONS: a free bar that flies against a wall, and a held bar that bounces on it with the period 3.
+//! REFERENCE: `closed_forms::ImpactingBar`, `closed_forms::BouncingBar` of `tests/support`.
+//!
 //! `cargo run --release --example impact [-- --out DIR]`; with a folder, the table and plots of pressure and energy
 //! over time are written into it. `-- bodies` prints the peaks of a block and of a ball instead, `-- bodies --long` on finer meshes; `-- errors`
 //! compares estimated errors of the peak with true ones; `-- bounces` prints the beginnings of eleven contacts of a bar and of a block.

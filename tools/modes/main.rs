@@ -16,7 +16,7 @@ use support::{axis_scenes, key_scenes, pair_scenes, plane_scenes, space_scenes};
 /// Modes of each scene.
 const COUNT: usize = 12;
 
-/// Runs of a time, of which the least counts.
+/// Runs of the computation of the modes, of which the fastest counts.
 const RUNS: usize = 3;
 
 fn main() -> ExitCode {

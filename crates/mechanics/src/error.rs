@@ -48,7 +48,7 @@ pub enum Error {
         column: usize,
         /// JSON path of the field; `.` for the scene itself.
         path: String,
-        /// A sentence on what is wrong, and what is allowed.
+        /// A sentence on what is wrong at this place of the text, and what is allowed.
         message: String,
     },
     /// A scene that can be solved, but with an answer to another question than was meant.
@@ -68,13 +68,13 @@ pub enum Error {
     Scene {
         /// JSON path of the value, or the option of the program.
         path: String,
-        /// A sentence on what is wrong, and what is allowed.
+        /// A sentence on what is wrong with this value of the scene, and what is allowed.
         message: String,
     },
 }
 
 impl Error {
-    /// The best answer that was found, if the error carries one.
+    /// The best answer of a solve that ended without a certified one; `None` for every other error.
     pub fn into_best(self) -> Option<Solution> {
         match self {
             Error::Qp(error) => error.into_best(),
@@ -82,7 +82,8 @@ impl Error {
         }
     }
 
-    /// The name of the kind of error, the same in every version: for programs that distinguish errors.
+    /// The name of the kind of error, the same in every version, for programs that distinguish errors; of an error of a solve as
+    /// [`qp::Error::code`](signorini_qp::Error::code).
     pub fn code(&self) -> &'static str {
         match self {
             Error::Qp(error) => error.code(),
@@ -93,7 +94,7 @@ impl Error {
         }
     }
 
-    /// The `status` of a report that ends with the error, such as `under_held`.
+    /// The `status` of a report that ends with the error: that of [`qp::Error::status`](signorini_qp::Error::status), or `bad_input`.
     pub fn status(&self) -> &'static str {
         match self {
             Error::Qp(error) => error.status(),
@@ -101,7 +102,8 @@ impl Error {
         }
     }
 
-    /// The statement of the error about the problem.
+    /// The statement about the problem: that of [`qp::Error::failure`](signorini_qp::Error::failure) for an error of a solve, otherwise
+    /// that the input is bad.
     pub fn failure(&self) -> Failure {
         match self {
             Error::Qp(error) => error.failure(),

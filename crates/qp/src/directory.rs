@@ -33,7 +33,7 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     }
 }
 
-/// Returns `true` for a directory with the stiffness of a problem.
+/// Returns `true` if the directory has a stiffness in either format.
 pub(crate) fn is_problem_directory(directory: &Path) -> bool {
     forms(directory).contains(&true)
 }

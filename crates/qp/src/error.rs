@@ -99,7 +99,7 @@ pub enum Error {
     /// The load moves the body away without end.
     #[error("unbounded: the load drives a motion that neither supports nor obstacle stop: {mode}")]
     Unbounded {
-        /// The rigid-body mode, or the direction, in words.
+        /// The rigid-body mode, or the direction in which the body escapes, in words.
         mode: String,
         /// The escape direction d, one entry per dof, without a unit and up to a positive factor: `K d = 0`,
         /// `B d <= 0`, `f'd > 0`.
@@ -108,7 +108,7 @@ pub enum Error {
     /// A mode without energy and without work of the load, which no row stops: the answer is not unique.
     #[error("a rigid-body motion is held by neither supports nor obstacle: {mode}")]
     UnderHeld {
-        /// The rigid-body mode, or the direction, in words.
+        /// The rigid-body mode, or the direction that nothing holds, in words.
         mode: String,
         /// The free direction d, one entry per dof, without a unit and up to a factor of either sign.
         direction: Vec<f64>,
@@ -179,15 +179,15 @@ pub enum Error {
         memory(*allowed)
     )]
     TooLarge {
-        /// Number of unknowns.
+        /// Number of unknowns of the refused problem.
         dofs: f64,
-        /// Number of entries of the stiffness, both triangles.
+        /// Number of entries of the stiffness of the refused problem, both triangles.
         stiffness_entries: f64,
-        /// Number of values of its Cholesky factor.
+        /// Number of values of the Cholesky factor of the refused stiffness.
         factor_entries: f64,
         /// Memory for everything, estimated, in bytes.
         bytes: f64,
-        /// Memory that it may take, in bytes.
+        /// Memory that the solve may take, in bytes.
         allowed: f64,
     },
     /// A problem that neither path solves within the memory that it may take.
@@ -197,7 +197,7 @@ pub enum Error {
         factor: f64,
         /// Memory of the iterative path, estimated, in bytes.
         multigrid: f64,
-        /// Memory that it may take, in bytes.
+        /// Memory that either path may take, in bytes.
         allowed: f64,
         /// The way in which the iterative path ended without a certified answer, if there was room for it.
         ended: Option<String>,
@@ -213,7 +213,7 @@ pub enum Error {
     /// A matrix or mesh file that does not have the right form.
     #[error("{}:{line}: {message}", file.display())]
     FileSyntax {
-        /// Path of the faulty file, as it was given.
+        /// Path of the faulty text or mesh file, as it was given.
         file: PathBuf,
         /// Line, from 1; in a binary mesh the line at which the section begins.
         line: usize,
@@ -223,11 +223,11 @@ pub enum Error {
     /// A binary file, such as an STL file, that does not have the right form.
     #[error("{}, byte {byte}: {message}", file.display())]
     FileBytes {
-        /// Path of the faulty file, as it was given.
+        /// Path of the faulty binary file, as it was given.
         file: PathBuf,
         /// Offset of the fault, from 0.
         byte: usize,
-        /// A sentence on what is wrong, and what is allowed.
+        /// A sentence on what is wrong at this byte, and what is allowed.
         message: String,
     },
     /// A file or folder that cannot be read or written.
@@ -243,7 +243,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// The best answer that was found, if the error carries one.
+    /// The best answer that a solve found before it ended without a certified one; `None` for every other error.
     pub fn into_best(self) -> Option<Solution> {
         match self {
             Error::NotCertified { solution, .. } => Some(*solution),

@@ -152,7 +152,7 @@ impl SymmetricMatrix {
 }
 
 impl ContactProblem {
-    /// Returns `true` for a directory with the stiffness of a problem.
+    /// Returns `true` if the directory is that of a problem: it has a stiffness in either format.
     pub fn is_directory(directory: &std::path::Path) -> bool {
         directory::is_problem_directory(directory)
     }

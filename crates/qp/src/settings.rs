@@ -154,7 +154,7 @@ pub struct Settings {
     /// Threads of the sparse factorisations and of multigrid, at least 1. With `None` a factorisation has one, and multigrid on 50,000 dofs
     /// or more those of the machine, 8 at most, which many problems share as well. They change no bit of an answer.
     pub threads: Option<usize>,
-    /// Precision of the sparse factor.
+    /// Precision of the sparse factor of the stiffness.
     pub precision: Precision,
     /// Tolerance of the certificate, relative: what `Ok` promises. With `None` every finite error will do.
     pub tolerance: Option<f64>,

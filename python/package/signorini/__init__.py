@@ -3,10 +3,13 @@
     minimise 1/2 u'K u - f'u   subject to   B u - g <= 0
     K u - f - B' multiplier = 0,  B u - g <= 0,  multiplier <= 0,  multiplier_i (B u - g)_i = 0
 
-K (n x n) is the stiffness after supports, symmetric and positive semidefinite. f (n) is the load. B (m x n) has the contact rows,
-positive towards the obstacle. g (m) has the gaps; a gap is negative if the obstacle starts inside the body, and inf if the row has no
-obstacle. The multiplier is the force on the body along its row, so that compression is negative. Any consistent system of units can be
-used.
+K, shape (n, n), is the stiffness after supports, symmetric and positive semidefinite. f, shape (n,), is the load. B,
+shape (m, n), has the contact rows, positive towards the obstacle. g, shape (m,), has the gaps. A gap is negative if the
+obstacle starts inside the body, and `inf` if the row has no obstacle. The multiplier is the force on the body along its
+row, so that compression is negative.
+
+Any consistent system of units can be used. Docstrings name a unit by its kind: "in length", "in force", "in pressure".
+The package needs numpy. Some functions also need scipy, matplotlib or pyvista, and say so.
 
 >>> import numpy as np, signorini as sg
 >>> p = sg.Problem(np.array([[3.0, -1.0], [-1.0, 1.0]]), [0.0, 3.0], np.array([[0.0, 1.0]]), [1.0])

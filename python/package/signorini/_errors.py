@@ -12,10 +12,15 @@ if TYPE_CHECKING:
 
 
 class SignoriniError(Exception):
-    """Base class of all exceptions of this package except `Interrupted`."""
+    """Base class of all exceptions of this package except `Interrupted`.
+
+    Attributes
+    ----------
+    code : str
+        Short name of the kind of error. It is the same in every version and in the reports of the program.
+    """
 
     code: str = "error"
-    """Short name of the kind of error. It is the same in every version and in the reports of the program."""
 
 
 class BadInput(SignoriniError, ValueError):
@@ -37,15 +42,22 @@ class NotConvex(BadInput):
 
 
 class SceneError(BadInput):
-    """A scene whose JSON or whose values do not describe a problem."""
+    """A scene whose JSON or whose values do not describe a problem.
+
+    Attributes
+    ----------
+    path : str
+        JSON path of the value, for example "obstacles[0].approach".
+    line : int or None
+        Line in the file, counted from 1; None if the scene is not from a file.
+    column : int or None
+        Column in the file, counted from 1; None if the scene is not from a file.
+    """
 
     code = "scene"
     path: str = ""
-    """JSON path of the value, for example `obstacles[0].approach`."""
     line: int | None = None
-    """Line in the file, counted from 1; None if the scene is not from a file."""
     column: int | None = None
-    """Column in the file, counted from 1; None if the scene is not from a file."""
 
 
 class FileError(SignoriniError, OSError):
@@ -55,85 +67,133 @@ class FileError(SignoriniError, OSError):
 
 
 class Infeasible(SignoriniError):
-    """Contact rows that no displacement satisfies at the same time."""
+    """Contact rows that no displacement satisfies at the same time.
+
+    Attributes
+    ----------
+    rows : array of int
+        Indices of the rows that contradict each other, counted from 0.
+    weights : array, one per row of `rows`
+        Farkas weights, >= 0: the weighted sum of the rows is zero, and that of their gaps is negative. Empty if the
+        rows would contradict each other only as equalities.
+    overlap : float
+        Overlap of the rows, in length, with the largest weight scaled to 1.
+    """
 
     code = "infeasible"
     rows: NDArray[np.int64]
-    """Indices of the rows that contradict each other, counted from 0."""
     weights: NDArray[np.float64]
-    """Farkas weights of these rows, >= 0: the weighted sum of the rows is zero, that of their gaps is negative."""
     overlap: float = 0.0
-    """Overlap of the rows in the unit of length, with the largest weight scaled to 1."""
 
 
 class Unbounded(SignoriniError):
-    """The load moves the body away without end."""
+    """The load moves the body away without end.
+
+    Attributes
+    ----------
+    motion : str
+        The motion in words.
+    direction : array, shape (n,)
+        The motion d without end, without a unit: K d = 0, B d <= 0, f'd > 0.
+    """
 
     code = "unbounded"
     motion: str = ""
-    """The motion in words."""
     direction: NDArray[np.float64]
-    """The motion d without end, length n: K d = 0, B d <= 0, f'd > 0."""
 
 
 class UnderHeld(SignoriniError):
-    """An insufficiently supported body: nothing resists one of its motions, and no load drives it. The answer is not unique."""
+    """An insufficiently supported body: nothing resists one of its motions, and no load drives it.
+
+    The solution is not unique.
+
+    Attributes
+    ----------
+    motion : str
+        The motion in words.
+    direction : array, shape (n,)
+        The free motion, without a unit, up to a factor of either sign.
+    """
 
     code = "under-held"
     motion: str = ""
-    """The motion in words."""
     direction: NDArray[np.float64]
-    """The free motion, length n."""
 
 
 class NotCertified(SignoriniError):
-    """An answer was found, but it does not meet the tolerance."""
+    """A solution was found, but it does not meet the tolerance.
+
+    Attributes
+    ----------
+    solution : Solution
+        The best solution, with its certificate.
+    condition : str
+        Name of the condition that misses most.
+    value : float
+        The relative value of this condition.
+    tolerance : float
+        The value that is allowed for it.
+    """
 
     code = "not-certified"
     solution: Solution
-    """The best answer, with its certificate."""
     condition: str = ""
-    """Name of the condition with the largest residual."""
     value: float = 0.0
-    """Relative residual of this condition."""
     tolerance: float = 0.0
-    """The tolerance that was requested."""
 
 
 class Undecided(SignoriniError):
-    """It could not be decided whether the problem has an answer, and only one; the sentence says why."""
+    """It could not be decided whether the problem has a solution, and only one. The sentence says why."""
 
     code = "undecided"
 
 
 class NoDerivative(SignoriniError):
-    """A derivative was asked for that is not proven: the answer has a kink, or may have one; the sentence names the rows."""
+    """A derivative that is not proven: the solution has a kink, or may have one. The sentence names the rows.
+
+    Attributes
+    ----------
+    verdict : str
+        "one-sided", "undecided" or "unknown".
+    rows : array of int
+        Indices of the rows that may be open or closed, counted from 0; empty if nothing is known.
+    """
 
     code = "no-derivative"
     verdict: str = ""
-    """`one-sided`, `undecided` or `unknown`."""
     rows: NDArray[np.int64]
-    """Indices of the rows that may be open or closed, counted from 0; empty if nothing is known."""
 
 
 class OutOfTime(SignoriniError, TimeoutError):
-    """A step that cannot be interrupted is estimated to take longer than the remaining time."""
+    """A step that cannot be interrupted is estimated to take longer than the remaining time.
+
+    Attributes
+    ----------
+    needed : float
+        Estimated duration of the step, in seconds.
+    time : float
+        Remaining time, in seconds.
+    """
 
     code = "out-of-time"
     needed: float = 0.0
-    """Estimated duration of the step, in seconds."""
     time: float = 0.0
-    """Remaining time, in seconds."""
 
 
 class TooLarge(SignoriniError, MemoryError):
-    """A problem that needs more memory than is available or allowed."""
+    """A problem that needs more memory than is available or allowed.
+
+    Attributes
+    ----------
+    bytes : float
+        Estimated memory that the problem needs, in bytes.
+    allowed : float
+        Memory that may be used, in bytes.
+    """
 
     code = "too-large"
     bytes: float = 0.0
-    """Estimated memory that the problem needs, in bytes."""
     allowed: float = 0.0
-    """Memory that may be used, in bytes."""
 
 
 class NumericalError(SignoriniError, ArithmeticError):
@@ -149,8 +209,15 @@ class InternalError(SignoriniError, RuntimeError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """The work was interrupted. It is not an `Exception`, so that `except Exception` does not catch it by accident."""
+    """The work was interrupted. It is not an `Exception`, so that `except Exception` does not catch it by accident.
+
+    Attributes
+    ----------
+    code : str
+        "interrupted".
+    solution : Solution, SceneSolution, TotalError or None
+        The best solution so far; None if there was none yet.
+    """
 
     code: str = "interrupted"
     solution: Any = None
-    """The best answer so far, with its certificate; None if there was no answer yet."""

@@ -19,27 +19,55 @@ _Values = NDArray[np.float64]
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Pattern:
-    """The places of the entries of K (n x n) and B (m x n), in the order of their values. `Pattern.of` makes it of two matrices."""
+    """The places of the entries of K, shape (n, n), and B, shape (m, n), in the order of their values.
+
+    `Pattern.of` makes it from two matrices.
+
+    Attributes
+    ----------
+    dofs : int
+        Number of unknowns n.
+    row_count : int
+        Number of contact rows m.
+    stiffness : pair of arrays of int, shape (entries of K,)
+        Row and column of each value of K, from 0.
+    rows : pair of arrays of int, shape (entries of B,)
+        Row and column of each value of B, from 0.
+    """
 
     dofs: int
-    """Number of unknowns n."""
     row_count: int
-    """Number of contact rows m."""
     stiffness: tuple[NDArray[np.int64], NDArray[np.int64]]
-    """Row and column of each value of K, from 0."""
     rows: tuple[NDArray[np.int64], NDArray[np.int64]]
-    """Row and column of each value of B, from 0."""
     _layers: dict[Any, Layer] = field(default_factory=dict)
 
     @classmethod
     def of(cls, K: Any, B: Any) -> Pattern:
-        """Returns the pattern of a stiffness K (n x n) and contact rows B (m x n), sparse matrices of scipy or arrays of numpy.
+        """Returns the pattern of a stiffness and contact rows. Needs scipy.
 
-        The values of a sparse matrix are its `data`, those of an array all its entries, row by row, as `ravel()` has them. Both triangles of
-        K must be there.
+        A matrix is a sparse matrix of scipy or an array of numpy. The values of a sparse matrix are its `data`. Those
+        of an array are all its entries, row by row, as `ravel()` has them.
 
-        Raises `BadInput` for shapes that do not fit each other, and for a K with places that have no mirror image; `BadType` for what is no
-        matrix. Needs scipy.
+        Parameters
+        ----------
+        K : matrix, shape (n, n)
+            The stiffness, with both triangles.
+        B : matrix, shape (m, n)
+            The contact rows.
+
+        Returns
+        -------
+        Pattern
+            The places of their entries; the values are not kept.
+
+        Raises
+        ------
+        BadInput
+            The shapes do not fit each other, or K has a place without its mirror image.
+        BadType
+            An argument is no matrix.
+        ImportError
+            scipy is not installed.
         """
         (dofs, columns), stiffness = _places("K", K)
         (row_count, of_rows), rows = _places("B", B)
@@ -58,12 +86,38 @@ class Pattern:
         return f"<signorini.Pattern: {self.dofs} dofs, {self.row_count} rows>"
 
     def lengths(self) -> dict[str, int]:
-        """Returns the lengths of the four arrays of a problem, by name."""
+        """Returns the lengths of the four arrays of a problem.
+
+        Returns
+        -------
+        dict of str to int
+            The lengths of "stiffness", "load", "rows" and "gap", in this order.
+        """
         entries = {"stiffness": len(self.stiffness[0]), "load": self.dofs}
         return entries | {"rows": len(self.rows[0]), "gap": self.row_count}
 
     def layer(self, at_kink: str, options: dict[str, Any]) -> Layer:
-        """Returns the function of problems with this pattern, which keeps its last factor and its last solution."""
+        """Returns the function of problems with this pattern. It keeps its last factor and its last solution.
+
+        `solve` of `signorini.jax` and `signorini.torch` calls it.
+
+        Parameters
+        ----------
+        at_kink : str
+            "raise", "open" or "closed", as in `signorini.jax.solve`.
+        options : dict
+            Options of `signorini.prepare`, by name.
+
+        Returns
+        -------
+        Layer
+            The same one for the same arguments.
+
+        Raises
+        ------
+        BadInput
+            `at_kink` is another word.
+        """
         if at_kink not in _AT_KINK:
             raise BadInput(f"at_kink is {at_kink!r}; it must be one of {', '.join(_AT_KINK)}")
         key = (at_kink, *sorted((name, repr(value)) for name, value in options.items()))
@@ -84,7 +138,7 @@ def _places(name: str, matrix: Any) -> tuple[tuple[int, int], _Places]:
 
 
 class Layer:
-    """The solution of contact problems with one pattern, and its derivatives by all numbers, as functions of arrays of numpy."""
+    """The solution of contact problems with one pattern, and its derivatives by all numbers, for arrays of numpy."""
 
     def __init__(self, pattern: Pattern, at_kink: str, options: dict[str, Any]) -> None:
         self.pattern, self.at_kink, self.options = pattern, at_kink, options
@@ -93,9 +147,9 @@ class Layer:
         self._solution: tuple[list[_Values], _signorini.Solution] | None = None
 
     def solution(self, *values: Any) -> _signorini.Solution:
-        """Returns the solution for these values of stiffness, load, rows and gap. K is the symmetric part of its values.
+        """Returns the solution for these values of stiffness, load, rows and gap.
 
-        Only other values of stiffness or rows need another factor.
+        K is the symmetric part of its values. Only other values of stiffness or rows need another factor.
         """
         # A copy: the caller may change an array afterwards.
         stiffness, load, rows, gap = arrays = [np.array(value, dtype=np.float64) for value in values]
@@ -125,10 +179,10 @@ class Layer:
         return solution.u, solution.multiplier
 
     def gradients(self, *values: Any) -> tuple[_Values, _Values, _Values, _Values]:
-        """Returns the derivatives of an output by the values of stiffness, load, rows and gap; the output's own derivatives by displacement and
-        multiplier are the last two arguments.
+        """Returns the derivatives of an output by the values of stiffness, load, rows and gap.
 
-        Raises `NoDerivative` where the derivative is not proven, if no piece is chosen, or the chosen one does not exist.
+        The last two arguments are the derivatives of the output by displacement and multiplier. Raises `NoDerivative`
+        where the derivative is not proven, if no piece is chosen, or the chosen one does not exist.
         """
         *given, by_displacement, by_multiplier = values
         solution = self.solution(*given)

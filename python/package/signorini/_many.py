@@ -13,24 +13,37 @@ from signorini._errors import SignoriniError
 
 @dataclass(frozen=True, repr=False)
 class Solutions:
-    """The answers of N problems with n dofs and m rows each. Arrays are read-only; a problem without an answer has NaN in its row."""
+    """The solutions of N problems with n dofs and m rows each. Arrays are read-only. `signorini.solve_many` makes it.
+
+    Attributes
+    ----------
+    u : array, shape (N, n)
+        Displacements, in length. NaN for a problem without a solution.
+    multiplier : array, shape (N, m)
+        Contact multipliers, in force, <= 0 in compression. NaN for a problem without a solution.
+    energy_error : array, shape (N,)
+        Upper bound on the error of each displacement in the energy norm, in the root of force times length; `inf` if
+        none is known.
+    energy_error_bound : array, shape (N,)
+        The same relative to the energy norm of the displacement.
+    certified : array of bool, shape (N,)
+        True for each solution that is certified to the tolerance.
+    proven_open : array of bool, shape (N, m)
+        True for each row that is proven open in the exact solution. All False with `proof=False`.
+    proven_closed : array of bool, shape (N, m)
+        True for each row that is proven closed in the exact solution. All False with `proof=False`.
+    errors : dict of int to SignoriniError
+        For each problem without a certified solution, by its number from 0: the exception of `signorini.solve`.
+    """
 
     u: NDArray[np.float64]
-    """Displacements, N x n, in the unit of length."""
     multiplier: NDArray[np.float64]
-    """Multipliers, N x m, <= 0 in compression, in the unit of force."""
     energy_error: NDArray[np.float64]
-    """Bound on the error of each displacement in the energy norm, length N; inf without a bound."""
     energy_error_bound: NDArray[np.float64]
-    """The same relative to the energy norm of the displacement, length N."""
     certified: NDArray[np.bool_]
-    """`True` for each answer that is certified to the tolerance, length N."""
     proven_open: NDArray[np.bool_]
-    """`True` for each row that is proven open in the exact answer, N x m."""
     proven_closed: NDArray[np.bool_]
-    """The same for rows that are proven closed."""
     errors: dict[int, SignoriniError]
-    """The exception that `signorini.solve` raises, by the number of each problem that has no certified answer, from 0."""
 
     def __repr__(self) -> str:
         return f"<signorini.Solutions: {len(self.u)} problems, {int(self.certified.sum())} certified>"
@@ -49,14 +62,45 @@ def solve_many(
     tolerance: float | None = None,
     proof: bool = True,
 ) -> Solutions:
-    """Solves N problems of one size, each as `signorini.solve` does: minimise 1/2 u'K u - f'u  subject to  B u - g <= 0.
+    """Solves N problems of one size, each as `signorini.solve` does.
 
-    K: N x n x n, symmetric, f: N x n, B: N x m x n, g: N x m; dense arrays. An array without its first axis is shared by all problems.
-    threads: number of threads, shared out among the problems: those of the machine by default, 8 at most. They change no bit of the answers.
-    time: limit in seconds for each problem. The other options are those of `signorini.solve`.
+        minimise 1/2 u'K u - f'u  subject to  B u - g <= 0
 
-    A problem without a certified answer raises no exception: it has one in `errors`. Raises `BadInput` for arrays that do not fit each
-    other, values of K or B that all problems share and that are no matrix, and options out of their range; `BadType` for an argument of a
-    wrong type.
+    The arrays are dense. An array without its first axis is shared by all problems. Units are those of `Problem`.
+
+    Parameters
+    ----------
+    K : array, shape (N, n, n) or (n, n)
+        Stiffness, symmetric, with both triangles.
+    f : array, shape (N, n) or (n,)
+        Load.
+    B : array, shape (N, m, n) or (m, n)
+        Contact rows, positive towards the obstacle.
+    g : array, shape (N, m) or (m,)
+        Gaps; negative if the obstacle starts inside the body, `inf` for a row without an obstacle.
+    threads : int, optional
+        Number of threads, shared out among the problems. Those of the machine by default, at most 8. They change no bit
+        of the solutions.
+    time : float, optional
+        Limit in seconds for each problem, positive. No limit by default.
+    method, accuracy, tolerance, proof : optional
+        As in `signorini.solve`.
+
+    Returns
+    -------
+    Solutions
+        One solution per problem. A problem without a certified solution raises no exception: `errors` has it.
+
+    Raises
+    ------
+    BadInput
+        The shapes do not fit each other, a shared K or B is no such matrix, or an option has a value that is not
+        allowed.
+    BadType or TypeError
+        An argument has a wrong type.
+    TooLarge
+        There is no memory for the arrays.
+    Interrupted
+        Ctrl-C was pressed.
     """
     return Solutions(**_signorini._solve_many(K, f, B, g, method, accuracy, time, threads, tolerance, proof))

@@ -14,19 +14,31 @@ from signorini._errors import BadType
 
 @dataclass(frozen=True, repr=False)
 class MortarRows:
-    """Contact rows between two surfaces: B [u_slave, u_master] <= g, with the displacements of all nodes of both. Arrays are read-only."""
+    """Contact rows between two surfaces: B [u_slave, u_master] <= g, with the displacements of all nodes of both.
+
+    m is the number of rows; dim is 2 in the plane and 3 in space. Arrays are read-only. `signorini.mortar_rows` makes
+    it.
+
+    Attributes
+    ----------
+    B : csc_array of scipy, shape (m, dim * (slave nodes + master nodes))
+        The rows, dimensionless, positive towards the master: dim columns for each node of the slave surface, in the
+        order of its nodes, then for each node of the master surface.
+    g : array, shape (m,)
+        The mean distance of the undeformed surfaces over the area of each row, in length; negative where they overlap.
+    area : array, shape (m,)
+        The area of each row, positive, with thickness or circumference: `-multiplier / area` is a pressure.
+    normals : array, shape (m, dim)
+        The unit normal of each row, from the slave body into the other.
+    nodes : array of int, shape (m,)
+        The node of the slave surface that carries each row, from 0.
+    """
 
     B: Any
-    """Rows x dim (n_slave + n_master), dimensionless, a `csc_array` of scipy: dim columns for each node of the slave surface, in the order
-    of its nodes, then for each of the master surface. Positive towards the master."""
     g: NDArray[np.float64]
-    """The mean distance of the undeformed surfaces over the area of each row, in length; negative where they overlap."""
     area: NDArray[np.float64]
-    """The area of each row, positive, thickness or circumference included: -multiplier / area is a pressure."""
     normals: NDArray[np.float64]
-    """Rows x dim, dimensionless: the unit normal of each row, from the slave body into the other."""
     nodes: NDArray[np.int64]
-    """The node of the slave surface that carries each row, from 0."""
 
     def __repr__(self) -> str:
         return f"<signorini.MortarRows: {self.B.shape[0]} rows, {self.B.shape[1]} unknowns>"
@@ -43,20 +55,45 @@ def mortar_rows(
 ) -> MortarRows:
     """Returns the contact rows between the surfaces of two bodies, each with its own mesh.
 
-    The slave surface carries the rows, one at each node: better the softer body, and the finer mesh if both are as soft. In the answer
-    a uniform pressure passes between any two meshes without error. `docs/mortar.md` explains the rows.
+    The slave surface carries the rows, at its nodes. Take the softer body, or the finer mesh if both are equally soft.
+    In the solution a uniform pressure passes between any two meshes without error. `docs/mortar.md` explains the rows.
 
-    slave, master: `(nodes, facets)` or `(nodes, facets, kind)`. nodes: coordinates, n x dim, in length; dim is 2 in the plane and 3 in
-    space. facets: m x k, the nodes of each facet, from 0. In the plane the body lies to the left of an edge; in space the corners run
-    counterclockwise, seen from outside. Mid-side nodes follow the ends or corners. kind: `Line2` or `Line3` in the plane, `T3`, `Q4`,
-    `T6` or `Q8` in space; without it the number of columns k decides.
-    model: `plane-strain`, `plane-stress`, `axisymmetric` (x is the radius) or `space`, as in scenes.
-    thickness: that of a body in the plane, in length; other models do not use it.
-    direction: all rows along this vector, length dim, from the slave body into the other; without it along the normals.
-    reach: no rows where the surfaces are farther apart, in length.
+    Needs scipy: `pip install "signorini[sparse]"`.
 
-    Raises `BadInput` for arrays that are no surface, a kind or a model that does not exist, values that are not finite, and a surface
-    that faces several layers of the other; `BadType` for an argument of a wrong type. Needs scipy.
+    Parameters
+    ----------
+    slave : tuple (nodes, facets) or (nodes, facets, kind)
+        The surface that carries the rows. nodes: coordinates, shape (nodes, dim), in length; dim is 2 in the plane and
+        3 in space. facets: the nodes of each facet, shape (facets, k), from 0. In the plane the body lies to the left
+        of an edge; in space the corners run counterclockwise, seen from outside. Mid-side nodes follow the ends or
+        corners. kind: "Line2" or "Line3" in the plane, "T3", "Q4", "T6" or "Q8" in space; without it the number of
+        columns k decides.
+    master : tuple (nodes, facets) or (nodes, facets, kind)
+        The other surface, in the same form.
+    model : str, optional
+        "plane-strain" (the default), "plane-stress", "axisymmetric" (x is the radius) or "space", as in scenes.
+    thickness : float, optional
+        Thickness of a body in the plane, in length, positive; 1 by default. Other models do not use it.
+    direction : array, shape (dim,), optional
+        All rows lie along this vector, of any length, from the slave body into the other. Along the normals by default.
+    reach : float, optional
+        There are no rows where the surfaces are farther apart than this, in length, positive. No limit by default.
+
+    Returns
+    -------
+    MortarRows
+        The rows with their gaps, areas and normals.
+
+    Raises
+    ------
+    BadInput
+        Arrays are no surface, a value is not finite or not allowed, or a surface faces several layers of the other.
+    BadType
+        An argument has a wrong type.
+    ImportError
+        scipy is not installed.
+    Interrupted
+        Ctrl-C was pressed.
     """
     from scipy import sparse
 

@@ -97,7 +97,7 @@ def solution_plot(solution: Solution, ax: Any = None) -> Any:
 
 
 def scene_plot(solution: SceneSolution, ax: Any = None) -> Any:
-    """Draws a deformed plane mesh with its von Mises stress, or the contact forces of a body in space or a bar; returns the axes."""
+    """Draws a deformed plane mesh with its von Mises stress, or the contact forces of a body in space or a bar."""
     scene = solution.scene
     kinds = scene.element_kinds
     if not set(kinds) <= set(_RIMS):

@@ -20,20 +20,50 @@ _LEAST_ERROR = 1e-16
 
 @dataclass(frozen=True, repr=False)
 class Tradeoff:
-    """A problem or a scene solved by every method at every accuracy."""
+    """A problem or a scene solved by every method at every accuracy. `signorini.tradeoff` makes it.
+
+    All errors are relative to the exact solution of the mesh, except "total_error".
+
+    Attributes
+    ----------
+    meshes : list of dict
+        One per mesh: "divided_by" (parts of each edge of the mesh of the scene), "dofs", "contact_rows", and
+        "discretisation_error", estimated, for a scene.
+    points : list of dict
+        One per solve. "mesh" is its index in `meshes`; "method" and "knob" say how it was solved; "condensed" and
+        "mixed" are bools; "seconds", "certificate_seconds" and "proof_seconds" are times. "energy_error",
+        "total_error" (against the continuum), "force_error" and "pressure_error" are relative. "rows_wrong" is the
+        number of wrong rows, "energy_error_bound" the bound of the certificate. "best" is True if no other point of its
+        mesh is both faster and more accurate.
+    advice : list of dict
+        For each goal ("accuracy", "total_error" or "seconds") in "point" the index of the best point, or None.
+    """
 
     meshes: list[dict[str, Any]]
-    """One dictionary per mesh: divisions, dofs, contact rows, and the estimated error of the mesh."""
     points: list[dict[str, Any]]
-    """One dictionary per solve: method, setting, seconds, errors and bounds; `best` marks the Pareto front of its mesh."""
     advice: list[dict[str, Any]]
-    """Recommended points: the index of a point for each accuracy or time limit."""
 
     def __repr__(self) -> str:
         return f"<signorini.Tradeoff: {len(self.points)} points on {len(self.meshes)} meshes>"
 
     def plot(self, ax: Any = None) -> Any:
-        """Draws error over time with one line per method, and returns the axes. Needs matplotlib."""
+        """Draws error over time with one line per method. Needs matplotlib: `pip install "signorini[plot]"`.
+
+        Parameters
+        ----------
+        ax : Axes of matplotlib, optional
+            Where to draw. A new figure by default.
+
+        Returns
+        -------
+        Axes of matplotlib
+            `ax`, or the new axes.
+
+        Raises
+        ------
+        ImportError
+            matplotlib is not installed.
+        """
         from signorini._show import axes
 
         ax = axes(ax)
@@ -62,24 +92,36 @@ class Tradeoff:
 
 @dataclass(frozen=True, repr=False)
 class Sweep:
-    """The solutions of a sweep: for several gaps or forces, or along a straight line to other gaps and another load."""
+    """The solutions of a sweep: for several gaps or forces, or along a straight line to other gaps and another load.
+
+    `signorini.sweep` makes it.
+
+    Attributes
+    ----------
+    gaps : list
+        The gaps, in length: one number per point for a scene, one array of shape (m,) per point for a problem.
+    solutions : list of Solution or SceneSolution
+        The solutions, one per gap, force or point of the line. They may miss the tolerance.
+    events : list of dict
+        The exact points between the first and the last gap at which a row closes or opens; empty if they are not known.
+    corners : list of dict
+        The exact corners of the curves of force, width and pressure over the gap of a scene; otherwise empty.
+    forces : list of float
+        The forces of a sweep over forces, in force; otherwise empty.
+    t : list of float
+        The places of a sweep along a straight line, from 0 to 1; otherwise empty.
+    """
 
     gaps: list[Any]
-    """The gaps: one number per point for a scene, one array of length m per point for a problem."""
     solutions: list[Any]
-    """The solutions, one per gap, force or point of the line."""
     events: list[dict[str, Any]]
-    """The exact points between the first and the last gap at which a row closes or opens; empty if they are not known."""
     corners: list[dict[str, Any]]
-    """The exact corners of the curves of force, width and pressure over the gap of a scene."""
     forces: list[float] = field(default_factory=list)
-    """The forces of a sweep over forces, in the unit of force; otherwise empty."""
     t: list[float] = field(default_factory=list)
-    """The parameters of a sweep along a straight line, from 0 to 1; otherwise empty."""
 
     @property
     def contact_force(self) -> NDArray[np.float64]:
-        """Total contact force at each point of the sweep, >= 0, in the unit of force."""
+        """Total contact force at each point of the sweep, shape (points,), >= 0, in force."""
         return np.array([solution.contact_force for solution in self.solutions])
 
     def __repr__(self) -> str:
@@ -87,7 +129,25 @@ class Sweep:
         return f"<signorini.Sweep: {len(self.gaps)} {over}, {len(self.events)} events>"
 
     def plot(self, ax: Any = None) -> Any:
-        """Draws the contact force over the gaps or over t, or the travel over the forces; returns the axes. Needs matplotlib."""
+        """Draws the contact force over the gaps or over t, or the travel over the forces.
+
+        Needs matplotlib: `pip install "signorini[plot]"`.
+
+        Parameters
+        ----------
+        ax : Axes of matplotlib, optional
+            Where to draw. A new figure by default.
+
+        Returns
+        -------
+        Axes of matplotlib
+            `ax`, or the new axes.
+
+        Raises
+        ------
+        ImportError
+            matplotlib is not installed.
+        """
         from signorini._show import axes
 
         ax = axes(ax)
@@ -121,11 +181,33 @@ def tradeoff(
 ) -> Tradeoff:
     """Solves a problem or a scene by every method at every accuracy, and measures time and error.
 
-    refinements: number of finer meshes of a scene; each halves the cell size of the mesh before it. runs: smallest number of
-    repetitions of each measurement. most_full_dofs: problems with more dofs are solved in condensed form only. time: limit in
-    seconds; a finer mesh is not begun if it is expected to end later.
+    Parameters
+    ----------
+    problem : Problem or Scene
+        What is solved.
+    refinements : int, optional
+        Number of finer meshes of a scene, >= 0; 1 by default. Each halves the cells of the mesh before it.
+    runs : int, optional
+        Smallest number of runs of each measurement, 5 by default; 0 counts as 1. There are up to four times as many
+        until the two fastest differ by less than 3 %. The fastest counts.
+    most_full_dofs : int, optional
+        Problems with more dofs are solved in condensed form only; 10,000 by default.
+    time : float, optional
+        Limit in seconds, positive: a finer mesh is not begun if it is expected to end later. No limit by default.
 
-    Raises `BadInput` for an option out of its range, and the exceptions of `solve`.
+    Returns
+    -------
+    Tradeoff
+        Time and errors of every solve, and the recommended choices.
+
+    Raises
+    ------
+    BadInput
+        An option has a value that is not allowed.
+    BadType or TypeError
+        An argument has a wrong type.
+    SignoriniError or Interrupted
+        As `solve`, except `NotCertified`; for a scene also as `Scene.solve`.
     """
     for name, value in (("refinements", refinements), ("runs", runs), ("most_full_dofs", most_full_dofs)):
         if not isinstance(value, (int, np.integer)) or value < 0:
@@ -172,15 +254,39 @@ def sweep(
 ) -> Sweep:
     """Solves a scene or a problem for several gaps, forces or loads.
 
-    A scene is solved either for several scene-wide `gaps` (numbers, in the unit of length), or under several `forces` (>= 0, in the
-    unit of force) on the one obstacle that a force presses.
-    A problem is solved either for several `gaps` (arrays of length m), or at `points` equidistant points of the straight line on
-    which its gaps go to `g1` (length m), its load to `f1` (length n), or both.
+    The stiffness is factorised once, and every solve starts from the previous solution. Give exactly one of `gaps`,
+    `forces`, and the pair `g1`, `f1`, of which one is enough. Rows are not proven.
 
-    The stiffness is factorised once, and every solve starts from the previous solution. A solution that is not certified is returned
-    as well; its certificate shows the residuals.
+    Parameters
+    ----------
+    problem : Problem or Scene
+        What is solved.
+    gaps : sequence, optional
+        For a scene: gaps of the whole scene, numbers in length. For a problem: arrays of shape (m,), in length.
+    forces : sequence of float, optional
+        Only for a scene: forces >= 0, in force, on the one obstacle that a force presses.
+    g1 : array, shape (m,), optional
+        Only for a problem: its gaps go on a straight line to these, in length. `inf` stays in the same rows.
+    f1 : array, shape (n,), optional
+        Only for a problem: its load goes on a straight line to this one, in force.
+    points : int, optional
+        Number of equidistant points of the line to `g1` and `f1`, both ends included, from 2 to 10,000; 11 by default.
+    method, threads : optional
+        As in `solve`.
 
-    Raises `BadInput` for any other combination of arguments, and the exceptions of `solve`.
+    Returns
+    -------
+    Sweep
+        The solutions. One that is not certified is returned as well; its certificate shows the residuals.
+
+    Raises
+    ------
+    BadInput
+        The arguments do not belong together, or one has a value that is not allowed.
+    BadType or TypeError
+        An argument has a wrong type.
+    SignoriniError or Interrupted
+        As `solve`, except `NotCertified`; for a scene also as `Scene.solve`.
     """
     _check_kind(problem)
     is_scene = isinstance(problem, Scene)

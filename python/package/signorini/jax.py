@@ -1,4 +1,4 @@
-"""Contact problems as differentiable functions of jax: `pip install signorini[jax]`.
+"""Contact problems as differentiable functions of jax: `pip install "signorini[jax]"`.
 
 >>> import jax, numpy as np, signorini.jax
 >>> jax.config.update("jax_enable_x64", True)
@@ -29,20 +29,49 @@ __all__ = ["Pattern", "solve"]
 def solve(
     pattern: Pattern, stiffness: Any, load: Any, rows: Any, gap: Any, *, at_kink: str = "raise", **options: Any
 ) -> tuple[Any, Any]:
-    """Solves a contact problem. Returns displacement u (length n) and multiplier (length m, <= 0 in compression), arrays of jax in float64.
+    """Solves a contact problem, as a differentiable function of its numbers.
 
-    Both are differentiable in reverse mode, by `jax.grad`, `jax.vjp` and `jax.jacrev`, with respect to all four arrays; `jax.jit` and
-    `jax.vmap` work, and solve on the host, one problem after the other.
+    The results are differentiable in reverse mode, by `jax.grad`, `jax.vjp` and `jax.jacrev`, with respect to all four
+    arrays. `jax.jit` and `jax.vmap` work, and solve on the host, one problem after the other.
+    Units and signs are those of `signorini.Problem`. There are no equality rows here.
 
-    pattern: the places of the entries of K and B. stiffness: the values of K on them, of which the symmetric part is taken, so that the
-    derivatives of an entry and of its mirror image are equal, and each is half of that of both together. load: f, length n. rows: the
-    values of B. gap: g, length m, inf without an obstacle. Units and signs are those of `signorini.Problem`, which has no equality rows here.
-    at_kink: what a derivative is where it is not proven, as at a row that touches without force. `raise` raises `NoDerivative`, which names
-    the rows; `open` and `closed` take the piece with all of these rows open or closed, if both exist.
-    options: those of `signorini.prepare`, such as `tolerance`.
+    Parameters
+    ----------
+    pattern : Pattern
+        The places of the entries of K and B.
+    stiffness : array of jax, shape (entries of K,)
+        The values of K on the pattern. Their symmetric part is taken, so that the derivatives of an entry and of its
+        mirror image are equal, and each is half of that of both together.
+    load : array of jax, shape (n,)
+        Load f, in force.
+    rows : array of jax, shape (entries of B,)
+        The values of B on the pattern.
+    gap : array of jax, shape (m,)
+        Gaps g, in length; `inf` for a row without an obstacle.
+    at_kink : str, optional
+        The derivative where none is proven, as at a row that touches without force. "raise" (the default) raises
+        `NoDerivative`, which names the rows. "open" and "closed" take the piece with all of these rows open or closed,
+        if both exist.
+    **options
+        Options of `signorini.prepare`, such as `tolerance`.
 
-    Raises `BadType` for arrays that are not float64, as all of jax are without `jax_enable_x64`, `BadInput` for lengths that do not fit, and
-    the exceptions of `signorini.solve`. Within `jax.jit` an exception arrives as one of jax that has its sentence.
+    Returns
+    -------
+    u : array of jax, shape (n,)
+        Displacement, in length, float64.
+    multiplier : array of jax, shape (m,)
+        Contact multipliers, in force, <= 0 in compression, float64.
+
+    Raises
+    ------
+    BadType
+        An array is not float64. All arrays of jax are float32 without `jax_enable_x64`.
+    BadInput
+        A length does not fit the pattern, or an option has a value that is not allowed.
+    NoDerivative
+        A derivative is not proven, and `at_kink` chooses no piece that exists.
+    SignoriniError or Interrupted
+        As `signorini.solve`. Within `jax.jit` an exception is one of jax that has its sentence.
     """
     layer = pattern.layer(at_kink, options)
     arrays = tuple(jnp.asarray(values) for values in (stiffness, load, rows, gap))

@@ -2,9 +2,9 @@
 
     minimise 1/2 x'P x + q'x   subject to   G x <= h,  A x = b,  lb <= x <= ub
 
-P is symmetric and positive semidefinite. Equalities are eliminated, and the certificate covers their residuals and multipliers like those of
-any other row. If there are several minima, proximal steps find one of them; its
-optimality conditions are certified, but its distance to the other minima is not bounded.
+P is symmetric and positive semidefinite. Equalities are eliminated, and the certificate covers their residuals and
+multipliers like those of any other row. If there are several minima, proximal steps find one of them. Its optimality
+conditions are certified, but its distance to the other minima is not bounded.
 """
 
 from __future__ import annotations
@@ -42,26 +42,42 @@ _TOLERANCE = 1e-9
 
 @dataclass(frozen=True, repr=False)
 class QPSolution:
-    """The solution of a quadratic program, with the multipliers and signs of qpsolvers."""
+    """The solution of a quadratic program, with the multipliers and signs of qpsolvers.
+
+    They are those of P x + q + G'z + A'y + z_box = 0.
+
+    Attributes
+    ----------
+    found : bool
+        True if there is a solution. False if the constraints contradict each other or the objective has no lower bound;
+        then all others are None, except `unique` and `reason`.
+    x : array, shape (n,), or None
+        The minimum.
+    z : array, shape (m,), or None
+        Multipliers of G x <= h, >= 0. None without G.
+    y : array, shape (p,), or None
+        Multipliers of A x = b, of either sign. None without A.
+    z_box : array, shape (n,), or None
+        Multipliers of the bounds: <= 0 at a lower bound, >= 0 at an upper bound. None without bounds.
+    obj : float or None
+        Value of the objective at x.
+    certificate : Certificate or None
+        The residuals of the optimality conditions, recomputed from the problem, and the bound on the error of x.
+    unique : bool
+        True if x is the only minimum and its error is bounded.
+    reason : str
+        One sentence that explains why there is no solution; empty if there is one.
+    """
 
     found: bool
-    """`True` if there is a solution; `False` if the constraints contradict each other or the objective has no lower bound."""
     x: NDArray[np.float64] | None
-    """The minimum, length n; None if there is none."""
     z: NDArray[np.float64] | None
-    """Multipliers of G x <= h, one per row of G, >= 0; None without G."""
     y: NDArray[np.float64] | None
-    """Multipliers of A x = b, one per row of A, of either sign: P x + q + G'z + A'y + z_box = 0; None without A."""
     z_box: NDArray[np.float64] | None
-    """Multipliers of the bounds, length n: <= 0 at a lower bound, >= 0 at an upper bound; None without bounds."""
     obj: float | None
-    """Value of the objective at x."""
     certificate: _signorini.Certificate | None
-    """The residuals of the optimality conditions, recomputed from the problem, and the bound on the error of x."""
     unique: bool
-    """`True` if x is the only minimum and its error is bounded."""
     reason: str
-    """One sentence that explains why there is no solution; empty if there is one."""
 
     def __repr__(self) -> str:
         if self.x is None:
@@ -80,9 +96,40 @@ def solve_qp(
     ub: Any = None,
     **options: Any,
 ) -> NDArray[np.float64] | None:
-    """Solves a quadratic program. Returns x (length n), or None if there is no solution.
+    """Solves a quadratic program, as `qpsolvers.solve_qp` does.
 
-    Arguments, options and exceptions are those of `solve_problem`.
+        minimise 1/2 x'P x + q'x  subject to  G x <= h,  A x = b,  lb <= x <= ub
+
+    Parameters
+    ----------
+    P : matrix, shape (n, n)
+        Symmetric and positive semidefinite: an array of numpy or a sparse matrix of scipy.
+    q : array, shape (n,)
+        Linear part of the objective.
+    G : matrix, shape (m, n), optional
+        Rows of the inequalities.
+    h : array, shape (m,), optional
+        Right-hand sides of the inequalities. From 1e20 on there is no constraint.
+    A : matrix, shape (p, n), optional
+        Rows of the equalities.
+    b : array, shape (p,), optional
+        Right-hand sides of the equalities, finite.
+    lb : array, shape (n,), optional
+        Lower bounds. At -1e20 and below there is no bound.
+    ub : array, shape (n,), optional
+        Upper bounds. From 1e20 on there is no bound.
+    **options
+        `initvals`, and options of `signorini.solve`, as in `solve_problem`.
+
+    Returns
+    -------
+    array, shape (n,), or None
+        The minimum x; None if there is no solution.
+
+    Raises
+    ------
+    SignoriniError, TypeError or Interrupted
+        As `solve_problem`.
     """
     return solve_problem(P, q, G, h, A, b, lb, ub, **options).x
 
@@ -100,15 +147,52 @@ def solve_problem(
     initvals: Any = None,
     **options: Any,
 ) -> QPSolution:
-    """Solves a quadratic program: minimise 1/2 x'P x + q'x  subject to  G x <= h,  A x = b,  lb <= x <= ub.
+    """Solves a quadratic program, and returns its multipliers and its certificate too.
 
-    P (n x n), G and A are arrays of numpy or sparse matrices of scipy; q, lb and ub have length n. There is no constraint for an entry
-    of h or ub of 1e20 or more, or of lb of -1e20 or less. initvals: a point near the minimum, length n. The options are those of
-    `signorini.solve`.
+        minimise 1/2 x'P x + q'x  subject to  G x <= h,  A x = b,  lb <= x <= ub
 
-    Raises `BadInput` if the arrays do not form a quadratic program, `NotConvex` if P has a negative eigenvalue, `NotCertified`, with the
-    best solution, if the tolerance is not reached, `Undecided` if it is open whether there is a minimum, and the other exceptions of `signorini.solve`. A program without a solution is no
-    exception: `found` is then `False`.
+    Parameters
+    ----------
+    P : matrix, shape (n, n)
+        Symmetric and positive semidefinite: an array of numpy or a sparse matrix of scipy.
+    q : array, shape (n,)
+        Linear part of the objective.
+    G : matrix, shape (m, n), optional
+        Rows of the inequalities.
+    h : array, shape (m,), optional
+        Right-hand sides of the inequalities. From 1e20 on there is no constraint.
+    A : matrix, shape (p, n), optional
+        Rows of the equalities.
+    b : array, shape (p,), optional
+        Right-hand sides of the equalities, finite.
+    lb : array, shape (n,), optional
+        Lower bounds. At -1e20 and below there is no bound.
+    ub : array, shape (n,), optional
+        Upper bounds. From 1e20 on there is no bound.
+    initvals : array, shape (n,), optional
+        A point near the minimum, where the method starts.
+    **options
+        Options of `signorini.solve`, such as `tolerance` or `time`; but neither `start` nor `proof`.
+
+    Returns
+    -------
+    QPSolution
+        A program without a solution is no exception: `found` is then False, and `reason` says why.
+
+    Raises
+    ------
+    BadInput
+        The arrays form no quadratic program, or an option has a value that is not allowed.
+    BadType or TypeError
+        An argument has a wrong type.
+    NotConvex
+        P has a negative eigenvalue.
+    NotCertified
+        The tolerance is not reached. The exception carries the best solution.
+    Undecided
+        It could not be decided whether there is a minimum.
+    SignoriniError or Interrupted
+        As `signorini.solve`.
     """
     load = -_vector("q", q)
     rows = _Rows(load.size)

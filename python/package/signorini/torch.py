@@ -1,4 +1,4 @@
-"""Contact problems as differentiable functions of torch: `pip install signorini[torch]`.
+"""Contact problems as differentiable functions of torch: `pip install "signorini[torch]"`.
 
 >>> import torch, numpy as np, signorini.torch
 >>> K, B = np.array([[3.0, -1.0], [-1.0, 1.0]]), np.array([[0.0, 1.0]])
@@ -27,19 +27,48 @@ __all__ = ["Pattern", "solve"]
 def solve(
     pattern: Pattern, stiffness: Any, load: Any, rows: Any, gap: Any, *, at_kink: str = "raise", **options: Any
 ) -> tuple[Any, Any]:
-    """Solves a contact problem. Returns displacement u (length n) and multiplier (length m, <= 0 in compression), tensors of torch in float64.
+    """Solves a contact problem, as a differentiable function of its numbers.
 
-    Both can be differentiated once, by `backward` or `torch.autograd.grad`, with respect to all four tensors.
+    The results can be differentiated once, by `backward` or `torch.autograd.grad`, with respect to all four tensors.
+    Units and signs are those of `signorini.Problem`. There are no equality rows here.
 
-    pattern: the places of the entries of K and B. stiffness: the values of K on them, of which the symmetric part is taken, so that the
-    derivatives of an entry and of its mirror image are equal, and each is half of that of both together. load: f, length n. rows: the
-    values of B. gap: g, length m, inf without an obstacle. Units and signs are those of `signorini.Problem`, which has no equality rows here.
-    at_kink: what a derivative is where it is not proven, as at a row that touches without force. `raise` raises `NoDerivative`, which names
-    the rows; `open` and `closed` take the piece with all of these rows open or closed, if both exist.
-    options: those of `signorini.prepare`, such as `tolerance`.
+    Parameters
+    ----------
+    pattern : Pattern
+        The places of the entries of K and B.
+    stiffness : tensor of torch, shape (entries of K,)
+        The values of K on the pattern. Their symmetric part is taken, so that the derivatives of an entry and of its
+        mirror image are equal, and each is half of that of both together.
+    load : tensor of torch, shape (n,)
+        Load f, in force.
+    rows : tensor of torch, shape (entries of B,)
+        The values of B on the pattern.
+    gap : tensor of torch, shape (m,)
+        Gaps g, in length; `inf` for a row without an obstacle.
+    at_kink : str, optional
+        The derivative where none is proven, as at a row that touches without force. "raise" (the default) raises
+        `NoDerivative`, which names the rows. "open" and "closed" take the piece with all of these rows open or closed,
+        if both exist.
+    **options
+        Options of `signorini.prepare`, such as `tolerance`.
 
-    Raises `BadType` for what is no tensor of float64 in the memory of the processor, `BadInput` for lengths that do not fit, and the
-    exceptions of `signorini.solve`.
+    Returns
+    -------
+    u : tensor of torch, shape (n,)
+        Displacement, in length, float64.
+    multiplier : tensor of torch, shape (m,)
+        Contact multipliers, in force, <= 0 in compression, float64.
+
+    Raises
+    ------
+    BadType
+        An argument is no tensor of float64 in the memory of the processor.
+    BadInput
+        A length does not fit the pattern, or an option has a value that is not allowed.
+    NoDerivative
+        A derivative is not proven, and `at_kink` chooses no piece that exists.
+    SignoriniError or Interrupted
+        As `signorini.solve`.
     """
     layer, tensors = pattern.layer(at_kink, options), (stiffness, load, rows, gap)
     for (name, length), tensor in zip(pattern.lengths().items(), tensors, strict=True):

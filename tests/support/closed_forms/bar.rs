@@ -3,9 +3,9 @@
 /// An elastic bar on [0, L] that is fixed at x = 0, with a wall at the distance `gap` beyond x = L.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bar {
-    /// Length L.
+    /// Length L of the bar.
     pub length: f64,
-    /// Axial stiffness EA, in force.
+    /// Axial stiffness EA of the bar, in force.
     pub axial_stiffness: f64,
     /// Distance from the end of the bar to the wall; negative if the wall starts inside the bar.
     pub gap: f64,

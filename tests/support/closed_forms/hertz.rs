@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 pub struct LineContact {
     /// Contact modulus E*, in force per area: E/(1-nu^2) in plane strain, E in plane stress.
     pub modulus: f64,
-    /// Radius R.
+    /// Radius R of the cylinder.
     pub radius: f64,
 }
 
@@ -33,7 +33,7 @@ impl LineContact {
 pub struct PointContact {
     /// Contact modulus E* = E/(1-nu^2), in force per area.
     pub modulus: f64,
-    /// Radius R.
+    /// Radius R of the sphere.
     pub radius: f64,
 }
 

@@ -10,9 +10,9 @@
 /// K. F. Graff, *Wave Motion in Elastic Solids*, Oxford, 1975, section 2.4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImpactingBar {
-    /// Length L.
+    /// Length L of the flying bar.
     pub length: f64,
-    /// Axial stiffness EA, in force.
+    /// Axial stiffness EA of the flying bar, in force.
     pub axial_stiffness: f64,
     /// Mass per length, rho A.
     pub line_density: f64,

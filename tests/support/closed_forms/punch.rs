@@ -23,7 +23,7 @@ impl FlatStrip {
 pub struct FlatDisc {
     /// Radius a.
     pub radius: f64,
-    /// Contact modulus E*, in force per area.
+    /// Contact modulus E* of the half space under the disc, in force per area.
     pub modulus: f64,
 }
 
@@ -44,7 +44,7 @@ impl FlatDisc {
 pub struct Wedge {
     /// Slope t of the flanks.
     pub slope: f64,
-    /// Contact modulus E*, in force per area.
+    /// Contact modulus E* of the half space under the wedge, in force per area.
     pub modulus: f64,
 }
 
@@ -65,7 +65,7 @@ impl Wedge {
 pub struct Cone {
     /// Slope t of the flank.
     pub slope: f64,
-    /// Contact modulus E*, in force per area.
+    /// Contact modulus E* of the half space under the cone, in force per area.
     pub modulus: f64,
 }
 

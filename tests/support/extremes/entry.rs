@@ -41,7 +41,7 @@ pub struct Entry {
     pub penalty: Option<f64>,
 }
 
-/// The columns of the table.
+/// The columns of the table of extremes: paths through the program.
 pub const COLUMNS: [&str; 7] = ["QP raw", "QP", "QP full", "active set", "active set full", "penalty", "penalty full"];
 
 /// The result of one method.

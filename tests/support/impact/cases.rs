@@ -1,4 +1,6 @@
-//! The two bars with known motion.
+//! GOAL: two bars in impact with a known motion.
+//! CONDITIONS: a free bar that flies against a wall, and a held bar that bounces on it with the period 3.
+//! REFERENCE: `closed_forms::ImpactingBar`, `closed_forms::BouncingBar`.
 
 use crate::closed_forms::{BouncingBar, ImpactingBar};
 

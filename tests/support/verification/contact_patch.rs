@@ -1,4 +1,6 @@
-//! The contact patch test on distorted meshes: a block pressed onto a frictionless plane is compressed uniformly.
+//! GOAL: the contact patch test on distorted meshes: a block pressed onto a frictionless plane is compressed uniformly.
+//! CONDITIONS: every element in every formulation; a uniform pressure on the top, rollers at one side or two.
+//! REFERENCE: the uniform pressure, and the strains under it by Hooke's law.
 
 use signorini::fem::ElementKind::{self, Hex8, Hex20, Q4, Q8, T3, T6, Tet4, Tet10};
 use signorini::fem::{

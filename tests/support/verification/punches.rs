@@ -1,7 +1,7 @@
-//! Rigid punches on a large block, in the plane and about an axis.
-//!
-//! The block extends 500 contact radii (of 0.1) in each direction. In the plane, pressures are compared for the
-//! computed force, because the approach depends on the size of the body.
+//! GOAL: pressures and forces of rigid punches on a large block: flat, wedge and cone, cylinder and sphere.
+//! CONDITIONS: plane strain and about an axis; the block extends 500 contact radii (of 0.1) in each direction. In the
+//! plane, pressures are compared for the computed force, because the approach depends on the size of the body.
+//! REFERENCE: the half space, by `closed_forms::punch` and `closed_forms::hertz`.
 
 use crate::closed_forms::{Cone, FlatDisc, FlatStrip, LineContact, PointContact, Wedge};
 use serde_json::{Value, json};

@@ -1,5 +1,6 @@
-//! Elastic half cylinders and half balls on a rigid plane, compared with Hertz; the balls are axisymmetric and in
-//! space.
+//! GOAL: force and pressure of elastic half cylinders and half balls on a rigid plane.
+//! CONDITIONS: radius 1; the cut moves rigidly by 0.01 or 2.5e-5; the balls are axisymmetric and in space.
+//! REFERENCE: Hertz, by `closed_forms::hertz`.
 
 use crate::closed_forms::{LineContact, PointContact};
 use serde_json::{Value, json};

@@ -10,7 +10,7 @@ struct Counts {
     faults: [usize; Sort::ALL.len()],
 }
 
-/// The counts of a run.
+/// The counts of a run of promises, by class and program.
 pub struct Table {
     problems: [usize; Class::ALL.len()],
     /// For each program, for each class.

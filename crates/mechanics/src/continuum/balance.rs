@@ -22,7 +22,7 @@ const ROUNDS: usize = 2;
 /// The facets through which forces are carried, simplex by simplex from the roots on.
 #[derive(Debug)]
 struct Tree {
-    /// The simplices at each facet.
+    /// The one or two simplices at each facet of the mesh, one entry per facet.
     cells_at: Vec<[Option<usize>; 2]>,
     /// The simplices, each after the one towards its root.
     order: Vec<usize>,

@@ -74,7 +74,7 @@ pub struct Side {
     pub solution: Solution,
     /// The problem, prepared for other gaps and loads, if it serves for the pairs of the force.
     pub prepared: Option<Prepared>,
-    /// The values of all unknowns.
+    /// The value of every unknown of this problem, free or prescribed.
     pub values: Vec<f64>,
     /// Seconds, including assembly.
     pub seconds: f64,

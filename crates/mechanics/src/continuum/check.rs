@@ -19,7 +19,7 @@ const LOST: f64 = 1e-2;
 /// Rounding of a sum of many energies, over the sum of their sizes.
 const ENERGY_ROUNDING: f64 = 1e-10;
 
-/// The places at which a displacement is compared with the obstacle divide each edge of a facet into so many parts.
+/// The places at which a displacement is compared with the obstacle divide each edge of a facet into this number of parts.
 const PARTS: usize = 4;
 
 /// The relative defect of a property, and the value up to which it is rounding.

@@ -84,7 +84,7 @@ impl<'a> Displacements<'a> {
         of_places.fold(0.0, |largest, value| largest.max(value.abs()))
     }
 
-    /// The unknowns.
+    /// The unknown displacements: none is radial on the axis of revolution.
     pub fn unknowns(&self) -> Unknowns {
         let places = self.places();
         // On the axis there is no radial displacement.
@@ -132,7 +132,8 @@ impl<'a> Displacements<'a> {
         Ok([rows, held])
     }
 
-    /// The unknown that is the travel of an obstacle, and the share of it against the normal.
+    /// The unknown travel of a pressed obstacle, behind all displacements, with the cosine of its angle to the normal; `None` without a
+    /// force.
     pub fn travel(&self, obstacle: usize) -> Option<(usize, f64)> {
         let functions = self.mesh.nodes.len() + self.mesh.edges.len();
         let share = self.problem.obstacles[obstacle].pressed?.cosine;

@@ -16,7 +16,7 @@ use crate::fem::Formulation;
 use crate::fem::geometry::{COORDINATES, cross, dot};
 use crate::fem::material::{Cylinder, Lame, Material, Matrices, Stiffness};
 
-/// Rounding of energies and forces of columns.
+/// Relative rounding of the energies and forces of a column with these keys.
 const ROUNDING: f64 = 1e-11;
 
 /// Young's modulus of a column that does not bulge.

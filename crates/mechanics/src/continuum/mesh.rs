@@ -17,7 +17,7 @@ const ABSENT: usize = usize::MAX;
 /// If moved nodes leave a simplex less than this share of its size, it is nearly flat or folded.
 const FOLDED: f64 = 0.1;
 
-/// Halvings of a marked tetrahedron.
+/// Number of times that a marked tetrahedron of the guaranteed bound is halved.
 const GENERATIONS: usize = 1;
 
 /// Simplices before they are a mesh.
@@ -26,7 +26,7 @@ pub struct Cells {
     pub nodes: Vec<Point>,
     /// The nodes of each simplex.
     pub cells: Vec<Vec<usize>>,
-    /// The element of the first mesh that contains each simplex.
+    /// The element of the first mesh that each of these simplices is a part of.
     pub origins: Vec<usize>,
     /// The number of the condition of each facet of the surface and of some inside, by their nodes, increasing.
     pub surface: HashMap<Vec<usize>, usize>,
@@ -35,9 +35,9 @@ pub struct Cells {
 /// Simplices that meet in whole facets. A local number k is that of corner k of a simplex, and of the facet opposite to this corner.
 #[derive(Clone, Debug)]
 pub struct SimplexMesh {
-    /// 2 or 3.
+    /// Number of coordinates of the mesh, 2 or 3.
     pub dimension: usize,
-    /// The vertices.
+    /// Coordinates of the vertices, in length.
     pub nodes: Vec<Point>,
     /// The nodes of each simplex, increasing.
     cells: Vec<[usize; MOST_CORNERS]>,
@@ -49,7 +49,7 @@ pub struct SimplexMesh {
     facets: Vec<[usize; OF_FACET]>,
     /// The facets of each simplex.
     sides: Vec<usize>,
-    /// The element of the first mesh that contains each simplex.
+    /// For each simplex, the element of the first mesh that contains it.
     pub origins: Vec<usize>,
     /// The number of the condition of each facet; most of those inside have none.
     pub conditions: Vec<Option<usize>>,
@@ -285,7 +285,7 @@ impl SimplexMesh {
         self.surface.iter().copied()
     }
 
-    /// The simplices at each facet.
+    /// The one or two simplices that share each facet, in increasing order; a facet of the surface has only the first.
     pub fn cells_at(&self) -> Vec<[Option<usize>; 2]> {
         let mut cells_at = vec![[None; 2]; self.facet_count()];
         for cell in 0..self.count() {

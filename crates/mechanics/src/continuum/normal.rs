@@ -40,7 +40,7 @@ impl Lower {
         Self::of(matrix)
     }
 
-    /// `L^-1 b`, in place.
+    /// Replaces b by `L^-1 b`.
     pub fn forward(&self, b: &mut [f64]) {
         for (k, line) in self.0.iter().enumerate() {
             b[k] = (b[k] - dot(&line[..k], &b[..k])) / line[k];

@@ -16,7 +16,7 @@ pub struct PartStress {
 }
 
 impl PartStress {
-    /// Zero on so many parts, with so many coefficients on each.
+    /// Zero stress on `parts` parts, with `of_part` coefficients on each.
     pub fn zero(parts: usize, of_part: usize) -> Self {
         PartStress { of_part, values: vec![[0.0; 6]; parts * of_part] }
     }

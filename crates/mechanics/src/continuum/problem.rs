@@ -12,7 +12,7 @@ use crate::fem::material::{Lame, Matrix, Stiffness, back, engineering, local};
 /// Frictionless contact of elastic media that fill a polygon, in plane strain or plane stress, or a polyhedron.
 #[derive(Clone, Debug)]
 pub struct ContinuumProblem {
-    /// 2 or 3.
+    /// Number of coordinates of the bodies, 2 or 3.
     pub dimension: usize,
     /// A body of revolution about the y axis, x being the radius.
     pub is_axisymmetric: bool,
@@ -82,9 +82,9 @@ pub struct Condition {
 /// A prescribed component of the displacement: `direction . u = value`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Held {
-    /// A unit vector.
+    /// The direction of the prescribed component, of length 1.
     pub direction: Point,
-    /// In length.
+    /// The prescribed displacement, in length, linear in space.
     pub value: Linear,
 }
 
@@ -122,7 +122,7 @@ pub struct RigidFace {
 /// A circle that a side approximates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circle {
-    /// Its centre.
+    /// The centre of the circle, in length.
     pub centre: Point,
     /// Its radius, in length.
     pub radius: f64,
@@ -196,7 +196,7 @@ pub enum Surface {
     },
 }
 
-/// An obstacle that a force presses.
+/// The force on an obstacle that a force presses, and the direction of its travel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pressed {
     /// The force along its travel.

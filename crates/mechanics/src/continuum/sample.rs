@@ -27,12 +27,12 @@ pub fn beyond(x: f64, [one, other]: [f64; 2], places: &[f64]) -> f64 {
     zeros.fold(ends.max(0.0), |product, zero| product * (x / zero - 1.0).powi(2))
 }
 
-/// So many points between 0 and 1 with their weights.
+/// The given number of Gauss points between 0 and 1, with their weights.
 pub fn line(points: usize) -> impl Iterator<Item = (f64, f64)> {
     gauss_legendre(points).map(|(x, weight)| ((x + 1.0) / 2.0, weight / 2.0))
 }
 
-/// So many points of a square along each side, with their weights.
+/// The given number of Gauss points along each side of the unit square, with their weights.
 pub fn square(points: usize) -> Vec<([f64; 2], f64)> {
     line(points).flat_map(|(t, of_t)| line(points).map(move |(y, of_y)| ([t, y], of_t * of_y))).collect()
 }

@@ -19,13 +19,13 @@ pub type Weights = [f64; MOST_CORNERS];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Simplex {
-    /// 2 or 3.
+    /// Number of coordinates of the corners, 2 or 3.
     pub dimension: usize,
     corners: [Point; MOST_CORNERS],
 }
 
 /// The pairs of `count` numbers: first each with itself, then `i < j`. They number the functions of Bernstein's quadratic basis on a
-/// simplex of so many corners.
+/// simplex of `count` corners.
 pub fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> + Clone {
     (0..count).map(|i| [i, i]).chain((0..count).flat_map(move |i| (i + 1..count).map(move |j| [i, j])))
 }

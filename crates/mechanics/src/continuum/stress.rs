@@ -96,7 +96,7 @@ impl<'a> Stresses<'a> {
         (0..self.mesh.dimension).map(|corner| self.place(outer.facet, corner)).collect()
     }
 
-    /// The unknowns.
+    /// The unknown displacements of facets: those on the axis of revolution are held.
     pub fn unknowns(&self) -> Unknowns {
         // On the axis a stress times its radius does no work.
         let corners = (0..self.mesh.facet_count()).flat_map(|facet| {
@@ -108,7 +108,8 @@ impl<'a> Stresses<'a> {
         Unknowns::new(self.problem, self.mesh, &self.places(), held, |outer| self.on_facet(outer))
     }
 
-    /// The unknown that is the travel of an obstacle, and the share of it against the normal.
+    /// The unknown travel of a pressed obstacle, behind the displacements of facets, with the cosine of its angle to the normal; `None`
+    /// without a force.
     pub fn travel(&self, obstacle: usize) -> Option<(usize, f64)> {
         let places = self.place(self.mesh.facet_count(), 0);
         let share = self.problem.obstacles[obstacle].pressed?.cosine;

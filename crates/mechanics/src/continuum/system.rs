@@ -41,7 +41,7 @@ pub fn add_springs(
     }
 }
 
-/// The unknowns of each simplex.
+/// The unknowns of the simplices, the same number for each.
 #[derive(Clone, Debug)]
 pub struct Numbers {
     of_cell: usize,
@@ -49,7 +49,7 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// The unknowns of all simplices one after another, so many of each.
+    /// The unknowns of all simplices one after another, `of_cell` of each.
     pub fn new(of_cell: usize, numbers: Vec<usize>) -> Self {
         Numbers { of_cell, numbers }
     }
@@ -59,7 +59,7 @@ impl Numbers {
         &self.numbers[cell * self.of_cell..(cell + 1) * self.of_cell]
     }
 
-    /// The unknowns of each simplex.
+    /// The unknowns of each simplex, in the order of the mesh.
     pub fn iter(&self) -> impl Iterator<Item = &[usize]> + Clone {
         self.numbers.chunks_exact(self.of_cell)
     }
@@ -72,7 +72,7 @@ pub struct Row {
     pub terms: Vec<(usize, f64)>,
     /// The number of terms of its place.
     own: usize,
-    /// In length.
+    /// The bound of the row, in length.
     pub gap: f64,
 }
 
@@ -124,7 +124,7 @@ pub struct Unknowns {
     moves_rigidly: bool,
     /// The orthonormal axes of the supports of each supported place.
     pub supports: BTreeMap<usize, Vec<Point>>,
-    /// The prescribed part of each unknown.
+    /// The prescribed part of each unknown, which no free unknown changes.
     offset: Vec<f64>,
     /// The first term of each unknown, and the end.
     starts: Vec<u32>,
@@ -257,7 +257,7 @@ impl Unknowns {
         &self.terms[self.starts[unknown] as usize..self.starts[unknown + 1] as usize]
     }
 
-    /// The prescribed part of each unknown.
+    /// The value of each unknown if the free ones are zero.
     pub fn prescribed(&self) -> &[f64] {
         &self.offset
     }

@@ -10,7 +10,7 @@ use super::problem::{Condition, ContinuumProblem, Facing, Held, Linear, Medium, 
 use crate::fem::geometry::{COORDINATES, key, length};
 use crate::fem::material::{Lame, Stiffness};
 
-/// Rounding of energies and forces of columns.
+/// Relative rounding of the energies and forces of two columns.
 const ROUNDING: f64 = 1e-11;
 
 /// The numbers of the conditions of the sides of a block: below, to the right, above, to the left.

@@ -184,7 +184,7 @@ impl SingularValues {
     }
 }
 
-/// `x - share y`, in place.
+/// Subtracts `share y` from x.
 fn subtract(x: &mut [f64], share: f64, y: &[f64]) {
     x.iter_mut().zip(y).for_each(|(x, y)| *x -= share * y);
 }

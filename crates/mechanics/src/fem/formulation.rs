@@ -16,26 +16,26 @@ pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), Error> {
 /// The dimension of a model and the assumption for the directions that it leaves out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Formulation {
-    /// A bar along x; no stress across it.
+    /// A bar along x, with no stress across its axis.
     Bar {
         /// Cross-section, positive, in area.
         area: f64,
     },
-    /// No strain across the plane: a long body.
+    /// Plane strain: no strain across the plane, as in a long body.
     PlaneStrain {
-        /// Depth across the plane, positive, in length.
+        /// Depth of the long body across the plane, positive, in length.
         thickness: f64,
     },
-    /// No stress across the plane: a thin body.
+    /// Plane stress: no stress across the plane, as in a thin body.
     PlaneStress {
-        /// Depth across the plane, positive, in length.
+        /// Depth of the thin body across the plane, positive, in length.
         thickness: f64,
     },
     /// A body of revolution about the y axis, x being the radius, `x >= 0`, without twist.
     ///
     /// Loads, forces, stiffness and areas are those of the full circle: integrals carry the factor `2 pi x`.
     Axisymmetric,
-    /// Three dimensions.
+    /// A body in space, with no assumption.
     Space,
 }
 
@@ -63,7 +63,7 @@ impl Formulation {
         }
     }
 
-    /// Number of coordinates, and of dofs per node.
+    /// Number of coordinates of the model, and of dofs of each node.
     pub fn dimension(&self) -> usize {
         match self {
             Formulation::Bar { .. } => 1,
@@ -83,7 +83,7 @@ impl Formulation {
         }
     }
 
-    /// Returns `true` for a body of revolution.
+    /// Returns `true` for the formulation of a body of revolution.
     pub fn is_axisymmetric(&self) -> bool {
         matches!(self, Formulation::Axisymmetric)
     }

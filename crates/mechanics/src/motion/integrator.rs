@@ -21,7 +21,7 @@ pub struct Integrator {
     problem: DynamicProblem,
     step: f64,
     scheme: Box<dyn Advance>,
-    /// The times in a step at which the scheme evaluates the loads, from 0 to 1.
+    /// The times at which the loads of a step are evaluated, as shares of the step from 0 to 1.
     load_times: &'static [f64],
     state: State,
     /// The state one step earlier; `None` before the first step of this integrator, or of the first after a resume.
@@ -183,7 +183,7 @@ impl Integrator {
         self.state.steps as f64 * self.step
     }
 
-    /// Length of each step, in time, positive.
+    /// Length of a step of this integrator, in time, positive.
     pub fn step(&self) -> f64 {
         self.step
     }

@@ -18,7 +18,7 @@ pub struct DynamicProblem {
     /// Transposed contact rows: the entries of a row form a column.
     by_row: SparseMatrix,
     mass: SymmetricMatrix,
-    /// c_m and c_k.
+    /// c_m and c_k of `C = c_m M + c_k K`.
     damping: [f64; 2],
     loads: Vec<(TimeFunction, Vec<f64>)>,
     /// Changes of the gaps with time, one entry per row each, in length.

@@ -10,7 +10,7 @@ use signorini_qp::ContactSet;
 /// The forces that follow from it, K u and M v, are computed by the integrator that goes on from it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
-    /// Steps so far.
+    /// Number of steps from the start of the motion to this state.
     pub steps: usize,
     /// Displacement u, one entry per dof, in length, along the positive axes.
     pub displacement: Vec<f64>,
@@ -20,10 +20,10 @@ pub struct State {
     pub acceleration: Vec<f64>,
     /// Work of loads and of obstacles that move since the start, in force times length; forces that hold prescribed displacements do none.
     pub work: f64,
-    /// Energy that damping took since the start, in force times length.
+    /// Energy that damping took from the start to this state, in force times length.
     #[serde(default)]
     pub damped: f64,
-    /// Penalties that the last step tried; 0 in schemes without a loop over penalties.
+    /// Number of penalties that the step to this state tried; 0 in schemes without a loop over penalties.
     pub penalties: usize,
     /// Contact multiplier of the last step, one entry per contact row, in force, `<= 0`.
     pub multiplier: Vec<f64>,
@@ -66,7 +66,7 @@ pub struct Observation {
     pub force: f64,
     /// Closed rows of the last step.
     pub closed: usize,
-    /// Deepest penetration, in length.
+    /// Deepest penetration of a row in this state, in length.
     pub penetration: f64,
     /// Kinetic energy, `v'M v / 2`, in force times length.
     pub kinetic: f64,
@@ -74,11 +74,11 @@ pub struct Observation {
     pub strain: f64,
     /// Potential of the loads, `-f'u`, in force times length.
     pub potential: f64,
-    /// Work of loads and of obstacles that move since the start, in force times length.
+    /// Work of loads and moving obstacles from the start to the time of this line, in force times length.
     pub work: f64,
-    /// Energy that damping took since the start, in force times length.
+    /// Energy that damping took from the start to the time of this line, in force times length.
     pub damped: f64,
-    /// Penalties that the last step tried; 0 in schemes without a loop over penalties.
+    /// Number of penalties that the last step before this line tried; 0 in schemes without a loop over penalties.
     pub penalties: usize,
     /// Between which times the force acted, `[from, to]`, in time, since the start of the motion.
     pub acting: [f64; 2],

@@ -11,7 +11,7 @@ pub enum TimeFunction {
     /// Straight lines between points `(time, factor)`, times strictly increasing; constant before the first and after
     /// the last.
     Table(Vec<(f64, f64)>),
-    /// `sin(2 pi frequency t + phase)`.
+    /// `sin(2 pi frequency t + phase)`, between -1 and 1.
     Sine {
         /// Number of periods in a unit of time.
         frequency: f64,

@@ -23,7 +23,7 @@ const NORM_ROUNDING: f64 = 1e-12;
 /// The answer of one of the three methods of a comparison, whether or not it meets the tolerance.
 #[derive(Clone, Debug)]
 pub struct MethodAnswer {
-    /// The answer, certified or not.
+    /// The answer of the method, certified or not.
     pub solution: Solution,
     /// `true` if it meets the tolerance of the comparison.
     pub certified: bool,

@@ -114,7 +114,7 @@ fn missing(forces: [f64; 2], beside: f64) -> f64 {
 /// The summary of a run, gathered step by step; its size does not depend on the number of steps.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionSummary {
-    /// Steps so far.
+    /// Number of steps that the run has made.
     pub steps: usize,
     /// Time from the start of the motion to the last step.
     pub time: f64,
@@ -122,7 +122,7 @@ pub struct MotionSummary {
     pub contact: MotionContact,
     /// The force of each obstacle and pair of bodies over time, in the order of the scene.
     pub obstacles: Vec<MotionContact>,
-    /// Deepest penetration, in length.
+    /// Deepest penetration of a row in the run so far, in length.
     pub penetration_max: f64,
     /// Kinetic, strain and potential energy at the start, in this order, in force times length.
     pub energy_first: [f64; 3],
@@ -134,9 +134,9 @@ pub struct MotionSummary {
     pub energy_scale: f64,
     /// Total number of penalties in all steps, and the largest number in one step; 0 in schemes without a loop over penalties.
     pub penalties: [usize; 2],
-    /// Work of loads and of obstacles that move since the start, in force times length.
+    /// Work of loads and moving obstacles in the whole run so far, in force times length.
     pub work: f64,
-    /// Energy that damping took since the start, in force times length.
+    /// Energy that damping took in the whole run so far, in force times length.
     pub damped: f64,
     /// The largest work of the loads so far, in force times length, `>= 0`.
     pub work_max: f64,

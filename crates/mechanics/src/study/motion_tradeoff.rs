@@ -29,7 +29,7 @@ pub struct MotionPoint {
     pub scheme: &'static str,
     /// Length of each step, in time.
     pub step: f64,
-    /// Number of steps to the end of the motion.
+    /// Number of steps of the scheme at this length of the step.
     pub steps: usize,
     /// Seconds from the assembled problem to the last step.
     pub seconds: f64,
@@ -39,7 +39,7 @@ pub struct MotionPoint {
     pub impulse_error: f64,
     /// Energy at the end minus that at the start, over the largest kinetic and strain energy.
     pub energy_change: f64,
-    /// Deepest penetration, in length.
+    /// Deepest penetration of a row in the whole motion, in length.
     pub penetration: f64,
     /// `true` if the point is on the Pareto front: no other point is both faster and more accurate.
     pub best: bool,

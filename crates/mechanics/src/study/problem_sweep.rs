@@ -13,7 +13,7 @@ use signorini_qp::{ContactProblem, Prepared, Settings, Solution, Start};
 pub struct ProblemPoint {
     /// Position on the path: 0 for the problem itself, 1 for its other end.
     pub t: f64,
-    /// The solution with its numbers.
+    /// The answer at this point of the path with its certificate, forces and warnings.
     #[serde(flatten)]
     pub summary: Summary,
 }
@@ -25,7 +25,7 @@ pub struct ProblemEvent {
     pub t: f64,
     /// The contact row.
     pub row: usize,
-    /// `true` if the row touches, `false` if it releases.
+    /// `true` if the row closes as t grows, `false` if it opens.
     pub touches: bool,
 }
 

@@ -124,7 +124,7 @@ pub struct SweepPoint {
     /// The force that presses the obstacle, in force, `>= 0`, in a sweep over forces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force: Option<f64>,
-    /// The solution with its numbers.
+    /// The answer at this gap or force with its certificate, forces and warnings.
     #[serde(flatten)]
     pub summary: Summary,
     /// The answer, with the model at this gap.
@@ -154,7 +154,7 @@ impl SweepPoint {
 pub struct SweepEvent {
     /// Scene-wide gap at which it happens, in length, exact up to rounding.
     pub gap: f64,
-    /// Index of the contact row in the problem, from 0.
+    /// Index of the row that touches or releases in the problem, from 0.
     pub row: usize,
     /// Index of the node of the row in the mesh, from 0.
     pub node: usize,
@@ -167,14 +167,14 @@ pub struct SweepEvent {
 pub struct SweepCorner {
     /// Scene-wide gap, in length; negative if it moves the obstacles into the body.
     pub gap: f64,
-    /// Total contact force `-sum(lambda)`, in force, `>= 0`.
+    /// Total contact force `-sum(lambda)` at this corner, in force, `>= 0`.
     pub force: f64,
     /// Length of the boundary in contact, in length, if the model has a thickness.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width: Option<f64>,
     /// Area of the boundary in contact, in area.
     pub area: f64,
-    /// Largest contact pressure, in force per area, `>= 0`.
+    /// Largest contact pressure at this corner, in force per area, `>= 0`.
     pub pressure_max: f64,
 }
 

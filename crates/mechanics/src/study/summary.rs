@@ -47,7 +47,7 @@ pub struct Summary {
     /// The certified or best answer of the solver, without the meaning of its rows.
     #[serde(flatten)]
     pub solution: Solution,
-    /// Warnings about these numbers.
+    /// Warnings about the numbers of this answer.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<AnswerWarning>,
     /// Closed rows and forces.
@@ -121,9 +121,9 @@ pub struct LargestDisplacement {
 /// Closed rows and forces of an answer, and in a scene its pressures, widths and areas.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct ContactSummary {
-    /// Number of closed rows.
+    /// Number of closed rows of the answer.
     pub count: usize,
-    /// Total contact force `-sum(lambda)`, in force, `>= 0`.
+    /// Total contact force `-sum(lambda)` of the answer, in force, `>= 0`.
     pub force: f64,
     /// Largest contact pressure, in force per area, `>= 0`; only in a scene, because only a scene has areas.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -160,9 +160,9 @@ impl ContactSummary {
 /// The two surfaces of a contact between bodies.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BetweenBodies {
-    /// Name of the boundary that carries the rows.
+    /// Name of the boundary with a row for each node.
     pub boundary: String,
-    /// Name of the boundary of the other body.
+    /// Name of the boundary of the other body that these rows keep out.
     pub other: String,
     /// `pairs` of nodes, or `mortar`: means over the areas of the nodes of the carrying boundary.
     pub rows: &'static str,
@@ -202,7 +202,7 @@ pub struct ObstacleContact {
     /// Displacement against the approach direction, in length, if a force presses it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub travel: Option<f64>,
-    /// Largest contact pressure, in force per area, `>= 0`.
+    /// Largest contact pressure on this obstacle or pair, in force per area, `>= 0`.
     pub pressure_max: f64,
     /// The sum of multipliers over the estimated area, in force per area; `None` without an area.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -349,7 +349,7 @@ pub struct Verification {
     pub certificate: Certificate,
     /// Number of unknowns, rows and matrix entries of the problem.
     pub model: ModelSize,
-    /// Warnings about these numbers.
+    /// Warnings about the recomputed numbers.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<AnswerWarning>,
 }

@@ -57,7 +57,7 @@ const OF_MESH: [&str; 3] = ["nothing-touches", "mesh-dependent", "between-nodes"
 /// A fact about an answer that its reader should know, certified or not.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct AnswerWarning {
-    /// The name of the kind of warning, the same in every version.
+    /// The name of the kind of warning about an answer, the same in every version.
     pub code: &'static str,
     /// The fact with its numbers, its likely cause, and a remedy.
     pub message: String,

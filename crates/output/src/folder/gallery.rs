@@ -23,7 +23,7 @@ use signorini_qp::{ContactSet, Iteration, Solution};
 /// The pictures that a command draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pictures {
-    /// None.
+    /// No picture.
     None,
     /// The picture of the answer: one for each command.
     Answer,

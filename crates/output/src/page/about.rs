@@ -5,7 +5,7 @@ use serde::Serialize;
 /// The data that a reader needs to reproduce the page.
 #[derive(Clone, Debug, Serialize)]
 pub struct About {
-    /// The title of the page.
+    /// The title of the page, as text without markup.
     pub title: String,
     /// The command, as `solve`.
     pub command: &'static str,

@@ -9,7 +9,7 @@ use signorini_mechanics::scene::Model;
 
 #[derive(Debug, Serialize)]
 pub(super) struct AlongShown {
-    /// Both ends, a number for each coordinate.
+    /// Both ends of the line in the page, a number for each coordinate.
     ends: [Vec<f64>; 2],
     /// A plot for each quantity; none if the line meets no body.
     plots: Vec<PlotShown>,

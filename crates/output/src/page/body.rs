@@ -46,7 +46,7 @@ struct PackedCells {
     mids: Vec<[usize; 2]>,
 }
 
-/// The same as it stands in a page.
+/// The body as it stands in a page: its mesh in packed arrays.
 #[derive(Debug, Serialize)]
 pub(super) struct Body {
     /// Coordinates of the model: 1, 2 or 3.

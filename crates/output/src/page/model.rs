@@ -145,7 +145,7 @@ impl<'a> Page<'a> {
         }
     }
 
-    /// The title of the page.
+    /// The title that [`About`] gives the page.
     pub fn title(&self) -> &str {
         &self.about.title
     }

@@ -25,7 +25,7 @@ enum Form {
     Whole,
     /// 64-bit floating-point numbers in eight byte planes.
     Exact,
-    /// Bytes as they are.
+    /// Whole numbers from 0 to 255, unchanged.
     Bytes,
 }
 
@@ -100,7 +100,7 @@ impl Packer {
         Packed { form: Form::Exact, at, count: values.len(), stride, ranges: Vec::new() }
     }
 
-    /// Bytes as they are.
+    /// Packs bytes unchanged.
     pub fn bytes(&mut self, values: impl IntoIterator<Item = u8>) -> Packed {
         let at = self.bytes.len();
         self.bytes.extend(values);

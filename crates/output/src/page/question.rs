@@ -50,7 +50,7 @@ struct Loads {
 struct ObstacleShown {
     /// The boundary with its candidates.
     boundary: String,
-    /// Direction from the body to the obstacle.
+    /// Direction from the body to this obstacle.
     approach: [f64; 3],
     /// Its shift along the approach direction in the outline or patch, in length.
     shift: f64,

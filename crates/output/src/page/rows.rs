@@ -26,7 +26,7 @@ pub(super) struct Rows {
 /// The values of an answer at the rows.
 #[derive(Debug, Serialize)]
 pub(super) struct Contact {
-    /// 1 for a closed row, 0 for an open one.
+    /// 1 for a row that is closed in this answer, 0 for an open one.
     closed: Packed,
     /// In force per area.
     pressure: Packed,
@@ -96,7 +96,7 @@ pub(super) struct Closed {
     values: Vec<Vec<f64>>,
 }
 
-/// The same as it stands in a page.
+/// The closed rows of many answers as they stand in a page.
 #[derive(Debug, Serialize)]
 pub(super) struct ClosedShown {
     /// Index of the first row of each answer, and the end of the rows of the last answer.

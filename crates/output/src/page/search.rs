@@ -25,12 +25,12 @@ pub(super) struct Search {
 struct Step {
     /// Its number, from 1.
     number: usize,
-    /// Number of closed rows.
+    /// Number of rows that are closed in this step.
     closed: usize,
     /// The penalty, in multiples of the local stiffness.
     #[serde(skip_serializing_if = "Option::is_none")]
     penalty: Option<f64>,
-    /// 1 for a closed row, 0 for an open one.
+    /// 1 for a row that is closed in this step, 0 for an open one.
     set: Packed,
     /// The body with these rows held at their gaps; `None` if it is not known.
     #[serde(skip_serializing_if = "Option::is_none")]

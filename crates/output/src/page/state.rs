@@ -28,8 +28,10 @@ pub(super) struct State {
 }
 
 impl State {
+    /// The state of an answer at the position `at` of the path, packed.
+    ///
     /// # Errors
-    /// Those of the recovery of stresses.
+    /// As [`Answer::stress`].
     pub fn of(answer: &Answer, at: f64, shape: &Shape, packer: &mut Packer) -> Result<Self, Error> {
         let model = answer.model();
         let dimension = model.mesh().dimension();

@@ -49,7 +49,7 @@ pub struct FieldPanel<'a> {
 pub struct ContactPicture<'a> {
     /// The title: scene, gap, iteration, number of closed nodes.
     pub title: &'a str,
-    /// Names of the two coordinates.
+    /// Names of the horizontal and the vertical coordinate of the picture.
     pub axes: [&'a str; 2],
     /// Unit of length of the nodes; empty without units.
     pub length_unit: &'a str,
@@ -99,7 +99,7 @@ impl ContactPicture<'_> {
         }
     }
 
-    /// Draws the picture.
+    /// Draws the panels of the answer side by side.
     ///
     /// Values that are not finite are no error: elements without a value are grey, elements with a coordinate that is not finite are
     /// left out.

@@ -14,7 +14,7 @@ const PLANS: [[f64; 2]; 2] = [[460.0, 560.0], [370.0, 420.0]];
 #[derive(Clone, Debug)]
 pub(crate) struct Plan {
     pub title: String,
-    /// Names of the two coordinates.
+    /// Names of the two coordinates across the approach direction.
     pub axes: [&'static str; 2],
     pub nodes: Vec<[f64; 2]>,
     pub cells: Vec<Vec<usize>>,

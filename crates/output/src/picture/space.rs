@@ -49,7 +49,7 @@ pub(crate) struct Face {
 pub(crate) struct Sheet {
     /// Polygons in space.
     pub polygons: Vec<Vec<[f64; 3]>>,
-    /// Direction from the body to the obstacle.
+    /// Direction from the body to the sheet.
     pub approach: [f64; 3],
 }
 
@@ -116,7 +116,7 @@ impl Place {
 }
 
 impl SpacePicture<'_> {
-    /// Draws the picture.
+    /// Draws the body and the obstacles as seen from the eye.
     pub fn draw(&self) -> Drawing {
         let view = View::from(self.eye);
         let points = || self.nodes.iter().copied().chain(self.sheets.iter().flat_map(|sheet| sheet.polygons.concat()));

@@ -15,7 +15,7 @@ pub(crate) const LARGE: f64 = 18.0;
 pub(crate) const TITLE: f64 = 21.0;
 /// Height of a line of text in multiples of its size.
 pub(crate) const LINE: f64 = 1.35;
-/// Space around a picture in pixels.
+/// Space around a picture on a screen, in pixels.
 pub(crate) const MARGIN: f64 = 24.0;
 
 const TICK: f64 = 6.0;
@@ -98,7 +98,7 @@ pub(crate) enum Labels {
 pub(crate) struct Frame {
     /// Upper left corner in pixels.
     pub corner: [f64; 2],
-    /// Width and height in pixels.
+    /// Width and height of the frame, in pixels.
     pub size: [f64; 2],
     pub x: Axis,
     pub y: Axis,
@@ -168,7 +168,7 @@ impl Frame {
 
 /// The axes of a plane that is drawn with the same scale in both directions.
 pub(crate) struct Plane {
-    /// Width and height in pixels.
+    /// Width and height of the plane, in pixels.
     pub size: [f64; 2],
     pub x: Axis,
     pub y: Axis,

@@ -30,7 +30,7 @@ impl Medium {
         self.millimetres(panels).map_or(screen, |millimetres| PIXELS * millimetres)
     }
 
-    /// Space around a picture in pixels.
+    /// Space around a picture on this medium, in pixels.
     pub fn margin(self) -> f64 {
         if self == Medium::Paper { 6.0 } else { MARGIN }
     }

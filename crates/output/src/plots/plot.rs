@@ -280,7 +280,7 @@ pub fn line_plots(title: &str, plots: &[Plot]) -> Drawing {
     line_plots_for(Medium::Screen, title, plots)
 }
 
-/// The same for a screen or for paper.
+/// As [`line_plots`], for a screen or for paper.
 pub(crate) fn line_plots_for(medium: Medium, title: &str, plots: &[Plot]) -> Drawing {
     let margin = medium.margin();
     let beside = plots.iter().any(|plot| plot.names_beside);

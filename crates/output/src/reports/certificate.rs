@@ -14,7 +14,7 @@ pub(crate) fn number(value: f64) -> String {
 pub(crate) struct CertificateWords {
     /// The goal, and the statement that the answer meets it or not.
     pub verdict: String,
-    /// Name, formula and value of each condition.
+    /// Name, formula and value of each of the six conditions, as text.
     pub conditions: Vec<(&'static str, &'static str, String)>,
     /// Notes for the reader of these values.
     pub notes: Vec<String>,
@@ -79,7 +79,7 @@ fn bound(certificate: &Certificate) -> String {
     }
 }
 
-/// Name, formula and value of each condition.
+/// Name, formula and value of the six conditions of a certificate.
 pub(crate) fn conditions(certificate: &Certificate) -> [(&'static str, &'static str, String); 6] {
     [
         ("stationarity", "|K u - f - B' lambda|", number(certificate.stationarity)),

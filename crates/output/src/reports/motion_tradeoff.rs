@@ -52,7 +52,7 @@ pub(crate) fn motion_tradeoff_csv(tradeoff: &MotionTradeoff) -> String {
     ))
 }
 
-/// The same for a screen or for paper.
+/// The error of the displacement over the seconds of each scheme, as a plot for a screen or for paper.
 pub(crate) fn motion_tradeoff_plot(medium: Medium, title: &str, tradeoff: &MotionTradeoff) -> Drawing {
     let mut series: Vec<Series> = Vec::new();
     for point in &tradeoff.points {

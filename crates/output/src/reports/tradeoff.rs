@@ -41,7 +41,7 @@ pub(crate) fn tradeoff_text(title: &str, tradeoff: &Tradeoff) -> String {
     text + &advice(tradeoff)
 }
 
-/// The columns of the table.
+/// The columns of the printed points of a trade-off.
 const COLUMNS: [Column<TradeoffPoint>; 12] = [
     ("method", &|point| format!("{}{}", point.method, if point.best { " *" } else { "" })),
     ("setting", &|point| point.knob.map_or_else(|| "-".to_string(), |knob| format!("{knob:.0e}"))),

@@ -51,7 +51,7 @@ fn chosen(mut ways: Vec<(String, Vec<&TradeoffPoint>)>) -> Vec<(String, Vec<&Tra
     ways
 }
 
-/// The same for a screen or for paper.
+/// The error in the energy over the seconds of the best methods, a plot for each mesh, for a screen or for paper.
 pub(crate) fn tradeoff_plot(medium: Medium, title: &str, tradeoff: &Tradeoff) -> Drawing {
     let panel = |(index, mesh): (usize, &TradeoffMesh)| {
         let of_mesh = || tradeoff.points.iter().filter(move |point| point.mesh == index);

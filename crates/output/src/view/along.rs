@@ -48,8 +48,10 @@ struct At<'a> {
 type Column = (Quantity, Box<dyn Fn(&At) -> f64>);
 
 impl Along {
+    /// The values of an answer along the line between `ends`, piece by piece.
+    ///
     /// # Errors
-    /// Those of the recovery of stresses.
+    /// Those of [`Answer::stress`].
     pub fn of(answer: &Answer, ends: [[f64; 3]; 2]) -> Result<Self, Error> {
         let (model, columns, contacts) = (answer.model(), columns(answer.model()), Contacts::of(answer));
         let (dimension, touching) = (model.mesh().dimension(), TOUCHING * model.mesh().size());

@@ -36,14 +36,14 @@ pub(crate) enum Bounding<'a> {
 pub(crate) struct Examined {
     pub certificate: Certificate,
     pub evidence: Option<Evidence>,
-    /// The parts that move in the answer, with an error so large that they may rest in the exact one.
+    /// The parts that move in the answer, but may rest in the exact one: their error is too large to exclude it.
     pub may_rest: Vec<usize>,
 }
 
 /// Evidence that a certificate has found for an answer, used to prove its contact set.
 #[derive(Debug)]
 pub(crate) struct Evidence {
-    /// `f + B' lambda - K u`.
+    /// `f + B' lambda - K u` of the answer, one entry per dof.
     pub(super) residual: Vec<f64>,
     /// `B u - g`.
     pub(super) violation: Vec<f64>,

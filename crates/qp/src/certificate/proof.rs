@@ -30,7 +30,7 @@ const MOST_CYCLES: usize = 20;
 /// Multiplications that the compliance of the rows in question may cost; beyond this, one dof of each row is moved alone.
 const MOST_WORK: f64 = 2e9;
 
-/// Rows that are swept at once.
+/// Number of rows that a sweep of the proof takes at once.
 const AT_ONCE: usize = 128;
 
 /// An answer whose rows are to be proven.

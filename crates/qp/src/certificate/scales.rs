@@ -15,7 +15,7 @@ pub(super) struct Scales {
 
 /// The forces on each dof at a displacement u, with twice the working precision.
 pub(super) struct Balance {
-    /// `f + B' lambda - K u`.
+    /// `f + B' lambda - K u` at the displacement u, one entry per dof.
     pub residual: Vec<f64>,
     /// `|K u|`.
     pub elastic: Vec<f64>,

@@ -130,7 +130,7 @@ impl Certificate {
 }
 
 impl Scales {
-    /// The parts that move in the answer, with an error so large that they may rest in the exact one.
+    /// Indices of the parts that move in the answer, but whose error is so large that they may rest in the exact one, increasing.
     pub fn may_rest(&self, bound: &ErrorBound) -> Vec<usize> {
         let errors = bound.of_parts.as_deref().unwrap_or(std::slice::from_ref(&bound.whole));
         let may_rest = |of: &OfPart, error: f64| {

@@ -3,7 +3,7 @@
 //! Every number is measured at the peak of the program (`tests/program/limits.rs`, `memory.rs`), and should exceed it by less than a
 //! factor of two.
 
-/// Bytes of a program that does nothing yet.
+/// Bytes of the program before it reads a problem, measured.
 pub(crate) const START: f64 = if cfg!(debug_assertions) { 22e6 } else { 11e6 };
 
 /// Bytes of an unknown: loads, displacements, residuals, and the pictures and files of the answer.

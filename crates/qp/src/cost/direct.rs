@@ -81,7 +81,7 @@ fn in_the_plane(problem: &ContactProblem) -> f64 {
     3.7e-9 * problem.parts().sums(|_| 1.0).into_iter().map(|dofs| dofs.powf(1.5)).sum::<f64>()
 }
 
-/// The direct path.
+/// The estimated costs of the direct path.
 pub(super) struct Direct {
     pub factor_entries: f64,
     pub seconds: f64,

@@ -67,7 +67,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Bytes of a program that does nothing yet.
+    /// Bytes that the program takes before it reads a problem.
     pub const START: f64 = bytes::START;
 
     /// Bytes of the direct path for a problem that is not assembled yet, without those of the program: `dofs` unknowns, `entries` of the

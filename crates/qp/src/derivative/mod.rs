@@ -64,7 +64,7 @@ pub enum Derivative<T> {
         /// Indices of these contact rows, from 0, in increasing order.
         rows: Vec<usize>,
     },
-    /// Nothing is known.
+    /// The derivative is not known.
     Unknown {
         /// The reason, in words.
         why: String,

@@ -27,7 +27,7 @@ pub(super) enum Rows {
     Kink { closed: ContactSet, weak: Vec<usize> },
     /// The rows of `closed` press; the `undecided` ones may be open or closed.
     Undecided { closed: ContactSet, undecided: Vec<usize> },
-    /// Nothing is known.
+    /// Nothing is known about the rows.
     Unknown { why: String },
 }
 

@@ -164,7 +164,7 @@ impl Engine for Factored {
 }
 
 impl Factored {
-    /// Number of unknowns that the methods work on.
+    /// Number of unknowns that the methods work on: the contact dofs if the problem is condensed, otherwise all.
     pub fn condensed_dofs(&self) -> usize {
         self.reduction.condensation.as_ref().map_or(self.problem.dofs(), |condensed| condensed.stiffness().dim())
     }
@@ -263,8 +263,8 @@ impl Factored {
         Ending::Infeasible { rows, weights }
     }
 
-    /// The best answer, changed by the repair of its own bound. This helps if rows hold many dofs, or no dof except for rounding, and
-    /// if forces cancel almost all of each other: then a step of a method has nothing left to improve. `None` without a factor at hand.
+    /// The best answer, changed by the repair that its bound computes. This helps if rows hold many dofs, or no dof except for rounding,
+    /// and if forces cancel almost all of each other: then a step of a method has nothing left to improve. `None` without a factor at hand.
     fn repaired(&self, task: &Task, best: &Solution) -> Option<Found> {
         let norm = match &self.reduction.norm {
             Norm::Kept(norm) if !self.is_single() => norm.watched(&task.settings.watch.finishing()),
@@ -351,7 +351,7 @@ impl Factored {
         displacement
     }
 
-    /// Returns `true` if the factor is in single precision.
+    /// Returns `true` if the problem is condensed with a factor in single precision.
     pub fn is_single(&self) -> bool {
         self.reduction.is_definite() && self.reduction.condensation.as_ref().is_some_and(Condensation::is_single)
     }

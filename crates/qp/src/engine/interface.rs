@@ -27,7 +27,7 @@ pub(crate) struct Task<'a> {
     pub method: Option<ByFactor>,
     /// Accuracy, limits and a running clock; method, precision and arrangement are those of the attempt.
     pub settings: &'a Settings,
-    /// The best answer so far.
+    /// The best answer of the steps before this one; `None` without one.
     pub best: Option<&'a Solution>,
 }
 
@@ -78,7 +78,7 @@ pub(crate) trait Engine: Debug + Send + Sync {
     /// Returns `true` if the prepared data are means of this kind.
     fn serves(&self, means: &Means) -> bool;
 
-    /// The time of the preparation.
+    /// The seconds that the preparation took, part by part.
     fn seconds(&self) -> Seconds;
 
     /// The method of an attempt, as in a [`Task`], and its unknowns.

@@ -136,7 +136,7 @@ impl Augmented {
         Augmented { matrix: OnceLock::from(Ok(matrix)), ..Self::new(stiffness, rows, None, 1) }
     }
 
-    /// The matrix.
+    /// The augmented matrix, analysed when it is first asked for.
     ///
     /// # Errors
     /// As [`AugmentedMatrix::new`].

@@ -139,7 +139,7 @@ impl Analysis {
         Analysis { threads, ..self }
     }
 
-    /// Number of values of the factor, zeros inside supernodes included.
+    /// Number of values that a factor with this analysis has, zeros inside supernodes included.
     pub fn factor_entries(&self) -> usize {
         match &self.structure {
             Structure::Sparse(symbolic) => symbolic.len_val(),
@@ -278,7 +278,7 @@ impl Analysis {
         Permuted { starts, rows, values }
     }
 
-    /// The columns of the matrix in the order of elimination.
+    /// The columns of the matrix in the order in which the analysis eliminates them.
     pub(crate) fn order(&self) -> &[usize] {
         self.structure.order()
     }
@@ -315,7 +315,7 @@ impl Cholesky {
         Analysis::of(matrix)?.factor(matrix)
     }
 
-    /// Number of rows and of columns.
+    /// Number of rows and columns of the factorised matrix.
     pub fn dim(&self) -> usize {
         self.order().len()
     }
@@ -325,7 +325,7 @@ impl Cholesky {
         matches!(self.values, Values::Dense(_))
     }
 
-    /// Number of values of the factor, zeros inside supernodes included.
+    /// Number of values of this factor, zeros inside supernodes included.
     pub fn entries(&self) -> usize {
         self.analysis.factor_entries()
     }
@@ -404,7 +404,7 @@ impl Cholesky {
         self.analysis.multiplications()
     }
 
-    /// The columns of the matrix in the order of elimination.
+    /// The columns of the matrix in the order in which they were eliminated.
     pub(crate) fn order(&self) -> &[usize] {
         self.analysis.order()
     }

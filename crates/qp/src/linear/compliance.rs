@@ -30,7 +30,7 @@ pub struct Compliance {
     cholesky: Cholesky,
     /// The last block of the factor: B is zero in all other columns, and so is W.
     block: LowerTriangle,
-    /// The rows, each a column.
+    /// The rows B on the last columns, each a column.
     by_row: SparseMatrix,
     halves: OnceLock<Halves>,
 }

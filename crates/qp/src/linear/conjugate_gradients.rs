@@ -44,7 +44,7 @@ impl Blocks<'_> {
 #[derive(Clone, Debug)]
 pub struct Iterate<'a> {
     blocks: Blocks<'a>,
-    /// The solution x.
+    /// The iterate x, one entry per column of A.
     pub solution: Vec<f64>,
     /// b - A x.
     pub rest: Vec<f64>,

@@ -40,7 +40,7 @@ pub fn norm(x: &[f64]) -> f64 {
     dot(x, x).sqrt()
 }
 
-/// `x - share y`, in place.
+/// Subtracts `share y` from x, entry by entry.
 pub fn subtract(x: &mut [f64], share: f64, y: &[f64]) {
     x.iter_mut().zip(y).for_each(|(entry, y)| *entry -= share * y);
 }
@@ -122,7 +122,7 @@ impl LowerTriangle {
         b
     }
 
-    /// `L^-1 b`, in place.
+    /// Replaces b by `L^-1 b`, from its first entry that is not zero.
     pub(super) fn sweep(&self, b: &mut [f64]) {
         let first = b.iter().position(|&value| value != 0.0).unwrap_or(self.size);
         for j in first..self.size {

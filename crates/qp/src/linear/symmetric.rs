@@ -214,7 +214,7 @@ impl SymmetricMatrix {
         }
     }
 
-    /// Number of rows and of columns.
+    /// Number of rows and columns of the symmetric matrix.
     pub fn dim(&self) -> usize {
         self.lower.columns()
     }

@@ -66,8 +66,7 @@ fn with_equalities(directory: &Path, problem: ContactProblem) -> Result<ContactP
     problem.with_equalities(&matrix(content)?, read_vector(&values)?)
 }
 
-/// The other end of the problem of a directory: its gaps in `g1.mtx`, its load in `f1.mtx`; without a file the gaps or the load stay
-/// unchanged.
+/// Reads the gaps in `g1.mtx` and the load in `f1.mtx` of a directory, as [`ContactProblem::read_other_end`] describes.
 ///
 /// # Errors
 /// As [`read_problem`]; [`Error::FileSyntax`] if there is neither file, for a vector of another length, and for gaps that are

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::error::Error;
 use crate::file::Capped;
 
-/// Bytes that are read at a time.
+/// Bytes of a text that are read at a time.
 const PIECE: usize = 1 << 20;
 
 /// Bytes of a line beyond this number are skipped: no valid line is as long.

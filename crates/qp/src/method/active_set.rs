@@ -37,9 +37,9 @@ const PATIENCE: usize = 3;
 /// The active-set loop on a scaled problem.
 #[derive(Clone, Copy)]
 pub struct ActiveSet<'a> {
-    /// The problem.
+    /// The scaled problem that the loop solves.
     pub scaled: &'a ScaledProblem<'a>,
-    /// Largest number of factorisations.
+    /// Largest number of sets, each with a factorisation.
     pub most_iterations: usize,
 }
 

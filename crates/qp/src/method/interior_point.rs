@@ -60,7 +60,7 @@ impl Default for InteriorPoint {
 /// The interior-point method on a scaled problem.
 #[derive(Clone, Copy)]
 pub struct Barrier<'a> {
-    /// The problem.
+    /// The scaled problem whose central path the method follows.
     pub scaled: &'a ScaledProblem<'a>,
     /// Tolerance, relative to data of order one.
     pub tolerance: f64,

@@ -39,9 +39,9 @@ pub struct Compliance {
 pub struct Event {
     /// Its place t on the path, from 0 to 1.
     pub at: f64,
-    /// Index of the contact row in the problem, from 0.
+    /// Index of the row that changes sides in the problem, from 0.
     pub row: usize,
-    /// `true` if the row touches, `false` if it releases.
+    /// `true` if the row touches at this place, `false` if it releases.
     pub touches: bool,
 }
 

@@ -65,13 +65,13 @@ pub struct Goal<'a> {
 /// The penalty loop on a scaled problem.
 #[derive(Clone, Copy)]
 pub struct PenaltyLoop<'a> {
-    /// The problem.
+    /// The scaled problem with penalties on its rows.
     pub scaled: &'a ScaledProblem<'a>,
     /// The ladder.
     pub ladder: Penalty,
     /// The relative energy error at which the ladder ends, if any.
     pub goal: Option<Goal<'a>>,
-    /// Largest number of factorisations.
+    /// Largest number of factorisations on all rungs together.
     pub most_iterations: usize,
 }
 

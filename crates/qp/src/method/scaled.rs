@@ -39,7 +39,7 @@ pub struct ScaledProblem<'a> {
     pub problem: &'a ContactProblem,
     definiteness: Definiteness,
     augmented: &'a Augmented,
-    /// The compliance of the rows, if balances by it cost less than by factors of the augmented matrix.
+    /// The compliance of the rows, by which a method balances forces; `None` if factors of the augmented matrix cost less.
     pub(super) compliance: Option<&'a Compliance>,
     factor_seconds: Cell<f64>,
     watch: Watch,
@@ -137,11 +137,11 @@ pub struct Outcome {
     pub displacement: Vec<f64>,
     /// Multiplier, one entry per row, in the unit of force of that problem, `<= 0`.
     pub multiplier: Vec<f64>,
-    /// The closed rows.
+    /// The rows that the method closed last.
     pub contact_set: ContactSet,
     /// Number of sets or steps that were tried.
     pub iterations: usize,
-    /// The sets on the way.
+    /// The sets on the way to the result, in order.
     pub history: Vec<Iteration>,
     /// Settled, or the reason for which it is not.
     pub ending: Ending,

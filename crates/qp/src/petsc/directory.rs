@@ -62,7 +62,7 @@ fn fault(file: &Path, message: String) -> Error {
 
 /// The places of the free dofs in the stiffness.
 struct Places {
-    /// The place of each free dof, increasing.
+    /// The place in the stiffness of each free dof, increasing.
     free: Vec<u32>,
     /// The free dof at each place, or [`SUPPORTED`].
     dof: Vec<u32>,

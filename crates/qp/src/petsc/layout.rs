@@ -5,7 +5,7 @@
 pub struct Layout {
     /// Components of a node.
     pub size: usize,
-    /// The place of each free dof, increasing.
+    /// The place `size * node + component` of each free dof, increasing.
     pub place: Vec<u32>,
     /// Coordinates of the nodes, `size` each.
     pub coordinates: Vec<f64>,

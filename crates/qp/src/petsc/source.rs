@@ -8,7 +8,7 @@ use super::{Class, INDICES, MATRIX, VECTOR};
 use crate::error::Error;
 use crate::file::open_regular;
 
-/// Bytes that are read at a time.
+/// Bytes of a PETSc file that are read at a time.
 const PIECE: usize = 1 << 20;
 
 /// Bytes of an integer and of a real.

@@ -79,7 +79,7 @@ pub(crate) enum Step {
     Existence,
     /// Steps with a regular stiffness in place of a singular one.
     Proximal,
-    /// Whether the best answer is the only one.
+    /// The check that the best answer is the only one.
     Uniqueness,
 }
 
@@ -163,7 +163,7 @@ pub(crate) enum From {
     /// The start that the caller gave, or the set that a few cycles of multigrid find: contact is everywhere, and a front of closed
     /// rows moves by one row of nodes with every set.
     Cycles,
-    /// The best answer so far.
+    /// The best answer of the attempts so far.
     Best,
     Nothing,
 }

@@ -28,7 +28,7 @@ const UNSURE: f64 = 2.0;
 /// The chosen path, with the reason.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Choice {
-    /// The direct path.
+    /// The direct path: a factorisation of the stiffness.
     Factor { reason: String },
     /// Multigrid: it is much faster, unless it takes more cycles than this.
     Speed { reason: String, most_cycles: usize },

@@ -99,7 +99,7 @@ impl Record {
     }
 }
 
-/// The best answer so far.
+/// The best answer so far, with the attempt that found it.
 #[derive(Debug)]
 pub struct Best {
     pub solution: Solution,

@@ -13,9 +13,9 @@ use crate::solution::{Certificate, ContactSet, Solution};
 /// for: [`displacement`](Self::displacement) takes one, [`solution`](Self::solution) two.
 #[derive(Clone, Debug)]
 pub struct BoundarySolution {
-    /// Contact multiplier lambda, one entry per contact row, in the problem's unit of force, `<= 0` in compression.
+    /// Contact multiplier lambda of the whole answer, one entry per contact row, in the problem's unit of force, `<= 0` in compression.
     pub multiplier: Vec<f64>,
-    /// The closed rows.
+    /// The contact rows that are closed at this gap and load.
     pub contact_set: ContactSet,
     /// Linear solves of the method, or its interior-point steps, as in [`Solution::iterations`].
     pub iterations: usize,
@@ -35,7 +35,7 @@ enum Inside {
 }
 
 impl BoundarySolution {
-    /// Total contact force `-sum(lambda)`, `>= 0`, in the problem's unit of force.
+    /// Total contact force of the multipliers, `-sum(lambda)`, `>= 0`, in the problem's unit of force.
     pub fn contact_force(&self) -> f64 {
         -self.multiplier.iter().sum::<f64>()
     }

@@ -216,7 +216,7 @@ impl Prepared {
         self.bench.as_ref().map(|bench| bench.engine.tried(None, &self.settings))
     }
 
-    /// Number of unknowns that the methods work on.
+    /// Number of unknowns that the prepared methods work on: less than those of the problem if it is condensed.
     pub fn condensed_dofs(&self) -> usize {
         self.tried().and_then(|tried| tried.condensed_dofs).unwrap_or(self.dofs())
     }
@@ -236,7 +236,7 @@ impl Prepared {
         self.tried().map_or(0.0, |tried| tried.multiplications)
     }
 
-    /// Returns `true` if the factor is in single precision.
+    /// Returns `true` if the prepared factor is in single precision.
     pub fn is_single(&self) -> bool {
         self.tried().is_some_and(|tried| tried.is_single)
     }
@@ -252,7 +252,7 @@ impl Prepared {
         self.bench.as_ref().and_then(|bench| bench.engine.hierarchy())
     }
 
-    /// The time of the preparation.
+    /// The seconds of the preparation, part by part; zero before it.
     pub fn seconds(&self) -> Seconds {
         self.bench.as_ref().map_or(Seconds::default(), |bench| bench.engine.seconds())
     }

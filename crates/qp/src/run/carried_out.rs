@@ -271,7 +271,7 @@ impl<'a> Run<'a> {
         Ok(Ended::MayExist)
     }
 
-    /// Whether the best answer is the only one.
+    /// Checks that the best answer is the only one.
     fn looked_at_uniqueness(&mut self) -> Result<Ended, Error> {
         let (Some(existence), Some(best)) = (&self.existence, &self.history.best) else { return Ok(Ended::Empty) };
         existence.check_unique(self.problem, &best.solution, self.ladder.sure_tolerance())?;

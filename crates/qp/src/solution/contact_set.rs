@@ -34,7 +34,7 @@ impl ContactSet {
         self.rows
     }
 
-    /// Number of closed rows.
+    /// Number of closed rows in the set.
     pub fn count(&self) -> usize {
         self.bits.iter().map(|word| word.count_ones() as usize).sum()
     }
@@ -88,7 +88,7 @@ impl FromIterator<bool> for ContactSet {
     }
 }
 
-/// The closed rows in increasing order.
+/// The closed rows, as [`ContactSet::iter`].
 impl<'a> IntoIterator for &'a ContactSet {
     type Item = usize;
     type IntoIter = Box<dyn Iterator<Item = usize> + 'a>;

@@ -136,7 +136,7 @@ pub struct Solution {
     /// Multiplier mu of the equality rows, one entry each, in the problem's unit of force, of either sign; empty without such rows.
     #[serde(skip)]
     pub equality_multiplier: Vec<f64>,
-    /// The closed rows.
+    /// The contact rows that are closed in the answer.
     #[serde(skip)]
     pub contact_set: ContactSet,
     /// `qp`, `active-set`, `penalty` or `mprgp`, with a suffix if a variant ran.

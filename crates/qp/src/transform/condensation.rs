@@ -89,7 +89,7 @@ impl Condensation {
         Ok(Condensation { contact_dofs, cholesky, trailing, stiffness, contact })
     }
 
-    /// Number of values of the factor.
+    /// Number of values of the factor of K, the contact dofs last.
     pub fn factor_entries(&self) -> usize {
         self.cholesky.entries()
     }
@@ -99,7 +99,7 @@ impl Condensation {
         &self.contact_dofs
     }
 
-    /// Returns `true` if the factor is in single precision.
+    /// Returns `true` if the factor of K is in single precision.
     pub fn is_single(&self) -> bool {
         self.cholesky.is_single()
     }

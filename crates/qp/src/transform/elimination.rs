@@ -26,7 +26,7 @@ const PIVOT: f64 = 0.1;
 /// A sum below this share of its terms is zero: far above the rounding of twice the working precision.
 const CANCELLED: f64 = 1e-26;
 
-/// A row follows from others, but for the rounding of its entries, if less than this share of them is left.
+/// A row follows from others, except for the rounding of its entries, if less than this share of them is left.
 const FOLLOWS: f64 = 4.0 * f64::EPSILON;
 
 /// The elimination may add this many entries to K for each one that it has, and `FEW` to any: more, and the equalities stay pairs of rows.
@@ -113,7 +113,7 @@ struct Pivot {
     weights: Sparse,
 }
 
-/// The largest magnitude.
+/// The largest magnitude of the coefficients.
 fn largest(values: &Sparse) -> f64 {
     values.iter().map(|entry| entry.1.rounded().abs()).fold(0.0, f64::max)
 }
@@ -562,7 +562,7 @@ mod tests {
 
     #[test]
     fn rows_that_follow_within_an_accuracy_are_left_out_unless_they_contradict() {
-        // The third is the sum of the others, but for 1e-12 in one entry; the last is the first with another value.
+        // The third is the sum of the others, except for 1e-12 in one entry; the last is the first with another value.
         let entries =
             [(0, 0, 1.0), (0, 1, 2.0), (1, 1, 1.0), (1, 2, -1.0), (2, 0, 1.0), (2, 1, 3.0), (2, 2, -1.0 + 1e-12)];
         let rows = |value: f64| {

@@ -10,9 +10,9 @@ use super::{ContactSolution, PlaneElasticity};
 /// `Zbar = -p0 zeta^1.5` with `zeta = (x0 - x) + i y`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GenericEdge {
-    /// The elastic constants.
+    /// The elastic constants of the body with this edge.
     pub elasticity: PlaneElasticity,
-    /// The edge of the contact, x0.
+    /// The coordinate x0 at which the contact ends.
     pub edge: f64,
     /// The factor p0 of the pressure, in force per area per square root of length.
     pub pressure: f64,

@@ -10,7 +10,7 @@ use super::{ContactSolution, PlaneElasticity};
 /// `s = sqrt(a - z) sqrt(a + z)`. The obstacle is `u_y >= -x^2/(2R)`, `R = a E*/(2 p0)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HertzBlock {
-    /// The elastic constants.
+    /// The elastic constants of the half plane.
     pub elasticity: PlaneElasticity,
     /// Half the width of the contact, a.
     pub half_width: f64,

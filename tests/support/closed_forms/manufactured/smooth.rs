@@ -8,13 +8,13 @@ use super::{ContactSolution, PlaneElasticity};
 /// The pressure is beta, the opening gap is alpha. With `k >= 3` the body force jumps only in its highest derivative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Smooth {
-    /// The elastic constants.
+    /// The elastic constants of the body with this gap.
     pub elasticity: PlaneElasticity,
     /// The factor A of the gap that opens.
     pub opening: f64,
     /// The factor B of the pressure.
     pub pressure: f64,
-    /// The edge of the contact, x0.
+    /// The coordinate x0 at which the gap begins to open.
     pub edge: f64,
     /// The power k.
     pub power: u8,

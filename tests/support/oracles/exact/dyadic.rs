@@ -58,7 +58,7 @@ impl Dyadic {
         &self.mantissa << (self.exponent - exponent)
     }
 
-    /// The nearest double.
+    /// The double nearest to the exact value.
     pub fn to_f64(&self) -> f64 {
         quotient(self, &Dyadic::integer(1)).map_or(0.0, |(m, e)| scaled(m, e))
     }

@@ -157,7 +157,7 @@ impl<'a> Judge<'a> {
         Judge { case, exact, outcome, condition, lowest, apart: apart(case, exact, outcome) }
     }
 
-    /// The name of the exact outcome.
+    /// The name of the outcome that exact arithmetic finds for the problem.
     pub fn verdict(&self) -> &'static str {
         self.outcome.verdict()
     }

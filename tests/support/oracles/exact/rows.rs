@@ -12,7 +12,7 @@ pub struct Rows {
 /// Makes rows for a body; their gaps are measured from a point.
 type Make = fn(&mut Draws, &[f64]) -> Rows;
 
-/// Every kind with its name.
+/// Every kind of rows with its name.
 pub const ROWS: [(&str, Make); 14] = [
     ("few", few),
     ("boolean", boolean),

@@ -7,7 +7,7 @@ type Matrix = Vec<Vec<f64>>;
 /// Makes a matrix of random size.
 type Make = fn(&mut Draws) -> Matrix;
 
-/// Every kind with its name.
+/// Every kind of stiffness with its name.
 pub const KINDS: [(&str, Make); 23] = [
     ("identity", identity),
     ("contrast", contrast),

@@ -92,7 +92,7 @@ impl Line {
     }
 }
 
-/// The counts of a run.
+/// The counts of a run of exact trials, by stiffness and by rows.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     kinds: BTreeMap<&'static str, Line>,

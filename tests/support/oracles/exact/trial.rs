@@ -32,7 +32,7 @@ pub struct Trial {
 /// The findings of a trial.
 #[derive(Clone, Debug)]
 pub struct Report {
-    /// The name of the exact outcome.
+    /// The name of the exact outcome of the trial.
     pub verdict: &'static str,
     /// `true` if the program had to certify the problem.
     pub is_fair: bool,

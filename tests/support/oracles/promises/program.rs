@@ -42,7 +42,7 @@ impl Ending {
     }
 }
 
-/// Writes a problem directory.
+/// Writes the four files of a problem into a directory.
 pub fn write(directory: &Path, problem: &ContactProblem) -> io::Result<()> {
     fs::create_dir_all(directory)?;
     problem.files()[..4].iter().try_for_each(|file| fs::write(directory.join(file.name), file.text()))

@@ -96,7 +96,7 @@ pub struct Findings {
     pub faults: Vec<Fault>,
 }
 
-/// A problem with its exact answer.
+/// A random problem of one class with its exact answer.
 pub struct Trial {
     pub case: Case,
     pub class: Class,

@@ -19,7 +19,8 @@ use crate::fem::threads::in_order;
 /// A tensor: row, column.
 type Tensor = [[f64; 3]; 3];
 
-/// Adds the change of `virtual_displacement . internal_force(displacement)`, both nodal vectors (length `dim * n_nodes`, in length).
+/// Adds the change of the work `virtual_displacement . internal_force(displacement)`, both nodal vectors of length
+/// `dim * n_nodes`, in length.
 ///
 /// With the stress sigma of u, the stress tau of w without own stress, and the work sigma : eps(w) per volume it is the integral of
 /// `M : grad V`, M = (sigma : eps(w)) I - (grad w)' sigma - (grad u)' tau. With mean dilatation theta, the work has theta(u) and theta(w)
@@ -115,7 +116,8 @@ struct ForceAt {
     slope: Tensor,
 }
 
-/// Adds the change of `virtual_displacement . load`, the load of [`add_body_force`](super::add_body_force).
+/// Adds the change of the work of a constant body force, `virtual_displacement . load` with the load of
+/// [`add_body_force`](super::add_body_force).
 pub(crate) fn body_force_by_places(
     body: &ElasticBody,
     force: [f64; 3],

@@ -96,7 +96,7 @@ impl Springs {
         directions.map(|held| vec![held]).collect()
     }
 
-    /// The stiffness of the free dofs with the springs added.
+    /// The stiffness of the free dofs, with these springs added to it.
     ///
     /// # Errors
     /// [`qp::Error::NotFinite`] if it overflows.

@@ -202,7 +202,7 @@ impl ElasticBody {
         &self.formulation
     }
 
-    /// Number of coordinates, and of dofs per node.
+    /// Number of coordinates of the body, and of dofs of each of its nodes.
     pub fn dimension(&self) -> usize {
         self.formulation.dimension()
     }

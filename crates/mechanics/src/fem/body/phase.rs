@@ -13,7 +13,7 @@ pub struct Phase {
     material: Material,
     /// The law of the material.
     pub law: Law,
-    /// The integration of the stiffness.
+    /// The integration of the stiffness of the elements of this phase.
     pub integration: Integration,
     /// The stress without strain, if there is one.
     pub own: Option<OwnStress>,
@@ -24,7 +24,7 @@ pub struct Phase {
 pub(crate) enum PhaseNumber {
     /// Young's modulus.
     Young,
-    /// Poisson's ratio.
+    /// Poisson's ratio of the material.
     Poisson,
     /// The temperature at the origin.
     Temperature,
@@ -159,7 +159,7 @@ impl Phase {
         self.material.strain_across(&local(&elastic, &self.law.axes(|| place))) + own.temperature.at(place) * expansion
     }
 
-    /// The material.
+    /// The material whose law the phase has.
     pub fn material(&self) -> &Material {
         &self.material
     }

@@ -74,7 +74,7 @@ impl Cell {
         Cell { reference, coordinates: relative, origin, unit }
     }
 
-    /// Number of its nodes.
+    /// Number of nodes of the cell.
     pub fn nodes(&self) -> usize {
         self.reference.nodes.len()
     }

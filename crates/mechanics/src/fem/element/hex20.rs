@@ -4,7 +4,7 @@
 use super::quadrature::CUBE_3X3X3;
 use super::reference::{CalculixCell, FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape, with_middles};
 
-/// The corners between which each mid-side node lies.
+/// The two corners of each of the 12 edges, in the order of the mid-side nodes.
 const EDGES: [[usize; 2]; 12] =
     [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
 
@@ -20,7 +20,7 @@ pub(super) const CORNERS: [[f64; 3]; 8] = [
     [-1.0, 1.0, 1.0],
 ];
 
-/// The corners, then the mid-sides.
+/// Coordinates of the 8 corners, then of the 12 mid-side nodes.
 const NODES: [[f64; 3]; 20] = with_middles(CORNERS, EDGES);
 
 /// The serendipity hexahedron.

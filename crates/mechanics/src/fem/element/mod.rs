@@ -113,7 +113,7 @@ impl ElementKind {
         self.reference().facet
     }
 
-    /// Short name, as `Q4`.
+    /// Short name of the element type, as `Q4`.
     pub fn name(self) -> &'static str {
         self.reference().name
     }

@@ -7,13 +7,13 @@ use super::reference::{
     CalculixCell, FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape, padded, with_middles,
 };
 
-/// The corners between which each mid-side node lies.
+/// The two corners of each of the 4 sides, in the order of the mid-side nodes.
 const SIDES: [[usize; 2]; 4] = [[0, 1], [1, 2], [2, 3], [3, 0]];
 
 /// The corners, which are those of the bilinear quadrilateral too.
 pub(super) const CORNERS: [[f64; 3]; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
 
-/// The corners, then the mid-sides.
+/// Coordinates of the 4 corners, then of the 4 mid-side nodes.
 const NODES: [[f64; 3]; 8] = with_middles(CORNERS, SIDES);
 
 /// The serendipity quadrilateral.

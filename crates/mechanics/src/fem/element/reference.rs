@@ -50,7 +50,7 @@ pub struct QuadraturePoint {
 /// An element on its reference cell.
 #[derive(Debug)]
 pub struct ReferenceElement {
-    /// Short name, as `Q4`.
+    /// Short name of the element in messages and tables, as `Q4`.
     pub name: &'static str,
     /// Simplex or product of intervals.
     pub form: Shape,

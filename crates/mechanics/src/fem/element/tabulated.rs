@@ -33,7 +33,7 @@ pub enum Rule {
 /// The shape functions of an element at the points of a quadrature rule, at its nodes and its centroid.
 #[derive(Clone, Debug)]
 pub struct Tabulated {
-    /// The element.
+    /// The element whose shape functions are tabulated.
     pub reference: &'static ReferenceElement,
     /// At the quadrature points.
     pub points: Vec<TabulatedPoint>,

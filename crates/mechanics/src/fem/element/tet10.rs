@@ -6,7 +6,7 @@ use super::reference::{CalculixCell, FacetKind, LatticeCounts, ReferenceElement,
 use super::simplex::{quadratic, quadratic_slopes};
 use super::tet4::CORNERS;
 
-/// The corners between which each mid-side node lies.
+/// The two corners of each of the 6 edges, in the order of the mid-side nodes.
 const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
 
 const NODES: [[f64; 3]; 10] = with_middles(CORNERS, EDGES);

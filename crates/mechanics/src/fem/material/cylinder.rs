@@ -9,7 +9,7 @@ const ON_LINE: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
     point: [f64; 3],
-    /// Of unit length.
+    /// The direction of the line, of length 1.
     along: [f64; 3],
 }
 

@@ -67,7 +67,7 @@ impl Tetrahedra {
         Tetrahedra { nodes, cells, facets, names: Vec::new() }
     }
 
-    /// The vertices.
+    /// Coordinates of the corners of all tetrahedra, in length.
     pub fn nodes(&self) -> &[[f64; 3]] {
         &self.nodes
     }
@@ -103,8 +103,8 @@ impl Tetrahedra {
         Mesh::new(self.nodes.clone(), kind, connectivity, boundaries)?.elevated(ElementKind::QUADRATIC_TETRAHEDRON)
     }
 
-    /// Halves each marked tetrahedron and its halves so many times, and further tetrahedra with a hanging node. The pieces replace the
-    /// whole in the order. Returns the ends of the edge that each new node halves.
+    /// Halves each marked tetrahedron and its halves `generations` times, and further tetrahedra with a hanging node. The pieces replace
+    /// the whole in the order. Returns the ends of the edge that each new node halves.
     pub fn refine(&mut self, marked: &[bool], generations: usize) -> Vec<[usize; 2]> {
         let (mut middles, before) = (HashMap::new(), self.nodes.len());
         let mut left: Vec<usize> = marked.iter().map(|&marked| if marked { generations } else { 0 }).collect();

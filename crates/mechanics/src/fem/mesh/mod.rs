@@ -49,7 +49,7 @@ pub struct Mesh {
 struct Block {
     kind: ElementKind,
     elements: Range<usize>,
-    /// The place of its first node in the connectivity.
+    /// Index of the first node of the block in the connectivity of the mesh.
     first: usize,
 }
 

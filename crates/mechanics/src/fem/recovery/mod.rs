@@ -23,12 +23,12 @@ use crate::fem::threads::{each, in_order};
 pub struct Stress {
     /// Normal stress along x; the radial stress of a body of revolution.
     pub sigma_xx: f64,
-    /// Normal stress along y.
+    /// Normal stress sigma_yy at the point, along y.
     pub sigma_yy: f64,
     /// Normal stress along z: `nu (sigma_xx + sigma_yy)` in plane strain, 0 in plane stress, the hoop stress of a body
     /// of revolution.
     pub sigma_zz: f64,
-    /// Shear stress between x and y.
+    /// Shear stress sigma_xy at the point, between x and y.
     pub sigma_xy: f64,
     /// Shear stress between y and z; 0 except in space.
     pub sigma_yz: f64,

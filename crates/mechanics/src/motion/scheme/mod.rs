@@ -73,7 +73,7 @@ impl SchemeSpec {
         }
     }
 
-    /// The name in scenes and reports.
+    /// The name by which a scene asks for the scheme.
     pub fn name(self) -> &'static str {
         self.about().name
     }
@@ -83,7 +83,7 @@ impl SchemeSpec {
         self.about().parameter
     }
 
-    /// Returns `true` if the step is limited.
+    /// Returns `true` for a scheme that is stable only below a limit of the step.
     pub fn is_explicit(self) -> bool {
         self.about().is_explicit
     }
@@ -195,7 +195,7 @@ impl Scheme {
         }
     }
 
-    /// The name in scenes and reports.
+    /// The name of the scheme in scenes and reports.
     pub fn name(self) -> &'static str {
         self.spec().name()
     }
@@ -221,7 +221,7 @@ impl Scheme {
         self.about().masses.contains(&form)
     }
 
-    /// Returns `true` if the step is limited.
+    /// Returns `true` if the scheme is stable only below a limit of the step.
     pub fn is_explicit(self) -> bool {
         self.spec().is_explicit()
     }

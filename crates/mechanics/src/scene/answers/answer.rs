@@ -25,7 +25,7 @@ const OWN_ROUNDING: f64 = 1e-10;
 pub struct Answer {
     model: Arc<Model>,
     displacement: Vec<f64>,
-    /// The values of all unknowns.
+    /// The solved unknowns of the model: those of the body, then the travels of pressed obstacles.
     unknowns: Vec<f64>,
     /// The travel of each obstacle that a force presses, in length.
     travel: Vec<Option<f64>>,
@@ -200,7 +200,7 @@ impl Answer {
         Ok(Answer { multiplier, pressure, forces, resultants, ..self.clone() })
     }
 
-    /// The closed rows.
+    /// The contact rows of the model that are closed in the answer.
     pub fn contact_set(&self) -> &ContactSet {
         &self.contact_set
     }

@@ -43,7 +43,7 @@ pub struct ContactExtent {
 /// all of it is of the meshed part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Segment {
-    /// The obstacle, numbered from 0 in the order of the scene.
+    /// The obstacle of the segment, numbered from 0 in the order of the scene.
     pub obstacle: usize,
     /// Indices of the closed nodes in the mesh, from 0, in the order of the boundary.
     pub nodes: Vec<usize>,

@@ -20,7 +20,7 @@ pub(crate) struct Parameter {
     pub kind: Kind,
     /// Its value; zero for the places of the nodes.
     pub value: f64,
-    /// Its unit, empty without one.
+    /// The unit of the parameter; empty if it is dimensionless.
     pub unit: String,
 }
 
@@ -41,7 +41,7 @@ pub(crate) enum Kind {
     InShape(usize, String),
     /// Young's modulus of a material, by the place of the material in the text of the scene.
     Young(String),
-    /// Poisson's ratio.
+    /// Poisson's ratio of a material, by the place of the material in the text of the scene.
     Poisson(String),
     /// The temperature at the origin of an entry, by the place of the entry.
     Temperature(String),

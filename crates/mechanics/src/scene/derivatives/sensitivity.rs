@@ -26,7 +26,7 @@ pub struct Sensitivity {
     pub output: String,
     /// The number at the answer, in its unit.
     pub value: f64,
-    /// Its unit, empty without one.
+    /// The unit of the output; empty if it is dimensionless.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub unit: String,
     /// The derivatives, in the order of the parameters.
@@ -43,7 +43,7 @@ pub struct ByParameter {
     pub parameter: String,
     /// The number in the scene, in its unit; zero for the places of nodes.
     pub value: f64,
-    /// Its unit, empty without one.
+    /// The unit of this number of the scene; empty if it is dimensionless.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub unit: String,
     /// The derivative, in the unit of the output over that of the parameter; of the places of all nodes the largest magnitude.

@@ -47,7 +47,7 @@ const ABSENT: [Absent; 7] = [
     },
 ];
 
-/// The sentence about a thing that is not modelled, if it has this name in other programs.
+/// The sentence for a name that other programs give to a thing that is not modelled here; `None` for any other name.
 pub(crate) fn absent(name: &str) -> Option<&'static str> {
     let plain: String = name.chars().filter(|c| !" -_".contains(*c)).flat_map(char::to_lowercase).collect();
     ABSENT.iter().find(|absent| absent.names.split(' ').any(|name| name == plain)).map(|absent| absent.instead)

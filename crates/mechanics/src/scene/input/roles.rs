@@ -35,7 +35,7 @@ const AS_HIGH: f64 = 1e-6;
 /// An axis and a sense along it, 1 or -1.
 pub(crate) type Way = (usize, f64);
 
-/// The smallest and the largest coordinates.
+/// The smallest and the largest coordinates of a set of nodes.
 type Extent = ([f64; 3], [f64; 3]);
 
 /// Facets that are held or pressed.

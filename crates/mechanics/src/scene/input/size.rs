@@ -16,9 +16,9 @@ pub struct Size {
     pub nodes: f64,
     /// Number of unknowns, as if nothing were supported.
     pub dofs: f64,
-    /// Number of entries of the stiffness, both triangles.
+    /// Estimated number of entries of the stiffness, both triangles.
     pub stiffness_entries: f64,
-    /// Number of values of its Cholesky factor.
+    /// Estimated number of values of the Cholesky factor of the stiffness.
     pub factor_entries: f64,
     /// Upper bound of the memory, in bytes.
     pub bytes: f64,

@@ -61,7 +61,7 @@ pub enum Warning {
          its approach direction and its radius"
     )]
     NoContactRow {
-        /// Number of the obstacle, from 0.
+        /// Number of the obstacle without rows, from 0.
         obstacle: usize,
     },
     /// Nothing of two boundaries faces the other.
@@ -70,11 +70,11 @@ pub enum Warning {
          boundaries, the approach direction and `reach`"
     )]
     NoFacingFacet {
-        /// Its place in the scene, as `obstacles[0]`.
+        /// Place of the obstacle without facing facets in the scene, as `obstacles[0]`.
         obstacle: String,
         /// Name of the boundary that would carry the rows.
         boundary: String,
-        /// Name of the boundary of the other body.
+        /// Name of the boundary of the other body, which faces nothing.
         other: String,
     },
     /// Two boundaries cover each other only in part.
@@ -84,11 +84,11 @@ pub enum Warning {
         100.0 * share, 100.0 * of_other
     )]
     PartlyCovered {
-        /// Its place in the scene, as `obstacles[0]`.
+        /// Place of the partly covered pair in the scene, as `obstacles[0]`.
         obstacle: String,
-        /// Name of the boundary that carries the rows.
+        /// Name of the partly covered boundary, which carries the rows.
         boundary: String,
-        /// Name of the boundary of the other body.
+        /// Name of the boundary that faces the carrying one.
         other: String,
         /// Covered share of the area of the carrying boundary.
         share: f64,
@@ -101,11 +101,11 @@ pub enum Warning {
          distance; move the bodies together, or give a smaller `reach`"
     )]
     TiedApart {
-        /// Its place in the scene, as `ties[0].surfaces`.
+        /// Place of the tie across a gap in the scene, as `ties[0].surfaces`.
         tie: String,
-        /// Name of the boundary that takes the means.
+        /// Name of the boundary that takes the means over the gap.
         boundary: String,
-        /// Name of the boundary of the other body.
+        /// Name of the boundary that it is tied to.
         to: String,
         /// Largest distance, in length.
         apart: f64,
@@ -117,11 +117,11 @@ pub enum Warning {
         100.0 * share, 100.0 * of_other
     )]
     PartlyTied {
-        /// Its place in the scene, as `ties[0].surfaces`.
+        /// Place of the partial tie in the scene, as `ties[0].surfaces`.
         tie: String,
-        /// Name of the boundary that takes the means.
+        /// Name of the partly tied boundary, which takes the means.
         boundary: String,
-        /// Name of the boundary of the other body.
+        /// Name of the boundary that it is partly tied to.
         to: String,
         /// Tied share of the area of the boundary.
         share: f64,
@@ -134,7 +134,7 @@ pub enum Warning {
          through the nodes, which are not known so well; give the distance as `fit`, take quadratic elements, or a finer mesh"
     )]
     Sag {
-        /// Its place in the scene, as `obstacles[0]`.
+        /// Place of the obstacle with curved surfaces in the scene, as `obstacles[0]`.
         obstacle: String,
         /// Largest distance of a facet from the curve for which it stands, in length.
         sag: f64,
@@ -147,11 +147,11 @@ pub enum Warning {
          refine `{other}`"
     )]
     CoarseMaster {
-        /// Its place in the scene, as `obstacles[0]`.
+        /// Place of the pair with the coarse surface in the scene, as `obstacles[0]`.
         obstacle: String,
-        /// Name of the boundary that carries the rows.
+        /// Name of the finer boundary, which carries the rows.
         boundary: String,
-        /// Name of the boundary of the other body.
+        /// Name of the coarse boundary of the other body.
         other: String,
         /// Length of its facets over the length of those that carry rows.
         ratio: f64,
@@ -162,7 +162,7 @@ pub enum Warning {
          and that both boundaries are meant"
     )]
     FitDiffers {
-        /// Its place in the scene, as `obstacles[0]`.
+        /// Place of the obstacle with the fit in the scene, as `obstacles[0]`.
         obstacle: String,
         /// Largest difference of the distance of the meshes and the fit, in length.
         differs: f64,
@@ -175,7 +175,7 @@ pub enum Warning {
          them; free that boundary, or name another one"
     )]
     HeldCandidates {
-        /// Number of the obstacle, from 0.
+        /// Number of the obstacle with held candidates, from 0.
         obstacle: usize,
         /// Number of candidate nodes with supports in all directions.
         held: usize,
@@ -185,7 +185,7 @@ pub enum Warning {
     /// Obstacles make the same rows as an earlier one.
     #[error("{}", doubled(*.first, *.second, *.last, *.count))]
     DoubledObstacle {
-        /// Number of the obstacle, from 0.
+        /// Number of the earliest obstacle with these rows, from 0.
         first: usize,
         /// Number of the first later obstacle with the same rows.
         second: usize,
@@ -200,7 +200,7 @@ pub enum Warning {
          boundary"
     )]
     LoadOnSupport {
-        /// Number of the load, from 0.
+        /// Number of the load on supported nodes, from 0.
         load: usize,
     },
     /// A force acts on a single node of a body in the plane or in space.
@@ -209,7 +209,7 @@ pub enum Warning {
          as a traction if they matter"
     )]
     PointLoad {
-        /// Number of the load, from 0.
+        /// Number of the load on a single node, from 0.
         load: usize,
     },
     /// A body is cut at a plane of symmetry, but nothing holds the cut.
@@ -239,7 +239,7 @@ pub enum Warning {
     /// A deck says something that is answered in another way.
     #[error("{place}: {message}")]
     Deck {
-        /// The file and the line of the deck, as `part.inp:12`.
+        /// File and line of the card that is answered otherwise, as `part.inp:12`.
         place: String,
         /// A sentence on what is answered instead.
         message: String,
@@ -247,7 +247,7 @@ pub enum Warning {
     /// A deck asks for large displacements.
     #[error("{place}: NLGEOM is answered with small displacements")]
     Nonlinear {
-        /// The file and the line of the deck, as `part.inp:12`.
+        /// File and line of the card that asks for them, as `part.inp:12`.
         place: String,
         /// `true` if they are wanted whatever the strains and rotations are.
         is_wanted: bool,
@@ -277,7 +277,7 @@ fn doubled(first: usize, second: usize, last: usize, count: usize) -> String {
 }
 
 impl Warning {
-    /// The name of the kind of warning, the same in every version.
+    /// The name of the kind of warning about a scene, the same in every version.
     pub fn code(&self) -> &'static str {
         match self {
             Warning::NearlyIncompressible { .. } => "nearly-incompressible",

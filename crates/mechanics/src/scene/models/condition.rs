@@ -16,7 +16,7 @@ pub(crate) const ON_THE_AXIS: f64 = 1e-12;
 const FLAT: f64 = 1e-9;
 
 impl Scene {
-    /// The prescribed components of all nodes.
+    /// The components of the displacement that the supports and the axis of revolution prescribe, node by node.
     pub(crate) fn held(&self, body: &ElasticBody) -> Result<Held, Error> {
         let mesh = body.mesh();
         let mut held = Held::default();

@@ -42,9 +42,9 @@ impl Holder {
 /// A prescribed component of a displacement: `direction . u = value`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Component {
-    /// Of unit length.
+    /// The direction of the prescribed component, [x, y, z], of length 1.
     pub direction: [f64; 3],
-    /// In length.
+    /// The prescribed displacement, in length.
     pub value: f64,
     pub by: Holder,
 }
@@ -58,7 +58,7 @@ struct Span {
     values: Vec<f64>,
 }
 
-/// The prescribed components of all nodes.
+/// The prescribed components of all nodes; a node without one is absent.
 #[derive(Debug, Default)]
 pub(crate) struct Held {
     nodes: BTreeMap<usize, Vec<Component>>,

@@ -279,7 +279,7 @@ impl Model {
         &self.parts.title
     }
 
-    /// Names of the units of length and force, for tables and pictures.
+    /// The names of the units of length and force that the scene gives to tables and pictures.
     pub fn units(&self) -> &Units {
         &self.parts.units
     }
@@ -328,7 +328,7 @@ impl Model {
         &self.across
     }
 
-    /// Warnings for the reader of the answer.
+    /// Warnings about the scene, found when the model was built.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }

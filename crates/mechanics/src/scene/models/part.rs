@@ -82,7 +82,7 @@ impl PartBoxSpec {
 
 /// The region of the centroids and the directions of the normals of a part.
 struct Region {
-    /// The smallest and the largest coordinates.
+    /// The smallest and the largest coordinates of the box.
     cuboid: Option<[[f64; 3]; 2]>,
     /// Centre and radius.
     sphere: Option<([f64; 3], f64)>,

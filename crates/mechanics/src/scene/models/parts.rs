@@ -43,7 +43,7 @@ pub(crate) struct Parts {
 }
 
 impl Parts {
-    /// The stiffness of the free dofs with the springs added.
+    /// The stiffness of the free dofs of the bodies, with all springs of the scene added to it.
     ///
     /// # Errors
     /// [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) if it overflows.

@@ -24,7 +24,7 @@ pub(crate) struct Shortening {
     pub tie: usize,
     /// Nodes with their vectors, as in [`TieRow`].
     pub terms: Vec<(usize, [f64; 3])>,
-    /// The nodes of its first side.
+    /// The nodes of the first side of the cut.
     pub own: Range<usize>,
     /// The tension along it; `None` if it is prescribed.
     pub force: Option<f64>,

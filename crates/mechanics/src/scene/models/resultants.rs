@@ -46,7 +46,7 @@ pub struct Resultant {
     /// Displacement of an obstacle that a force presses, against its approach direction, in length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub travel: Option<f64>,
-    /// The motion of a rigid face.
+    /// The motion of the rigid face that the resultant acts on; `None` for other forces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<FaceMotion>,
     /// The shortening of a bolt by its preload, in length.
@@ -54,7 +54,7 @@ pub struct Resultant {
     pub shortening: Option<f64>,
 }
 
-/// The motion of a rigid face.
+/// Displacement and rotation of a rigid face.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FaceMotion {
     /// Displacement of its centre, in length, a component for each coordinate.

@@ -39,7 +39,7 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
-    /// Its name in a scene.
+    /// The key of the motion in a scene, as `rotation.z`.
     pub fn name(&self) -> &'static str {
         NAMES[self.kind]
     }

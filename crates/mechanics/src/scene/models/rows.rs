@@ -18,9 +18,10 @@ pub struct ContactRow {
     /// The nodes that the row couples, each as `(node, share)`, its own first, with dimensionless shares that add up to 1 on its own body
     /// and to -1 on another body: 1 and -1 for a pair of nodes.
     pub ends: Vec<(usize, f64)>,
-    /// The obstacle, numbered from 0 in the order of the scene.
+    /// The obstacle or other body that the row keeps out, numbered from 0 in the order of the scene.
     pub obstacle: usize,
-    /// Dimensionless unit vector [x, y, z] into the obstacle; zero beyond the dimension of the model.
+    /// Normal of the row: a dimensionless vector [x, y, z] of length 1 into the obstacle or the other body, zero beyond the dimension of
+    /// the model.
     pub normal: [f64; 3],
     /// Signed distance of the undeformed node to the obstacle, or to its partner, along `normal`, in length; negative inside.
     ///

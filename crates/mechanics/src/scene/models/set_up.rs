@@ -19,7 +19,7 @@ pub enum Hold {
 /// A node that something keeps in its place along at least one direction, for the picture of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeldNode {
-    /// Its number in the mesh, from 0.
+    /// Index of the held node in the mesh, from 0.
     pub node: usize,
     /// Support, spring or symmetry.
     pub hold: Hold,

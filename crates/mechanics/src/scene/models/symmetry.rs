@@ -13,7 +13,7 @@ use crate::scene::input::schema::{ModelSpec, Scene, SymmetryPlane};
 pub(crate) struct Symmetry {
     /// The axis normal to each plane, and the coordinate of the plane along it.
     planes: Vec<(usize, f64)>,
-    /// Lengths below this are rounding of coordinates.
+    /// A node within this length of a plane of symmetry lies on it: rounding of coordinates.
     rounding: f64,
 }
 

@@ -25,7 +25,7 @@ pub(crate) fn in_unknowns(
 pub(crate) struct TieRow {
     /// Nodes with their vectors [x, y, z], dimensionless; at a node with a coefficient for the coefficient.
     pub terms: Vec<(usize, [f64; 3])>,
-    /// The nodes of its first side.
+    /// The terms of the nodes of the first side.
     pub own: Range<usize>,
     /// The place at which two surfaces are tied; `None` for an equation between nodes.
     pub at: Option<[f64; 3]>,

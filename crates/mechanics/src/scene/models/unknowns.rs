@@ -34,7 +34,7 @@ pub(crate) struct Unknowns {
 pub enum Meaning {
     /// The displacement of a node along a unit vector, or the coefficient of a mid-side node.
     Node {
-        /// Its number in the mesh, from 0.
+        /// Index of the moved node in the mesh, from 0.
         node: usize,
         /// The unit vector [x, y, z].
         direction: [f64; 3],
@@ -93,7 +93,7 @@ impl Unknowns {
         self.on_faces.as_ref().map_or(self.free, |on_faces| on_faces.rows.rows())
     }
 
-    /// Number of unknowns.
+    /// Number of unknowns of the model: those of the body, and the travels of pressed obstacles.
     pub fn count(&self) -> usize {
         self.of_body() + self.pressed.len()
     }

@@ -49,9 +49,9 @@ pub struct Dynamics {
     pub problem: DynamicProblem,
     /// Scheme of time integration, with the value of its parameter.
     pub scheme: Scheme,
-    /// Length of each step, in time, positive.
+    /// Length of every step of the motion, in time, positive.
     pub step: f64,
-    /// Number of steps to the end of the motion.
+    /// Number of steps from the start to the end of the motion.
     pub steps: usize,
     /// Number of states to be written, besides the first.
     pub frames: usize,
@@ -63,7 +63,7 @@ pub struct Dynamics {
     /// The data for the reactions of the supports.
     supports: MovingSupports,
     obstacles: Vec<MovingObstacle>,
-    /// Warnings for the reader of the answer.
+    /// Warnings about the scene and the scheme of the motion.
     pub warnings: Vec<Warning>,
 }
 

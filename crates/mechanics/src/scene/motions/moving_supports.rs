@@ -21,7 +21,7 @@ pub(crate) struct MovingSupports {
     stiffness: SparseMatrix,
     /// Force on the nodes per acceleration of these dofs, transposed.
     mass: SparseMatrix,
-    /// c_m and c_k.
+    /// c_m and c_k, as in the motion of the free dofs.
     damping: [f64; 2],
     /// Forces on the nodes from the prescribed displacements only, length `dim * nodes.len()`.
     holding: Vec<f64>,

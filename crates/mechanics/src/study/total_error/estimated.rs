@@ -20,7 +20,8 @@ const OF_ALGEBRA: f64 = 0.1;
 /// The seconds of a mesh grow with this power of its unknowns.
 const PER_UNKNOWN: f64 = 1.3;
 
-/// Halvings of a marked tetrahedron. Measured on a block under a sphere: with 1 more meshes are needed, and 3 refine too much.
+/// Number of times that a marked tetrahedron of the estimate is halved. Measured on a block under a sphere: with 1 more meshes are needed,
+/// and 3 refine too much.
 const GENERATIONS: usize = 2;
 
 /// Allowed exponents of the error in the cell size: from a strong singularity to smooth quadratic elements.
@@ -109,7 +110,7 @@ enum Refinement {
     Bisected(Vec<Bisected>, Answering),
     /// By division of each edge of the scene's mesh into this number of parts.
     Divided(usize),
-    /// None.
+    /// None: a mesh from a file cannot be made finer.
     Fixed,
 }
 
@@ -160,7 +161,7 @@ struct Shares {
     depths: Depths,
 }
 
-/// The data that stay the same from mesh to mesh.
+/// The scene and the settings of an estimate, the same on every mesh.
 struct Search<'a> {
     given: &'a Given<'a>,
     settings: Settings,

@@ -19,7 +19,7 @@ pub struct Examined {
     pub bound: f64,
     /// |v|: the length of the displacement in the energy norm.
     pub norm: f64,
-    /// The sum of the contact forces of v, in force.
+    /// The sum of the contact forces of the answer v on this mesh, in force.
     pub force: f64,
     /// The ends `[low, high]`, in force, between which the exact contact force lies.
     pub force_interval: Option<[f64; 2]>,

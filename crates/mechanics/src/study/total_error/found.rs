@@ -31,12 +31,12 @@ pub struct Level {
     pub dofs: usize,
     /// |u - v| / |v|: the bound, or the estimate.
     pub total_error: f64,
-    /// The sum of the contact forces of v, in force.
+    /// The sum of the contact forces of v on this mesh, in force.
     pub contact_force: f64,
     /// The numbers that only a bound has, or only an estimate.
     #[serde(flatten)]
     pub kind: LevelKind,
-    /// Seconds since the start.
+    /// Seconds from the start of the search to the end of this mesh.
     pub seconds: f64,
 }
 
@@ -158,7 +158,7 @@ pub struct Guarantee {
     pub mean_stress_error: Bound,
     /// The interval that contains the exact potential energy: D(tau) and J(v), in force times length.
     pub potential_energy: [f64; 2],
-    /// The sum of the contact forces of v, in force.
+    /// The sum of the contact forces of the displacement v of the bound, in force.
     pub contact_force: f64,
     /// The part of the body that carries the force, as "per metre".
     pub force_basis: String,
@@ -233,7 +233,7 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Seconds since the start.
+    /// Seconds since the start of the search.
     pub fn seconds(&self) -> f64 {
         self.clock.elapsed().as_secs_f64()
     }

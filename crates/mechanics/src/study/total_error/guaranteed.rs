@@ -87,7 +87,7 @@ pub(super) fn compared(answer: &Answer, of_bound: &ContinuumAnswer) -> Result<[f
     Ok([size(&away)?, size(answer.displacement())?])
 }
 
-/// The data that stay the same from mesh to mesh.
+/// The continuum problem and the settings of a guaranteed bound, the same on every mesh.
 struct Search<'a> {
     given: &'a Given<'a>,
     problem: &'a ContinuumProblem,

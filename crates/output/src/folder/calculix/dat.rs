@@ -20,7 +20,7 @@ const TABLES: [(&str, &str, &str); 9] = [
     ("CSTR", "contact stress (slave node,press,tang1,tang2)", ""),
 ];
 
-/// Digits behind the point.
+/// Digits behind the point of a number in a `.dat` file.
 const DIGITS: usize = 6;
 
 /// Returns `true` if the file has this table.

@@ -15,7 +15,7 @@ const TITLE: usize = 66;
 /// Nodes of an element on a line.
 const ON_A_LINE: usize = 10;
 
-/// Digits behind the point.
+/// Digits behind the point of a number in a `.frd` file.
 const DIGITS: usize = 5;
 
 /// A component: its name and its kind, as scalar, vector or tensor, with its places in it.

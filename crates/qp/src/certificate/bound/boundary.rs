@@ -133,7 +133,7 @@ fn gains_nothing(rest: f64, bound: f64, best: f64) -> bool {
 mod tests {
     use super::*;
 
-    /// Rounding of a handful of operations.
+    /// Rounding of the repaired values of two dofs.
     const ROUNDING: f64 = 1e-14;
 
     #[test]

@@ -212,7 +212,7 @@ struct Moved {
 mod tests {
     use super::*;
 
-    /// Rounding of a handful of operations.
+    /// Rounding of a sum over a few dofs.
     const ROUNDING: f64 = 1e-14;
 
     /// Dofs of these stiffnesses, which nothing couples, and rows with gaps.

@@ -23,7 +23,7 @@ const CANCELLED: f64 = 4.0 * f64::EPSILON;
 /// rounding of its length.
 const COUNTS: f64 = 3.0;
 
-/// Rows that are swept at once.
+/// Number of rows that a sweep of the repair takes at once.
 const BLOCK: usize = 128;
 
 /// The force `alpha r + B' x`, x in the units of normalised rows.
@@ -105,7 +105,7 @@ impl<'a> Repair<'a> {
         self.rows.shift.len()
     }
 
-    /// The rows, each a column.
+    /// The rows on the contact boundary, each a column.
     pub fn by_row(&self) -> &SparseMatrix {
         &self.rows.by_row
     }
@@ -257,7 +257,7 @@ impl<'a> Repair<'a> {
 mod tests {
     use super::*;
 
-    /// Rounding of a handful of operations.
+    /// Rounding of a repair of one or two dofs.
     const ROUNDING: f64 = 1e-12;
 
     #[test]

@@ -104,7 +104,7 @@ impl Triangle {
         self.weights.iter().map(|weights| self.kept.iter().copied().zip(weights.iter().copied()))
     }
 
-    /// `(R'R)^-1 b`; zero on columns that follow from others.
+    /// As [`UpperTriangle::solve_normal`], on all columns: zero on those that follow from others.
     pub fn solve_normal(&self, b: &[f64]) -> Vec<f64> {
         self.spread(self.r.solve_normal(self.kept.iter().map(|&place| b[place]).collect()))
     }

@@ -119,7 +119,7 @@ impl<A: Fn(&[f64]) -> Vec<f64>> Krylov<A> {
         self.basis.append(&mut self.next);
         let mut product = (self.apply)(&self.basis[known * self.dim..]);
         let (basis, count) = (std::mem::take(&mut self.basis), known + width);
-        // But for rounding, only the columns of the last two blocks have a share.
+        // Except for rounding, only the columns of the last two blocks have a share.
         let near = self.without(&basis[self.previous * self.dim..], &mut product);
         let mut shares = self.without(&basis, &mut product);
         let mut of_near = shares.subrows_mut(self.previous, near.nrows());

@@ -42,7 +42,7 @@ pub struct BlockMatrix<T> {
 /// What a product does to the vector that it is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Product {
-    /// `y = A x`.
+    /// The vector becomes the product: `y = A x`.
     Replaces,
     /// `y -= A x`.
     IsSubtracted,
@@ -126,7 +126,7 @@ impl<T: Real> BlockMatrix<T> {
         found.ok().map(|place| places.start + place)
     }
 
-    /// Bytes of memory that it holds.
+    /// Bytes of memory that the matrix holds.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.starts[..])
             + size_of_val(&self.indices[..])
@@ -139,7 +139,7 @@ impl<T: Real> BlockMatrix<T> {
         SharedRows { starts: &self.starts, threads }
     }
 
-    /// `y = A x`.
+    /// Writes `A x` into y.
     pub fn mul_into(&self, x: &[T], y: &mut [T], threads: usize) {
         self.multiply(x, y, Product::Replaces, threads);
     }

@@ -1,4 +1,4 @@
-//! The factor of the coarsest matrix.
+//! The coarsest level: a Cholesky factor, shifted if nothing holds the body.
 
 use super::blocks::BlockMatrix;
 use crate::linear::factor::Real;
@@ -73,7 +73,7 @@ impl Coarsest {
         Self::of(&rest)
     }
 
-    /// Number of values of the factor.
+    /// Number of values of the factor of the coarsest matrix.
     pub fn entries(&self) -> usize {
         self.cholesky.entries()
     }

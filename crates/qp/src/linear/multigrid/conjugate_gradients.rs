@@ -22,7 +22,7 @@ impl Multigrid {
 /// The answer of a linear solve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConjugateGradients {
-    /// The solution x.
+    /// The solution x, one entry per dof.
     pub solution: Vec<f64>,
     /// Number of cycles of the hierarchy.
     pub cycles: usize,

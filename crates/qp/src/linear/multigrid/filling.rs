@@ -19,7 +19,7 @@ pub struct Filling<'a> {
     pub graph: &'a Quotient,
     /// The first node of each group, and the number of nodes at the end.
     pub first_node: &'a [u32],
-    /// Places of a node.
+    /// Number of places of a node, filled or not.
     pub size: usize,
     /// The exponent of the unit of each node, and that of the whole matrix.
     pub exponents: &'a [i32],

@@ -27,7 +27,7 @@ impl Hold {
 /// The projection N of a face.
 #[derive(Debug)]
 pub struct Held<T> {
-    /// N.
+    /// The projection N as a matrix.
     pub matrix: BlockMatrix<T>,
     /// N'.
     pub transposed: BlockMatrix<T>,

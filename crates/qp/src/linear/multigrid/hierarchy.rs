@@ -205,12 +205,12 @@ impl<T: Real> Hierarchy<T> {
         self.levels.iter().map(|level| &level.matrix).chain([&*self.coarsest_matrix])
     }
 
-    /// Unknowns of each level, the finest first.
+    /// Number of unknowns of each level, the finest first.
     pub fn unknowns(&self) -> Vec<usize> {
         self.matrices().map(|matrix| matrix.rows() * matrix.height).collect()
     }
 
-    /// Bytes of memory that it holds.
+    /// Bytes of memory that the levels hold.
     pub fn bytes(&self) -> usize {
         let of_level =
             |level: &Arc<Level<T>>| level.matrix.bytes() + level.prolongator.bytes() + level.smoother.inverse.bytes();

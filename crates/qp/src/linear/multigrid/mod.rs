@@ -47,7 +47,7 @@ use hierarchy::Hierarchy;
 /// The hierarchy of a symmetric positive (semi)definite matrix: one cycle approximates its inverse.
 #[derive(Debug)]
 pub struct Multigrid {
-    /// The matrix.
+    /// The matrix that the hierarchy was made from.
     matrix: SymmetricMatrix,
     levels: Levels,
     /// Work vectors of the iteration around the cycles.
@@ -112,7 +112,7 @@ impl Multigrid {
         by_precision!(self.levels, hierarchy => hierarchy.cycle(b, None, &self.work))
     }
 
-    /// The node and the unit of each dof.
+    /// The node of each dof, and the unit of its unknown in the hierarchy.
     pub(crate) fn units(&self) -> Units {
         by_precision!(self.levels, hierarchy => hierarchy.nodes.units())
     }
@@ -155,12 +155,12 @@ impl Multigrid {
         by_precision!(self.levels, hierarchy => hierarchy.threads)
     }
 
-    /// Unknowns of each level, the finest first.
+    /// Number of unknowns of each level of the hierarchy, the finest first.
     pub fn unknowns(&self) -> Vec<usize> {
         by_precision!(self.levels, hierarchy => hierarchy.unknowns())
     }
 
-    /// Bytes of memory that it holds.
+    /// Bytes of memory that the hierarchy holds, without the matrix.
     pub fn bytes(&self) -> usize {
         by_precision!(self.levels, hierarchy => hierarchy.bytes())
     }

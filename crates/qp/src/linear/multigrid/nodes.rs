@@ -9,13 +9,13 @@ use crate::linear::factor::Real;
 /// Largest number of dofs of a node; if more have the same neighbours, they count as dofs of several nodes.
 const MOST_DOFS: usize = 3;
 
-/// The node of each dof. Nodes with fewer dofs than others, such as nodes at a roller, are filled up with dofs that nothing
-/// touches.
+/// The nodes of a problem, with the places of its dofs in them. Nodes with fewer dofs than others, such as nodes at a roller, are filled up
+/// with dofs that nothing touches.
 #[derive(Clone, Debug)]
 pub struct Nodes {
-    /// Places of a node.
+    /// Number of places of each node, at least its number of dofs.
     pub size: usize,
-    /// Number of nodes.
+    /// Number of nodes of the problem.
     pub count: usize,
     /// The place `size * node + component` of each dof.
     pub place: Vec<u32>,
@@ -98,7 +98,7 @@ impl Nodes {
         (size, components)
     }
 
-    /// The node and the unit of each dof.
+    /// The node of each dof, and the exponent of its unit.
     pub fn units(&self) -> Units {
         let groups = self.place.iter().map(|&place| place / self.size as u32).collect();
         Units { groups, exponents: self.place.iter().map(|&place| self.exponent(place)).collect() }

@@ -12,7 +12,7 @@ use crate::linear::factor::Real;
 pub struct Operator<'a, T> {
     /// A.
     pub matrix: &'a BlockMatrix<T>,
-    /// N.
+    /// The projection N of the face on the finest level; `None` on coarser ones and without a face.
     pub held: Option<&'a Held<T>>,
     /// C.
     pub change: Option<&'a BlockMatrix<T>>,
@@ -28,7 +28,7 @@ impl<'a, T: Real> Operator<'a, T> {
         Operator { matrix, held: None, change: None, threads, spare }
     }
 
-    /// Number of unknowns.
+    /// Number of unknowns of the level: its nodes times the dofs of a node.
     pub fn dim(&self) -> usize {
         self.matrix.rows() * self.matrix.height
     }

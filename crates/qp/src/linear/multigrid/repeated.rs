@@ -60,7 +60,7 @@ impl<T: Real> RowByRow<T> {
         rows < ENOUGH_ROWS || stored <= FEW * self.matrix.starts[rows] as f64
     }
 
-    /// The matrix.
+    /// The matrix of all rows, with equal rows stored once if they are few.
     pub fn finished(mut self) -> BlockMatrix<T> {
         self.share_or_not();
         self.matrix

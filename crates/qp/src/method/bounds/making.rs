@@ -27,7 +27,7 @@ const GROUPS_OF_A_PAIR: usize = 2;
 struct Rows<'a> {
     by_row: SparseMatrix,
     gap: &'a [f64],
-    /// The node of each dof.
+    /// The node of each dof, one entry per dof.
     groups: &'a [u32],
 }
 

@@ -43,12 +43,12 @@ pub(super) struct Split {
 }
 
 impl Basis {
-    /// The closed rows.
+    /// The closed rows, in the order in which they entered the basis.
     pub fn rows(&self) -> &[usize] {
         &self.rows
     }
 
-    /// The closed rows as a set of so many rows.
+    /// The closed rows as a set, `rows` being the number of all rows.
     pub fn set(&self, rows: usize) -> ContactSet {
         let mut closed = ContactSet::open(rows);
         self.rows.iter().for_each(|&row| closed.insert(row));

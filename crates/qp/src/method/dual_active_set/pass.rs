@@ -40,7 +40,7 @@ pub(super) struct Closed {
     /// The parts of the pressures of closed rows beyond double precision: if large pressures cancel on a soft dof, their
     /// rounding would exceed all other forces there. A pass does not change them.
     pub rests: Vec<f64>,
-    /// The sets on the way.
+    /// The sets of all passes so far.
     pub history: Vec<Iteration>,
 }
 

@@ -58,7 +58,7 @@ const NEAR: f64 = 1e-3;
 /// If the residual in twice the precision is above this share of the previous one, it will not decrease any more.
 const NO_GAIN: f64 = 0.5;
 
-/// The limits at which the loop ends.
+/// The accuracy and the numbers of cycles at which the loop ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Largest imbalance of forces and largest wrong-signed multiplier, relative to the largest force.
@@ -73,11 +73,11 @@ pub struct Limits {
 /// MPRGP on an unscaled problem, with the hierarchy of its stiffness.
 #[derive(Clone, Copy)]
 pub struct Mprgp<'a> {
-    /// The problem.
+    /// The problem in its own units.
     pub problem: &'a ContactProblem,
     /// The hierarchy.
     pub multigrid: &'a Multigrid,
-    /// The limits at which the loop ends.
+    /// The accuracy and the cycles of this solve.
     pub limits: Limits,
     /// The watch that may end the loop before, with the answer so far.
     pub watch: &'a Watch,

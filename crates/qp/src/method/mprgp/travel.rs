@@ -16,7 +16,7 @@ use crate::linear::multigrid::{Face, Units};
 use crate::method::bounds::{Bounds, Preferred};
 use crate::problem::ContactProblem;
 
-/// Rows of at most so many dofs, a travel among them, become bounds whatever their nodes are.
+/// Rows of at most this number of dofs, a travel among them, become bounds whatever their nodes are.
 const FEW_DOFS: usize = 7;
 
 /// Returns `true` if every dof without stiffness is a travel: the stiffness holds all others, and each row becomes a bound with at
@@ -32,7 +32,7 @@ pub fn takes_travels(problem: &ContactProblem) -> bool {
             && Bounds::of((problem.contact(), problem.gap()), &all, &units(problem), travels).is_ok())
 }
 
-/// The nodes, if a row has so many dofs that they matter.
+/// The nodes, if a row has more than [`FEW_DOFS`] dofs; otherwise each dof alone.
 fn units(problem: &ContactProblem) -> Units {
     let by_row = problem.contact().transposed();
     match (0..problem.rows()).any(|row| by_row.column(row).count() > FEW_DOFS) {

@@ -19,7 +19,7 @@ const CLOSE: f64 = 1e-9;
 /// Step of the differences; elements are of size 1 or 2.
 const STEP: f64 = 5e-4;
 
-/// Reproducible numbers from -1 to 1.
+/// A sequence of reproducible numbers from -1 to 1.
 struct Random(u64);
 
 impl Random {

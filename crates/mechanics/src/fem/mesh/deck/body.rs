@@ -7,8 +7,8 @@ use crate::fem::element::{Cell, ElementKind, MAX_NODES, Rule, Tabulated};
 use crate::fem::formulation::positive;
 use crate::fem::mesh::{ElementGroup, Mesh, NodeNames, fail};
 
-/// A node farther from the plane than this times the size of the body lies outside the plane: the tolerance is far above the rounding of
-/// a mesh generator and far below the size of any cell.
+/// A node of a deck is outside the plane if it is farther from it than this times the size of the body: far above the rounding of a mesh
+/// generator and far below the size of any cell.
 const FLAT: f64 = 1e-9;
 
 impl Deck {
@@ -117,7 +117,7 @@ impl Deck {
         Ok(())
     }
 
-    /// Checks that no element is inverted or without volume.
+    /// Checks that no element of a body of the deck is inverted or without volume.
     fn check(
         &self,
         kind: ElementKind,

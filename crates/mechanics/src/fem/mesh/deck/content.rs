@@ -49,13 +49,13 @@ pub(crate) struct Deck {
     pub bodies: usize,
 }
 
-/// An element of a deck.
+/// An element of a deck, with its type and its line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DeckElement {
     pub of_type: &'static DeckElementType,
     pub kind: ElementKind,
     pub place: Place,
-    /// The place of its first node in the connectivity.
+    /// Index of the first node of the element in the connectivity of the deck.
     pub(super) start: usize,
 }
 
@@ -282,7 +282,7 @@ impl Deck {
         self.element_list.first().map_or(3, |element| element.kind.dimension())
     }
 
-    /// Returns `true` for a body of revolution.
+    /// Returns `true` if the elements of the deck are those of a body of revolution.
     pub fn is_axisymmetric(&self) -> bool {
         self.element_list.first().is_some_and(|element| element.of_type.space == Space::Axisymmetric)
     }

@@ -14,13 +14,13 @@ pub(crate) enum Space {
     Solid,
 }
 
-/// An element of a deck.
+/// An element type of decks, with the element of this library for it.
 #[derive(Debug, PartialEq)]
 pub(crate) struct DeckElementType {
     /// Its name, as `C3D8I`.
     pub name: &'static str,
     pub space: Space,
-    /// Number of its nodes.
+    /// Number of nodes that the deck lists for such an element.
     pub nodes: usize,
     /// How the nearest element of this library differs; empty if it does not.
     pub differs: &'static [&'static str],

@@ -25,7 +25,7 @@ impl SpringType {
         }
     }
 
-    /// Number of its nodes.
+    /// Number of nodes of a spring element of this type: 1 or 2.
     pub fn nodes(self) -> usize {
         if self == SpringType::ToGround { 1 } else { 2 }
     }

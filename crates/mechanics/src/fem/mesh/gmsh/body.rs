@@ -8,8 +8,8 @@ use crate::error::{Error, nearly};
 use crate::fem::element::{Cell, ElementKind, MAX_NODES, Rule, Tabulated};
 use crate::fem::mesh::{ElementGroup, Mesh, fail};
 
-/// A node farther from the plane than this times the size of the body lies outside the plane: the tolerance is far above the rounding of
-/// a mesh generator and far below the size of any cell.
+/// A node of a mesh file is outside the plane if it is farther from it than this times the size of the body: far above the rounding of Gmsh
+/// and far below the size of any cell.
 const FLAT: f64 = 1e-9;
 
 /// The number in the mesh of each node of the file, if it is in the body.
@@ -101,7 +101,7 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    /// Checks that no element is inverted or without volume.
+    /// Checks that no element of the body in the file is inverted or without volume.
     fn check(&self, file: &GmshFile, nodes: &[[f64; 3]], connectivity: &[usize]) -> Result<(), Error> {
         let table = Tabulated::new(self.kind.reference(), Rule::Straight);
         for (element, places) in self.elements.iter().zip(connectivity.chunks_exact(self.kind.nodes())) {

@@ -1,4 +1,4 @@
-//! The content of a file: nodes, elements of any type, physical groups.
+//! A mesh file of Gmsh as data, without the meaning of its groups.
 
 use std::path::PathBuf;
 

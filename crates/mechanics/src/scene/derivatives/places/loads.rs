@@ -14,7 +14,7 @@ use crate::scene::input::schema::Place;
 use crate::scene::input::schema::spring::StiffnessOf;
 use crate::scene::models::load::Acting;
 
-/// Adds the change of `virtual_displacement . load`, both nodal vectors. Forces at nodes do not change.
+/// Adds the change of the work of all loads, `virtual_displacement . load`, both nodal vectors. Forces at nodes do not change.
 ///
 /// # Errors
 /// As [`Scene::acting`].

@@ -8,13 +8,13 @@ use crate::scene::derivatives::output::Output;
 use crate::scene::input::obstacle::{Obstacle, ObstacleRow};
 use signorini_qp::{ContactSet, dot};
 
-/// Derivatives agree with differences to within this, relative to the largest entry: rounding over the step.
+/// Derivatives of outputs by places agree with differences to within this, relative to the largest entry: rounding over the step.
 const CLOSE: f64 = 1e-7;
 
 /// Step of the differences, in length; edges are about 0.5 long.
 const STEP: f64 = 1e-4;
 
-/// Reproducible numbers from -1 to 1.
+/// As many reproducible numbers from -1 to 1 as `count` says.
 fn random(count: usize, seed: u64) -> Vec<f64> {
     let mut state = seed;
     let mut next = || {

@@ -13,7 +13,7 @@ use crate::scene::input::files::Files;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BarSpec {
-    /// The axis along x.
+    /// The axis of the bar along x, with its cells.
     pub x: Axis,
     /// Cross-section, positive.
     #[serde(default = "crate::scene::input::schema::cells::one")]

@@ -34,16 +34,16 @@ const SIDES: [(&str, usize, bool, [usize; 4]); 6] = [
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoxSpec {
-    /// The axis along x.
+    /// The axis of the box along x, with its cells.
     pub x: Axis,
-    /// The axis along y.
+    /// The axis of the box along y, with its cells.
     pub y: Axis,
     /// The axis along z.
     pub z: Axis,
-    /// The element.
+    /// The element of the box.
     #[serde(default)]
     pub element: SolidElementSpec,
-    /// The integration of its stiffness.
+    /// The integration of the stiffness of the box.
     #[serde(default)]
     pub integration: Integration,
 }

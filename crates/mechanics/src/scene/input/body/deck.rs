@@ -15,9 +15,9 @@ use crate::scene::input::names;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DeckSpec {
-    /// The file, inside the folder of the scene unless reading outside is allowed; a relative name starts in that folder.
+    /// The input deck, inside the folder of the scene unless reading outside is allowed; a relative name starts in that folder.
     pub file: String,
-    /// Factor of the coordinates of the file, positive.
+    /// Factor of the coordinates of the deck, positive.
     #[serde(default = "crate::scene::input::schema::cells::one")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub scale: f64,
@@ -29,7 +29,7 @@ pub struct DeckSpec {
     /// The step up to which the deck is read, from 1: pressures of its cards are surfaces. The last step if it is left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step: Option<usize>,
-    /// The integration of the stiffness.
+    /// The integration of the stiffness of the elements of the deck.
     #[serde(default)]
     pub integration: Integration,
 }

@@ -15,21 +15,21 @@ use crate::scene::input::schema::cells::ElementSpec;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DiscSpec {
-    /// The centre [x, y].
+    /// The centre [x, y] of the disc.
     #[serde(default)]
     pub centre: [f64; 2],
-    /// Radius, positive.
+    /// Radius of the disc, positive.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
     /// The finely meshed zone around the lowest and the highest point.
     pub zone: Zone,
-    /// Only the part right of the centre; the plane x = centre becomes the boundary `symmetry-x`.
+    /// Only the half of the disc right of its centre; the plane x = centre becomes the boundary `symmetry-x`.
     #[serde(default)]
     pub symmetric: bool,
-    /// The element.
+    /// The element of the disc.
     #[serde(default)]
     pub element: ElementSpec,
-    /// The integration of its stiffness.
+    /// The integration of the stiffness of the disc.
     #[serde(default)]
     pub integration: Integration,
 }

@@ -17,9 +17,9 @@ const OF_MESH_FILE: f64 = 150.0;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GmshSpec {
-    /// The file, inside the folder of the scene unless reading outside is allowed; a relative name starts in that folder.
+    /// The mesh file, inside the folder of the scene unless reading outside is allowed; a relative name starts in that folder.
     pub file: String,
-    /// Factor of the coordinates of the file, positive.
+    /// Factor of the coordinates of the mesh file, positive.
     #[serde(default = "crate::scene::input::schema::cells::one")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub scale: f64,
@@ -28,7 +28,7 @@ pub struct GmshSpec {
     #[serde(default, with = "names", skip_serializing_if = "Vec::is_empty")]
     #[schemars(schema_with = "names::schema")]
     pub group: Vec<String>,
-    /// The integration of the stiffness.
+    /// The integration of the stiffness of the elements of the mesh file.
     #[serde(default)]
     pub integration: Integration,
 }

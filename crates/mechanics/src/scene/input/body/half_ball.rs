@@ -23,13 +23,13 @@ pub struct HalfBallSpec {
     /// The centre [x, y, z].
     #[serde(default)]
     pub centre: [f64; 3],
-    /// The half; the upper half is the mirror image of the lower half, graded towards its highest point.
+    /// The half of the ball; the upper half is the mirror image of the lower half, graded towards its highest point.
     #[serde(default, skip_serializing_if = "HalfSpec::is_lower")]
     pub half: HalfSpec,
-    /// Radius, positive.
+    /// Radius of the half ball, positive.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
-    /// The finely meshed zone around the lowest (highest) point.
+    /// The finely meshed zone around the lowest (highest) point of the half ball.
     pub zone: Zone,
     /// Axes along which only the part beyond the centre is meshed; the planes through the centre become the boundaries
     /// `symmetry-x` and `symmetry-y`.
@@ -38,7 +38,7 @@ pub struct HalfBallSpec {
     /// The element: `hex8`, or `hex20` with edges that follow the sphere.
     #[serde(default, skip_serializing_if = "SolidElementSpec::is_default")]
     pub element: SolidElementSpec,
-    /// The integration of its stiffness.
+    /// The integration of the stiffness of the half ball.
     #[serde(default)]
     pub integration: Integration,
 }
@@ -47,9 +47,9 @@ pub struct HalfBallSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SymmetrySpec {
-    /// Along x.
+    /// A plane of symmetry normal to x.
     X,
-    /// Along y.
+    /// A plane of symmetry normal to y.
     Y,
 }
 

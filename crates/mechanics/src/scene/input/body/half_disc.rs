@@ -16,24 +16,24 @@ use crate::scene::input::schema::cells::{ElementSpec, HalfSpec};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HalfDiscSpec {
-    /// The centre [x, y].
+    /// The centre [x, y] of the whole disc.
     #[serde(default)]
     pub centre: [f64; 2],
-    /// The half; the upper half is the mirror image of the lower half, graded towards its highest point.
+    /// The half of the disc; the upper half is the mirror image of the lower half, graded towards its highest point.
     #[serde(default, skip_serializing_if = "HalfSpec::is_lower")]
     pub half: HalfSpec,
-    /// Radius, positive.
+    /// Radius of the half disc, positive.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
-    /// The finely meshed zone around the lowest (highest) point.
+    /// The finely meshed zone around the lowest (highest) point of the half disc.
     pub zone: Zone,
-    /// Only the part right of the centre; the plane x = centre becomes the boundary `symmetry-x`.
+    /// Only the quarter of the disc right of its centre; the plane x = centre becomes the boundary `symmetry-x`.
     #[serde(default)]
     pub symmetric: bool,
-    /// The element.
+    /// The element of the half disc.
     #[serde(default)]
     pub element: ElementSpec,
-    /// The integration of its stiffness.
+    /// The integration of the stiffness of the half disc.
     #[serde(default)]
     pub integration: Integration,
 }

@@ -73,17 +73,17 @@ const ALL: [About; 9] = [
 ];
 
 impl BodySpec {
-    /// The name of the shape and the models that allow it.
+    /// The name of the body shape and the models that allow it.
     pub(crate) fn about(&self) -> About {
         self.described().0
     }
 
-    /// The shape of any kind.
+    /// The numbers of the body shape, of whatever kind it is.
     pub(crate) fn shape(&self) -> &dyn BodyShape {
         self.described().1
     }
 
-    /// The name and the models of the shape, and the shape of any kind.
+    /// What [`about`](Self::about) and [`shape`](Self::shape) return: the only place that distinguishes the kinds of bodies.
     fn described(&self) -> (About, &dyn BodyShape) {
         match self {
             BodySpec::Rectangle(spec) => (rectangle::ABOUT, spec),

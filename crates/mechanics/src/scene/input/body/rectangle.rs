@@ -18,14 +18,14 @@ const NO_NODE: usize = usize::MAX;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RectangleSpec {
-    /// The axis along x.
+    /// The axis of the rectangle along x, with its cells.
     pub x: Axis,
-    /// The axis along y.
+    /// The axis of the rectangle along y, with its cells.
     pub y: Axis,
-    /// The element.
+    /// The element of the rectangle.
     #[serde(default)]
     pub element: ElementSpec,
-    /// The integration of its stiffness.
+    /// The integration of the stiffness of the rectangle.
     #[serde(default)]
     pub integration: Integration,
 }

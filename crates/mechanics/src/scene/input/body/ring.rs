@@ -15,17 +15,17 @@ use crate::scene::input::schema::cells::ElementSpec;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RingSpec {
-    /// The centre [x, y].
+    /// The centre [x, y] of the ring.
     #[serde(default)]
     pub centre: [f64; 2],
     /// The radial axis, from the inner to the outer radius.
     pub radius: Axis,
     /// The angle in degrees, counterclockwise from x; the ring is closed if the angle spans 360.
     pub angle: Axis,
-    /// The element.
+    /// The element of the ring.
     #[serde(default)]
     pub element: ElementSpec,
-    /// The integration of its stiffness.
+    /// The integration of the stiffness of the ring.
     #[serde(default)]
     pub integration: Integration,
 }

@@ -14,7 +14,7 @@ const SHELLS: f64 = 0.6;
 /// The name of a body shape and the models that allow it.
 #[derive(Clone, Copy, Debug)]
 pub struct About {
-    /// The name in a scene.
+    /// The key by which a scene chooses the body shape.
     pub name: &'static str,
     /// The numbers of coordinates that the body may have; several if its file determines them.
     pub dimensions: &'static [usize],
@@ -22,7 +22,7 @@ pub struct About {
 
 /// A body shape with its numbers.
 pub(crate) trait BodyShape {
-    /// The integration of the stiffness.
+    /// The integration of the stiffness that the scene asks for.
     fn integration(&self) -> Integration;
 
     /// The cross-section of a bar, in area.

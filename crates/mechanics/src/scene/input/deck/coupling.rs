@@ -33,7 +33,7 @@ pub(super) struct Coupling {
 /// The couplings of a deck.
 ///
 /// # Errors
-/// An error with the line for a surface or a node that does not exist, and for directions that are none.
+/// An error with the line for a surface or a node that does not exist, and for directions outside 1 to 6.
 pub(super) fn couplings(deck: &Deck) -> Result<Vec<Coupling>, Error> {
     let mut couplings = Vec::new();
     let mut open: Option<&Card> = None;

@@ -192,7 +192,7 @@ fn named_line((file, line): (PathBuf, usize)) -> String {
     format!("{}:{line}", file.display())
 }
 
-/// The comments before the scene.
+/// The comments that open the scene of a deck: where it comes from, and which cards are answered otherwise or passed over.
 fn comments(deck: &Deck, named: &str, noted: &[(Place, String)], passed: &[(String, Place)]) -> Vec<String> {
     let mut comments = vec![format!("The scene of {named}; each entry names the line of the deck that it comes from.")];
     let nonlinear =

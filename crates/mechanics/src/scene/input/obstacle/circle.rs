@@ -17,16 +17,17 @@ pub(super) const BESIDE: f64 = 0.5;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CircleSpec {
-    /// The centre.
+    /// The centre of the circle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub centre: Option<[f64; 2]>,
-    /// The centre minus the radius along the approach direction, the point nearest to the body; from inside, the centre plus the radius.
+    /// The point of the circle nearest to the body: the centre minus the radius along the approach direction; from inside, the centre plus
+    /// the radius.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 2]>,
-    /// Radius, positive. Nodes beyond its reach have no contact row.
+    /// Radius of the circle, positive. Nodes beyond its reach have no contact row.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
-    /// The side of the body: `outside`, or `inside`, as a pin in a hole, with the obstacle all around.
+    /// The side of the circle on which the body is: `outside`, or `inside`, as a pin in a hole, with the obstacle all around.
     #[serde(default, skip_serializing_if = "Side::is_outside")]
     pub side: Side,
 }

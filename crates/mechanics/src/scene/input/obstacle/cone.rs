@@ -14,7 +14,7 @@ use crate::error::Error;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ConeSpec {
-    /// The point nearest to the body.
+    /// The tip of the cone, its point nearest to the body.
     pub apex: [f64; 3],
     /// Slope of the flank away from the body, positive.
     #[schemars(extend("exclusiveMinimum" = 0))]

@@ -26,10 +26,10 @@ pub struct CylinderSpec {
     pub apex: Option<[f64; 3]>,
     /// Direction of the axis, perpendicular to the approach direction, of any length except zero.
     pub axis: [f64; 3],
-    /// Radius, positive. Nodes beyond its reach have no contact row.
+    /// Radius of the cylinder, positive. Nodes beyond its reach have no contact row.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
-    /// The side of the body: `outside`, or `inside`, as a pin in a hole, with the obstacle all around.
+    /// The side of the cylinder on which the body is: `outside`, or `inside`, as a pin in a hole, with the obstacle all around.
     #[serde(default, skip_serializing_if = "Side::is_outside")]
     pub side: Side,
 }

@@ -24,7 +24,7 @@ const ASLANT: f64 = 0.2;
 /// edge of a facet than this share of the edge counts as on the edge.
 const SAME_PLACE: f64 = 1e-3;
 
-/// The surface of another elastic body.
+/// A boundary of another elastic body as an obstacle, with its rows and its reach.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FacingSpec {
@@ -83,7 +83,7 @@ pub enum FitSpec {
 }
 
 impl FacingSpec {
-    /// The surface `boundary` of another body within reach, with the rows that suit it.
+    /// The surface `boundary` within reach, with rows and side chosen from the meshes.
     pub(crate) fn of(boundary: String, reach: f64) -> Self {
         FacingSpec { boundary, rows: RowsSpec::Auto, side: SideSpec::Auto, reach: Some(reach), fit: None }
     }
@@ -209,9 +209,9 @@ fn unpaired(site: &Site, message: String) -> Error {
 #[derive(Clone, Copy, Debug)]
 struct Pair {
     partner: usize,
-    /// Unit vector from the candidate's body into the other.
+    /// The normal of the pair, of length 1, from the candidate's body into the other.
     normal: [f64; 3],
-    /// Half way between the normals of both surfaces, from the candidate's body into the other.
+    /// The direction half way between the normals of both surfaces at the pair, from the candidate's body into the other.
     mean: [f64; 3],
     /// Distance along the normal from the candidate to its partner, in length.
     distance: f64,

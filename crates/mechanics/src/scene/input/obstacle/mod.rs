@@ -54,7 +54,7 @@ use shape::{About, ObstacleShape};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ShapeSpec {
-    /// A plane.
+    /// A plane, or in the plane a straight line.
     Plane(PlaneSpec),
     /// A parabola t^2/(2 radius) that bulges towards the body.
     Parabola(ParabolaSpec),
@@ -97,22 +97,22 @@ const ALL: [About; 12] = [
 ];
 
 impl ShapeSpec {
-    /// The surface `boundary` of another body within reach, with the rows that suit it.
+    /// The surface `boundary` of another body as an obstacle within reach.
     pub(crate) fn other_body(boundary: String, reach: f64) -> Self {
         ShapeSpec::Body(FacingSpec::of(boundary, reach))
     }
 
-    /// The name of the shape and the models that allow it.
+    /// The name of the obstacle shape and the models that allow it.
     fn about(&self) -> About {
         self.described().0
     }
 
-    /// The shape of any kind.
+    /// The numbers of the obstacle shape, of whatever kind it is.
     pub(crate) fn shape(&self) -> &dyn ObstacleShape {
         self.described().1
     }
 
-    /// The name and the models of the shape, and the shape of any kind.
+    /// What [`about`](Self::about) and [`shape`](Self::shape) return: the only place that distinguishes the kinds of obstacles.
     fn described(&self) -> (About, &dyn ObstacleShape) {
         match self {
             ShapeSpec::Plane(spec) => (plane::ABOUT, spec),

@@ -9,9 +9,9 @@ use crate::scene::Warning;
 pub(crate) struct Facing {
     /// The nodes that it couples, as in a [`ContactRow`](crate::scene::ContactRow).
     pub ends: Vec<(usize, f64)>,
-    /// Unit vector from the candidate's body into the other.
+    /// The normal of the row, of length 1, from the candidate's body into the other.
     pub normal: [f64; 3],
-    /// Half way between the normals of both surfaces, from the candidate's body into the other.
+    /// The direction half way between the normals of both surfaces at the row, from the candidate's body into the other.
     pub mean: [f64; 3],
     /// Distance along the normal to the other body, in length.
     pub distance: f64,

@@ -17,7 +17,7 @@ const NEWTON_STEPS: usize = 200;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ParabolaSpec {
-    /// The point nearest to the body.
+    /// The apex of the parabola, its point nearest to the body.
     pub apex: [f64; 2],
     /// Radius of curvature at the apex, positive.
     #[schemars(extend("exclusiveMinimum" = 0))]

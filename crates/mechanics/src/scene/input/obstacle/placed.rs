@@ -35,7 +35,7 @@ pub struct PlacedObstacle {
     approach: [f64; 3],
     dimension: usize,
     geometry: Geometry,
-    /// The rule for its rows; `None` for a user-defined obstacle.
+    /// The rule for the rows of the obstacle; `None` for a user-defined one.
     rule: Option<Rule>,
     /// Shift along the approach direction in addition to that of the scene, in length.
     gap: f64,
@@ -209,7 +209,7 @@ impl PlacedObstacle {
         self.force.is_some() || self.inertia.is_some()
     }
 
-    /// The rule for its rows; `None` for a user-defined obstacle.
+    /// The rule by which rows are made from the shape; `None` for a user-defined obstacle.
     pub fn rule(&self) -> Option<Rule> {
         self.rule
     }

@@ -16,7 +16,7 @@ use crate::fem::geometry::{dot, length, minus};
 use crate::scene::input::entry::{point, vector, wrong};
 use crate::scene::input::schema::approach::Rule;
 
-/// A plane.
+/// A plane as an obstacle, given by a point and its normal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneSpec {

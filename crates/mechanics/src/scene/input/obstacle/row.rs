@@ -8,7 +8,8 @@ use super::triangle::NOT_ENCLOSED;
 /// node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObstacleRow {
-    /// Dimensionless unit vector [x, y, z] into the obstacle; zero beyond the dimension of the model.
+    /// Direction of the bounded displacement: a dimensionless vector [x, y, z] of length 1 into the obstacle, zero beyond the dimension of
+    /// the model.
     pub normal: [f64; 3],
     /// Signed distance from the undeformed node to the obstacle along `normal`, in length; negative inside.
     pub gap: f64,

@@ -32,7 +32,7 @@ pub(super) trait RigidSurface: Debug + Send + Sync {
 pub(super) struct Ruled<S> {
     pub surface: S,
     pub rule: Rule,
-    /// The approach direction, a unit vector [x, y, z].
+    /// The approach direction of the obstacle, [x, y, z], of length 1.
     pub approach: [f64; 3],
 }
 

@@ -21,7 +21,7 @@ use crate::scene::input::schema::approach::{Approach, Rule};
 /// The name of an obstacle shape and the models that allow it.
 #[derive(Clone, Copy, Debug)]
 pub struct About {
-    /// The name in a scene.
+    /// The key by which a scene chooses the obstacle shape.
     pub name: &'static str,
     /// The allowed numbers of coordinates of a model.
     pub dimensions: &'static [usize],
@@ -114,7 +114,7 @@ impl Site<'_> {
         format!("{}.{name}", self.path)
     }
 
-    /// The approach direction, a unit vector [x, y, z].
+    /// The approach direction [x, y, z] as a dimensionless vector of length 1.
     pub fn direction(&self) -> [f64; 3] {
         let (axis, sense) = self.approach.axis();
         along_axis(axis, sense)
@@ -131,7 +131,7 @@ impl Site<'_> {
         ["y", "x"][self.approach.axis().0]
     }
 
-    /// Lengths below this are rounding of coordinates.
+    /// A length below this is rounding of the coordinates of the body.
     pub fn rounding(&self) -> f64 {
         COORDINATE_ROUNDING * self.body.mesh().size()
     }

@@ -12,13 +12,14 @@ use crate::error::Error;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SphereSpec {
-    /// The centre.
+    /// The centre of the sphere that the body may touch.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub centre: Option<[f64; 3]>,
-    /// The centre minus the radius along the approach direction, the point nearest to the body; from inside, the centre plus the radius.
+    /// The point of the sphere nearest to the body: the centre minus the radius along the approach direction; from inside, the centre plus
+    /// the radius.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 3]>,
-    /// Radius, positive. Nodes beyond its reach have no contact row.
+    /// Radius of the sphere, positive. Nodes beyond its reach have no contact row.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
     /// The side of the body: `outside`, or `inside`, as a ball in a cup, with the obstacle all around.

@@ -19,7 +19,7 @@ const ALIGNED: f64 = 1e-9;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TorusSpec {
-    /// The centre.
+    /// The centre of the torus.
     pub centre: [f64; 3],
     /// Direction of the axis, along the approach direction (the ring lies flat in front of the body) or perpendicular to it (the ring
     /// stands upright), of any length except zero.

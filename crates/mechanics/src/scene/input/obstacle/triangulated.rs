@@ -28,7 +28,7 @@ pub struct SurfaceSpec {
     /// The file, `.stl` or `.obj`, inside the folder of the scene unless reading outside is allowed; a relative name starts in that
     /// folder.
     pub file: String,
-    /// Factor of the coordinates of the file, positive.
+    /// Factor of the coordinates of the triangles, positive.
     #[serde(default = "crate::scene::input::schema::cells::one")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub scale: f64,

@@ -14,7 +14,7 @@ use crate::error::Error;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WedgeSpec {
-    /// The point nearest to the body.
+    /// The tip of the wedge, its point nearest to the body.
     pub apex: [f64; 2],
     /// Slope of both flanks away from the body, positive.
     #[schemars(extend("exclusiveMinimum" = 0))]

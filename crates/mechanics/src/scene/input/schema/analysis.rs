@@ -77,7 +77,7 @@ pub struct DynamicSpec {
     /// Initial displacements and velocities; zero if left out. Of two entries for one body the later one counts.
     #[serde(default)]
     pub initial: Vec<InitialSpec>,
-    /// The treatment of nodes that start inside an obstacle.
+    /// The treatment of nodes that are inside an obstacle at the start of the motion.
     #[serde(default)]
     pub initial_penetration: PenetrationSpec,
     /// The change of the loads of the scene with time; a load that is not mentioned is constant.
@@ -147,7 +147,7 @@ pub struct FieldSpec {
     pub gradient: Vec<Vec<f64>>,
 }
 
-/// The treatment of nodes that start inside an obstacle.
+/// The choices for nodes that start inside an obstacle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum PenetrationSpec {
@@ -187,7 +187,7 @@ pub struct ObstacleInTimeSpec {
 pub enum FactorSpec {
     /// Straight lines between points; constant before the first and after the last.
     Table(FactorTableSpec),
-    /// `sin(2 pi frequency t + phase)`.
+    /// The factor `sin(2 pi frequency t + phase)`.
     Sine(SineSpec),
     /// A straight line from 0 at `start` to 1 at `end`; constant before and after.
     Ramp(IntervalSpec),

@@ -39,7 +39,7 @@ impl Approach {
         }
     }
 
-    /// Its name in a scene.
+    /// The direction as a scene writes it, such as `-y`.
     pub fn name(self) -> &'static str {
         match self {
             Approach::PlusX => "+x",

@@ -75,13 +75,13 @@ pub struct LineSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialPartSpec {
-    /// A physical group of the mesh file.
+    /// The physical group of the mesh file whose elements have this material.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
-    /// A box along the coordinate axes.
+    /// A box along the coordinate axes: its elements have this material.
     #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
     pub cuboid: Option<PartBoxSpec>,
-    /// The material.
+    /// The material of these elements.
     pub material: MaterialSpec,
 }
 
@@ -90,10 +90,10 @@ pub struct MaterialPartSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TemperatureSpec {
-    /// A physical group of the mesh file.
+    /// The physical group of the mesh file whose elements have this temperature.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
-    /// A box along the coordinate axes.
+    /// A box along the coordinate axes: its elements have this temperature.
     #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
     pub cuboid: Option<PartBoxSpec>,
     /// The temperature difference at the origin, in degrees.
@@ -111,19 +111,19 @@ pub struct TemperatureSpec {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct InitialStressSpec {
-    /// A physical group of the mesh file.
+    /// The physical group of the mesh file whose elements have this stress.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
-    /// A box along the coordinate axes.
+    /// A box along the coordinate axes: its elements have this stress.
     #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
     pub cuboid: Option<PartBoxSpec>,
     /// Normal stress along x.
     pub xx: f64,
-    /// Normal stress along y.
+    /// Normal stress along y, positive in tension.
     pub yy: f64,
     /// Normal stress along z; in an axisymmetric model the hoop stress.
     pub zz: f64,
-    /// Shear stress between x and y.
+    /// Initial shear stress between x and y.
     pub xy: f64,
     /// Shear stress between y and z.
     pub yz: f64,

@@ -41,11 +41,11 @@ impl LoadSpec {
     }
 }
 
-/// A traction on a boundary.
+/// A force per area on a boundary, constant or with a profile.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TractionSpec {
-    /// The boundary.
+    /// The boundary that the traction acts on.
     pub boundary: String,
     /// The traction, in force per area.
     pub value: Vec<f64>,
@@ -58,7 +58,7 @@ pub struct TractionSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PressureSpec {
-    /// The boundary.
+    /// The boundary that the pressure acts on.
     pub boundary: String,
     /// The pressure, in force per area; a positive pressure pushes on the body.
     pub value: f64,

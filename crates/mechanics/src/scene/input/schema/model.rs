@@ -21,7 +21,7 @@ pub enum ModelSpec {
 }
 
 impl ModelSpec {
-    /// Its name in a scene.
+    /// The model as a scene writes it, such as `plane-strain`.
     pub fn name(self) -> &'static str {
         match self {
             ModelSpec::Bar => "bar",

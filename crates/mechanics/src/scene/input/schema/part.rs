@@ -16,7 +16,7 @@ pub struct PartSpec {
     /// The boundary, or a further body to choose its whole surface; the whole surface of the first body if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub of: Option<String>,
-    /// A box along the coordinate axes.
+    /// A box along the coordinate axes that contains the centroids of the facets.
     #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
     pub cuboid: Option<PartBoxSpec>,
     /// A sphere; in the plane a circle.
@@ -41,7 +41,7 @@ pub struct PartBoxSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PartSphereSpec {
-    /// Its centre.
+    /// The centre of the sphere.
     pub centre: Vec<f64>,
     /// Its radius, positive.
     #[schemars(extend("exclusiveMinimum" = 0))]

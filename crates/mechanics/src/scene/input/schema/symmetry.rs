@@ -21,7 +21,7 @@ impl SymmetryPlane {
         self as usize
     }
 
-    /// Its name in a scene.
+    /// The axis normal to the plane, as a scene writes it.
     pub fn name(self) -> &'static str {
         ["x", "y", "z"][self.axis()]
     }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::condition::Place;
 
-/// Displacements that are tied to each other.
+/// One tie of displacements: between two surfaces, or by an equation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum TieSpec {

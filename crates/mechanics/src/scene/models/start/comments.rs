@@ -7,7 +7,7 @@ use super::text::{quoted, shown};
 use crate::fem::mesh::{Mesh, extent};
 use crate::fem::tributary_areas;
 
-/// The comments before the scene.
+/// The comments that open a first scene: the file, its size and its bodies.
 pub(super) fn head(named: &str, bodies: &Bodies) -> String {
     let mesh = bodies.joined.mesh();
     let (dimension, (low, high)) = (mesh.dimension(), mesh.extent());

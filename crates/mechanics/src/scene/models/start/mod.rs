@@ -14,7 +14,8 @@ use crate::scene::input::schema::Scene;
 use bodies::Bodies;
 
 impl Scene {
-    /// The sentence about a thing that is not modelled, if it has this name in other programs.
+    /// The sentence that a scene with this unknown name is answered with, if other programs give the name to a thing that is not modelled
+    /// here.
     pub fn not_modelled(name: &str) -> Option<&'static str> {
         absent(name)
     }

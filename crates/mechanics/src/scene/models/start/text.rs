@@ -151,7 +151,7 @@ fn springs(surfaces: &[String], mesh: &Mesh, young: f64) -> String {
     )
 }
 
-/// An obstacle that a force presses.
+/// The text of an obstacle that a force presses onto the body.
 fn plate(pressed: &str, roles: &Roles, mesh: &Mesh, young: f64) -> String {
     let (dimension, (axis, sense), (low, high)) = (mesh.dimension(), roles.way, roles.extent);
     let size = mesh.size();
