@@ -168,7 +168,7 @@ def main() -> int:
         print(fault, file=sys.stderr)
         return 1
     (options.out / "book.toml").write_text((ROOT / "docs/book.toml").read_text().replace("[book]", '[book]\nsrc = "source"', 1))
-    subprocess.run([options.mdbook, "build", "--dest-dir", "site", str(options.out)], check=True)
+    subprocess.run([options.mdbook, "build", "--dest-dir", str(options.out.resolve() / "site"), str(options.out)], check=True)
     faults, links, formulas = faults_of(options.out / "site")
     for fault in faults:
         print(fault, file=sys.stderr)
