@@ -173,7 +173,7 @@ fn with(scene: &Scene, model: &Model, scheme: SchemeSpec, steps: Option<usize>) 
     if let Some(AnalysisSpec::Dynamic(spec)) = &mut scene.analysis {
         step = steps.map(|steps| spec.duration / steps as f64);
         (spec.mass, spec.courant, spec.step) = (None, None, step);
-        *spec = spec.clone().with_scheme(scheme);
+        **spec = spec.clone().with_scheme(scheme);
     }
     let mut found = scene.dynamics(model)?.ok_or_else(still)?;
     // The default scheme has a step of its own in bars.

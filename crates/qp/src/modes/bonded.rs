@@ -1,5 +1,6 @@
 //! Rows held as equations and eliminated: u = Z y with B_C Z = 0.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 use crate::error::Error;
@@ -105,8 +106,11 @@ impl Bonded {
     ///
     /// # Errors
     /// [`Error::Length`] for a matrix of another size, [`Error::NotFinite`] if its entries overflow.
-    pub fn reduced(&self, matrix: &SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
-        matrix.congruent(&self.lift)
+    pub fn reduced<'a>(&self, matrix: &'a SymmetricMatrix) -> Result<Cow<'a, SymmetricMatrix>, Error> {
+        match self.pivots.is_empty() && matrix.dim() == self.lift.columns() {
+            true => Ok(Cow::Borrowed(matrix)),
+            false => matrix.congruent(&self.lift).map(Cow::Owned),
+        }
     }
 
     /// The unknowns u = Z y, length n, of those that are left, y.
@@ -135,7 +139,8 @@ fn plus(one: &Entries, factor: f64, other: &Entries) -> Entries {
         match (left.peek(), right.peek()) {
             (Some(&&(place, value)), Some(&&(second, by))) if place == second => {
                 sum.push((place, value + factor * by));
-                (left.next(), right.next());
+                left.next();
+                right.next();
             }
             (Some(&&(place, value)), Some(&&(second, _))) if place < second => {
                 sum.push((place, value));

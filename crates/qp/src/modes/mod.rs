@@ -101,7 +101,7 @@ impl ContactProblem {
         let rows: Vec<usize> = closed.iter().copied().chain(equalities).collect();
         let bonded = Bonded::of(self.contact(), &rows, first)?;
         let reduced = [bonded.reduced(self.stiffness())?, bonded.reduced(mass)?];
-        let Found { values, vectors, residuals, is_complete } = lowest(&reduced, count, threads, watch)?;
+        let Found { values, vectors, residuals, is_complete } = lowest([&reduced[0], &reduced[1]], count, threads, watch)?;
         let vectors: Vec<Vec<f64>> = vectors.iter().map(|reduced| bonded.lifted(reduced)).collect();
         let multiplier = |(x, value): (&Vec<f64>, &f64)| {
             let (elastic, inertia) = (self.stiffness().mul(x), mass.mul(x));
@@ -115,7 +115,7 @@ impl ContactProblem {
 
 /// The lowest pairs of a stiffness and a mass.
 fn lowest(
-    [stiffness, mass]: &[SymmetricMatrix; 2],
+    [stiffness, mass]: [&SymmetricMatrix; 2],
     count: usize,
     threads: usize,
     watch: &Watch,
@@ -124,12 +124,15 @@ fn lowest(
     let scale = Equilibration::of(&stiffness.combined(1.0, 0.0, mass)?);
     let scaled = [stiffness, mass].map(|matrix| scale.apply(matrix));
     let pencil = Pencil::of(&scaled, threads, watch)?;
-    let mut shifted = pencil.shifted()?;
-    let mut found = shifted.lowest(count)?;
-    if let Some(shift) = found.better_shift(shifted.shift) {
-        shifted = Shifted { shift, factor: pencil.factor(shift)?, ..shifted };
-        found = shifted.lowest(count)?;
-    }
+    let shifted = pencil.shifted()?;
+    let space = shifted.space(count)?;
+    let found = match shifted.better_shift(&space.pairs()?, count) {
+        None => shifted.lowest(space, count)?,
+        Some(shift) => {
+            let shifted = Shifted { pencil: &pencil, shift, factor: pencil.factor(shift)? };
+            shifted.lowest(shifted.space(count)?, count)?
+        }
+    };
     let unscaled = |vector: Vec<f64>| {
         let mut vector: Vec<f64> =
             vector.iter().zip(&scale.diagonal).map(|(&value, &by)| crate::linear::ldexp(value, by)).collect();
@@ -200,6 +203,12 @@ struct Shifted<'a> {
     factor: Cholesky,
 }
 
+/// Number of the first `count` pairs whose motion has mass.
+fn with_mass(pairs: &Pairs, count: usize) -> usize {
+    let least = NO_MASS * pairs.values.first().copied().unwrap_or(0.0);
+    pairs.values.iter().take(count).take_while(|value| **value > least).count()
+}
+
 /// The lowest pairs of a pencil.
 struct Found {
     values: Vec<f64>,
@@ -208,59 +217,62 @@ struct Found {
     is_complete: bool,
 }
 
-impl Found {
-    /// A shift with which the largest eigenvalue keeps its digits, if the smallest lie far below it.
-    fn better_shift(&self, shift: f64) -> Option<f64> {
-        let (first, last) = (self.values.first()?, self.values.last()?);
-        let spread = (last + shift) / (first.max(0.0) + shift);
-        (spread > SPREAD).then(|| last / SPREAD.sqrt())
-    }
-}
-
 impl Shifted<'_> {
-    fn lowest(&self, count: usize) -> Result<Found, Error> {
+    /// The space in which pairs are looked for the first time.
+    fn space(&self, count: usize) -> Result<Krylov<impl Fn(&[f64]) -> Vec<f64>>, Error> {
         let Pencil { ordered, threads, watch, .. } = self.pencil;
-        let (dim, threads) = (ordered.dim(), *threads);
-        let count = count.min(dim);
-        let mut space = Krylov::new(|columns: &[f64]| self.apply(columns), dim, par(threads));
-        let most = (24 * count + MOST_COLUMNS).min(dim);
+        if watch.is_over() {
+            return Err(Error::Interrupted);
+        }
+        let mut space = Krylov::new(|columns: &[f64]| self.apply(columns), ordered.dim(), par(*threads));
+        space.extend(space.next_extension(count));
+        Ok(space)
+    }
+
+    /// A shift with which the largest eigenvalue keeps its digits, if the smallest of the first `count` lie far below it.
+    fn better_shift(&self, pairs: &Pairs, count: usize) -> Option<f64> {
+        let (first, last) = (pairs.values.first()?, pairs.values[..with_mass(pairs, count)].last()?);
+        (first / last > SPREAD).then(|| (1.0 / last - self.shift) / SPREAD.sqrt())
+    }
+
+    /// The lowest pairs, with the space extended until they have converged.
+    fn lowest(&self, mut space: Krylov<impl Fn(&[f64]) -> Vec<f64>>, count: usize) -> Result<Found, Error> {
+        let Pencil { ordered, watch, .. } = self.pencil;
+        let count = count.min(ordered.dim());
+        let most = 24 * count + MOST_COLUMNS;
         let (mut wanted, mut is_complete, mut searches) = (count, false, 0);
         let mut pairs = loop {
             if watch.is_over() {
                 return Err(Error::Interrupted);
             }
-            space.extend(space.next_extension(wanted));
             let pairs = space.pairs()?;
-            let is_last = space.columns() >= most || searches >= MOST_SEARCHES;
-            if pairs.converged() < wanted.min(space.columns()) && !is_last && !space.is_whole() {
-                continue;
+            let is_last = space.columns() >= most || searches >= MOST_SEARCHES || space.is_whole();
+            if pairs.converged() >= wanted.min(space.columns()) || is_last {
+                match self.gap_after(&pairs, wanted) {
+                    // The last eigenvalues of all.
+                    None if is_last => {
+                        is_complete = space.is_whole();
+                        break pairs;
+                    }
+                    // They are so close to each other that more of them are needed.
+                    None => wanted += BEYOND,
+                    Some((bounds, below)) => match self.pencil.below(bounds)? {
+                        Some(counted) if counted == below => {
+                            is_complete = true;
+                            break pairs;
+                        }
+                        Some(counted) if !is_last => {
+                            searches += 1;
+                            wanted = wanted.max(counted);
+                            space.widen();
+                        }
+                        _ => break pairs,
+                    },
+                }
             }
-            let Some((bounds, below)) = self.gap_after(&pairs, wanted) else {
-                // The last eigenvalues of all, or so close to each other that more of them are needed.
-                is_complete = space.is_whole();
-                if is_complete || is_last {
-                    break pairs;
-                }
-                wanted += BEYOND;
-                continue;
-            };
-            match self.pencil.below(bounds)? {
-                Some(counted) if counted == below => {
-                    is_complete = true;
-                    break pairs;
-                }
-                Some(counted) if !is_last && !space.is_whole() => {
-                    searches += 1;
-                    wanted = wanted.max(counted);
-                    space.widen();
-                }
-                _ => break pairs,
-            }
+            space.extend(space.next_extension(wanted));
         };
-        // Eigenvalues of the operator that are zero belong to motions without mass.
-        let least = NO_MASS * pairs.values.first().copied().unwrap_or(0.0);
-        pairs.values.truncate(count);
-        pairs.values.retain(|&value| value > least);
+        pairs.values.truncate(with_mass(&pairs, count));
         let vectors = space.vectors(&pairs, pairs.values.len());
         let mut found = Found { values: Vec::new(), vectors: Vec::new(), residuals: Vec::new(), is_complete };
         let mut all = self.pairs(&vectors);

@@ -1,15 +1,17 @@
 //! Four columns at once: sweeps through a factor, and products, in which each entry is fetched once for all four.
 
+use std::ops::Range;
+
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Arch, Scalar, Simd, WithSimd};
 
 use super::super::{Cholesky, SymmetricMatrix};
 
 /// Columns that are treated together.
 pub const LANES: usize = 4;
 
-/// Sums of a product that run beside each other.
-const SUMS: usize = 4;
+/// Columns of a block that a sweep treats together: each row is then fetched once for all of them.
+const TOGETHER: usize = 4;
 
 /// The entries of all columns in one row.
 type Lane = [f64; LANES];
@@ -43,17 +45,18 @@ impl Lanes {
     }
 
     /// The solution Y of L Y = X, in the order of elimination.
-    pub fn forward(mut self, factor: &Cholesky) -> Self {
-        if let Some((nodes, values)) = factor.block_columns() {
-            Arch::new().dispatch(Forward(Sweep { nodes, values, x: &mut self.rows }));
-        }
-        self
+    pub fn forward(self, factor: &Cholesky) -> Self {
+        self.swept(factor, Direction::Forward)
     }
 
     /// The solution Y of L' Y = X, in the order of elimination.
-    pub fn backward(mut self, factor: &Cholesky) -> Self {
+    pub fn backward(self, factor: &Cholesky) -> Self {
+        self.swept(factor, Direction::Backward)
+    }
+
+    fn swept(mut self, factor: &Cholesky, direction: Direction) -> Self {
         if let Some((nodes, values)) = factor.block_columns() {
-            Arch::new().dispatch(Backward(Sweep { nodes, values, x: &mut self.rows }));
+            Arch::new().dispatch(Sweep { nodes, values, x: &mut self.rows, direction });
         }
         self
     }
@@ -91,92 +94,173 @@ impl WithSimd for Times<'_> {
     }
 }
 
-struct Sweep<'a> {
-    nodes: &'a SymbolicSupernodalCholesky<usize>,
-    values: &'a [f64],
-    x: &'a mut [Lane],
-}
-
 /// A block column of a factor.
 struct Block<'a> {
-    /// Its first column.
-    start: usize,
-    width: usize,
+    /// Its columns in the factor.
+    own: Range<usize>,
     /// Its entries, column by column: the rows of its own columns, then those below.
     values: &'a [f64],
     /// The rows below.
     below: &'a [usize],
 }
 
-impl<'a> Sweep<'a> {
+impl<'a> Block<'a> {
     #[inline(always)]
-    fn block(&self, node: usize) -> Block<'a> {
-        let nodes = self.nodes;
-        let (start, end) = (nodes.supernode_begin()[node], nodes.supernode_end()[node]);
+    fn of(nodes: &'a SymbolicSupernodalCholesky<usize>, values: &'a [f64], node: usize) -> Self {
+        let own = nodes.supernode_begin()[node]..nodes.supernode_end()[node];
         let places = nodes.col_ptr_for_val();
-        let values = &self.values[places[node]..places[node + 1]];
-        let below = values.len() / (end - start) - (end - start);
+        let values = &values[places[node]..places[node + 1]];
         let first = nodes.col_ptr_for_row_idx()[node];
-        Block { start, width: end - start, values, below: &nodes.row_idx()[first..first + below] }
+        let below = &nodes.row_idx()[first..first + values.len() / own.len() - own.len()];
+        Block { own, values, below }
     }
-}
 
-struct Forward<'a>(Sweep<'a>);
-
-impl WithSimd for Forward<'_> {
-    type Output = ();
-
+    /// The entries of column j.
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let sweep = self.0;
-        let mut sums: Vec<Lane> = Vec::new();
-        for node in 0..sweep.nodes.n_supernodes() {
-            let Block { start, width, values, below } = sweep.block(node);
-            sums.clear();
-            sums.resize(below.len(), [0.0; LANES]);
-            let own = &mut sweep.x[start..start + width];
-            for (j, column) in values.chunks_exact(width + below.len()).enumerate() {
-                let (beside, under) = column.split_at(width);
-                let entry = own[j].map(|value| value / beside[j]);
-                own[j] = entry;
-                own[j + 1..].iter_mut().zip(&beside[j + 1..]).for_each(|(value, &l)| subtract(value, l, &entry));
-                sums.iter_mut().zip(under).for_each(|(sum, &l)| subtract(sum, -l, &entry));
+    fn column(&self, j: usize) -> &'a [f64] {
+        let height = self.own.len() + self.below.len();
+        &self.values[j * height..(j + 1) * height]
+    }
+
+    /// The entries of N columns from the first one, below these.
+    #[inline(always)]
+    fn columns<const N: usize>(&self, first: usize) -> [&'a [f64]; N] {
+        std::array::from_fn(|k| &self.column(first + k)[first + N..])
+    }
+
+    /// Solves for N unknowns from the first one, and takes their share out of the rows after them. A row has P vectors.
+    #[inline(always)]
+    fn forward<S: Simd, const P: usize, const N: usize>(&self, simd: S, first: usize, rows: &mut [[S::f64s; P]]) {
+        let (own, after) = rows.split_at_mut(first + N);
+        for j in first..first + N {
+            let column = self.column(j);
+            let known = divided(simd, own[j], column[j]);
+            own[j] = known;
+            for i in j + 1..first + N {
+                own[i] = without(simd, own[i], column[i], known);
             }
-            below.iter().zip(&sums).for_each(|(&row, sum)| subtract(&mut sweep.x[row], 1.0, sum));
+        }
+        let known: [[S::f64s; P]; N] = std::array::from_fn(|k| own[first + k]);
+        let columns = self.columns::<N>(first).map(|column| &column[..after.len()]);
+        for (i, row) in after.iter_mut().enumerate() {
+            for k in 0..N {
+                *row = without(simd, *row, columns[k][i], known[k]);
+            }
+        }
+    }
+
+    /// Solves for the N unknowns from the first one, with the rows after them known.
+    #[inline(always)]
+    fn backward<S: Simd, const P: usize, const N: usize>(&self, simd: S, first: usize, rows: &mut [[S::f64s; P]]) {
+        let (own, after) = rows.split_at_mut(first + N);
+        let columns = self.columns::<N>(first).map(|column| &column[..after.len()]);
+        let mut left: [[S::f64s; P]; N] = std::array::from_fn(|k| own[first + k]);
+        for (i, row) in after.iter().enumerate() {
+            for k in 0..N {
+                left[k] = without(simd, left[k], columns[k][i], *row);
+            }
+        }
+        for k in (0..N).rev() {
+            let column = self.column(first + k);
+            for i in k + 1..N {
+                left[k] = without(simd, left[k], column[first + i], own[first + i]);
+            }
+            own[first + k] = divided(simd, left[k], column[first + k]);
         }
     }
 }
 
-struct Backward<'a>(Sweep<'a>);
+/// A row minus a factor times another one.
+#[inline(always)]
+fn without<S: Simd, const P: usize>(simd: S, mut row: [S::f64s; P], factor: f64, other: [S::f64s; P]) -> [S::f64s; P] {
+    let factor = simd.splat_f64s(factor);
+    for p in 0..P {
+        row[p] = simd.negate_mul_add_e_f64s(factor, other[p], row[p]);
+    }
+    row
+}
 
-impl WithSimd for Backward<'_> {
+/// A row over a number.
+#[inline(always)]
+fn divided<S: Simd, const P: usize>(simd: S, mut row: [S::f64s; P], by: f64) -> [S::f64s; P] {
+    let by = simd.splat_f64s(by);
+    for p in 0..P {
+        row[p] = simd.div_f64s(row[p], by);
+    }
+    row
+}
+
+/// A sweep through the block columns of a factor.
+struct Sweep<'a> {
+    nodes: &'a SymbolicSupernodalCholesky<usize>,
+    values: &'a [f64],
+    x: &'a mut [Lane],
+    direction: Direction,
+}
+
+#[derive(Clone, Copy)]
+enum Direction {
+    Forward,
+    Backward,
+}
+
+impl WithSimd for Sweep<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let sweep = self.0;
-        let mut known: Vec<Lane> = Vec::new();
-        for node in (0..sweep.nodes.n_supernodes()).rev() {
-            let Block { start, width, values, below } = sweep.block(node);
-            known.clear();
-            known.extend(below.iter().map(|&row| sweep.x[row]));
-            let own = &mut sweep.x[start..start + width];
-            for (j, column) in values.chunks_exact(width + below.len()).enumerate().rev() {
-                let (beside, under) = column.split_at(width);
-                let mut entry = own[j];
-                own[j + 1..].iter().zip(&beside[j + 1..]).for_each(|(value, &l)| subtract(&mut entry, l, value));
-                // Several sums, so that no term waits for the one before it.
-                let mut sums = [[0.0; LANES]; SUMS];
-                let ((fours, rest), (below, last)) = (known.as_chunks::<SUMS>(), under.as_chunks::<SUMS>());
-                for (values, entries) in fours.iter().zip(below) {
-                    for k in 0..SUMS {
-                        subtract(&mut sums[k], -entries[k], &values[k]);
+    fn with_simd<S: Simd>(self, simd: S) {
+        match LANES / S::F64_LANES {
+            1 => self.run::<S, 1>(simd),
+            2 => self.run::<S, 2>(simd),
+            _ => self.run::<Scalar, LANES>(Scalar),
+        }
+    }
+}
+
+impl Sweep<'_> {
+    /// Runs with P vectors for each row.
+    #[inline(always)]
+    fn run<S: Simd, const P: usize>(self, simd: S) {
+        let Sweep { nodes, values, x, direction } = self;
+        let mut buffer: Vec<f64> = Vec::new();
+        let count = nodes.n_supernodes();
+        for step in 0..count {
+            let block = match direction {
+                Direction::Forward => Block::of(nodes, values, step),
+                Direction::Backward => Block::of(nodes, values, count - 1 - step),
+            };
+            let width = block.own.len();
+            buffer.clear();
+            buffer.extend_from_slice(x[block.own.clone()].as_flattened());
+            match direction {
+                Direction::Forward => buffer.resize(LANES * (width + block.below.len()), 0.0),
+                Direction::Backward => block.below.iter().for_each(|&row| buffer.extend_from_slice(&x[row])),
+            }
+            let rows = S::as_mut_simd_f64s(&mut buffer).0.as_chunks_mut::<P>().0;
+            let single = width - width % TOGETHER;
+            match direction {
+                Direction::Forward => {
+                    for first in (0..single).step_by(TOGETHER) {
+                        block.forward::<S, P, TOGETHER>(simd, first, rows);
+                    }
+                    for first in single..width {
+                        block.forward::<S, P, 1>(simd, first, rows);
                     }
                 }
-                rest.iter().zip(last).for_each(|(value, &l)| subtract(&mut entry, l, value));
-                sums.iter().for_each(|sum| subtract(&mut entry, 1.0, sum));
-                own[j] = entry.map(|value| value / beside[j]);
+                Direction::Backward => {
+                    for first in (single..width).rev() {
+                        block.backward::<S, P, 1>(simd, first, rows);
+                    }
+                    for first in (0..single).step_by(TOGETHER).rev() {
+                        block.backward::<S, P, TOGETHER>(simd, first, rows);
+                    }
+                }
             }
+            let (own, below) = buffer.as_chunks::<LANES>().0.split_at(width);
+            if let Direction::Forward = direction {
+                block.below.iter().zip(below).for_each(|(&row, share)| subtract(&mut x[row], -1.0, share));
+            }
+            x[block.own].copy_from_slice(own);
         }
     }
 }

@@ -17,7 +17,7 @@ pub(crate) const MODES: &str = "analysis.modes";
 #[serde(rename_all = "kebab-case")]
 pub enum AnalysisSpec {
     /// The motion from given displacements and velocities.
-    Dynamic(DynamicSpec),
+    Dynamic(Box<DynamicSpec>),
     /// The natural vibrations about the equilibrium.
     Modes(ModesSpec),
 }
