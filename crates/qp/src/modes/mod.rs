@@ -101,7 +101,8 @@ impl ContactProblem {
         let rows: Vec<usize> = closed.iter().copied().chain(equalities).collect();
         let bonded = Bonded::of(self.contact(), &rows, first)?;
         let reduced = [bonded.reduced(self.stiffness())?, bonded.reduced(mass)?];
-        let Found { values, vectors, residuals, is_complete } = lowest([&reduced[0], &reduced[1]], count, threads, watch)?;
+        let Found { values, vectors, residuals, is_complete } =
+            lowest([&reduced[0], &reduced[1]], count, threads, watch)?;
         let vectors: Vec<Vec<f64>> = vectors.iter().map(|reduced| bonded.lifted(reduced)).collect();
         let multiplier = |(x, value): (&Vec<f64>, &f64)| {
             let (elastic, inertia) = (self.stiffness().mul(x), mass.mul(x));
